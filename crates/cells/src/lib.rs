@@ -1,0 +1,16 @@
+//! The meeting point of cutting and seeing: scenes in the plane, and the graph of cells and portals.
+//!
+//! Owns: [`Plan`] (a scene in the plane, checked once), [`CellGraph`] (convex cells, the portals
+//! between them, who leads where) for every kind of cell, and what makes a graph well formed.
+//! Does not know: how a scene was cut, how a sightline is found, files.
+//! Invariants: ids are dense from 0; a portal joins two different cells; a cell's exits are ordered by
+//! side, then portal; every cell lies on the left of its own sides.
+
+pub mod graph;
+pub mod plan;
+pub mod planar;
+
+pub use graph::{CellGraph, Exit, Portal, PortalId, Space};
+pub use plan::{LineId, Plan, PlanError, PlanLine, PlanObject};
+pub use planar::{ConvexCell2, Planar, Portal2, WellFormedError};
+pub use sightlines_pvs::CellId;

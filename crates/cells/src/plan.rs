@@ -1,0 +1,190 @@
+//! Scenes in the plane: lines that block sight or only divide, and objects.
+
+use sightlines_geometry::{Aabb, CoordinateError, Point2, SmallGrid, check_coordinate};
+
+/// Index of a line of a [`Plan`], in input order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LineId(pub u32);
+
+/// A line of a plan, from `a` to `b`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanLine {
+    /// Start.
+    pub a: Point2,
+    /// End, different from the start.
+    pub b: Point2,
+    /// Whether it blocks sight. A line that does not block only divides the plane into groups.
+    pub opaque: bool,
+    /// Group (a Doom sector) of the region to the left of `a` to `b`, if the line names one.
+    pub left: Option<u32>,
+    /// Group of the region to the right of `a` to `b`, if the line names one.
+    pub right: Option<u32>,
+}
+
+impl PlanLine {
+    /// An opaque wall that names no group.
+    pub const fn wall(a: Point2, b: Point2) -> Self {
+        Self { a, b, opaque: true, left: None, right: None }
+    }
+}
+
+/// Something in a plan that is seen or not, but never hides anything: a box, often a single point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanObject {
+    /// What users call it.
+    pub name: String,
+    /// Its extent in scene units.
+    pub bounds: Aabb<2>,
+}
+
+/// A scene in the plane, checked: coordinates that the predicates accept, no line of length zero.
+///
+/// Lines may cross, overlap, touch and repeat as they like.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Plan {
+    lines: Vec<PlanLine>,
+    objects: Vec<PlanObject>,
+    n_groups: u32,
+}
+
+/// Why lines and objects do not make a plan.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// A coordinate of a line cannot be used.
+    #[error("line {line}: {kind}")]
+    Line {
+        /// Index of the line.
+        line: usize,
+        /// What is wrong with it.
+        #[source]
+        kind: CoordinateError,
+    },
+    /// Start and end of a line are one point.
+    #[error("line {line} has length zero at ({x}, {y})")]
+    ZeroLength {
+        /// Index of the line.
+        line: usize,
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+    },
+    /// A coordinate of an object cannot be used.
+    #[error("object {object}: {kind}")]
+    Object {
+        /// Index of the object.
+        object: usize,
+        /// What is wrong with it.
+        #[source]
+        kind: CoordinateError,
+    },
+    /// More lines than ids.
+    #[error("{0} lines are more than a plan can hold")]
+    TooMany(usize),
+}
+
+impl Plan {
+    /// Checks `lines` and `objects`. Negative zeros become zeros.
+    ///
+    /// # Errors
+    /// [`PlanError`] with the index of the first offender.
+    pub fn new(lines: Vec<PlanLine>, objects: Vec<PlanObject>) -> Result<Self, PlanError> {
+        if u32::try_from(lines.len()).is_err() {
+            return Err(PlanError::TooMany(lines.len()));
+        }
+        let (mut lines, mut objects) = (lines, objects);
+        for (line, l) in lines.iter_mut().enumerate() {
+            for p in [&mut l.a, &mut l.b] {
+                *p = check_point(*p).map_err(|kind| PlanError::Line { line, kind })?;
+            }
+            if l.a == l.b {
+                return Err(PlanError::ZeroLength { line, x: l.a.x, y: l.a.y });
+            }
+        }
+        for (object, o) in objects.iter_mut().enumerate() {
+            for x in o.bounds.min.iter_mut().chain(&mut o.bounds.max) {
+                *x = check_coordinate(*x).map_err(|kind| PlanError::Object { object, kind })?;
+            }
+        }
+        let named = lines.iter().flat_map(|l| [l.left, l.right]).flatten().max();
+        Ok(Self { lines, objects, n_groups: named.map_or(0, |g| g + 1) })
+    }
+
+    /// Opaque walls only, without groups or objects.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn from_walls(walls: impl IntoIterator<Item = (Point2, Point2)>) -> Result<Self, PlanError> {
+        Self::new(walls.into_iter().map(|(a, b)| PlanLine::wall(a, b)).collect(), Vec::new())
+    }
+
+    /// The lines, in input order.
+    pub fn lines(&self) -> &[PlanLine] {
+        &self.lines
+    }
+
+    /// The objects, in input order.
+    pub fn objects(&self) -> &[PlanObject] {
+        &self.objects
+    }
+
+    /// One more than the largest group that a line names; 0 if none does.
+    pub fn n_groups(&self) -> u32 {
+        self.n_groups
+    }
+
+    /// Smallest box around all lines; empty for a plan without lines.
+    pub fn bounds(&self) -> Aabb<2> {
+        Aabb::around(self.points().map(|p| [p.x, p.y]))
+    }
+
+    /// Whether every line is parallel to an axis, so that a k-d tree can follow all of them.
+    pub fn is_axial(&self) -> bool {
+        self.lines.iter().all(|l| l.a.x == l.b.x || l.a.y == l.b.y)
+    }
+
+    /// The predicate for small grids, if all end points are on one.
+    pub fn small_grid(&self) -> Option<SmallGrid> {
+        SmallGrid::covering(self.points())
+    }
+
+    /// All end points, repeated as often as they occur.
+    pub fn points(&self) -> impl Iterator<Item = Point2> + '_ {
+        self.lines.iter().flat_map(|l| [l.a, l.b])
+    }
+}
+
+fn check_point(p: Point2) -> Result<Point2, CoordinateError> {
+    Ok(Point2::new(check_coordinate(p.x)?, check_coordinate(p.y)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(ax: f64, ay: f64, bx: f64, by: f64) -> PlanLine {
+        PlanLine::wall(Point2::new(ax, ay), Point2::new(bx, by))
+    }
+
+    #[test]
+    fn plans_are_checked() {
+        let bad = Plan::new(vec![line(0., 0., 1., 0.), line(0., f64::NAN, 1., 0.)], vec![]);
+        assert_eq!(bad.unwrap_err().to_string(), "line 1: coordinate NaN is not a finite number");
+        let bad = Plan::new(vec![line(2., 3., 2., 3.)], vec![]);
+        assert_eq!(bad.unwrap_err().to_string(), "line 0 has length zero at (2, 3)");
+    }
+
+    #[test]
+    fn plans_know_their_shape() {
+        let mut lines = vec![line(-0.0, 0., 4., 0.), line(0., 0., 0., 3.)];
+        lines[1].left = Some(6);
+        let plan = Plan::new(lines.clone(), vec![]).unwrap();
+        assert!(plan.is_axial() && plan.small_grid().is_some());
+        assert_eq!((plan.n_groups(), plan.bounds().max), (7, [4.0, 3.0]));
+        assert_eq!(plan.lines()[0].a.x.to_bits(), 0);
+        lines.push(line(0., 0., 0.5, 1.));
+        let plan = Plan::new(lines, vec![]).unwrap();
+        assert!(!plan.is_axial() && plan.small_grid().is_none());
+    }
+}

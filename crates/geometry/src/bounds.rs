@@ -1,0 +1,53 @@
+//! Axis-aligned boxes in any dimension.
+
+/// The closed box of all points between `min` and `max`, in scene units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aabb<const D: usize> {
+    /// Lower corner.
+    pub min: [f64; D],
+    /// Upper corner.
+    pub max: [f64; D],
+}
+
+impl<const D: usize> Aabb<D> {
+    /// The box that contains nothing: extending it by a point gives that point.
+    pub const EMPTY: Self = Self { min: [f64::INFINITY; D], max: [f64::NEG_INFINITY; D] };
+
+    /// Smallest box around `points`; [`Aabb::EMPTY`] for none.
+    pub fn around(points: impl IntoIterator<Item = [f64; D]>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::with)
+    }
+
+    /// The box extended to contain `p`.
+    #[must_use]
+    pub fn with(mut self, p: [f64; D]) -> Self {
+        for (axis, &x) in p.iter().enumerate() {
+            self.min[axis] = self.min[axis].min(x);
+            self.max[axis] = self.max[axis].max(x);
+        }
+        self
+    }
+
+    /// Whether `p` is inside or on the boundary.
+    pub fn contains(&self, p: [f64; D]) -> bool {
+        (0..D).all(|k| self.min[k] <= p[k] && p[k] <= self.max[k])
+    }
+
+    /// Whether no point is inside.
+    pub fn is_empty(&self) -> bool {
+        (0..D).any(|k| self.min[k] > self.max[k])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_grow_and_contain() {
+        let b = Aabb::around([[0.0, 2.0], [3.0, -1.0]]);
+        assert_eq!(b, Aabb { min: [0.0, -1.0], max: [3.0, 2.0] });
+        assert!(b.contains([3.0, 2.0]) && !b.contains([3.1, 0.0]));
+        assert!(Aabb::<2>::EMPTY.is_empty() && !b.is_empty());
+    }
+}

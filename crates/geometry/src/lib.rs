@@ -1,0 +1,22 @@
+//! Points, segments, boxes and the exact predicates that every decision of `sightlines` rests on.
+//!
+//! Owns: the coordinate types ([`Point2`], [`Segment2`], [`Aabb`]), the orientation predicate in two
+//! forms with one meaning ([`Adaptive`], [`SmallGrid`]), convex polygons in the plane.
+//! Does not know: walls, cells, portals, files.
+//! Invariants: a predicate reads input coordinates only and its sign is exact for every coordinate that
+//! [`check_coordinate`] accepts; nothing here compares with an epsilon.
+
+pub mod bounds;
+pub mod coordinate;
+pub mod orient;
+pub mod polygon;
+pub mod segment;
+
+pub use bounds::Aabb;
+pub use coordinate::{CoordinateError, check_coordinate};
+pub use orient::{Adaptive, Orient2d, SmallGrid, along, orient2d};
+pub use polygon::{is_convex_ccw, polygon_contains, signed_area};
+pub use segment::Segment2;
+
+/// A point of the plane in scene units.
+pub type Point2 = glam::DVec2;
