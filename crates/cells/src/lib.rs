@@ -12,5 +12,6 @@ pub mod planar;
 
 pub use graph::{CellGraph, Exit, Portal, PortalId, Space};
 pub use plan::{LineId, Plan, PlanError, PlanLine, PlanObject};
-pub use planar::{ConvexCell2, Planar, Portal2, WellFormedError};
+pub use planar::{ConvexCell2, Planar, WellFormedError};
+pub use sightlines_geometry::Portal2;
 pub use sightlines_pvs::CellId;

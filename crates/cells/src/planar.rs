@@ -1,7 +1,7 @@
 //! Convex cells of the plane and the portals between them.
 
 use crate::graph::{CellGraph, Exit, PortalId, Space};
-use sightlines_geometry::{Aabb, Orient2d, Point2, SmallGrid, is_convex_ccw, orient2d};
+use sightlines_geometry::{Aabb, Orient2d, Point2, Portal2, SmallGrid, is_convex_ccw, orient2d};
 use sightlines_pvs::CellId;
 
 /// The plane: convex polygons joined by segments.
@@ -27,23 +27,6 @@ impl ConvexCell2 {
     /// Smallest box around the cell.
     pub fn bounds(&self) -> Aabb<2> {
         Aabb::around(self.polygon.iter().map(|p| [p.x, p.y]))
-    }
-}
-
-/// An open segment, named as a viewer sees it who crosses it from the first cell into the second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Portal2 {
-    /// End on the viewer's left.
-    pub left: Point2,
-    /// End on the viewer's right.
-    pub right: Point2,
-}
-
-impl Portal2 {
-    /// The same portal for a viewer who crosses it the other way.
-    #[must_use]
-    pub const fn reversed(self) -> Self {
-        Self { left: self.right, right: self.left }
     }
 }
 

@@ -1,9 +1,9 @@
 //! Which numbers may be coordinates.
 
-/// Smallest magnitude, besides zero, that a coordinate may have: 2^-400.
-pub const MIN_MAGNITUDE: f64 = f64::from_bits((1023 - 400) << 52);
-/// Largest magnitude that a coordinate may have: 2^400.
-pub const MAX_MAGNITUDE: f64 = f64::from_bits((1023 + 400) << 52);
+/// Smallest magnitude, besides zero, that a coordinate may have: 2^-140.
+pub const MIN_MAGNITUDE: f64 = f64::from_bits((1023 - 140) << 52);
+/// Largest magnitude that a coordinate may have: 2^200.
+pub const MAX_MAGNITUDE: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// Why a number cannot be a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -13,7 +13,7 @@ pub enum CoordinateError {
     #[error("coordinate {0} is not a finite number")]
     NotFinite(f64),
     /// Finite, but of a magnitude for which exact predicates would under- or overflow.
-    #[error("coordinate {0:e} is neither 0 nor between 2^-400 and 2^400 in magnitude")]
+    #[error("coordinate {0:e} is neither 0 nor between 2^-140 and 2^200 in magnitude")]
     OutOfRange(f64),
 }
 
@@ -22,8 +22,10 @@ pub enum CoordinateError {
 ///
 /// The range has a reason. The predicates multiply two differences of coordinates and expand the
 /// product into doubles without error. A difference of two accepted coordinates is 0 or at least one
-/// unit in the last place of the smaller, 2^-452, so a product is at least 2^-904 and its error term
-/// at least 2^-957, above the smallest normal double 2^-1022; and a product is at most 2^802.
+/// unit in the last place of the smaller, 2^-192, so a product is at least 2^-384 and its error term
+/// at least 2^-437, far above the smallest normal double 2^-1022; and a product is at most 2^402.
+/// That leaves room for predicates of twice the degree. The triangulation that cuts plans (`spade`)
+/// accepts the range from 2^-142 to 2^201, which is where the exact numbers come from.
 ///
 /// # Errors
 /// [`CoordinateError`] for anything else.

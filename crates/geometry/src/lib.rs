@@ -10,12 +10,14 @@ pub mod bounds;
 pub mod coordinate;
 pub mod orient;
 pub mod polygon;
+pub mod portal;
 pub mod segment;
 
 pub use bounds::Aabb;
 pub use coordinate::{CoordinateError, check_coordinate};
 pub use orient::{Adaptive, Orient2d, SmallGrid, along, orient2d};
 pub use polygon::{is_convex_ccw, polygon_contains, signed_area};
+pub use portal::Portal2;
 pub use segment::Segment2;
 
 /// A point of the plane in scene units.
