@@ -1,1 +1,47 @@
-//! Placeholder.
+//! Cell-to-cell visibility: a depth-first search over portals, driven by a stabber.
+//!
+//! Owns: [`visible_zones`] (which cells, or groups of cells, see each other), [`StabTree`] (every
+//! stabbable portal sequence out of one cell), [`explain`](fn@explain) (the line between two cells, or
+//! why there is none).
+//! Does not know: files, tables, how cells were cut. The search is generic over the
+//! [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
+//! Invariants: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and
+//! does not depend on the number of threads or on which hints a caller gives.
+
+mod chords;
+mod explain;
+mod network;
+mod search;
+mod tree;
+mod zones;
+
+pub use chords::shoot_chords;
+pub use explain::{BlockedSequence, Explanation, explain};
+pub use network::Network;
+pub use search::{Progress, SearchOptions, SearchSummary, visible_zones};
+pub use tree::{StabNode, StabTree, TooLarge};
+pub use zones::Zones;
+
+use sightlines_cells::{CellGraph, Planar};
+use sightlines_geometry::Adaptive;
+use sightlines_pvs::BitMatrix;
+use sightlines_sightline::Funnel;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;
+
+/// Which zones of a planar graph see each other: chords first, then the exact search.
+///
+/// `graph` is cut by any method; `zones` says which cells are asked about together. Returns a
+/// symmetric matrix, zones by zones, with the diagonal set. Exact: a bit is set if and only if an open
+/// set of lines leads from a cell of one zone through portals into a cell of the other.
+///
+/// Cost: see [`visible_zones`].
+pub fn see_plan(graph: &CellGraph<Planar>, zones: &Zones, options: &SearchOptions<'_>) -> (BitMatrix, SearchSummary) {
+    let known = shoot_chords(graph, zones, options.chords);
+    match graph.small_grid() {
+        Some(grid) => visible_zones(&Network::planar(graph, zones), &Funnel::new(grid), known, options),
+        None => visible_zones(&Network::planar(graph, zones), &Funnel::new(Adaptive), known, options),
+    }
+}

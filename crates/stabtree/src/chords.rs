@@ -1,0 +1,99 @@
+//! Chords: straight lines shot through the portals of a graph, to find most visible pairs cheaply.
+//!
+//! A chord is the line through two points in doubles. Each step asks exactly whether it passes a portal
+//! strictly, so every pair that it finds is visible; what chords miss is left to the search. They
+//! change no answer, only its cost.
+
+use crate::zones::Zones;
+use sightlines_cells::{CellGraph, CellId, Exit, Planar};
+use sightlines_geometry::{Point2, orient2d};
+use sightlines_pvs::BitMatrix;
+
+/// A small generator of numbers for chord directions: SplitMix64.
+///
+/// Source: Steele, Lea and Flood, OOPSLA 2014.
+struct SplitMix(u64);
+
+impl SplitMix {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in (0, 1), never an end.
+    fn unit(&mut self) -> f64 {
+        ((self.next() >> 12) as f64 + 0.5) * 2f64.powi(-52)
+    }
+}
+
+/// Shoots `per_exit` chords through each exit that leads from one zone into another, and returns which
+/// zones were seen from which: symmetric, with the diagonal set, a subset of what is visible.
+///
+/// Deterministic. Cost: a chord costs one exact test for each exit of each cell that it crosses.
+pub fn shoot_chords(graph: &CellGraph<Planar>, zones: &Zones, per_exit: u32) -> BitMatrix {
+    let mut seen = BitMatrix::identity(zones.n_zones());
+    let mut random = SplitMix(0x5167_6874_6C69_6E65);
+    let extent = extent(graph);
+    let mut path = Vec::new();
+    for from in graph.cell_ids() {
+        for exit in graph.exits(from) {
+            if exit.to < from || zones.of(exit.to) == zones.of(from) {
+                continue;
+            }
+            for _ in 0..per_exit {
+                let door = graph.crossing(exit);
+                let p = door.right + (door.left - door.right) * random.unit();
+                let q = p + Point2::new(random.unit() - 0.5, random.unit() - 0.5) * extent;
+                // Either direction of the line may be the one that crosses the door forwards.
+                let (p, q) = if orient2d(p, q, door.left) > 0.0 { (p, q) } else { (q, p) };
+                if passes(graph, exit, p, q) {
+                    path.clear();
+                    follow(graph, from, exit, p, q, |cell| path.extend(zones.of(cell)));
+                    mark(&mut seen, &mut path);
+                }
+            }
+        }
+    }
+    seen
+}
+
+fn extent(graph: &CellGraph<Planar>) -> f64 {
+    let bounds = graph.cells().iter().flat_map(|c| &c.polygon).map(|p| [p.x, p.y]);
+    let bounds = sightlines_geometry::Aabb::<2>::around(bounds);
+    (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1])
+}
+
+fn passes(graph: &CellGraph<Planar>, exit: &Exit, p: Point2, q: Point2) -> bool {
+    let door = graph.crossing(exit);
+    orient2d(p, q, door.left) > 0.0 && orient2d(p, q, door.right) < 0.0
+}
+
+/// Visits the cells on both sides of `exit` along the line, each side from near to far.
+fn follow(graph: &CellGraph<Planar>, from: CellId, exit: &Exit, p: Point2, q: Point2, mut visit: impl FnMut(CellId)) {
+    let mut go = |mut cell: CellId, mut entry_side: u32, p: Point2, q: Point2| {
+        visit(cell);
+        // A line crosses each convex cell once.
+        for _ in 0..graph.n_cells() {
+            let onward = |e: &&Exit| e.side != entry_side && passes(graph, e, p, q);
+            let Some(next) = graph.exits(cell).iter().find(onward) else { return };
+            (cell, entry_side) = (next.to, next.entry_side);
+            visit(cell);
+        }
+    };
+    go(exit.to, exit.entry_side, p, q);
+    go(from, exit.side, q, p);
+}
+
+/// All zones of a path see each other.
+fn mark(seen: &mut BitMatrix, path: &mut Vec<u32>) {
+    path.sort_unstable();
+    path.dedup();
+    for (i, &a) in path.iter().enumerate() {
+        for &b in &path[..i] {
+            seen.set(a as usize, b as usize, true);
+            seen.set(b as usize, a as usize, true);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Stab trees: every stabbable portal sequence out of a cell.
+
+use sightlines_cells::{CellGraph, CellId, Exit, PortalId, Space};
+use sightlines_sightline::Stabber;
+
+/// A cell reached by one sequence of portals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StabNode {
+    /// The cell reached.
+    pub cell: CellId,
+    /// The portal crossed last; `None` at the root.
+    pub portal: Option<PortalId>,
+    /// Index of the node that the sequence came from; `None` at the root.
+    pub parent: Option<u32>,
+}
+
+/// All sequences of portals out of a cell that an open set of lines passes, as a tree in depth-first
+/// order. A cell occurs once for each sequence that reaches it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StabTree {
+    nodes: Vec<StabNode>,
+}
+
+/// A stab tree has more nodes than allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the stab tree of cell {cell} has more than {max_nodes} nodes")]
+pub struct TooLarge {
+    /// The cell at the root.
+    pub cell: CellId,
+    /// The limit.
+    pub max_nodes: usize,
+}
+
+impl StabTree {
+    /// Builds the tree of `root`; `crossing` gives an exit's portal as who crosses it sees it.
+    ///
+    /// Exact if the stabber is. The number of nodes can be exponential in the size of the graph, hence
+    /// `max_nodes`.
+    ///
+    /// # Errors
+    /// [`TooLarge`].
+    pub fn build<C: Space, S: Stabber>(
+        graph: &CellGraph<C>,
+        root: CellId,
+        stabber: &mut S,
+        crossing: impl Fn(&Exit) -> S::Portal,
+        max_nodes: usize,
+    ) -> Result<Self, TooLarge> {
+        let mut nodes = vec![StabNode { cell: root, portal: None, parent: None }];
+        // Node, its entry side, next exit, and how to take its portal back.
+        let mut stack: Vec<(u32, Option<u32>, usize, Option<S::Undo>)> = vec![(0, None, 0, None)];
+        while let Some((node, entry_side, next, undo)) = stack.last_mut() {
+            let exits = graph.exits(nodes[*node as usize].cell);
+            let Some(exit) = exits.get(*next) else {
+                if let Some(undo) = undo.take() {
+                    stabber.undo(undo);
+                }
+                stack.pop();
+                continue;
+            };
+            *next += 1;
+            if *entry_side == Some(exit.side) {
+                continue;
+            }
+            let undo = if entry_side.is_none() {
+                stabber.start(crossing(exit));
+                None
+            } else {
+                match stabber.push(crossing(exit)) {
+                    Some(undo) => Some(undo),
+                    None => continue,
+                }
+            };
+            if nodes.len() >= max_nodes {
+                return Err(TooLarge { cell: root, max_nodes });
+            }
+            let parent = Some(*node);
+            let child = nodes.len() as u32;
+            nodes.push(StabNode { cell: exit.to, portal: Some(exit.portal), parent });
+            stack.push((child, Some(exit.entry_side), 0, undo));
+        }
+        Ok(Self { nodes })
+    }
+
+    /// The nodes, root first, each after its parent.
+    pub fn nodes(&self) -> &[StabNode] {
+        &self.nodes
+    }
+
+    /// The cells on the tree, ascending: what the root sees.
+    pub fn cells(&self) -> Vec<CellId> {
+        let mut cells: Vec<CellId> = self.nodes.iter().map(|n| n.cell).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+
+    /// The portals from the root to a node, in order.
+    pub fn portals_to(&self, node: usize) -> Vec<PortalId> {
+        let mut at = Some(node);
+        let mut portals = Vec::new();
+        while let Some(n) = at.and_then(|i| self.nodes.get(i)) {
+            portals.extend(n.portal);
+            at = n.parent.map(|p| p as usize);
+        }
+        portals.reverse();
+        portals
+    }
+}
