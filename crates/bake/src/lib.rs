@@ -1,1 +1,22 @@
-//! Placeholder.
+//! The offline pipeline: from a scene to its visibility table in one call.
+//!
+//! Owns: the choice of subdivision and predicate ([`bake_plan`]), the table made from a cell graph
+//! ([`table_of`]) and the way back ([`graph_of`]), the REJECT lumps of a WAD ([`reject_wad`]).
+//! Does not know: paths, the command line, pictures.
+//! Invariants: the same scene and options give the same table, byte for byte, with any number of
+//! threads; every approximation on the way errs towards visible.
+
+mod objects;
+mod plan;
+mod reject;
+mod table;
+
+pub use plan::{BakeError, BakeOptions, BakeSummary, Baked, ParseSubdivideError, Subdivide, bake_plan};
+pub use reject::{
+    MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad,
+};
+pub use table::{TableOptions, graph_of, table_of};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

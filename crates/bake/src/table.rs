@@ -1,0 +1,91 @@
+//! Tables from cell graphs, and back.
+
+use crate::objects::cell_objects;
+use sightlines_cells::{CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
+use sightlines_geometry::{Point2, Portal2};
+use sightlines_pvs::{
+    BitMatrix, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableParts,
+};
+
+/// What goes into a table beside cells and rows.
+#[derive(Debug, Clone, Default)]
+pub struct TableOptions<'a> {
+    /// Objects of the scene.
+    pub objects: &'a [PlanObject],
+    /// Keys and values for the table's information; sorted here.
+    pub info: Vec<(String, String)>,
+}
+
+fn lift([x, y]: [f64; 2]) -> [f64; 3] {
+    [x, y, 0.0]
+}
+
+fn point(p: Point2) -> [f64; 3] {
+    [p.x, p.y, 0.0]
+}
+
+fn cell_record(cell: &ConvexCell2) -> CellRecord {
+    let bounds = cell.bounds();
+    CellRecord {
+        min: lift(bounds.min),
+        max: lift(bounds.max),
+        // Where lines disagree, the first group speaks for the cell.
+        group: cell.groups.first().copied(),
+        polygon: cell.polygon.iter().map(|p| [p.x, p.y]).collect(),
+    }
+}
+
+fn portal_record(portal: &Portal<Planar>) -> PortalRecord {
+    let Portal2 { left, right } = portal.shape;
+    PortalRecord { cells: portal.cells, sides: portal.sides, points: vec![point(left), point(right)] }
+}
+
+/// The table of a planar graph whose cells see each other as `rows` says.
+///
+/// # Errors
+/// [`TableError`] if the parts do not fit together, which is a defect of who made them.
+pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOptions<'_>) -> Result<Table, TableError> {
+    let cells: Vec<CellRecord> = graph.cells().iter().map(cell_record).collect();
+    let bounds: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|c| (c.min, c.max)).collect();
+    let record = |o: &PlanObject| ObjectRecord {
+        name: o.name.clone(),
+        min: lift(o.bounds.min),
+        max: lift(o.bounds.max),
+    };
+    let mut info = options.info;
+    info.sort();
+    Table::new(TableParts {
+        dimension: 2,
+        portals: graph.portals().iter().map(portal_record).collect(),
+        rows,
+        objects: options.objects.iter().map(record).collect(),
+        cell_objects: cell_objects(graph.cells(), options.objects),
+        locator: Locator::build(&bounds, 2),
+        cells,
+        info,
+    })
+}
+
+/// The planar graph that a table stores; `None` if the table is not planar, its geometry was stripped,
+/// or the stored cells and portals do not fit together.
+pub fn graph_of(table: &Table) -> Option<CellGraph<Planar>> {
+    let stored = table.dimension() == 2 && table.cells().iter().all(|c| !c.polygon.is_empty());
+    if !stored {
+        return None;
+    }
+    let corner = |&[x, y]: &[f64; 2]| Point2::new(x, y);
+    let cell = |c: &CellRecord| ConvexCell2 {
+        polygon: c.polygon.iter().map(corner).collect(),
+        groups: c.group.into_iter().collect(),
+    };
+    let portal = |p: &PortalRecord| match p.points[..] {
+        [[lx, ly, _], [rx, ry, _]] => {
+            let shape = Portal2 { left: Point2::new(lx, ly), right: Point2::new(rx, ry) };
+            Some(Portal { cells: p.cells, sides: p.sides, shape })
+        }
+        _ => None,
+    };
+    let portals: Option<Vec<Portal<Planar>>> = table.portals().iter().map(portal).collect();
+    let graph = CellGraph::new(table.cells().iter().map(cell).collect(), portals?);
+    graph.check_well_formed().is_ok().then_some(graph)
+}
