@@ -8,13 +8,15 @@
 
 mod objects;
 mod plan;
-mod reject;
+pub mod reject;
+mod sectors;
 mod table;
 
 pub use plan::{BakeError, BakeOptions, BakeSummary, Baked, ParseSubdivideError, Subdivide, bake_plan};
 pub use reject::{
     MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad,
 };
+pub use sectors::see_groups;
 pub use table::{TableOptions, graph_of, table_of};
 
 #[cfg(doctest)]

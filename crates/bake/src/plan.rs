@@ -1,7 +1,7 @@
 //! Baking a plan: subdivide, see, tabulate.
 
 use crate::table::{TableOptions, table_of};
-use sightlines_cells::{CellGraph, Plan, Planar};
+use sightlines_cells::{CellGraph, Plan, PlanError, Planar};
 use sightlines_pvs::{Table, TableError};
 use sightlines_stabtree::{Progress, SearchOptions, Zones, see_plan};
 use sightlines_triangulation::TriangulationError;
@@ -95,7 +95,10 @@ pub enum BakeError {
     Triangulation(#[from] TriangulationError),
     /// The k-d tree refused the plan or its options.
     #[error(transparent)]
-    KdTree(#[from] sightlines_kdtree::KdTreeError),
+    KdTree(#[from] sightlines_kdtree::KdError),
+    /// The lines of a map do not make a plan.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
     /// The parts of the table do not fit together: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),
@@ -174,7 +177,7 @@ fn cut(plan: &Plan, options: &BakeOptions<'_>) -> Result<(CellGraph<Planar>, Bak
         Subdivide::Triangulation => false,
     };
     if by_tree {
-        let cut = sightlines_kdtree::subdivide_plan(plan, &sightlines_kdtree::Options { tau: options.tau })?;
+        let cut = sightlines_kdtree::subdivide_plan(plan, &sightlines_kdtree::Options { tau: options.tau, ..Default::default() })?;
         let n_ignored_walls = cut.left_over.len();
         Ok((cut.graph, BakeSummary { subdivide: Subdivide::KdTree, n_ignored_walls, ..BakeSummary::default() }))
     } else {

@@ -20,13 +20,11 @@
 //! blind or deaf monsters that way. Such a table is kept unless the caller insists.
 
 use crate::plan::BakeError;
-use sightlines_formats::doom::{DoomMap, MapKind, MapLumps};
-use sightlines_formats::reject::RejectTable;
-use sightlines_formats::wad::Wad;
-use sightlines_formats::{DoomError, WadError};
+use crate::sectors::see_groups;
+use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, list_maps};
+use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};
 use sightlines_pvs::BitMatrix;
-use sightlines_stabtree::{Progress, SearchOptions, Zones, see_plan};
-use sightlines_triangulation::subdivide;
+use sightlines_stabtree::{Progress, SearchOptions};
 use std::time::{Duration, Instant};
 
 /// How to build REJECT lumps.
@@ -50,4 +48,168 @@ impl std::fmt::Debug for RejectOptions<'_> {
             .field("threads", &self.threads)
             .finish_non_exhaustive()
     }
+}
+
+/// Why REJECT lumps could not be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RejectError {
+    /// The file has no maps.
+    #[error("the file has no maps")]
+    NoMaps,
+    /// A map that was asked for is not in the file.
+    #[error("map {0} is not in the file")]
+    NoSuchMap(String),
+    /// A map that was asked for is in a format whose geometry is not read.
+    #[error("map {map}: {format:?} maps are not supported")]
+    Unsupported {
+        /// Its name.
+        map: LumpName,
+        /// Its format.
+        format: MapFormat,
+    },
+    /// A map is damaged.
+    #[error(transparent)]
+    Map(#[from] DoomError),
+    /// A map has nothing to cut.
+    #[error("map {map}: {kind}")]
+    Bake {
+        /// Its name.
+        map: LumpName,
+        /// Why.
+        #[source]
+        kind: BakeError,
+    },
+    /// The new file cannot be laid out.
+    #[error(transparent)]
+    Write(#[from] WadError),
+}
+
+/// What became of the file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RejectOutcome {
+    /// The new file.
+    pub bytes: Vec<u8>,
+    /// What became of each map that was asked for, in file order.
+    pub maps: Vec<MapOutcome>,
+}
+
+/// What became of one map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MapOutcome {
+    /// Its name.
+    pub name: LumpName,
+    /// Number of sectors; 0 if the map was not read.
+    pub n_sectors: u32,
+    /// What was done.
+    pub status: MapStatus,
+    /// How long it took.
+    pub time: Duration,
+}
+
+/// What was done with one map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MapStatus {
+    /// Its table was built and written.
+    Written(RejectSummary),
+    /// Its table has effects made by hand and was kept.
+    KeptHandMade,
+    /// Its format is not read; its lumps were kept.
+    SkippedUnsupported,
+}
+
+/// A table in numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RejectSummary {
+    /// Ordered pairs of sectors that are rejected.
+    pub n_rejected: u64,
+    /// Cells in regions whose lines disagree about the sector.
+    pub n_disputed_cells: usize,
+    /// Crossings of lines that had to be rounded.
+    pub n_rounded_crossings: usize,
+}
+
+/// Builds the REJECT table of one map. Symmetric; no sector is rejected from itself. Exact in the flat
+/// model of this [module](self) but for rounded crossings, which err towards visible.
+///
+/// # Errors
+/// [`RejectError::Bake`] if the map has no lines.
+pub fn reject_table(map: &DoomMap, options: &RejectOptions<'_>) -> Result<(RejectTable, RejectSummary), RejectError> {
+    let bake = |kind: BakeError| RejectError::Bake { map: map.name(), kind };
+    let plan = map.plan().map_err(|kind| bake(kind.into()))?;
+    let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
+    let (seen, cut) = see_groups(&plan, map.n_sectors(), &search).map_err(bake)?;
+    let table = table_of(&seen, map.n_sectors());
+    let summary = RejectSummary {
+        n_rejected: table.n_rejected(),
+        n_disputed_cells: cut.n_disputed_cells,
+        n_rounded_crossings: cut.n_rounded_crossings,
+    };
+    Ok((table, summary))
+}
+
+fn table_of(seen: &BitMatrix, n_sectors: u32) -> RejectTable {
+    let mut table = RejectTable::new(n_sectors);
+    for viewer in 0..n_sectors {
+        let row = seen.row(viewer as usize);
+        for target in 0..n_sectors {
+            if row[target as usize / 64] >> (target % 64) & 1 == 0 {
+                table.set(viewer, target, true);
+            }
+        }
+    }
+    table
+}
+
+/// Builds the REJECT lump of every map of a WAD, or of those named, and leaves every other lump as it
+/// was.
+///
+/// # Errors
+/// [`RejectError`]; then nothing is to be written. A map in an unsupported format is an error only if
+/// it was asked for by name.
+pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcome, RejectError> {
+    let all = list_maps(wad);
+    let chosen = choose(&all, &options.maps)?;
+    let mut maps = Vec::with_capacity(chosen.len());
+    let mut lumps = Vec::new();
+    for map in chosen {
+        let start = Instant::now();
+        let (n_sectors, status, bytes) = do_map(wad, map, options)?;
+        lumps.extend(bytes.map(|b| (map, b)));
+        maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
+    }
+    Ok(RejectOutcome { bytes: wad.with_rejects(&lumps)?, maps })
+}
+
+/// The maps that were asked for, in file order.
+fn choose<'m>(all: &'m [MapLumps], names: &[String]) -> Result<Vec<&'m MapLumps>, RejectError> {
+    if all.is_empty() {
+        return Err(RejectError::NoMaps);
+    }
+    if let Some(missing) = names.iter().find(|name| !all.iter().any(|m| m.name().is(name))) {
+        return Err(RejectError::NoSuchMap(missing.clone()));
+    }
+    let asked = |m: &&MapLumps| names.is_empty() || names.iter().any(|name| m.name().is(name));
+    Ok(all.iter().filter(asked).collect())
+}
+
+type Done = (u32, MapStatus, Option<Vec<u8>>);
+
+fn do_map(wad: &Wad, lumps: &MapLumps, options: &RejectOptions<'_>) -> Result<Done, RejectError> {
+    if lumps.format() == MapFormat::Udmf {
+        return if options.maps.is_empty() {
+            Ok((0, MapStatus::SkippedUnsupported, None))
+        } else {
+            Err(RejectError::Unsupported { map: lumps.name(), format: lumps.format() })
+        };
+    }
+    let map = DoomMap::parse(wad, lumps)?;
+    let n = map.n_sectors();
+    let old = map.reject().and_then(|bytes| RejectTable::from_bytes(n, bytes).ok());
+    if !options.force && old.is_some_and(|table| table.has_hand_made_effects()) {
+        return Ok((n, MapStatus::KeptHandMade, None));
+    }
+    let (table, summary) = reject_table(&map, options)?;
+    Ok((n, MapStatus::Written(summary), Some(table.into_bytes())))
 }

@@ -18,11 +18,7 @@ use sightlines_triangulation::{Summary, TriangulationError, subdivide};
 ///
 /// # Errors
 /// [`BakeError`] for a plan without lines.
-pub fn see_groups(
-    plan: &Plan,
-    n_groups: u32,
-    options: &SearchOptions<'_>,
-) -> Result<(BitMatrix, Summary), BakeError> {
+pub fn see_groups(plan: &Plan, n_groups: u32, options: &SearchOptions<'_>) -> Result<(BitMatrix, Summary), BakeError> {
     let n = n_groups.max(plan.n_groups()) as usize;
     let mut seen = BitMatrix::identity(n);
     let (graph, summary) = match subdivide(plan) {

@@ -3,9 +3,7 @@
 use crate::objects::cell_objects;
 use sightlines_cells::{CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
 use sightlines_geometry::{Point2, Portal2};
-use sightlines_pvs::{
-    BitMatrix, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableParts,
-};
+use sightlines_pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableParts};
 
 /// What goes into a table beside cells and rows.
 #[derive(Debug, Clone, Default)]
@@ -47,11 +45,8 @@ fn portal_record(portal: &Portal<Planar>) -> PortalRecord {
 pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOptions<'_>) -> Result<Table, TableError> {
     let cells: Vec<CellRecord> = graph.cells().iter().map(cell_record).collect();
     let bounds: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|c| (c.min, c.max)).collect();
-    let record = |o: &PlanObject| ObjectRecord {
-        name: o.name.clone(),
-        min: lift(o.bounds.min),
-        max: lift(o.bounds.max),
-    };
+    let record =
+        |o: &PlanObject| ObjectRecord { name: o.name.clone(), min: lift(o.bounds.min), max: lift(o.bounds.max) };
     let mut info = options.info;
     info.sort();
     Table::new(TableParts {

@@ -150,7 +150,7 @@ impl Plan {
     }
 
     /// All end points, repeated as often as they occur.
-    pub fn points(&self) -> impl Iterator<Item = Point2> + '_ {
+    pub fn points(&self) -> impl Iterator<Item = Point2> + Clone + '_ {
         self.lines.iter().flat_map(|l| [l.a, l.b])
     }
 }

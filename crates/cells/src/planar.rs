@@ -66,9 +66,12 @@ impl CellGraph<Planar> {
         if exit.forward { shape } else { shape.reversed() }
     }
 
-    /// The predicate for small grids, if all portals' end points are on one.
+    /// The predicate for small grids, if all corners of cells and ends of portals are on one; then the
+    /// corners of boxes around cells are too.
     pub fn small_grid(&self) -> Option<SmallGrid> {
-        SmallGrid::covering(self.portals().iter().flat_map(|p| [p.shape.left, p.shape.right]))
+        let ends = self.portals().iter().flat_map(|p| [p.shape.left, p.shape.right]);
+        let corners = self.cells().iter().flat_map(|c| c.polygon.iter().copied());
+        SmallGrid::covering(ends.chain(corners))
     }
 
     /// Checks what the crate promises of a planar graph: convex cells, portals on the sides of both

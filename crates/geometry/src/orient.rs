@@ -2,13 +2,13 @@
 //!
 //! Two implementations answer alike. [`Adaptive`] is exact for every accepted coordinate: a floating
 //! filter first, Shewchuk's adaptive expansions (the `robust` crate) when the filter cannot tell.
-//! [`SmallGrid`] is for points on a small grid (integers below 2^25, as in Doom maps), where plain
+//! [`SmallGrid`] is for points on a small grid (integers below 2^25, as in Doom maps, or multiples of an eighth), where plain
 //! doubles make no rounding error, so that even collinear points are decided by the plain formula.
 //!
 //! Source: Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
 //! Predicates", Discrete Comput. Geom. 18, 1997, section 4.
 
-use crate::Point2;
+use crate::{Point2, check_coordinate};
 
 /// Decides orientations; the sign is exact.
 ///
@@ -57,16 +57,20 @@ pub struct SmallGrid {
 }
 
 impl SmallGrid {
-    /// Largest coordinate in grid steps: 2^25.
-    pub const MAX_STEPS: f64 = (1u64 << 25) as f64;
-
-    /// The grid predicate, if every point is on the integer grid and within 2^25 of the origin.
+    /// The grid predicate, if all points are on one square grid and less than 2^25 steps from the
+    /// origin, for some power of two as step.
     ///
-    /// Differences are then integers up to 2^26, products up to 2^52, and the determinant up to
-    /// 2^53: all are doubles, so no operation rounds.
-    pub fn covering(points: impl IntoIterator<Item = Point2>) -> Option<Self> {
-        let fits = |x: f64| x.abs() <= Self::MAX_STEPS && x.fract() == 0.0;
-        points.into_iter().all(|p| fits(p.x) && fits(p.y)).then_some(Self { _checked: () })
+    /// Differences are then integers below 2^26 (in steps), products below 2^52, and the determinant
+    /// below 2^53: all are doubles, so no operation rounds.
+    pub fn covering(points: impl IntoIterator<Item = Point2> + Clone) -> Option<Self> {
+        let coordinates = || points.clone().into_iter().flat_map(|p| [p.x, p.y]);
+        let largest = coordinates().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let accepted = coordinates().all(|x| check_coordinate(x).is_ok());
+        // The power of two that is not above the largest coordinate, by its exponent bits.
+        let power = f64::from_bits(largest.to_bits() & (0x7ff << 52));
+        let step = power / f64::from(1u32 << 24);
+        let on_grid = |x: f64| (x / step).fract() == 0.0;
+        (accepted && (largest == 0.0 || coordinates().all(on_grid))).then_some(Self { _checked: () })
     }
 }
 
@@ -123,8 +127,11 @@ mod tests {
         i32::from(x > 0.0) - i32::from(x < 0.0)
     }
 
-    fn small() -> impl Strategy<Value = Point2> {
-        (-4i32..5, -4i32..5).prop_map(|(x, y)| Point2::new(f64::from(x), f64::from(y)))
+    /// Small integers and the largest ones that the grid takes, so that nothing but the last bit decides.
+    fn fine() -> impl Strategy<Value = Point2> {
+        let top = (1i32 << 25) - 1;
+        let coordinate = prop_oneof![-4i32..5, top - 3..=top, -top..4 - top, -top..top];
+        (coordinate.clone(), coordinate).prop_map(|(x, y)| Point2::new(f64::from(x), f64::from(y)))
     }
 
     /// Points a few ulps around a coarse grid, some of them of extreme magnitude.
@@ -140,8 +147,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn orientation_small_grid_is_exact(a in small(), b in small(), c in small(), k in 0u32..23) {
-            let s = f64::from(1u32 << k);
+        fn orientation_small_grid_is_exact(a in fine(), b in fine(), c in fine(), k in -60i32..60) {
+            let s = 2f64.powi(k);
             let (a, b, c) = (a * s, b * s, c * s);
             let grid = SmallGrid::covering([a, b, c]).unwrap();
             prop_assert_eq!(sign_of(grid.orient(a, b, c)), sign(a, b, c));
@@ -169,9 +176,14 @@ mod tests {
 
     #[test]
     fn small_grid_refuses_what_it_cannot_decide() {
-        assert!(SmallGrid::covering([Point2::new(0.5, 0.0)]).is_none());
-        assert!(SmallGrid::covering([Point2::new(33_554_433.0, 0.0)]).is_none());
-        assert!(SmallGrid::covering([Point2::new(33_554_432.0, -7.0)]).is_some());
+        let p = Point2::new;
+        assert!(SmallGrid::covering([p(0.0, 0.0)]).is_some());
+        assert!(SmallGrid::covering([p(0.125, -7.0)]).is_some());
+        assert!(SmallGrid::covering([p(33_554_431.0, -7.0)]).is_some());
+        assert!(SmallGrid::covering([p(33_554_432.0, -7.0)]).is_none());
+        assert!(SmallGrid::covering([p(33_554_432.0, -8.0)]).is_some(), "a step of 2");
+        assert!(SmallGrid::covering([p(0.1, 0.0)]).is_none());
+        assert!(SmallGrid::covering([p(1.0, f64::NAN)]).is_none());
     }
 
     #[test]
