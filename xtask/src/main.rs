@@ -1,2 +1,113 @@
-//! Tasks.
-fn main() {}
+//! Tasks of the project: `cargo xtask TASK`.
+//!
+//! Owns: how tests, benches, documentation and checks are called, and in which order. Depends on
+//! nothing of the workspace, so that it builds in seconds and also where the workspace does not.
+
+mod freedoom;
+mod gate;
+mod step;
+mod tally;
+mod tidy;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+use step::{Failure, cargo};
+
+/// Tasks of the sightlines project.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Runs every test: units, properties, integration, documentation.
+    Test,
+    /// Throws random and mutated input at readers and algorithms.
+    Fuzz {
+        /// What to fuzz; everything in turn if it is not given.
+        #[arg(long)]
+        target: Option<String>,
+        /// Seconds for each target.
+        #[arg(long)]
+        seconds: Option<u64>,
+        /// Where chance begins, to replay a run.
+        #[arg(long)]
+        seed: Option<u64>,
+        /// Lists the targets and stops.
+        #[arg(long)]
+        list: bool,
+    },
+    /// Runs the benches, all or those whose name contains a filter.
+    Bench {
+        /// Part of a bench's name.
+        filter: Option<String>,
+    },
+    /// Builds the documentation; a warning is an error.
+    Docs,
+    /// Checks formatting, lints, file lengths, and that nothing is left unfinished.
+    Tidy,
+    /// Checks that each published crate compiles on its own.
+    Alone,
+    /// Runs everything that a change has to pass, and ends with the tests.
+    Ci,
+    /// Finds or fetches the Freedoom WADs and prints their folder.
+    Freedoom,
+}
+
+fn main() -> ExitCode {
+    match run(Cli::parse().task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("xtask: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(task: Task) -> Result<(), Failure> {
+    match task {
+        Task::Test => tally::test()?.conclude(),
+        Task::Fuzz { target, seconds, seed, list } => fuzz(target, seconds, seed, list),
+        Task::Bench { filter } => {
+            let filter = filter.iter().flat_map(|f| ["--", f]);
+            step::run(cargo().args(["bench", "-p", "sightlines-benches"]).args(filter))
+        }
+        Task::Docs => gate::docs(),
+        Task::Tidy => tidy::tidy(),
+        Task::Alone => gate::alone(),
+        Task::Ci => gate::ci(),
+        Task::Freedoom => freedoom::find_or_fetch().map(|folder| println!("{}", folder.display())),
+    }
+}
+
+fn fuzz(target: Option<String>, seconds: Option<u64>, seed: Option<u64>, list: bool) -> Result<(), Failure> {
+    let mut command = cargo();
+    command.args(["run", "--release", "-p", "sightlines-tests", "--bin", "fuzz", "--"]);
+    let numbers = [("--seconds", seconds), ("--seed", seed)];
+    let options = [("--target", target)].into_iter().chain(numbers.map(|(name, n)| (name, n.map(|n| n.to_string()))));
+    for (name, value) in options {
+        command.args(value.iter().flat_map(|v| [name, v]));
+    }
+    command.args(list.then_some("--list"));
+    step::run(&mut command)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+        let Task::Fuzz { seconds, target, list, .. } =
+            Cli::parse_from(["xtask", "fuzz", "--target", "wad", "--seconds", "5"]).task
+        else {
+            panic!("fuzz is a task");
+        };
+        assert_eq!((seconds, target.as_deref(), list), (Some(5), Some("wad"), false));
+    }
+}

@@ -183,7 +183,7 @@ mod tests {
         assert!(plan.is_axial() && plan.small_grid().is_some());
         assert_eq!((plan.n_groups(), plan.bounds().max), (7, [4.0, 3.0]));
         assert_eq!(plan.lines()[0].a.x.to_bits(), 0);
-        lines.push(line(0., 0., 0.5, 1.));
+        lines.push(line(0., 0., 0.1, 1.));
         let plan = Plan::new(lines, vec![]).unwrap();
         assert!(!plan.is_axial() && plan.small_grid().is_none());
     }

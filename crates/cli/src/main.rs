@@ -1,1 +1,77 @@
-fn main() {}
+//! The program `sightlines`: visibility tables from a shell.
+//!
+//! Owns: arguments, files by name, what is printed where, exit codes.
+//! Does not know: how anything is computed; every command is a few calls of the library.
+//! Invariants: results go to standard output, everything else to standard error; an output file appears
+//! whole or not at all, and not if anything failed; a closed pipe is no error.
+
+mod args;
+mod commands;
+mod error;
+mod input;
+mod memory;
+mod output;
+mod place;
+mod progress;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use error::CliError;
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+use tracing_subscriber::filter::LevelFilter;
+
+/// What a command found, as the program's exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Answer {
+    /// Done; exit code 0.
+    Yes,
+    /// Done, and the answer is no, such as for a point outside every cell; exit code 1.
+    No,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    log_to_stderr(&arguments);
+    match run(&arguments) {
+        Ok(Answer::Yes) => ExitCode::SUCCESS,
+        Ok(Answer::No) => ExitCode::FAILURE,
+        // Who closed the pipe has read enough.
+        Err(CliError::Print(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => {
+            // Nothing is left to do if standard error is closed too.
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Answer, CliError> {
+    let show_progress = !arguments.quiet;
+    match &arguments.command {
+        Command::Build(args) => commands::build::run(args, show_progress),
+        Command::Reject(args) => commands::reject::run(args, show_progress),
+        Command::Query(args) => commands::query::run(args),
+        Command::Export(args) => commands::export::run(args),
+        Command::Explain(args) => commands::explain::run(args),
+        Command::Draw(args) => commands::draw::run(args),
+        Command::Info(args) => commands::info::run(args),
+        Command::Demo(args) => commands::demo::run(args, show_progress),
+    }
+}
+
+fn log_to_stderr(arguments: &Arguments) {
+    let level = match (arguments.quiet, arguments.verbose) {
+        (true, _) => LevelFilter::ERROR,
+        (false, 0) => LevelFilter::WARN,
+        (false, 1) => LevelFilter::INFO,
+        (false, _) => LevelFilter::DEBUG,
+    };
+    tracing_subscriber::fmt()
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
+        .with_max_level(level)
+        .with_target(false)
+        .without_time()
+        .init();
+}

@@ -1,1 +1,27 @@
-//! Placeholder.
+//! Readers and writers of the files that scenes come from: Doom WADs and GeoJSON floor plans.
+//!
+//! Owns: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
+//! GeoJSON plans ([`geojson`]), files that are replaced as a whole ([`files::atomic_write`]), and
+//! errors that name the file and the place in it ([`ReadError`]).
+//! Does not know: how a plan is cut into cells, what a sightline is, how a REJECT table is computed.
+//! Invariants: no input causes a panic; memory stays within a small multiple of the input's size,
+//! whatever counts the input claims; what is not understood is either passed through byte for byte
+//! or refused, never guessed; the same value is always written as the same bytes.
+
+pub mod doom;
+pub mod error;
+pub mod files;
+pub mod geojson;
+pub mod reject;
+pub mod wad;
+
+pub use doom::{DoomError, DoomMap, MapLumps};
+pub use error::{ReadError, ReadErrorKind};
+pub use files::{WriteError, atomic_write};
+pub use geojson::GeoJsonError;
+pub use reject::RejectTable;
+pub use wad::{LumpName, Wad, WadBuilder, WadError};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

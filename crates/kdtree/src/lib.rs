@@ -1,1 +1,46 @@
-//! Placeholder.
+//! Axial k-d subdivision: a scene of axis-parallel walls, cut into boxes with portals between them.
+//!
+//! Owns: [`AxialFace`] and its classes against a cell ([`classify`], [`cleaves`]), the choice of
+//! splitting planes ([`Options`]), the tree with its cells, portals and point location ([`AxialTree`]),
+//! and the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]).
+//! Does not know: sightlines, tables, files, walls that are not axis-parallel.
+//! Invariants: the cells tile the bounds without gap or overlap; no coordinate is ever computed, so
+//! cells and portals have the coordinates of faces and bounds, bit for bit; a portal is an opening of
+//! positive measure that no face covers; cell ids count the leaves depth-first, low before high.
+//!
+//! # On which side it errs
+//! A face hides only where it lies on the border of cells. Faces that the tree does not follow (the
+//! threshold [`Options::tau`], lines that are not axial) hide nothing, so all that is seen through the
+//! cells and portals without them is seen. With `tau` 0 every face is followed and the subdivision is
+//! exact: an open set of lines meets no face if and only if it passes portals wherever it leaves a cell.
+//!
+//! # Dimension
+//! Everything is generic over the dimension `D`, which has to be 2 or 3. It is told apart when the
+//! code is compiled: a plan is not lifted into space in order to be cut.
+//!
+//! # Source
+//! Teller and Séquin, "Visibility preprocessing for interactive walkthroughs", SIGGRAPH 1991, for the
+//! face classes and split rules. The wording of the classes, the order of ties and the compression of
+//! coordinates to ranks are our own.
+
+mod build;
+mod error;
+mod face;
+mod plan;
+mod portals;
+mod ranks;
+mod region;
+mod skeleton;
+mod split;
+mod tree;
+
+pub use build::{Options, bounds_of, subdivide};
+pub use error::{FaceError, KdError};
+pub use face::{AxialFace, AxialPlane, FaceClass, classify, cleaves};
+pub use plan::{PlanFaces, PlanSubdivision, plan_faces, planar_graph, subdivide_plan};
+pub use portals::{AxialPortal, PortalForm};
+pub use tree::{AxialCell, AxialNode, AxialTree};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

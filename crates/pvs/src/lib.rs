@@ -1,5 +1,33 @@
-//! Runtime table: which cells can be seen from which.
+//! Run-time table: which cells can be seen from which.
+//!
+//! Owns: [`CellId`], the rows of bits ([`BitMatrix`]), point location ([`Locator`]), the checked
+//! [`Table`] of all this, its byte format ([`format`](mod@format)).
+//! Does not know: how the table was made, walls, files, threads. A game ships this crate alone.
+//! Invariants: ids are dense from 0; every cell sees itself; who is seen sees; every point of a cell is
+//! located in it; answers err towards "visible". Bytes that are not exactly what was written never
+//! become a table, and never a panic.
 
+#![forbid(unsafe_code)]
+
+pub mod bits;
+mod check;
+pub mod format;
 mod id;
+pub mod locator;
+mod parts;
+mod set;
+mod side;
+mod table;
 
+pub use bits::BitMatrix;
+pub use check::{Item, TableError};
+pub use format::{DecodeError, DecodeErrorKind, SectionId};
 pub use id::CellId;
+pub use locator::{Locator, LocatorError, LocatorNode};
+pub use parts::{CellRecord, ObjectRecord, PortalRecord, TableParts};
+pub use set::CellSet;
+pub use table::Table;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,1 +1,30 @@
-//! Placeholder.
+//! Deterministic generators of scenes: offices, mazes, pillared halls, Doom-like maps, and the
+//! degenerate families that a subdivision has to survive.
+//!
+//! Owns: the generators, their options, their source of chance.
+//! Does not know: cells, sightlines, files.
+//! Invariants: the same options give the same bytes on every machine (integers only until the last
+//! step, which divides by a power of two); a plan is closed by an outer wall unless its description
+//! says otherwise; bad options give an error, never a panic.
+
+#[cfg(test)]
+mod check;
+pub mod degenerate;
+pub mod doom_like;
+pub mod error;
+pub mod hall;
+pub mod maze;
+pub mod office;
+mod rng;
+mod spanning;
+mod stroke;
+
+pub use doom_like::{DoomLike, DoomLikeLine, doom_like};
+pub use error::SceneError;
+pub use hall::{pillared_hall, turned_pillared_hall};
+pub use maze::maze;
+pub use office::{OfficeOptions, office};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

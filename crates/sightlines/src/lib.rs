@@ -1,1 +1,36 @@
-//! Placeholder.
+//! Visibility for scenes: cells, portals, sightlines and the tables they make, under one name.
+//!
+//! Owns: nothing. Each module is a crate of its own, `sightlines-<module>`, behind a feature of the same
+//! name; all are on by default.
+//! Does not know: anything that those crates do not. There is no logic here.
+//! Invariants: the crates under one version of this one fit together.
+//!
+//! A game that only asks tables needs the crate `sightlines-pvs` alone, which depends on nothing that
+//! bakes them.
+
+#[cfg(feature = "bake")]
+pub use sightlines_bake as bake;
+#[cfg(feature = "cells")]
+pub use sightlines_cells as cells;
+#[cfg(feature = "formats")]
+pub use sightlines_formats as formats;
+#[cfg(feature = "geometry")]
+pub use sightlines_geometry as geometry;
+#[cfg(feature = "kdtree")]
+pub use sightlines_kdtree as kdtree;
+#[cfg(feature = "pvs")]
+pub use sightlines_pvs as pvs;
+#[cfg(feature = "report")]
+pub use sightlines_report as report;
+#[cfg(feature = "scenes")]
+pub use sightlines_scenes as scenes;
+#[cfg(feature = "sightline")]
+pub use sightlines_sightline as sightline;
+#[cfg(feature = "stabtree")]
+pub use sightlines_stabtree as stabtree;
+#[cfg(feature = "triangulation")]
+pub use sightlines_triangulation as triangulation;
+
+#[cfg(all(doctest, feature = "bake", feature = "cells", feature = "geometry"))]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,1 +1,38 @@
-//! Placeholder.
+//! Oracles and proptest strategies for the tests of `sightlines`; not published.
+//!
+//! Owns: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
+//! [`sees_brute_force`], [`sector_visibility_brute_force`]), sampled lower bounds, and strategies that
+//! draw from small grids.
+//! Does not know: how the real code works; an oracle that shares a method with it proves nothing.
+//! Invariants: slow on purpose; every answer is exact for every finite coordinate.
+
+mod candidates;
+pub mod corridor;
+mod exact;
+pub mod plans;
+pub mod sampled;
+pub mod sector_plans;
+pub mod sectors;
+pub mod sees;
+pub mod stab;
+
+pub use corridor::{PortalPair, any_portals, as_portals, corridor, kd_corridor, strip_corridor};
+pub use plans::{axial_plan, convex_polygon, small_grid_plan};
+pub use sampled::{Chord, chord_is_clear, clear_chords, sampled_sector_visibility};
+pub use sector_plans::{Sectors, small_sector_plan, small_sectors};
+pub use sectors::sector_visibility_brute_force;
+pub use sees::sees_brute_force;
+pub use stab::{Stab, stabbable_brute_force};
+
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+
+/// `n` values of a strategy, always the same ones: for impostor tests, which count failures.
+///
+/// # Panics
+/// If the strategy rejects too much.
+pub fn draw<S: Strategy>(strategy: &S, n: usize) -> Vec<S::Value> {
+    let mut runner = TestRunner::deterministic();
+    let mut one = || strategy.new_tree(&mut runner).expect("the strategy rejects little").current();
+    (0..n).map(|_| one()).collect()
+}
