@@ -1,0 +1,286 @@
+//! What must be true of a table's parts.
+
+use crate::parts::{CellRecord, ObjectRecord, PortalRecord, TableParts};
+use crate::{CellId, LocatorError, side};
+
+/// A kind of thing with coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Item {
+    /// A cell's box.
+    Cell,
+    /// A cell's polygon.
+    Polygon,
+    /// A portal.
+    Portal,
+    /// An object's box.
+    Object,
+}
+
+impl std::fmt::Display for Item {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Cell => "cell",
+            Self::Polygon => "the polygon of cell",
+            Self::Portal => "portal",
+            Self::Object => "object",
+        })
+    }
+}
+
+/// Why parts do not make a table.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// Neither 2 nor 3.
+    #[error("a table has 2 or 3 dimensions, not {0}")]
+    Dimension(u8),
+    /// More items of one kind than 32 bits count.
+    #[error("{n} are more than 32 bits can count (item kind: {item})")]
+    TooMany {
+        /// What there is too much of; corners of all polygons count as [`Item::Polygon`].
+        item: Item,
+        /// How many.
+        n: usize,
+    },
+    /// NaN or an infinity.
+    #[error("{item} {index} has a coordinate that is not a finite number")]
+    NotFinite {
+        /// What.
+        item: Item,
+        /// Which.
+        index: usize,
+    },
+    /// A box with a lower corner above the upper one.
+    #[error("{item} {index} has a lower corner above its upper corner")]
+    Inverted {
+        /// What.
+        item: Item,
+        /// Which.
+        index: usize,
+    },
+    /// A z that is not 0, in a plane.
+    #[error("{item} {index} has a z that is not 0, in a table of the plane")]
+    OffPlane {
+        /// What.
+        item: Item,
+        /// Which.
+        index: usize,
+    },
+    /// A polygon in space, or one with one or two corners.
+    #[error("the polygon of cell {cell} cannot have {n} corners")]
+    Corners {
+        /// The cell.
+        cell: CellId,
+        /// Number of corners.
+        n: usize,
+    },
+    /// A polygon that certainly is not convex and counter-clockwise.
+    #[error("the polygon of cell {cell} is not convex and counter-clockwise at corner {corner}")]
+    NotConvex {
+        /// The cell.
+        cell: CellId,
+        /// Where that shows.
+        corner: usize,
+    },
+    /// A polygon that leaves the cell's box.
+    #[error("corner {corner} of the polygon of cell {cell} is outside the cell's box")]
+    OutsideBox {
+        /// The cell.
+        cell: CellId,
+        /// The corner.
+        corner: usize,
+    },
+    /// A portal to a cell that does not exist.
+    #[error("portal {portal} leads to cell {cell}, which does not exist")]
+    PortalCell {
+        /// The portal.
+        portal: usize,
+        /// The cell.
+        cell: CellId,
+    },
+    /// A portal from a cell to itself.
+    #[error("portal {portal} joins cell {cell} with itself")]
+    PortalLoop {
+        /// The portal.
+        portal: usize,
+        /// The cell.
+        cell: CellId,
+    },
+    /// A portal with the wrong number of points.
+    #[error("portal {portal} cannot have {n} points")]
+    PortalPoints {
+        /// The portal.
+        portal: usize,
+        /// Number of points.
+        n: usize,
+    },
+    /// Rows that are not one row and one column for each cell.
+    #[error("{n_rows} rows of {n_cols} bits do not fit {n_cells} cells")]
+    RowsShape {
+        /// Number of rows.
+        n_rows: usize,
+        /// Number of columns.
+        n_cols: usize,
+        /// Number of cells.
+        n_cells: usize,
+    },
+    /// A row with a one past the last cell.
+    #[error("the row of cell {0} has a one past the last cell")]
+    RowTail(CellId),
+    /// A cell that does not see itself.
+    #[error("cell {0} does not see itself")]
+    NotReflexive(CellId),
+    /// Two cells of which only one sees the other.
+    #[error("of cells {} and {} only one sees the other", .0[0], .0[1])]
+    NotSymmetric([CellId; 2]),
+    /// Not one list of objects for each cell.
+    #[error("{n} lists of objects do not fit {n_cells} cells")]
+    CellObjects {
+        /// Number of lists.
+        n: usize,
+        /// Number of cells.
+        n_cells: usize,
+    },
+    /// The objects of a cell are not ascending.
+    #[error("the objects of cell {0} are not ascending")]
+    ObjectOrder(CellId),
+    /// An object that does not exist.
+    #[error("cell {cell} is touched by object {object}, which does not exist")]
+    UnknownObject {
+        /// The cell.
+        cell: CellId,
+        /// The object.
+        object: u32,
+    },
+    /// The locator is wrong.
+    #[error(transparent)]
+    Locator(#[from] LocatorError),
+    /// Two keys that are equal or not ascending.
+    #[error("info entry {0} does not have a larger key than the one before")]
+    InfoOrder(usize),
+    /// A text of 4 GiB or more.
+    #[error("a text has {0} bytes, more than 32 bits can count")]
+    TooLong(usize),
+}
+
+impl TableParts {
+    /// Checks everything that a table promises. O(size), but for the locator, O(entries * depth).
+    pub(crate) fn check(&self) -> Result<(), TableError> {
+        if !matches!(self.dimension, 2 | 3) {
+            return Err(TableError::Dimension(self.dimension));
+        }
+        self.check_counts()?;
+        let mut cells = (0u32..).map(CellId).zip(&self.cells);
+        cells.try_for_each(|(id, cell)| self.check_cell(id, cell))?;
+        self.portals.iter().enumerate().try_for_each(|(i, portal)| self.check_portal(i, portal))?;
+        self.check_rows()?;
+        self.check_objects()?;
+        self.locator.check(&self.cell_bounds(), self.dimension)?;
+        match self.info.windows(2).position(|pair| pair[0].0 >= pair[1].0) {
+            Some(i) => Err(TableError::InfoOrder(i + 1)),
+            None => Ok(()),
+        }
+    }
+
+    /// Every count and length has 32 bits in a file.
+    fn check_counts(&self) -> Result<(), TableError> {
+        let corners: usize = self.cells.iter().map(|cell| cell.polygon.len()).sum();
+        let touches: usize = self.cell_objects.iter().map(Vec::len).sum();
+        let counts = [
+            (Item::Cell, self.cells.len()),
+            (Item::Polygon, corners),
+            (Item::Portal, self.portals.len()),
+            (Item::Object, self.objects.len().max(touches)),
+        ];
+        if let Some(&(item, n)) = counts.iter().find(|(_, n)| u32::try_from(*n).is_err()) {
+            return Err(TableError::TooMany { item, n });
+        }
+        let names = self.objects.iter().map(|object| &object.name);
+        let mut texts = names.chain(self.info.iter().flat_map(|(k, v)| [k, v])).map(String::len);
+        match texts.find(|&n| u32::try_from(n).is_err()) {
+            Some(n) => Err(TableError::TooLong(n)),
+            None => Ok(()),
+        }
+    }
+
+    fn check_box(&self, item: Item, index: usize, min: &[f64; 3], max: &[f64; 3]) -> Result<(), TableError> {
+        self.check_points(item, index, &[*min, *max])?;
+        if (0..3).any(|k| min[k] > max[k]) { Err(TableError::Inverted { item, index }) } else { Ok(()) }
+    }
+
+    fn check_points(&self, item: Item, index: usize, points: &[[f64; 3]]) -> Result<(), TableError> {
+        if !points.as_flattened().iter().all(|x| x.is_finite()) {
+            return Err(TableError::NotFinite { item, index });
+        }
+        // The bits are compared: a negative zero would not survive a file.
+        let off_plane = self.dimension == 2 && points.iter().any(|p| p[2].to_bits() != 0);
+        if off_plane { Err(TableError::OffPlane { item, index }) } else { Ok(()) }
+    }
+
+    fn check_cell(&self, id: CellId, cell: &CellRecord) -> Result<(), TableError> {
+        let CellRecord { min, max, polygon, .. } = cell;
+        self.check_box(Item::Cell, id.idx(), min, max)?;
+        let n = polygon.len();
+        if n > 0 && (n < 3 || self.dimension == 3) {
+            return Err(TableError::Corners { cell: id, n });
+        }
+        if !polygon.as_flattened().iter().all(|x| x.is_finite()) {
+            return Err(TableError::NotFinite { item: Item::Polygon, index: id.idx() });
+        }
+        let outside = |c: &[f64; 2]| (0..2).any(|k| c[k] < min[k] || c[k] > max[k]);
+        if let Some(corner) = polygon.iter().position(outside) {
+            return Err(TableError::OutsideBox { cell: id, corner });
+        }
+        side::first_defect(polygon).map_or(Ok(()), |corner| Err(TableError::NotConvex { cell: id, corner }))
+    }
+
+    fn check_portal(&self, index: usize, portal: &PortalRecord) -> Result<(), TableError> {
+        if let Some(&cell) = portal.cells.iter().find(|cell| cell.idx() >= self.cells.len()) {
+            return Err(TableError::PortalCell { portal: index, cell });
+        }
+        if portal.cells[0] == portal.cells[1] {
+            return Err(TableError::PortalLoop { portal: index, cell: portal.cells[0] });
+        }
+        let n = portal.points.len();
+        let fits = if self.dimension == 2 { n == 2 } else { n >= 3 && u32::try_from(n).is_ok() };
+        if !fits {
+            return Err(TableError::PortalPoints { portal: index, n });
+        }
+        self.check_points(Item::Portal, index, &portal.points)
+    }
+
+    fn check_rows(&self) -> Result<(), TableError> {
+        let (rows, n_cells) = (&self.rows, self.cells.len());
+        if (rows.n_rows(), rows.n_cols()) != (n_cells, n_cells) {
+            return Err(TableError::RowsShape { n_rows: rows.n_rows(), n_cols: rows.n_cols(), n_cells });
+        }
+        let id = |i: usize| CellId(i as u32);
+        if let Some(row) = rows.first_stray() {
+            return Err(TableError::RowTail(id(row)));
+        }
+        if let Some(cell) = (0..n_cells).find(|&i| !rows.get(i, i)) {
+            return Err(TableError::NotReflexive(id(cell)));
+        }
+        rows.first_asymmetry().map_or(Ok(()), |(a, b)| Err(TableError::NotSymmetric([id(a), id(b)])))
+    }
+
+    fn check_objects(&self) -> Result<(), TableError> {
+        for (index, ObjectRecord { min, max, .. }) in self.objects.iter().enumerate() {
+            self.check_box(Item::Object, index, min, max)?;
+        }
+        let (n, n_cells) = (self.cell_objects.len(), self.cells.len());
+        if n != n_cells {
+            return Err(TableError::CellObjects { n, n_cells });
+        }
+        for (cell, list) in (0u32..).map(CellId).zip(&self.cell_objects) {
+            if !list.is_sorted_by(|a, b| a < b) {
+                return Err(TableError::ObjectOrder(cell));
+            }
+            // The list ascends, so its last entry is its largest.
+            if let Some(&object) = list.last().filter(|o| **o as usize >= self.objects.len()) {
+                return Err(TableError::UnknownObject { cell, object });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,218 @@
+//! Reads a table.
+
+use super::container::{self, Section};
+use super::error::{DecodeError, DecodeErrorKind as Kind};
+use super::reader::Reader;
+use super::{CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, OBJECTS, POLYGONS, PORTALS, ROWS, SectionId, n_row_words};
+use crate::locator::Node;
+use crate::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, ObjectRecord, PortalRecord};
+use crate::{Table, TableError, TableParts};
+
+impl Table {
+    /// Reads the bytes of a `.pvs` file and checks them as [`Table::new`] does. O(size), and memory in
+    /// proportion to the number of bytes, whatever they claim.
+    ///
+    /// A cut file, one with something after its end, and one with any single byte changed are errors.
+    ///
+    /// # Errors
+    /// [`DecodeError`], with section and byte offset.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, DecodeError> {
+        let sections = Sections { found: container::read(bytes)?, len: bytes.len() as u64 };
+        let (dimension, mut cells) = read(sections.need(CELLS)?, cells)?;
+        let d = usize::from(dimension);
+        if let Some(section) = sections.find(POLYGONS) {
+            read(section, |r| polygons(r, &mut cells))?;
+        }
+        let portals = sections.find(PORTALS).map_or(Ok(Vec::new()), |s| read(s, |r| portals(r, d)))?;
+        let parts = TableParts {
+            dimension,
+            portals,
+            rows: read(sections.need(ROWS)?, |r| rows(r, cells.len()))?,
+            locator: locator(sections.need(LOCATOR)?)?,
+            objects: read(sections.need(OBJECTS)?, |r| objects(r, d))?,
+            cell_objects: read(sections.need(CELL_OBJECTS)?, |r| cell_objects(r, cells.len()))?,
+            info: read(sections.need(INFO)?, info)?,
+            cells,
+        };
+        Self::new(parts).map_err(|error| sections.blame(error))
+    }
+}
+
+struct Sections<'a> {
+    found: Vec<Section<'a>>,
+    len: u64,
+}
+
+impl<'a> Sections<'a> {
+    fn find(&self, id: SectionId) -> Option<Section<'a>> {
+        self.found.iter().find(|section| section.id == id).copied()
+    }
+
+    fn need(&self, id: SectionId) -> Result<Section<'a>, DecodeError> {
+        self.find(id).ok_or(DecodeError { section: Some(id), offset: self.len, kind: Kind::Missing })
+    }
+
+    /// Says in which section the mistake is.
+    fn blame(&self, error: TableError) -> DecodeError {
+        let id = section_of(&error);
+        let offset = self.find(id).map_or(self.len, |section| section.offset as u64);
+        DecodeError { section: Some(id), offset, kind: Kind::Table(error) }
+    }
+}
+
+fn section_of(error: &TableError) -> SectionId {
+    match error {
+        TableError::TooMany { item, .. }
+        | TableError::NotFinite { item, .. }
+        | TableError::Inverted { item, .. }
+        | TableError::OffPlane { item, .. } => match item {
+            Item::Cell => CELLS,
+            Item::Polygon => POLYGONS,
+            Item::Portal => PORTALS,
+            Item::Object => OBJECTS,
+        },
+        TableError::Dimension(_) => CELLS,
+        TableError::Corners { .. } | TableError::NotConvex { .. } | TableError::OutsideBox { .. } => POLYGONS,
+        TableError::PortalCell { .. } | TableError::PortalLoop { .. } | TableError::PortalPoints { .. } => PORTALS,
+        TableError::RowsShape { .. }
+        | TableError::RowTail(_)
+        | TableError::NotReflexive(_)
+        | TableError::NotSymmetric(_) => ROWS,
+        TableError::CellObjects { .. } | TableError::ObjectOrder(_) | TableError::UnknownObject { .. } => CELL_OBJECTS,
+        TableError::Locator(_) => LOCATOR,
+        TableError::InfoOrder(_) | TableError::TooLong(_) => INFO,
+    }
+}
+
+/// Reads a whole section.
+fn read<'a, T>(
+    section: Section<'a>,
+    parse: impl FnOnce(&mut Reader<'a>) -> Result<T, DecodeError>,
+) -> Result<T, DecodeError> {
+    let mut reader = Reader::new(section);
+    let value = parse(&mut reader)?;
+    reader.finish()?;
+    Ok(value)
+}
+
+fn cells(r: &mut Reader<'_>) -> Result<(u8, Vec<CellRecord>), DecodeError> {
+    let dimension = match r.u32()? {
+        2 => 2u8,
+        3 => 3,
+        value => return Err(r.fail(4, Kind::Value { value })),
+    };
+    let d = usize::from(dimension);
+    let n = r.count(16 * d + 8)?;
+    let mut cells = Vec::with_capacity(n);
+    for _ in 0..n {
+        let (min, max) = (r.point(d)?, r.point(d)?);
+        let group = match (r.u32()?, r.u32()?) {
+            (0, 0) => None,
+            (1, group) => Some(group),
+            (0, value) => return Err(r.fail(4, Kind::Value { value })),
+            (value, _) => return Err(r.fail(8, Kind::Value { value })),
+        };
+        cells.push(CellRecord { min, max, group, polygon: Vec::new() });
+    }
+    Ok((dimension, cells))
+}
+
+/// The lengths of `n` lists, and the check that as many items of `size` bytes follow.
+fn lengths(r: &mut Reader<'_>, n: usize, size: usize) -> Result<Vec<u32>, DecodeError> {
+    let lengths = r.u32s(n as u64)?;
+    // At most 2^32 lengths below 2^32: the sum fits.
+    r.expect(lengths.iter().map(|&n| u64::from(n)).sum(), size)?;
+    Ok(lengths)
+}
+
+fn polygons(r: &mut Reader<'_>, cells: &mut [CellRecord]) -> Result<(), DecodeError> {
+    let lengths = lengths(r, cells.len(), 16)?;
+    for (cell, n) in cells.iter_mut().zip(lengths) {
+        cell.polygon = (0..n).map(|_| Ok([r.f64()?, r.f64()?])).collect::<Result<_, _>>()?;
+    }
+    Ok(())
+}
+
+fn portals(r: &mut Reader<'_>, d: usize) -> Result<Vec<PortalRecord>, DecodeError> {
+    let n = r.count(20)?;
+    let mut portals = Vec::with_capacity(n);
+    for _ in 0..n {
+        let cells = [CellId(r.u32()?), CellId(r.u32()?)];
+        let sides = [r.u32()?, r.u32()?];
+        let n_points = r.count(8 * d)?;
+        let points = (0..n_points).map(|_| r.point(d)).collect::<Result<_, _>>()?;
+        portals.push(PortalRecord { cells, sides, points });
+    }
+    Ok(portals)
+}
+
+fn rows(r: &mut Reader<'_>, n: usize) -> Result<BitMatrix, DecodeError> {
+    r.expect(n_row_words(n as u64), 8)?;
+    let mut rows = BitMatrix::new(n, n);
+    for i in 0..n {
+        let (last, bits) = (i / 64, i % 64);
+        let words = &mut rows.row_mut(i)[..=last];
+        for word in &mut *words {
+            *word = r.u64()?;
+        }
+        if words[last] & !(u64::MAX >> (63 - bits)) != 0 {
+            return Err(r.fail(8, Kind::PastDiagonal { row: i as u32 }));
+        }
+    }
+    rows.mirror_lower();
+    Ok(rows)
+}
+
+fn locator(section: Section<'_>) -> Result<Locator, DecodeError> {
+    let (nodes, cells) = read(section, locator_parts)?;
+    let whole = Reader::new(section);
+    Locator::from_raw(nodes, cells).map_err(|error| whole.fail(0, Kind::Table(TableError::Locator(error))))
+}
+
+fn locator_parts(r: &mut Reader<'_>) -> Result<(Vec<Node>, Vec<CellId>), DecodeError> {
+    let (n_nodes, n_cells) = (r.u32()?, r.u32()?);
+    r.expect(16 * u64::from(n_nodes) + 4 * u64::from(n_cells), 1)?;
+    let mut nodes = Vec::with_capacity(n_nodes as usize);
+    let mut start = 0u32;
+    for node in 0..n_nodes as usize {
+        let (tag, second, rest) = (r.u32()?, r.u32()?, r.u64()?);
+        nodes.push(if tag == LEAF {
+            if rest != 0 {
+                return Err(r.fail(8, Kind::NotZero));
+            }
+            let too_many = || Kind::Table(TableError::Locator(LocatorError::Order { node }));
+            let end = start.checked_add(second).filter(|&end| end <= n_cells);
+            let leaf = Node::Leaf { start, end: end.ok_or_else(|| r.fail(12, too_many()))? };
+            start += second;
+            leaf
+        } else {
+            let axis = u8::try_from(tag).map_err(|_| r.fail(16, Kind::Value { value: tag }))?;
+            Node::Inner { axis, split: f64::from_bits(rest), high: second }
+        });
+    }
+    let cells = r.u32s(u64::from(n_cells))?.into_iter().map(CellId).collect();
+    Ok((nodes, cells))
+}
+
+fn objects(r: &mut Reader<'_>, d: usize) -> Result<Vec<ObjectRecord>, DecodeError> {
+    let n = r.count(16 * d + 4)?;
+    let mut objects = Vec::with_capacity(n);
+    for _ in 0..n {
+        let (min, max) = (r.point(d)?, r.point(d)?);
+        objects.push(ObjectRecord { name: r.text()?, min, max });
+    }
+    Ok(objects)
+}
+
+fn cell_objects(r: &mut Reader<'_>, n: usize) -> Result<Vec<Vec<u32>>, DecodeError> {
+    lengths(r, n, 4)?.into_iter().map(|n| r.u32s(u64::from(n))).collect()
+}
+
+fn info(r: &mut Reader<'_>) -> Result<Vec<(String, String)>, DecodeError> {
+    let n = r.count(8)?;
+    let mut info = Vec::with_capacity(n);
+    for _ in 0..n {
+        info.push((r.text()?, r.text()?));
+    }
+    Ok(info)
+}

@@ -1,0 +1,137 @@
+//! Writes a table.
+
+use super::container::{self, Payload};
+use super::{CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, OBJECTS, POLYGONS, PORTALS, ROWS, SectionId};
+use crate::locator::Node;
+use crate::{BitMatrix, CellRecord, ObjectRecord, PortalRecord, Table, TableParts};
+
+impl Table {
+    /// The table as the bytes of a `.pvs` file, the same on every machine. O(size).
+    ///
+    /// Sections for polygons and portals are written only if there are any.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let parts = self.parts();
+        let d = usize::from(parts.dimension);
+        let mut sections = vec![section(CELLS, |out| cells(out, parts))];
+        if parts.cells.iter().any(|cell| !cell.polygon.is_empty()) {
+            sections.push(section(POLYGONS, |out| polygons(out, &parts.cells)));
+        }
+        if !parts.portals.is_empty() {
+            sections.push(section(PORTALS, |out| portals(out, &parts.portals, d)));
+        }
+        sections.push(section(ROWS, |out| rows(out, &parts.rows)));
+        sections.push(section(LOCATOR, |out| locator(out, parts)));
+        sections.push(section(OBJECTS, |out| objects(out, &parts.objects, d)));
+        sections.push(section(CELL_OBJECTS, |out| cell_objects(out, &parts.cell_objects)));
+        sections.push(section(INFO, |out| info(out, &parts.info)));
+        container::write(&sections)
+    }
+}
+
+fn section(id: SectionId, fill: impl FnOnce(&mut Writer)) -> Payload {
+    let mut out = Writer::default();
+    fill(&mut out);
+    Payload { id, bytes: out.0 }
+}
+
+#[derive(Default)]
+struct Writer(Vec<u8>);
+
+impl Writer {
+    fn u32(&mut self, x: u32) {
+        self.0.extend(x.to_le_bytes());
+    }
+
+    /// A count; [`Table::new`] has checked that it fits.
+    fn count(&mut self, n: usize) {
+        self.u32(u32::try_from(n).expect("a checked table counts with 32 bits"));
+    }
+
+    fn floats(&mut self, xs: &[f64]) {
+        xs.iter().for_each(|x| self.0.extend(x.to_le_bytes()));
+    }
+
+    fn text(&mut self, text: &str) {
+        self.count(text.len());
+        self.0.extend_from_slice(text.as_bytes());
+    }
+}
+
+fn cells(out: &mut Writer, parts: &TableParts) {
+    let d = usize::from(parts.dimension);
+    out.u32(u32::from(parts.dimension));
+    out.count(parts.cells.len());
+    for CellRecord { min, max, group, .. } in &parts.cells {
+        out.floats(&min[..d]);
+        out.floats(&max[..d]);
+        out.u32(u32::from(group.is_some()));
+        out.u32(group.unwrap_or(0));
+    }
+}
+
+fn polygons(out: &mut Writer, cells: &[CellRecord]) {
+    cells.iter().for_each(|cell| out.count(cell.polygon.len()));
+    cells.iter().for_each(|cell| out.floats(cell.polygon.as_flattened()));
+}
+
+fn portals(out: &mut Writer, portals: &[PortalRecord], d: usize) {
+    out.count(portals.len());
+    for PortalRecord { cells, sides, points } in portals {
+        [cells[0].0, cells[1].0, sides[0], sides[1]].into_iter().for_each(|x| out.u32(x));
+        out.count(points.len());
+        points.iter().for_each(|p| out.floats(&p[..d]));
+    }
+}
+
+fn rows(out: &mut Writer, rows: &BitMatrix) {
+    for i in 0..rows.n_rows() {
+        let (last, bits) = (i / 64, i % 64);
+        for (k, word) in rows.row(i)[..=last].iter().enumerate() {
+            let kept = if k == last { u64::MAX >> (63 - bits) } else { u64::MAX };
+            out.0.extend((word & kept).to_le_bytes());
+        }
+    }
+}
+
+fn locator(out: &mut Writer, parts: &TableParts) {
+    let (nodes, cells) = parts.locator.raw();
+    out.count(nodes.len());
+    out.count(cells.len());
+    for node in nodes {
+        match *node {
+            Node::Inner { axis, split, high } => {
+                out.u32(u32::from(axis));
+                out.u32(high);
+                out.floats(&[split]);
+            }
+            Node::Leaf { start, end } => {
+                out.u32(LEAF);
+                out.u32(end - start);
+                out.0.extend([0; 8]);
+            }
+        }
+    }
+    cells.iter().for_each(|cell| out.u32(cell.0));
+}
+
+fn objects(out: &mut Writer, objects: &[ObjectRecord], d: usize) {
+    out.count(objects.len());
+    for ObjectRecord { name, min, max } in objects {
+        out.floats(&min[..d]);
+        out.floats(&max[..d]);
+        out.text(name);
+    }
+}
+
+fn cell_objects(out: &mut Writer, lists: &[Vec<u32>]) {
+    lists.iter().for_each(|list| out.count(list.len()));
+    lists.iter().flatten().for_each(|&object| out.u32(object));
+}
+
+fn info(out: &mut Writer, info: &[(String, String)]) {
+    out.count(info.len());
+    for (key, value) in info {
+        out.text(key);
+        out.text(value);
+    }
+}

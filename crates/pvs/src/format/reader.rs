@@ -1,0 +1,89 @@
+//! Reads the fields of a section and never past its end.
+
+use super::container::{Section, array};
+use super::error::{DecodeError, DecodeErrorKind as Kind};
+
+/// A place in a section.
+pub(super) struct Reader<'a> {
+    section: Section<'a>,
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(section: Section<'a>) -> Self {
+        Self { section, at: 0 }
+    }
+
+    /// An error about the `back` bytes just read.
+    pub(super) fn fail(&self, back: usize, kind: Kind) -> DecodeError {
+        DecodeError { section: Some(self.section.id), offset: (self.section.offset + self.at - back) as u64, kind }
+    }
+
+    fn left(&self) -> usize {
+        self.section.bytes.len() - self.at
+    }
+
+    /// Checks that `n` items of `size` bytes can follow; to be called before memory is taken for them.
+    pub(super) fn expect(&self, n: u64, size: usize) -> Result<(), DecodeError> {
+        let (need, left) = (n.saturating_mul(size as u64), self.left() as u64);
+        if need > left { Err(self.fail(0, Kind::Cut { need, left })) } else { Ok(()) }
+    }
+
+    fn take(&mut self, n: usize) -> Result<&'a [u8], DecodeError> {
+        self.expect(n as u64, 1)?;
+        self.at += n;
+        Ok(&self.section.bytes[self.at - n..self.at])
+    }
+
+    pub(super) fn u32(&mut self) -> Result<u32, DecodeError> {
+        Ok(u32::from_le_bytes(array(self.take(4)?, 0)))
+    }
+
+    pub(super) fn u64(&mut self) -> Result<u64, DecodeError> {
+        Ok(u64::from_le_bytes(array(self.take(8)?, 0)))
+    }
+
+    pub(super) fn f64(&mut self) -> Result<f64, DecodeError> {
+        Ok(f64::from_bits(self.u64()?))
+    }
+
+    /// A count of items that take at least `size` bytes each; checked to fit the section.
+    pub(super) fn count(&mut self, size: usize) -> Result<usize, DecodeError> {
+        let n = self.u32()?;
+        self.expect(u64::from(n), size)?;
+        // It fits: no slice has more than `usize::MAX` bytes, and `size` is at least 1.
+        Ok(n as usize)
+    }
+
+    /// `n` numbers; their memory is taken after a check.
+    pub(super) fn u32s(&mut self, n: u64) -> Result<Vec<u32>, DecodeError> {
+        self.expect(n, 4)?;
+        (0..n).map(|_| self.u32()).collect()
+    }
+
+    /// A point with `d` coordinates; the others are 0.
+    pub(super) fn point(&mut self, d: usize) -> Result<[f64; 3], DecodeError> {
+        let mut p = [0.0; 3];
+        for x in &mut p[..d] {
+            *x = self.f64()?;
+        }
+        Ok(p)
+    }
+
+    pub(super) fn text(&mut self) -> Result<String, DecodeError> {
+        let n = self.count(1)?;
+        let bytes = self.take(n)?;
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Ok(text.to_owned()),
+            Err(error) => Err(self.fail(n - error.valid_up_to(), Kind::Text)),
+        }
+    }
+
+    /// Checks that the section ends here.
+    pub(super) fn finish(self) -> Result<(), DecodeError> {
+        match self.left() {
+            0 => Ok(()),
+            left => Err(self.fail(0, Kind::Surplus { left: left as u64 })),
+        }
+    }
+}

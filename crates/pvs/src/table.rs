@@ -1,0 +1,199 @@
+//! The table and what it can be asked.
+
+use crate::parts::{CellRecord, ObjectRecord, PortalRecord, TableParts};
+use crate::{CellId, CellSet, Locator, TableError, bits, side};
+
+/// Which cells of a scene can be seen from which: checked, and never changed.
+///
+/// Every answer errs towards "visible".
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    parts: TableParts,
+}
+
+impl Table {
+    /// Checks `parts`: shapes, ids, finite coordinates, convex polygons inside their boxes, symmetric
+    /// rows with ones on the diagonal, a locator that misses no cell. O(size * log(size)).
+    ///
+    /// # Errors
+    /// The first [`TableError`].
+    pub fn new(parts: TableParts) -> Result<Self, TableError> {
+        parts.check()?;
+        Ok(Self { parts })
+    }
+
+    /// The parts, to be looked at.
+    pub fn parts(&self) -> &TableParts {
+        &self.parts
+    }
+
+    /// The parts, to be changed and checked again.
+    pub fn into_parts(self) -> TableParts {
+        self.parts
+    }
+
+    /// The same table without portals and polygons: smaller, and all that a game needs.
+    ///
+    /// The cells become their boxes, so a point may be found in more cells than before, and never in
+    /// fewer. Rows, objects and ids stay.
+    #[must_use]
+    pub fn strip_geometry(&self) -> Self {
+        let mut parts = self.parts.clone();
+        parts.portals.clear();
+        parts.cells.iter_mut().for_each(|cell| cell.polygon.clear());
+        Self { parts }
+    }
+
+    /// 2 for a plane, 3 for space.
+    pub fn dimension(&self) -> u8 {
+        self.parts.dimension
+    }
+
+    /// Number of cells; ids are below it.
+    pub fn n_cells(&self) -> usize {
+        self.parts.cells.len()
+    }
+
+    /// The cells, by id.
+    pub fn cells(&self) -> &[CellRecord] {
+        &self.parts.cells
+    }
+
+    /// The portals, in the order in which they were given; empty in a stripped table.
+    pub fn portals(&self) -> &[PortalRecord] {
+        &self.parts.portals
+    }
+
+    /// The objects, by id.
+    pub fn objects(&self) -> &[ObjectRecord] {
+        &self.parts.objects
+    }
+
+    /// What finds the cells at a point.
+    pub fn locator(&self) -> &Locator {
+        &self.parts.locator
+    }
+
+    /// Free keys and values, by ascending key.
+    pub fn info(&self) -> &[(String, String)] {
+        &self.parts.info
+    }
+
+    /// The value of a key of [`Table::info`].
+    pub fn info_value(&self, key: &str) -> Option<&str> {
+        let info = &self.parts.info;
+        info.binary_search_by(|(k, _)| k.as_str().cmp(key)).ok().map(|i| info[i].1.as_str())
+    }
+
+    /// Whether something in `a` may be seen from somewhere in `b`, which is the same the other way
+    /// round. O(1).
+    ///
+    /// # Panics
+    /// If the table has no such cells.
+    #[inline]
+    pub fn sees(&self, a: CellId, b: CellId) -> bool {
+        self.parts.rows.get(a.idx(), b.idx())
+    }
+
+    /// The cells that `cell` may see, itself included, ascending.
+    ///
+    /// # Panics
+    /// If the table has no such cell.
+    pub fn visible(&self, cell: CellId) -> impl Iterator<Item = CellId> + '_ {
+        self.parts.rows.iter_ones(cell.idx()).map(|i| CellId(i as u32))
+    }
+
+    /// The row of a cell: bit `j % 64` of word `j / 64` says whether it may see cell `j`.
+    ///
+    /// # Panics
+    /// If the table has no such cell.
+    #[inline]
+    pub fn row(&self, cell: CellId) -> &[u64] {
+        self.parts.rows.row(cell.idx())
+    }
+
+    /// The objects that touch a cell, ascending.
+    ///
+    /// # Panics
+    /// If the table has no such cell.
+    pub fn objects_of(&self, cell: CellId) -> &[u32] {
+        &self.parts.cell_objects[cell.idx()]
+    }
+
+    /// The objects that touch a cell that `cell` may see, ascending.
+    ///
+    /// # Panics
+    /// If the table has no such cell.
+    pub fn visible_objects(&self, cell: CellId) -> Vec<u32> {
+        self.objects_in_row(self.row(cell))
+    }
+
+    /// The objects that touch a cell of the set, ascending.
+    ///
+    /// # Panics
+    /// If the set is from a table with more cells.
+    pub fn objects_in(&self, cells: &CellSet) -> Vec<u32> {
+        self.objects_in_row(cells.words())
+    }
+
+    fn objects_in_row(&self, row: &[u64]) -> Vec<u32> {
+        let mut objects: Vec<u32> = bits::ones(row).flat_map(|i| self.parts.cell_objects[i].iter().copied()).collect();
+        objects.sort_unstable();
+        objects.dedup();
+        objects
+    }
+
+    /// Every cell whose closed polygon (or box, if it has no polygon) contains the point `p`,
+    /// ascending; none if `p` is outside the scene or has a NaN.
+    ///
+    /// A point on the border between cells is in all of them: a viewer there sees what any of them
+    /// sees. Decided in plain doubles with an error bound that errs towards "inside": a point within
+    /// rounding of a border may be found in cells on both sides of it, never in none of them.
+    /// O(log n + candidates).
+    ///
+    /// # Panics
+    /// If `p` does not have [`Table::dimension`] coordinates (scene units).
+    pub fn locate(&self, p: &[f64]) -> Vec<CellId> {
+        let point = self.point(p);
+        let mut found = Vec::new();
+        self.parts.locator.for_each_candidate(point, |id| {
+            if self.may_contain(&self.parts.cells[id.idx()], point) {
+                found.push(id);
+            }
+        });
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// What a viewer at `p` may see: the union of the rows of all cells that contain `p`. Empty if `p`
+    /// is outside every cell.
+    ///
+    /// # Panics
+    /// As [`Table::locate`].
+    pub fn visible_from(&self, p: &[f64]) -> CellSet {
+        let mut seen = CellSet::empty(self.n_cells());
+        self.locate(p).into_iter().for_each(|cell| seen.unite(self.row(cell)));
+        seen
+    }
+
+    /// The share of all cells that a cell sees, averaged over all cells: what a viewer has to draw, if
+    /// all cells are alike. 0 for a table without cells.
+    pub fn mean_visible_share(&self) -> f64 {
+        let n = self.n_cells() as f64;
+        if n == 0.0 { 0.0 } else { self.parts.rows.count_ones() as f64 / (n * n) }
+    }
+
+    fn point(&self, p: &[f64]) -> [f64; 3] {
+        let n = usize::from(self.parts.dimension);
+        assert!(p.len() == n, "a point of this table has {n} coordinates, not {}", p.len());
+        let mut point = [0.0; 3];
+        point[..n].copy_from_slice(p);
+        point
+    }
+
+    fn may_contain(&self, cell: &CellRecord, p: [f64; 3]) -> bool {
+        let in_box = (0..3).all(|k| cell.min[k] <= p[k] && p[k] <= cell.max[k]);
+        in_box && side::may_contain(&cell.polygon, [p[0], p[1]])
+    }
+}

@@ -1,0 +1,5 @@
+//! Tests of the table through its public interface.
+
+mod common;
+mod format;
+mod table;

@@ -1,0 +1,235 @@
+//! What makes a table, what is refused, and what it answers.
+
+use crate::common::{any_parts, assert_well_formed, located, rooms};
+use proptest::prelude::*;
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, LocatorNode};
+use sightlines_pvs::{Table, TableError, TableParts};
+
+/// The first grid point, half-way points included, at which the table and brute force differ.
+fn misplaced(table: &Table) -> Option<(Vec<f64>, Vec<CellId>, Vec<CellId>)> {
+    let steps = || (-9i8..19).map(|i| f64::from(i) / 2.0);
+    let zs: Vec<f64> = if table.dimension() == 2 { vec![0.0] } else { vec![-4.0, -0.5, 1.0, 2.0] };
+    let points = zs.into_iter().flat_map(|z| steps().flat_map(move |y| steps().map(move |x| [x, y, z])));
+    let asked = points.map(|p| p[..usize::from(table.dimension())].to_vec());
+    asked.map(|p| (table.locate(&p), located(table.cells(), &p), p)).find(|(a, b, _)| a != b).map(|(a, b, p)| (p, a, b))
+}
+
+proptest! {
+    /// Invariant: a point is located in the cells whose closed outline contains it, in all and no others.
+    /// (On a small grid the error bound never gets in the way.)
+    #[test]
+    fn location_is_what_brute_force_says(parts in any_parts()) {
+        let table = Table::new(parts).unwrap();
+        prop_assert_eq!(misplaced(&table), None);
+        assert_well_formed(&table);
+    }
+
+    /// Invariant: what is seen from a point is what any cell there sees.
+    #[test]
+    fn view_from_a_point_unites_rows(parts in any_parts(), p in [-9i8..10, -9i8..10, -9i8..10]) {
+        let table = Table::new(parts).unwrap();
+        let p = &p.map(|x| f64::from(x) / 2.0)[..usize::from(table.dimension())];
+        let here = located(table.cells(), p);
+        let ids = (0..table.n_cells() as u32).map(CellId);
+        let expected: Vec<CellId> = ids.filter(|&b| here.iter().any(|&a| table.sees(a, b))).collect();
+        let seen = table.visible_from(p);
+        prop_assert_eq!(seen.iter().collect::<Vec<_>>(), expected.clone());
+        prop_assert_eq!((seen.len(), seen.is_empty()), (expected.len(), here.is_empty()));
+        let touched = |o: &u32| expected.iter().any(|&c| table.objects_of(c).contains(o));
+        prop_assert_eq!(table.objects_in(&seen), (0..table.objects().len() as u32).filter(touched).collect::<Vec<_>>());
+    }
+
+    /// Invariant: a stripped table has the same rows and finds a point in no fewer cells.
+    #[test]
+    fn stripping_only_adds_cells(parts in any_parts(), p in [-9i8..10, -9i8..10, -9i8..10]) {
+        let table = Table::new(parts).unwrap();
+        let bare = table.strip_geometry();
+        assert_well_formed(&bare);
+        prop_assert!(bare.portals().is_empty());
+        prop_assert_eq!(&bare.parts().rows, &table.parts().rows);
+        let p = &p.map(|x| f64::from(x) / 2.0)[..usize::from(table.dimension())];
+        let found = bare.locate(p);
+        prop_assert!(table.locate(p).iter().all(|cell| found.contains(cell)));
+    }
+
+    /// The impostor: a table with one visible pair removed on one side only is refused.
+    #[test]
+    fn impostor_asymmetric_is_refused(mut parts in any_parts(), at in any::<prop::sample::Index>()) {
+        let n = parts.cells.len();
+        let pairs: Vec<(usize, usize)> =
+            (0..n).flat_map(|a| parts.rows.iter_ones(a).map(move |b| (a, b))).filter(|(a, b)| a != b).collect();
+        prop_assume!(!pairs.is_empty());
+        let (a, b) = pairs[at.index(pairs.len())];
+        parts.rows.set(a, b, false);
+        let pair = [a.max(b), a.min(b)].map(|i| CellId(i as u32));
+        let either = [pair, [pair[1], pair[0]]].map(TableError::NotSymmetric);
+        let error = Table::new(parts).unwrap_err();
+        prop_assert!(either.contains(&error), "{:?}", error);
+    }
+
+    /// The impostor: a cell that does not see itself is refused.
+    #[test]
+    fn impostor_without_diagonal_is_refused(mut parts in any_parts(), at in any::<prop::sample::Index>()) {
+        prop_assume!(!parts.cells.is_empty());
+        let cell = at.index(parts.cells.len());
+        parts.rows.set(cell, cell, false);
+        prop_assert_eq!(Table::new(parts).unwrap_err(), TableError::NotReflexive(CellId(cell as u32)));
+    }
+}
+
+/// The impostor for point location: brute force tells a table whose cell is not where its locator
+/// thinks, and no table can be made from a locator that misses a cell.
+#[test]
+fn impostor_locator_is_caught() {
+    let mut parts = rooms();
+    let mut nodes = parts.locator.to_nodes();
+    for node in &mut nodes {
+        if let LocatorNode::Leaf { cells } = node {
+            cells.retain(|cell| cell.0 != 1);
+        }
+    }
+    let locator = Locator::from_nodes(&nodes).unwrap();
+    let mut found = vec![];
+    locator.for_each_candidate([5.0, 1.0, 0.0], |cell| found.push(cell));
+    assert!(!found.contains(&CellId(1)) && located(&parts.cells, &[5.0, 1.0]).contains(&CellId(1)));
+    parts.locator = locator;
+    let Err(TableError::Locator(error)) = Table::new(parts) else { panic!("an impostor") };
+    assert!(matches!(error, LocatorError::Misses { cell: CellId(1), .. }));
+    assert_eq!(misplaced(&Table::new(rooms()).unwrap()), None);
+}
+
+/// The same, through the comparison itself: the oracle reads the cells, so a moved cell is a difference.
+#[test]
+fn impostor_comparison_can_fail() {
+    let table = Table::new(rooms()).unwrap();
+    let mut cells = table.cells().to_vec();
+    cells[4].polygon[2] = [0.0, 7.0];
+    let p = [0.0, 7.5];
+    assert_ne!(table.locate(&p), located(&cells, &p));
+}
+
+#[test]
+fn small_house_answers() {
+    let table = Table::new(rooms()).unwrap();
+    assert_well_formed(&table);
+    assert_eq!((table.n_cells(), table.portals().len(), table.objects().len()), (5, 3, 2));
+    assert!(!table.sees(CellId(0), CellId(3)) && table.sees(CellId(3), CellId(1)));
+    assert_eq!(table.row(CellId(1)), [0b1111]);
+    assert_eq!(table.visible_objects(CellId(0)), [0]);
+    assert_eq!(table.visible_objects(CellId(1)), [0, 1]);
+    assert_eq!(table.locate(&[4.0, 4.0]), [CellId(0), CellId(1)]);
+    assert_eq!(table.locate(&[1.0, 6.25]), [CellId(4)], "on the long side of the closet");
+    assert_eq!(table.locate(&[1.0, 6.5]), []);
+    assert_eq!(table.strip_geometry().locate(&[1.0, 6.5]), [CellId(4)]);
+    assert_eq!(table.locate(&[f64::NAN, 1.0]), []);
+    assert_eq!(table.locate(&[f64::INFINITY, 1.0]), []);
+    assert_eq!(table.mean_visible_share(), 15.0 / 25.0);
+    assert_eq!((table.info_value("method"), table.info_value("missing")), (Some("by hand"), None));
+    assert!(!table.visible_from(&[1.0, 1.0]).contains(CellId(1000)));
+}
+
+#[test]
+fn empty_tables_are_tables() {
+    for dimension in [2, 3] {
+        let nothing = TableParts {
+            dimension,
+            cells: vec![],
+            portals: vec![],
+            rows: BitMatrix::default(),
+            objects: vec![],
+            cell_objects: vec![],
+            locator: Locator::default(),
+            info: vec![],
+        };
+        let table = Table::new(nothing).unwrap();
+        assert_eq!(table.mean_visible_share(), 0.0);
+        assert!(table.visible_from(&[0.0; 3][..usize::from(dimension)]).is_empty());
+        assert_eq!(Table::from_bytes(&table.to_bytes()).unwrap(), table);
+    }
+}
+
+#[test]
+#[should_panic(expected = "a point of this table has 2 coordinates, not 3")]
+fn a_point_of_space_is_no_point_of_the_plane() {
+    Table::new(rooms()).unwrap().locate(&[0.0, 0.0, 0.0]);
+}
+
+/// Makes one mistake.
+type Spoil = fn(&mut TableParts);
+
+/// Each defect alone is refused, with its place.
+#[test]
+fn defects_are_refused() {
+    let refused = |spoil: Spoil| {
+        let mut parts = rooms();
+        spoil(&mut parts);
+        Table::new(parts).unwrap_err()
+    };
+    let cell = CellId;
+    let cases: [(Spoil, TableError); 27] = [
+        (|p| p.dimension = 4, TableError::Dimension(4)),
+        (|p| p.cells[1].min[0] = f64::NAN, TableError::NotFinite { item: Item::Cell, index: 1 }),
+        (|p| p.cells[1].max[0] = 3.0, TableError::Inverted { item: Item::Cell, index: 1 }),
+        (|p| p.cells[1].max[2] = 3.0, TableError::OffPlane { item: Item::Cell, index: 1 }),
+        (|p| drop(p.cells[0].polygon.drain(2..)), TableError::Corners { cell: cell(0), n: 2 }),
+        (|p| p.cells[0].polygon[0][0] = f64::INFINITY, TableError::NotFinite { item: Item::Polygon, index: 0 }),
+        (|p| p.cells[0].polygon[3] = [3.0, 2.5], TableError::NotConvex { cell: cell(0), corner: 3 }),
+        (|p| p.cells[0].polygon[2][1] = 4.5, TableError::OutsideBox { cell: cell(0), corner: 2 }),
+        (|p| p.portals[2].cells[1] = CellId(5), TableError::PortalCell { portal: 2, cell: cell(5) }),
+        (|p| p.portals[2].cells[1] = CellId(2), TableError::PortalLoop { portal: 2, cell: cell(2) }),
+        (|p| p.portals[1].points.push([0.0; 3]), TableError::PortalPoints { portal: 1, n: 3 }),
+        (|p| p.portals[1].points[0][1] = f64::NAN, TableError::NotFinite { item: Item::Portal, index: 1 }),
+        (|p| p.portals[1].points[0][2] = -0.0, TableError::OffPlane { item: Item::Portal, index: 1 }),
+        (|p| p.rows = BitMatrix::new(5, 4), TableError::RowsShape { n_rows: 5, n_cols: 4, n_cells: 5 }),
+        (|p| p.rows.row_mut(2)[0] |= 1 << 5, TableError::RowTail(cell(2))),
+        (|p| p.rows.set(4, 4, false), TableError::NotReflexive(cell(4))),
+        (|p| p.rows.set(1, 0, false), TableError::NotSymmetric([cell(0), cell(1)])),
+        (|p| p.objects[1].max[1] = f64::NAN, TableError::NotFinite { item: Item::Object, index: 1 }),
+        (|p| p.objects[1].max[1] = 0.0, TableError::Inverted { item: Item::Object, index: 1 }),
+        (|p| drop(p.cell_objects.pop()), TableError::CellObjects { n: 4, n_cells: 5 }),
+        (|p| p.cell_objects[2] = vec![1, 0], TableError::ObjectOrder(cell(2))),
+        (|p| p.cell_objects[2] = vec![0, 0], TableError::ObjectOrder(cell(2))),
+        (|p| p.cell_objects[2] = vec![1, 2], TableError::UnknownObject { cell: cell(2), object: 2 }),
+        (|p| p.cells[4].max[0] = 9.0, TableError::Locator(LocatorError::Misses { node: 4, cell: cell(4) })),
+        (|p| p.locator = Locator::default(), TableError::Locator(LocatorError::Misses { node: 0, cell: cell(0) })),
+        (|p| p.info.swap(0, 1), TableError::InfoOrder(1)),
+        (|p| p.info[1].0 = "method".to_owned(), TableError::InfoOrder(1)),
+    ];
+    for (spoil, expected) in cases {
+        assert_eq!(refused(spoil), expected);
+    }
+    let in_space = |p: &mut TableParts| p.dimension = 3;
+    assert_eq!(refused(in_space), TableError::Corners { cell: cell(0), n: 4 });
+}
+
+#[test]
+fn errors_speak_to_users() {
+    let text = |error: TableError| error.to_string();
+    assert_eq!(text(TableError::NotSymmetric([CellId(3), CellId(1)])), "of cells 3 and 1 only one sees the other");
+    let nan = TableError::NotFinite { item: Item::Polygon, index: 7 };
+    assert_eq!(text(nan), "the polygon of cell 7 has a coordinate that is not a finite number");
+    let misses = TableError::Locator(LocatorError::Misses { node: 4, cell: CellId(2) });
+    assert_eq!(text(misses), "locator node 4 misses cell 2");
+}
+
+/// Coordinates of any finite size make a table that answers, and errs towards "inside".
+#[test]
+fn huge_and_tiny_coordinates_are_safe() {
+    for size in [f64::MAX / 2.0, f64::MIN_POSITIVE, 5e-324, 1.0] {
+        let polygon = vec![[-size, -size], [size, -size], [size, size], [-size, size]];
+        let cell = CellRecord { min: [-size, -size, 0.0], max: [size, size, 0.0], group: None, polygon };
+        let parts = TableParts {
+            locator: Locator::build(&[(cell.min, cell.max)], 2),
+            cells: vec![cell],
+            portals: vec![],
+            rows: BitMatrix::identity(1),
+            cell_objects: vec![vec![]],
+            ..rooms()
+        };
+        let table = Table::new(parts).unwrap();
+        for p in [[0.0, 0.0], [size, size], [-size, 0.0]] {
+            assert_eq!(table.locate(&p), [CellId(0)]);
+        }
+        assert_eq!(table.locate(&[0.0, 1.5 * size + 5e-324]), []);
+    }
+}
