@@ -36,3 +36,7 @@ pub fn draw<S: Strategy>(strategy: &S, n: usize) -> Vec<S::Value> {
     let mut one = || strategy.new_tree(&mut runner).expect("the strategy rejects little").current();
     (0..n).map(|_| one()).collect()
 }
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,0 +1,27 @@
+//! What can be wrong with the options of a generator.
+
+/// Why a scene cannot be generated.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A count is outside what the generator can make.
+    #[error("{option} is {value}, but must be from {min} to {max}")]
+    OutOfRange {
+        /// Name of the option.
+        option: &'static str,
+        /// What was asked for.
+        value: u32,
+        /// The smallest that works.
+        min: u32,
+        /// The largest that works.
+        max: u32,
+    },
+    /// A wall thickness that would leave the grid of eighths, or close the doors.
+    #[error("wall thickness {0} is not one of 0, 0.25 and 0.5")]
+    WallThickness(f64),
+}
+
+/// Accepts `value` from `min` to `max`.
+pub(crate) fn check_range(option: &'static str, value: u32, min: u32, max: u32) -> Result<u32, SceneError> {
+    if (min..=max).contains(&value) { Ok(value) } else { Err(SceneError::OutOfRange { option, value, min, max }) }
+}
