@@ -1,0 +1,256 @@
+//! Finding the maps of a WAD: a marker, and the lumps that follow it.
+
+use super::{DoomError, DoomErrorKind};
+use crate::wad::{LumpName, Wad};
+use std::fmt;
+use std::ops::Range;
+
+/// A lump of a map that is read or written here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapLump {
+    /// Where monsters, players and things stand.
+    Things,
+    /// Lines between vertices.
+    Linedefs,
+    /// What lines show to each side.
+    Sidedefs,
+    /// Points.
+    Vertexes,
+    /// Floors and ceilings.
+    Sectors,
+    /// Which sectors cannot see each other.
+    Reject,
+}
+
+impl MapLump {
+    const ALL: [Self; 6] = [Self::Things, Self::Linedefs, Self::Sidedefs, Self::Vertexes, Self::Sectors, Self::Reject];
+
+    /// The lump's name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Things => "THINGS",
+            Self::Linedefs => "LINEDEFS",
+            Self::Sidedefs => "SIDEDEFS",
+            Self::Vertexes => "VERTEXES",
+            Self::Sectors => "SECTORS",
+            Self::Reject => "REJECT",
+        }
+    }
+}
+
+impl fmt::Display for MapLump {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// How a map is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapFormat {
+    /// Binary, lines of 14 bytes.
+    Doom,
+    /// Binary, lines of 16 bytes, told by a BEHAVIOR lump.
+    Hexen,
+    /// Text, told by a TEXTMAP lump.
+    Udmf,
+    /// Binary with other records, told by a LEAFS lump: Doom 64 and the PlayStation.
+    Console,
+}
+
+impl fmt::Display for MapFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Doom => "Doom",
+            Self::Hexen => "Hexen",
+            Self::Udmf => "UDMF",
+            Self::Console => "console",
+        })
+    }
+}
+
+/// Where the lumps of one map are in a WAD's directory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MapLumps {
+    name: LumpName,
+    marker: usize,
+    end: usize,
+    format: MapFormat,
+    lumps: [Option<usize>; MapLump::ALL.len()],
+    repeated: Option<(MapLump, [usize; 2])>,
+}
+
+impl MapLumps {
+    /// The map's name, which is its marker's.
+    pub fn name(&self) -> LumpName {
+        self.name
+    }
+
+    /// Index of the marker.
+    pub fn marker(&self) -> usize {
+        self.marker
+    }
+
+    /// Indices of the marker and all lumps that belong to the map, those not read here included.
+    pub fn range(&self) -> Range<usize> {
+        self.marker..self.end
+    }
+
+    /// How the map is stored.
+    pub fn format(&self) -> MapFormat {
+        self.format
+    }
+
+    /// Index of one of its lumps, if the map has it; the first one, if it has several.
+    pub fn lump(&self, lump: MapLump) -> Option<usize> {
+        self.lumps[lump as usize]
+    }
+
+    pub(super) fn error(&self, kind: impl Into<DoomErrorKind>) -> DoomError {
+        DoomError { map: self.name, kind: kind.into() }
+    }
+
+    pub(super) fn require(&self, lump: MapLump) -> Result<usize, DoomError> {
+        self.lump(lump).ok_or_else(|| self.error(DoomErrorKind::MissingLump(lump)))
+    }
+
+    /// Refuses formats that are not read here, and maps with a lump twice.
+    pub(super) fn check_readable(&self) -> Result<(), DoomError> {
+        match (self.format, self.repeated) {
+            (MapFormat::Udmf | MapFormat::Console, _) => Err(self.error(DoomErrorKind::Unsupported(self.format))),
+            (_, Some((lump, indices))) => Err(self.error(DoomErrorKind::RepeatedLump { lump, indices })),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The maps of a WAD, in the order of its directory. O(lumps).
+///
+/// A map is a lump of any name with map lumps behind it, in whatever order and however many; a lump
+/// with the name of a map of Doom and no content is one even without any, so that an empty map is
+/// not overlooked. GL nodes behind a map count as part of it.
+pub fn list_maps(wad: &Wad) -> Vec<MapLumps> {
+    let mut maps = Vec::new();
+    let mut next = 0;
+    while next < wad.lumps().len() {
+        let found = map_at(wad, next);
+        next = found.as_ref().map_or(next + 1, |map| map.end);
+        maps.extend(found);
+    }
+    maps
+}
+
+fn map_at(wad: &Wad, marker: usize) -> Option<MapLumps> {
+    let name = wad.lumps()[marker].name;
+    if is_member(&name) {
+        return None;
+    }
+    let named = |index: usize, name: &str| wad.lumps().get(index).is_some_and(|l| l.name.is(name));
+    let (end, format) = if named(marker + 1, "TEXTMAP") {
+        (end_of_text(wad, marker), MapFormat::Udmf)
+    } else {
+        let behind = &wad.lumps()[marker + 1..];
+        let end = marker + 1 + behind.iter().take_while(|l| is_member(&l.name)).count();
+        let with = |name: &str| (marker + 1..end).any(|k| named(k, name));
+        let binary = if with("BEHAVIOR") { MapFormat::Hexen } else { MapFormat::Doom };
+        (end, if with("LEAFS") { MapFormat::Console } else { binary })
+    };
+    let mut map = MapLumps { name, marker, end, format, lumps: Default::default(), repeated: None };
+    for lump in MapLump::ALL {
+        let mut found = (marker + 1..end).filter(|&k| named(k, lump.name()));
+        map.lumps[lump as usize] = found.next();
+        if let (None, Some(first), Some(second)) = (map.repeated, map.lump(lump), found.next()) {
+            map.repeated = Some((lump, [first, second]));
+        }
+    }
+    // A REJECT lump alone, or nodes alone, do not make the lump before them a map.
+    let core = MapLump::ALL.iter().any(|&lump| lump != MapLump::Reject && map.lump(lump).is_some());
+    let empty = wad.lumps()[marker].size() == 0 && is_doom_map_name(name.text());
+    (core || format == MapFormat::Udmf || empty).then_some(map)
+}
+
+/// The end of a map as text: behind its ENDMAP, or behind its TEXTMAP if there is none.
+fn end_of_text(wad: &Wad, marker: usize) -> usize {
+    let endmap = wad.lumps()[marker..].iter().position(|l| l.name.is("ENDMAP"));
+    marker + endmap.unwrap_or(1) + 1
+}
+
+/// Whether a lump of this name belongs to the map before it.
+fn is_member(name: &LumpName) -> bool {
+    const OTHER: [&str; 9] =
+        ["SEGS", "SSECTORS", "NODES", "BLOCKMAP", "BEHAVIOR", "SCRIPTS", "LEAFS", "LIGHTS", "MACROS"];
+    let gl = name.text().get(..3).is_some_and(|start| start.eq_ignore_ascii_case(b"GL_"));
+    gl || MapLump::ALL.iter().any(|l| name.is(l.name())) || OTHER.iter().any(|other| name.is(other))
+}
+
+/// `MAP` and digits, or `E`, digits, `M`, digits.
+fn is_doom_map_name(name: &[u8]) -> bool {
+    let name = name.to_ascii_uppercase();
+    let number = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
+    let episode = |text: &[u8]| {
+        let m = text.iter().position(|&b| b == b'M');
+        m.is_some_and(|m| number(&text[..m]) && number(&text[m + 1..]))
+    };
+    name.strip_prefix(b"MAP").is_some_and(number) || name.strip_prefix(b"E").is_some_and(episode)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wad::{WadBuilder, WadKind};
+
+    fn wad(names: &[&str]) -> Wad {
+        let mut builder = WadBuilder::new(WadKind::Patch);
+        for name in names {
+            builder.lump(name, b"").unwrap();
+        }
+        Wad::parse(builder.finish().unwrap()).unwrap()
+    }
+
+    fn found(names: &[&str]) -> Vec<(String, Range<usize>, MapFormat)> {
+        list_maps(&wad(names)).into_iter().map(|m| (m.name().to_string(), m.range(), m.format())).collect()
+    }
+
+    fn map(name: &str, range: Range<usize>, format: MapFormat) -> (String, Range<usize>, MapFormat) {
+        (name.to_owned(), range, format)
+    }
+
+    #[test]
+    fn maps_are_found_between_other_lumps() {
+        let names =
+            ["PLAYPAL", "E1M1", "THINGS", "LINEDEFS", "REJECT", "E1M2", "SECTORS", "GL_E1M2", "GL_VERT", "S_END"];
+        assert_eq!(found(&names), [map("E1M1", 1..5, MapFormat::Doom), map("E1M2", 5..9, MapFormat::Doom)]);
+        assert_eq!(list_maps(&wad(&names))[0].lump(MapLump::Reject), Some(4));
+        assert_eq!(found(&["START", "NODES", "REJECT"]), []);
+        assert_eq!(found(&["THINGS", "LINEDEFS"]), [], "lumps without a marker");
+    }
+
+    #[test]
+    fn order_names_and_case_are_free() {
+        let names = ["MyLevel", "vertexes", "REJECT", "SECTORS", "NODES", "LINEDEFS"];
+        assert_eq!(found(&names), [map("MyLevel", 0..6, MapFormat::Doom)]);
+        assert_eq!(list_maps(&wad(&names))[0].lump(MapLump::Vertexes), Some(1));
+    }
+
+    #[test]
+    fn formats_are_recognised() {
+        assert_eq!(found(&["MAP01", "LINEDEFS", "BEHAVIOR"]), [map("MAP01", 0..3, MapFormat::Hexen)]);
+        assert_eq!(found(&["MAP01", "LINEDEFS", "LEAFS"]), [map("MAP01", 0..3, MapFormat::Console)]);
+        let text = ["X", "TEXTMAP", "ZNODES", "DIALOGUE", "ENDMAP", "MAP02", "THINGS"];
+        assert_eq!(found(&text), [map("X", 0..5, MapFormat::Udmf), map("MAP02", 5..7, MapFormat::Doom)]);
+        assert_eq!(found(&["X", "TEXTMAP"]), [map("X", 0..2, MapFormat::Udmf)]);
+    }
+
+    #[test]
+    fn bare_markers_of_maps_are_maps() {
+        assert_eq!(found(&["MAP01"]), [map("MAP01", 0..1, MapFormat::Doom)]);
+        assert_eq!(found(&["e10m2", "MAP7"]).len(), 2);
+        assert_eq!(found(&["MAPINFO", "EXM1", "E1M", "MAP", "E1"]), []);
+    }
+
+    #[test]
+    fn repeated_lumps_are_refused() {
+        let wad = wad(&["MAP01", "THINGS", "SECTORS", "LINEDEFS", "SECTORS"]);
+        let error = list_maps(&wad)[0].check_readable().unwrap_err();
+        assert_eq!(error.to_string(), "map MAP01: SECTORS: there are two such lumps, 2 and 4");
+    }
+}

@@ -1,0 +1,122 @@
+//! Writing a file as a whole or not at all.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// A file that could not be written. What was there before is untouched.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: cannot be written: {source}", path.display())]
+pub struct WriteError {
+    /// The file, as the caller named it.
+    pub path: PathBuf,
+    /// What the system said.
+    #[source]
+    pub source: io::Error,
+}
+
+/// Replaces the file at `path` by `bytes`, or leaves it as it was.
+///
+/// The bytes go into a new file in the same folder, which is then renamed: whoever opens `path` finds
+/// the old content or the new, never a part. A symbolic link is followed, permissions of a file that
+/// is replaced are kept. What is there but not a regular file (a pipe, a terminal, `/dev/null`) has no
+/// old content to save and is written to directly.
+///
+/// # Errors
+/// [`WriteError`] with the system's reason; the new file is removed again.
+pub fn atomic_write(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), WriteError> {
+    let path = path.as_ref();
+    replace(path, bytes).map_err(|source| WriteError { path: path.to_owned(), source })
+}
+
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let (target, permissions) = match fs::metadata(path) {
+        Ok(old) if old.is_file() => (fs::canonicalize(path)?, Some(old.permissions())),
+        Ok(_) => return OpenOptions::new().write(true).open(path)?.write_all(bytes),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => (path.to_owned(), None),
+        Err(error) => return Err(error),
+    };
+    let (beside, mut file) = create_beside(&target)?;
+    let written = file
+        .write_all(bytes)
+        .and_then(|()| permissions.map_or(Ok(()), |p| file.set_permissions(p)))
+        .and_then(|()| file.sync_all());
+    // Some systems refuse to rename a file that is still open.
+    drop(file);
+    let renamed = written.and_then(|()| fs::rename(&beside, &target));
+    if renamed.is_err() {
+        // The reason above is the one to report, even if the removal fails too.
+        let _ = fs::remove_file(&beside);
+    }
+    renamed
+}
+
+/// A new file in the folder of `target`, under a name that no file there has.
+fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
+    let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
+    for attempt in 0..100u32 {
+        let mut hidden = std::ffi::OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{}-{attempt}.tmp", std::process::id()));
+        let beside = target.with_file_name(hidden);
+        match OpenOptions::new().write(true).create_new(true).open(&beside) {
+            Ok(file) => return Ok((beside, file)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entry = |e: io::Result<fs::DirEntry>| e.unwrap().file_name().into_string().unwrap();
+        let mut names: Vec<String> = fs::read_dir(folder).unwrap().map(entry).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn files_appear_and_are_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.wad");
+        for bytes in [&b"first"[..], b"second, longer", b""] {
+            atomic_write(&path, bytes).unwrap();
+            assert_eq!(fs::read(&path).unwrap(), bytes);
+        }
+        assert_eq!(names(folder.path()), ["out.wad"]);
+    }
+
+    #[test]
+    fn failures_leave_everything_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let absent = folder.path().join("absent/out.wad");
+        let error = atomic_write(&absent, b"x").unwrap_err();
+        assert!(error.to_string().contains("out.wad: cannot be written: "), "{error}");
+        // A folder stands where the file should go: the rename must not happen, nor any debris stay.
+        let taken = folder.path().join("taken");
+        fs::create_dir(&taken).unwrap();
+        assert!(atomic_write(&taken, b"x").is_err());
+        assert_eq!(names(folder.path()), ["taken"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_permissions_kept() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, b"old").unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink("file", &link).unwrap();
+        atomic_write(&link, b"new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
+        atomic_write("/dev/null", b"gone").unwrap();
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+}

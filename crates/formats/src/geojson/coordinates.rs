@@ -1,0 +1,148 @@
+//! The coordinates of a geometry: nested lists, read flat.
+
+use super::error::GeoJsonErrorKind;
+use super::read::Reader;
+use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
+use sightlines_geometry::{Point2, check_coordinate};
+use std::fmt;
+
+/// Positions, and where lines or rings end among them.
+#[derive(Debug, Default)]
+pub(super) struct Coordinates {
+    /// How many lists there are around a position; `None` for an empty list.
+    pub(super) depth: Option<u8>,
+    pub(super) points: Vec<Point2>,
+    /// One past the last position of each innermost list, for depth 1 and more.
+    pub(super) ends: Vec<usize>,
+}
+
+impl Coordinates {
+    /// The innermost lists: one line or ring, or one list of points, each.
+    pub(super) fn parts(&self) -> impl Iterator<Item = &[Point2]> {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, &end)| &self.points[start..end])
+    }
+
+    fn part_start(&self) -> usize {
+        self.ends.last().copied().unwrap_or(0)
+    }
+}
+
+/// Most lists around a position: those of a MultiPolygon.
+const MAX_DEPTH: u8 = 3;
+
+/// Reads the value of a member `coordinates`.
+pub(super) struct CoordinatesSeed<'r>(pub(super) &'r mut Reader);
+
+impl<'de> DeserializeSeed<'de> for CoordinatesSeed<'_> {
+    type Value = Coordinates;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Coordinates, D::Error> {
+        let mut out = Coordinates::default();
+        self.0.expect(GeoJsonErrorKind::Coordinates);
+        match (Nested { reader: self.0, out: &mut out, level: 0 }).deserialize(deserializer)? {
+            Item::Number(_) => return Err(self.0.fail(GeoJsonErrorKind::Coordinates)),
+            Item::Empty => {}
+            Item::List(depth) => out.depth = Some(depth),
+        }
+        (self.0.place.part, self.0.place.position) = (None, None);
+        Ok(out)
+    }
+}
+
+/// What was found at one level.
+#[derive(Clone, Copy, PartialEq)]
+enum Item {
+    Number(f64),
+    Empty,
+    /// A position (0), a list of positions (1), and so on.
+    List(u8),
+}
+
+struct Nested<'r, 'o> {
+    reader: &'r mut Reader,
+    out: &'o mut Coordinates,
+    /// Lists around this value.
+    level: u8,
+}
+
+impl<'de> DeserializeSeed<'de> for Nested<'_, '_> {
+    type Value = Item;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Item, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Nested<'_, '_> {
+    type Value = Item;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("coordinates")
+    }
+
+    fn visit_f64<E>(self, x: f64) -> Result<Item, E> {
+        Ok(Item::Number(x))
+    }
+
+    fn visit_u64<E>(self, x: u64) -> Result<Item, E> {
+        Ok(Item::Number(x as f64))
+    }
+
+    fn visit_i64<E>(self, x: i64) -> Result<Item, E> {
+        Ok(Item::Number(x as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(mut self, mut seq: A) -> Result<Item, A::Error> {
+        if self.level > MAX_DEPTH {
+            return Err(self.fail());
+        }
+        let mut first = None;
+        let mut position = [0.0; 2];
+        let mut n_numbers = 0;
+        loop {
+            self.mark_place();
+            let level = self.level + 1;
+            let item = Nested { reader: self.reader, out: self.out, level };
+            let Some(item) = seq.next_element_seed(item)? else { break };
+            match (first, item) {
+                (None | Some(Item::Number(_)), Item::Number(x)) => {
+                    if let Some(slot) = position.get_mut(n_numbers) {
+                        *slot = check_coordinate(x).map_err(|error| self.reader.fail(error.into()))?;
+                    }
+                    n_numbers += 1;
+                    first = Some(item);
+                }
+                (None, Item::List(_)) => first = Some(item),
+                (Some(Item::List(a)), Item::List(b)) if a == b => {}
+                _ => return Err(self.fail()),
+            }
+        }
+        match first {
+            None if self.level == 0 => Ok(Item::Empty),
+            Some(Item::Number(_)) if n_numbers >= 2 => {
+                self.out.points.push(Point2::from_array(position));
+                Ok(Item::List(0))
+            }
+            Some(Item::List(depth)) if depth < MAX_DEPTH => {
+                if depth == 0 {
+                    self.out.ends.push(self.out.points.len());
+                }
+                Ok(Item::List(depth + 1))
+            }
+            _ => Err(self.fail()),
+        }
+    }
+}
+
+impl Nested<'_, '_> {
+    /// Notes which position comes next, for errors inside it.
+    fn mark_place(&mut self) {
+        self.reader.place.part = Some(self.out.ends.len());
+        self.reader.place.position = Some(self.out.points.len() - self.out.part_start());
+    }
+
+    fn fail<E: Error>(&mut self) -> E {
+        self.reader.fail(GeoJsonErrorKind::Coordinates)
+    }
+}

@@ -1,0 +1,31 @@
+//! Floor plans as GeoJSON: lines and outlines are walls, points are objects.
+//!
+//! Read are FeatureCollections, single Features and bare geometries, GeometryCollections included, with
+//! coordinates taken as they are: numbers in one plane, not degrees. Heights are ignored.
+//!
+//! | property of a feature | what it says |
+//! | --- | --- |
+//! | `"sight": "transparent"` or `"opaque": false` | its lines do not block sight |
+//! | `"left_group"`, `"right_group"` | groups on the two sides of its lines |
+//! | `"name"`, else `"id"` | what its points are called |
+//! | `"object": "box"` | its points are corners of one object, not an object each |
+//!
+//! Other properties and members mean nothing here. The reader works as it goes and keeps nothing but the
+//! plan and one geometry, so a large file that is no plan costs no memory.
+
+mod coordinates;
+mod error;
+mod node;
+mod properties;
+mod read;
+mod write;
+
+pub use error::{GeoJsonError, GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
+pub use read::{parse_plan, read_plan};
+pub use write::write_plan;
+
+/// Groups are below this number, because tables over groups follow.
+pub const MAX_GROUPS: u32 = 1 << 20;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,249 @@
+//! The objects of GeoJSON: collections, features, geometries.
+//!
+//! Members come in any order, so an object is understood at its end; only the features of a collection
+//! are handed over one by one.
+
+use super::coordinates::{Coordinates, CoordinatesSeed};
+use super::error::{GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
+use super::properties::{Properties, PropertiesSeed, Scalar, ScalarSeed};
+use super::read::Reader;
+use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use std::fmt;
+
+/// A geometry whose coordinates have the depth of its kind.
+#[derive(Debug)]
+pub(super) struct Geometry {
+    pub(super) kind: GeometryKind,
+    pub(super) coordinates: Coordinates,
+    /// Its place in a GeometryCollection.
+    pub(super) index: Option<usize>,
+}
+
+/// Which object is expected.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Level {
+    /// Anything that GeoJSON calls an object.
+    Top,
+    Feature,
+    /// A geometry, and in a collection the number of geometries before it.
+    Geometry(Option<usize>),
+}
+
+/// Reads one GeoJSON object and gives its geometries; those of features are in the plan already.
+pub(super) struct Node<'r> {
+    pub(super) reader: &'r mut Reader,
+    pub(super) level: Level,
+}
+
+/// The members of one GeoJSON object, as far as they were there.
+#[derive(Debug, Default)]
+struct Members {
+    kind: Option<String>,
+    features: Option<()>,
+    geometry: Option<Vec<Geometry>>,
+    geometries: Option<Vec<Geometry>>,
+    coordinates: Option<Coordinates>,
+    properties: Option<Properties>,
+    id: Option<String>,
+}
+
+impl<'de> DeserializeSeed<'de> for Node<'_> {
+    type Value = Vec<Geometry>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Vec<Geometry>, D::Error> {
+        self.reader.expect(GeoJsonErrorKind::NotAnObject);
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Node<'_> {
+    type Value = Vec<Geometry>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a GeoJSON object")
+    }
+
+    /// A feature may have `null` for its geometry.
+    fn visit_unit<E: serde::de::Error>(self) -> Result<Vec<Geometry>, E> {
+        let fits = self.level == Level::Geometry(None);
+        if fits { Ok(Vec::new()) } else { Err(self.reader.fail(GeoJsonErrorKind::NotAnObject)) }
+    }
+
+    fn visit_map<A: MapAccess<'de>>(mut self, mut map: A) -> Result<Vec<Geometry>, A::Error> {
+        let mut members = Members::default();
+        while let Some(key) = map.next_key::<String>()? {
+            self.read_member(&key, &mut members, &mut map)?;
+        }
+        self.understand(members).map_err(|kind| self.reader.fail(kind))
+    }
+}
+
+impl Node<'_> {
+    fn read_member<'de, A: MapAccess<'de>>(
+        &mut self,
+        key: &str,
+        members: &mut Members,
+        map: &mut A,
+    ) -> Result<(), A::Error> {
+        let (top, feature) = (self.level == Level::Top, self.level == Level::Feature);
+        let reader = &mut *self.reader;
+        if top && ["geometry", "coordinates", "geometries"].contains(&key) {
+            reader.place.feature = Some(0);
+        }
+        let base = if let Level::Geometry(base) = self.level { base.unwrap_or(0) } else { 0 };
+        let repeated = match key {
+            "type" => {
+                let Scalar::Text(kind) = map.next_value_seed(ScalarSeed)? else {
+                    return Err(reader.fail(GeoJsonErrorKind::Member { member: "type", expected: "text" }));
+                };
+                members.kind.replace(kind).map(|_| "type")
+            }
+            "features" if top => {
+                map.next_value_seed(FeaturesSeed(reader))?;
+                members.features.replace(()).map(|()| "features")
+            }
+            "geometry" if top || feature => {
+                let geometry = map.next_value_seed(Node { reader, level: Level::Geometry(None) })?;
+                members.geometry.replace(geometry).map(|_| "geometry")
+            }
+            "geometries" if !feature => {
+                let geometries = map.next_value_seed(GeometriesSeed { reader, base })?;
+                members.geometries.replace(geometries).map(|_| "geometries")
+            }
+            "coordinates" if !feature => {
+                let coordinates = map.next_value_seed(CoordinatesSeed(reader))?;
+                members.coordinates.replace(coordinates).map(|_| "coordinates")
+            }
+            "properties" if top || feature => {
+                let properties = map.next_value_seed(PropertiesSeed(reader))?;
+                members.properties.replace(properties).map(|_| "properties")
+            }
+            "id" if top || feature => {
+                members.id = map.next_value_seed(ScalarSeed)?.into_name();
+                None
+            }
+            _ => {
+                map.next_value::<IgnoredAny>()?;
+                None
+            }
+        };
+        repeated.map_or(Ok(()), |member| Err(self.reader.fail(GeoJsonErrorKind::Repeated(member))))
+    }
+
+    /// Makes of the members what the object is, now that all are known.
+    fn understand(&mut self, mut members: Members) -> Result<Vec<Geometry>, GeoJsonErrorKind> {
+        let kind = members.kind.take().ok_or(GeoJsonErrorKind::Missing("type"))?;
+        match (self.level, kind.as_str()) {
+            (Level::Top, "FeatureCollection") => {
+                members.features.ok_or(GeoJsonErrorKind::Missing("features"))?;
+            }
+            (Level::Top, _) if members.features.is_some() => {
+                return Err(wrong_type("\"FeatureCollection\", though there are \"features\""));
+            }
+            (Level::Top | Level::Feature, "Feature") => {
+                self.reader.place.feature.get_or_insert(0);
+                let geometry = members.geometry.ok_or(GeoJsonErrorKind::Missing("geometry"))?;
+                let mut about = members.properties.unwrap_or_default();
+                about.id = about.id.or(members.id);
+                self.reader.add_feature(&geometry, &about)?;
+            }
+            (Level::Feature, _) => return Err(wrong_type("\"Feature\"")),
+            (Level::Top, _) => {
+                self.reader.place.feature.get_or_insert(0);
+                let geometries = understand_geometry(&kind, members, None)?;
+                self.reader.add_feature(&geometries, &Properties::default())?;
+            }
+            (Level::Geometry(index), _) => return understand_geometry(&kind, members, index),
+        }
+        Ok(Vec::new())
+    }
+}
+
+fn understand_geometry(kind: &str, members: Members, index: Option<usize>) -> Result<Vec<Geometry>, GeoJsonErrorKind> {
+    if kind == "GeometryCollection" {
+        return members.geometries.ok_or(GeoJsonErrorKind::Missing("geometries"));
+    }
+    let Some(kind) = GeometryKind::ALL.into_iter().find(|k| k.name() == kind) else {
+        return Err(wrong_type("a type of GeoJSON"));
+    };
+    let coordinates = members.coordinates.ok_or(GeoJsonErrorKind::Missing("coordinates"))?;
+    match (coordinates.depth, kind) {
+        (Some(depth), _) if depth == kind.depth() => Ok(vec![Geometry { kind, coordinates, index }]),
+        // Empty lists of many are what programs write for nothing at all.
+        (None, GeometryKind::MultiPoint | GeometryKind::MultiLineString | GeometryKind::MultiPolygon) => Ok(vec![]),
+        (None, GeometryKind::LineString | GeometryKind::Polygon) => Err(GeoJsonErrorKind::NoExtent(kind)),
+        _ => Err(GeoJsonErrorKind::Depth(kind)),
+    }
+}
+
+fn wrong_type(expected: &'static str) -> GeoJsonErrorKind {
+    GeoJsonErrorKind::Member { member: "type", expected }
+}
+
+/// Reads the list of a FeatureCollection into the plan.
+struct FeaturesSeed<'r>(&'r mut Reader);
+
+impl<'de> DeserializeSeed<'de> for FeaturesSeed<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        self.0.expect(GeoJsonErrorKind::Member { member: "features", expected: "a list" });
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for FeaturesSeed<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of features")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<(), A::Error> {
+        for feature in 0.. {
+            self.0.place = GeoJsonPlace { feature: Some(feature), ..GeoJsonPlace::default() };
+            if seq.next_element_seed(Node { reader: self.0, level: Level::Feature })?.is_none() {
+                break;
+            }
+        }
+        self.0.place = GeoJsonPlace::default();
+        Ok(())
+    }
+}
+
+/// Reads the list of a GeometryCollection, nested ones flattened.
+struct GeometriesSeed<'r> {
+    reader: &'r mut Reader,
+    /// Geometries before it, in the collection it is in.
+    base: usize,
+}
+
+impl<'de> DeserializeSeed<'de> for GeometriesSeed<'_> {
+    type Value = Vec<Geometry>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Vec<Geometry>, D::Error> {
+        self.reader.expect(GeoJsonErrorKind::Member { member: "geometries", expected: "a list" });
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for GeometriesSeed<'_> {
+    type Value = Vec<Geometry>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of geometries")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<Geometry>, A::Error> {
+        let mut all = Vec::new();
+        loop {
+            let index = Some(self.base + all.len());
+            self.reader.place.geometry = index;
+            let node = Node { reader: self.reader, level: Level::Geometry(index) };
+            let Some(more) = seq.next_element_seed(node)? else { break };
+            all.extend(more);
+        }
+        self.reader.place.geometry = None;
+        Ok(all)
+    }
+}

@@ -1,0 +1,72 @@
+//! Writing: a feature per line and per object, one on each row of the text.
+
+use sightlines_cells::{Plan, PlanLine, PlanObject};
+use std::fmt::Write;
+
+/// A plan as a GeoJSON FeatureCollection, which [`super::parse_plan`] reads back as the same plan.
+///
+/// Lines come first, then objects, in the plan's order: lines as LineStrings, objects as Points, or as
+/// MultiPoints of two corners if they have extent. Numbers are the shortest decimals that mean them.
+/// Read back are only groups below [`super::MAX_GROUPS`].
+pub fn write_plan(plan: &Plan) -> String {
+    let features = plan.lines().iter().map(line_feature).chain(plan.objects().iter().map(object_feature));
+    let mut text = String::from("{\"type\":\"FeatureCollection\",\"features\":[");
+    for (index, feature) in features.enumerate() {
+        text.push_str(if index == 0 { "\n" } else { ",\n" });
+        text.push_str(&feature);
+    }
+    text.push_str("\n]}\n");
+    text
+}
+
+fn line_feature(line: &PlanLine) -> String {
+    let mut properties = Vec::new();
+    if !line.opaque {
+        properties.push("\"sight\":\"transparent\"".to_owned());
+    }
+    for (name, group) in [("left_group", line.left), ("right_group", line.right)] {
+        properties.extend(group.map(|group| format!("\"{name}\":{group}")));
+    }
+    feature(&properties.join(","), "LineString", &list(&[line.a.to_array(), line.b.to_array()]))
+}
+
+fn object_feature(object: &PlanObject) -> String {
+    let name = format!("\"name\":{}", quoted(&object.name));
+    let [min, max] = [object.bounds.min, object.bounds.max];
+    if min == max {
+        feature(&name, "Point", &position(min))
+    } else {
+        feature(&format!("{name},\"object\":\"box\""), "MultiPoint", &list(&[min, max]))
+    }
+}
+
+fn feature(properties: &str, kind: &str, coordinates: &str) -> String {
+    format!(
+        "{{\"type\":\"Feature\",\"properties\":{{{properties}}},\
+         \"geometry\":{{\"type\":\"{kind}\",\"coordinates\":{coordinates}}}}}"
+    )
+}
+
+fn list(positions: &[[f64; 2]]) -> String {
+    let positions: Vec<String> = positions.iter().copied().map(position).collect();
+    format!("[{}]", positions.join(","))
+}
+
+fn position([x, y]: [f64; 2]) -> String {
+    format!("[{x:?},{y:?}]")
+}
+
+/// A JSON string: quotes, backslashes and control characters escaped.
+fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            // Writing to a String cannot fail.
+            c if c < ' ' => _ = write!(out, "\\u{:04x}", u32::from(c)),
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}

@@ -1,0 +1,195 @@
+//! The REJECT lump: which sectors cannot see each other.
+
+/// One bit per ordered pair of sectors: 1 where the viewer cannot see the target.
+///
+/// Bit `viewer * n + target`, least significant first; rows are not aligned to bytes; the spare bits
+/// of the last byte are 0. `n * n / 8` bytes of memory, rounded up.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RejectTable {
+    n_sectors: u32,
+    bytes: Vec<u8>,
+}
+
+/// A REJECT lump whose length does not fit the number of sectors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("REJECT has {found} bytes, but {n_sectors} sectors need {needed}")]
+pub struct RejectLengthError {
+    /// Number of sectors of the map.
+    pub n_sectors: u32,
+    /// Bytes in the lump.
+    pub found: u64,
+    /// Bytes that a full table has.
+    pub needed: u64,
+}
+
+impl RejectTable {
+    /// The table that rejects nothing.
+    ///
+    /// # Panics
+    /// If a table of this size does not fit into memory. Maps have at most 65,536 sectors: 512 MiB.
+    pub fn new(n_sectors: u32) -> Self {
+        let len = usize::try_from(Self::byte_len(n_sectors)).expect("a table of addressable size");
+        Self { n_sectors, bytes: vec![0; len] }
+    }
+
+    /// Reads a lump. Spare bits of the last byte are dropped.
+    ///
+    /// # Errors
+    /// [`RejectLengthError`] unless the lump has exactly the length that `n_sectors` need. Empty and
+    /// short lumps do exist; what they stand for differs between engines, so nothing is assumed here.
+    pub fn from_bytes(n_sectors: u32, bytes: &[u8]) -> Result<Self, RejectLengthError> {
+        let (found, needed) = (bytes.len() as u64, Self::byte_len(n_sectors));
+        if found != needed {
+            return Err(RejectLengthError { n_sectors, found, needed });
+        }
+        let mut bytes = bytes.to_vec();
+        let used = (u64::from(n_sectors) * u64::from(n_sectors)) % 8;
+        if let (Some(last), true) = (bytes.last_mut(), used > 0) {
+            *last &= (1 << used) - 1;
+        }
+        Ok(Self { n_sectors, bytes })
+    }
+
+    /// Bytes that a table of `n_sectors` has.
+    pub fn byte_len(n_sectors: u32) -> u64 {
+        (u64::from(n_sectors) * u64::from(n_sectors)).div_ceil(8)
+    }
+
+    /// Number of sectors.
+    pub fn n_sectors(&self) -> u32 {
+        self.n_sectors
+    }
+
+    /// The lump.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The lump.
+    pub fn into_bytes(self) -> Vec<u8> {
+        self.bytes
+    }
+
+    /// Whether `viewer` cannot see `target`. O(1).
+    ///
+    /// # Panics
+    /// If a sector is not below [`RejectTable::n_sectors`].
+    #[inline]
+    pub fn get(&self, viewer: u32, target: u32) -> bool {
+        let (byte, mask) = self.place(viewer, target);
+        self.bytes[byte] & mask != 0
+    }
+
+    /// Says whether `viewer` cannot see `target`. O(1).
+    ///
+    /// # Panics
+    /// If a sector is not below [`RejectTable::n_sectors`].
+    #[inline]
+    pub fn set(&mut self, viewer: u32, target: u32, rejected: bool) {
+        let (byte, mask) = self.place(viewer, target);
+        if rejected {
+            self.bytes[byte] |= mask;
+        } else {
+            self.bytes[byte] &= !mask;
+        }
+    }
+
+    /// Number of rejected ordered pairs.
+    pub fn n_rejected(&self) -> u64 {
+        self.bytes.iter().map(|b| u64::from(b.count_ones())).sum()
+    }
+
+    /// Whether every pair has the same answer in both directions. O(n²) bit tests.
+    pub fn is_symmetric(&self) -> bool {
+        (0..self.n_sectors).all(|a| (0..a).all(|b| self.get(a, b) == self.get(b, a)))
+    }
+
+    /// The first sector that is rejected from itself.
+    pub fn rejects_itself(&self) -> Option<u32> {
+        (0..self.n_sectors).find(|&s| self.get(s, s))
+    }
+
+    /// Whether the table says what no line of sight can mean: a pair with one answer there and another
+    /// back, or a sector hidden from itself. Map authors write such tables to blind or deafen monsters.
+    pub fn has_hand_made_effects(&self) -> bool {
+        self.rejects_itself().is_some() || !self.is_symmetric()
+    }
+
+    #[inline]
+    fn place(&self, viewer: u32, target: u32) -> (usize, u8) {
+        assert!(viewer < self.n_sectors && target < self.n_sectors, "sectors are below n_sectors");
+        let bit = u64::from(viewer) * u64::from(self.n_sectors) + u64::from(target);
+        // The table of this size is in memory, so its byte indices fit a usize.
+        ((bit >> 3) as usize, 1 << (bit & 7))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn bits_are_where_the_engine_looks() {
+        let mut table = RejectTable::new(3);
+        assert_eq!(table.as_bytes(), [0, 0]);
+        table.set(0, 1, true);
+        table.set(2, 2, true);
+        assert_eq!(table.as_bytes(), [0b0000_0010, 0b0000_0001]);
+        table.set(2, 2, false);
+        assert_eq!((table.n_rejected(), table.into_bytes()), (1, vec![2, 0]));
+    }
+
+    #[test]
+    fn only_the_right_length_is_read() {
+        for len in [0, 1, 3] {
+            assert!(RejectTable::from_bytes(3, &vec![0; len]).is_err());
+        }
+        let error = RejectTable::from_bytes(3, &[]).unwrap_err();
+        assert_eq!(error.to_string(), "REJECT has 0 bytes, but 3 sectors need 2");
+        assert_eq!(RejectTable::from_bytes(3, &[0xFF, 0xFF]).unwrap().as_bytes(), [0xFF, 1]);
+        assert_eq!(RejectTable::from_bytes(4, &[0xFF, 0xFF]).unwrap().as_bytes(), [0xFF, 0xFF]);
+        assert_eq!(RejectTable::from_bytes(0, &[]), Ok(RejectTable::new(0)));
+    }
+
+    #[test]
+    fn effects_are_told_from_sight() {
+        let mut table = RejectTable::new(5);
+        table.set(1, 4, true);
+        assert!(!table.is_symmetric() && table.has_hand_made_effects());
+        table.set(4, 1, true);
+        assert!(table.is_symmetric() && !table.has_hand_made_effects());
+        table.set(3, 3, true);
+        assert!(table.is_symmetric() && table.has_hand_made_effects());
+        assert_eq!(table.rejects_itself(), Some(3));
+    }
+
+    #[test]
+    fn large_tables_are_quick_to_check() {
+        let mut table = RejectTable::new(1700);
+        table.set(1699, 1698, true);
+        assert!(!table.is_symmetric());
+        table.set(1698, 1699, true);
+        assert!(table.is_symmetric() && table.rejects_itself().is_none());
+    }
+
+    proptest! {
+        /// Invariant: a table holds what a matrix of booleans holds, also after a trip through bytes.
+        #[test]
+        fn reject_agrees_with_a_matrix(n in 1u32..9, ones in prop::collection::vec((0u32..9, 0u32..9), 0..30)) {
+            let mut matrix = vec![vec![false; n as usize]; n as usize];
+            let mut table = RejectTable::new(n);
+            for (k, (a, b)) in ones.into_iter().map(|(a, b)| (a % n, b % n)).enumerate() {
+                table.set(a, b, k % 4 != 3);
+                matrix[a as usize][b as usize] = k % 4 != 3;
+            }
+            let table = RejectTable::from_bytes(n, table.as_bytes()).unwrap();
+            let all = || (0..n).flat_map(|a| (0..n).map(move |b| (a, b)));
+            let truth = |a: u32, b: u32| matrix[a as usize][b as usize];
+            prop_assert!(all().all(|(a, b)| table.get(a, b) == truth(a, b)));
+            prop_assert_eq!(table.is_symmetric(), all().all(|(a, b)| truth(a, b) == truth(b, a)));
+            prop_assert_eq!(table.rejects_itself(), (0..n).find(|&s| truth(s, s)));
+            prop_assert_eq!(table.n_rejected(), all().filter(|&(a, b)| truth(a, b)).count() as u64);
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! The WAD container: a header, lumps, and a directory of their places and names.
+//!
+//! All numbers are little-endian. Header: 4 letters `IWAD` or `PWAD`, i32 number of lumps, i32 place of
+//! the directory. Directory entry: i32 place, i32 size, 8 bytes of name. Nothing is known here of what
+//! lumps contain.
+
+mod builder;
+mod error;
+mod name;
+mod rewrite;
+
+pub use builder::WadBuilder;
+pub use error::{LumpId, WadError};
+pub use name::LumpName;
+pub use rewrite::Edit;
+
+use crate::{ReadError, ReadErrorKind};
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+
+pub(crate) const HEADER_LEN: usize = 12;
+pub(crate) const ENTRY_LEN: usize = 16;
+
+/// What a WAD says of itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WadKind {
+    /// A whole game: `IWAD`.
+    Game,
+    /// A patch to one: `PWAD`.
+    Patch,
+}
+
+impl WadKind {
+    pub(crate) const fn magic(self) -> [u8; 4] {
+        match self {
+            Self::Game => *b"IWAD",
+            Self::Patch => *b"PWAD",
+        }
+    }
+}
+
+/// One entry of the directory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lump {
+    /// Its name.
+    pub name: LumpName,
+    /// Its bytes in the file; empty wherever an empty lump claims to be.
+    range: (u32, u32),
+}
+
+impl Lump {
+    /// Where its bytes are in the file.
+    pub fn range(&self) -> Range<usize> {
+        self.range.0 as usize..self.range.1 as usize
+    }
+
+    /// Number of bytes.
+    pub fn size(&self) -> usize {
+        self.range().len()
+    }
+}
+
+/// A WAD in memory, checked: every lump is inside the file, and no two overlap in part.
+///
+/// Several entries may name exactly the same bytes, as tools that save space write them. Entries of
+/// size 0 may claim any place. REJECT lumps that start at one place may differ in size, because one
+/// node builder lets all tables of zeros share their bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Wad {
+    bytes: Vec<u8>,
+    kind: WadKind,
+    lumps: Vec<Lump>,
+}
+
+impl Wad {
+    /// Checks a whole WAD. O(n log n) for n lumps; memory for what is really there.
+    ///
+    /// # Errors
+    /// [`WadError`] with the lumps concerned.
+    pub fn parse(bytes: Vec<u8>) -> Result<Self, WadError> {
+        let header = Header::parse(&bytes, bytes.len() as u64)?;
+        let directory = header.directory();
+        let lumps = bytes[directory.clone()]
+            .chunks_exact(ENTRY_LEN)
+            .enumerate()
+            .map(|(index, entry)| parse_entry(index, entry, bytes.len(), &directory))
+            .collect::<Result<Vec<_>, _>>()?;
+        check_overlaps(&lumps)?;
+        Ok(Self { bytes, kind: header.kind, lumps })
+    }
+
+    /// Reads a WAD from a file. A file that is no WAD is refused after its first twelve bytes.
+    ///
+    /// # Errors
+    /// [`ReadError`] with the file and what is wrong.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let read = || -> Result<Self, ReadErrorKind> {
+            let mut file = File::open(path.as_ref())?;
+            let mut bytes = Vec::new();
+            file.by_ref().take(HEADER_LEN as u64).read_to_end(&mut bytes)?;
+            let about = file.metadata()?;
+            Header::parse(&bytes, if about.is_file() { about.len() } else { u64::MAX })?;
+            file.read_to_end(&mut bytes)?;
+            Ok(Self::parse(bytes)?)
+        };
+        read().map_err(|kind| ReadError::new(&path, kind))
+    }
+
+    /// `IWAD` or `PWAD`.
+    pub fn kind(&self) -> WadKind {
+        self.kind
+    }
+
+    /// The whole file.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The directory, in its order.
+    pub fn lumps(&self) -> &[Lump] {
+        &self.lumps
+    }
+
+    /// The bytes of a lump.
+    ///
+    /// # Panics
+    /// If there is no lump of that index.
+    pub fn lump_bytes(&self, lump: usize) -> &[u8] {
+        &self.bytes[self.lumps[lump].range()]
+    }
+}
+
+/// The first twelve bytes, checked against the length of the file.
+struct Header {
+    kind: WadKind,
+    count: u32,
+    offset: u32,
+}
+
+impl Header {
+    fn parse(bytes: &[u8], file_len: u64) -> Result<Self, WadError> {
+        let Some((header, _)) = bytes.split_at_checked(HEADER_LEN) else {
+            return Err(WadError::NoHeader { len: bytes.len() });
+        };
+        let magic = [header[0], header[1], header[2], header[3]];
+        let kind = [WadKind::Game, WadKind::Patch].into_iter().find(|k| k.magic() == magic);
+        let kind = kind.ok_or(WadError::Magic { found: magic })?;
+        let (count, offset) = (i32_at(header, 4), i32_at(header, 8));
+        let error = WadError::Directory { offset, count, file_len };
+        let (Ok(count), Ok(offset)) = (u32::try_from(count), u32::try_from(offset)) else { return Err(error) };
+        let end = u64::from(offset) + u64::from(count) * ENTRY_LEN as u64;
+        let outside = end > file_len || (count > 0 && (offset as usize) < HEADER_LEN);
+        if outside { Err(error) } else { Ok(Self { kind, count, offset }) }
+    }
+
+    fn directory(&self) -> Range<usize> {
+        self.offset as usize..self.offset as usize + self.count as usize * ENTRY_LEN
+    }
+}
+
+/// The little-endian i32 at `at`, which the caller knows to be inside.
+fn i32_at(bytes: &[u8], at: usize) -> i32 {
+    i32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
+}
+
+fn parse_entry(index: usize, entry: &[u8], file_len: usize, directory: &Range<usize>) -> Result<Lump, WadError> {
+    let mut name = [0; 8];
+    name.copy_from_slice(&entry[8..ENTRY_LEN]);
+    let name = LumpName::from_raw(name);
+    let lump = LumpId { index, name };
+    let (offset, size) = (i32_at(entry, 0), i32_at(entry, 4));
+    if size == 0 {
+        return Ok(Lump { name, range: (0, 0) });
+    }
+    let error = WadError::LumpRange { lump, offset, size, file_len: file_len as u64 };
+    let (Ok(start), Ok(size)) = (u32::try_from(offset), u32::try_from(size)) else { return Err(error) };
+    // Two numbers below 2^31: the sum fits.
+    let range = (start, start + size);
+    if range.1 as usize > file_len {
+        return Err(error);
+    }
+    if (start as usize) < HEADER_LEN {
+        return Err(WadError::OverlapsHeader { lump });
+    }
+    if (start as usize) < directory.end && directory.start < range.1 as usize {
+        return Err(WadError::OverlapsDirectory { lump });
+    }
+    Ok(Lump { name, range })
+}
+
+/// Refuses lumps that share some bytes but not all.
+fn check_overlaps(lumps: &[Lump]) -> Result<(), WadError> {
+    let mut by_place: Vec<usize> = (0..lumps.len()).filter(|&k| lumps[k].size() > 0).collect();
+    by_place.sort_by_key(|&k| lumps[k].range);
+    let id = |k: usize| LumpId { index: k, name: lumps[k].name };
+    let overlap = |a: usize, b: usize| WadError::Overlap { first: id(a.min(b)), second: id(a.max(b)) };
+    let mut before: Option<usize> = None;
+    for group in by_place.chunk_by(|&a, &b| lumps[a].range.0 == lumps[b].range.0) {
+        let (shortest, longest) = (group[0], group[group.len() - 1]);
+        if let Some(before) = before.filter(|&k| lumps[k].range.1 > lumps[shortest].range.0) {
+            return Err(overlap(before, shortest));
+        }
+        let uneven = lumps[shortest].range != lumps[longest].range;
+        if let Some(&k) = group.iter().find(|&&k| uneven && !lumps[k].name.is("REJECT")) {
+            let other = if lumps[k].range == lumps[shortest].range { longest } else { shortest };
+            return Err(overlap(k, other));
+        }
+        before = Some(longest);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

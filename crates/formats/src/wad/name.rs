@@ -1,0 +1,83 @@
+//! Names of lumps.
+
+use super::WadError;
+use std::fmt;
+
+/// Eight bytes, as they stand in the directory. The name ends at the first zero; what follows it is
+/// kept but means nothing.
+///
+/// `==` compares all eight bytes; [`LumpName::is`] compares names.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct LumpName([u8; 8]);
+
+impl LumpName {
+    /// A name of up to eight ASCII characters, filled up with zeros.
+    ///
+    /// # Errors
+    /// [`WadError::Name`] for anything else, a zero character included.
+    pub fn new(name: &str) -> Result<Self, WadError> {
+        let plain = name.bytes().all(|b| b.is_ascii() && b != 0);
+        if name.is_empty() || name.len() > 8 || !plain {
+            return Err(WadError::Name { name: name.to_owned() });
+        }
+        let mut raw = [0; 8];
+        raw[..name.len()].copy_from_slice(name.as_bytes());
+        Ok(Self(raw))
+    }
+
+    /// The name that stands in a directory as these bytes.
+    pub const fn from_raw(raw: [u8; 8]) -> Self {
+        Self(raw)
+    }
+
+    /// All eight bytes.
+    pub const fn raw(&self) -> [u8; 8] {
+        self.0
+    }
+
+    /// The bytes before the first zero.
+    pub fn text(&self) -> &[u8] {
+        let end = self.0.iter().position(|&b| b == 0).unwrap_or(self.0.len());
+        &self.0[..end]
+    }
+
+    /// Whether this is the name `name`. Engines ignore case, so this does.
+    pub fn is(&self, name: &str) -> bool {
+        self.text().eq_ignore_ascii_case(name.as_bytes())
+    }
+}
+
+impl fmt::Display for LumpName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.text().escape_ascii())
+    }
+}
+
+impl fmt::Debug for LumpName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "LumpName(\"{}\")", self.0.escape_ascii())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_end_at_the_first_zero() {
+        let junk = LumpName::from_raw(*b"MAP01\0XY");
+        assert!(junk.is("MAP01") && junk.is("map01") && !junk.is("MAP0") && !junk.is("MAP01\0"));
+        assert_eq!((junk.to_string(), junk.raw()), ("MAP01".to_owned(), *b"MAP01\0XY"));
+        assert_ne!(junk, LumpName::new("MAP01").unwrap());
+        let full = LumpName::new("LINEDEFS").unwrap();
+        assert!(full.is("LINEDEFS") && !full.is("LINEDEF"));
+    }
+
+    #[test]
+    fn odd_names_are_refused_or_shown_escaped() {
+        for bad in ["", "NINECHARS", "ä", "A\0B"] {
+            assert!(LumpName::new(bad).is_err(), "{bad:?}");
+        }
+        assert_eq!(LumpName::from_raw([7, 0xFF, b'A', 0, 0, 0, 0, 0]).to_string(), r"\x07\xffA");
+    }
+}
