@@ -1,0 +1,176 @@
+//! The written word: links that lead somewhere, a README per crate, nothing that only our machines have.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the tests lie in the workspace").to_path_buf()
+}
+
+/// All files of the workspace but those of git, of builds, and of the demo, sorted.
+fn files_of_workspace() -> Vec<PathBuf> {
+    let outputs = ["target", "demo"].map(|name| root().join(name));
+    let mut files = Vec::new();
+    let mut folders = vec![root()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).expect("a folder is readable") {
+            let path = entry.expect("an entry is readable").path();
+            let name = path.file_name().expect("an entry has a name").to_string_lossy().into_owned();
+            let hidden = name.starts_with('.') && ![".ci", ".cargo", ".gitignore"].contains(&name.as_str());
+            if hidden || outputs.contains(&path) {
+                continue;
+            }
+            if path.is_dir() { folders.push(path) } else { files.push(path) }
+        }
+    }
+    files.sort();
+    files
+}
+
+fn folders_of_crates() -> Vec<PathBuf> {
+    let entries = fs::read_dir(root().join("crates")).expect("crates is readable");
+    let mut folders: Vec<PathBuf> = entries.map(|e| e.expect("an entry is readable").path()).collect();
+    folders.retain(|f| f.join("Cargo.toml").is_file());
+    folders.sort();
+    folders
+}
+
+// --- Links -----------------------------------------------------------------------------------------
+
+/// Targets of links and pictures that lead to files, outside code.
+fn links(markdown: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut in_code = false;
+    for line in markdown.lines() {
+        if line.trim_start().starts_with("```") {
+            in_code = !in_code;
+        }
+        if in_code {
+            continue;
+        }
+        // What stands between backticks is code: keep every other piece.
+        let text: String = line.split('`').step_by(2).collect();
+        for (at, _) in text.match_indices("](") {
+            let rest = &text[at + 2..];
+            let target = rest.split([')', ' ', '#']).next().unwrap_or("");
+            if !target.is_empty() && !target.contains("://") && !target.starts_with("mailto:") {
+                found.push(target.to_owned());
+            }
+        }
+    }
+    found
+}
+
+/// Links of a file that lead nowhere.
+fn dead_links(file: &Path, markdown: &str) -> Vec<String> {
+    let folder = file.parent().expect("a file lies in a folder");
+    links(markdown).into_iter().filter(|target| !folder.join(target).exists()).collect()
+}
+
+#[test]
+fn links_of_all_documents_lead_to_files() {
+    let is_document = |p: &PathBuf| p.extension().is_some_and(|e| e == "md");
+    let documents: Vec<PathBuf> = files_of_workspace().into_iter().filter(is_document).collect();
+    let mut n_links = 0;
+    for document in &documents {
+        let text = fs::read_to_string(document).expect("a document is readable");
+        n_links += links(&text).len();
+        let dead = dead_links(document, &text);
+        assert!(dead.is_empty(), "{} has dead links: {dead:?}", document.display());
+    }
+    assert!(documents.len() >= 15 && n_links >= 15, "{} documents, {n_links} links", documents.len());
+}
+
+#[test]
+fn impostor_a_dead_link_is_caught() {
+    let file = root().join("README.md");
+    let text = "A [page](docs/ARCHITECTURE.md#words), a [ghost](docs/GHOST.md), [the web](https://example.org/x)\n\
+                and `[code](nowhere)`.\n```\n[more code](nowhere)\n```\n![picture](ghost.png \"title\") [here](#figures)\n";
+    assert_eq!(links(text), ["docs/ARCHITECTURE.md", "docs/GHOST.md", "ghost.png"]);
+    assert_eq!(dead_links(&file, text), ["docs/GHOST.md", "ghost.png"]);
+}
+
+// --- READMEs ---------------------------------------------------------------------------------------
+
+/// What a crate's README lacks: its title, an example, or the whole.
+fn lacks(name: &str, readme: Option<&str>) -> Option<&'static str> {
+    match readme {
+        None => Some("has no README.md"),
+        Some(text) if !text.starts_with(&format!("# {name}\n")) => Some("has a README.md without its title"),
+        Some(text) if text.lines().count() < 8 || !text.contains("```") => Some("has a README.md without an example"),
+        Some(_) => None,
+    }
+}
+
+#[test]
+fn readmes_exist_for_every_crate() {
+    let crates = folders_of_crates();
+    let mut complaints = Vec::new();
+    for folder in &crates {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).expect("a manifest is readable");
+        let manifest: toml::Table = manifest.parse().expect("a manifest is TOML");
+        let name = manifest["package"]["name"].as_str().expect("a name");
+        let readme = fs::read_to_string(folder.join("README.md")).ok();
+        complaints.extend(lacks(name, readme.as_deref()).map(|what| format!("{name} {what}")));
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    assert!(crates.len() >= 14, "{} crates", crates.len());
+}
+
+#[test]
+fn impostor_a_missing_or_empty_readme_is_caught() {
+    assert!(lacks("a", None).is_some());
+    assert!(lacks("a", Some("# b\n")).is_some());
+    assert!(lacks("a", Some("# a\n")).is_some());
+    assert!(lacks("a", Some("# a\n\n1\n2\n3\n4\n```\nx\n```\n")).is_none());
+}
+
+#[test]
+fn readme_names_the_two_commands_and_every_crate() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("README.md is readable");
+    for command in ["cargo run --release -- demo", "cargo xtask test"] {
+        assert!(readme.contains(command), "README.md does not name `{command}`");
+    }
+    let crates = folders_of_crates();
+    for folder in &crates {
+        let link = format!("(crates/{}", folder.file_name().expect("a crate has a name").to_string_lossy());
+        assert!(readme.contains(&link), "README.md does not link to {link}");
+    }
+    assert!(crates.len() >= 14, "{} crates", crates.len());
+}
+
+// --- Words -----------------------------------------------------------------------------------------
+
+/// Paths that a user's machine does not have. In pieces, so that this file may stand.
+const FOREIGN: [&str; 4] =
+    [concat!("..", "/shared"), concat!("/wor", "k/"), concat!("/hom", "e/"), concat!("/Use", "rs/")];
+
+/// Foreign paths in a file; the script of the checks alone may name the folder beside the checkout.
+fn foreign_paths(name: &str, text: &str) -> Vec<&'static str> {
+    let allowed = |word: &str| name == ".ci/run" && word == FOREIGN[0];
+    FOREIGN.into_iter().filter(|word| text.contains(word) && !allowed(word)).collect()
+}
+
+#[test]
+fn files_name_no_path_that_only_our_machines_have() {
+    let mut n_texts = 0;
+    for path in files_of_workspace() {
+        let bytes = fs::read(&path).expect("a file is readable");
+        let Ok(text) = String::from_utf8(bytes) else { continue };
+        let name = path.strip_prefix(root()).expect("it lies below the root").to_string_lossy().replace('\\', "/");
+        let foreign = foreign_paths(&name, &text);
+        assert!(foreign.is_empty(), "{name} names {foreign:?}");
+        n_texts += 1;
+    }
+    assert!(n_texts >= 100, "{n_texts} texts");
+}
+
+#[test]
+fn impostor_a_foreign_path_is_caught() {
+    for word in FOREIGN {
+        assert_eq!(foreign_paths("docs/STYLE.md", &format!("see {word}x")), [word]);
+    }
+    assert!(foreign_paths(".ci/run", FOREIGN[0]).is_empty());
+    assert_eq!(foreign_paths(".ci/run", FOREIGN[1]), [FOREIGN[1]]);
+    assert!(foreign_paths("README.md", "the framework's home is here").is_empty());
+}

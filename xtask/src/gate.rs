@@ -1,0 +1,113 @@
+//! What a change has to pass, in order.
+
+use crate::step::{self, Failure, cargo, root};
+use crate::{tally, tidy};
+use std::fs;
+use std::time::{Duration, Instant};
+
+/// Builds the documentation of every crate; a warning is an error.
+pub(crate) fn docs() -> Result<(), Failure> {
+    // The library and the program share a name, and with it a folder: the program first, alone, so that
+    // the library's pages are the ones that stay.
+    doc(&["-p", "sightlines-cli"])?;
+    doc(&["--workspace", "--exclude", "sightlines-cli"])
+}
+
+fn doc(packages: &[&str]) -> Result<(), Failure> {
+    step::run(cargo().args(["doc", "--no-deps"]).args(packages).env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+/// Checks each published crate on its own, so that none lives on features that another one turns on.
+pub(crate) fn alone() -> Result<(), Failure> {
+    let names = published()?;
+    if names.is_empty() {
+        return Err(Failure::Found { what: "published crates", n: 0 });
+    }
+    for name in names {
+        step::run(cargo().args(["check", "-p", &name, "--all-features"]))?;
+    }
+    step::run(cargo().args(["check", "-p", "sightlines"]))
+}
+
+/// Names of the published packages below `crates/`, sorted.
+fn published() -> Result<Vec<String>, Failure> {
+    let folder = root().join("crates");
+    let failure = |error| Failure::File { path: folder.clone(), error };
+    let mut names = Vec::new();
+    for entry in fs::read_dir(&folder).map_err(failure)? {
+        let path = entry.map_err(failure)?.path().join("Cargo.toml");
+        let manifest = fs::read_to_string(&path).map_err(|error| Failure::File { path, error })?;
+        names.extend(published_name(&manifest).map(str::to_owned));
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// The name in a manifest, unless it says that it is not published.
+fn published_name(manifest: &str) -> Option<&str> {
+    let unpublished = manifest.lines().any(|l| l.replace(' ', "") == "publish=false");
+    let name = manifest.lines().find_map(|l| l.strip_prefix("name = \"")?.strip_suffix('"'));
+    name.filter(|_| !unpublished)
+}
+
+/// Runs a bench of each kind once: that it runs, and that its answer is right.
+fn benches_once() -> Result<(), Failure> {
+    step::run(cargo().args(["bench", "-p", "sightlines-benches", "--", "--test"]))
+}
+
+/// The first command of the README.
+fn demo() -> Result<(), Failure> {
+    step::run(cargo().args(["run", "--release", "--", "demo"]))
+}
+
+/// Everything, up to the first failure; the tests last, so that their summary is the last line.
+pub(crate) fn ci() -> Result<(), Failure> {
+    type Step = (&'static str, fn() -> Result<(), Failure>);
+    let steps: [Step; 5] =
+        [("tidy", tidy::tidy), ("docs", docs), ("alone", alone), ("demo", demo), ("benches", benches_once)];
+    let mut times = Vec::new();
+    for (name, step) in steps {
+        timed(name, &mut times, step)?;
+    }
+    let tally = timed("test", &mut times, tally::test)?;
+    for (name, time) in times {
+        println!("{name:>8} {:6.1} s", time.as_secs_f64());
+    }
+    tally.conclude()
+}
+
+fn timed<T>(
+    name: &'static str,
+    times: &mut Vec<(&'static str, Duration)>,
+    step: impl FnOnce() -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    eprintln!("\n== {name}");
+    let start = Instant::now();
+    let result = step();
+    let took = start.elapsed();
+    eprintln!("== {name}: {} after {:.1} s", if result.is_ok() { "done" } else { "FAILED" }, took.as_secs_f64());
+    times.push((name, took));
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_crates_are_told_by_their_manifests() {
+        let names = published().expect("manifests are readable");
+        assert!(names.iter().any(|n| n == "sightlines") && names.len() >= 13, "{names:?}");
+        assert!(!names.iter().any(|n| n == "sightlines-testkit"));
+        assert_eq!(published_name("[package]\nname = \"a\"\npublish = false\n"), None);
+        assert_eq!(published_name("[package]\nname = \"a\"\n"), Some("a"));
+    }
+
+    #[test]
+    fn steps_are_timed_whether_they_pass_or_not() {
+        let mut times = Vec::new();
+        timed("good", &mut times, || Ok(())).expect("it passes");
+        timed("bad", &mut times, || Err::<(), _>(Failure::Found { what: "faults", n: 1 })).expect_err("it fails");
+        assert_eq!(times.iter().map(|t| t.0).collect::<Vec<_>>(), ["good", "bad"]);
+    }
+}
