@@ -29,7 +29,11 @@ fn sequences(scene: &str) -> Vec<Vec<Portal2>> {
 }
 
 /// Passable so far, portal by portal, and back again.
-fn run<O: Orient2d>(funnel: &mut Funnel<O>, doors: &[Portal2], undos: &mut Vec<sightlines::sightline::FunnelUndo>) -> bool {
+fn run<O: Orient2d>(
+    funnel: &mut Funnel<O>,
+    doors: &[Portal2],
+    undos: &mut Vec<sightlines::sightline::FunnelUndo>,
+) -> bool {
     funnel.start(doors[0]);
     let mut open = true;
     for &door in &doors[1..] {
@@ -52,9 +56,9 @@ fn bench_funnel<O: Orient2d>(bencher: Bencher<'_, '_>, scene: &str, orient: O) {
     for doors in &corridors {
         assert_eq!(run(&mut funnel, doors, &mut undos), Certificate::find(doors).is_none(), "{scene}");
     }
-    bencher.counter(ItemsCount::new(pushes)).bench_local(move || {
-        corridors.iter().filter(|doors| run(&mut funnel, black_box(doors), &mut undos)).count()
-    });
+    bencher
+        .counter(ItemsCount::new(pushes))
+        .bench_local(move || corridors.iter().filter(|doors| run(&mut funnel, black_box(doors), &mut undos)).count());
 }
 
 /// Push and pop, exact for any coordinates.

@@ -177,7 +177,10 @@ fn cut(plan: &Plan, options: &BakeOptions<'_>) -> Result<(CellGraph<Planar>, Bak
         Subdivide::Triangulation => false,
     };
     if by_tree {
-        let cut = sightlines_kdtree::subdivide_plan(plan, &sightlines_kdtree::Options { tau: options.tau, ..Default::default() })?;
+        let cut = sightlines_kdtree::subdivide_plan(
+            plan,
+            &sightlines_kdtree::Options { tau: options.tau, ..Default::default() },
+        )?;
         let n_ignored_walls = cut.left_over.len();
         Ok((cut.graph, BakeSummary { subdivide: Subdivide::KdTree, n_ignored_walls, ..BakeSummary::default() }))
     } else {

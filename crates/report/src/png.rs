@@ -1,0 +1,58 @@
+//! SVG to PNG.
+
+use resvg::{tiny_skia, usvg};
+
+/// Why a picture could not be rendered.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PngError {
+    /// The text is not SVG.
+    #[error("the picture is not valid SVG")]
+    Svg(#[source] Box<dyn std::error::Error + Send + Sync>),
+    /// The picture has no area, or more than fits into memory.
+    #[error("a picture of {width} by {height} pixels cannot be rendered")]
+    Size {
+        /// Pixels from left to right.
+        width: u32,
+        /// Pixels from top to bottom.
+        height: u32,
+    },
+    /// The encoder failed.
+    #[error("the picture cannot be encoded as PNG")]
+    Encode(#[source] Box<dyn std::error::Error + Send + Sync>),
+}
+
+/// Renders a picture in its own size. Text is left out: no fonts are loaded.
+///
+/// Four bytes of memory for each pixel.
+///
+/// # Errors
+/// [`PngError`].
+pub fn svg_to_png(svg: &str) -> Result<Vec<u8>, PngError> {
+    let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).map_err(|e| PngError::Svg(e.into()))?;
+    let size = tree.size().to_int_size();
+    let (width, height) = (size.width(), size.height());
+    let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(PngError::Size { width, height })?;
+    resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels.as_mut());
+    pixels.encode_png().map_err(|e| PngError::Encode(e.into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_rendered_in_their_size() {
+        let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="7" height="5"><rect width="7" height="5" fill="#ff0000"/></svg>"##;
+        let png = svg_to_png(svg).unwrap();
+        let pixels = tiny_skia::Pixmap::decode_png(&png).unwrap();
+        assert_eq!((pixels.width(), pixels.height()), (7, 5));
+        let red = |p: &tiny_skia::PremultipliedColorU8| (p.red(), p.green(), p.blue()) == (255, 0, 0);
+        assert!(pixels.pixels().iter().all(red));
+    }
+
+    #[test]
+    fn what_is_no_picture_is_refused() {
+        assert!(matches!(svg_to_png("hello"), Err(PngError::Svg(_))));
+    }
+}

@@ -1,0 +1,72 @@
+//! What a table holds, in a few numbers.
+
+use crate::outline::corners;
+use serde::Serialize;
+use sightlines_geometry::signed_area;
+use sightlines_pvs::{CellId, CellRecord, Table};
+
+/// The numbers of a table.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Summary {
+    /// 2 for a plane, 3 for space.
+    pub dimension: u8,
+    /// Number of cells.
+    pub n_cells: usize,
+    /// Number of portals.
+    pub n_portals: usize,
+    /// Number of objects.
+    pub n_objects: usize,
+    /// Number of different groups (Doom sectors) that cells belong to.
+    pub n_groups: usize,
+    /// Unordered pairs of different cells that may see each other.
+    pub n_visible_pairs: u64,
+    /// The most cells that one cell sees, itself included.
+    pub most_visible: u64,
+    /// The share of all cells that a cell sees, averaged over cells, from 0 to 1.
+    pub mean_cell_share: f64,
+    /// The share of the floor (in space: of the volume) that a viewer has to draw, averaged over the
+    /// places where a viewer may stand, from 0 to 1: each cell counts by its size, as viewer and as viewed.
+    pub mean_floor_share: f64,
+    /// The floor in square scene units (in space: the volume of all cells).
+    pub floor: f64,
+    /// Bytes of the table as a file.
+    pub n_bytes: usize,
+}
+
+impl Summary {
+    /// Counts. O(pairs of cells that see each other), and the table is written to memory once.
+    pub fn of(table: &Table) -> Self {
+        let n_cells = table.n_cells();
+        let ids = || (0u32..).take(n_cells).map(CellId);
+        let ones = |cell: CellId| table.row(cell).iter().map(|w| u64::from(w.count_ones())).sum::<u64>();
+        let sizes: Vec<f64> = table.cells().iter().map(|cell| size(cell, table.dimension())).collect();
+        let floor: f64 = sizes.iter().sum();
+        // Shares instead of sizes, so that no product of large floors overflows.
+        let share = |cell: CellId| if floor > 0.0 { sizes[cell.idx()] / floor } else { 0.0 };
+        let drawn = |cell: CellId| table.visible(cell).map(share).sum::<f64>();
+        let mut groups: Vec<u32> = table.cells().iter().filter_map(|cell| cell.group).collect();
+        groups.sort_unstable();
+        groups.dedup();
+        Self {
+            dimension: table.dimension(),
+            n_cells,
+            n_portals: table.portals().len(),
+            n_objects: table.objects().len(),
+            n_groups: groups.len(),
+            n_visible_pairs: (ids().map(ones).sum::<u64>() - n_cells as u64) / 2,
+            most_visible: ids().map(ones).max().unwrap_or(0),
+            mean_cell_share: table.mean_visible_share(),
+            mean_floor_share: ids().map(|cell| share(cell) * drawn(cell)).sum(),
+            floor,
+            n_bytes: table.to_bytes().len(),
+        }
+    }
+}
+
+/// Area of a planar cell, volume of one in space; rounded.
+fn size(cell: &CellRecord, dimension: u8) -> f64 {
+    if dimension == 2 {
+        return signed_area(&corners(cell));
+    }
+    (0..3).map(|k| cell.max[k] - cell.min[k]).product()
+}

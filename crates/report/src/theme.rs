@@ -1,0 +1,53 @@
+//! Colours and stroke widths.
+
+/// Behind everything.
+pub(crate) const PAPER: &str = "#ffffff";
+/// A cell of which nothing is said.
+pub(crate) const CELL: &str = "#e8ecf1";
+/// A cell that is not seen.
+pub(crate) const HIDDEN: &str = "#eceef1";
+/// A cell that is seen. Blue against orange is told apart by colour-blind eyes too.
+pub(crate) const SEEN: &str = "#8fc4f5";
+/// The cell looked from.
+pub(crate) const FROM: &str = "#f0701a";
+/// The cell looked for.
+pub(crate) const TARGET: &str = "#8a5cd6";
+/// What blocks sight.
+pub(crate) const WALL: &str = "#1c2733";
+/// Portals, where they are what the picture shows.
+pub(crate) const PORTAL: &str = "#12a594";
+/// Portals in the background.
+pub(crate) const PORTAL_FAINT: &str = "#ffffff";
+/// A line of sight and the doors that it passes.
+pub(crate) const SIGHTLINE: &str = "#d6246e";
+/// An object that is seen, or of which nothing is said.
+pub(crate) const OBJECT: &str = "#51616f";
+/// An object that is not seen.
+pub(crate) const OBJECT_HIDDEN: &str = "#c3cad2";
+
+/// Light fills for the groups of cells, in turn.
+pub(crate) const GROUPS: [&str; 8] =
+    ["#dbe9f6", "#fbe6cf", "#dcefdc", "#eee0f2", "#fdf3c8", "#d7eef0", "#f8dfe0", "#e6e6e0"];
+
+/// Stroke widths in pixels.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Strokes {
+    /// Of walls.
+    pub(crate) wall: f64,
+    /// Of portals.
+    pub(crate) portal: f64,
+    /// Of a line of sight.
+    pub(crate) line: f64,
+    /// Of the border around the cell looked from; also the radius of small marks.
+    pub(crate) mark: f64,
+}
+
+impl Strokes {
+    /// Strokes that leave cells visible: `cell` is the side of a square as large as a mean cell, `size`
+    /// the longer side of the picture, both in pixels.
+    pub(crate) fn for_cells(cell: f64, size: f64) -> Self {
+        let most = size / 500.0;
+        let wall = (cell * 0.07).clamp(most * 0.3, most * 1.1).max(0.4);
+        Self { wall, portal: wall * 0.5, line: (wall * 1.1).max(most * 0.7), mark: most * 1.6 }
+    }
+}
