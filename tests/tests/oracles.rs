@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use sightlines::bake::{BakeOptions, Subdivide, bake_plan, see_groups};
-use sightlines::cells::{CellId, Plan};
+use sightlines::cells::{CellId, Plan, PlanLine};
 use sightlines::geometry::Point2;
 use sightlines::pvs::Table;
 use sightlines::scenes;
@@ -63,6 +63,33 @@ proptest! {
         for (a, row) in expected.iter().enumerate() {
             for (b, &visible) in row.iter().enumerate() {
                 prop_assert_eq!(seen.get(a, b), visible || a == b, "sectors {} and {}", a, b);
+            }
+        }
+    }
+}
+
+/// Any lines on a small grid, opaque or not, naming any groups on either side: unclosed sectors,
+/// lines that cross, groups named towards the outside.
+fn any_sector_plan() -> impl Strategy<Value = Plan> {
+    let point = || (0i32..6, 0i32..6).prop_map(|(x, y)| Point2::new(f64::from(x), f64::from(y)));
+    let group = || prop::option::of(0u32..5);
+    let line = (point(), point(), any::<bool>(), group(), group());
+    let line = line.prop_filter("of some length", |(a, b, ..)| a != b);
+    let line = line.prop_map(|(a, b, opaque, left, right)| PlanLine { a, b, opaque, left, right });
+    prop::collection::vec(line, 1..9).prop_map(|lines| Plan::new(lines, vec![]).expect("lines on a grid"))
+}
+
+proptest! {
+    /// Invariant: whatever the lines say, nothing that brute force sees is hidden; and without rounded
+    /// crossings nothing else is shown.
+    #[test]
+    fn sectors_of_any_lines_are_sound_and_exact_without_rounding(plan in any_sector_plan()) {
+        let expected = sector_visibility_brute_force(&plan);
+        let (seen, summary) = see_groups(&plan, plan.n_groups(), &SearchOptions::default()).unwrap();
+        for (a, row) in expected.iter().enumerate() {
+            for (b, &visible) in row.iter().enumerate().filter(|&(b, _)| a != b) {
+                prop_assert!(seen.get(a, b) || !visible, "sector {} sees {}", a, b);
+                prop_assert!(visible || !seen.get(a, b) || summary.n_rounded_crossings > 0, "{} does not see {}", a, b);
             }
         }
     }

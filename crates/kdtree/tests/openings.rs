@@ -11,6 +11,7 @@ fn check_all<const D: usize>(faces: &[AxialFace<D>], n: u32, tau: f64) -> Result
     let tree = cut(faces, n, tau);
     check_openings(faces, n, tree.cells(), tree.portals()).map_err(TestCaseError::fail)?;
     check_borders(&tree);
+    check_joined(&tree);
     if tau == 0.0 {
         check_connectivity(faces, n, tree.cells(), tree.portals()).map_err(TestCaseError::fail)?;
     }
@@ -27,6 +28,16 @@ fn check_borders<const D: usize>(tree: &AxialTree<D>) {
     }
     let order: Vec<_> = tree.portals().iter().map(|p| (p.cells, p.min)).collect();
     assert!(order.is_sorted(), "portals are ordered by cells and place");
+}
+
+/// No two pieces of an opening are a rectangle together along the first axis across: pieces depend on
+/// the opening alone, not on what was cut elsewhere on its plane.
+fn check_joined<const D: usize>(tree: &AxialTree<D>) {
+    for (p, q) in tree.portals().iter().flat_map(|p| tree.portals().iter().map(move |q| (p, q))) {
+        let along = (0..D).find(|&k| k != p.axis).expect("there is an axis across");
+        let beside = (0..D).all(|k| k == along || (p.min[k], p.max[k]) == (q.min[k], q.max[k]));
+        assert!(p.cells != q.cells || !beside || p.max[along] != q.min[along], "{p:?} goes on in {q:?}");
+    }
 }
 
 /// The bounding form has one portal per pair, the smallest box around the exact pieces.

@@ -181,6 +181,11 @@ impl<O: Orient2d> Funnel<O> {
         (self.right.first(), self.left.last())
     }
 
+    /// Number of end points that hold the lines in place: the cost of a witness.
+    pub fn n_live(&self) -> usize {
+        self.left.live().len() + self.right.live().len()
+    }
+
     /// A line that passes every door of the sequence, strictly. Exact; O(length of the chains).
     ///
     /// # Panics

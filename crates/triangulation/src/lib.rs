@@ -20,6 +20,7 @@ pub mod noding;
 mod regions;
 
 use sightlines_cells::{CellGraph, Plan, Planar};
+use sightlines_geometry::Point2;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
@@ -61,8 +62,9 @@ pub struct Summary {
 /// Cuts the convex hull of `plan` into convex cells.
 ///
 /// Cells of one region share the groups that the lines around the region name. If any line of the
-/// plan names a group, cells from which no line of sight leads into a region with a group are left
-/// out (the void around a Doom map). Cell ids follow the triangulation and are the same on every
+/// plan names a group, the outside of the hull is cut too, as far as a frame around the plan, because a
+/// line may name a group there; and cells from which no line of sight leads into a region with a group
+/// are left out (the void around a Doom map). Cell ids follow the triangulation and are the same on every
 /// machine.
 ///
 /// Cost: O(n log n) for n lines with few crossings.
@@ -79,7 +81,8 @@ pub fn subdivide(plan: &Plan) -> Result<(CellGraph<Planar>, Summary), Triangulat
         return Err(TriangulationError::Empty);
     }
     let noded = noding::node(plan);
-    let mesh = mesh::triangulate(&noded)?;
+    let frame = if plan.n_groups() > 0 { corners_around(plan) } else { Vec::new() };
+    let mesh = mesh::triangulate(&noded, &frame)?;
     let regions = regions::label(&mesh);
     let graph = merge::convex_cells(&mesh, &regions, plan.n_groups() > 0);
     let n_disputed_cells = graph.cells().iter().filter(|c| c.groups.len() > 1).count();
@@ -90,4 +93,13 @@ pub fn subdivide(plan: &Plan) -> Result<(CellGraph<Planar>, Summary), Triangulat
         n_disputed_cells,
     };
     Ok((graph, summary))
+}
+
+/// Corners of a box that is strictly larger than the plan on all sides, by the plan's own size, so that
+/// they are on the grid if the plan is.
+fn corners_around(plan: &Plan) -> Vec<Point2> {
+    let bounds = plan.bounds();
+    let size = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
+    let [x, y] = [0, 1].map(|k| [bounds.min[k] - size, bounds.max[k] + size]);
+    x.into_iter().flat_map(|x| y.map(|y| Point2::new(x, y))).collect()
 }

@@ -84,9 +84,9 @@ impl Marks {
     }
 }
 
-/// Distinct end points in lexicographic order.
-fn distinct(pieces: &[PlanLine]) -> Vec<Point2> {
-    let mut points: Vec<Point2> = pieces.iter().flat_map(|p| [p.a, p.b]).collect();
+/// Distinct end points and corners of the frame in lexicographic order.
+fn distinct(pieces: &[PlanLine], frame: &[Point2]) -> Vec<Point2> {
+    let mut points: Vec<Point2> = pieces.iter().flat_map(|p| [p.a, p.b]).chain(frame.iter().copied()).collect();
     points.sort_by(order);
     points.dedup();
     points
@@ -101,9 +101,9 @@ fn index_of(points: &[Point2], p: &Point2) -> u32 {
     u32::try_from(found).expect("fewer than 2^32 points")
 }
 
-/// Triangulates the convex hull of all pieces.
-pub(crate) fn triangulate(noded: &Noded) -> Result<Mesh, TriangulationError> {
-    let vertices = distinct(&noded.pieces);
+/// Triangulates the convex hull of all pieces and of the points of `frame`.
+pub(crate) fn triangulate(noded: &Noded, frame: &[Point2]) -> Result<Mesh, TriangulationError> {
+    let vertices = distinct(&noded.pieces, frame);
     let mut lines: BTreeMap<(u32, u32), Marks> = BTreeMap::new();
     for piece in &noded.pieces {
         let (a, b) = (index_of(&vertices, &piece.a), index_of(&vertices, &piece.b));
