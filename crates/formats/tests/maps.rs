@@ -293,7 +293,11 @@ proptest! {
 
     /// Invariant: new tables change the tables and nothing else.
     #[test]
-    fn rejects_change_nothing_else(first in sources(), second in sources(), tables in prop::collection::vec((0usize..2, prop::collection::vec(any::<u8>(), 0..5)), 0..3)) {
+    fn rejects_change_nothing_else(
+        first in sources(),
+        second in sources(),
+        tables in prop::collection::vec((0usize..2, prop::collection::vec(any::<u8>(), 0..5)), 0..3),
+    ) {
         let mut builder = WadBuilder::new(WadKind::Game);
         builder.lump("REJECT", b"not of a map").unwrap().lump("X", b"x").unwrap();
         first.add_to(&mut builder, name("MAP01")).unwrap();
@@ -310,5 +314,31 @@ proptest! {
             let found = map.lump(MapLump::Reject).map(|lump| after.lump_bytes(lump).to_vec());
             prop_assert_eq!(found, given.or_else(|| source.reject.clone()));
         }
+    }
+}
+
+/// Node builders let tables of zeros share their bytes, of one size or of several.
+#[test]
+fn shared_tables_are_not_overwritten_by_each_other() {
+    let mut source = two_rooms(false);
+    let mut builder = WadBuilder::new(WadKind::Patch);
+    source.add_to(&mut builder, name("MAP01")).unwrap();
+    source.reject = Some(vec![0; 3]);
+    source.add_to(&mut builder, name("MAP02")).unwrap();
+    let mut bytes = builder.finish().unwrap();
+    let wad = Wad::parse(bytes.clone()).unwrap();
+    let [first, second] = [0, 1].map(|k| list_maps(&wad)[k].lump(MapLump::Reject).unwrap());
+    let directory = bytes.len() - 16 * wad.lumps().len();
+    for n in [1, 3] {
+        // The first map's table is the first `n` of the second's three zeros.
+        let place = [wad.lumps()[second].range().start as u32, n].map(u32::to_le_bytes).concat();
+        bytes[directory + 16 * first..][..8].copy_from_slice(&place);
+        let shared = Wad::parse(bytes.clone()).unwrap();
+        let maps = list_maps(&shared);
+        let table = vec![6; n as usize];
+        let after = Wad::parse(shared.with_rejects(&[(&maps[0], table.clone())]).unwrap()).unwrap();
+        assert_eq!(difference_besides_reject(&shared, &after), None);
+        assert_eq!((after.lump_bytes(first), after.lump_bytes(second)), (&table[..], &[0; 3][..]));
+        assert_eq!(shared.with_rejects(&[(&maps[0], vec![0; n as usize])]).unwrap(), bytes, "nothing changed");
     }
 }

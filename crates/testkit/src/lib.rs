@@ -9,6 +9,7 @@
 mod candidates;
 pub mod corridor;
 mod exact;
+pub mod mutate;
 pub mod plans;
 pub mod sampled;
 pub mod sector_plans;

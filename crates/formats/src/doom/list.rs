@@ -168,10 +168,12 @@ fn map_at(wad: &Wad, marker: usize) -> Option<MapLumps> {
     (core || format == MapFormat::Udmf || empty).then_some(map)
 }
 
-/// The end of a map as text: behind its ENDMAP, or behind its TEXTMAP if there is none.
+/// The end of a map as text: behind its ENDMAP, or behind its TEXTMAP if there is none before the next map.
 fn end_of_text(wad: &Wad, marker: usize) -> usize {
-    let endmap = wad.lumps()[marker..].iter().position(|l| l.name.is("ENDMAP"));
-    marker + endmap.unwrap_or(1) + 1
+    let behind = &wad.lumps()[marker + 2..];
+    let mut own = behind.iter().take_while(|l| !l.name.is("TEXTMAP"));
+    let endmap = own.position(|l| l.name.is("ENDMAP"));
+    marker + 2 + endmap.map_or(0, |k| k + 1)
 }
 
 /// Whether a lump of this name belongs to the map before it.
@@ -238,6 +240,8 @@ mod tests {
         let text = ["X", "TEXTMAP", "ZNODES", "DIALOGUE", "ENDMAP", "MAP02", "THINGS"];
         assert_eq!(found(&text), [map("X", 0..5, MapFormat::Udmf), map("MAP02", 5..7, MapFormat::Doom)]);
         assert_eq!(found(&["X", "TEXTMAP"]), [map("X", 0..2, MapFormat::Udmf)]);
+        let open = ["X", "TEXTMAP", "Y", "TEXTMAP", "ENDMAP"];
+        assert_eq!(found(&open), [map("X", 0..2, MapFormat::Udmf), map("Y", 2..5, MapFormat::Udmf)]);
     }
 
     #[test]

@@ -44,8 +44,17 @@ impl Wad {
     /// [`WadError::NoSuchLump`] for an edit of a lump that is not there, [`WadError::TooLarge`].
     pub fn with_edits(&self, edits: &[Edit]) -> Result<Vec<u8>, WadError> {
         let edits = self.sort_edits(edits)?;
+        let starts = self.starts();
+        // Lumps that share any byte begin at one place, as `Wad::parse` checked.
+        let alone = |start: usize| {
+            let first = starts.partition_point(|&s| s < start);
+            starts.get(first + 1) != Some(&start)
+        };
         let in_place = edits.inserted.is_empty()
-            && edits.replaced.iter().all(|(&lump, new)| new.len() == self.lumps()[lump].size() && self.is_alone(lump));
+            && edits.replaced.iter().all(|(&lump, new)| {
+                let lump = &self.lumps()[lump];
+                new.len() == lump.size() && alone(lump.range().start)
+            });
         if !in_place {
             return self.lay_out(&edits);
         }
@@ -73,11 +82,12 @@ impl Wad {
         Ok(sorted)
     }
 
-    /// Whether no other lump has any byte of this one.
-    fn is_alone(&self, lump: usize) -> bool {
-        let own = self.lumps()[lump].range();
-        let meets = |other: std::ops::Range<usize>| own.start.max(other.start) < own.end.min(other.end);
-        !self.lumps().iter().enumerate().any(|(k, other)| k != lump && meets(other.range()))
+    /// The places where lumps begin, sorted, repeated for lumps that share their bytes.
+    fn starts(&self) -> Vec<usize> {
+        let real = self.lumps().iter().filter(|lump| lump.size() > 0);
+        let mut starts: Vec<usize> = real.map(|lump| lump.range().start).collect();
+        starts.sort_unstable();
+        starts
     }
 
     fn lay_out(&self, edits: &Edits<'_>) -> Result<Vec<u8>, WadError> {

@@ -126,7 +126,8 @@ proptest! {
             }
         }
         let after = Wad::parse(wad.with_edits(&list).unwrap()).unwrap();
-        let found: Vec<_> = (0..after.lumps().len()).map(|k| (after.lumps()[k].name, after.lump_bytes(k).to_vec())).collect();
+        let lumps = after.lumps().iter().enumerate();
+        let found: Vec<_> = lumps.map(|(k, lump)| (lump.name, after.lump_bytes(k).to_vec())).collect();
         prop_assert_eq!(found, expected.concat());
         prop_assert_eq!(after.kind(), wad.kind());
     }

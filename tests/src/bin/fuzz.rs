@@ -1,0 +1,202 @@
+//! Fuzzes every reader, and what follows it: damaged files must be read or refused, never panic, and
+//! whatever is read must be consistent.
+//!
+//! Each target begins with small files, breaks them at random, and checks. A failure prints the seed
+//! that replays it. Run by `cargo xtask fuzz`.
+
+use sightlines::bake::reject::{RejectOptions, reject_wad};
+use sightlines::bake::{BakeOptions, bake_plan, graph_of};
+use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
+use sightlines::formats::geojson::{parse_plan, write_plan};
+use sightlines::formats::wad::WadKind;
+use sightlines::formats::{LumpName, Wad, WadBuilder};
+use sightlines::pvs::Table;
+use sightlines::scenes;
+use sightlines_testkit::mutate::{SplitMix, mutate};
+use std::panic::catch_unwind;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// What is broken and how it is checked; `true` if the broken file was read.
+struct Target {
+    name: &'static str,
+    seeds: fn() -> Vec<Vec<u8>>,
+    check: fn(&[u8]) -> bool,
+}
+
+const TARGETS: [Target; 6] = [
+    Target { name: "wad", seeds: wads, check: check_wad },
+    Target { name: "reject", seeds: wads, check: check_reject },
+    Target { name: "geojson", seeds: plans, check: check_geojson },
+    Target { name: "bake", seeds: plans, check: check_bake },
+    Target { name: "pvs", seeds: tables, check: check_pvs },
+    Target { name: "garbage", seeds: garbage, check: check_anything },
+];
+
+fn source(hexen: bool) -> DoomMapSource {
+    let line = |v1, v2, right, left: Option<u16>| {
+        let flags = if left.is_some() { ML_TWOSIDED } else { 1 };
+        SourceLine { v1, v2, flags, right: Some(right), left }
+    };
+    DoomMapSource {
+        vertices: vec![[0, 0], [64, 0], [128, 0], [128, 64], [64, 64], [0, 64]],
+        lines: vec![
+            line(1, 0, 0, None),
+            line(0, 5, 0, None),
+            line(5, 4, 0, None),
+            line(4, 3, 1, None),
+            line(3, 2, 1, None),
+            line(2, 1, 1, None),
+            line(1, 4, 1, Some(0)),
+        ],
+        n_sectors: 2,
+        things: vec![Thing { x: 32, y: 32, kind: 1 }],
+        reject: Some(vec![0]),
+        hexen,
+    }
+}
+
+fn wads() -> Vec<Vec<u8>> {
+    let wad = |hexen| {
+        let mut builder = WadBuilder::new(WadKind::Patch);
+        let map = LumpName::new("MAP01").expect("a lump name");
+        source(hexen).add_to(&mut builder, map).expect("a sound map");
+        builder.finish().expect("a small file")
+    };
+    vec![wad(false), wad(true)]
+}
+
+fn plans() -> Vec<Vec<u8>> {
+    let small = scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1));
+    let families = scenes::degenerate::all().into_iter().map(|(_, plan)| plan);
+    small.chain(families).map(|plan| write_plan(&plan).into_bytes()).collect()
+}
+
+fn tables() -> Vec<Vec<u8>> {
+    let bake = |plan| bake_plan(&plan, &BakeOptions::default()).map(|b| b.table.to_bytes());
+    scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1)).flat_map(bake).collect()
+}
+
+fn garbage() -> Vec<Vec<u8>> {
+    vec![vec![], b"PWAD".to_vec(), b"{\"type\":".to_vec(), (0..=255).collect()]
+}
+
+fn check_wad(bytes: &[u8]) -> bool {
+    let Ok(wad) = Wad::parse(bytes.to_vec()) else { return false };
+    assert_eq!(wad.with_rejects(&[]).expect("nothing changes"), bytes);
+    list_maps(&wad).iter().filter(|m| DoomMap::parse(&wad, m).is_ok()).count() > 0
+}
+
+fn check_reject(bytes: &[u8]) -> bool {
+    let Ok(wad) = Wad::parse(bytes.to_vec()) else { return false };
+    let options = RejectOptions { force: true, threads: 1, ..RejectOptions::default() };
+    let Ok(outcome) = reject_wad(&wad, &options) else { return false };
+    let again = Wad::parse(outcome.bytes.clone()).expect("what was written is read");
+    let second = reject_wad(&again, &options).expect("a written file is done again");
+    assert_eq!(second.bytes, outcome.bytes, "the second time changes nothing");
+    true
+}
+
+fn check_geojson(bytes: &[u8]) -> bool {
+    let Ok(plan) = parse_plan(bytes) else { return false };
+    assert_eq!(parse_plan(write_plan(&plan).as_bytes()).expect("what was written is read"), plan);
+    true
+}
+
+fn check_bake(bytes: &[u8]) -> bool {
+    let Ok(plan) = parse_plan(bytes) else { return false };
+    let Ok(baked) = bake_plan(&plan, &BakeOptions { threads: 1, ..BakeOptions::default() }) else { return false };
+    let graph = graph_of(&baked.table).expect("a baked table has its graph");
+    graph.assert_well_formed();
+    let decoded = Table::from_bytes(&baked.table.to_bytes()).expect("what was written is read");
+    assert_eq!(decoded, baked.table);
+    true
+}
+
+fn check_pvs(bytes: &[u8]) -> bool {
+    let Ok(table) = Table::from_bytes(bytes) else { return false };
+    assert_eq!(table.to_bytes(), bytes);
+    if let Some(graph) = graph_of(&table) {
+        graph.assert_well_formed();
+    }
+    true
+}
+
+fn check_anything(bytes: &[u8]) -> bool {
+    check_reject(bytes) | check_bake(bytes) | check_pvs(bytes)
+}
+
+struct Settings {
+    target: Option<String>,
+    seconds: u64,
+    seed: u64,
+    list: bool,
+}
+
+fn settings() -> Result<Settings, String> {
+    let mut settings = Settings { target: None, seconds: 10, seed: 0, list: false };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or_else(|| format!("{word} wants a value"));
+        let number = |text: String| text.parse::<u64>().map_err(|e| format!("{text}: {e}"));
+        match word.as_str() {
+            "--target" => settings.target = Some(value()?),
+            "--seconds" => settings.seconds = number(value()?)?,
+            "--seed" => settings.seed = number(value()?)?,
+            "--list" => settings.list = true,
+            _ => return Err(format!("{word} is no option")),
+        }
+    }
+    Ok(settings)
+}
+
+/// Breaks and checks for some seconds, at least one file; the seed of the first failure if there is one.
+fn fuzz(target: &Target, settings: &Settings) -> Result<(u64, u64), u64> {
+    let seeds = (target.seeds)();
+    assert!(!seeds.is_empty(), "{} has nothing to break", target.name);
+    let start = Instant::now();
+    let (mut n_files, mut n_read) = (0, 0);
+    loop {
+        let number = settings.seed + n_files;
+        let mut random = SplitMix(number);
+        let broken = mutate(&seeds[random.below(seeds.len())], &mut random);
+        match catch_unwind(|| (target.check)(&broken)) {
+            Ok(read) => n_read += u64::from(read),
+            Err(_) => return Err(number),
+        }
+        n_files += 1;
+        if start.elapsed() >= Duration::from_secs(settings.seconds) {
+            return Ok((n_files, n_read));
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let settings = match settings() {
+        Ok(settings) => settings,
+        Err(error) => {
+            eprintln!("error: {error}");
+            return ExitCode::from(2);
+        }
+    };
+    if settings.list {
+        TARGETS.iter().for_each(|t| println!("{}", t.name));
+        return ExitCode::SUCCESS;
+    }
+    let chosen: Vec<&Target> =
+        TARGETS.iter().filter(|t| settings.target.as_deref().is_none_or(|name| name == t.name)).collect();
+    if chosen.is_empty() {
+        eprintln!("error: no such target; --list names them");
+        return ExitCode::from(2);
+    }
+    for target in chosen {
+        match fuzz(target, &settings) {
+            Ok((n_files, n_read)) => println!("{}: {n_files} files, {n_read} read, no failure", target.name),
+            Err(seed) => {
+                eprintln!("{} failed: replay with --target {} --seed {seed} --seconds 0", target.name, target.name);
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    ExitCode::SUCCESS
+}
