@@ -213,8 +213,14 @@ impl<'a> Picture<'a> {
                 fill(svg, &chosen(&tinted), colour);
             }
         }
-        fill(svg, &chosen(&|i, _| self.options.target == Some(id(i))), theme::TARGET);
-        fill(svg, &chosen(&|i, _| self.from.contains(&id(i))), theme::FROM);
+        // Bordered too, so that a tiny cell is found in a large plan.
+        for (path, colour) in [
+            (chosen(&|i, _| self.options.target == Some(id(i))), theme::TARGET),
+            (chosen(&|i, _| self.from.contains(&id(i))), theme::FROM),
+        ] {
+            fill(svg, &path, colour);
+            stroke(svg, &path, colour, self.strokes.mark);
+        }
     }
 
     fn lines(&self, svg: &mut String) {
@@ -265,8 +271,11 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// Marked doors, the line of sight, the eye.
+    /// Rings around cells too thin to be seen, marked doors, the line of sight, the eye.
     fn marks(&self, svg: &mut String) {
+        for (cells, colour) in [(self.options.target.as_slice(), theme::TARGET), (&self.from[..], theme::FROM)] {
+            cells.iter().for_each(|&cell| self.ring_if_thin(svg, cell, colour));
+        }
         let mut doors = String::new();
         for &portal in &self.options.marked_portals {
             if let Some(door) = ends(&self.table.portals()[portal].points) {
@@ -283,6 +292,24 @@ impl<'a> Picture<'a> {
         }
         if let View::Eye(eye) = self.options.view {
             self.dot(svg, eye, theme::SIGHTLINE);
+        }
+    }
+
+    fn ring_if_thin(&self, svg: &mut String, cell: CellId, colour: &str) {
+        let record = &self.table.cells()[cell.idx()];
+        let [x0, y1] = self.frame.place(Point2::new(record.min[0], record.min[1]));
+        let [x1, y0] = self.frame.place(Point2::new(record.max[0], record.max[1]));
+        let least = self.strokes.wall.max(self.strokes.mark);
+        if (x1 - x0).min(y1 - y0) > 2.0 * least {
+            return;
+        }
+        let [x, y, r] = [0.5 * (x0 + x1), 0.5 * (y0 + y1), 4.0 * self.strokes.mark].map(Px);
+        for (colour, width) in [(theme::PAPER, 2.0 * least), (colour, least)] {
+            let _ = writeln!(
+                svg,
+                "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{}\"/>",
+                Px(width)
+            );
         }
     }
 

@@ -38,7 +38,7 @@ pub(crate) struct Strokes {
     pub(crate) portal: f64,
     /// Of a line of sight.
     pub(crate) line: f64,
-    /// Of the border around the cell looked from; also the radius of small marks.
+    /// Of the border around the cells looked from and for; also the radius of small marks.
     pub(crate) mark: f64,
 }
 
@@ -48,6 +48,6 @@ impl Strokes {
     pub(crate) fn for_cells(cell: f64, size: f64) -> Self {
         let most = size / 500.0;
         let wall = (cell * 0.07).clamp(most * 0.3, most * 1.1).max(0.4);
-        Self { wall, portal: wall * 0.5, line: (wall * 1.1).max(most * 0.7), mark: most * 1.6 }
+        Self { wall, portal: wall * 0.6, line: (wall * 1.1).max(most * 0.7), mark: most * 1.6 }
     }
 }

@@ -5,7 +5,7 @@ mod common;
 use common::{nothing, rooms};
 use resvg::tiny_skia::Pixmap;
 use sightlines_geometry::Point2;
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, Locator, Table};
 use sightlines_report::{DrawError, DrawOptions, PngError, View, plan_svg, svg_to_png};
 
 type Rgb = [u8; 3];
@@ -79,6 +79,18 @@ fn marks_and_objects_are_drawn() {
     let [desk, line, target] = colours(&rooms(false), &all, [[-1.5, 0.75], [-0.5, 1.5], [-2.0, 3.0]]);
     assert_ne!(desk, FROM);
     assert_eq!((line, target), ([0xd6, 0x24, 0x6e], [0x8a, 0x5c, 0xd6]));
+}
+
+/// A cell too thin to be seen has a ring around it; a large one has none.
+#[test]
+fn thin_cells_are_ringed() {
+    let svg = |table: &Table| plan_svg(table, &options(View::Cell(CellId(2)))).unwrap();
+    assert!(!svg(&rooms(false)).contains("<circle"));
+    let mut parts = rooms(false).into_parts();
+    parts.cells[2].max[0] = 2.01;
+    parts.cells[2].polygon = vec![[2.0, 2.0], [2.01, 2.0], [2.01, 4.0], [2.0, 4.0]];
+    parts.locator = Locator::build(&parts.cell_bounds(), 2);
+    assert!(svg(&Table::new(parts).unwrap()).contains("<circle"));
 }
 
 #[test]

@@ -1,0 +1,53 @@
+//! The arguments common to all commands.
+
+use crate::commands::{
+    build::BuildArgs, demo::DemoArgs, draw::DrawArgs, explain::ExplainArgs, export::ExportArgs, info::InfoArgs,
+    query::QueryArgs, reject::RejectArgs,
+};
+use clap::{Parser, Subcommand};
+
+/// Exact, conservative visibility: which cells of a scene can see each other.
+#[derive(Debug, Parser)]
+#[command(name = "sightlines", version, about, long_about = None)]
+#[command(after_help = "Exit codes: 0 done; 1 the answer is no (query, draw: a point outside every cell; \
+                        explain: hidden); 2 bad input or usage.")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Say more on standard error (twice: still more)
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    pub(crate) verbose: u8,
+    /// Show no progress and no warnings
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Build the visibility table of a plan: a Doom map in a WAD, or a GeoJSON floor plan
+    Build(BuildArgs),
+    /// Write the REJECT lumps of the maps of a WAD, and leave all else as it is
+    Reject(RejectArgs),
+    /// Say which cells and objects may be seen from a point
+    Query(QueryArgs),
+    /// Write a table as JSON
+    Export(ExportArgs),
+    /// Show the line of sight between two cells, or say why there is none
+    Explain(ExplainArgs),
+    /// Draw a plan with its cells and portals, and what is seen from somewhere, as SVG or PNG
+    Draw(DrawArgs),
+    /// Sum up a table, a WAD or a GeoJSON plan
+    Info(InfoArgs),
+    /// Generate an office floor, build its table, sum it up and draw it
+    Demo(DemoArgs),
+}
+
+/// Number of threads that a command may ask for; 0 stands for one for each core.
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
+    const MOST: usize = 1024;
+    match text.parse::<usize>() {
+        Ok(n) if n <= MOST => Ok(n),
+        _ => Err(format!("not a whole number from 0 to {MOST}")),
+    }
+}

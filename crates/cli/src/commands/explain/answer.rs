@@ -1,0 +1,219 @@
+//! The answer of `explain`, for people and for programs.
+
+use crate::output::count;
+use crate::place::Place;
+use serde::Serialize;
+use sightlines::cells::{CellGraph, CellId, Planar, PortalId};
+use sightlines::geometry::{Point2, Portal2};
+use sightlines::sightline::{Certificate, End, Witness};
+use sightlines::stabtree::{BlockedSequence, Explanation};
+use std::fmt;
+
+/// A place that is in no cell.
+#[derive(Debug, Serialize)]
+pub(crate) struct Outside {
+    answer: &'static str,
+    place: String,
+}
+
+impl Outside {
+    pub(crate) fn new(place: &Place) -> Self {
+        Self { answer: "outside", place: place.to_string() }
+    }
+}
+
+impl fmt::Display for Outside {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "the {} is outside every cell", self.place)
+    }
+}
+
+/// What is told about two cells.
+#[derive(Debug, Serialize)]
+pub(crate) struct Told {
+    from: u32,
+    to: u32,
+    /// What the table says of the two.
+    listed: bool,
+    #[serde(flatten)]
+    reason: Reason,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(tag = "answer", rename_all = "lowercase")]
+enum Reason {
+    /// They are one cell.
+    Same,
+    Visible {
+        portals: Vec<u32>,
+        /// The cells entered, one for each portal.
+        cells: Vec<u32>,
+        /// Where the line crosses each portal, rounded.
+        points: Vec<[f64; 2]>,
+        line: Line,
+    },
+    Hidden {
+        connected: bool,
+        n_blocked: u64,
+        blocked: Vec<Way>,
+    },
+    /// The search was given up.
+    Unknown {
+        max_visits: u64,
+    },
+}
+
+/// The exact coefficients of the line `a x + b y + c = 0`, as fractions.
+#[derive(Debug, Serialize)]
+struct Line {
+    a: String,
+    b: String,
+    c: String,
+}
+
+/// A sequence of portals that no line passes, and the ends that no line separates.
+#[derive(Debug, Serialize)]
+struct Way {
+    portals: Vec<u32>,
+    lefts: Vec<Corner>,
+    rights: Vec<Corner>,
+}
+
+/// An end of a portal.
+#[derive(Debug, Serialize)]
+struct Corner {
+    portal: u32,
+    point: [f64; 2],
+}
+
+impl Told {
+    pub(crate) fn new(
+        graph: &CellGraph<Planar>,
+        [from, to]: [CellId; 2],
+        explanation: &Explanation,
+        listed: bool,
+    ) -> Self {
+        let reason = match explanation {
+            Explanation::Same => Reason::Same,
+            Explanation::Visible { portals, doors, witness } => visible(graph, from, portals, doors, witness),
+            Explanation::Hidden { n_blocked, blocked, connected } => Reason::Hidden {
+                connected: *connected,
+                n_blocked: *n_blocked,
+                blocked: blocked.iter().map(|way| blocked_way(graph, from, way)).collect(),
+            },
+            Explanation::TooMany { limit } => Reason::Unknown { max_visits: *limit },
+        };
+        Self { from: from.0, to: to.0, listed, reason }
+    }
+
+    /// Whether there is a line; what the table says if the search was given up.
+    pub(crate) fn is_visible(&self) -> bool {
+        match self.reason {
+            Reason::Same | Reason::Visible { .. } => true,
+            Reason::Hidden { .. } => false,
+            Reason::Unknown { .. } => self.listed,
+        }
+    }
+}
+
+fn pair(p: Point2) -> [f64; 2] {
+    [p.x, p.y]
+}
+
+/// The cells that are entered by going from `from` through `portals`, and the doors as seen on the way.
+fn walk(graph: &CellGraph<Planar>, from: CellId, portals: &[PortalId]) -> Vec<(CellId, Portal2)> {
+    let mut here = from;
+    let step = |id: &PortalId| {
+        let portal = graph.portal(*id);
+        let forward = portal.cells[0] == here;
+        here = portal.cells[usize::from(forward)];
+        (here, if forward { portal.shape } else { portal.shape.reversed() })
+    };
+    portals.iter().map(step).collect()
+}
+
+fn visible(
+    graph: &CellGraph<Planar>,
+    from: CellId,
+    portals: &[PortalId],
+    doors: &[Portal2],
+    witness: &Witness,
+) -> Reason {
+    let [a, b, c] = witness.coefficients().map(ToString::to_string);
+    Reason::Visible {
+        portals: portals.iter().map(|p| p.0).collect(),
+        cells: walk(graph, from, portals).iter().map(|(cell, _)| cell.0).collect(),
+        points: doors.iter().map(|&door| pair(witness.crossing(door))).collect(),
+        line: Line { a, b, c },
+    }
+}
+
+fn blocked_way(graph: &CellGraph<Planar>, from: CellId, way: &BlockedSequence) -> Way {
+    let walked = walk(graph, from, &way.portals);
+    let corner = |end: &End| {
+        let door = walked[end.portal].1;
+        Corner { portal: way.portals[end.portal].0, point: pair(if end.left { door.left } else { door.right }) }
+    };
+    let Certificate { lefts, rights } = &way.certificate;
+    Way {
+        portals: way.portals.iter().map(|p| p.0).collect(),
+        lefts: lefts.iter().map(corner).collect(),
+        rights: rights.iter().map(corner).collect(),
+    }
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { from, to, .. } = self;
+        match &self.reason {
+            Reason::Same => writeln!(f, "both are in cell {from}, and a cell sees itself")?,
+            Reason::Visible { portals, cells, points, line } => {
+                writeln!(f, "cell {from} sees cell {to} through {}", count(portals.len() as u64, "portal"))?;
+                for ((portal, cell), [x, y]) in portals.iter().zip(cells).zip(points) {
+                    writeln!(f, "  portal {portal} into cell {cell} at ({x}, {y})")?;
+                }
+                let Line { a, b, c } = line;
+                writeln!(f, "along the line a x + b y + c = 0 with")?;
+                writeln!(f, "  a = {a}\n  b = {b}\n  c = {c}")?;
+            }
+            Reason::Hidden { connected: false, .. } => {
+                writeln!(f, "cell {from} does not see cell {to}: no way through portals joins them")?;
+            }
+            Reason::Hidden { n_blocked, blocked, .. } => hidden(f, [*from, *to], *n_blocked, blocked)?,
+            Reason::Unknown { max_visits } => {
+                writeln!(f, "cell {from} and cell {to}: given up after {max_visits} cells; see --max-visits")?;
+            }
+        }
+        match (&self.reason, self.listed) {
+            (Reason::Unknown { .. }, listed) => {
+                writeln!(f, "the table says that they {} each other", if listed { "see" } else { "do not see" })
+            }
+            (Reason::Hidden { .. }, true) => writeln!(f, "the table lists them as visible all the same"),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn hidden(f: &mut fmt::Formatter<'_>, [from, to]: [u32; 2], n_blocked: u64, ways: &[Way]) -> fmt::Result {
+    let n = count(n_blocked, "way");
+    writeln!(f, "cell {from} does not see cell {to}: {n} through portals lead that way, and all are blocked")?;
+    for way in ways {
+        let portals: Vec<String> = way.portals.iter().map(u32::to_string).collect();
+        writeln!(f, "  blocked: portals {}", portals.join(" "))?;
+        writeln!(f, "    a line would have to pass {}", side("on the right of the left end", &way.lefts))?;
+        writeln!(f, "    and {}", side("on the left of the right end", &way.rights))?;
+        writeln!(f, "    but no line separates these points")?;
+    }
+    if n_blocked > ways.len() as u64 && !ways.is_empty() {
+        writeln!(f, "  and {} more", n_blocked - ways.len() as u64)?;
+    }
+    Ok(())
+}
+
+/// One side of a certificate in words.
+fn side(what: &str, corners: &[Corner]) -> String {
+    let corner = |c: &Corner| format!("of portal {} at ({}, {})", c.portal, c.point[0], c.point[1]);
+    let list = corners.iter().map(corner).collect::<Vec<_>>().join(", ");
+    let plural = if corners.len() == 1 { "" } else { "s" };
+    format!("{what}{plural} {list}")
+}

@@ -1,0 +1,49 @@
+//! The part of a line of sight that is drawn: from inside the first cell to inside the last.
+
+use sightlines::geometry::{Point2, Portal2};
+use sightlines::sightline::Witness;
+
+/// Two points on the line, rounded: halfway between the first door and the far side of the first cell,
+/// and likewise in the last cell. `None` for no doors.
+pub(crate) fn between(first: &[Point2], last: &[Point2], doors: &[Portal2], witness: &Witness) -> Option<[Point2; 2]> {
+    let (entry, exit) = (doors.first()?, doors.last()?);
+    let [p, q] = [witness.crossing(*entry), witness.crossing(*exit)];
+    // One door, or two that the line crosses in one point: straight through the door.
+    let across = entry.left - entry.right;
+    let direction = if p == q { Point2::new(across.y, -across.x) } else { q - p };
+    Some([p - direction * (0.5 * reach(first, p, -direction)), q + direction * (0.5 * reach(last, q, direction))])
+}
+
+/// How many times `direction` fits between `p` and where the ray from it leaves the convex polygon.
+fn reach(polygon: &[Point2], p: Point2, direction: Point2) -> f64 {
+    let sides = (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]));
+    let leaves = |(a, b): (Point2, Point2)| {
+        let side = b - a;
+        let speed = side.perp_dot(direction);
+        // Going out means going to the right of the side; how long it takes is distance over speed.
+        (speed < 0.0).then(|| (side.perp_dot(a - p) / speed).max(0.0))
+    };
+    let least = sides.filter_map(leaves).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(x: f64, y: f64) -> [Point2; 4] {
+        [(0., 0.), (2., 0.), (2., 2.), (0., 2.)].map(|(dx, dy)| Point2::new(x + dx, y + dy))
+    }
+
+    #[test]
+    fn lines_reach_into_both_cells() {
+        let door = Portal2 { left: Point2::new(2., 2.), right: Point2::new(2., 0.) };
+        let witness = Witness::through(Point2::new(0., 1.), Point2::new(4., 1.));
+        let line = between(&square(0., 0.), &square(2., 0.), &[door], &witness);
+        assert_eq!(line, Some([Point2::new(1., 1.), Point2::new(3., 1.)]));
+        let far = Portal2 { left: Point2::new(6., 2.), right: Point2::new(6., 0.) };
+        let line = between(&square(0., 0.), &square(6., 0.), &[door, far], &witness);
+        assert_eq!(line, Some([Point2::new(1., 1.), Point2::new(7., 1.)]));
+        assert_eq!(between(&square(0., 0.), &square(2., 0.), &[], &witness), None);
+    }
+}

@@ -1,0 +1,34 @@
+//! `export`: a table as JSON.
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::{input, output};
+use sightlines::report::{export_json, write_json};
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Arguments of `export`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ExportArgs {
+    /// The table
+    #[arg(value_name = "FILE.pvs")]
+    table: PathBuf,
+    /// Where to write; standard output if not given
+    #[arg(short, long, value_name = "OUT.json")]
+    output: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &ExportArgs) -> Result<Answer, CliError> {
+    let table = input::table(&args.table)?;
+    match &args.output {
+        None => output::stdout(|out| {
+            write_json(&table, &mut *out)?;
+            writeln!(out)
+        })?,
+        Some(path) => {
+            output::refuse_same(&args.table, path)?;
+            output::save(path, (export_json(&table) + "\n").as_bytes())?;
+        }
+    }
+    Ok(Answer::Yes)
+}

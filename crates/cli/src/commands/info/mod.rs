@@ -1,0 +1,69 @@
+//! `info`: what a file holds.
+
+mod plan;
+mod wad;
+
+use crate::Answer;
+use crate::commands::build::Facts;
+use crate::error::CliError;
+use crate::input::{self, Kind};
+use crate::output::{self, bytes};
+use serde::Serialize;
+use sightlines::pvs::Table;
+use sightlines::report::Summary;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `info`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct InfoArgs {
+    /// A table, a WAD or a GeoJSON plan
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &InfoArgs) -> Result<Answer, CliError> {
+    let path = &args.file;
+    match input::kind_of(path)? {
+        Some(Kind::Table) => output::print(args.json, &TableInfo::new(path, &input::table(path)?))?,
+        Some(Kind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
+        Some(Kind::Json) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
+        None => return Err(CliError::Kind { path: path.clone(), expected: "a table nor a WAD nor a GeoJSON plan" }),
+    }
+    Ok(Answer::Yes)
+}
+
+/// What a table holds.
+#[derive(Debug, Serialize)]
+struct TableInfo {
+    file: String,
+    kind: &'static str,
+    #[serde(flatten)]
+    summary: Summary,
+    /// How the table says it was made.
+    #[serde(serialize_with = "as_map")]
+    info: Vec<(String, String)>,
+}
+
+fn as_map<S: serde::Serializer>(pairs: &[(String, String)], out: S) -> Result<S::Ok, S::Error> {
+    out.collect_map(pairs.iter().map(|(key, value)| (key, value)))
+}
+
+impl TableInfo {
+    fn new(path: &Path, table: &Table) -> Self {
+        let file = path.display().to_string();
+        Self { file, kind: "table", summary: Summary::of(table), info: table.info().to_vec() }
+    }
+}
+
+impl fmt::Display for TableInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let dimension = self.summary.dimension;
+        writeln!(f, "{}: visibility table in {dimension}D, {}", self.file, bytes(self.summary.n_bytes as u64))?;
+        write!(f, "{}", Facts(&self.summary))?;
+        self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
+    }
+}

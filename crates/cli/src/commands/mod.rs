@@ -1,0 +1,10 @@
+//! The commands, one module for each: its arguments, what it does, what it prints.
+
+pub(crate) mod build;
+pub(crate) mod demo;
+pub(crate) mod draw;
+pub(crate) mod explain;
+pub(crate) mod export;
+pub(crate) mod info;
+pub(crate) mod query;
+pub(crate) mod reject;

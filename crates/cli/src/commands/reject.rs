@@ -1,0 +1,115 @@
+//! `reject`: the REJECT lumps of a WAD.
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::output::{self, count, percent, seconds};
+use crate::progress::Bar;
+use serde::Serialize;
+use sightlines::bake::{MapOutcome, MapStatus, RejectOptions, reject_wad};
+use sightlines::formats::Wad;
+use std::fmt;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Arguments of `reject`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct RejectArgs {
+    /// The WAD to read
+    #[arg(value_name = "IN.wad")]
+    input: PathBuf,
+    /// The WAD to write; may be the one that was read
+    #[arg(short, long, value_name = "OUT.wad")]
+    output: PathBuf,
+    /// Do only this map; may be given several times
+    #[arg(long, value_name = "NAME")]
+    map: Vec<String>,
+    /// Replace tables with effects made by hand too (not symmetric, or a sector rejected from itself)
+    #[arg(long)]
+    force: bool,
+    /// Number of threads; 0 for one for each core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    threads: usize,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, CliError> {
+    let wad = Wad::read(&args.input)?;
+    let bar = Bar::new("which sectors see which", show_progress);
+    let progress = |done, all| bar.set(done, all);
+    let options =
+        RejectOptions { maps: args.map.clone(), force: args.force, threads: args.threads, progress: Some(&progress) };
+    let outcome = reject_wad(&wad, &options);
+    drop(bar);
+    let outcome = outcome.map_err(|source| CliError::Reject { path: args.input.clone(), source })?;
+    output::save(&args.output, &outcome.bytes)?;
+    let maps = outcome.maps.iter().map(Map::from).collect();
+    output::print(args.json, &Outcome { out: args.output.display().to_string(), maps })?;
+    Ok(Answer::Yes)
+}
+
+/// What became of a WAD.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    out: String,
+    maps: Vec<Map>,
+}
+
+/// What became of a map.
+#[derive(Debug, Serialize)]
+struct Map {
+    name: String,
+    /// `written`, `kept` (effects made by hand) or `skipped` (a format that is not read).
+    status: &'static str,
+    n_sectors: u32,
+    /// Ordered pairs; null unless written.
+    n_rejected: Option<u64>,
+    n_disputed_cells: Option<usize>,
+    n_rounded_crossings: Option<usize>,
+    seconds: f64,
+}
+
+impl From<&MapOutcome> for Map {
+    fn from(outcome: &MapOutcome) -> Self {
+        let (status, did) = match outcome.status {
+            MapStatus::Written(did) => ("written", Some(did)),
+            MapStatus::KeptHandMade => ("kept", None),
+            _ => ("skipped", None),
+        };
+        Self {
+            name: outcome.name.to_string(),
+            status,
+            n_sectors: outcome.n_sectors,
+            n_rejected: did.map(|d| d.n_rejected),
+            n_disputed_cells: did.map(|d| d.n_disputed_cells),
+            n_rounded_crossings: did.map(|d| d.n_rounded_crossings),
+            seconds: outcome.time.as_secs_f64(),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for map in &self.maps {
+            writeln!(f, "{map}")?;
+        }
+        let written = self.maps.iter().filter(|map| map.status == "written").count();
+        writeln!(f, "wrote {}: {} of {} built", self.out, written, count(self.maps.len() as u64, "map"))
+    }
+}
+
+impl fmt::Display for Map {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:<8} ", self.name)?;
+        match (self.status, self.n_rejected) {
+            (_, Some(n)) => {
+                let pairs = (f64::from(self.n_sectors) * f64::from(self.n_sectors)).max(1.0);
+                let time = seconds(Duration::from_secs_f64(self.seconds));
+                write!(f, "{:>5} sectors, {:>7} of pairs rejected, {time}", self.n_sectors, percent(n as f64 / pairs))
+            }
+            ("kept", _) => f.write_str("kept: its table has effects made by hand (--force replaces it)"),
+            _ => f.write_str("skipped: its format is not supported"),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! What can go wrong, as one line for the user.
+
+use sightlines::bake::{BakeError, RejectError};
+use sightlines::formats::{ReadError, WriteError};
+use sightlines::pvs::DecodeError;
+use sightlines::report::{DrawError, PngError};
+use std::io;
+use std::path::PathBuf;
+
+/// Why a command failed; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CliError {
+    /// A WAD or GeoJSON file cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A file cannot be opened or read.
+    #[error("{}: {source}", path.display())]
+    Open { path: PathBuf, source: io::Error },
+    /// A file is no sound table.
+    #[error("{}: {source}", path.display())]
+    Table { path: PathBuf, source: DecodeError },
+    /// A file is none of the kinds that the command takes.
+    #[error("{}: neither {expected}", path.display())]
+    Kind { path: PathBuf, expected: &'static str },
+    /// A WAD without maps.
+    #[error("{}: there are no maps in the file", .0.display())]
+    NoMaps(PathBuf),
+    /// A WAD with several maps, and none was named.
+    #[error("{}: there are {} maps in the file; choose one with --map: {}", path.display(), names.len(), list(names))]
+    WhichMap { path: PathBuf, names: Vec<String> },
+    /// A map that is not in the WAD.
+    #[error("{}: there is no map {name} in the file; there are {}", path.display(), list(names))]
+    NoSuchMap { path: PathBuf, name: String, names: Vec<String> },
+    /// `--map` for something without maps.
+    #[error("{}: --map is for WADs, and this is none", .0.display())]
+    MapOfPlan(PathBuf),
+    /// A plan cannot be baked.
+    #[error("{}: {}{source}", path.display(), map.as_ref().map_or(String::new(), |name| format!("map {name}: ")))]
+    Bake { path: PathBuf, map: Option<String>, source: BakeError },
+    /// The REJECT lumps of a WAD cannot be built.
+    #[error("{}: {source}", path.display())]
+    Reject { path: PathBuf, source: RejectError },
+    /// A cell that the table does not have.
+    #[error("{}: there is no cell {cell}: the table has {n_cells} cells", path.display())]
+    NoSuchCell { path: PathBuf, cell: u32, n_cells: usize },
+    /// A point with the wrong number of coordinates.
+    #[error("{}: the table has {dimension} dimensions, but the point has {found} coordinates", path.display())]
+    Dimension { path: PathBuf, dimension: u8, found: usize },
+    /// A table whose cells and portals are not there, so that no lines can be sought.
+    #[error("{}: the table has no polygons and portals to look for lines in", .0.display())]
+    Stripped(PathBuf),
+    /// A picture cannot be drawn.
+    #[error("{}: {source}", path.display())]
+    Draw { path: PathBuf, source: DrawError },
+    /// A picture cannot be rendered.
+    #[error("{}: {source}", path.display())]
+    Png { path: PathBuf, source: PngError },
+    /// A picture whose name does not say which kind it is.
+    #[error("{}: the name of a picture ends in .svg or .png", .0.display())]
+    PictureKind(PathBuf),
+    /// An output file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A folder cannot be made.
+    #[error("{}: cannot be made: {source}", path.display())]
+    Folder { path: PathBuf, source: io::Error },
+    /// An output that would replace the input it is made from.
+    #[error("{}: the output would replace the input", .0.display())]
+    SameFile(PathBuf),
+    /// Standard output cannot be written.
+    #[error("standard output: {0}")]
+    Print(io::Error),
+}
+
+fn list(names: &[String]) -> String {
+    const MOST: usize = 40;
+    let shown = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > MOST { format!("{shown} and {} more", names.len() - MOST) } else { shown }
+}

@@ -1,0 +1,127 @@
+//! Files to read, told apart by their content.
+
+use crate::error::CliError;
+use sightlines::bake::graph_of;
+use sightlines::cells::{CellGraph, Plan, Planar};
+use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
+use sightlines::formats::{ReadError, Wad, geojson};
+use sightlines::pvs::{Table, format};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Wad,
+    Table,
+    Json,
+}
+
+/// Tells what a file is by its first bytes; if they say nothing, by the end of its name.
+pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>, CliError> {
+    let open = |source| CliError::Open { path: path.to_owned(), source };
+    let mut start = Vec::new();
+    File::open(path).and_then(|file| file.take(64).read_to_end(&mut start)).map_err(open)?;
+    let name = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    Ok(kind_of_bytes(&start).or(match name.as_deref() {
+        Some("wad") => Some(Kind::Wad),
+        Some("pvs") => Some(Kind::Table),
+        Some("json" | "geojson") => Some(Kind::Json),
+        _ => None,
+    }))
+}
+
+fn kind_of_bytes(start: &[u8]) -> Option<Kind> {
+    let text = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start).trim_ascii_start();
+    if start.starts_with(b"IWAD") || start.starts_with(b"PWAD") {
+        Some(Kind::Wad)
+    } else if start.starts_with(&format::MAGIC) {
+        Some(Kind::Table)
+    } else if text.starts_with(b"{") {
+        Some(Kind::Json)
+    } else {
+        None
+    }
+}
+
+/// Reads a table.
+pub(crate) fn table(path: &Path) -> Result<Table, CliError> {
+    let open = |source| CliError::Open { path: path.to_owned(), source };
+    let mut bytes = Vec::new();
+    let mut file = File::open(path).map_err(open)?;
+    // What is no table is refused before the rest of a large file is read.
+    file.by_ref().take(format::MAGIC.len() as u64).read_to_end(&mut bytes).map_err(open)?;
+    if bytes == format::MAGIC {
+        file.read_to_end(&mut bytes).map_err(open)?;
+    }
+    Table::from_bytes(&bytes).map_err(|source| CliError::Table { path: path.to_owned(), source })
+}
+
+/// The cell graph that a table holds.
+pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, CliError> {
+    graph_of(table).ok_or_else(|| CliError::Stripped(path.to_owned()))
+}
+
+/// A plan to be built, and the map that it is of.
+#[derive(Debug)]
+pub(crate) struct Scene {
+    pub(crate) plan: Plan,
+    pub(crate) map: Option<String>,
+}
+
+/// Reads a plan: a map of a WAD, or a GeoJSON file.
+pub(crate) fn scene(path: &Path, map: Option<&str>) -> Result<Scene, CliError> {
+    match (kind_of(path)?, map) {
+        (Some(Kind::Wad), map) => doom(path, map),
+        (Some(Kind::Json), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
+        (Some(Kind::Json), None) => Ok(Scene { plan: geojson::read_plan(path)?, map: None }),
+        (Some(Kind::Table) | None, _) => {
+            Err(CliError::Kind { path: path.to_owned(), expected: "a WAD nor a GeoJSON plan" })
+        }
+    }
+}
+
+fn doom(path: &Path, name: Option<&str>) -> Result<Scene, CliError> {
+    let wad = Wad::read(path)?;
+    let maps = list_maps(&wad);
+    let lumps = choose(path, &maps, name)?;
+    let map = DoomMap::parse(&wad, lumps).map_err(|error| ReadError::new(path, error))?;
+    let name = lumps.name().to_string();
+    let bake = |error: sightlines::cells::PlanError| CliError::Bake {
+        path: path.to_owned(),
+        map: Some(name.clone()),
+        source: error.into(),
+    };
+    Ok(Scene { plan: map.plan().map_err(bake)?, map: Some(name) })
+}
+
+/// The map of that name, which is the last one if there are several, as in the engine; or the only one.
+fn choose<'m>(path: &Path, maps: &'m [MapLumps], name: Option<&str>) -> Result<&'m MapLumps, CliError> {
+    let path = || path.to_owned();
+    let names = || maps.iter().map(|map| map.name().to_string()).collect();
+    match (maps, name) {
+        ([], _) => Err(CliError::NoMaps(path())),
+        (_, Some(name)) => maps.iter().rfind(|map| map.name().is(name)).ok_or_else(|| CliError::NoSuchMap {
+            path: path(),
+            name: name.to_owned(),
+            names: names(),
+        }),
+        ([map], None) => Ok(map),
+        (_, None) => Err(CliError::WhichMap { path: path(), names: names() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_told_apart_by_their_content() {
+        assert_eq!(kind_of_bytes(b"PWAD\x01\0\0\0"), Some(Kind::Wad));
+        assert_eq!(kind_of_bytes(b"\x89PVS\r\n\x1a\n\x01"), Some(Kind::Table));
+        assert_eq!(kind_of_bytes(b"\xEF\xBB\xBF \n{\"type\""), Some(Kind::Json));
+        assert_eq!(kind_of_bytes(b"PWA"), None);
+        assert_eq!(kind_of_bytes(b""), None);
+    }
+}
