@@ -197,7 +197,7 @@ fn choose<'m>(all: &'m [MapLumps], names: &[String]) -> Result<Vec<&'m MapLumps>
 type Done = (u32, MapStatus, Option<Vec<u8>>);
 
 fn do_map(wad: &Wad, lumps: &MapLumps, options: &RejectOptions<'_>) -> Result<Done, RejectError> {
-    if lumps.format() == MapFormat::Udmf {
+    if !matches!(lumps.format(), MapFormat::Doom | MapFormat::Hexen) {
         return if options.maps.is_empty() {
             Ok((0, MapStatus::SkippedUnsupported, None))
         } else {

@@ -79,6 +79,18 @@ pub enum PlanError {
         #[source]
         kind: CoordinateError,
     },
+    /// A box of an object has its corners exchanged.
+    #[error("object {object} has a lower corner above its upper one")]
+    Inverted {
+        /// Index of the object.
+        object: usize,
+    },
+    /// A line names a group whose number has no successor.
+    #[error("line {line} names group {}, which is too large", u32::MAX)]
+    Group {
+        /// Index of the line.
+        line: usize,
+    },
     /// More lines than ids.
     #[error("{0} lines are more than a plan can hold")]
     TooMany(usize),
@@ -101,10 +113,16 @@ impl Plan {
             if l.a == l.b {
                 return Err(PlanError::ZeroLength { line, x: l.a.x, y: l.a.y });
             }
+            if [l.left, l.right].contains(&Some(u32::MAX)) {
+                return Err(PlanError::Group { line });
+            }
         }
         for (object, o) in objects.iter_mut().enumerate() {
             for x in o.bounds.min.iter_mut().chain(&mut o.bounds.max) {
                 *x = check_coordinate(*x).map_err(|kind| PlanError::Object { object, kind })?;
+            }
+            if o.bounds.is_empty() {
+                return Err(PlanError::Inverted { object });
             }
         }
         let named = lines.iter().flat_map(|l| [l.left, l.right]).flatten().max();
@@ -173,6 +191,12 @@ mod tests {
         assert_eq!(bad.unwrap_err().to_string(), "line 1: coordinate NaN is not a finite number");
         let bad = Plan::new(vec![line(2., 3., 2., 3.)], vec![]);
         assert_eq!(bad.unwrap_err().to_string(), "line 0 has length zero at (2, 3)");
+        let bad = PlanLine { left: Some(u32::MAX), ..line(0., 0., 1., 0.) };
+        let bad = Plan::new(vec![bad], vec![]).unwrap_err();
+        assert_eq!(bad.to_string(), "line 0 names group 4294967295, which is too large");
+        let bounds = Aabb { min: [1., 0.], max: [0., 0.] };
+        let bad = Plan::new(vec![], vec![PlanObject { name: String::new(), bounds }]).unwrap_err();
+        assert_eq!(bad.to_string(), "object 0 has a lower corner above its upper one");
     }
 
     #[test]

@@ -25,7 +25,7 @@ pub enum Explanation {
         /// The same portals as who walks through them sees them.
         doors: Vec<Portal2>,
         /// A line through all of them.
-        witness: Witness,
+        witness: Box<Witness>,
     },
     /// They do not: every sequence of portals towards the target ends at a blocked one.
     Hidden {
@@ -115,7 +115,7 @@ impl Search<'_> {
 
     fn visible(&self, funnel: &Funnel<Adaptive>) -> Explanation {
         debug_assert!(self.path.last().is_some_and(|e| e.to == self.to));
-        Explanation::Visible { portals: self.portals(), doors: self.doors(), witness: funnel.witness() }
+        Explanation::Visible { portals: self.portals(), doors: self.doors(), witness: Box::new(funnel.witness()) }
     }
 
     fn note_blocked(&mut self) {

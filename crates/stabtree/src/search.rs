@@ -135,7 +135,7 @@ where
 /// Every zone might see every other; bits past the last zone are clear.
 fn might_rows(n: usize) -> Vec<AtomicU64> {
     let width = n.div_ceil(64);
-    let word = |i: usize| if i + 1 == width && n % 64 != 0 { (1u64 << (n % 64)) - 1 } else { u64::MAX };
+    let word = |i: usize| if i + 1 == width { u64::MAX >> (n.wrapping_neg() % 64) } else { u64::MAX };
     (0..n).flat_map(|_| (0..width).map(|i| AtomicU64::new(word(i)))).collect()
 }
 
@@ -242,7 +242,7 @@ impl<'a, S: Stabber> Worker<'a, S> {
             *to = from.load(Relaxed);
         }
         for &exit in &self.shared.network.sources[zone as usize] {
-            self.from_exit(zone, exit);
+            self.search_from(zone, exit);
         }
         self.publish(zone);
     }
@@ -263,7 +263,7 @@ impl<'a, S: Stabber> Worker<'a, S> {
         }
     }
 
-    fn from_exit(&mut self, zone: u32, exit: u32) {
+    fn search_from(&mut self, zone: u32, exit: u32) {
         let shared = self.shared;
         let step = &shared.network.steps[exit as usize];
         self.arena.clear();

@@ -31,6 +31,17 @@ pub struct TooLarge {
     pub max_nodes: usize,
 }
 
+/// A node whose exits are not all tried yet.
+struct Open<U> {
+    node: u32,
+    /// The side it was entered by; `None` at the root.
+    entry_side: Option<u32>,
+    /// Place of the next exit to try.
+    next: usize,
+    /// How to take its portal back; `None` if the sequence began with it.
+    undo: Option<U>,
+}
+
 impl StabTree {
     /// Builds the tree of `root`; `crossing` gives an exit's portal as who crosses it sees it.
     ///
@@ -47,22 +58,20 @@ impl StabTree {
         max_nodes: usize,
     ) -> Result<Self, TooLarge> {
         let mut nodes = vec![StabNode { cell: root, portal: None, parent: None }];
-        // Node, its entry side, next exit, and how to take its portal back.
-        let mut stack: Vec<(u32, Option<u32>, usize, Option<S::Undo>)> = vec![(0, None, 0, None)];
-        while let Some((node, entry_side, next, undo)) = stack.last_mut() {
-            let exits = graph.exits(nodes[*node as usize].cell);
-            let Some(exit) = exits.get(*next) else {
-                if let Some(undo) = undo.take() {
+        let mut stack = vec![Open::<S::Undo> { node: 0, entry_side: None, next: 0, undo: None }];
+        while let Some(open) = stack.last_mut() {
+            let Some(exit) = graph.exits(nodes[open.node as usize].cell).get(open.next) else {
+                if let Some(undo) = open.undo.take() {
                     stabber.undo(undo);
                 }
                 stack.pop();
                 continue;
             };
-            *next += 1;
-            if *entry_side == Some(exit.side) {
+            open.next += 1;
+            if open.entry_side == Some(exit.side) {
                 continue;
             }
-            let undo = if entry_side.is_none() {
+            let undo = if open.entry_side.is_none() {
                 stabber.start(crossing(exit));
                 None
             } else {
@@ -74,10 +83,10 @@ impl StabTree {
             if nodes.len() >= max_nodes {
                 return Err(TooLarge { cell: root, max_nodes });
             }
-            let parent = Some(*node);
+            let parent = Some(open.node);
             let child = nodes.len() as u32;
             nodes.push(StabNode { cell: exit.to, portal: Some(exit.portal), parent });
-            stack.push((child, Some(exit.entry_side), 0, undo));
+            stack.push(Open { node: child, entry_side: Some(exit.entry_side), next: 0, undo });
         }
         Ok(Self { nodes })
     }

@@ -5,7 +5,6 @@
 use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine, Thing};
 use sightlines_formats::wad::{WadBuilder, WadKind};
 use sightlines_formats::{LumpName, Wad};
-pub use sightlines_testkit::mutate::{SplitMix, mutate};
 use std::path::{Path, PathBuf};
 
 /// Two square rooms joined by a two-sided line, sector 0 in the west and sector 1 in the east, with a
