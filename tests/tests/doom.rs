@@ -1,8 +1,9 @@
 //! REJECT tables of real Doom maps against what an independent program saw.
 
-use sightlines::bake::reject::{RejectOptions, reject_wad};
+use sightlines::bake::reject::{RejectOptions, reject_table, reject_wad};
 use sightlines::formats::doom::{DoomMap, list_maps};
 use sightlines::formats::{RejectTable, Wad};
+use sightlines_testkit::sampled_sector_visibility;
 use sightlines_tests::{Comparison, data_folder, files};
 use std::path::Path;
 
@@ -49,6 +50,41 @@ fn real_maps_give_symmetric_tables_with_any_number_of_threads() {
         let table = RejectTable::from_bytes(n, &one).expect("the right length");
         assert!(!table.has_hand_made_effects(), "{}", path.display());
     }
+}
+
+/// All 100 maps of Freedoom: no pair that a random chord joins is rejected, and the tables are within
+/// a few pairs of the shipped ones, which another builder made.
+#[test]
+fn freedoom_maps_reject_nothing_that_chords_join() {
+    const CHORDS: usize = 3_000;
+    let Some(folder) = data_folder("SIGHTLINES_FREEDOOM") else { return };
+    let (mut n_maps, mut n_seen, mut n_pairs, mut n_different) = (0, 0u64, 0u64, 0u64);
+    for name in ["freedoom1.wad", "freedoom2.wad", "freedm.wad"] {
+        let wad = Wad::read(folder.join(name)).unwrap_or_else(|e| panic!("{e}"));
+        for lumps in list_maps(&wad) {
+            let map = DoomMap::parse(&wad, &lumps).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let (table, _) = reject_table(&map, &RejectOptions::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let plan = map.plan().expect("a plan");
+            let seen = sampled_sector_visibility(&plan, n_maps, CHORDS);
+            for (a, b) in
+                (0..).zip(&seen).flat_map(|(a, row)| (0..).zip(row).filter(|(_, v)| **v).map(move |(b, _)| (a, b)))
+            {
+                assert!(!table.get(a, b), "{name} {}: sector {a} sees {b}", map.name());
+                n_seen += 1;
+            }
+            let shipped = map.reject().and_then(|b| RejectTable::from_bytes(map.n_sectors(), b).ok());
+            let shipped = shipped.unwrap_or_else(|| panic!("{name} {}: no REJECT", map.name()));
+            n_pairs += u64::from(map.n_sectors()).pow(2);
+            let differing = shipped.as_bytes().iter().zip(table.as_bytes()).map(|(x, y)| (x ^ y).count_ones());
+            n_different += u64::from(differing.sum::<u32>());
+            n_maps += 1;
+        }
+    }
+    assert_eq!(n_maps, 100);
+    assert!(n_seen > 30_000, "{n_seen} pairs seen");
+    // The other builder is known to be wrong about 598 entries and loose by at most 2,601.
+    assert!(n_different < 598 + 2_601, "{n_different} of {n_pairs} entries differ");
+    eprintln!("{n_maps} maps: {n_seen} entries seen, {n_different} of {n_pairs} differ from the shipped tables");
 }
 
 /// Known traps: a sector all of whose lines have it on both sides, and a slit of 0.06 units.
