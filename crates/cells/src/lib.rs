@@ -6,12 +6,16 @@
 //! Invariants: ids are dense from 0; a portal joins two different cells; a cell's exits are ordered by
 //! side, then portal; every cell lies on the left of its own sides.
 
+pub mod axial;
 pub mod graph;
 pub mod plan;
 pub mod planar;
+pub mod scene;
 
+pub use axial::{Axial, BoxCell};
 pub use graph::{CellGraph, Exit, Portal, PortalId, Space};
 pub use plan::{LineId, Plan, PlanError, PlanLine, PlanObject};
 pub use planar::{ConvexCell2, Planar, WellFormedError};
-pub use sightlines_geometry::Portal2;
+pub use scene::{Point3, Scene, SceneError, SceneObject};
+pub use sightlines_geometry::{AxialDoor, Portal2};
 pub use sightlines_pvs::CellId;

@@ -8,6 +8,7 @@
 
 pub mod bounds;
 pub mod coordinate;
+pub mod door;
 pub mod orient;
 pub mod polygon;
 pub mod portal;
@@ -15,6 +16,7 @@ pub mod segment;
 
 pub use bounds::Aabb;
 pub use coordinate::{CoordinateError, check_coordinate};
+pub use door::AxialDoor;
 pub use orient::{Adaptive, Orient2d, SmallGrid, along, orient2d};
 pub use polygon::{is_convex_ccw, polygon_contains, signed_area};
 pub use portal::Portal2;
