@@ -2,7 +2,7 @@
 //!
 //! The lines of a plan are cut where they meet ([`noding`]), a constrained Delaunay triangulation (the
 //! `spade` crate) fills the plane between them, the groups that lines name are spread over the regions
-//! they bound ([`regions`]), and triangles are merged into convex cells ([`merge`]).
+//! they bound (`regions`), and triangles are merged into convex cells (`merge`).
 //!
 //! Owns: the way from a [`Plan`] to a [`CellGraph`] by triangulation.
 //! Does not know: sightlines, tables, files, the k-d tree.
