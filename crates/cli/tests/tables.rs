@@ -130,7 +130,7 @@ fn export_is_the_table_as_the_contract_says() {
             json!({"id": i, "min": cell.min[..2], "max": cell.max[..2], "polygon": cell.polygon, "group": cell.group});
         assert_eq!(json["cells"][i], expected);
         assert_eq!(json["visible"][i], json!(table.visible(CellId(i as u32)).map(|c| c.0).collect::<Vec<_>>()));
-        assert_eq!(json["cell_objects"][i], json!(table.objects_of(CellId(i as u32))));
+        assert_eq!(json["cell_objects"][i], json!(table.visible_objects(CellId(i as u32))));
     }
     for (i, portal) in table.portals().iter().enumerate() {
         let points: Vec<_> = portal.points.iter().map(|p| &p[..2]).collect();

@@ -25,7 +25,7 @@ pub fn export_json(table: &Table) -> String {
 ///  "portals":[{"id":0,"cells":[0,1],"points":[[4.0,2.0],[4.0,1.0]]}],
 ///  "visible":[[0,1],[0,1]],
 ///  "objects":[{"id":0,"name":"desk","min":[1.0,1.0],"max":[2.0,2.0]}],
-///  "cell_objects":[[0],[]]}
+///  "cell_objects":[[0],[0]]}
 /// ```
 ///
 /// Ids are dense from 0 and equal to the place in their list. Points have `dimension` coordinates, in
@@ -33,7 +33,8 @@ pub fn export_json(table: &Table) -> String {
 /// planar cell, counter-clockwise (the corners of its box if it has no others); empty in space.
 /// `group`: a sector or the like, or null. `points`: the left end, then the right end, as seen from the
 /// first of the two cells; a polygon in space. `visible`: for each cell the ids that it may see,
-/// ascending, itself included. `cell_objects`: for each cell the objects that touch it, ascending.
+/// ascending, itself included. `cell_objects`: for each cell the objects that it may see,
+/// ascending.
 ///
 /// # Errors
 /// What `writer` says.
@@ -133,5 +134,5 @@ fn objects<S: Serializer>(table: &Table, out: S) -> Result<S::Ok, S::Error> {
 }
 
 fn cell_objects<S: Serializer>(table: &Table, out: S) -> Result<S::Ok, S::Error> {
-    out.collect_seq((0u32..).take(table.n_cells()).map(|cell| table.objects_of(CellId(cell))))
+    out.collect_seq((0u32..).take(table.n_cells()).map(|cell| table.visible_objects(CellId(cell))))
 }

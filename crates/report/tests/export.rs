@@ -15,7 +15,7 @@ fn the_export_has_the_keys_of_the_contract_in_their_order() {
         r#""portals":[{"id":0,"cells":[0,1],"points":[[-1.0,2.0],[0.1,2.0]]}],"#,
         r#""visible":[[0,1],[0,1],[2]],"#,
         r#""objects":[{"id":0,"name":"de\"sk","min":[-2.0,0.5],"max":[-1.0,1.0]},"#,
-        r#"{"id":1,"name":"safe","min":[4.5,3.5],"max":[4.5,3.5]}],"cell_objects":[[0],[],[1]]}"#,
+        r#"{"id":1,"name":"safe","min":[4.5,3.5],"max":[4.5,3.5]}],"cell_objects":[[0],[0],[1]]}"#,
     );
     assert_eq!(export_json(&rooms(false)), expected);
     assert_ne!(export_json(&rooms(true)), expected, "one more pair shows");
