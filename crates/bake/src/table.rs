@@ -55,6 +55,7 @@ pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOption
         rows,
         objects: options.objects.iter().map(record).collect(),
         cell_objects: cell_objects(graph.cells(), options.objects),
+        objects_seen: None,
         locator: Locator::build(&bounds, 2),
         cells,
         info,

@@ -19,3 +19,7 @@ pub use planar::{ConvexCell2, Planar, WellFormedError};
 pub use scene::{Point3, Scene, SceneError, SceneObject};
 pub use sightlines_geometry::{AxialDoor, Portal2};
 pub use sightlines_pvs::CellId;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -22,5 +22,9 @@ pub use polygon::{is_convex_ccw, polygon_contains, signed_area};
 pub use portal::Portal2;
 pub use segment::Segment2;
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;
+
 /// A point of the plane in scene units.
 pub type Point2 = glam::DVec2;

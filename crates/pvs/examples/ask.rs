@@ -33,6 +33,7 @@ fn house() -> TableParts {
     }
     TableParts {
         dimension: 2,
+        objects_seen: None,
         locator: Locator::build(&bounds, 2),
         cells,
         portals: vec![door(0, 0.0), door(1, 3.0), door(2, 0.0)],

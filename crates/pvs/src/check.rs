@@ -1,7 +1,7 @@
 //! What must be true of a table's parts.
 
 use crate::parts::{CellRecord, ObjectRecord, PortalRecord, TableParts};
-use crate::{CellId, LocatorError, side};
+use crate::{BitMatrix, CellId, LocatorError, side};
 
 /// A kind of thing with coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -152,6 +152,29 @@ pub enum TableError {
         /// The object.
         object: u32,
     },
+    /// Rows of objects that are not one row for each cell and one column for each object.
+    #[error("{n_rows} rows of {n_cols} objects do not fit {n_cells} cells and {n_objects} objects")]
+    SeenShape {
+        /// Number of rows.
+        n_rows: usize,
+        /// Number of columns.
+        n_cols: usize,
+        /// Number of cells.
+        n_cells: usize,
+        /// Number of objects.
+        n_objects: usize,
+    },
+    /// A row of objects with a one past the last object.
+    #[error("the row of objects of cell {0} has a one past the last object")]
+    SeenTail(CellId),
+    /// A cell that does not see an object that touches it.
+    #[error("cell {cell} does not see object {object}, which touches it")]
+    Unseen {
+        /// The cell.
+        cell: CellId,
+        /// The object.
+        object: u32,
+    },
     /// The locator is wrong.
     #[error(transparent)]
     Locator(#[from] LocatorError),
@@ -175,6 +198,7 @@ impl TableParts {
         self.portals.iter().enumerate().try_for_each(|(i, portal)| self.check_portal(i, portal))?;
         self.check_rows()?;
         self.check_objects()?;
+        self.objects_seen.as_ref().map_or(Ok(()), |seen| self.check_seen(seen))?;
         self.locator.check(&self.cell_bounds(), self.dimension)?;
         match self.info.windows(2).position(|pair| pair[0].0 >= pair[1].0) {
             Some(i) => Err(TableError::InfoOrder(i + 1)),
@@ -262,6 +286,22 @@ impl TableParts {
             return Err(TableError::NotReflexive(id(cell)));
         }
         rows.first_asymmetry().map_or(Ok(()), |(a, b)| Err(TableError::NotSymmetric([id(a), id(b)])))
+    }
+
+    fn check_seen(&self, seen: &BitMatrix) -> Result<(), TableError> {
+        let (n_cells, n_objects) = (self.cells.len(), self.objects.len());
+        if (seen.n_rows(), seen.n_cols()) != (n_cells, n_objects) {
+            return Err(TableError::SeenShape { n_rows: seen.n_rows(), n_cols: seen.n_cols(), n_cells, n_objects });
+        }
+        if let Some(row) = seen.first_stray() {
+            return Err(TableError::SeenTail(CellId(row as u32)));
+        }
+        for (cell, list) in (0u32..).map(CellId).zip(&self.cell_objects) {
+            if let Some(&object) = list.iter().find(|&&o| !seen.get(cell.idx(), o as usize)) {
+                return Err(TableError::Unseen { cell, object });
+            }
+        }
+        Ok(())
     }
 
     fn check_objects(&self) -> Result<(), TableError> {

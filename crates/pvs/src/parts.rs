@@ -54,6 +54,9 @@ pub struct TableParts {
     pub objects: Vec<ObjectRecord>,
     /// For each cell, the objects that touch it, ascending.
     pub cell_objects: Vec<Vec<u32>>,
+    /// Bit `o` of row `i`: cell `i` may see object `o`. Cells by objects; each cell sees the objects that
+    /// touch it. `None`: a cell sees the objects that touch any cell that it sees.
+    pub objects_seen: Option<BitMatrix>,
     /// Finds the cells at a point; complete for the cells' boxes.
     pub locator: Locator,
     /// Free keys and values (source, method, options), with strictly ascending keys.

@@ -120,12 +120,27 @@ impl Table {
         &self.parts.cell_objects[cell.idx()]
     }
 
-    /// The objects that touch a cell that `cell` may see, ascending.
+    /// The objects that `cell` may see, ascending.
     ///
     /// # Panics
     /// If the table has no such cell.
     pub fn visible_objects(&self, cell: CellId) -> Vec<u32> {
-        self.objects_in_row(self.row(cell))
+        match &self.parts.objects_seen {
+            Some(seen) => seen.iter_ones(cell.idx()).map(|o| o as u32).collect(),
+            None => self.objects_in_row(self.row(cell)),
+        }
+    }
+
+    /// The objects that a viewer at `p` may see, ascending: the union over all cells that contain `p`.
+    /// Empty if `p` is outside every cell.
+    ///
+    /// # Panics
+    /// As [`Table::locate`].
+    pub fn visible_objects_from(&self, p: &[f64]) -> Vec<u32> {
+        let mut objects: Vec<u32> = self.locate(p).into_iter().flat_map(|cell| self.visible_objects(cell)).collect();
+        objects.sort_unstable();
+        objects.dedup();
+        objects
     }
 
     /// The objects that touch a cell of the set, ascending.

@@ -22,6 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let table = Table::new(TableParts {
         dimension: 2,
+        objects_seen: None,
         locator: Locator::build(&bounds, 2),
         rows,
         cells,

@@ -169,8 +169,9 @@ impl<'a> Picture<'a> {
             View::Plan => (Vec::new(), None),
             View::Cell(cell) => (vec![cell], Some(Seen::new(table, table.visible(cell), table.visible_objects(cell)))),
             View::Eye(eye) => {
-                let seen = table.visible_from(&[eye.x, eye.y]);
-                (table.locate(&[eye.x, eye.y]), Some(Seen::new(table, seen.iter(), table.objects_in(&seen))))
+                let eye = [eye.x, eye.y];
+                let objects = table.visible_objects_from(&eye);
+                (table.locate(&eye), Some(Seen::new(table, table.visible_from(&eye).iter(), objects)))
             }
         };
         let strokes = Strokes::for_cells(cell, f64::from(options.size));

@@ -9,7 +9,7 @@
 /// 1. exact: `push` answers `None` if and only if no open set of lines passes the sequence so far and
 ///    the new portal, for sequences that come from chains of convex cells;
 /// 2. after a `None`, and after the `undo` of a push, the state is as it was before;
-/// 3. `may_meet` and `in_front` never answer `false` for something that a line of the sequence meets.
+/// 3. `may_meet`, `meets` and `in_front` never answer `false` for something that a line of the sequence meets.
 pub trait Stabber: Clone + Send {
     /// An oriented portal.
     type Portal: Copy;
@@ -29,6 +29,12 @@ pub trait Stabber: Clone + Send {
 
     /// Whether a line through the sequence may meet something inside `bounds` beyond its last portal.
     fn may_meet(&self, bounds: &Self::Bounds) -> bool;
+
+    /// Whether an open set of lines through the sequence meets the inside of `bounds`, which lies in the
+    /// cell behind the last portal. May err towards `true`; costs more than `may_meet`.
+    fn meets(&mut self, bounds: &Self::Bounds) -> bool {
+        self.may_meet(bounds)
+    }
 
     /// Whether something inside `bounds` may lie beyond `portal`, for who crosses it.
     fn in_front(&self, portal: Self::Portal, bounds: &Self::Bounds) -> bool;

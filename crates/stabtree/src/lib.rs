@@ -15,10 +15,10 @@ mod search;
 mod tree;
 mod zones;
 
-pub use chords::shoot_chords;
+pub use chords::{shoot_axial_chords, shoot_chords};
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
-pub use search::{Progress, SearchOptions, SearchSummary, visible_zones};
+pub use search::{Known, Progress, SearchOptions, SearchSummary, Seen, visible_zones};
 pub use tree::{StabNode, StabTree, TooLarge};
 pub use zones::Zones;
 
@@ -39,9 +39,11 @@ struct ReadmeDoctests;
 ///
 /// Cost: see [`visible_zones`].
 pub fn see_plan(graph: &CellGraph<Planar>, zones: &Zones, options: &SearchOptions<'_>) -> (BitMatrix, SearchSummary) {
-    let known = shoot_chords(graph, zones, options.chords);
-    match graph.small_grid() {
-        Some(grid) => visible_zones(&Network::planar(graph, zones), &Funnel::new(grid), known, options),
-        None => visible_zones(&Network::planar(graph, zones), &Funnel::new(Adaptive), known, options),
-    }
+    let known = Known { visible: shoot_chords(graph, zones, options.chords), possible: None };
+    let network = Network::planar(graph, zones);
+    let seen = match graph.small_grid() {
+        Some(grid) => visible_zones(&network, &Funnel::new(grid), &known, options),
+        None => visible_zones(&network, &Funnel::new(Adaptive), &known, options),
+    };
+    (seen.zones, seen.summary)
 }

@@ -1,7 +1,7 @@
 //! A graph as the search walks it: every exit with all that a step needs, in one array.
 
 use crate::zones::Zones;
-use sightlines_cells::{CellGraph, Planar};
+use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Exit, Planar, Space};
 use sightlines_geometry::{Aabb, Portal2};
 
 /// No zone.
@@ -22,8 +22,36 @@ pub(crate) struct Step<P> {
     pub(crate) zone: u32,
 }
 
-/// Cells, exits and zones, ready for [`crate::visible_zones`]. `P` is the stabber's portal, `B` what it
-/// takes for bounds.
+/// Objects, and where they are.
+#[derive(Debug, Clone)]
+pub(crate) struct Objects<B> {
+    /// What each object lies inside of.
+    pub(crate) bounds: Vec<B>,
+    /// For each cell, the objects that touch it and the part of their bounds inside it.
+    entries: Vec<(u32, B)>,
+    /// Entries of cell `c` are `entries[first[c]..first[c + 1]]`; empty if there are no objects.
+    first: Vec<u32>,
+    /// Objects that touch a cell of each zone.
+    pub(crate) of_zone: Vec<Vec<u32>>,
+}
+
+impl<B> Objects<B> {
+    fn none(n_zones: usize) -> Self {
+        Self { bounds: Vec::new(), entries: Vec::new(), first: Vec::new(), of_zone: vec![Vec::new(); n_zones] }
+    }
+
+    /// The objects of one cell.
+    #[inline]
+    pub(crate) fn in_cell(&self, cell: u32) -> &[(u32, B)] {
+        match self.first.get(cell as usize..cell as usize + 2) {
+            Some(&[from, to]) => &self.entries[from as usize..to as usize],
+            _ => &[],
+        }
+    }
+}
+
+/// Cells, exits, zones and objects, ready for [`crate::visible_zones`]. `P` is the stabber's portal, `B`
+/// what it takes for bounds.
 #[derive(Debug, Clone)]
 pub struct Network<P, B> {
     pub(crate) steps: Vec<Step<P>>,
@@ -33,6 +61,7 @@ pub struct Network<P, B> {
     pub(crate) sources: Vec<Vec<u32>>,
     /// What each zone lies inside of.
     pub(crate) bounds: Vec<B>,
+    pub(crate) objects: Objects<B>,
 }
 
 impl<P, B> Network<P, B> {
@@ -40,11 +69,36 @@ impl<P, B> Network<P, B> {
     pub fn n_zones(&self) -> usize {
         self.bounds.len()
     }
+
+    /// Number of objects.
+    pub fn n_objects(&self) -> usize {
+        self.objects.bounds.len()
+    }
+
+    /// Words of a row with a bit for each zone and, from a whole word on, one for each object.
+    pub(crate) fn row_width(&self) -> usize {
+        self.n_zones().div_ceil(64) + self.n_objects().div_ceil(64)
+    }
+
+    /// The bounds of the target of a bit of such a row.
+    #[inline]
+    pub(crate) fn target(&self, zone_width: usize, word: usize, bit: usize) -> &B {
+        if word < zone_width {
+            &self.bounds[word * 64 + bit]
+        } else {
+            &self.objects.bounds[(word - zone_width) * 64 + bit]
+        }
+    }
 }
 
-impl Network<Portal2, Aabb<2>> {
-    /// The network of a planar graph.
-    pub fn planar(graph: &CellGraph<Planar>, zones: &Zones) -> Self {
+impl<P, const D: usize> Network<P, Aabb<D>> {
+    /// The network of a graph whose exits are crossed as `crossing` says and whose cells have `extent`.
+    fn of<S: Space>(
+        graph: &CellGraph<S>,
+        zones: &Zones,
+        crossing: impl Fn(&Exit) -> P,
+        extent: impl Fn(CellId) -> Aabb<D>,
+    ) -> Self {
         let mut bounds = vec![Aabb::EMPTY; zones.n_zones()];
         let mut sources = vec![Vec::new(); zones.n_zones()];
         let mut steps = Vec::with_capacity(graph.all_exits().len());
@@ -52,8 +106,8 @@ impl Network<Portal2, Aabb<2>> {
         for id in graph.cell_ids() {
             let own = zones.of(id);
             if let Some(zone) = own {
-                let corners = graph.cell(id).polygon.iter();
-                bounds[zone as usize] = corners.fold(bounds[zone as usize], |b: Aabb<2>, p| b.with([p.x, p.y]));
+                let (all, cell) = (bounds[zone as usize], extent(id));
+                bounds[zone as usize] = Aabb::<D>::with(Aabb::<D>::with(all, cell.min), cell.max);
             }
             for exit in graph.exits(id) {
                 let zone = zones.of(exit.to);
@@ -61,7 +115,7 @@ impl Network<Portal2, Aabb<2>> {
                     sources[own as usize].push(steps.len() as u32);
                 }
                 steps.push(Step {
-                    portal: graph.crossing(exit),
+                    portal: crossing(exit),
                     side: exit.side,
                     to: exit.to.0,
                     entry_side: exit.entry_side,
@@ -70,6 +124,49 @@ impl Network<Portal2, Aabb<2>> {
             }
             first.push(steps.len() as u32);
         }
-        Self { steps, first, sources, bounds }
+        Self { steps, first, sources, bounds, objects: Objects::none(zones.n_zones()) }
     }
+}
+
+impl Network<Portal2, Aabb<2>> {
+    /// The network of a planar graph, without objects.
+    pub fn planar(graph: &CellGraph<Planar>, zones: &Zones) -> Self {
+        Self::of(graph, zones, |exit| graph.crossing(exit), |id| graph.cell(id).bounds())
+    }
+}
+
+impl Network<AxialDoor, Aabb<3>> {
+    /// The network of boxes in space, with objects by their boxes. An object is in every cell that its
+    /// closed box touches, with the part of its box inside the cell.
+    pub fn axial(graph: &CellGraph<Axial>, zones: &Zones, objects: &[Aabb<3>]) -> Self {
+        let extent = |id: CellId| graph.cell(id).bounds;
+        let mut network = Self::of(graph, zones, |exit| graph.door(exit), extent);
+        let mut first = vec![0];
+        for id in graph.cell_ids() {
+            let cell = extent(id);
+            for (object, bounds) in (0u32..).zip(objects) {
+                let part = common(&cell, bounds);
+                if !part.is_empty() {
+                    network.objects.entries.push((object, part));
+                    if let Some(zone) = zones.of(id) {
+                        network.objects.of_zone[zone as usize].push(object);
+                    }
+                }
+            }
+            first.push(network.objects.entries.len() as u32);
+        }
+        network.objects.first = first;
+        network.objects.bounds = objects.to_vec();
+        network
+    }
+}
+
+/// What two boxes have in common; empty if they do not touch.
+fn common(a: &Aabb<3>, b: &Aabb<3>) -> Aabb<3> {
+    let mut part = *a;
+    for k in 0..3 {
+        part.min[k] = a.min[k].max(b.min[k]);
+        part.max[k] = a.max[k].min(b.max[k]);
+    }
+    part
 }

@@ -63,44 +63,63 @@ const FEW: u32 = 16;
 /// Largest table of "what lies in front of which exit", in words: 64 MiB.
 const MAX_FRONT_WORDS: usize = 8 << 20;
 
-/// Finds which zones see each other.
+/// What is known before a search. It changes no answer, only the cost.
+#[derive(Debug, Clone)]
+pub struct Known {
+    /// Zones by zones: pairs that see each other; a subset of the truth, at least the diagonal.
+    pub visible: BitMatrix,
+    /// Zones by zones, and zones by objects: all pairs but some that do not see each other; supersets of
+    /// the truth, such as the answer for larger portals.
+    pub possible: Option<(BitMatrix, BitMatrix)>,
+}
+
+impl Known {
+    /// Nothing but that every zone sees itself.
+    pub fn nothing(n_zones: usize) -> Self {
+        Self { visible: BitMatrix::identity(n_zones), possible: None }
+    }
+}
+
+/// The answer of a search.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Seen {
+    /// Zones by zones: symmetric, with the diagonal set.
+    pub zones: BitMatrix,
+    /// Zones by objects: which objects are seen from which zones.
+    pub objects: BitMatrix,
+    /// What it took.
+    pub summary: SearchSummary,
+}
+
+/// Finds which zones see each other, and which objects.
 ///
-/// * `network`: cells, exits, zones.
+/// * `network`: cells, exits, zones, objects.
 /// * `stabber`: cloned for each thread; its state does not matter.
-/// * `known`: zones by zones, pairs known to be visible; may be the identity. It must be a subset of
-///   what is visible.
-/// * Returns a symmetric matrix with the diagonal set.
 ///
 /// Exact if the stabber is. Cost: output-sensitive in practice and exponential at worst, as every
 /// search over portal sequences; memory is a few bit matrices.
 ///
 /// # Panics
-/// If `known` is not zones by zones.
+/// If a matrix of `known` is not about as many zones and objects as the network.
 pub fn visible_zones<S>(
     network: &Network<S::Portal, S::Bounds>,
     stabber: &S,
-    known: BitMatrix,
+    known: &Known,
     options: &SearchOptions<'_>,
-) -> (BitMatrix, SearchSummary)
+) -> Seen
 where
     S: Stabber,
     S::Portal: Sync,
     S::Bounds: Sync,
 {
     let n = network.n_zones();
-    assert!(known.n_rows() == n && known.n_cols() == n, "known pairs are zones by zones");
+    let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == n && m.n_cols() == n_cols;
+    let possible_fits = known.possible.iter().all(|(z, o)| fits(z, n) && fits(o, network.n_objects()));
+    assert!(fits(&known.visible, n) && possible_fits, "what is known is about these zones and objects");
     let mut order: Vec<u32> = (0..n as u32).collect();
     // Zones that see little are finished quickly and then cut the searches of those that see much.
-    order.sort_by_key(|&z| (known.count_row(z as usize), z));
-    let shared = Shared {
-        network,
-        width: n.div_ceil(64),
-        front: Front::build(network, stabber),
-        seen: (0..n).flat_map(|z| known.row(z).iter().map(|&w| AtomicU64::new(w)).collect::<Vec<_>>()).collect(),
-        might: might_rows(n),
-        next: AtomicUsize::new(0),
-        done: AtomicUsize::new(0),
-    };
+    order.sort_by_key(|&z| (known.visible.count_row(z as usize), z));
+    let shared = Shared::new(network, stabber, known);
     let work = |stabber: S| {
         let mut worker = Worker::new(&shared, stabber);
         while let Some(&zone) = order.get(shared.next.fetch_add(1, Relaxed)) {
@@ -129,14 +148,14 @@ where
             })
         })
     };
-    (shared.into_matrix(n), summary)
+    let (zones, objects) = shared.into_matrices();
+    Seen { zones, objects, summary }
 }
 
-/// Every zone might see every other; bits past the last zone are clear.
-fn might_rows(n: usize) -> Vec<AtomicU64> {
+/// A row of ones, with the bits past the last one clear.
+fn all_ones(n: usize) -> impl Iterator<Item = u64> {
     let width = n.div_ceil(64);
-    let word = |i: usize| if i + 1 == width { u64::MAX >> (n.wrapping_neg() % 64) } else { u64::MAX };
-    (0..n).flat_map(|_| (0..width).map(|i| AtomicU64::new(word(i)))).collect()
+    (0..width).map(move |i| if i + 1 == width { u64::MAX >> (n.wrapping_neg() % 64) } else { u64::MAX })
 }
 
 /// The places of the ones of a word, ascending.
@@ -157,7 +176,7 @@ struct Front {
 
 impl Front {
     fn build<S: Stabber>(network: &Network<S::Portal, S::Bounds>, stabber: &S) -> Self {
-        let width = network.n_zones().div_ceil(64);
+        let width = network.row_width();
         let mut front = Self { row_of: vec![0; network.steps.len()], rows: vec![u64::MAX; width] };
         let n_rows: usize = network.sources.iter().map(Vec::len).sum();
         if (n_rows + 1) * width > MAX_FRONT_WORDS {
@@ -166,40 +185,70 @@ impl Front {
         for &exit in network.sources.iter().flatten() {
             let portal = network.steps[exit as usize].portal;
             front.row_of[exit as usize] = (front.rows.len() / width) as u32;
-            let words = network.bounds.chunks(64).map(|chunk| {
+            let word = |chunk: &[S::Bounds]| {
                 let bit = |(i, b)| u64::from(stabber.in_front(portal, b)) << i;
                 chunk.iter().enumerate().map(bit).fold(0, |w, b| w | b)
-            });
-            front.rows.extend(words);
+            };
+            front.rows.extend(network.bounds.chunks(64).chain(network.objects.bounds.chunks(64)).map(word));
         }
         front
     }
 }
 
-/// What all threads see.
+/// What all threads see. Rows have a bit for each zone and, from the next whole word on, one for each
+/// object.
 struct Shared<'a, P, B> {
     network: &'a Network<P, B>,
     /// Words of a row.
     width: usize,
+    /// Words of the part of a row that is about zones.
+    zone_width: usize,
     front: Front,
-    /// Pairs found visible.
+    /// Zones and objects found visible.
     seen: Vec<AtomicU64>,
-    /// Pairs not yet proven hidden.
+    /// Zones and objects not yet proven hidden.
     might: Vec<AtomicU64>,
     next: AtomicUsize,
     done: AtomicUsize,
 }
 
-impl<P, B> Shared<'_, P, B> {
-    fn into_matrix(self, n: usize) -> BitMatrix {
-        let mut matrix = BitMatrix::new(n, n);
+impl<'a, P: Copy, B> Shared<'a, P, B> {
+    fn new<S>(network: &'a Network<P, B>, stabber: &S, known: &Known) -> Self
+    where
+        S: Stabber<Portal = P, Bounds = B>,
+    {
+        let (n, n_objects) = (network.n_zones(), network.n_objects());
+        let (width, zone_width) = (network.row_width(), n.div_ceil(64));
+        let (mut seen, mut might) = (Vec::with_capacity(n * width), Vec::with_capacity(n * width));
         for zone in 0..n {
-            let words = &self.seen[zone * self.width..(zone + 1) * self.width];
-            for (to, from) in matrix.row_mut(zone).iter_mut().zip(words) {
+            seen.extend(known.visible.row(zone).iter().map(|&w| AtomicU64::new(w)));
+            seen.extend((zone_width..width).map(|_| AtomicU64::new(0)));
+            match &known.possible {
+                Some((zones, objects)) => {
+                    let words = zones.row(zone).iter().chain(objects.row(zone));
+                    might.extend(words.map(|&w| AtomicU64::new(w)));
+                }
+                None => might.extend(all_ones(n).chain(all_ones(n_objects)).map(AtomicU64::new)),
+            }
+        }
+        let front = Front::build(network, stabber);
+        Self { network, width, zone_width, front, seen, might, next: AtomicUsize::new(0), done: AtomicUsize::new(0) }
+    }
+
+    fn into_matrices(self) -> (BitMatrix, BitMatrix) {
+        let n = self.network.n_zones();
+        let mut zones = BitMatrix::new(n, n);
+        let mut objects = BitMatrix::new(n, self.network.n_objects());
+        for (zone, row) in self.seen.chunks(self.width.max(1)).enumerate() {
+            let (of_zones, of_objects) = row.split_at(self.zone_width);
+            for (to, from) in zones.row_mut(zone).iter_mut().zip(of_zones) {
+                *to = from.load(Relaxed);
+            }
+            for (to, from) in objects.row_mut(zone).iter_mut().zip(of_objects) {
                 *to = from.load(Relaxed);
             }
         }
-        matrix
+        (zones, objects)
     }
 }
 
@@ -241,6 +290,9 @@ impl<'a, S: Stabber> Worker<'a, S> {
         for (to, from) in self.seen.iter_mut().zip(&self.shared.seen[row.clone()]) {
             *to = from.load(Relaxed);
         }
+        for &object in &self.shared.network.objects.of_zone[zone as usize] {
+            self.mark_object(object);
+        }
         for &exit in &self.shared.network.sources[zone as usize] {
             self.search_from(zone, exit);
         }
@@ -254,6 +306,9 @@ impl<'a, S: Stabber> Worker<'a, S> {
             let own = zone as usize * width + i;
             self.shared.seen[own].fetch_or(seen, Relaxed);
             let might = self.shared.might[own].fetch_and(seen, Relaxed);
+            if i >= self.shared.zone_width {
+                continue;
+            }
             for other in ones(seen) {
                 self.shared.seen[(i * 64 + other) * width + own_word].fetch_or(own_bit, Relaxed);
             }
@@ -312,6 +367,7 @@ impl<'a, S: Stabber> Worker<'a, S> {
     fn enter(&mut self, exit: u32, from_zone: u32, candidates: (u32, u32), undo: Option<S::Undo>) -> bool {
         let step = &self.shared.network.steps[exit as usize];
         self.summary.n_visits += 1;
+        self.look_around(step.to);
         let new_zone = step.zone != NO_ZONE && step.zone != from_zone;
         let (zone, candidates) = if new_zone {
             self.seen[step.zone as usize / 64] |= 1 << (step.zone % 64);
@@ -328,6 +384,26 @@ impl<'a, S: Stabber> Worker<'a, S> {
         let (at, end) = (first[step.to as usize], first[step.to as usize + 1]);
         self.stack.push(Frame { at, end, entry_side: step.entry_side, zone, candidates, undo });
         true
+    }
+
+    /// Marks the objects in a cell that lines of the sequence meet.
+    fn look_around(&mut self, cell: u32) {
+        let network = self.shared.network;
+        for (object, part) in network.objects.in_cell(cell) {
+            let (word, bit) = self.object_bit(*object);
+            if self.seen[word] & bit == 0 && self.stabber.meets(part) {
+                self.seen[word] |= bit;
+            }
+        }
+    }
+
+    fn object_bit(&self, object: u32) -> (usize, u64) {
+        (self.shared.zone_width + object as usize / 64, 1 << (object % 64))
+    }
+
+    fn mark_object(&mut self, object: u32) {
+        let (word, bit) = self.object_bit(object);
+        self.seen[word] |= bit;
     }
 
     /// The candidates that remain after crossing `exit` into `zone`, as a new list; nothing is added to
@@ -359,7 +435,7 @@ impl<'a, S: Stabber> Worker<'a, S> {
         for k in start..self.arena.len() {
             let (i, bits) = self.arena[k];
             let reachable = ones(bits)
-                .filter(|&b| self.stabber.may_meet(&self.shared.network.bounds[i as usize * 64 + b]))
+                .filter(|&b| self.stabber.may_meet(self.shared.network.target(self.shared.zone_width, i as usize, b)))
                 .fold(0u64, |w, b| w | 1 << b);
             if reachable != 0 {
                 self.arena[kept] = (i, reachable);

@@ -6,7 +6,9 @@ use sightlines_cells::{CellGraph, Exit, Plan, Planar};
 use sightlines_geometry::{Aabb, Adaptive, Point2, Portal2, orient2d};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Certificate, Funnel, FunnelUndo, Stabber};
-use sightlines_stabtree::{Explanation, Network, SearchOptions, StabTree, Zones, explain, see_plan, visible_zones};
+use sightlines_stabtree::{
+    Explanation, Known, Network, SearchOptions, StabTree, Zones, explain, see_plan, visible_zones,
+};
 use std::cell::Cell;
 
 const MAX_NODES: usize = 20_000;
@@ -117,10 +119,14 @@ proptest! {
             prop_assert_eq!(&search(&graph, threads, chords), &all, "{} threads, {} chords", threads, chords);
         }
         let zones = Zones::cells(&graph);
-        let none = BitMatrix::identity(graph.n_cells());
         let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-        let (adaptive, _) = visible_zones(&Network::planar(&graph, &zones), &Funnel::new(Adaptive), none, &options);
-        prop_assert_eq!(&adaptive, &all);
+        let network = Network::planar(&graph, &zones);
+        let nothing = Known::nothing(graph.n_cells());
+        let adaptive = visible_zones(&network, &Funnel::new(Adaptive), &nothing, &options);
+        prop_assert_eq!(&adaptive.zones, &all);
+        // The truth is a valid superset of itself, and of nothing less.
+        let told = Known { possible: Some((all.clone(), BitMatrix::new(graph.n_cells(), 0))), ..nothing };
+        prop_assert_eq!(&visible_zones(&network, &Funnel::new(Adaptive), &told, &options).zones, &all);
     }
 
     /// Invariant: an explanation says what the table says, and proves it.

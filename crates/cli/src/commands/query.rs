@@ -34,7 +34,7 @@ pub(crate) fn run(args: &QueryArgs) -> Result<Answer, CliError> {
         cell: cells.first().copied(),
         cells,
         visible: seen.iter().map(|cell| cell.0).collect(),
-        objects: table.objects_in(&seen).into_iter().map(object).collect(),
+        objects: table.visible_objects_from(eye).into_iter().map(object).collect(),
         all: [table.n_cells(), table.objects().len()],
     };
     output::print(args.json, &found)?;

@@ -1,7 +1,7 @@
 //! Header, section table, checksums: everything about the file but what the sections mean.
 
 use super::error::{DecodeError, DecodeErrorKind as Kind, SectionId};
-use super::{ENTRY, FIXED, KNOWN, MAGIC, MAJOR, MINOR, OPTIONAL};
+use super::{ENTRY, FIXED, KNOWN, MAGIC, MAJOR, MINOR, OPTIONAL, SEEN};
 use std::collections::BTreeSet;
 
 /// A section to be written.
@@ -30,7 +30,9 @@ pub(super) fn write(sections: &[Payload]) -> Vec<u8> {
     let mut out = Vec::with_capacity(total);
     out.extend(MAGIC);
     out.extend(MAJOR.to_le_bytes());
-    out.extend(MINOR.to_le_bytes());
+    // The least version that has all the sections, so that files without the new one stay as they were.
+    let minor = if sections.iter().any(|s| s.id == SEEN) { MINOR } else { 0 };
+    out.extend(minor.to_le_bytes());
     out.extend((sections.len() as u32).to_le_bytes());
     out.extend((total as u64).to_le_bytes());
     let mut offset = first;

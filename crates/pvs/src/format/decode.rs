@@ -3,7 +3,7 @@
 use super::container::{self, Section};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::Reader;
-use super::{CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, OBJECTS, POLYGONS, PORTALS, ROWS, SectionId, n_row_words};
+use super::{CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, OBJECTS, POLYGONS, PORTALS, ROWS, SEEN, SectionId, n_row_words};
 use crate::locator::Node;
 use crate::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, ObjectRecord, PortalRecord};
 use crate::{Table, TableError, TableParts};
@@ -24,12 +24,15 @@ impl Table {
             read(section, |r| polygons(r, &mut cells))?;
         }
         let portals = sections.find(PORTALS).map_or(Ok(Vec::new()), |s| read(s, |r| portals(r, d)))?;
+        let objects = read(sections.need(OBJECTS)?, |r| objects(r, d))?;
+        let seen = sections.find(SEEN).map(|s| read(s, |r| whole_rows(r, cells.len(), objects.len())));
         let parts = TableParts {
             dimension,
             portals,
             rows: read(sections.need(ROWS)?, |r| rows(r, cells.len()))?,
             locator: locator(sections.need(LOCATOR)?)?,
-            objects: read(sections.need(OBJECTS)?, |r| objects(r, d))?,
+            objects_seen: seen.transpose()?,
+            objects,
             cell_objects: read(sections.need(CELL_OBJECTS)?, |r| cell_objects(r, cells.len()))?,
             info: read(sections.need(INFO)?, info)?,
             cells,
@@ -79,6 +82,7 @@ fn section_of(error: &TableError) -> SectionId {
         | TableError::NotReflexive(_)
         | TableError::NotSymmetric(_) => ROWS,
         TableError::CellObjects { .. } | TableError::ObjectOrder(_) | TableError::UnknownObject { .. } => CELL_OBJECTS,
+        TableError::SeenShape { .. } | TableError::SeenTail(_) | TableError::Unseen { .. } => SEEN,
         TableError::Locator(_) => LOCATOR,
         TableError::InfoOrder(_) | TableError::TooLong(_) => INFO,
     }
@@ -160,6 +164,18 @@ fn rows(r: &mut Reader<'_>, n: usize) -> Result<BitMatrix, DecodeError> {
         }
     }
     rows.mirror_lower();
+    Ok(rows)
+}
+
+fn whole_rows(r: &mut Reader<'_>, n_rows: usize, n_cols: usize) -> Result<BitMatrix, DecodeError> {
+    // Both are below 2^32, so the product fits.
+    r.expect(n_rows as u64 * n_cols.div_ceil(64) as u64, 8)?;
+    let mut rows = BitMatrix::new(n_rows, n_cols);
+    for i in 0..n_rows {
+        for word in rows.row_mut(i) {
+            *word = r.u64()?;
+        }
+    }
     Ok(rows)
 }
 

@@ -1,14 +1,14 @@
 //! Writes a table.
 
 use super::container::{self, Payload};
-use super::{CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, OBJECTS, POLYGONS, PORTALS, ROWS, SectionId};
+use super::{CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, OBJECTS, POLYGONS, PORTALS, ROWS, SEEN, SectionId};
 use crate::locator::Node;
 use crate::{BitMatrix, CellRecord, ObjectRecord, PortalRecord, Table, TableParts};
 
 impl Table {
     /// The table as the bytes of a `.pvs` file, the same on every machine. O(size).
     ///
-    /// Sections for polygons and portals are written only if there are any.
+    /// Sections for polygons, portals and rows of objects are written only if there are any.
     pub fn to_bytes(&self) -> Vec<u8> {
         let parts = self.parts();
         let d = usize::from(parts.dimension);
@@ -23,6 +23,9 @@ impl Table {
         sections.push(section(LOCATOR, |out| locator(out, parts)));
         sections.push(section(OBJECTS, |out| objects(out, &parts.objects, d)));
         sections.push(section(CELL_OBJECTS, |out| cell_objects(out, &parts.cell_objects)));
+        if let Some(seen) = &parts.objects_seen {
+            sections.push(section(SEEN, |out| whole_rows(out, seen)));
+        }
         sections.push(section(INFO, |out| info(out, &parts.info)));
         container::write(&sections)
     }
@@ -91,6 +94,10 @@ fn rows(out: &mut Writer, rows: &BitMatrix) {
             out.0.extend((word & kept).to_le_bytes());
         }
     }
+}
+
+fn whole_rows(out: &mut Writer, rows: &BitMatrix) {
+    (0..rows.n_rows()).flat_map(|i| rows.row(i)).for_each(|word| out.0.extend(word.to_le_bytes()));
 }
 
 fn locator(out: &mut Writer, parts: &TableParts) {

@@ -31,10 +31,12 @@
 //! | `LOCA` | number of nodes, number of entries; nodes in preorder, 16 bytes each: axis, index of the high child, split — or 2^32 - 1, number of entries, eight zeros for a leaf; then the entries of all leaves (`u32` cells) |
 //! | `OBJS` | number of objects; for each: min (d), max (d), number of bytes of the name, the name in UTF-8 |
 //! | `COBJ` | for each cell its number of objects; then the objects (`u32`) of all cells |
+//! | `SEEN`, optional | for each cell, `u64` words of the bits of the objects that it sees |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
 //! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are
-//! their boxes, a missing `PORT` that there are no portals.
+//! their boxes, a missing `PORT` that there are no portals, a missing `SEEN` (new in 1.1) that a cell sees
+//! the objects that touch any cell that it sees.
 
 mod container;
 mod decode;
@@ -51,8 +53,8 @@ pub use error::{DecodeError, DecodeErrorKind, SectionId};
 pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 /// Major version that this crate writes, and the largest that it reads.
 pub const MAJOR: u16 = 1;
-/// Minor version that this crate writes.
-pub const MINOR: u16 = 0;
+/// Largest minor version that this crate writes: 1 if there are rows of objects, else 0.
+pub const MINOR: u16 = 1;
 
 const CELLS: SectionId = SectionId(*b"CELL");
 const POLYGONS: SectionId = SectionId(*b"POLY");
@@ -61,10 +63,11 @@ const ROWS: SectionId = SectionId(*b"ROWS");
 const LOCATOR: SectionId = SectionId(*b"LOCA");
 const OBJECTS: SectionId = SectionId(*b"OBJS");
 const CELL_OBJECTS: SectionId = SectionId(*b"COBJ");
+const SEEN: SectionId = SectionId(*b"SEEN");
 const INFO: SectionId = SectionId(*b"INFO");
 
 /// The sections of this version, and whether they are optional.
-const KNOWN: [(SectionId, bool); 8] = [
+const KNOWN: [(SectionId, bool); 9] = [
     (CELLS, false),
     (POLYGONS, true),
     (PORTALS, true),
@@ -72,6 +75,7 @@ const KNOWN: [(SectionId, bool); 8] = [
     (LOCATOR, false),
     (OBJECTS, false),
     (CELL_OBJECTS, false),
+    (SEEN, true),
     (INFO, false),
 ];
 

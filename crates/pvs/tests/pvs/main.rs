@@ -2,4 +2,5 @@
 
 mod common;
 mod format;
+mod seen;
 mod table;

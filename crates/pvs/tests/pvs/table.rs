@@ -138,6 +138,7 @@ fn empty_tables_are_tables() {
             rows: BitMatrix::default(),
             objects: vec![],
             cell_objects: vec![],
+            objects_seen: None,
             locator: Locator::default(),
             info: vec![],
         };
@@ -219,6 +220,7 @@ fn huge_and_tiny_coordinates_are_safe() {
         let polygon = vec![[-size, -size], [size, -size], [size, size], [-size, size]];
         let cell = CellRecord { min: [-size, -size, 0.0], max: [size, size, 0.0], group: None, polygon };
         let parts = TableParts {
+            objects_seen: None,
             locator: Locator::build(&[(cell.min, cell.max)], 2),
             cells: vec![cell],
             portals: vec![],

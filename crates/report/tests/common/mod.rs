@@ -35,6 +35,7 @@ pub(crate) fn rooms(leak: bool) -> Table {
     let bounds: Vec<_> = cells.iter().map(|cell| (cell.min, cell.max)).collect();
     Table::new(TableParts {
         dimension: 2,
+        objects_seen: None,
         locator: Locator::build(&bounds, 2),
         rows,
         cells,
@@ -50,6 +51,7 @@ pub(crate) fn rooms(leak: bool) -> Table {
 pub(crate) fn nothing() -> Table {
     Table::new(TableParts {
         dimension: 2,
+        objects_seen: None,
         locator: Locator::build(&[], 2),
         rows: BitMatrix::identity(0),
         cells: vec![],

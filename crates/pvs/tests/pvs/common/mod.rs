@@ -42,6 +42,7 @@ pub(crate) fn rooms() -> TableParts {
             ObjectRecord { name: "Wächter".to_owned(), min: [15.0, 1.0, 0.0], max: [15.0, 1.0, 0.0] },
         ],
         cell_objects: vec![vec![0], vec![0], vec![], vec![1], vec![]],
+        objects_seen: None,
         locator: Locator::from_nodes(&tree).expect("a tree"),
         info: vec![pair("method", "by hand"), pair("source", "")],
     }
@@ -165,6 +166,7 @@ fn assemble(
     let bounds: Vec<_> = cells.iter().map(|cell| (cell.min, cell.max)).collect();
     TableParts {
         dimension,
+        objects_seen: None,
         locator: Locator::build(&bounds, dimension),
         cells,
         portals,

@@ -1,32 +1,10 @@
-//! Chords: straight lines shot through the portals of a graph, to find most visible pairs cheaply.
-//!
-//! A chord is the line through two points in doubles. Each step asks exactly whether it passes a portal
-//! strictly, so every pair that it finds is visible; what chords miss is left to the search. They
-//! change no answer, only its cost.
+//! Chords of the plane: lines through two points in doubles, followed by exact orientations.
 
+use super::{SplitMix, mark};
 use crate::zones::Zones;
 use sightlines_cells::{CellGraph, CellId, Exit, Planar};
 use sightlines_geometry::{Point2, orient2d};
 use sightlines_pvs::BitMatrix;
-
-/// A small generator of numbers for chord directions: SplitMix64.
-///
-/// Source: Steele, Lea and Flood, OOPSLA 2014.
-struct SplitMix(u64);
-
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in (0, 1), never an end.
-    fn unit(&mut self) -> f64 {
-        ((self.next() >> 12) as f64 + 0.5) * 2f64.powi(-52)
-    }
-}
 
 /// Shoots `per_exit` chords through each exit that leads from one zone into another, and returns which
 /// zones were seen from which: symmetric, with the diagonal set, a subset of what is visible.
@@ -84,16 +62,4 @@ fn follow(graph: &CellGraph<Planar>, from: CellId, exit: &Exit, p: Point2, q: Po
     };
     go(exit.to, exit.entry_side, p, q);
     go(from, exit.side, q, p);
-}
-
-/// All zones of a path see each other.
-fn mark(seen: &mut BitMatrix, path: &mut Vec<u32>) {
-    path.sort_unstable();
-    path.dedup();
-    for (i, &a) in path.iter().enumerate() {
-        for &b in &path[..i] {
-            seen.set(a as usize, b as usize, true);
-            seen.set(b as usize, a as usize, true);
-        }
-    }
 }
