@@ -170,6 +170,9 @@ pub fn bake_plan(plan: &Plan, options: &BakeOptions<'_>) -> Result<Baked, BakeEr
 }
 
 fn cut(plan: &Plan, options: &BakeOptions<'_>) -> Result<(CellGraph<Planar>, BakeSummary), BakeError> {
+    if !(0.0..=1.0).contains(&options.tau) {
+        return Err(sightlines_kdtree::KdError::Tau(options.tau).into());
+    }
     let follows_axes = plan.is_axial() && plan.n_groups() == 0;
     let by_tree = match options.subdivide {
         Subdivide::Auto => follows_axes,

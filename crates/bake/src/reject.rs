@@ -60,15 +60,7 @@ pub enum RejectError {
     /// A map that was asked for is not in the file.
     #[error("map {0} is not in the file")]
     NoSuchMap(String),
-    /// A map that was asked for is in a format whose geometry is not read.
-    #[error("map {map}: {format:?} maps are not supported")]
-    Unsupported {
-        /// Its name.
-        map: LumpName,
-        /// Its format.
-        format: MapFormat,
-    },
-    /// A map is damaged.
+    /// A map is damaged, or in a format whose geometry is not read.
     #[error(transparent)]
     Map(#[from] DoomError),
     /// A map has nothing to cut.
@@ -128,6 +120,8 @@ pub struct RejectSummary {
     pub n_disputed_cells: usize,
     /// Crossings of lines that had to be rounded.
     pub n_rounded_crossings: usize,
+    /// Pieces of one-sided lines that do not block, because rounding could have closed a gap with them.
+    pub n_dropped_pieces: usize,
 }
 
 /// Builds the REJECT table of one map. Symmetric; no sector is rejected from itself. Exact in the flat
@@ -145,37 +139,32 @@ pub fn reject_table(map: &DoomMap, options: &RejectOptions<'_>) -> Result<(Rejec
         n_rejected: table.n_rejected(),
         n_disputed_cells: cut.n_disputed_cells,
         n_rounded_crossings: cut.n_rounded_crossings,
+        n_dropped_pieces: cut.n_dropped_pieces,
     };
     Ok((table, summary))
 }
 
 fn table_of(seen: &BitMatrix, n_sectors: u32) -> RejectTable {
-    let mut table = RejectTable::new(n_sectors);
-    for viewer in 0..n_sectors {
-        let row = seen.row(viewer as usize);
-        for target in 0..n_sectors {
-            if row[target as usize / 64] >> (target % 64) & 1 == 0 {
-                table.set(viewer, target, true);
-            }
-        }
-    }
-    table
+    RejectTable::from_seen_rows(n_sectors, (0..n_sectors as usize).map(|viewer| seen.row(viewer)))
 }
 
 /// Builds the REJECT lump of every map of a WAD, or of those named, and leaves every other lump as it
 /// was.
 ///
 /// # Errors
-/// [`RejectError`]; then nothing is to be written. A map in an unsupported format is an error only if
-/// it was asked for by name.
+/// [`RejectError`]; then nothing is to be written. A map in an unsupported format is an error if it was
+/// asked for by name, or if the file has no others.
 pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcome, RejectError> {
     let all = list_maps(wad);
     let chosen = choose(&all, &options.maps)?;
+    let readable = |m: &&MapLumps| matches!(m.format(), MapFormat::Doom | MapFormat::Hexen);
+    // To skip a map among others is one thing, to do nothing at all another.
+    let insist = !options.maps.is_empty() || !chosen.iter().any(|m| readable(&m));
     let mut maps = Vec::with_capacity(chosen.len());
     let mut lumps = Vec::new();
     for map in chosen {
         let start = Instant::now();
-        let (n_sectors, status, bytes) = do_map(wad, map, options)?;
+        let (n_sectors, status, bytes) = do_map(wad, map, insist, options)?;
         lumps.extend(bytes.map(|b| (map, b)));
         maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
     }
@@ -194,19 +183,23 @@ fn choose<'m>(all: &'m [MapLumps], names: &[String]) -> Result<Vec<&'m MapLumps>
     Ok(all.iter().filter(asked).collect())
 }
 
+/// The table that an engine reads from a lump: bytes past its end do not count. `None` if it is short.
+fn old_table(n_sectors: u32, bytes: &[u8]) -> Option<RejectTable> {
+    let length = usize::try_from(RejectTable::byte_len(n_sectors)).ok()?;
+    RejectTable::from_bytes(n_sectors, bytes.get(..length)?).ok()
+}
+
 type Done = (u32, MapStatus, Option<Vec<u8>>);
 
-fn do_map(wad: &Wad, lumps: &MapLumps, options: &RejectOptions<'_>) -> Result<Done, RejectError> {
-    if !matches!(lumps.format(), MapFormat::Doom | MapFormat::Hexen) {
-        return if options.maps.is_empty() {
-            Ok((0, MapStatus::SkippedUnsupported, None))
-        } else {
-            Err(RejectError::Unsupported { map: lumps.name(), format: lumps.format() })
-        };
+/// Does one map; with `insist`, one in a format that is not read is an error.
+fn do_map(wad: &Wad, lumps: &MapLumps, insist: bool, options: &RejectOptions<'_>) -> Result<Done, RejectError> {
+    let supported = matches!(lumps.format(), MapFormat::Doom | MapFormat::Hexen);
+    if !supported && !insist {
+        return Ok((0, MapStatus::SkippedUnsupported, None));
     }
     let map = DoomMap::parse(wad, lumps)?;
     let n = map.n_sectors();
-    let old = map.reject().and_then(|bytes| RejectTable::from_bytes(n, bytes).ok());
+    let old = map.reject().and_then(|bytes| old_table(n, bytes));
     if !options.force && old.is_some_and(|table| table.has_hand_made_effects()) {
         return Ok((n, MapStatus::KeptHandMade, None));
     }

@@ -62,7 +62,7 @@ pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOption
     })
 }
 
-/// The planar graph that a table stores; `None` if the table is not planar, its geometry was stripped,
+/// The planar graph that a table stores, with at most one group for each cell; `None` if the table is not planar, its geometry was stripped,
 /// or the stored cells and portals do not fit together.
 pub fn graph_of(table: &Table) -> Option<CellGraph<Planar>> {
     let stored = table.dimension() == 2 && table.cells().iter().all(|c| !c.polygon.is_empty());

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sightlines_bake::{BakeError, BakeOptions, Baked, Subdivide, bake_plan, graph_of, table_of};
 use sightlines_cells::{CellGraph, CellId, Plan, PlanLine, PlanObject, Planar};
-use sightlines_geometry::{Aabb, Point2, signed_area};
+use sightlines_geometry::{Aabb, Point2, Segment2, signed_area};
 use sightlines_kdtree::KdError;
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, Table, TableParts};
 use sightlines_scenes::{OfficeOptions, doom_like, maze, office, turned_pillared_hall};
@@ -260,6 +260,8 @@ fn thresholds_outside_0_to_1_are_errors() {
     let plan = boxed(&[line(4., 0., 4., 3.)]);
     let bake_with = |tau| bake_plan(&plan, &BakeOptions { tau, ..with(Subdivide::Auto) });
     for tau in [-0.1, 1.5, f64::INFINITY, f64::NAN] {
+        let by_triangulation = bake_plan(&plan, &BakeOptions { tau, ..with(Subdivide::Triangulation) });
+        assert!(matches!(by_triangulation, Err(BakeError::KdTree(KdError::Tau(_)))));
         let error = bake_with(tau).unwrap_err();
         assert!(matches!(error, BakeError::KdTree(KdError::Tau(_))), "{error:?}");
         assert_eq!(error.to_string(), format!("obscuration threshold {tau} is not a number from 0 to 1"));
@@ -345,22 +347,44 @@ fn objects_land_in_the_cells_that_they_touch() {
 
 /// Whether a point is in a closed polygon, by areas: its triangles with the sides fill the polygon and
 /// no more. Exact for corners on a small grid.
-fn fills(polygon: &[[f64; 2]], p: [f64; 2]) -> bool {
-    let corners: Vec<Point2> = polygon.iter().map(|&c| Point2::from(c)).collect();
-    let n = corners.len();
-    let triangle = |i: usize| signed_area(&[Point2::from(p), corners[i], corners[(i + 1) % n]]).abs();
-    (0..n).map(triangle).sum::<f64>() == signed_area(&corners)
+fn fills(polygon: &[Point2], p: Point2) -> bool {
+    let n = polygon.len();
+    let triangle = |i: usize| signed_area(&[p, polygon[i], polygon[(i + 1) % n]]).abs();
+    (0..n).map(triangle).sum::<f64>() == signed_area(polygon)
+}
+
+/// Whether a closed box, which may be flat, and a closed polygon have a point in common: a corner of one
+/// is in the other, or their sides meet.
+fn touches(polygon: &[Point2], bounds: &Aabb<2>) -> bool {
+    let [[x0, y0], [x1, y1]] = [bounds.min, bounds.max];
+    let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(Point2::from);
+    let sides = |of: &[Point2]| -> Vec<Segment2> {
+        let next = of.iter().cycle().skip(1);
+        of.iter().zip(next).filter(|(a, b)| a != b).map(|(&a, &b)| Segment2::new(a, b)).collect()
+    };
+    let sides_of_box = sides(&corners);
+    corners.iter().any(|&c| fills(polygon, c))
+        || polygon.iter().any(|c| bounds.contains([c.x, c.y]))
+        || sides(polygon).iter().any(|s| sides_of_box.iter().any(|t| s.meets(t)))
+}
+
+/// Boxes and points, half a unit apart, on the grid of the plans.
+fn boxes() -> impl Strategy<Value = Vec<Aabb<2>>> {
+    let one = (0i32..17, 0i32..17, 0i32..5, 0i32..5).prop_map(|(x, y, w, h)| {
+        let [min, max] = [[x, y], [x + w, y + h]].map(|p| p.map(|k| 0.5 * f64::from(k)));
+        Aabb { min, max }
+    });
+    prop::collection::vec(one, 1..9)
 }
 
 proptest! {
-    /// Invariant: a cell lists a point object if and only if the point is in the closed cell.
+    /// Invariant: a cell lists an object if and only if the two have a point in common.
     #[test]
-    fn objects_of_cells_are_those_inside(
+    fn objects_of_cells_are_those_that_touch(
         plan in prop_oneof![axial_plan(2..7), small_grid_plan(2..7)],
-        points in prop::collection::vec((0i32..17, 0i32..17), 1..9),
+        boxes in boxes(),
     ) {
-        let points: Vec<[f64; 2]> = points.iter().map(|&(x, y)| [0.5 * f64::from(x), 0.5 * f64::from(y)]).collect();
-        let objects = points.iter().map(|&p| object("point", p, p)).collect();
+        let objects = boxes.iter().map(|b| object("box", b.min, b.max)).collect();
         let plan = Plan::new(plan.lines().to_vec(), objects).unwrap();
         for subdivide in METHODS {
             let Ok(baked) = bake_plan(&plan, &with(subdivide)) else { continue };
@@ -368,8 +392,9 @@ proptest! {
                 continue; // the oracle's areas would be rounded
             }
             for (id, cell) in (0u32..).map(CellId).zip(baked.table.cells()) {
-                let inside = (0u32..).zip(&points).filter(|&(_, &p)| fills(&cell.polygon, p)).map(|(i, _)| i);
-                prop_assert_eq!(baked.table.objects_of(id), inside.collect::<Vec<u32>>());
+                let polygon: Vec<Point2> = cell.polygon.iter().map(|&c| Point2::from(c)).collect();
+                let touching = (0u32..).zip(&boxes).filter(|(_, b)| touches(&polygon, b)).map(|(i, _)| i);
+                prop_assert_eq!(baked.table.objects_of(id), touching.collect::<Vec<u32>>(), "{:?}", polygon);
             }
         }
     }

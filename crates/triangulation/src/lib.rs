@@ -14,6 +14,8 @@
 //! common end points or touch with an end point are cut exactly. A proper crossing needs a new point;
 //! [`noding`] says how it is rounded and why no open set of sightlines is lost by that.
 
+mod crossing;
+mod grid;
 mod merge;
 mod mesh;
 pub mod noding;
@@ -36,6 +38,12 @@ pub enum TriangulationError {
     /// All end points are on one straight line, so there is no region to cut.
     #[error("all lines of the plan lie on one straight line")]
     Flat,
+    /// The lines meet in more places than are cut.
+    #[error("the lines of the plan meet in more than {limit} places")]
+    TooManyMeetings {
+        /// The limit.
+        limit: usize,
+    },
     /// The triangulation refused a vertex.
     #[error("vertex ({x}, {y}) cannot be triangulated")]
     Vertex {
@@ -53,7 +61,7 @@ pub struct Summary {
     pub n_triangles: usize,
     /// Points where lines cross that are no line's end point and could not be represented exactly.
     pub n_rounded_crossings: usize,
-    /// Pieces of opaque lines that were given up because rounding could have closed a gap with them.
+    /// Pieces of opaque lines that do not block because rounding could have closed a gap with them.
     pub n_dropped_pieces: usize,
     /// Cells in regions whose lines disagree about the group.
     pub n_disputed_cells: usize,
@@ -70,7 +78,8 @@ pub struct Summary {
 /// Cost: O(n log n) for n lines with few crossings.
 ///
 /// # Errors
-/// [`TriangulationError::Empty`] and [`TriangulationError::Flat`] for plans without a region.
+/// [`TriangulationError::Empty`] and [`TriangulationError::Flat`] for plans without a region,
+/// [`TriangulationError::TooManyMeetings`] for lines that cross too often.
 ///
 /// # Source
 /// Chew, "Constrained Delaunay triangulations", Algorithmica 4, 1989, by way of `spade`; Hertel and
@@ -80,10 +89,10 @@ pub fn subdivide(plan: &Plan) -> Result<(CellGraph<Planar>, Summary), Triangulat
     if plan.lines().is_empty() {
         return Err(TriangulationError::Empty);
     }
-    let noded = noding::node(plan);
+    let noded = noding::node(plan)?;
     let frame = if plan.n_groups() > 0 { corners_around(plan) } else { Vec::new() };
-    let mesh = mesh::triangulate(&noded, &frame)?;
-    let regions = regions::label(&mesh);
+    let mesh = mesh::triangulate(plan, &noded, &frame)?;
+    let regions = regions::label(&mesh, &noded.everywhere);
     let graph = merge::convex_cells(&mesh, &regions, plan.n_groups() > 0);
     let n_disputed_cells = graph.cells().iter().filter(|c| c.groups.len() > 1).count();
     let summary = Summary {
@@ -100,6 +109,8 @@ pub fn subdivide(plan: &Plan) -> Result<(CellGraph<Planar>, Summary), Triangulat
 fn corners_around(plan: &Plan) -> Vec<Point2> {
     let bounds = plan.bounds();
     let size = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
-    let [x, y] = [0, 1].map(|k| [bounds.min[k] - size, bounds.max[k] + size]);
+    // The triangulation takes coordinates up to twice what a plan may have.
+    let limit = 2.0 * sightlines_geometry::coordinate::MAX_MAGNITUDE;
+    let [x, y] = [0, 1].map(|k| [(bounds.min[k] - size).max(-limit), (bounds.max[k] + size).min(limit)]);
     x.into_iter().flat_map(|x| y.map(|y| Point2::new(x, y))).collect()
 }

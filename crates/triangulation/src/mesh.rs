@@ -1,8 +1,8 @@
 //! The triangulation: triangles, their neighbours, and which edges are lines.
 
 use crate::TriangulationError;
-use crate::noding::Noded;
-use sightlines_cells::PlanLine;
+use crate::noding::{Noded, Piece};
+use sightlines_cells::Plan;
 use sightlines_geometry::Point2;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
 use std::collections::BTreeMap;
@@ -76,16 +76,18 @@ struct Marks {
 }
 
 impl Marks {
-    fn add(&mut self, piece: &PlanLine, forward: bool) {
+    fn add(&mut self, plan: &Plan, noded: &Noded, piece: &Piece, forward: bool) {
+        let line = &plan.lines()[piece.line as usize];
+        let extra = &noded.extra[piece.line as usize];
         self.opaque |= piece.opaque;
-        let (left, right) = if forward { (piece.left, piece.right) } else { (piece.right, piece.left) };
-        self.left.extend(left);
-        self.right.extend(right);
+        let (left, right) = if forward { (line.left, line.right) } else { (line.right, line.left) };
+        self.left.extend(left.iter().chain(extra));
+        self.right.extend(right.iter().chain(extra));
     }
 }
 
 /// Distinct end points and corners of the frame in lexicographic order.
-fn distinct(pieces: &[PlanLine], frame: &[Point2]) -> Vec<Point2> {
+fn distinct(pieces: &[Piece], frame: &[Point2]) -> Vec<Point2> {
     let mut points: Vec<Point2> = pieces.iter().flat_map(|p| [p.a, p.b]).chain(frame.iter().copied()).collect();
     points.sort_by(order);
     points.dedup();
@@ -102,12 +104,12 @@ fn index_of(points: &[Point2], p: &Point2) -> u32 {
 }
 
 /// Triangulates the convex hull of all pieces and of the points of `frame`.
-pub(crate) fn triangulate(noded: &Noded, frame: &[Point2]) -> Result<Mesh, TriangulationError> {
+pub(crate) fn triangulate(plan: &Plan, noded: &Noded, frame: &[Point2]) -> Result<Mesh, TriangulationError> {
     let vertices = distinct(&noded.pieces, frame);
     let mut lines: BTreeMap<(u32, u32), Marks> = BTreeMap::new();
     for piece in &noded.pieces {
         let (a, b) = (index_of(&vertices, &piece.a), index_of(&vertices, &piece.b));
-        lines.entry((a.min(b), a.max(b))).or_default().add(piece, a < b);
+        lines.entry((a.min(b), a.max(b))).or_default().add(plan, noded, piece, a < b);
     }
     let cdt = constrained(&vertices, lines.keys())?;
     if cdt.num_inner_faces() == 0 {

@@ -2,10 +2,11 @@
 //!
 //! Where an end point lies on another line (exactly: a T-junction, an overlap, a repetition), that
 //! line is cut there; no new point is made. Where two lines cross properly in a point X, a point P is
-//! needed that both pieces can end in:
+//! needed that both can be cut at. Distances below are in terms of `reach`, 2^-49 max(|x|, |y|) at P.
 //!
-//! * If one of the lines is parallel to an axis, P is X rounded along that line: P lies on it exactly.
-//! * Otherwise P is X rounded to the nearest doubles, at most `reach` = 2^-51 max(|x|, |y|) away.
+//! * Where the crossing of axis-parallel lines, or luck, makes X a pair of doubles, P is X.
+//! * Otherwise P is one of the doubles around X, at most `reach` away, and preferably one on a line that
+//!   blocks.
 //!
 //! # Why rounding errs towards visible
 //! A wall from A to B that is bent through P becomes A-P-B. Let a sightline avoid the true walls and
@@ -22,26 +23,59 @@
 //!   the wall stays as it is unless P lies on it exactly; the other line is cut off just short of it on
 //!   both sides. Its two ends leave a gap, and the regions on its sides become one, with the groups of
 //!   both: more is visible, not less.
-//! * *Two lines that do not block.* Nothing can be lost; a region's border moves by `reach`.
+//! * *Two lines that do not block.* No sight is lost.
 //!
-//! Last, a bent wall must not sweep over a third line's end point, or a gap of that width could close.
-//! If an end point lies in the triangle A, P, B and not on the wall, both pieces are given up: the wall
-//! no longer blocks there. What remains is the ordinary limit of a rounded model: a viewer who stands
-//! within `reach` of a bent wall may be counted to the cell on the other side of it.
+//! A bent wall must not sweep over a third line's end point, or a gap of that width could close. P is
+//! chosen so that none lies between a wall and its bent pieces; where no choice avoids it, the piece that
+//! sweeps over it no longer blocks.
+//!
+//! The pieces are then taken for lines and cut again until nothing crosses. The argument holds for each
+//! round, with the walls of the round before for the true ones, so it holds for all.
+//!
+//! Regions narrower than `reach` may vanish where a rounded crossing is next to an end or to another
+//! crossing, and with them a side that names a group. So the lines that meet there name all their groups
+//! on both sides ([`Noded::extra`]).
+//!
+//! What remains is the ordinary limit of a rounded model: a viewer who stands within `reach` of a bent
+//! wall may be counted to the cell on the other side of it.
 
-use num_rational::BigRational;
-use num_traits::{ToPrimitive, Zero};
-use sightlines_cells::{Plan, PlanLine};
-use sightlines_geometry::{Aabb, Point2, Segment2, orient2d};
+use crate::TriangulationError;
+use crate::crossing::{cuts_at_crossing, reach_of};
+use crate::grid::{PointGrid, SegmentGrid};
+use sightlines_cells::Plan;
+use sightlines_geometry::{Point2, Segment2, orient2d};
+
+/// Part of a line of a plan, in the line's direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Start.
+    pub a: Point2,
+    /// End, different from the start.
+    pub b: Point2,
+    /// Whether it blocks sight.
+    pub opaque: bool,
+    /// Index of the line.
+    pub line: u32,
+}
+
+impl Piece {
+    pub(crate) fn segment(&self) -> Segment2 {
+        Segment2::new(self.a, self.b)
+    }
+}
 
 /// Lines that touch in common end points only.
 #[derive(Debug, Clone, Default)]
 pub struct Noded {
-    /// Pieces of the plan's lines, each with the marks of its line. Pieces may repeat.
-    pub pieces: Vec<PlanLine>,
-    /// Crossings whose point had to be rounded off both lines.
+    /// Pieces of the plan's lines. Pieces may repeat.
+    pub pieces: Vec<Piece>,
+    /// For each line, groups that both its sides name beside their own; ascending.
+    pub extra: Vec<Vec<u32>>,
+    /// Groups that count as present everywhere, because the piece that named them had to go.
+    pub everywhere: Vec<u32>,
+    /// Crossings whose point had to be rounded off a line.
     pub n_rounded_crossings: usize,
-    /// Pieces of opaque lines that were given up.
+    /// Pieces of opaque lines that no longer block.
     pub n_dropped_pieces: usize,
 }
 
@@ -49,50 +83,79 @@ pub struct Noded {
 /// pieces need two lines within a rounding error of each other, so a second round is rare already.
 const MAX_ROUNDS: usize = 8;
 
-/// Cuts all lines of `plan` where they meet.
-pub fn node(plan: &Plan) -> Noded {
-    let mut noded = Noded { pieces: plan.lines().to_vec(), ..Noded::default() };
+/// Most places where lines meet that are cut; each makes up to four pieces.
+pub const MAX_MEETINGS: usize = 1 << 19;
+
+/// Cuts all lines of `plan` where they meet. Cost: O(n sqrt(n)) for n lines of any length, plus the
+/// places where they meet.
+///
+/// # Errors
+/// [`TriangulationError::TooManyMeetings`] beyond [`MAX_MEETINGS`].
+pub fn node(plan: &Plan) -> Result<Noded, TriangulationError> {
+    let piece = |(line, l): (u32, &sightlines_cells::PlanLine)| Piece { a: l.a, b: l.b, opaque: l.opaque, line };
+    let mut noded = Noded {
+        pieces: (0..).zip(plan.lines()).map(piece).collect(),
+        extra: vec![Vec::new(); plan.lines().len()],
+        ..Noded::default()
+    };
     for _ in 0..MAX_ROUNDS {
-        let meetings = find_meetings(&noded.pieces);
+        let meetings = find_meetings(&noded.pieces)?;
         if meetings.is_empty() {
-            return noded;
+            tidy(&mut noded);
+            return Ok(noded);
         }
-        cut(&mut noded, &meetings);
+        cut(plan, &mut noded, &meetings);
     }
-    give_up_crossings(&mut noded);
-    noded
+    give_up_crossings(plan, &mut noded)?;
+    tidy(&mut noded);
+    Ok(noded)
+}
+
+fn tidy(noded: &mut Noded) {
+    for list in noded.extra.iter_mut().chain([&mut noded.everywhere]) {
+        list.sort_unstable();
+        list.dedup();
+    }
 }
 
 /// Two lines that meet elsewhere than in common end points.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Meeting {
     lines: [usize; 2],
     crossing: bool,
 }
 
-/// All pairs of lines that cross, overlap or touch. Sweep along x with the lines whose range is open;
-/// O(n log n + pairs whose x-ranges overlap).
-fn find_meetings(lines: &[PlanLine]) -> Vec<Meeting> {
-    let boxes: Vec<Aabb<2>> = lines.iter().map(|l| Aabb::around([[l.a.x, l.a.y], [l.b.x, l.b.y]])).collect();
-    let mut order: Vec<usize> = (0..lines.len()).collect();
-    order.sort_by(|&i, &j| boxes[i].min[0].total_cmp(&boxes[j].min[0]).then(i.cmp(&j)));
-    let mut open: Vec<usize> = Vec::new();
+/// All pairs of pieces that cross, overlap or touch, in order.
+fn find_meetings(pieces: &[Piece]) -> Result<Vec<Meeting>, TriangulationError> {
+    let segments: Vec<Segment2> = pieces.iter().map(Piece::segment).collect();
+    let boxes: Vec<[Point2; 2]> = segments.iter().map(|s| [s.a.min(s.b), s.a.max(s.b)]).collect();
+    let grid = SegmentGrid::new(&segments);
     let mut meetings = Vec::new();
-    for &i in &order {
-        open.retain(|&j| boxes[j].max[0] >= boxes[i].min[0]);
-        for &j in &open {
-            if boxes[j].max[1] >= boxes[i].min[1] && boxes[i].max[1] >= boxes[j].min[1] {
-                meetings.extend(meeting(lines, j.min(i), j.max(i)));
+    for bucket in grid.buckets() {
+        for (k, &i) in bucket.iter().enumerate() {
+            let [lo, hi] = boxes[i as usize];
+            for &j in &bucket[..k] {
+                let [low, high] = boxes[j as usize];
+                if low.x <= hi.x && lo.x <= high.x && low.y <= hi.y && lo.y <= high.y {
+                    meetings.extend(meeting(&segments, j as usize, i as usize));
+                }
             }
         }
-        open.push(i);
+        // A pair may share buckets: four on average is plenty.
+        if meetings.len() > 4 * MAX_MEETINGS {
+            meetings.sort_unstable();
+            meetings.dedup();
+            if meetings.len() > MAX_MEETINGS {
+                return Err(TriangulationError::TooManyMeetings { limit: MAX_MEETINGS });
+            }
+        }
     }
-    meetings.sort_by_key(|m| m.lines);
-    meetings
-}
-
-fn segment(l: &PlanLine) -> Segment2 {
-    Segment2::new(l.a, l.b)
+    meetings.sort_unstable();
+    meetings.dedup();
+    if meetings.len() > MAX_MEETINGS {
+        return Err(TriangulationError::TooManyMeetings { limit: MAX_MEETINGS });
+    }
+    Ok(meetings)
 }
 
 /// Whether `p` is on the segment but not one of its ends.
@@ -100,54 +163,90 @@ fn inside(s: &Segment2, p: Point2) -> bool {
     p != s.a && p != s.b && s.contains(p)
 }
 
-fn meeting(lines: &[PlanLine], i: usize, j: usize) -> Option<Meeting> {
-    let (s, t) = (segment(&lines[i]), segment(&lines[j]));
-    let crossing = s.crosses(&t);
-    let touching = || inside(&s, t.a) || inside(&s, t.b) || inside(&t, s.a) || inside(&t, s.b);
+fn meeting(segments: &[Segment2], i: usize, j: usize) -> Option<Meeting> {
+    let (s, t) = (&segments[i], &segments[j]);
+    let crossing = s.crosses(t);
+    let touching = || inside(s, t.a) || inside(s, t.b) || inside(t, s.a) || inside(t, s.b);
     (crossing || touching()).then_some(Meeting { lines: [i, j], crossing })
 }
 
-/// Where a line is cut, and whether the point may be off the line.
+/// Where a line is cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Cut {
+pub(crate) enum Cut {
+    /// One piece ends and the next begins at a point, which may be off the line by rounding.
     At(Point2),
     /// The line stops at the first point and goes on at the second.
     Gap(Point2, Point2),
 }
 
-fn cut(noded: &mut Noded, meetings: &[Meeting]) {
+fn cut(plan: &Plan, noded: &mut Noded, meetings: &[Meeting]) {
     let lines = std::mem::take(&mut noded.pieces);
+    let ends = PointGrid::new(lines.iter().flat_map(|l| [l.a, l.b]));
     let mut cuts: Vec<Vec<Cut>> = vec![Vec::new(); lines.len()];
+    let mut crossings: Vec<Vec<(Point2, usize)>> = vec![Vec::new(); lines.len()];
     for m in meetings {
         let [i, j] = m.lines;
         if m.crossing {
-            let (cut_i, cut_j, rounded) = cuts_at_crossing(&lines[i], &lines[j]);
-            cuts[i].extend(cut_i);
-            cuts[j].extend(cut_j);
-            noded.n_rounded_crossings += usize::from(rounded);
+            let found = cuts_at_crossing(&lines[i], &lines[j], &ends);
+            cuts[i].extend(found.cuts[0]);
+            cuts[j].extend(found.cuts[1]);
+            if found.rounded {
+                noded.n_rounded_crossings += 1;
+                crossings[i].push((found.at, j));
+                crossings[j].push((found.at, i));
+            }
         } else {
             for (from, to) in [(i, j), (j, i)] {
-                let s = segment(&lines[from]);
-                let ends = [lines[to].a, lines[to].b];
-                cuts[from].extend(ends.into_iter().filter(|&p| inside(&s, p)).map(Cut::At));
+                let s = lines[from].segment();
+                let on = [lines[to].a, lines[to].b].into_iter().filter(|&p| inside(&s, p));
+                cuts[from].extend(on.map(Cut::At));
             }
         }
     }
-    let ends: Vec<Point2> = lines.iter().flat_map(|l| [l.a, l.b]).collect();
+    for (i, near) in crossings.iter_mut().enumerate() {
+        blur_crowds(plan, &mut noded.extra, &lines, i, near);
+    }
     for (line, cuts) in lines.iter().zip(cuts) {
-        if cuts.is_empty() {
-            noded.pieces.push(*line);
-        } else {
-            let pieces = pieces(line, cuts);
-            let (kept, dropped) = keep_clear_of(line, pieces, &ends);
-            noded.pieces.extend(kept);
-            noded.n_dropped_pieces += dropped;
+        for mut piece in pieces(line, cuts) {
+            if piece.opaque && sweeps(line, &piece, &ends) {
+                piece.opaque = false;
+                noded.n_dropped_pieces += 1;
+            }
+            noded.pieces.push(piece);
         }
     }
 }
 
+/// Lets lines name all their groups on both sides where rounding may swallow a region: where a rounded
+/// crossing is next to another one on the same line, or next to an end of one of its lines.
+fn blur_crowds(plan: &Plan, extra: &mut [Vec<u32>], lines: &[Piece], own: usize, crossings: &mut Vec<(Point2, usize)>) {
+    crossings.sort_by(|(p, i), (q, j)| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(j)));
+    let next_to = |p: Point2, q: Point2| p.distance(q) <= 8.0 * reach_of(p);
+    for &(p, other) in crossings.iter() {
+        let ends = [lines[own].a, lines[own].b, lines[other].a, lines[other].b];
+        if ends.into_iter().any(|end| next_to(p, end)) {
+            blur(plan, extra, &[lines[own].line, lines[other].line]);
+        }
+    }
+    // Along a line, lexicographic order is the order of the line, but for rounding along an axis.
+    for pair in crossings.windows(2) {
+        if next_to(pair[0].0, pair[1].0) {
+            blur(plan, extra, &[lines[own].line, lines[pair[0].1].line, lines[pair[1].1].line]);
+        }
+    }
+}
+
+/// Lets lines name all their groups on both sides.
+fn blur(plan: &Plan, extra: &mut [Vec<u32>], lines: &[u32]) {
+    let side = |l: &u32| [plan.lines()[*l as usize].left, plan.lines()[*l as usize].right];
+    let names: Vec<u32> = lines.iter().flat_map(side).flatten().collect();
+    for &line in lines {
+        extra[line as usize].extend(&names);
+    }
+}
+
 /// The pieces of a line between its cuts.
-fn pieces(line: &PlanLine, mut cuts: Vec<Cut>) -> Vec<PlanLine> {
+fn pieces(line: &Piece, mut cuts: Vec<Cut>) -> Vec<Piece> {
     let d = line.b - line.a;
     let horizontal = d.x.abs() >= d.y.abs();
     let place = |p: Point2| if horizontal { p.x * d.x.signum() } else { p.y * d.y.signum() };
@@ -162,7 +261,7 @@ fn pieces(line: &PlanLine, mut cuts: Vec<Cut>) -> Vec<PlanLine> {
     let mut pieces = Vec::with_capacity(cuts.len() + 1);
     let mut piece = |a: Point2, b: Point2| {
         if a != b {
-            pieces.push(PlanLine { a, b, ..*line });
+            pieces.push(Piece { a, b, ..*line });
         }
     };
     for cut in cuts {
@@ -181,111 +280,47 @@ fn pieces(line: &PlanLine, mut cuts: Vec<Cut>) -> Vec<PlanLine> {
     pieces
 }
 
-/// Gives up the pieces of an opaque line whose bend may have swept over an end point.
-fn keep_clear_of(line: &PlanLine, pieces: Vec<PlanLine>, ends: &[Point2]) -> (Vec<PlanLine>, usize) {
-    let bent = |p: Point2| orient2d(line.a, line.b, p) != 0.0;
-    if !line.opaque || !pieces.iter().any(|p| bent(p.b)) {
-        return (pieces, 0);
-    }
-    let s = segment(line);
-    let corners: Vec<Point2> = pieces.iter().flat_map(|p| [p.a, p.b]).collect();
-    let swept = |piece: &PlanLine| {
-        (bent(piece.a) || bent(piece.b))
-            && ends.iter().any(|&v| !s.contains(v) && !corners.contains(&v) && between(line, piece, v))
-    };
-    let n = pieces.len();
-    let kept: Vec<PlanLine> = pieces.into_iter().filter(|p| !swept(p)).collect();
-    let dropped = n - kept.len();
-    (kept, dropped)
-}
-
-/// Whether `v` may lie between a piece and the line it came from. Both are within a rounding error of
-/// each other, so the test is one of sides: `v` is between if the two disagree about its side, or if it
-/// lies on the piece.
-fn between(line: &PlanLine, piece: &PlanLine, v: Point2) -> bool {
-    let reach = Aabb::around([[piece.a.x, piece.a.y], [piece.b.x, piece.b.y]]);
-    let slack = 4.0 * reach_of(piece.a).max(reach_of(piece.b));
-    let near = (0..2).all(|k| reach.min[k] - slack <= [v.x, v.y][k] && [v.x, v.y][k] <= reach.max[k] + slack);
-    let side = |a: Point2, b: Point2| {
+/// Whether an end point that is not on `line` may lie between it and the part that became `piece`.
+///
+/// Both are within a rounding error of each other, so the test is one of sides: a point is between if
+/// the two disagree about its side, or if it lies on the piece.
+pub(crate) fn sweeps(line: &Piece, piece: &Piece, ends: &PointGrid) -> bool {
+    let side = |a: Point2, b: Point2, v: Point2| {
         let o = orient2d(a, b, v);
         i8::from(o > 0.0) - i8::from(o < 0.0)
     };
-    near && side(line.a, line.b) != side(piece.a, piece.b)
-}
-
-/// Bound on the distance between a point and its rounding to doubles: 2^-51 of the larger coordinate.
-/// Each coordinate moves by at most half a unit in the last place, 2^-53 of itself rounded up to a
-/// power of two, so by at most 2^-52 of itself; both together by less than 2^-51.
-fn reach_of(p: Point2) -> f64 {
-    p.x.abs().max(p.y.abs()) * 2.0 * f64::EPSILON
-}
-
-/// What two properly crossing lines are cut into, and whether a rounded point was needed.
-fn cuts_at_crossing(l: &PlanLine, m: &PlanLine) -> (Option<Cut>, Option<Cut>, bool) {
-    let p = rounded_crossing(l, m);
-    let on = |line: &PlanLine| orient2d(line.a, line.b, p) == 0.0;
-    let exact = on(l) && on(m);
-    match (l.opaque, m.opaque) {
-        (true, true) => {
-            let p = if exact { p } else { near_end(l, m, reach_of(p)).unwrap_or(p) };
-            let cut = |line: &PlanLine| (p != line.a && p != line.b).then_some(Cut::At(p));
-            (cut(l), cut(m), !exact)
-        }
-        (true, false) if !on(l) => (None, Some(short_of(m, l, p)), true),
-        (false, true) if !on(m) => (Some(short_of(l, m, p)), None, true),
-        _ => (Some(Cut::At(p)), Some(Cut::At(p)), !exact),
+    if [piece.a, piece.b].iter().all(|&p| side(line.a, line.b, p) == 0) {
+        return false;
     }
+    let slack = 4.0 * reach_of(piece.a).max(reach_of(piece.b));
+    ends.any_near(&piece.segment(), slack, |v| {
+        let known = v == piece.a || v == piece.b || v == line.a || v == line.b;
+        let own = side(line.a, line.b, v);
+        !known && own != 0 && own != side(piece.a, piece.b, v)
+    })
 }
 
-/// An end point of either line that is within 4 `reach` of the other line's carrier. The distance is
-/// computed in doubles with a relative error far below the factor that is added to be safe.
-fn near_end(l: &PlanLine, m: &PlanLine, reach: f64) -> Option<Point2> {
-    let near = |end: Point2, line: &PlanLine| {
-        let d = line.b - line.a;
-        orient2d(line.a, line.b, end).abs() <= 8.0 * reach * d.length()
-    };
-    let candidates = [(l.a, m), (l.b, m), (m.a, l), (m.b, l)];
-    candidates.into_iter().find(|&(end, line)| near(end, line)).map(|(end, _)| end)
-}
-
-/// Ends `line` just short of `wall` on both sides of their crossing near `p`.
-fn short_of(line: &PlanLine, wall: &PlanLine, p: Point2) -> Cut {
-    let stop = |end: Point2| {
-        let side = orient2d(wall.a, wall.b, end) > 0.0;
-        let on_side = |q: Point2| {
-            let o = orient2d(wall.a, wall.b, q);
-            if side { o > 0.0 } else { o < 0.0 }
-        };
-        // Steps of growing length towards the end point, which is on its own side.
-        let steps = (0..52).rev().map(|k| p + (end - p) * 2f64.powi(-k));
-        std::iter::once(p).chain(steps).find(|&q| on_side(q)).unwrap_or(end)
-    };
-    Cut::Gap(stop(line.a), stop(line.b))
-}
-
-/// The crossing of two lines, rounded to doubles; exactly on a line that is parallel to an axis.
-fn rounded_crossing(l: &PlanLine, m: &PlanLine) -> Point2 {
-    let r = |x: f64| BigRational::from_float(x).unwrap_or_else(BigRational::zero);
-    let [ax, ay, bx, by] = [l.a.x, l.a.y, l.b.x, l.b.y].map(r);
-    let [cx, cy, dx, dy] = [m.a.x, m.a.y, m.b.x, m.b.y].map(r);
-    let (ux, uy) = (&bx - &ax, &by - &ay);
-    let (vx, vy) = (&dx - &cx, &dy - &cy);
-    // Not zero: the lines cross properly.
-    let t = ((&cx - &ax) * &vy - (&cy - &ay) * &vx) / (&ux * &vy - &uy * &vx);
-    let round = |x: BigRational| x.to_f64().unwrap_or(0.0);
-    let x = [l, m].into_iter().find(|s| s.a.x == s.b.x).map_or_else(|| round(&ax + &t * &ux), |s| s.a.x);
-    let y = [l, m].into_iter().find(|s| s.a.y == s.b.y).map_or_else(|| round(&ay + &t * &uy), |s| s.a.y);
-    let tidy = |x: f64| sightlines_geometry::check_coordinate(x).unwrap_or(0.0);
-    Point2::new(tidy(x), tidy(y))
-}
-
-/// Removes pieces until none cross or overlap any more, those that do not block first.
-fn give_up_crossings(noded: &mut Noded) {
+/// Takes out pieces until none cross or overlap any more. Their groups count as present everywhere.
+fn give_up_crossings(plan: &Plan, noded: &mut Noded) -> Result<(), TriangulationError> {
     loop {
-        let meetings = find_meetings(&noded.pieces);
-        let Some(m) = meetings.first() else { return };
-        let victim = m.lines.into_iter().find(|&i| !noded.pieces[i].opaque).unwrap_or(m.lines[1]);
-        noded.n_dropped_pieces += usize::from(noded.pieces[victim].opaque);
-        noded.pieces.swap_remove(victim);
+        let meetings = find_meetings(&noded.pieces)?;
+        if meetings.is_empty() {
+            return Ok(());
+        }
+        let mut gone = vec![false; noded.pieces.len()];
+        for m in &meetings {
+            if m.lines.iter().any(|&i| gone[i]) {
+                continue;
+            }
+            let victim = m.lines.into_iter().find(|&i| !noded.pieces[i].opaque).unwrap_or(m.lines[1]);
+            let piece = noded.pieces[victim];
+            let line = &plan.lines()[piece.line as usize];
+            noded.everywhere.extend([line.left, line.right].into_iter().flatten());
+            noded.everywhere.extend(&noded.extra[piece.line as usize]);
+            noded.n_dropped_pieces += usize::from(piece.opaque);
+            gone[victim] = true;
+        }
+        let mut kept = gone.iter();
+        noded.pieces.retain(|_| kept.next() == Some(&false));
     }
 }

@@ -13,7 +13,7 @@ pub(crate) struct Regions {
 }
 
 /// Floods triangles across edges that are no lines, and collects what the lines around say.
-pub(crate) fn label(mesh: &Mesh) -> Regions {
+pub(crate) fn label(mesh: &Mesh, everywhere: &[u32]) -> Regions {
     let mut of_triangle = vec![u32::MAX; mesh.n_triangles()];
     let mut n_regions = 0u32;
     let mut stack = Vec::new();
@@ -41,6 +41,7 @@ pub(crate) fn label(mesh: &Mesh) -> Regions {
         groups[of_triangle[triangle as usize] as usize].push(group);
     }
     for list in &mut groups {
+        list.extend(everywhere);
         list.sort_unstable();
         list.dedup();
     }

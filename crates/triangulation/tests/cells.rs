@@ -134,7 +134,7 @@ proptest! {
     #[test]
     fn noded_pieces_meet_in_ends(walls in walls(6, 9)) {
         let plan = Plan::from_walls(walls).unwrap();
-        let noded = noding::node(&plan);
+        let noded = noding::node(&plan).unwrap();
         for (i, p) in noded.pieces.iter().enumerate() {
             for q in &noded.pieces[..i] {
                 let (s, t) = (Segment2::new(p.a, p.b), Segment2::new(q.a, q.b));
@@ -152,7 +152,7 @@ proptest! {
     #[test]
     fn noding_errs_towards_visible(walls in walls(6, 9), lines in proptest::collection::vec((point(61), point(61)), 40)) {
         let plan = Plan::from_walls(walls.iter().copied()).unwrap();
-        let noded = noding::node(&plan);
+        let noded = noding::node(&plan).unwrap();
         let crosses_piece = |s: &Segment2| noded.pieces.iter().any(|p| s.crosses(&Segment2::new(p.a, p.b)));
         for (p, q) in lines {
             let s = Segment2::new(p * 0.125 - Point2::splat(0.9375), q * 0.125 - Point2::splat(0.9375));

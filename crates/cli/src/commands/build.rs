@@ -86,7 +86,7 @@ fn warn(path: &Path, summary: &BakeSummary) {
         }
     };
     say(summary.n_ignored_walls, "wall", "do not block sight: the k-d tree does not follow them");
-    say(summary.n_dropped_pieces, "piece", "of walls too short to be kept do not block sight");
+    say(summary.n_dropped_pieces, "piece", "of walls do not block sight: rounding could have closed a gap beside them");
     if summary.n_rounded_crossings > 0 {
         let n = count(summary.n_rounded_crossings as u64, "crossing");
         tracing::info!("{}: {n} of lines had to be rounded, towards visible", path.display());

@@ -67,6 +67,7 @@ struct Map {
     n_rejected: Option<u64>,
     n_disputed_cells: Option<usize>,
     n_rounded_crossings: Option<usize>,
+    n_dropped_pieces: Option<usize>,
     seconds: f64,
 }
 
@@ -84,6 +85,7 @@ impl From<&MapOutcome> for Map {
             n_rejected: did.map(|d| d.n_rejected),
             n_disputed_cells: did.map(|d| d.n_disputed_cells),
             n_rounded_crossings: did.map(|d| d.n_rounded_crossings),
+            n_dropped_pieces: did.map(|d| d.n_dropped_pieces),
             seconds: outcome.time.as_secs_f64(),
         }
     }
