@@ -1,5 +1,9 @@
 //! What tests across crates share: where real data is, and what was seen there.
 
+pub mod scenes;
+
+pub use scenes::{CellWitness, scene_folders, scene_witness};
+
 use std::path::{Path, PathBuf};
 
 /// The folder that an environment variable names; `None`, said loudly, if it is not set.

@@ -1,6 +1,6 @@
 //! Errors of reading a file: its path, and what is wrong inside.
 
-use crate::{DoomError, GeoJsonError, WadError};
+use crate::{DoomError, GeoJsonError, SceneReadError, WadError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -38,6 +38,15 @@ pub enum ReadErrorKind {
     /// It is not a GeoJSON plan.
     #[error(transparent)]
     GeoJson(Box<GeoJsonError>),
+    /// It is not a scene in space.
+    #[error(transparent)]
+    Scene(Box<SceneReadError>),
+}
+
+impl From<SceneReadError> for ReadErrorKind {
+    fn from(error: SceneReadError) -> Self {
+        Self::Scene(Box::new(error))
+    }
 }
 
 impl From<GeoJsonError> for ReadErrorKind {

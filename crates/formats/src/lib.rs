@@ -1,11 +1,13 @@
-//! Readers and writers of the files that scenes come from: Doom WADs and GeoJSON floor plans.
+//! Readers and writers of the files that scenes come from: Doom WADs, GeoJSON floor plans,
+//! glTF and OBJ scenes in space.
 //!
 //! Owns: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
-//! GeoJSON plans ([`geojson`]), files that are replaced as a whole ([`files::atomic_write`]), and
-//! errors that name the file and the place in it ([`ReadError`]).
+//! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]), files that are replaced as a whole
+//! ([`files::atomic_write`]), and errors that name the file and the place in it ([`ReadError`]).
 //! Does not know: how a plan is cut into cells, what a sightline is, how a REJECT table is computed.
-//! Invariants: no input causes a panic; memory stays within a small multiple of the input's size,
-//! whatever counts the input claims; what is not understood is either passed through byte for byte
+//! Invariants: no input causes a panic; memory stays within a small multiple of the input's size
+//! (of a scene in space: with its meshes as often as it shows them, up to a limit), whatever counts
+//! the input claims; what is not understood is either passed through byte for byte
 //! or refused, never guessed; the same value is always written as the same bytes.
 
 pub mod doom;
@@ -13,6 +15,7 @@ pub mod error;
 pub mod files;
 pub mod geojson;
 pub mod reject;
+pub mod scene;
 pub mod wad;
 
 pub use doom::{DoomError, DoomMap, MapLumps};
@@ -20,6 +23,7 @@ pub use error::{ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
 pub use geojson::GeoJsonError;
 pub use reject::RejectTable;
+pub use scene::{SceneFile, SceneInfo, SceneReadError};
 pub use wad::{LumpName, Wad, WadBuilder, WadError};
 
 #[cfg(doctest)]

@@ -32,6 +32,37 @@ impl RejectTable {
         Self { n_sectors, bytes: vec![0; len] }
     }
 
+    /// The table that rejects what is not seen: row `i` of `rows` has bit `j % 64` of word `j / 64` set if
+    /// sector `i` sees sector `j`. O(n²/64).
+    ///
+    /// # Panics
+    /// If there are fewer than `n_sectors` rows, or fewer words in one than its bits take.
+    pub fn from_seen_rows<'r>(n_sectors: u32, mut rows: impl Iterator<Item = &'r [u64]>) -> Self {
+        let mut table = Self::new(n_sectors);
+        let mut bytes = Vec::with_capacity(table.as_bytes().len() + 16);
+        // Bits that do not fill a byte yet; fewer than 8 of them.
+        let (mut pending, mut n_pending) = (0u128, 0u32);
+        for _ in 0..n_sectors {
+            let row = rows.next().expect("a row for each sector");
+            for k in (0..n_sectors).step_by(64) {
+                let n = (n_sectors - k).min(64);
+                let unseen = !row[k as usize / 64] & (u64::MAX >> (64 - n));
+                pending |= u128::from(unseen) << n_pending;
+                n_pending += n;
+                while n_pending >= 8 {
+                    bytes.push(pending as u8);
+                    pending >>= 8;
+                    n_pending -= 8;
+                }
+            }
+        }
+        if n_pending > 0 {
+            bytes.push(pending as u8);
+        }
+        table.bytes = bytes;
+        table
+    }
+
     /// Reads a lump. Spare bits of the last byte are dropped.
     ///
     /// # Errors
@@ -127,6 +158,24 @@ impl RejectTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_of_what_is_seen_make_the_table() {
+        for n in [0u32, 1, 2, 7, 8, 63, 64, 65, 130] {
+            let seen = |a: u32, b: u32| (a * 7 + b * 13) % 5 < 2;
+            let rows: Vec<Vec<u64>> = (0..n)
+                .map(|a| {
+                    let mut row = vec![0u64; n.div_ceil(64) as usize];
+                    (0..n).filter(|&b| seen(a, b)).for_each(|b| row[b as usize / 64] |= 1 << (b % 64));
+                    row
+                })
+                .collect();
+            let table = RejectTable::from_seen_rows(n, rows.iter().map(Vec::as_slice));
+            let mut expected = RejectTable::new(n);
+            (0..n).for_each(|a| (0..n).for_each(|b| expected.set(a, b, !seen(a, b))));
+            assert_eq!(table, expected, "{n} sectors");
+        }
+    }
     use proptest::prelude::*;
 
     #[test]

@@ -6,16 +6,11 @@
 
 mod common;
 
-use common::{SMALL_GEOJSON, difference_besides_reject, small_wad, two_rooms};
+use common::{SMALL_GEOJSON, difference_besides_reject, setting, small_wad, two_rooms};
 use sightlines_formats::doom::{MapLump, list_maps};
 use sightlines_formats::geojson::{parse_plan, write_plan};
 use sightlines_formats::{DoomMap, RejectTable, Wad};
 use sightlines_testkit::mutate::{SplitMix, mutate};
-
-/// A number that the environment may set.
-fn setting(variable: &str, default: u64) -> u64 {
-    std::env::var(variable).map_or(default, |text| text.parse().unwrap_or_else(|e| panic!("{variable}: {e}")))
-}
 
 /// Reads a WAD and all its maps as far as they can be read; returns how many maps could.
 fn check_wad(bytes: &[u8]) -> Option<usize> {

@@ -8,6 +8,7 @@ use sightlines::bake::reject::{RejectOptions, reject_wad};
 use sightlines::bake::{BakeOptions, bake_plan, graph_of};
 use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
 use sightlines::formats::geojson::{parse_plan, write_plan};
+use sightlines::formats::scene::{SceneFile, parse_glb, parse_obj, write_glb};
 use sightlines::formats::wad::WadKind;
 use sightlines::formats::{LumpName, Wad, WadBuilder};
 use sightlines::pvs::Table;
@@ -24,10 +25,12 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 6] = [
+const TARGETS: [Target; 8] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
+    Target { name: "glb", seeds: glbs, check: check_glb },
+    Target { name: "obj", seeds: objs, check: check_obj },
     Target { name: "bake", seeds: plans, check: check_bake },
     Target { name: "pvs", seeds: tables, check: check_pvs },
     Target { name: "garbage", seeds: garbage, check: check_anything },
@@ -72,6 +75,32 @@ fn plans() -> Vec<Vec<u8>> {
     small.chain(families).map(|plan| write_plan(&plan).into_bytes()).collect()
 }
 
+/// A triangle in glTF as text, through all that a document may hold: nested nodes, a buffer inside the text,
+/// sparse positions, indices.
+const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"a","children":[1],"matrix":[2,0,0,0,0,2,0,0,0,0,2,0,5,6,7,1]},
+{"mesh":0,"translation":[1,2,3],"rotation":[0,0.5,0,0.5],"scale":[1,-1,1]}],
+"meshes":[{"name":"m","primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3,"sparse":{"count":1,
+"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":0,"byteOffset":24}}},
+{"bufferView":1,"byteOffset":1,"componentType":5121,"type":"SCALAR","count":3}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":4}],
+"buffers":[{"byteLength":40,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAgABAg=="}]}"#;
+
+/// Two objects, a face with a notch, and everything else that lines can be.
+const OBJ: &str = "v 0 0 0\nv 4 1 0 1\nv 0 4 0 0 0 1\nv 1 1 0\no a\nf 1 2 3 4\nusemtl x\nf 1/1 2//1 3/1/1\n\
+    o b # c\nv 1 2 3\nf -1 -2 \\\n-3\nl 1 2\n";
+
+fn glbs() -> Vec<Vec<u8>> {
+    let scene = parse_obj(OBJ.as_bytes()).expect("a sound scene").scene;
+    assert!(parse_glb(GLTF.as_bytes(), None).is_ok());
+    vec![write_glb(&scene).expect("small whole numbers"), GLTF.into()]
+}
+
+fn objs() -> Vec<Vec<u8>> {
+    vec![OBJ.into()]
+}
+
 fn tables() -> Vec<Vec<u8>> {
     let bake = |plan| bake_plan(&plan, &BakeOptions::default()).map(|b| b.table.to_bytes());
     scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1)).flat_map(bake).collect()
@@ -103,6 +132,23 @@ fn check_geojson(bytes: &[u8]) -> bool {
     true
 }
 
+fn check_scene(file: &SceneFile) -> bool {
+    assert_eq!(file.info.n_triangles, file.scene.n_triangles());
+    if let Ok(bytes) = write_glb(&file.scene) {
+        let again = parse_glb(&bytes, None).expect("what was written is read");
+        assert_eq!((again.info.n_objects, again.info.n_triangles), (file.info.n_objects, file.info.n_triangles));
+    }
+    true
+}
+
+fn check_glb(bytes: &[u8]) -> bool {
+    parse_glb(bytes, None).is_ok_and(|file| check_scene(&file))
+}
+
+fn check_obj(bytes: &[u8]) -> bool {
+    parse_obj(bytes).is_ok_and(|file| check_scene(&file))
+}
+
 fn check_bake(bytes: &[u8]) -> bool {
     let Ok(plan) = parse_plan(bytes) else { return false };
     let Ok(baked) = bake_plan(&plan, &BakeOptions { threads: 1, ..BakeOptions::default() }) else { return false };
@@ -123,7 +169,7 @@ fn check_pvs(bytes: &[u8]) -> bool {
 }
 
 fn check_anything(bytes: &[u8]) -> bool {
-    check_reject(bytes) | check_bake(bytes) | check_pvs(bytes)
+    check_reject(bytes) | check_bake(bytes) | check_pvs(bytes) | check_glb(bytes) | check_obj(bytes)
 }
 
 struct Settings {

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part of this module")]
 
+pub mod glb;
+
 use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine, Thing};
 use sightlines_formats::wad::{WadBuilder, WadKind};
 use sightlines_formats::{LumpName, Wad};
@@ -70,4 +72,9 @@ pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> = paths.filter(|p| p.extension().is_some_and(|e| e == extension)).collect();
     paths.sort();
     paths
+}
+
+/// A number that the environment may set.
+pub fn setting(variable: &str, default: u64) -> u64 {
+    std::env::var(variable).map_or(default, |text| text.parse().unwrap_or_else(|e| panic!("{variable}: {e}")))
 }

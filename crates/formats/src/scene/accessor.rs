@@ -1,0 +1,246 @@
+//! Accessors of a glTF: numbers in buffers, found only after their place has been checked.
+
+use super::buffers::Buffers;
+use super::error::{AccessorErrorKind, AccessorRole};
+use super::json::{Accessor, Document, Sparse};
+use sightlines_cells::Point3;
+
+/// A kind of number, as `componentType` states it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    fn of(code: u32) -> Option<Self> {
+        match code {
+            5120 => Some(Self::I8),
+            5121 => Some(Self::U8),
+            5122 => Some(Self::I16),
+            5123 => Some(Self::U16),
+            5125 => Some(Self::U32),
+            5126 => Some(Self::F32),
+            _ => None,
+        }
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    /// The value of the number in `b`, which has its size.
+    fn value(self, b: &[u8]) -> f64 {
+        match self {
+            Self::I8 => f64::from(i8::from_le_bytes([b[0]])),
+            Self::U8 => f64::from(b[0]),
+            Self::I16 => f64::from(i16::from_le_bytes([b[0], b[1]])),
+            Self::U16 => f64::from(u16::from_le_bytes([b[0], b[1]])),
+            Self::U32 => f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])),
+            Self::F32 => f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])),
+        }
+    }
+
+    /// The value that a normalised number stands for.
+    fn normalized(self, value: f64) -> f64 {
+        match self {
+            Self::I8 => (value / 127.0).max(-1.0),
+            Self::U8 => value / 255.0,
+            Self::I16 => (value / 32767.0).max(-1.0),
+            Self::U16 => value / 65535.0,
+            Self::U32 | Self::F32 => value,
+        }
+    }
+
+    /// The index in `b`, which has its size.
+    fn index(self, b: &[u8]) -> u32 {
+        match self {
+            Self::I8 | Self::U8 => u32::from(b[0]),
+            Self::I16 | Self::U16 => u32::from(u16::from_le_bytes([b[0], b[1]])),
+            Self::U32 | Self::F32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        }
+    }
+}
+
+/// Elements at equal distances; invariant: the last one is inside `bytes`.
+#[derive(Debug, Clone, Copy)]
+struct Strided<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    size: usize,
+}
+
+impl<'a> Strided<'a> {
+    fn get(&self, k: usize) -> &'a [u8] {
+        &self.bytes[k * self.stride..][..self.size]
+    }
+}
+
+/// Elements that replace others; invariant: their indices ascend and are in range.
+#[derive(Debug, Clone, Copy)]
+struct Replaced<'a> {
+    count: usize,
+    indices: Strided<'a>,
+    index: Component,
+    values: Strided<'a>,
+}
+
+impl<'a> Replaced<'a> {
+    fn index_at(&self, k: usize) -> usize {
+        self.index.index(self.indices.get(k)) as usize
+    }
+
+    /// What replaces element `k`, found by bisection.
+    fn get(&self, k: usize) -> Option<&'a [u8]> {
+        let (mut low, mut high) = (0, self.count);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.index_at(middle) < k { low = middle + 1 } else { high = middle }
+        }
+        (low < self.count && self.index_at(low) == k).then(|| self.values.get(low))
+    }
+}
+
+/// The elements of an accessor, all of them inside their buffers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Elements<'a> {
+    pub(super) count: usize,
+    component: Component,
+    normalized: bool,
+    /// `None` if all elements are zero but for those replaced.
+    base: Option<Strided<'a>>,
+    replaced: Option<Replaced<'a>>,
+}
+
+impl<'a> Elements<'a> {
+    /// Checks an accessor for what it is used for.
+    pub(super) fn new(
+        document: &Document,
+        buffers: &'a Buffers<'_>,
+        accessor: usize,
+        role: AccessorRole,
+    ) -> Result<Self, AccessorErrorKind> {
+        let a = document.accessors.get(accessor).ok_or(AccessorErrorKind::Missing)?;
+        let wrong = || AccessorErrorKind::Type { found: a.kind.clone(), component: a.component_type };
+        let component = Component::of(a.component_type).filter(|&c| fits(a, c, role)).ok_or_else(wrong)?;
+        if a.count == 0 {
+            return Err(AccessorErrorKind::Empty);
+        }
+        let size = element_size(component, role);
+        let views = Views { document, buffers };
+        let base = a.buffer_view.map(|view| views.strided(view, a.byte_offset, a.count, size, true)).transpose()?;
+        let replaced = a.sparse.as_deref().map(|s| views.replaced(s, a.count, size)).transpose()?;
+        // Zeros out of nothing must not take more memory than the file did.
+        if base.is_none() && a.count > a.sparse.as_deref().map_or(0, |s| views.n_bytes_around(s)) {
+            return Err(AccessorErrorKind::Unbacked { count: a.count });
+        }
+        Ok(Self { count: a.count, component, normalized: a.normalized, base, replaced })
+    }
+
+    fn get(&self, k: usize) -> Option<&'a [u8]> {
+        let replaced = self.replaced.and_then(|r| r.get(k));
+        replaced.or_else(|| self.base.map(|base| base.get(k)))
+    }
+
+    /// Position `k`, below `count`.
+    pub(super) fn position(&self, k: usize) -> Point3 {
+        let Some(bytes) = self.get(k) else { return [0.0; 3] };
+        let size = self.component.size();
+        [0, 1, 2].map(|axis| {
+            let value = self.component.value(&bytes[axis * size..]);
+            if self.normalized { self.component.normalized(value) } else { value }
+        })
+    }
+
+    /// Index `k`, below `count`.
+    pub(super) fn index(&self, k: usize) -> u32 {
+        self.get(k).map_or(0, |bytes| self.component.index(bytes))
+    }
+}
+
+/// Whether the components can be what `role` needs. Positions of small integers are those of quantised meshes.
+fn fits(a: &Accessor, component: Component, role: AccessorRole) -> bool {
+    match role {
+        AccessorRole::Positions => a.kind == "VEC3" && component != Component::U32,
+        AccessorRole::Indices => a.kind == "SCALAR" && is_index(component),
+    }
+}
+
+fn is_index(component: Component) -> bool {
+    matches!(component, Component::U8 | Component::U16 | Component::U32)
+}
+
+fn element_size(component: Component, role: AccessorRole) -> usize {
+    match role {
+        AccessorRole::Positions => 3 * component.size(),
+        AccessorRole::Indices => component.size(),
+    }
+}
+
+/// Finds bytes of buffer views.
+struct Views<'a, 'b, 'd> {
+    document: &'d Document,
+    buffers: &'a Buffers<'b>,
+}
+
+impl<'a> Views<'a, '_, '_> {
+    /// `count` elements of `size` bytes, from `offset` in a view; only vertices may be `spaced` by a stride.
+    fn strided(
+        &self,
+        view: usize,
+        offset: usize,
+        count: usize,
+        size: usize,
+        spaced: bool,
+    ) -> Result<Strided<'a>, AccessorErrorKind> {
+        let v = self.document.buffer_views.get(view).ok_or(AccessorErrorKind::NoView { view })?;
+        let buffer = v.buffer;
+        let whole = self.buffers.get(buffer).map_err(|kind| AccessorErrorKind::Buffer { buffer, kind })?;
+        let end = v.byte_offset.checked_add(v.byte_length);
+        let bytes = end.and_then(|end| whole.get(v.byte_offset..end));
+        let bytes = bytes.ok_or(AccessorErrorKind::ViewRange { view, buffer, len: whole.len() })?;
+        let stride = v.byte_stride.filter(|_| spaced).unwrap_or(size);
+        if stride < size {
+            return Err(AccessorErrorKind::Stride { view, stride, size });
+        }
+        let end =
+            count.saturating_sub(1).checked_mul(stride).and_then(|last| last.checked_add(size)?.checked_add(offset));
+        match (end, bytes.get(offset..)) {
+            (Some(end), Some(elements)) if end <= bytes.len() => Ok(Strided { bytes: elements, stride, size }),
+            _ => Err(AccessorErrorKind::Range { view, count, len: bytes.len() }),
+        }
+    }
+
+    fn replaced(&self, sparse: &Sparse, count: usize, size: usize) -> Result<Replaced<'a>, AccessorErrorKind> {
+        let code = sparse.indices.component_type;
+        let index = Component::of(code).filter(|&c| is_index(c));
+        let index = index.ok_or(AccessorErrorKind::Type { found: "SCALAR".to_owned(), component: code })?;
+        let (at, values) = (&sparse.indices, &sparse.values);
+        let indices = self.strided(at.buffer_view, at.byte_offset, sparse.count, index.size(), false)?;
+        let values = self.strided(values.buffer_view, values.byte_offset, sparse.count, size, false)?;
+        let replaced = Replaced { count: sparse.count, indices, index, values };
+        let mut next = 0;
+        for position in 0..sparse.count {
+            let k = replaced.index_at(position);
+            if k < next || k >= count {
+                return Err(AccessorErrorKind::Sparse { position, count });
+            }
+            next = k + 1;
+        }
+        Ok(replaced)
+    }
+
+    /// Bytes of the buffer that holds the values of `sparse`.
+    fn n_bytes_around(&self, sparse: &Sparse) -> usize {
+        let view = self.document.buffer_views.get(sparse.values.buffer_view);
+        view.and_then(|v| self.buffers.get(v.buffer).ok()).map_or(0, <[u8]>::len)
+    }
+}

@@ -1,0 +1,226 @@
+//! Bytes of a glTF: the GLB container, and the buffers of a document wherever they are.
+
+use super::error::{BufferErrorKind, GlbError};
+use super::json;
+use std::borrow::Cow;
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+/// First bytes of a GLB.
+pub(super) const MAGIC: &[u8] = b"glTF";
+
+const HEADER: usize = 12;
+const CHUNK_HEADER: usize = 8;
+
+fn number_at(bytes: &[u8], at: usize) -> Option<u32> {
+    let field = bytes.get(at..at.checked_add(4)?)?;
+    Some(u32::from_le_bytes([field[0], field[1], field[2], field[3]]))
+}
+
+/// Splits a GLB into its text and its binary chunk; further chunks belong to extensions and are skipped.
+///
+/// Bytes behind the length that the header states are not part of the GLB.
+pub(super) fn split_glb(file: &[u8]) -> Result<(&[u8], Option<&[u8]>), GlbError> {
+    let len = file.len();
+    let (Some(version), Some(stated)) = (number_at(file, 4), number_at(file, 8)) else {
+        return Err(GlbError::NoHeader { len });
+    };
+    if version != 2 {
+        return Err(GlbError::Version { found: version });
+    }
+    let whole = usize::try_from(stated).ok().filter(|&stated| stated >= HEADER).and_then(|stated| file.get(..stated));
+    let glb = whole.ok_or(GlbError::Length { stated, len })?;
+    let (mut json, mut binary) = (None, None);
+    let mut offset = HEADER;
+    while offset < glb.len() {
+        let (kind, content) = chunk(glb, offset).ok_or(GlbError::Chunk { offset, len: glb.len() })?;
+        match kind {
+            b"JSON" if offset == HEADER => json = Some(content),
+            _ if offset == HEADER => return Err(GlbError::NoJson),
+            b"BIN\0" if binary.is_none() => binary = Some(content),
+            _ => {}
+        }
+        offset += CHUNK_HEADER + content.len();
+    }
+    Ok((json.ok_or(GlbError::NoJson)?, binary))
+}
+
+fn chunk(glb: &[u8], offset: usize) -> Option<(&[u8], &[u8])> {
+    let length = usize::try_from(number_at(glb, offset)?).ok()?;
+    let content = offset.checked_add(CHUNK_HEADER)?;
+    Some((glb.get(offset + 4..content)?, glb.get(content..content.checked_add(length)?)?))
+}
+
+/// The buffers of a document, each read when it is first needed.
+#[derive(Debug)]
+pub(super) struct Buffers<'a> {
+    buffers: &'a [json::Buffer],
+    binary: Option<&'a [u8]>,
+    folder: Option<&'a Path>,
+    /// Index of the first buffer with the same URI, so that a file is read once however often it is named.
+    first: Vec<usize>,
+    loaded: Vec<OnceCell<Cow<'a, [u8]>>>,
+}
+
+impl<'a> Buffers<'a> {
+    pub(super) fn new(buffers: &'a [json::Buffer], binary: Option<&'a [u8]>, folder: Option<&'a Path>) -> Self {
+        let mut by_uri = BTreeMap::new();
+        let first = |(k, b): (usize, &'a json::Buffer)| match b.uri.as_deref() {
+            Some(uri) => *by_uri.entry(uri).or_insert(k),
+            None => k,
+        };
+        let first = buffers.iter().enumerate().map(first).collect();
+        Self { buffers, binary, folder, first, loaded: buffers.iter().map(|_| OnceCell::new()).collect() }
+    }
+
+    /// The bytes of a buffer, as many as it states.
+    pub(super) fn get(&self, buffer: usize) -> Result<&[u8], BufferErrorKind> {
+        let Some(&first) = self.first.get(buffer) else { return Err(BufferErrorKind::Missing) };
+        let cell = &self.loaded[first];
+        let bytes = match cell.get() {
+            Some(bytes) => bytes,
+            None => {
+                let bytes = self.load(first)?;
+                cell.get_or_init(|| bytes)
+            }
+        };
+        let stated = self.buffers[buffer].byte_length;
+        bytes.get(..stated).ok_or(BufferErrorKind::Length { stated, len: bytes.len() })
+    }
+
+    fn load(&self, buffer: usize) -> Result<Cow<'a, [u8]>, BufferErrorKind> {
+        let Some(uri) = self.buffers[buffer].uri.as_deref() else {
+            // Only the first buffer may be the binary chunk.
+            let binary = self.binary.filter(|_| buffer == 0);
+            return binary.map(Cow::Borrowed).ok_or(BufferErrorKind::NoData);
+        };
+        match uri.get(..5) {
+            Some(scheme) if scheme.eq_ignore_ascii_case("data:") => data_uri(&uri[5..]).map(Cow::Owned),
+            _ => self.load_file(uri).map(Cow::Owned),
+        }
+    }
+
+    fn load_file(&self, uri: &str) -> Result<Vec<u8>, BufferErrorKind> {
+        let refused = || BufferErrorKind::Uri { uri: uri.to_owned() };
+        let path = self.folder.zip(relative_path(uri)).map(|(folder, path)| folder.join(path)).ok_or_else(refused)?;
+        let failed = |source| BufferErrorKind::Io { uri: uri.to_owned(), source };
+        // A device or pipe may never end.
+        if !fs::metadata(&path).map_err(failed)?.is_file() {
+            return Err(refused());
+        }
+        fs::read(&path).map_err(failed)
+    }
+}
+
+/// The path that a URI names, if it leads into or below the folder where one is: a scene from elsewhere
+/// has no business with other files.
+fn relative_path(uri: &str) -> Option<PathBuf> {
+    if uri.is_empty() || uri.contains(':') {
+        return None;
+    }
+    let path = PathBuf::from(percent_decode(uri)?);
+    path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir)).then_some(path)
+}
+
+fn percent_decode(uri: &str) -> Option<String> {
+    let mut decoded = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let Some((&byte, behind)) = rest.split_first() {
+        if byte == b'%' {
+            let digit = |k: usize| char::from(*behind.get(k)?).to_digit(16);
+            decoded.push((digit(0)? * 16 + digit(1)?) as u8);
+            rest = &behind[2..];
+        } else {
+            decoded.push(byte);
+            rest = behind;
+        }
+    }
+    // A path with a zero byte cannot be handed to the system.
+    String::from_utf8(decoded).ok().filter(|path| !path.contains('\0'))
+}
+
+/// The bytes of a data URI, of which `rest` is what follows `data:`.
+fn data_uri(rest: &str) -> Result<Vec<u8>, BufferErrorKind> {
+    let (head, body) = rest.split_once(',').ok_or(BufferErrorKind::DataUri)?;
+    let coding = head.rsplit(';').next().unwrap_or_default();
+    if !coding.eq_ignore_ascii_case("base64") {
+        return Err(BufferErrorKind::DataUri);
+    }
+    base64(body).ok_or(BufferErrorKind::DataUri)
+}
+
+/// Decodes base64 with the usual alphabet, with or without its padding (RFC 4648, section 4).
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let text = text.trim_end_matches('=').as_bytes();
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
+    for group in text.chunks(4) {
+        let mut word = 0;
+        for &letter in group {
+            word = word << 6 | u32::from(sextet(letter)?);
+        }
+        // Two letters hold one byte, three hold two; one letter holds none and is a fault.
+        let n_bytes = match group.len() {
+            1 => return None,
+            n => n - 1,
+        };
+        let word = word << (6 * (4 - group.len()));
+        bytes.extend_from_slice(&word.to_be_bytes()[1..=n_bytes]);
+    }
+    Some(bytes)
+}
+
+fn sextet(letter: u8) -> Option<u8> {
+    match letter {
+        b'A'..=b'Z' => Some(letter - b'A'),
+        b'a'..=b'z' => Some(letter - b'a' + 26),
+        b'0'..=b'9' => Some(letter - b'0' + 52),
+        b'+' => Some(62),
+        b'/' => Some(63),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        // The examples of RFC 4648, section 10.
+        let examples =
+            [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg==", "foob"), ("Zm9vYmE", "fooba")];
+        for (coded, plain) in examples {
+            assert_eq!(base64(coded).as_deref(), Some(plain.as_bytes()), "{coded}");
+        }
+        assert_eq!(base64("+/+/"), Some(vec![0xFB, 0xFF, 0xBF]));
+        for broken in ["Z", "Zm9vY", "Zm 9v", "Zm9v\n", "Zm-_", "=Zm9"] {
+            assert_eq!(base64(broken), None, "{broken:?}");
+        }
+        assert_eq!(data_uri("application/octet-stream;base64,Zm8=").unwrap(), b"fo");
+        assert!(data_uri("text/plain,fo").is_err() && data_uri("base64").is_err());
+    }
+
+    #[test]
+    fn paths_stay_in_the_folder() {
+        let is = |uri, path: &str| assert_eq!(relative_path(uri), Some(PathBuf::from(path)), "{uri}");
+        is("walls.bin", "walls.bin");
+        is("./a%20b/%C3%A9.bin", "./a b/é.bin");
+        for refused in [
+            "",
+            "/etc/passwd",
+            "../x.bin",
+            "a/../../x.bin",
+            "%2e%2e/x",
+            "http://x/y",
+            "file:x",
+            "a%0",
+            "a%zz",
+            "a%00",
+            "%FF",
+        ] {
+            assert_eq!(relative_path(refused), None, "{refused}");
+        }
+    }
+}

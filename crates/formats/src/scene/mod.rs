@@ -1,0 +1,127 @@
+//! Scenes in space: glTF 2.0 (GLB or text with buffers) and OBJ.
+//!
+//! | | glTF | OBJ |
+//! | --- | --- | --- |
+//! | objects | one per node and primitive of the default scene, parents before children | one per `o`, or per `g` where there is no `o` |
+//! | up, unit | Y, metres, as the format says | Y assumed, unknown |
+//! | numbers | single precision or quantised, placed by transforms in double precision | double precision |
+//! | left out | materials, animations, cameras | materials, normals, lines, curves |
+//!
+//! Objects keep their order, which gives them their ids, even those that are only points or lines and have
+//! no triangles. Corners that nothing uses are left out, and so are triangles without area. What bends a
+//! mesh (skins, morph weights) or packs it in a way that is not understood is refused: a wall that is
+//! somewhere else would be an error that nobody sees.
+
+mod accessor;
+mod buffers;
+mod build;
+mod error;
+mod gltf;
+mod json;
+mod obj;
+mod polygon;
+mod transform;
+mod write;
+
+pub use error::{
+    AccessorErrorKind, AccessorRole, BufferErrorKind, GlbError, NodeErrorKind, NodeId, ObjErrorKind,
+    PrimitiveErrorKind, SceneReadError, SceneWriteError,
+};
+pub use gltf::parse_glb;
+pub use obj::parse_obj;
+pub use write::write_glb;
+
+use crate::ReadError;
+use sightlines_cells::Scene;
+use std::fs;
+use std::path::Path;
+
+/// The most triangles, and the most corners, that a scene may have: they take up to 2.4 GB together.
+pub const MAX_ELEMENTS: usize = 1 << 26;
+/// The most objects that a scene of glTF may have.
+pub const MAX_OBJECTS: usize = 1 << 22;
+
+/// A scene and what its file says about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// The scene.
+    pub scene: Scene,
+    /// What its file says about it.
+    pub info: SceneInfo,
+}
+
+/// What a file says about its scene, besides the scene.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneInfo {
+    /// How it was written.
+    pub format: SceneFormat,
+    /// Which way is up.
+    pub up: Axis,
+    /// Whether `up` is only assumed, because the format does not say.
+    pub up_is_assumed: bool,
+    /// How long 1 is.
+    pub unit: LengthUnit,
+    /// Number of objects.
+    pub n_objects: usize,
+    /// Number of objects that have no triangles.
+    pub n_objects_without_triangles: usize,
+    /// Number of triangles of all objects.
+    pub n_triangles: usize,
+    /// Number of triangles that were left out because they have no area: their corners lie on a line, exactly.
+    pub n_degenerate_triangles: usize,
+}
+
+/// A format of scenes in space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SceneFormat {
+    /// glTF 2.0, as GLB or as text.
+    Gltf,
+    /// Wavefront OBJ.
+    Obj,
+}
+
+/// An axis of space, in its positive direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// The first coordinate.
+    X,
+    /// The second coordinate.
+    Y,
+    /// The third coordinate.
+    Z,
+}
+
+/// How long a scene unit is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LengthUnit {
+    /// One metre.
+    Metre,
+    /// Not said.
+    Unknown,
+}
+
+/// Reads the scene in the file at `path`: a GLB by its content, else by the name what is named `.obj`, `.glb`
+/// or `.gltf`, else a glTF text by its content. Buffers of a glTF are searched in the file's folder.
+///
+/// # Errors
+/// [`ReadError`] with the file's name and the place in it.
+pub fn read_scene(path: impl AsRef<Path>) -> Result<SceneFile, ReadError> {
+    let path = path.as_ref();
+    let bytes = fs::read(path).map_err(|error| ReadError::new(path, error))?;
+    // A bare file name has the empty path as parent, which is the current folder.
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let named = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    let is_text = || bytes.trim_ascii_start().starts_with(b"{");
+    let parsed = if bytes.starts_with(gltf::MAGIC) {
+        parse_glb(&bytes, Some(folder))
+    } else if named("obj") {
+        parse_obj(&bytes)
+    } else if named("glb") || named("gltf") || is_text() {
+        parse_glb(&bytes, Some(folder))
+    } else {
+        Err(SceneReadError::UnknownFormat)
+    };
+    parsed.map_err(|error| ReadError::new(path, error))
+}

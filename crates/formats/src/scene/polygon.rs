@@ -1,0 +1,234 @@
+//! Polygons of an OBJ to triangles.
+
+use sightlines_cells::Point3;
+use sightlines_geometry::{Point2, orient2d};
+
+/// The most corners of a polygon that no fan covers: cutting ears takes cubic time at worst.
+pub(super) const MAX_WINDING_CORNERS: usize = 1024;
+
+/// Why a polygon is no union of triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum PolygonError {
+    /// Its outline crosses itself as seen from every axis.
+    Crossing,
+    /// It has more than [`MAX_WINDING_CORNERS`] corners and no fan covers it.
+    TooLarge,
+}
+
+/// Cuts a polygon of three or more corners into triangles of the same hand; returns indices of corners.
+///
+/// The polygon may be bent: it is cut as seen along the axis that shows most of it, if it can be, else along
+/// another along which it is more than a line. Along that axis no triangle runs the other way round, exactly. The triangles then cover each
+/// point as often as the outline winds around it, so they cover the polygon, all of it and nothing else.
+/// Corners on a straight line make triangles without area.
+pub(super) fn triangulate(polygon: &[Point3]) -> Result<Vec<[usize; 3]>, PolygonError> {
+    if polygon.len() <= 3 {
+        return Ok(vec![[0, 1, 2]]);
+    }
+    let normal = newell_normal(polygon);
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|&a, &b| normal[b].abs().total_cmp(&normal[a].abs()));
+    let mut flat: Vec<Vec<Point2>> = axes.iter().map(|&axis| project(polygon, axis, normal[axis] < 0.0)).collect();
+    // Seen edge-on, no triangle runs either way round.
+    flat.retain(|flat| !is_line(flat));
+    if flat.is_empty() {
+        return Ok((1..polygon.len() - 1).map(|k| [0, k, k + 1]).collect());
+    }
+    if let Some(fan) = flat.iter().find_map(|flat| fan(flat)) {
+        return Ok(fan);
+    }
+    if polygon.len() > MAX_WINDING_CORNERS {
+        return Err(PolygonError::TooLarge);
+    }
+    flat.iter().find_map(|flat| cut_ears(flat)).ok_or(PolygonError::Crossing)
+}
+
+/// The normal, twice as long as the polygon is large; rounded, so only good for choosing among views that
+/// are each checked.
+fn newell_normal(polygon: &[Point3]) -> Point3 {
+    let mut normal = [0.0; 3];
+    for (k, p) in polygon.iter().enumerate() {
+        let q = &polygon[(k + 1) % polygon.len()];
+        // Relative to a corner, so that little is lost far from the origin.
+        let (p, q) = (from(polygon[0], *p), from(polygon[0], *q));
+        for (axis, sum) in normal.iter_mut().enumerate() {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            *sum += p[u] * q[v] - p[v] * q[u];
+        }
+    }
+    normal
+}
+
+fn from(a: Point3, b: Point3) -> Point3 {
+    [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+}
+
+/// The polygon as seen along an axis, from the side where it runs counter-clockwise.
+fn project(polygon: &[Point3], axis: usize, from_below: bool) -> Vec<Point2> {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    polygon.iter().map(|p| if from_below { Point2::new(p[v], p[u]) } else { Point2::new(p[u], p[v]) }).collect()
+}
+
+/// Whether all points lie on one line.
+fn is_line(flat: &[Point2]) -> bool {
+    let Some(&other) = flat.iter().find(|&&p| p != flat[0]) else { return true };
+    flat.iter().all(|&p| orient2d(flat[0], other, p) == 0.0)
+}
+
+/// All triangles with the first corner, if none of them runs clockwise.
+fn fan(flat: &[Point2]) -> Option<Vec<[usize; 3]>> {
+    let triangles = (1..flat.len() - 1).map(|k| [0, k, k + 1]);
+    triangles.map(|t| (orientation(flat, t) >= 0.0).then_some(t)).collect()
+}
+
+fn orientation(flat: &[Point2], [a, b, c]: [usize; 3]) -> f64 {
+    orient2d(flat[a], flat[b], flat[c])
+}
+
+/// Cuts off one ear after the other (Meisters 1975): a corner whose triangle holds no other corner.
+///
+/// That an ear is empty only keeps what is left simple. That it does not run clockwise is what counts.
+fn cut_ears(flat: &[Point2]) -> Option<Vec<[usize; 3]>> {
+    let mut left: Vec<usize> = (0..flat.len()).collect();
+    let mut triangles = Vec::with_capacity(flat.len() - 2);
+    while left.len() > 3 {
+        let n = left.len();
+        let ear_at = |k: usize| [left[(k + n - 1) % n], left[k], left[(k + 1) % n]];
+        let k = (0..n).find(|&k| is_ear(flat, &left, ear_at(k)))?;
+        triangles.push(ear_at(k));
+        left.remove(k);
+    }
+    let last = [left[0], left[1], left[2]];
+    triangles.push(last);
+    (orientation(flat, last) >= 0.0).then_some(triangles)
+}
+
+fn is_ear(flat: &[Point2], left: &[usize], ear: [usize; 3]) -> bool {
+    let [a, b, c] = ear.map(|k| flat[k]);
+    let turn = orient2d(a, b, c);
+    if turn <= 0.0 {
+        // A corner on a straight line, or one that is there twice, may go; the tip of a spike too.
+        return turn == 0.0;
+    }
+    let inside = |p: Point2| orient2d(a, b, p) >= 0.0 && orient2d(b, c, p) >= 0.0 && orient2d(c, a, p) >= 0.0;
+    // Corners in the same place are those of a slit that joins a hole to the outline.
+    left.iter().map(|&k| flat[k]).all(|p| p == a || p == b || p == c || !inside(p))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use sightlines_geometry::signed_area;
+
+    /// The corners of a polygon in the plane z = x + 2y, so that every view shows it.
+    fn lift(flat: &[[f64; 2]]) -> Vec<Point3> {
+        flat.iter().map(|&[x, y]| [x, y, x + 2.0 * y]).collect()
+    }
+
+    fn area_xy(polygon: &[Point3], t: [usize; 3]) -> f64 {
+        signed_area(&t.map(|k| Point2::new(polygon[k][0], polygon[k][1])))
+    }
+
+    fn check(flat: &[[f64; 2]]) -> Vec<[usize; 3]> {
+        let polygon = lift(flat);
+        let triangles = triangulate(&polygon).unwrap();
+        assert_eq!(triangles.len(), flat.len() - 2);
+        let all: Vec<Point2> = polygon.iter().map(|p| Point2::new(p[0], p[1])).collect();
+        let whole = signed_area(&all);
+        let sum: f64 = triangles.iter().map(|&t| area_xy(&polygon, t)).sum();
+        assert_eq!(sum, whole);
+        assert!(triangles.iter().all(|&t| area_xy(&polygon, t) * whole >= 0.0), "{triangles:?}");
+        triangles
+    }
+
+    #[test]
+    fn quads_are_fans_from_the_first_corner() {
+        assert_eq!(check(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(check(&[[0., 0.], [0., 1.], [1., 1.], [1., 0.]]), [[0, 1, 2], [0, 2, 3]]);
+        // A dart whose fan from the first corner would cover the notch.
+        assert_eq!(check(&[[0., 0.], [4., 1.], [0., 4.], [1., 1.]]).len(), 2);
+        assert_eq!(check(&[[4., 1.], [0., 4.], [1., 1.], [0., 0.]]).len(), 2);
+    }
+
+    #[test]
+    fn combs_and_holes_are_cut() {
+        check(&[
+            [0., 0.],
+            [5., 0.],
+            [5., 5.],
+            [4., 5.],
+            [4., 1.],
+            [3., 1.],
+            [3., 5.],
+            [2., 5.],
+            [2., 1.],
+            [1., 5.],
+            [0., 5.],
+        ]);
+        // A square with a square hole, joined by a slit that is walked twice.
+        let slit = [[0., 0.], [6., 0.], [6., 6.], [0., 6.], [0., 0.], [2., 2.], [2., 4.], [4., 4.], [4., 2.], [2., 2.]];
+        let triangles = check(&slit);
+        let polygon = lift(&slit);
+        let in_hole = |t: &[usize; 3]| {
+            let [a, b, c] = t.map(|k| Point2::new(polygon[k][0], polygon[k][1]));
+            let p = Point2::new(3.0, 3.1);
+            orient2d(a, b, p) > 0.0 && orient2d(b, c, p) > 0.0 && orient2d(c, a, p) > 0.0
+        };
+        assert!(!triangles.iter().any(in_hole));
+    }
+
+    #[test]
+    fn crossing_outlines_are_refused() {
+        let bow = [[0., 0., 0.], [2., 2., 6.], [2., 0., 2.], [0., 2., 4.]];
+        assert_eq!(triangulate(&bow), Err(PolygonError::Crossing));
+        // Seen edge-on it looks like a line from two sides.
+        let [a, b, c, d] = [[0., 0.], [1., 1.], [1., 0.], [0., 1.]];
+        let on_plane = |axis: usize| {
+            [a, b, c, d].map(|p| {
+                let mut q = [7.0; 3];
+                (q[(axis + 1) % 3], q[(axis + 2) % 3]) = (p[0], p[1]);
+                q
+            })
+        };
+        assert!((0..3).all(|axis| triangulate(&on_plane(axis)) == Err(PolygonError::Crossing)));
+        // A spiral zigzag with too many corners.
+        let zigzag = |k: usize| [k as f64, (k % 2) as f64, 0.0];
+        let mut long: Vec<Point3> = (0..MAX_WINDING_CORNERS).map(zigzag).collect();
+        long.push([0.0, 9.0, 0.0]);
+        assert_eq!(triangulate(&long), Err(PolygonError::TooLarge));
+        // Nothing but a line: triangles without area, for the caller to drop.
+        assert_eq!(triangulate(&[[0.; 3], [1.; 3], [2.; 3], [1.; 3]]).unwrap().len(), 2);
+    }
+
+    proptest! {
+        /// Invariant: what is accepted covers every point as often as its outline winds around it.
+        #[test]
+        fn triangles_cover_what_the_outline_winds_around(flat in prop::collection::vec([0..6i32, 0..6i32], 4..9)) {
+            let polygon = lift(&flat.iter().map(|p| p.map(f64::from)).collect::<Vec<_>>());
+            let Ok(triangles) = triangulate(&polygon) else { return Ok(()) };
+            // Points off every line through two points of the grid, and seen from above.
+            for (x, y) in (0..25).map(|k| (f64::from(k % 5) + 0.501, f64::from(k / 5) + 0.2503)) {
+                let p = Point2::new(x, y);
+                let winding = winding_number(&polygon, &(0..polygon.len()).collect::<Vec<_>>(), p);
+                let covers: i32 = triangles.iter().map(|t| winding_number(&polygon, t, p)).sum();
+                prop_assert_eq!(covers, winding);
+                let hands: Vec<i32> = triangles.iter().map(|t| winding_number(&polygon, t, p)).collect();
+                prop_assert!(hands.iter().all(|&h| h >= 0) || hands.iter().all(|&h| h <= 0), "{:?}", hands);
+            }
+        }
+    }
+
+    /// By counting how the outline crosses the ray from `p` to the right.
+    fn winding_number(polygon: &[Point3], outline: &[usize], p: Point2) -> i32 {
+        let corner = |k: usize| Point2::new(polygon[k][0], polygon[k][1]);
+        let edges = (0..outline.len()).map(|k| (corner(outline[k]), corner(outline[(k + 1) % outline.len()])));
+        edges
+            .map(|(a, b)| match (a.y <= p.y, b.y <= p.y) {
+                (true, false) => i32::from(orient2d(a, b, p) > 0.0),
+                (false, true) => -i32::from(orient2d(a, b, p) < 0.0),
+                _ => 0,
+            })
+            .sum()
+    }
+}

@@ -1,0 +1,135 @@
+//! Where nodes put their meshes: affine maps, composed in double precision.
+//!
+//! Nothing here depends on a machine's mathematical library: sums and products in a fixed order, and one
+//! quotient per entry of a rotation.
+
+use super::error::NodeErrorKind;
+use super::json::Node;
+use sightlines_cells::Point3;
+
+/// An affine map of space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Transform {
+    /// Rows of the matrix; the last column is the translation.
+    rows: [[f64; 4]; 3],
+    /// The sign of its determinant: -1 if it makes right hands of left hands, 0 if it flattens space.
+    hand: i8,
+}
+
+impl Transform {
+    pub(super) const IDENTITY: Self = Self { rows: [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 1., 0.]], hand: 1 };
+
+    /// What `node` does to its mesh and its children.
+    pub(super) fn of_node(node: &Node) -> Result<Self, NodeErrorKind> {
+        let decomposed = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
+        match &node.matrix {
+            Some(_) if decomposed => Err(NodeErrorKind::TwoTransforms),
+            Some(matrix) => Self::from_columns(matrix),
+            None => {
+                let translation = node.translation.as_deref().copied().unwrap_or_default();
+                let rotation = node.rotation.as_deref().copied().unwrap_or([0., 0., 0., 1.]);
+                let scale = node.scale.as_deref().copied().unwrap_or([1.; 3]);
+                Self::from_parts(translation, rotation, scale)
+            }
+        }
+    }
+
+    fn from_columns(m: &[f64; 16]) -> Result<Self, NodeErrorKind> {
+        if [m[3], m[7], m[11], m[15]] != [0., 0., 0., 1.] {
+            return Err(NodeErrorKind::NotAffine);
+        }
+        let rows = [0, 1, 2].map(|r| [m[r], m[4 + r], m[8 + r], m[12 + r]]);
+        // Rounding can mistake the sign only of a map that flattens space by fifteen digits, where fronts
+        // and backs are the same to the eye.
+        Ok(Self { rows, hand: sign(determinant(&rows)) })
+    }
+
+    /// First the scale, then the rotation, then the translation.
+    fn from_parts(translation: Point3, rotation: [f64; 4], scale: Point3) -> Result<Self, NodeErrorKind> {
+        let rotation = rotation_rows(rotation).ok_or(NodeErrorKind::ZeroRotation)?;
+        let row = |r: usize| {
+            let [x, y, z]: Point3 = rotation[r];
+            [x * scale[0], y * scale[1], z * scale[2], translation[r]]
+        };
+        let hand = scale.iter().map(|&s| sign(s)).product();
+        Ok(Self { rows: [row(0), row(1), row(2)], hand })
+    }
+
+    /// Whether fronts become backs.
+    pub(super) fn mirrors(&self) -> bool {
+        self.hand < 0
+    }
+
+    /// First `inner`, then this.
+    pub(super) fn after(&self, inner: &Self) -> Self {
+        let entry = |row: &[f64; 4], c: usize| {
+            row[0] * inner.rows[0][c] + row[1] * inner.rows[1][c] + row[2] * inner.rows[2][c]
+        };
+        let row = |row: &[f64; 4]| [entry(row, 0), entry(row, 1), entry(row, 2), entry(row, 3) + row[3]];
+        Self { rows: [row(&self.rows[0]), row(&self.rows[1]), row(&self.rows[2])], hand: self.hand * inner.hand }
+    }
+
+    /// Where it puts `p`.
+    pub(super) fn apply(&self, p: Point3) -> Point3 {
+        self.rows.map(|row| row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3])
+    }
+}
+
+fn sign(x: f64) -> i8 {
+    i8::from(x > 0.0) - i8::from(x < 0.0)
+}
+
+fn determinant(rows: &[[f64; 4]; 3]) -> f64 {
+    let [a, b, c] = rows;
+    a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+}
+
+/// The rotation of a quaternion (x, y, z, w) of any length but zero.
+///
+/// Files hold unit quaternions rounded to single precision. Dividing by the squared length at the end gives
+/// a rotation all the same, and exact zeros and ones for turns by right angles about an axis: there, equal
+/// squares cancel, or the same number stands above and below the line.
+fn rotation_rows([x, y, z, w]: [f64; 4]) -> Option<[Point3; 3]> {
+    let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
+    let squared_length = (xx + yy) + (zz + ww);
+    if squared_length == 0.0 {
+        return None;
+    }
+    let off = |a: f64, b: f64| (a + b) * 2.0 / squared_length;
+    let diagonal = |plus: f64, a: f64, b: f64| ((ww + plus) - (a + b)) / squared_length;
+    Some([
+        [diagonal(xx, yy, zz), off(x * y, -(w * z)), off(x * z, w * y)],
+        [off(x * y, w * z), diagonal(yy, xx, zz), off(y * z, -(w * x))],
+        [off(x * z, -(w * y)), off(y * z, w * x), diagonal(zz, xx, yy)],
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn right_angles_are_exact() {
+        let h = f64::from(std::f32::consts::FRAC_1_SQRT_2);
+        let quarter = |q| rotation_rows(q).unwrap();
+        assert_eq!(quarter([h, 0., 0., h]), [[1., 0., 0.], [0., 0., -1.], [0., 1., 0.]]);
+        assert_eq!(quarter([0., h, 0., h]), [[0., 0., 1.], [0., 1., 0.], [-1., 0., 0.]]);
+        assert_eq!(quarter([0., 0., -h, h]), [[0., 1., 0.], [-1., 0., 0.], [0., 0., 1.]]);
+        assert_eq!(quarter([0., h, h, 0.]), [[-1., 0., 0.], [0., 0., 1.], [0., 1., 0.]]);
+        assert_eq!(quarter([0.5, 0.5, 0.5, 0.5]), [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.]]);
+        assert_eq!(quarter([0., 0., 0., -3.]), [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.]]);
+        assert_eq!(rotation_rows([0.; 4]), None);
+    }
+
+    #[test]
+    fn mirrors_are_told_from_turns() {
+        let scaled = |s| Transform::from_parts([0.; 3], [0., 0., 0., 1.], s).unwrap().mirrors();
+        assert!(scaled([-1., 1., 1.]) && scaled([-1., -2., -1.]));
+        assert!(!scaled([-1., -1., 1.]) && !scaled([2., 1., 1.]) && !scaled([-1., 0., 1.]));
+        let swap = [0., 1., 0., 0., 1., 0., 0., 0., 0., 0., 1., 0., 5., 6., 7., 1.];
+        let swap = Transform::from_columns(&swap).unwrap();
+        assert!(swap.mirrors() && !swap.after(&swap).mirrors());
+        assert_eq!(swap.apply([1., 2., 3.]), [7., 7., 10.]);
+        assert_eq!(swap.after(&swap).apply([1., 2., 3.]), swap.apply(swap.apply([1., 2., 3.])));
+    }
+}

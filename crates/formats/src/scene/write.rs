@@ -1,0 +1,209 @@
+//! Scenes in space as GLB.
+
+use super::error::SceneWriteError;
+use serde::Serialize;
+use sightlines_cells::{Scene, SceneObject};
+
+/// Writes a scene as GLB: a node, a mesh and a primitive per object, without transforms.
+///
+/// Reading it again gives the same objects in the same order with the same triangles; corners that no
+/// triangle uses are gone then, unless the object has no triangles at all: its corners are written as points.
+///
+/// # Errors
+/// [`SceneWriteError`]: a coordinate that single precision cannot hold exactly is refused, not rounded.
+pub fn write_glb(scene: &Scene) -> Result<Vec<u8>, SceneWriteError> {
+    let mut parts = Parts::default();
+    for (k, object) in scene.objects().iter().enumerate() {
+        parts.add(k, object)?;
+    }
+    parts.into_glb()
+}
+
+#[derive(Debug, Serialize)]
+struct Asset {
+    version: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct Roots {
+    nodes: Vec<usize>,
+}
+
+#[derive(Debug, Serialize)]
+struct Node<'a> {
+    name: &'a str,
+    mesh: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct Mesh {
+    primitives: [Primitive; 1],
+}
+
+#[derive(Debug, Serialize)]
+struct Primitive {
+    attributes: Attributes,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    indices: Option<usize>,
+    mode: u32,
+}
+
+#[derive(Debug, Serialize)]
+struct Attributes {
+    #[serde(rename = "POSITION")]
+    position: usize,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Accessor {
+    buffer_view: usize,
+    component_type: u32,
+    count: usize,
+    #[serde(rename = "type")]
+    kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    min: Option<[f32; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max: Option<[f32; 3]>,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct BufferView {
+    buffer: usize,
+    byte_offset: usize,
+    byte_length: usize,
+    target: u32,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Buffer {
+    byte_length: usize,
+}
+
+/// The document; glTF has no empty lists, so what is empty is left out.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Document<'a> {
+    asset: Asset,
+    scene: usize,
+    scenes: [Roots; 1],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    nodes: &'a [Node<'a>],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    meshes: &'a [Mesh],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    accessors: &'a [Accessor],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    buffer_views: &'a [BufferView],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    buffers: &'a [Buffer],
+}
+
+#[derive(Debug, Default)]
+struct Parts<'a> {
+    nodes: Vec<Node<'a>>,
+    meshes: Vec<Mesh>,
+    accessors: Vec<Accessor>,
+    views: Vec<BufferView>,
+    binary: Vec<u8>,
+}
+
+impl<'a> Parts<'a> {
+    fn add(&mut self, k: usize, object: &'a SceneObject) -> Result<(), SceneWriteError> {
+        let position = self.positions(k, object)?;
+        let indices = (!object.triangles.is_empty()).then(|| self.indices(object));
+        let mode = if indices.is_some() { 4 } else { 0 };
+        self.meshes.push(Mesh { primitives: [Primitive { attributes: Attributes { position }, indices, mode }] });
+        self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1 });
+        Ok(())
+    }
+
+    fn positions(&mut self, object: usize, o: &SceneObject) -> Result<usize, SceneWriteError> {
+        if o.vertices.is_empty() {
+            return Err(SceneWriteError::Empty { object });
+        }
+        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let start = self.binary.len();
+        for (vertex, p) in o.vertices.iter().enumerate() {
+            for (axis, &value) in p.iter().enumerate() {
+                let single = value as f32;
+                if f64::from(single) != value {
+                    return Err(SceneWriteError::Precision { object, vertex, value });
+                }
+                (min[axis], max[axis]) = (min[axis].min(single), max[axis].max(single));
+                self.binary.extend_from_slice(&single.to_le_bytes());
+            }
+        }
+        // 5126 is single precision, 34962 an array of vertices.
+        let view = self.view(start, 34962);
+        let accessor = Accessor {
+            buffer_view: view,
+            component_type: 5126,
+            count: o.vertices.len(),
+            kind: "VEC3",
+            min: Some(min),
+            max: Some(max),
+        };
+        Ok(self.accessor(accessor))
+    }
+
+    fn indices(&mut self, o: &SceneObject) -> usize {
+        let start = self.binary.len();
+        // The largest index of each size restarts a strip and is not allowed.
+        let short = o.vertices.len() <= usize::from(u16::MAX);
+        for &index in o.triangles.iter().flatten() {
+            let bytes = index.to_le_bytes();
+            self.binary.extend_from_slice(if short { &bytes[..2] } else { &bytes });
+        }
+        // 5123 and 5125 are integers of 16 and 32 bits, 34963 an array of indices.
+        let view = self.view(start, 34963);
+        let component_type = if short { 5123 } else { 5125 };
+        let count = 3 * o.triangles.len();
+        self.accessor(Accessor { buffer_view: view, component_type, count, kind: "SCALAR", min: None, max: None })
+    }
+
+    fn view(&mut self, byte_offset: usize, target: u32) -> usize {
+        let byte_length = self.binary.len() - byte_offset;
+        self.views.push(BufferView { buffer: 0, byte_offset, byte_length, target });
+        // The next view has to begin at a multiple of four.
+        self.binary.resize(self.binary.len().next_multiple_of(4), 0);
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Accessor) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    fn into_glb(self) -> Result<Vec<u8>, SceneWriteError> {
+        let buffer = Buffer { byte_length: self.binary.len() };
+        let document = Document {
+            asset: Asset { version: "2.0" },
+            scene: 0,
+            scenes: [Roots { nodes: (0..self.nodes.len()).collect() }],
+            nodes: &self.nodes,
+            meshes: &self.meshes,
+            accessors: &self.accessors,
+            buffer_views: &self.views,
+            buffers: if self.binary.is_empty() { &[] } else { std::slice::from_ref(&buffer) },
+        };
+        let mut text = serde_json::to_vec(&document).expect("names and finite numbers are JSON");
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let mut glb = Vec::with_capacity(28 + text.len() + self.binary.len());
+        glb.extend_from_slice(b"glTF\x02\0\0\0\0\0\0\0");
+        for (kind, content) in [(b"JSON", &text), (b"BIN\0", &self.binary)] {
+            if !content.is_empty() {
+                // A chunk longer than its length can say makes the file too long as well.
+                glb.extend_from_slice(&(content.len() as u32).to_le_bytes());
+                glb.extend_from_slice(kind);
+                glb.extend_from_slice(content);
+            }
+        }
+        let len = u32::try_from(glb.len()).map_err(|_| SceneWriteError::TooLarge { len: glb.len() })?;
+        glb[8..12].copy_from_slice(&len.to_le_bytes());
+        Ok(glb)
+    }
+}
