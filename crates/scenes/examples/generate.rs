@@ -1,8 +1,9 @@
-//! Prints the size of one plan of every generator.
+//! Prints the size of one scene of every generator.
 
 use sightlines_cells::Plan;
 use sightlines_scenes::{
-    OfficeOptions, SceneError, degenerate, doom_like, maze, office, pillared_hall, turned_pillared_hall,
+    OfficeOptions, SceneError, TowerOptions, degenerate, doom_like, maze, office, pillared_hall, tower,
+    turned_pillared_hall,
 };
 
 fn main() -> Result<(), SceneError> {
@@ -19,6 +20,10 @@ fn main() -> Result<(), SceneError> {
     show("Doom-like map", &doom_like(1, 8)?);
     for (name, plan) in degenerate::all() {
         show(name, &plan);
+    }
+    for floors in [1, 4, 16, 64] {
+        let scene = tower(TowerOptions { floors, ..Default::default() })?;
+        println!("tower of {floors} floors: {} objects, {} triangles", scene.objects().len(), scene.n_triangles());
     }
     Ok(())
 }

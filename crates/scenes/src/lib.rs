@@ -1,11 +1,11 @@
-//! Deterministic generators of scenes: offices, mazes, pillared halls, Doom-like maps, and the
-//! degenerate families that a subdivision has to survive.
+//! Deterministic generators of scenes: offices, mazes, pillared halls, Doom-like maps, the degenerate
+//! families that a subdivision has to survive, and in space furnished office towers.
 //!
 //! Owns: the generators, their options, their source of chance.
 //! Does not know: cells, sightlines, files.
 //! Invariants: the same options give the same bytes on every machine (integers only until the last
 //! step, which divides by a power of two); a plan is closed by an outer wall unless its description
-//! says otherwise; bad options give an error, never a panic.
+//! says otherwise; meshes are closed and face outwards; bad options give an error, never a panic.
 
 #[cfg(test)]
 mod check;
@@ -13,17 +13,20 @@ pub mod degenerate;
 pub mod doom_like;
 pub mod error;
 pub mod hall;
+mod layout;
 pub mod maze;
 pub mod office;
 mod rng;
 mod spanning;
 mod stroke;
+pub mod tower;
 
 pub use doom_like::{DoomLike, DoomLikeLine, doom_like};
 pub use error::SceneError;
 pub use hall::{pillared_hall, turned_pillared_hall};
 pub use maze::maze;
 pub use office::{OfficeOptions, office};
+pub use tower::{TowerOptions, TowerRoom, tower, tower_rooms};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

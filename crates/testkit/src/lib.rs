@@ -1,24 +1,34 @@
 //! Oracles and proptest strategies for the tests of `sightlines`; not published.
 //!
 //! Owns: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
-//! [`sees_brute_force`], [`sector_visibility_brute_force`]), sampled lower bounds, and strategies that
+//! [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`]), sampled lower bounds, and strategies that
 //! draw from small grids.
 //! Does not know: how the real code works; an oracle that shares a method with it proves nothing.
-//! Invariants: slow on purpose; every answer is exact for every finite coordinate.
+//! Invariants: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
+//! space are traced in doubles, and what is sampled with them stands clear of rounding.
 
+pub mod axial;
+mod bvh;
 mod candidates;
 pub mod corridor;
 mod exact;
 pub mod mutate;
 pub mod plans;
+mod ray_witness;
+pub mod rays;
 pub mod sampled;
 pub mod sector_plans;
 pub mod sectors;
 pub mod sees;
 pub mod stab;
 
+pub use axial::{
+    AXIS_ORDERS, any_axial_doors, axial_corridor, axial_meets_brute_force, axial_moved, axial_stabbable_brute_force,
+    straight_axial_corridor,
+};
 pub use corridor::{PortalPair, any_portals, as_portals, corridor, kd_corridor, strip_corridor};
 pub use plans::{axial_plan, convex_polygon, small_grid_plan};
+pub use rays::{Hit, RayScene};
 pub use sampled::{Chord, chord_is_clear, clear_chords, sampled_sector_visibility};
 pub use sector_plans::{Sectors, small_sector_plan, small_sectors};
 pub use sectors::sector_visibility_brute_force;
