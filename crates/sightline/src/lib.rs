@@ -1,21 +1,27 @@
 //! Stabbing lines: is there a line through a sequence of oriented portals, and which?
 //!
 //! Owns: the [`Stabber`] contract that a search drives, the planar [`Funnel`] (exact, incremental), the
-//! proofs of its answers ([`Witness`], [`Certificate`]) with checkers that share no code with it, and
-//! the same question as a linear program ([`lp`]), for reference.
+//! proofs of its answers ([`Witness`], [`Certificate`]) with checkers that share no code with it; the same
+//! for axis-aligned rectangles in space ([`AxialStabber`], [`AxialWitness`], [`AxialCertificate`]); and both
+//! questions as linear programs ([`lp`]), for reference.
 //! Does not know: cells, graphs, tables, files.
 //! Invariants: every decision is exact for the coordinates given; a sequence that an open set of lines
 //! passes is never called blocked, and one that only grazing lines pass is never called open.
 //!
-//! Portals are open segments and walls are closed, so a line that only touches an end of a portal does
-//! not count.
+//! Portals are open segments or rectangles and walls are closed, so a line that only touches an end or an
+//! edge of a portal does not count.
 
+pub mod axial;
 pub mod certificate;
 pub mod funnel;
 pub mod lp;
 mod stabber;
 pub mod witness;
 
+pub use axial::{
+    AxialCertificate, AxialCounters, AxialRow, AxialStabber, AxialUndo, AxialWitness, OctantProof, StabbingAxial,
+    stabbing_line_axial,
+};
 pub use certificate::{Certificate, End};
 pub use funnel::{Funnel, FunnelUndo};
 pub use stabber::Stabber;
@@ -37,6 +43,10 @@ pub enum SightlineError {
     /// Both ends of a portal are one point: no open set of lines passes it.
     #[error("portal {0} has length zero")]
     ZeroLength(usize),
+    /// A door that should be perpendicular to an axis is not: its rectangle has an extent along that
+    /// axis, or there is no such axis.
+    #[error("portal {0} is not perpendicular to its axis")]
+    NotFlat(usize),
 }
 
 /// The answer for one sequence.

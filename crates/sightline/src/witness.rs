@@ -97,9 +97,11 @@ impl Witness {
         };
         let ends: Vec<Point2> = portals.iter().flat_map(|d| [d.left, d.right]).collect();
         let pairs = ends.iter().flat_map(|&p| ends.iter().map(move |&q| (p, q)));
-        let middle = portals.first().map(|&d| Self::across(d))?;
         let sum = Self::inside(pairs.filter(|&(p, q)| p != q && allowed(p, q)));
+        // Where all ends are on one line, no pair spans a line between them; a bisector does.
+        let bisectors = portals.iter().flat_map(|l| portals.iter().map(|r| Portal2 { left: l.left, right: r.right }));
+        let bisectors = bisectors.filter(|d| d.left != d.right).map(Self::across);
         let strict = |w: &Self| portals.iter().all(|&d| w.passes(d));
-        [sum, middle].into_iter().find(strict)
+        std::iter::once(sum).chain(bisectors).find(strict)
     }
 }

@@ -142,6 +142,17 @@ fn bad_sequences_are_errors() {
     assert_eq!(stabbing_line(&[good, nan]).unwrap_err().to_string(), "portal 1 has a coordinate that cannot be used");
 }
 
+/// Doors on one line, which no chain of cells has: the line between the innermost ends is found.
+#[test]
+fn doors_on_one_line_are_separated() {
+    let p = Point2::new;
+    let doors = [Portal2 { left: p(-3., 4.), right: p(-1., 4.) }, Portal2 { left: p(-2., 4.), right: p(0., 4.) }];
+    let Ok(Some(Stabbing2::Visible(witness))) = stabbing_line(&doors) else { panic!("open") };
+    assert!(doors.iter().all(|&d| witness.passes(d)));
+    let apart = [doors[0], Portal2 { left: p(-1., 4.), right: p(0., 4.) }];
+    assert!(matches!(stabbing_line(&apart), Ok(Some(Stabbing2::Blocked(_)))));
+}
+
 /// A slit of one unit in the last place between two far doors is passable, and closed it is not.
 #[test]
 fn slits_of_one_ulp_are_open() {

@@ -1,0 +1,250 @@
+//! From weights in doubles to integers that prove that no line passes.
+//!
+//! Weights prove it if they are not negative, not all zero, and the weighted rows add up to no offsets
+//! and to slownesses with coefficients of at least zero: a line would make the left side negative and
+//! the right side not. Offsets cancel if and only if the rows, as arrows from the early axis to the
+//! late one, make up cycles through two or three axes. So weights are written as a sum of cycles, each
+//! cycle's weight is rounded to an integer, offsets cancel exactly, and only three inequalities are left
+//! to check. They have slack if the program's margin is clearly negative; if it is not, the weights are
+//! computed anew, as the integers that make the sum vanish exactly.
+
+use super::rows::{Octant, Row, sign};
+use num_bigint::BigInt;
+use num_traits::{CheckedDiv, CheckedMul, CheckedSub, FromPrimitive, One, Signed, ToPrimitive, Zero};
+
+/// Rows by index, with weights that prove that no line passes.
+#[derive(Debug, Clone)]
+pub(super) enum Proof {
+    /// Weights that are integers below 2^53.
+    Small(Vec<(usize, f64)>),
+    /// Any integers.
+    Big(Vec<(usize, BigInt)>),
+}
+
+impl Proof {
+    /// Whether one of its rows is about an axis.
+    pub(super) fn speaks_of(&self, rows: &[Row], axis: usize) -> bool {
+        let about = |k: usize| rows[k].early == axis || rows[k].late == axis;
+        match self {
+            Self::Small(terms) => terms.iter().any(|term| about(term.0)),
+            Self::Big(terms) => terms.iter().any(|term| about(term.0)),
+        }
+    }
+
+    /// The rows and their weights, which are positive; ordered by row.
+    pub(super) fn terms(&self) -> Vec<(usize, BigInt)> {
+        let mut terms = match self {
+            Self::Small(terms) => {
+                terms.iter().map(|&(k, w)| (k, BigInt::from_f64(w).expect("weights are finite"))).collect()
+            }
+            Self::Big(terms) => terms.clone(),
+        };
+        terms.sort_by_key(|term| term.0);
+        terms
+    }
+}
+
+/// Writes weights as a sum of cycles; what does not fit, by rounding, is dropped.
+fn cycles(rows: &[Row], support: &[(usize, f64)]) -> Vec<(Vec<usize>, f64)> {
+    let mut left: Vec<f64> = support.iter().map(|&(_, w)| w).collect();
+    let mut found = Vec::new();
+    let mut cancel = |axes: &[usize]| {
+        loop {
+            let arrow = |i: usize| {
+                let (from, to) = (axes[i], axes[(i + 1) % axes.len()]);
+                let fits = |&n: &usize| {
+                    let row = &rows[support[n].0];
+                    left[n] > 0.0 && row.early == from && row.late == to
+                };
+                (0..support.len()).find(fits)
+            };
+            let Some(cycle) = (0..axes.len()).map(arrow).collect::<Option<Vec<usize>>>() else { break };
+            let weight = cycle.iter().map(|&n| left[n]).fold(f64::INFINITY, f64::min);
+            for &n in &cycle {
+                left[n] -= weight;
+            }
+            found.push((cycle, weight));
+        }
+    };
+    for axes in [&[0, 1][..], &[1, 2], &[2, 0], &[0, 1, 2], &[2, 1, 0]] {
+        cancel(axes);
+    }
+    found
+}
+
+/// Rounds the cycles of `support` to integers, the largest to `scale` (at most 2^40), and checks the
+/// proof with a bound on rounding errors; `None` proves nothing.
+pub(super) fn by_cycles(rows: &[Row], octant: Octant, support: &[(usize, f64)], scale: f64) -> Option<Proof> {
+    let cycles = cycles(rows, support);
+    let largest = cycles.iter().map(|c| c.1).fold(0.0, f64::max);
+    let mut weights = vec![0.0; support.len()];
+    for (cycle, weight) in &cycles {
+        // Integers below 2^43, so their sums are exact.
+        let whole = (weight / largest * scale).round();
+        for &n in cycle {
+            weights[n] += whole;
+        }
+    }
+    let terms: Vec<(usize, f64)> =
+        support.iter().zip(weights).map(|(s, w)| (s.0, w)).filter(|&(_, w)| w > 0.0).collect();
+    let proves = !terms.is_empty() && (0..3).all(|axis| certainly_slow(rows, octant, &terms, axis));
+    proves.then_some(Proof::Small(terms))
+}
+
+/// Whether the coefficient of a slowness in the weighted sum is certainly at least zero.
+///
+/// As offsets cancel, coordinates may be counted from any origin; from one of the coordinates, they are
+/// small. A difference and its product with a weight err by 2^-53 of themselves each, and five sums of
+/// the total of sizes each, in all below 8 * 2^-53 to first order; 16 * 2^-53 covers the rest and the
+/// rounding of the total itself.
+fn certainly_slow(rows: &[Row], octant: Octant, terms: &[(usize, f64)], axis: usize) -> bool {
+    let mut origin = None;
+    let (mut sum, mut sizes) = (0.0, 0.0);
+    for &(k, weight) in terms {
+        let Some((factor, x)) = rows[k].term(axis) else { continue };
+        let term = factor * weight * (x - *origin.get_or_insert(x));
+        sum += term;
+        sizes += term.abs();
+    }
+    sizes == 0.0 || sign(octant, axis) * sum > 8.0 * f64::EPSILON * sizes
+}
+
+/// A finite double as `mantissa * 2^exponent`, with an odd mantissa or zero.
+fn parts(x: f64) -> (i64, i32) {
+    let bits = x.to_bits();
+    let (fraction, exponent) = ((bits & ((1 << 52) - 1)) as i64, (bits >> 52 & 0x7ff) as i32);
+    let (mantissa, exponent) = if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
+    if mantissa == 0 {
+        return (0, 0);
+    }
+    let zeros = mantissa.trailing_zeros();
+    (if x < 0.0 { -(mantissa >> zeros) } else { mantissa >> zeros }, exponent + zeros as i32)
+}
+
+/// Coordinates as integers: `low[axis] + x / 2^shift` for an integer `x`, for some `shift`.
+#[derive(Debug)]
+pub(super) struct Grid {
+    low: [f64; 3],
+    /// The exponent of the finest coordinate.
+    exponent: i32,
+}
+
+impl Grid {
+    /// The grid of all coordinates of `rows`.
+    pub(super) fn of<'a>(rows: impl Iterator<Item = &'a Row>) -> Self {
+        let (mut low, mut exponent) = ([f64::INFINITY; 3], i32::MAX);
+        for row in rows {
+            for (axis, x) in [(row.early, row.from), (row.late, row.to)] {
+                low[axis] = low[axis].min(x);
+                if x != 0.0 {
+                    exponent = exponent.min(parts(x).1);
+                }
+            }
+        }
+        let low = low.map(|x| if x.is_finite() { x } else { 0.0 });
+        Self { low, exponent: if exponent == i32::MAX { 0 } else { exponent } }
+    }
+
+    /// The integer of a coordinate of the rows that the grid was made for.
+    pub(super) fn integer(&self, axis: usize, x: f64) -> BigInt {
+        let whole = |x: f64| {
+            let (mantissa, exponent) = parts(x);
+            BigInt::from(mantissa) << (exponent.max(self.exponent) - self.exponent).unsigned_abs()
+        };
+        whole(x) - whole(self.low[axis])
+    }
+
+    /// Lower corner, and the exponent of a step.
+    pub(super) fn frame(&self) -> ([f64; 3], i32) {
+        (self.low, self.exponent)
+    }
+
+    /// The coefficients of a row: slownesses in the octant, then the offsets of axes 1 and 2.
+    pub(super) fn coefficients(&self, row: &Row, octant: Octant) -> [BigInt; 5] {
+        let mut a: [BigInt; 5] = Default::default();
+        let signed = |axis: usize, x: BigInt| if sign(octant, axis) > 0.0 { x } else { -x };
+        a[row.early] = signed(row.early, self.integer(row.early, row.from));
+        a[row.late] = -signed(row.late, self.integer(row.late, row.to));
+        for (axis, step) in [(row.early, -1), (row.late, 1)] {
+            if axis > 0 {
+                a[axis + 2] = BigInt::from(step);
+            }
+        }
+        a
+    }
+}
+
+/// Computes the weights of the rows and slownesses that have any, as integers that add up to exactly
+/// zero; `None` if they are not determined by that, or not all of one sign.
+pub(super) fn by_elimination(
+    rows: &[Row],
+    octant: Octant,
+    support: &[(usize, f64)],
+    signs: [bool; 3],
+) -> Option<Proof> {
+    let grid = Grid::of(support.iter().map(|&(k, _)| &rows[k]));
+    let mut columns: Vec<[BigInt; 5]> = support.iter().map(|&(k, _)| grid.coefficients(&rows[k], octant)).collect();
+    for axis in (0..3).filter(|&axis| signs[axis]) {
+        let mut column: [BigInt; 5] = Default::default();
+        column[axis] = -BigInt::one();
+        columns.push(column);
+    }
+    // Elimination multiplies three coordinates and more, so this is worth a try for short ones only.
+    let small = |column: &[BigInt; 5]| {
+        let [a, b, c, d, e] = column.each_ref().map(BigInt::to_i128);
+        Some([a?, b?, c?, d?, e?])
+    };
+    let small: Option<Vec<[i128; 5]>> = columns.iter().map(small).collect();
+    let null = match small.and_then(null_vector) {
+        Some(null) => null.into_iter().map(BigInt::from).collect(),
+        None => null_vector(columns)?,
+    };
+    let weights = if null.iter().any(Signed::is_negative) { null.into_iter().map(|x| -x).collect() } else { null };
+    if weights.iter().any(Signed::is_negative) || weights[..support.len()].iter().all(Zero::is_zero) {
+        return None;
+    }
+    let terms = support.iter().zip(weights).map(|(s, w)| (s.0, w)).filter(|(_, w)| !w.is_zero());
+    Some(Proof::Big(terms.collect()))
+}
+
+/// The integers, unique up to a factor, with which columns add up to zero; `None` if there are none or
+/// they are not unique, or on overflow. Fraction-free elimination (Bareiss, Math. Comp. 22, 1968).
+fn null_vector<T>(mut columns: Vec<[T; 5]>) -> Option<Vec<T>>
+where
+    T: Clone + Zero + One + std::ops::Neg<Output = T> + CheckedMul + CheckedSub + CheckedDiv,
+{
+    let mut last = T::one();
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    let mut free = None;
+    for c in 0..columns.len() {
+        let Some(r) = (0..5).find(|&r| !columns[c][r].is_zero() && pivots.iter().all(|p| p.1 != r)) else {
+            if free.replace(c).is_some() {
+                return None;
+            }
+            continue;
+        };
+        let pivot = columns[c].clone();
+        for (k, column) in columns.iter_mut().enumerate() {
+            if k == c {
+                continue;
+            }
+            let head = column[r].clone();
+            for i in (0..5).filter(|&i| i != r) {
+                let product = pivot[r].checked_mul(&column[i])?.checked_sub(&pivot[i].checked_mul(&head)?)?;
+                column[i] = product.checked_div(&last)?;
+            }
+        }
+        for i in (0..5).filter(|&i| i != r) {
+            columns[c][i] = T::zero();
+        }
+        last = pivot[r].clone();
+        pivots.push((c, r));
+    }
+    let free = free?;
+    let mut null = vec![T::zero(); columns.len()];
+    for &(c, r) in &pivots {
+        null[c] = -columns[free][r].clone();
+    }
+    null[free] = last;
+    Some(null)
+}

@@ -1,0 +1,249 @@
+//! The linear program of one octant, in doubles: it finds candidates and decides nothing.
+//!
+//! Unknown are the slownesses `s > 0` and offsets `q` of a line: it reaches coordinate `c` of axis `i`
+//! at time `s_i c - q_i`, after every axis was moved and scaled to the interval from 0 to 1 in the
+//! octant's direction. Wanted is the largest `margin` such that every row holds with `margin` to spare,
+//! `s_i >= margin`, and the slownesses add up to 1. The dual asks for weights of rows; it is solved by
+//! the simplex method with the most violated row entering, on an explicit inverse of six by six.
+//!
+//! Adding the slownesses up is what makes proofs easy: if the margin is negative, the weighted rows add
+//! up to slownesses with coefficients of at least its size, not just to zero, so that weights rounded
+//! to integers still prove that no line passes.
+
+use super::rows::{Line, Octant, Row, is_forward};
+
+/// Unknowns: three slownesses, two offsets (the first is 0), the margin.
+const N: usize = 6;
+/// Bound on offsets, never tight at an optimum: a door keeps them within 2 plus the margin's size.
+const FAR: f64 = 8.0;
+/// Violations below this are rounding.
+const VIOLATED: f64 = 1e-12;
+/// Columns of smaller size are no pivots.
+const PIVOT: f64 = 1e-11;
+/// Weights below this are rounding.
+const WEIGHT: f64 = 1e-11;
+/// Pivots after which the answer is taken as it is.
+const MAX_PIVOTS: usize = 80;
+
+/// A column of the dual program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Column {
+    /// What the slownesses add up to; it never leaves.
+    Total,
+    /// A slowness is at least the margin.
+    Sign(usize),
+    /// The offset of axis 1 or 2, times a sign, is at most [`FAR`].
+    Offset(usize, f64),
+    /// A row, by its index.
+    Row(usize),
+}
+
+/// Coordinates of each axis: where lines of the octant meet the first of them, and what they span in
+/// that direction.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    origin: [f64; 3],
+    span: [f64; 3],
+}
+
+impl Frame {
+    fn around(rows: &[Row], octant: Octant) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for row in rows {
+            for (axis, x) in [(row.early, row.from), (row.late, row.to)] {
+                low[axis] = low[axis].min(x);
+                high[axis] = high[axis].max(x);
+            }
+        }
+        let (mut origin, mut span) = ([0.0; 3], [1.0; 3]);
+        for axis in (0..3).filter(|&axis| low[axis] <= high[axis]) {
+            let size = if high[axis] > low[axis] { high[axis] - low[axis] } else { 1.0 };
+            (origin[axis], span[axis]) = if is_forward(octant, axis) { (low[axis], size) } else { (high[axis], -size) };
+        }
+        Self { origin, span }
+    }
+
+    fn unit(&self, axis: usize, x: f64) -> f64 {
+        (x - self.origin[axis]) / self.span[axis]
+    }
+
+    fn place(&self, axis: usize, u: f64) -> f64 {
+        self.origin[axis] + self.span[axis] * u
+    }
+}
+
+/// What the program found.
+#[derive(Debug, Clone)]
+pub(super) struct Solution {
+    /// A line with a positive margin, if there seems to be one.
+    pub(super) line: Option<Line>,
+    /// The rows with positive weights: index and weight. At most five.
+    pub(super) support: Vec<(usize, f64)>,
+    /// The axes whose slowness has a positive weight.
+    pub(super) signs: [bool; 3],
+}
+
+/// The state of the simplex method.
+struct Tableau {
+    basis: [Column; N],
+    inverse: [[f64; N]; N],
+    weights: [f64; N],
+}
+
+impl Tableau {
+    /// The basis without rows: slownesses of the axes in `total` equal, offsets at their bounds.
+    fn new(total: [bool; 3]) -> Self {
+        use Column::{Offset, Sign, Total};
+        let share = 1.0 / total.iter().map(|&t| f64::from(u8::from(t))).sum::<f64>();
+        let mean = [share, share, share, 0.0, 0.0, share];
+        let mut inverse = [[0.0; N]; N];
+        let mut weights = [0.0; N];
+        for i in 0..3 {
+            if total[i] {
+                (inverse[i], weights[i]) = (mean, share);
+            }
+            inverse[i][i] -= 1.0;
+        }
+        (inverse[3], weights[3]) = (mean, share);
+        inverse[4][3] = 1.0;
+        inverse[5][4] = 1.0;
+        Self { basis: [Sign(0), Sign(1), Sign(2), Total, Offset(1, 1.0), Offset(2, 1.0)], inverse, weights }
+    }
+
+    /// The unknowns of the primal program.
+    fn unknowns(&self) -> [f64; N] {
+        let mut y = [0.0; N];
+        for (column, row) in self.basis.iter().zip(&self.inverse) {
+            let cost = match column {
+                Column::Total => 1.0,
+                Column::Offset(..) => FAR,
+                _ => continue,
+            };
+            for (y, r) in y.iter_mut().zip(row) {
+                *y += cost * r;
+            }
+        }
+        y
+    }
+
+    /// Exchanges a column of the basis for `entering`; false if none can leave.
+    fn pivot(&mut self, entering: Column, column: &[f64; N]) -> bool {
+        let image = self.inverse.map(|row| row.iter().zip(column).map(|(r, c)| r * c).sum::<f64>());
+        let mut leaving: Option<(usize, f64)> = None;
+        for i in 0..N {
+            if image[i] <= PIVOT || self.basis[i] == Column::Total {
+                continue;
+            }
+            let ratio = self.weights[i] / image[i];
+            let better = leaving.is_none_or(|(k, best)| ratio < best || (ratio == best && image[i] > image[k]));
+            if better {
+                leaving = Some((i, ratio));
+            }
+        }
+        let Some((out, ratio)) = leaving else { return false };
+        let scaled = self.inverse[out].map(|r| r / image[out]);
+        for (i, factor) in image.into_iter().enumerate().filter(|&(i, _)| i != out) {
+            self.weights[i] -= ratio * factor;
+            if self.basis[i] != Column::Total {
+                self.weights[i] = self.weights[i].max(0.0);
+            }
+            for (r, s) in self.inverse[i].iter_mut().zip(&scaled) {
+                *r -= factor * s;
+            }
+        }
+        (self.inverse[out], self.weights[out], self.basis[out]) = (scaled, ratio, entering);
+        true
+    }
+}
+
+/// Solves the program for `rows`, of which there is at least one door's. The slownesses of the axes in
+/// `total` add up to 1; rows must be about those axes, or about one coordinate of the others.
+///
+/// Cost: a few pivots, each a pass over the rows.
+pub(super) fn solve(rows: &[Row], octant: Octant, total: [bool; 3], scratch: &mut Vec<Row>) -> Solution {
+    let frame = Frame::around(rows, octant);
+    scratch.clear();
+    scratch.extend(rows.iter().map(|r| Row { from: frame.unit(r.early, r.from), to: frame.unit(r.late, r.to), ..*r }));
+    let mut tableau = Tableau::new(total);
+    let mut y = tableau.unknowns();
+    for _ in 0..MAX_PIVOTS {
+        let Some(entering) = most_violated(&y, scratch) else { break };
+        if !tableau.pivot(entering, &coefficients(entering, scratch)) {
+            break;
+        }
+        y = tableau.unknowns();
+    }
+    let positive =
+        |column: Column| tableau.basis.iter().zip(&tableau.weights).any(|(c, w)| *c == column && *w > WEIGHT);
+    let support = tableau.basis.iter().zip(&tableau.weights).filter_map(|(column, &weight)| match column {
+        Column::Row(k) if weight > WEIGHT => Some((*k, weight)),
+        _ => None,
+    });
+    Solution {
+        line: line(&frame, &y, scratch),
+        support: support.collect(),
+        signs: [0, 1, 2].map(|i| positive(Column::Sign(i))),
+    }
+}
+
+fn value(y: &[f64; N], row: &Row) -> f64 {
+    let q = [0.0, y[3], y[4]];
+    (y[row.early] * row.from - q[row.early]) - (y[row.late] * row.to - q[row.late]) + y[5]
+}
+
+fn most_violated(y: &[f64; N], rows: &[Row]) -> Option<Column> {
+    let mut worst = (VIOLATED, None);
+    let mut offer = |violation: f64, column: Column| {
+        if violation > worst.0 {
+            worst = (violation, Some(column));
+        }
+    };
+    for i in 0..3 {
+        offer(y[5] - y[i], Column::Sign(i));
+    }
+    for axis in [1, 2] {
+        offer(y[axis + 2] - FAR, Column::Offset(axis, 1.0));
+        offer(-y[axis + 2] - FAR, Column::Offset(axis, -1.0));
+    }
+    for (k, row) in rows.iter().enumerate() {
+        offer(value(y, row), Column::Row(k));
+    }
+    worst.1
+}
+
+fn coefficients(column: Column, rows: &[Row]) -> [f64; N] {
+    let mut a = [0.0; N];
+    match column {
+        // It is in the basis from the beginning and never leaves.
+        Column::Total => {}
+        Column::Sign(i) => (a[i], a[5]) = (-1.0, 1.0),
+        Column::Offset(axis, sign) => a[axis + 2] = sign,
+        Column::Row(k) => {
+            let row = &rows[k];
+            a[row.early] += row.from;
+            a[row.late] -= row.to;
+            if row.early > 0 {
+                a[row.early + 2] -= 1.0;
+            }
+            if row.late > 0 {
+                a[row.late + 2] += 1.0;
+            }
+            a[5] = 1.0;
+        }
+    }
+    a
+}
+
+/// The line of the unknowns, by its places at the first and the last time that rows speak of.
+fn line(frame: &Frame, y: &[f64; N], rows: &[Row]) -> Option<Line> {
+    if y[5] <= 0.0 {
+        return None;
+    }
+    let q = [0.0, y[3], y[4]];
+    let time = |axis: usize, u: f64| y[axis] * u - q[axis];
+    let first = rows.iter().map(|r| time(r.late, r.to)).fold(f64::INFINITY, f64::min);
+    let last = rows.iter().map(|r| time(r.early, r.from)).fold(f64::NEG_INFINITY, f64::max);
+    let last = if last - first > 1e-3 { last } else { first + 1.0 };
+    let at = |t: f64| [0, 1, 2].map(|i| frame.place(i, (t + q[i]) / y[i]));
+    Line::new(at(first), at(last))
+}
