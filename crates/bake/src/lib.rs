@@ -9,6 +9,7 @@
 mod objects;
 mod plan;
 pub mod reject;
+pub mod scene;
 mod sectors;
 mod table;
 
@@ -16,6 +17,7 @@ pub use plan::{BakeError, BakeOptions, BakeSummary, Baked, ParseSubdivideError, 
 pub use reject::{
     MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad,
 };
+pub use scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
 pub use table::{TableOptions, graph_of, table_of};
 

@@ -159,7 +159,7 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
     let chosen = choose(&all, &options.maps)?;
     let readable = |m: &&MapLumps| matches!(m.format(), MapFormat::Doom | MapFormat::Hexen);
     // To skip a map among others is one thing, to do nothing at all another.
-    let insist = !options.maps.is_empty() || !chosen.iter().any(|m| readable(&m));
+    let insist = !options.maps.is_empty() || !chosen.iter().any(readable);
     let mut maps = Vec::with_capacity(chosen.len());
     let mut lumps = Vec::new();
     for map in chosen {

@@ -62,6 +62,12 @@ pub enum KdError {
     /// The threshold is not a number from 0 to 1.
     #[error("obscuration threshold {0} is not a number from 0 to 1")]
     Tau(f64),
+    /// The size of detail is not a number from 0 on.
+    #[error("size of detail {0} is not a number from 0 on")]
+    DetailBelow(f64),
+    /// The view region has a lower corner above its upper one.
+    #[error("the view region has a lower corner above its upper one")]
+    ViewRegion,
     /// More faces than can be counted.
     #[error("{0} faces are more than a tree can hold")]
     TooManyFaces(usize),

@@ -2,7 +2,9 @@
 //!
 //! Owns: [`AxialFace`] and its classes against a cell ([`classify`], [`cleaves`]), the choice of
 //! splitting planes ([`Options`]), the tree with its cells, portals and point location ([`AxialTree`]),
-//! and the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]).
+//! the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]), and that from a
+//! [`Scene`](sightlines_cells::Scene): which of its triangles hide ([`scene_faces`]), which cells are
+//! inside of solid matter ([`subdivide_scene`]).
 //! Does not know: sightlines, tables, files, walls that are not axis-parallel.
 //! Invariants: the cells tile the bounds without gap or overlap; no coordinate is ever computed, so
 //! cells and portals have the coordinates of faces and bounds, bit for bit; a portal is an opening of
@@ -24,14 +26,23 @@
 //! coordinates to ranks are our own.
 
 mod build;
+mod coplanar;
 mod error;
 mod face;
+mod flat;
+mod hollow;
+mod matter;
+mod mesh;
 mod plan;
 mod portals;
 mod ranks;
 mod region;
+mod scene;
+mod scene_faces;
 mod skeleton;
+mod solid;
 mod split;
+mod touch;
 mod tree;
 
 pub use build::{Options, bounds_of, subdivide};
@@ -39,6 +50,8 @@ pub use error::{FaceError, KdError};
 pub use face::{AxialFace, AxialPlane, FaceClass, classify, cleaves};
 pub use plan::{PlanFaces, PlanSubdivision, plan_faces, planar_graph, subdivide_plan};
 pub use portals::{AxialPortal, PortalForm};
+pub use scene::{SceneOptions, SceneSubdivision, SceneSummary, TwoLevelPortal, subdivide_scene, two_level};
+pub use scene_faces::{SceneFaces, default_detail_below, scene_faces};
 pub use tree::{AxialCell, AxialNode, AxialTree};
 
 #[cfg(doctest)]

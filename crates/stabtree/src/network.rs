@@ -75,6 +75,14 @@ impl<P, B> Network<P, B> {
         self.objects.bounds.len()
     }
 
+    /// The objects that touch a cell of a zone, ascending if the zone is one cell.
+    ///
+    /// # Panics
+    /// If there is no such zone.
+    pub fn objects_of(&self, zone: usize) -> &[u32] {
+        &self.objects.of_zone[zone]
+    }
+
     /// Words of a row with a bit for each zone and, from a whole word on, one for each object.
     pub(crate) fn row_width(&self) -> usize {
         self.n_zones().div_ceil(64) + self.n_objects().div_ceil(64)

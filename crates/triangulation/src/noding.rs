@@ -219,7 +219,7 @@ fn cut(plan: &Plan, noded: &mut Noded, meetings: &[Meeting]) {
 
 /// Lets lines name all their groups on both sides where rounding may swallow a region: where a rounded
 /// crossing is next to another one on the same line, or next to an end of one of its lines.
-fn blur_crowds(plan: &Plan, extra: &mut [Vec<u32>], lines: &[Piece], own: usize, crossings: &mut Vec<(Point2, usize)>) {
+fn blur_crowds(plan: &Plan, extra: &mut [Vec<u32>], lines: &[Piece], own: usize, crossings: &mut [(Point2, usize)]) {
     crossings.sort_by(|(p, i), (q, j)| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(j)));
     let next_to = |p: Point2, q: Point2| p.distance(q) <= 8.0 * reach_of(p);
     for &(p, other) in crossings.iter() {

@@ -1,0 +1,212 @@
+//! Baking a scene in space: subdivide, see, tabulate.
+
+use crate::plan::BakeError;
+use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Portal, Scene};
+use sightlines_geometry::Aabb;
+use sightlines_kdtree::{PortalForm, SceneOptions, SceneSummary, subdivide_scene};
+use sightlines_pvs::{CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines_sightline::AxialStabber;
+use sightlines_stabtree::{Known, Network, Progress, SearchOptions, Seen, Zones, shoot_axial_chords, visible_zones};
+use std::time::{Duration, Instant};
+
+/// Which portals the search goes through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PortalMode {
+    /// One rectangle around each opening: quick, and shows more than there is to see.
+    Bounding,
+    /// The exact pieces of each opening.
+    Exact,
+    /// First the rectangles, then the exact pieces for what is left in doubt. The same answer as
+    /// [`PortalMode::Exact`].
+    #[default]
+    TwoLevel,
+}
+
+/// How to bake a scene.
+#[derive(Clone, Copy, Default)]
+pub struct SceneBakeOptions<'a> {
+    /// How to cut; its `portals` are not looked at.
+    pub cut: SceneOptions,
+    /// Which portals the search goes through, and the table stores.
+    pub portals: PortalMode,
+    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    pub threads: usize,
+    /// Told how many cells of how many are done; twice as many for two levels.
+    pub progress: Option<Progress<'a>>,
+}
+
+impl std::fmt::Debug for SceneBakeOptions<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SceneBakeOptions")
+            .field("cut", &self.cut)
+            .field("portals", &self.portals)
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
+    }
+}
+
+/// The table of a scene, and how it came about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakedScene {
+    /// The table.
+    pub table: Table,
+    /// What was cut.
+    pub cut: SceneSummary,
+    /// Unordered pairs of different cells that see each other.
+    pub n_visible_pairs: u64,
+    /// Pairs of a cell and an object that it sees.
+    pub n_objects_seen: u64,
+    /// Time to cut the scene.
+    pub cut_time: Duration,
+    /// Time to decide who sees what.
+    pub see_time: Duration,
+    /// Portals pushed by the searches.
+    pub n_pushes: u64,
+}
+
+/// Cuts a scene, decides which cells see which cells and objects, and makes the table.
+///
+/// Walls are the axis-aligned faces of the scene that are not detail; nothing else hides anything. Cells
+/// see each other exactly if an open set of lines leads through the exact portals (or through the
+/// rectangles around them, with [`PortalMode::Bounding`]); an object counts as its box. Errs towards
+/// visible only.
+///
+/// # Errors
+/// [`BakeError::KdTree`] for scenes without room, options out of range, and too many cells.
+pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<BakedScene, BakeError> {
+    let start = Instant::now();
+    let cut = subdivide_scene(scene, &SceneOptions { portals: PortalForm::Exact, ..options.cut })?;
+    let cut_time = start.elapsed();
+    let start = Instant::now();
+    let boxes: Vec<Aabb<3>> = scene.objects().iter().map(drawn_box).collect();
+    let loose = loosened(&cut.graph);
+    let nothing = Known::nothing(cut.graph.n_cells());
+    let (graph, seen, touching) = match options.portals {
+        PortalMode::Bounding => {
+            let (seen, touching) = see(&loose, &boxes, nothing, options);
+            (loose, seen, touching)
+        }
+        PortalMode::Exact => {
+            let (seen, touching) = see(&cut.graph, &boxes, nothing, options);
+            (cut.graph, seen, touching)
+        }
+        PortalMode::TwoLevel => {
+            let (wide, _) = see(&loose, &boxes, nothing.clone(), options);
+            let known = Known { possible: Some((wide.zones, wide.objects)), ..nothing };
+            let (mut seen, touching) = see(&cut.graph, &boxes, known, options);
+            seen.summary.n_pushes += wide.summary.n_pushes;
+            (cut.graph, seen, touching)
+        }
+    };
+    let see_time = start.elapsed();
+    let n_visible_pairs = (seen.zones.count_ones() - graph.n_cells() as u64) / 2;
+    let (n_objects_seen, n_pushes) = (seen.objects.count_ones(), seen.summary.n_pushes);
+    let info = info(options, &cut.summary);
+    let table = scene_table(&graph, seen, scene, &boxes, touching, info)?;
+    Ok(BakedScene { table, cut: cut.summary, n_visible_pairs, n_objects_seen, cut_time, see_time, n_pushes })
+}
+
+/// The box around an object's triangles; empty, and so never seen, if it has none.
+fn drawn_box(object: &sightlines_cells::SceneObject) -> Aabb<3> {
+    Aabb::around(object.corners().flatten())
+}
+
+/// One search; also the objects that touch each cell.
+fn see(
+    graph: &CellGraph<Axial>,
+    boxes: &[Aabb<3>],
+    known: Known,
+    options: &SceneBakeOptions<'_>,
+) -> (Seen, Vec<Vec<u32>>) {
+    let zones = Zones::cells(graph);
+    let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
+    let network = Network::axial(graph, &zones, boxes);
+    let known = Known { visible: shoot_axial_chords(graph, &zones, search.chords), ..known };
+    let seen = visible_zones(&network, &AxialStabber::new(), &known, &search);
+    let touching = (0..graph.n_cells()).map(|zone| network.objects_of(zone).to_vec()).collect();
+    (seen, touching)
+}
+
+/// The same graph with one portal for each pair of cells: the rectangle around the exact pieces.
+fn loosened(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
+    let mut portals: Vec<Portal<Axial>> = Vec::new();
+    let mut sorted: Vec<&Portal<Axial>> = graph.portals().iter().collect();
+    sorted.sort_by_key(|p| p.cells);
+    for portal in sorted {
+        match portals.last_mut().filter(|last| last.cells == portal.cells) {
+            Some(last) => {
+                let around = last.shape.extent.with(portal.shape.extent.min).with(portal.shape.extent.max);
+                last.shape = AxialDoor { extent: around, ..last.shape };
+            }
+            None => portals.push(portal.clone()),
+        }
+    }
+    CellGraph::new(graph.cells().to_vec(), portals)
+}
+
+fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, String)> {
+    let portals = match options.portals {
+        PortalMode::Bounding => "bounding",
+        PortalMode::Exact | PortalMode::TwoLevel => "exact",
+    };
+    let pair = |k: &str, v: String| (k.to_owned(), v);
+    // Ascending keys.
+    vec![
+        pair("detail-below", cut.detail_below.to_string()),
+        pair("portals", portals.to_owned()),
+        pair("subdivide", "kd".to_owned()),
+        pair("tau", options.cut.tau.to_string()),
+    ]
+}
+
+fn scene_table(
+    graph: &CellGraph<Axial>,
+    seen: Seen,
+    scene: &Scene,
+    boxes: &[Aabb<3>],
+    touching: Vec<Vec<u32>>,
+    info: Vec<(String, String)>,
+) -> Result<Table, BakeError> {
+    let cell = |id: CellId| {
+        let Aabb { min, max } = graph.cell(id).bounds;
+        CellRecord { min, max, group: None, polygon: Vec::new() }
+    };
+    let cells: Vec<CellRecord> = graph.cell_ids().map(cell).collect();
+    let bounds: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|c| (c.min, c.max)).collect();
+    let object = |(o, b): (&sightlines_cells::SceneObject, &Aabb<3>)| {
+        let b = if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b };
+        ObjectRecord { name: o.name.clone(), min: b.min, max: b.max }
+    };
+    let table = Table::new(TableParts {
+        dimension: 3,
+        portals: graph.portals().iter().map(portal_record).collect(),
+        rows: seen.zones,
+        objects: scene.objects().iter().zip(boxes).map(object).collect(),
+        cell_objects: touching,
+        objects_seen: Some(seen.objects),
+        locator: Locator::build(&bounds, 3),
+        cells,
+        info,
+    })?;
+    Ok(table)
+}
+
+/// The corners counter-clockwise as seen from the first cell: the normal by the right-hand rule points
+/// towards the viewer.
+fn portal_record(portal: &Portal<Axial>) -> PortalRecord {
+    let AxialDoor { extent: Aabb { min, max }, axis, forward } = portal.shape;
+    let a = usize::from(axis);
+    let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+    let corner = |high_b: bool, high_c: bool| {
+        let mut p = min;
+        p[b] = if high_b { max[b] } else { min[b] };
+        p[c] = if high_c { max[c] } else { min[c] };
+        p
+    };
+    // With b towards c, the right-hand rule gives the axis; who crosses forwards stands on its low side.
+    let mut points = vec![corner(false, false), corner(false, true), corner(true, true), corner(true, false)];
+    if !forward {
+        points.reverse();
+    }
+    PortalRecord { cells: portal.cells, sides: portal.sides, points }
+}

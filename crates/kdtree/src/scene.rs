@@ -1,0 +1,260 @@
+//! From a scene in space to a graph of boxes and rectangular portals.
+
+use crate::build::{Options, subdivide};
+use crate::error::KdError;
+use crate::matter::{LeftOut, left_out};
+use crate::portals::{AxialPortal, PortalForm, bounding_portals};
+use crate::scene_faces::{SceneFaces, Survey};
+use crate::tree::{AxialNode, AxialTree};
+use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, Portal, PortalId, Scene};
+use sightlines_geometry::{Aabb, check_coordinate};
+use sightlines_pvs::{CellId, LocatorNode};
+use std::ops::Range;
+
+/// How to cut a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneOptions {
+    /// Where a viewer can be, in scene units; the scene's box if none is given. What is cut is the box
+    /// around it and the scene. Rooms that no way leads to from a given region are left out.
+    pub view_region: Option<Aabb<3>>,
+    /// Obscuration threshold, see [`Options::tau`].
+    pub tau: f64,
+    /// Things that are smaller than this in every direction, in scene units, are drawn, but hide nothing
+    /// and divide nothing. 0 keeps everything; none takes
+    /// [`default_detail_below`](crate::default_detail_below).
+    pub detail_below: Option<f64>,
+    /// Shape of the portals of the graph.
+    pub portals: PortalForm,
+    /// Limit for the number of cells, see [`Options::max_cells`].
+    pub max_cells: u32,
+    /// Whether the insides of walls and other solid things stay cells.
+    pub keep_solid: bool,
+}
+
+impl Default for SceneOptions {
+    fn default() -> Self {
+        let Options { tau, max_cells } = Options::default();
+        let portals = PortalForm::Exact;
+        Self { view_region: None, tau, detail_below: None, portals, max_cells, keep_solid: false }
+    }
+}
+
+/// What became of a scene.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SceneSummary {
+    /// Triangles of all objects with an area that are perpendicular to an axis.
+    pub n_axial_triangles: usize,
+    /// Triangles perpendicular to an axis that have no area.
+    pub n_empty_triangles: usize,
+    /// All other triangles; they hide nothing.
+    pub n_other_triangles: usize,
+    /// Below which size things were detail, in scene units.
+    pub detail_below: f64,
+    /// How many objects were detail.
+    pub n_detail_objects: usize,
+    /// How many flat regions were left out because they are small.
+    pub n_small_regions: usize,
+    /// How many rectangles the scene was cut along.
+    pub n_faces: usize,
+    /// How many pieces of these rectangles the threshold `tau` left inside of cells.
+    pub n_unfollowed: usize,
+    /// Cells of the graph.
+    pub n_cells: usize,
+    /// Portals of the graph.
+    pub n_portals: usize,
+    /// Cells of the tree that were left out because they are inside of solid matter.
+    pub n_solid: usize,
+    /// Cells of the tree that were left out because they are closed and show only back sides.
+    pub n_hollow: usize,
+    /// Cells of the tree that were left out because no way leads to them from the view region.
+    pub n_unreachable: usize,
+}
+
+/// A scene, cut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneSubdivision {
+    /// The tree of all cells, those that the graph leaves out too. Its ids are its own; see
+    /// [`Self::cell_of`].
+    pub tree: AxialTree<3>,
+    /// Cells and portals. Ids count the cells of the tree that are not left out, in the same order.
+    pub graph: CellGraph<Axial>,
+    /// What became of the scene.
+    pub summary: SceneSummary,
+    /// For each object whether it was detail.
+    pub detail: Vec<bool>,
+    cells: Vec<Option<CellId>>,
+    pieces: Vec<AxialDoor>,
+    first_piece: Vec<u32>,
+}
+
+/// A bounding portal and the exact pieces that it is around.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TwoLevelPortal {
+    /// The rectangle around the whole opening between two cells.
+    pub bounding: AxialPortal<3>,
+    /// The pieces, as a range of [`AxialTree::portals`].
+    pub pieces: Range<usize>,
+}
+
+/// For each pair of cells with an opening between them, the rectangle around it and its exact pieces,
+/// by their cells. O(portals).
+///
+/// The bounding rectangle is tested first: what cannot be seen through it cannot be seen through a piece.
+pub fn two_level(tree: &AxialTree<3>) -> Vec<TwoLevelPortal> {
+    let groups = tree.portals().chunk_by(|p, q| p.cells == q.cells);
+    let mut first = 0;
+    let ranges = groups.map(|group| {
+        first += group.len();
+        first - group.len()..first
+    });
+    bounding_portals(tree.portals())
+        .into_iter()
+        .zip(ranges)
+        .map(|(b, pieces)| TwoLevelPortal { bounding: b, pieces })
+        .collect()
+}
+
+/// Cuts the box around `scene` and the view region along the faces of the scene.
+///
+/// The faces are those of [`scene_faces`](crate::scene_faces); all other triangles hide nothing. Errs
+/// towards "visible" only.
+///
+/// # What is left out
+/// Cells inside of solid things would be rows of a table that nobody asks for. Cells that portals join
+/// are left out together, and only if no portal leads to them from others; so nothing changes for the
+/// cells that stay. They are left out
+/// * as *solid* if each of them is, all through, inside of a closed piece of an object (one that winds
+///   around it counter-clockwise as seen from outside, less what hollows of the same object take away).
+///   A closed piece that other things lie in is a house and no wall, and does not count;
+/// * as *hollow* if they are closed on all sides, have nothing inside, and show only back sides of
+///   triangles: the space between the two sheets of a wall;
+/// * as *unreachable* if a view region was given and none of them meets it.
+///
+/// A closed room that shows the front of any triangle stays. If nothing at all would stay, all does.
+///
+/// Cost: as [`scene_faces`](crate::scene_faces) and [`subdivide`]; to leave out cells, O(log n) for each
+/// pair of a triangle and a cell that it lies against, as a rule.
+///
+/// # Errors
+/// [`KdError::Empty`] and [`KdError::Flat`] for scenes around which there is no room; [`KdError::Bounds`]
+/// and [`KdError::ViewRegion`] for a view region that is no box; [`KdError::Tau`],
+/// [`KdError::DetailBelow`], [`KdError::TooManyCells`].
+pub fn subdivide_scene(scene: &Scene, options: &SceneOptions) -> Result<SceneSubdivision, KdError> {
+    if let Some(size) = options.detail_below.filter(|s| s.is_nan() || *s < 0.0) {
+        return Err(KdError::DetailBelow(size));
+    }
+    let bounds = root_box(scene, options.view_region)?;
+    let survey = Survey::of(scene, options);
+    let found = survey.faces(scene);
+    let tree = subdivide(&found.faces, bounds, &Options { tau: options.tau, max_cells: options.max_cells })?;
+    let out = match options.keep_solid {
+        true => vec![None; tree.cells().len()],
+        false => left_out(scene, &survey, &found, &tree, options.view_region),
+    };
+    Ok(SceneSubdivision::assemble(tree, &out, found, options.portals))
+}
+
+fn root_box(scene: &Scene, view_region: Option<Aabb<3>>) -> Result<Aabb<3>, KdError> {
+    let bounds = scene.bounds();
+    let Some(region) = view_region else { return Ok(bounds) };
+    for x in region.min.into_iter().chain(region.max) {
+        check_coordinate(x).map_err(KdError::Bounds)?;
+    }
+    if region.is_empty() { Err(KdError::ViewRegion) } else { Ok(bounds.with(region.min).with(region.max)) }
+}
+
+impl SceneSubdivision {
+    fn assemble(tree: AxialTree<3>, out: &[Option<LeftOut>], found: SceneFaces, form: PortalForm) -> Self {
+        let mut next = 0u32..;
+        let cells: Vec<Option<CellId>> =
+            out.iter().map(|o| if o.is_none() { next.next().map(CellId) } else { None }).collect();
+        let boxes = tree.cells().iter().zip(&cells).filter(|(_, id)| id.is_some());
+        let boxes = boxes.map(|(cell, _)| BoxCell { bounds: cell.bounds }).collect();
+        let (mut portals, mut pieces, mut first_piece) = (Vec::new(), Vec::new(), vec![0]);
+        let exact = tree.portals().chunk_by(|p, q| form == PortalForm::Bounding && p.cells == q.cells);
+        for group in exact {
+            // Of a portal, both cells are left out or none.
+            let [Some(a), Some(b)] = group[0].cells.map(|c| cells[c.idx()]) else { continue };
+            pieces.extend(group.iter().map(door));
+            first_piece.push(pieces.len() as u32);
+            portals.extend(bounding_portals(group).iter().map(|p| portal(p, [a, b])));
+        }
+        let graph = CellGraph::new(boxes, portals);
+        let summary = summarise(&tree, out, &found, &graph);
+        Self { tree, graph, summary, detail: found.detail, cells, pieces, first_piece }
+    }
+
+    /// The cell of the graph that a cell of the tree is; none if it is left out.
+    ///
+    /// # Panics
+    /// If the tree has no such cell.
+    pub fn cell_of(&self, leaf: CellId) -> Option<CellId> {
+        self.cells[leaf.idx()]
+    }
+
+    /// The exact pieces of a portal of the graph: itself if the graph has [`PortalForm::Exact`], else
+    /// disjoint rectangles inside of it that make up the opening. All are crossed forward.
+    ///
+    /// # Panics
+    /// If the graph has no such portal.
+    pub fn pieces(&self, portal: PortalId) -> &[AxialDoor] {
+        let i = portal.idx();
+        &self.pieces[self.first_piece[i] as usize..self.first_piece[i + 1] as usize]
+    }
+
+    /// The one cell of the graph that `p`, in scene units, is counted to; none outside the tree's bounds,
+    /// for NaN, and inside of what is left out. On the border between the two it is a cell that is not
+    /// left out.
+    pub fn locate(&self, p: [f64; 3]) -> Option<CellId> {
+        let inside = self.tree.locate(p)?;
+        self.cell_of(inside).or_else(|| self.locate_all(p).first().copied())
+    }
+
+    /// All closed cells of the graph that contain `p`, in scene units, ascending.
+    pub fn locate_all(&self, p: [f64; 3]) -> Vec<CellId> {
+        self.tree.locate_all(p).into_iter().filter_map(|leaf| self.cell_of(leaf)).collect()
+    }
+
+    /// The tree for point location at run time: each leaf lists its cell of the graph, or nothing.
+    /// O(nodes).
+    pub fn locator_nodes(&self) -> Vec<LocatorNode> {
+        let node = |node: &AxialNode| match *node {
+            AxialNode::Leaf(leaf) => LocatorNode::Leaf { cells: self.cell_of(leaf).into_iter().collect() },
+            AxialNode::Inner { axis, at, low, high } => LocatorNode::Inner { axis: axis as u8, split: at, low, high },
+        };
+        self.tree.nodes().iter().map(node).collect()
+    }
+}
+
+fn summarise(
+    tree: &AxialTree<3>,
+    out: &[Option<LeftOut>],
+    found: &SceneFaces,
+    graph: &CellGraph<Axial>,
+) -> SceneSummary {
+    let n_out = |why: LeftOut| out.iter().filter(|o| **o == Some(why)).count();
+    SceneSummary {
+        n_axial_triangles: found.n_axial_triangles,
+        n_empty_triangles: found.n_empty_triangles,
+        n_other_triangles: found.n_other_triangles,
+        detail_below: found.detail_below,
+        n_detail_objects: found.n_detail_objects,
+        n_small_regions: found.n_small_regions,
+        n_faces: found.faces.len(),
+        n_unfollowed: tree.n_detail(),
+        n_cells: graph.n_cells(),
+        n_portals: graph.portals().len(),
+        n_solid: n_out(LeftOut::Solid),
+        n_hollow: n_out(LeftOut::Hollow),
+        n_unreachable: n_out(LeftOut::Unreachable),
+    }
+}
+
+fn door(portal: &AxialPortal<3>) -> AxialDoor {
+    AxialDoor { extent: Aabb { min: portal.min, max: portal.max }, axis: portal.axis as u8, forward: true }
+}
+
+fn portal(portal: &AxialPortal<3>, cells: [CellId; 2]) -> Portal<Axial> {
+    let low_side = 2 * portal.axis as u32;
+    Portal { cells, sides: [low_side + 1, low_side], shape: door(portal) }
+}

@@ -1,0 +1,178 @@
+//! From triangles to faces: what of a scene hides, and what is only drawn.
+
+use crate::coplanar::{FlatRect, inner_rectangles};
+use crate::face::AxialFace;
+use crate::flat::{large_regions, united};
+use crate::mesh::{FlatTriangle, Mesh, TriangleKind, kind_of, others};
+use crate::scene::SceneOptions;
+use sightlines_cells::Scene;
+use sightlines_geometry::{Aabb, Point2};
+
+/// What a k-d tree can follow of a scene.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SceneFaces {
+    /// Disjoint rectangles inside the triangles that hide, plane by plane.
+    pub faces: Vec<AxialFace<3>>,
+    /// Triangles of all objects with an area that are perpendicular to an axis.
+    pub n_axial_triangles: usize,
+    /// Triangles perpendicular to an axis that have no area.
+    pub n_empty_triangles: usize,
+    /// All other triangles. They divide nothing and hide nothing.
+    pub n_other_triangles: usize,
+    /// How many objects are detail.
+    pub n_detail_objects: usize,
+    /// How many flat regions were left out because they are small.
+    pub n_small_regions: usize,
+    /// For each object whether it is detail.
+    pub detail: Vec<bool>,
+    /// Below which size things are detail, in scene units.
+    pub detail_below: f64,
+}
+
+/// Finds the faces of a scene: the rectangles inside of the union of its axis-parallel triangles.
+///
+/// A triangle counts if all its corners have the same coordinate on an axis, to the last bit. The
+/// triangles of a plane are united, whichever way they look: all are opaque from both sides. Where the
+/// union has slanted borders, rectangles inside of it are taken that end at coordinates of its corners;
+/// where all borders are axis-parallel, the rectangles are all of it. So faces never hide more than
+/// triangles do, by exact predicates.
+///
+/// Left out as detail are, with [`SceneOptions::detail_below`] as the size:
+/// * objects whose box is smaller in every direction;
+/// * closed pieces of larger objects that are smaller in every direction (furniture in one mesh with
+///   the house);
+/// * flat regions that are smaller in both directions, unless they belong to a larger closed piece: a
+///   wall must not lose the narrow sides of its windows.
+///
+/// Leaving out faces only shows more. O(n log n) for n triangles of ordinary meshes.
+pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
+    Survey::of(scene, options).faces(scene)
+}
+
+/// A size below which things are detail, from the scene alone: the smaller of
+/// * a twentieth of the middle one of the three sides of the scene's box (1.5 m for a floor or a tower
+///   30 m wide and 50 m long), which keeps it below the size of rooms;
+/// * the largest size such that smaller objects make up at most a quarter of what can hide, counting for
+///   each object the largest side of its box, and no object that is half as long as the middle one of the
+///   three sides (grounds, slabs); so most walls stay, in scenes much larger than rooms too.
+///
+/// 0 for a scene without corners. Computed in rounded arithmetic, the same on every machine; no choice of
+/// it is unsound. O(n log n) for n objects.
+pub fn default_detail_below(scene: &Scene) -> f64 {
+    let bounds = scene.bounds();
+    if bounds.is_empty() {
+        return 0.0;
+    }
+    let extents = |b: Aabb<3>| {
+        let mut extents: [f64; 3] = std::array::from_fn(|k| (b.max[k] - b.min[k]).max(0.0));
+        extents.sort_unstable_by(f64::total_cmp);
+        extents
+    };
+    let middle = extents(bounds)[1];
+    let boxes = scene.objects().iter().map(|o| extents(o.bounds()));
+    let mut boxes: Vec<[f64; 3]> = boxes.filter(|b| b[2] < middle / 2.0).collect();
+    boxes.sort_unstable_by(|a, b| a[2].total_cmp(&b[2]).then(a[1].total_cmp(&b[1])));
+    let most = boxes.iter().map(|b| b[1] * b[2]).sum::<f64>() / 4.0;
+    let mut below = 0.0;
+    let first_beyond = boxes.iter().find(|b| {
+        below += b[1] * b[2];
+        below > most
+    });
+    first_beyond.map_or(f64::INFINITY, |b| b[2]).min(middle / 20.0)
+}
+
+fn largest_side(b: &Aabb<3>) -> f64 {
+    (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max)
+}
+
+/// A scene sorted into what hides and what is detail.
+#[derive(Debug)]
+pub(crate) struct Survey {
+    pub(crate) detail_below: f64,
+    /// For each object whether it is detail.
+    pub(crate) detail: Vec<bool>,
+    /// The objects in pieces; empty for those that are detail.
+    pub(crate) meshes: Vec<Mesh>,
+}
+
+impl Survey {
+    pub(crate) fn of(scene: &Scene, options: &SceneOptions) -> Self {
+        let detail_below = options.detail_below.unwrap_or_else(|| default_detail_below(scene));
+        let objects = scene.objects().iter();
+        let sorted = objects.map(|o| match largest_side(&o.bounds()) < detail_below {
+            true => (true, Mesh::default()),
+            false => (false, Mesh::of(o)),
+        });
+        let (detail, meshes) = sorted.unzip();
+        Self { detail_below, detail, meshes }
+    }
+
+    /// Whether a piece of an object that is not detail is.
+    pub(crate) fn is_small_thing(&self, object: usize, piece: u32) -> bool {
+        let p = &self.meshes[object].pieces[piece as usize];
+        p.closed && largest_side(&p.bounds) < self.detail_below
+    }
+
+    /// Whether a piece of an object may hide.
+    fn hides(&self, object: usize, piece: u32) -> bool {
+        !self.detail[object] && !self.is_small_thing(object, piece)
+    }
+
+    pub(crate) fn faces(&self, scene: &Scene) -> SceneFaces {
+        let mut out = SceneFaces {
+            n_detail_objects: self.detail.iter().filter(|d| **d).count(),
+            detail: self.detail.clone(),
+            detail_below: self.detail_below,
+            ..SceneFaces::default()
+        };
+        let mut hiding = self.hiding_triangles(scene, &mut out);
+        hiding.sort_by(|a, b| a.0.axis.cmp(&b.0.axis).then(a.0.at.total_cmp(&b.0.at)));
+        for plane in hiding.chunk_by(|a, b| (a.0.axis, a.0.at) == (b.0.axis, b.0.at)) {
+            let FlatTriangle { axis, at, .. } = plane[0].0;
+            let (rects, n_small) = self.rectangles(plane);
+            out.n_small_regions += n_small;
+            out.faces.extend(united(&rects).iter().map(|r| on_plane(r, axis, at)));
+        }
+        out
+    }
+
+    /// The axis-parallel triangles that may hide, and whether they are of a closed piece; counts all.
+    fn hiding_triangles(&self, scene: &Scene, counts: &mut SceneFaces) -> Vec<(FlatTriangle, bool)> {
+        let mut hiding = Vec::new();
+        for (object, o) in scene.objects().iter().enumerate() {
+            for (triangle, corners) in o.corners().enumerate() {
+                match kind_of(&corners) {
+                    TriangleKind::Other => counts.n_other_triangles += 1,
+                    TriangleKind::Empty => counts.n_empty_triangles += 1,
+                    TriangleKind::Flat(flat) => {
+                        counts.n_axial_triangles += 1;
+                        let mesh = &self.meshes[object];
+                        if let Some(&piece) = mesh.piece_of.get(triangle).filter(|p| self.hides(object, **p)) {
+                            hiding.push((flat, mesh.pieces[piece as usize].closed));
+                        }
+                    }
+                }
+            }
+        }
+        hiding
+    }
+
+    /// Rectangles of one plane: all of closed pieces, and the large regions of the others.
+    fn rectangles(&self, plane: &[(FlatTriangle, bool)]) -> (Vec<FlatRect>, usize) {
+        let of = |closed: bool| -> Vec<FlatRect> {
+            let corners: Vec<[Point2; 3]> = plane.iter().filter(|t| t.1 == closed).map(|t| t.0.corners).collect();
+            inner_rectangles(&corners)
+        };
+        let (mut rects, n_small) = large_regions(of(false), self.detail_below);
+        rects.extend(of(true));
+        (rects, n_small)
+    }
+}
+
+fn on_plane(rect: &FlatRect, axis: usize, at: f64) -> AxialFace<3> {
+    let (mut min, mut max) = ([at; 3], [at; 3]);
+    for (k, [lo, hi]) in others(axis).into_iter().zip([rect.u, rect.v]) {
+        (min[k], max[k]) = (lo, hi);
+    }
+    AxialFace::new(axis, min, max)
+}
