@@ -125,9 +125,10 @@ fn by_integers(&[ax, ay, bx, by, cx, cy, dx, dy]: &[i128; 8]) -> (f64, f64) {
     // Not zero: the lines cross properly.
     let denominator = ux * vy - uy * vx;
     let numerator = (cx - ax) * vy - (cy - ay) * vx;
+    // Whole part and rest have one sign, so nothing cancels in their sum.
     let at = |from: i128, along: i128| {
-        let (whole, rest) = ((numerator * along) / denominator, (numerator * along) % denominator);
-        (from + whole) as f64 + rest as f64 / denominator as f64
+        let n = from * denominator + numerator * along;
+        (n / denominator) as f64 + (n % denominator) as f64 / denominator as f64
     };
     (at(ax, ux), at(ay, uy))
 }
@@ -164,7 +165,9 @@ mod tests {
         fn crossings_agree(c in prop::array::uniform8(-50i32..50)) {
             let [a, b, c, d] = [0, 2, 4, 6].map(|k| (f64::from(c[k]), f64::from(c[k + 1])));
             let (l, m) = (piece(a, b), piece(c, d));
-            prop_assume!(l.segment().crosses(&m.segment()));
+            if !l.segment().crosses(&m.segment()) {
+                return Ok(());
+            }
             let exact = by_fractions(&l, &m);
             let quick = by_integers(&small_integers(&l, &m).unwrap());
             let near = |p: f64, q: f64| (p - q).abs() <= 2.0 * f64::EPSILON * p.abs().max(q.abs()).max(1e-300);

@@ -16,7 +16,15 @@ struct Frame {
 
 impl Frame {
     fn new(bounds: &Aabb<2>, n: usize) -> Self {
-        let n = n.clamp(1, 1024);
+        // A bucket is at least 2^12 units in the last place of the largest coordinate wide, so that
+        // rounding is far below a bucket.
+        let fine = |k: usize| {
+            let largest = bounds.min[k].abs().max(bounds.max[k].abs());
+            let size = bounds.max[k] - bounds.min[k];
+            if size > 0.0 { size / (largest * 2f64.powi(-40)) } else { f64::INFINITY }
+        };
+        let finest = if bounds.is_empty() { 1.0 } else { fine(0).min(fine(1)) };
+        let n = n.clamp(1, 1024).min(finest as usize).max(1);
         let scale = |k: usize| {
             let size = bounds.max[k] - bounds.min[k];
             if size > 0.0 { n as f64 / size } else { 0.0 }
@@ -36,8 +44,9 @@ impl Frame {
 
     /// Calls `visit` for each bucket that the segment, widened by `slack`, meets, and perhaps for others.
     ///
-    /// Within a column the segment's height is computed in doubles, with an error far below a bucket's
-    /// size; a whole bucket is added on both sides.
+    /// What is within `slack` of the segment in a column is within `slack` above or below the part of
+    /// the segment over the column widened by `slack`. Heights are computed in doubles, with an error far
+    /// below a bucket's size; a whole bucket is added on both sides.
     fn along(&self, s: &Segment2, slack: f64, mut visit: impl FnMut(usize)) {
         let (lo, hi) = (s.a.min(s.b) - Point2::splat(slack), s.a.max(s.b) + Point2::splat(slack));
         let (first, last) = (self.column(lo.x), self.column(hi.x));
@@ -48,7 +57,7 @@ impl Frame {
             if last - first > 1 && top - bottom > 1 && d.x != 0.0 {
                 let height = |x: f64| s.a.y + (x - s.a.x) * (d.y / d.x);
                 let edge = |c: usize| self.min.x + c as f64 / self.scale.x;
-                let (p, q) = (height(edge(column)), height(edge(column + 1)));
+                let (p, q) = (height(edge(column) - slack), height(edge(column + 1) + slack));
                 from = from.max(self.row(p.min(q) - slack).saturating_sub(1));
                 to = to.min(self.row(p.max(q) + slack) + 1);
             }
