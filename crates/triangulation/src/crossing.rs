@@ -8,9 +8,9 @@ use num_traits::{ToPrimitive, Zero};
 use sightlines_geometry::{Point2, check_coordinate, orient2d};
 
 /// Bound on the distance between a crossing and the point that stands for it: 2^-49 of the larger
-/// coordinate. Rounding moves each coordinate by at most 2^-52 of itself (twice half a unit in the last
-/// place, for a quotient of rounded numbers), a choice among neighbours by two more units, 2^-51; both
-/// coordinates together by less than 2^-49.
+/// coordinate. Rounding moves each coordinate by at most 2^-51 of itself (four roundings of 2^-53: of
+/// numerator, denominator, quotient and sum), a choice among neighbours by two units in the last place,
+/// 2^-51 again; both coordinates together by less than 2^-49.
 pub(crate) fn reach_of(p: Point2) -> f64 {
     p.x.abs().max(p.y.abs()) * 8.0 * f64::EPSILON
 }
