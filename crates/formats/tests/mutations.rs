@@ -10,7 +10,7 @@ use common::{SMALL_GEOJSON, difference_besides_reject, setting, small_wad, two_r
 use sightlines_formats::doom::{MapLump, list_maps};
 use sightlines_formats::geojson::{parse_plan, write_plan};
 use sightlines_formats::{DoomMap, RejectTable, Wad};
-use sightlines_testkit::mutate::{SplitMix, mutate};
+use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
 
 /// Reads a WAD and all its maps as far as they can be read; returns how many maps could.
 fn check_wad(bytes: &[u8]) -> Option<usize> {
@@ -105,15 +105,11 @@ fn every_prefix_is_refused() {
 #[test]
 fn every_flipped_bit_is_read_or_refused() {
     for seed in [small_wad(&two_rooms(false)), small_wad(&two_rooms(true))] {
-        for bit in 0..8 * seed.len() {
-            let mut bytes = seed.clone();
-            bytes[bit / 8] ^= 1 << (bit % 8);
+        for bytes in flipped_bits(&seed) {
             check_wad(&bytes);
         }
     }
-    for bit in 0..8 * SMALL_GEOJSON.len() {
-        let mut text = SMALL_GEOJSON.as_bytes().to_vec();
-        text[bit / 8] ^= 1 << (bit % 8);
+    for text in flipped_bits(SMALL_GEOJSON.as_bytes()) {
         check_geojson(&text);
     }
 }

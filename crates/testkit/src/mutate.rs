@@ -48,6 +48,15 @@ const PIECES: [&[u8]; 18] = [
     b"18446744073709551616",
 ];
 
+/// Every copy of `bytes` with one bit changed.
+pub fn flipped_bits(bytes: &[u8]) -> impl Iterator<Item = Vec<u8>> + '_ {
+    (0..8 * bytes.len()).map(|bit| {
+        let mut changed = bytes.to_vec();
+        changed[bit / 8] ^= 1 << (bit % 8);
+        changed
+    })
+}
+
 /// Breaks `bytes` in one to four ways.
 pub fn mutate(bytes: &[u8], random: &mut SplitMix) -> Vec<u8> {
     let mut out = bytes.to_vec();
