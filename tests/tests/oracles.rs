@@ -128,6 +128,20 @@ proptest! {
     }
 }
 
+/// The comparisons of tables compare: most plans that are drawn give a table without rounding, with pairs
+/// that see each other and pairs that do not.
+#[test]
+fn drawn_plans_give_tables_to_compare() {
+    let plans = draw(&small_grid_plan(1..8), 200);
+    let tables: Vec<Table> = plans.iter().filter_map(|p| bake(p, Subdivide::Triangulation)).collect();
+    assert!(tables.len() > 60, "{} of 200 by triangulation", tables.len());
+    let mixed = |t: &&Table| (0.0..1.0).contains(&t.mean_visible_share()) && t.n_cells() > 3;
+    let n_mixed = tables.iter().filter(mixed).count();
+    assert!(n_mixed > 30, "{n_mixed} of {} with hidden pairs", tables.len());
+    let n_axial = draw(&axial_plan(1..9), 200).iter().filter(|p| bake(p, Subdivide::KdTree).is_some()).count();
+    assert!(n_axial > 100, "{n_axial} of 200 by k-d tree");
+}
+
 /// The strategy above does what it is for: it makes plans with rounded crossings.
 #[test]
 fn jittered_plans_need_rounding() {
