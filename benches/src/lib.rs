@@ -1,4 +1,16 @@
-//! What benches share: portal sequences as a search meets them.
+//! What benches share: portal sequences as a search meets them, bakes in processes of their own, rays against
+//! tables, a z-buffer, charts.
+
+pub mod bits;
+pub mod chart;
+pub mod child;
+pub mod path;
+pub mod raster;
+pub mod recorded;
+pub mod shares;
+pub mod spec;
+pub mod targets;
+pub mod witness;
 
 use sightlines::cells::{CellGraph, Exit, Plan, Planar};
 use sightlines::geometry::{Adaptive, Portal2};

@@ -5,8 +5,8 @@ use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Portal, Scene};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{PortalForm, SceneOptions, SceneSummary, subdivide_scene};
 use sightlines_pvs::{CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
-use sightlines_sightline::AxialStabber;
-use sightlines_stabtree::{Known, Network, Progress, SearchOptions, Seen, Zones, shoot_axial_chords, visible_zones};
+use sightlines_sightline::ShaftCounters;
+use sightlines_stabtree::{Known, Progress, SearchOptions, SeenInSpace, see_space};
 use std::time::{Duration, Instant};
 
 /// Which portals the search goes through.
@@ -60,8 +60,13 @@ pub struct BakedScene {
     pub cut_time: Duration,
     /// Time to decide who sees what.
     pub see_time: Duration,
-    /// Portals pushed by the searches.
-    pub n_pushes: u64,
+    /// Rectangles that the walls between the cells were put together to.
+    pub n_blockers: usize,
+    /// Pairs of a cell and a cell or object that count as visible because deciding about them took too
+    /// much effort, or more digits than doubles have.
+    pub n_assumed: u64,
+    /// How it was decided who sees what. Varies from run to run with several threads.
+    pub counters: ShaftCounters,
 }
 
 /// Cuts a scene, decides which cells see which cells and objects, and makes the table.
@@ -79,52 +84,26 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
     let cut_time = start.elapsed();
     let start = Instant::now();
     let boxes: Vec<Aabb<3>> = scene.objects().iter().map(drawn_box).collect();
-    let loose = loosened(&cut.graph);
-    let nothing = Known::nothing(cut.graph.n_cells());
-    let (graph, seen, touching) = match options.portals {
-        PortalMode::Bounding => {
-            let (seen, touching) = see(&loose, &boxes, nothing, options);
-            (loose, seen, touching)
-        }
-        PortalMode::Exact => {
-            let (seen, touching) = see(&cut.graph, &boxes, nothing, options);
-            (cut.graph, seen, touching)
-        }
-        PortalMode::TwoLevel => {
-            let (wide, _) = see(&loose, &boxes, nothing.clone(), options);
-            let known = Known { possible: Some((wide.zones, wide.objects)), ..nothing };
-            let (mut seen, touching) = see(&cut.graph, &boxes, known, options);
-            seen.summary.n_pushes += wide.summary.n_pushes;
-            (cut.graph, seen, touching)
-        }
+    let solid = cut.left_out();
+    let graph = match options.portals {
+        PortalMode::Bounding => loosened(&cut.graph),
+        PortalMode::Exact | PortalMode::TwoLevel => cut.graph,
     };
+    let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
+    let seen = see_space(&graph, &solid, &boxes, &Known::nothing(graph.n_cells()), &search);
     let see_time = start.elapsed();
-    let n_visible_pairs = (seen.zones.count_ones() - graph.n_cells() as u64) / 2;
-    let (n_objects_seen, n_pushes) = (seen.objects.count_ones(), seen.summary.n_pushes);
+    let n_visible_pairs = (seen.cells.count_ones() - graph.n_cells() as u64) / 2;
+    let (n_objects_seen, counters) = (seen.objects.count_ones(), seen.counters);
+    let (n_blockers, n_assumed) = (seen.n_blockers, seen.n_assumed);
     let info = info(options, &cut.summary);
-    let table = scene_table(&graph, seen, scene, &boxes, touching, info)?;
-    Ok(BakedScene { table, cut: cut.summary, n_visible_pairs, n_objects_seen, cut_time, see_time, n_pushes })
+    let table = scene_table(&graph, seen, scene, &boxes, info)?;
+    let cut = cut.summary;
+    Ok(BakedScene { table, cut, n_visible_pairs, n_objects_seen, n_blockers, n_assumed, counters, cut_time, see_time })
 }
 
 /// The box around an object's triangles; empty, and so never seen, if it has none.
 fn drawn_box(object: &sightlines_cells::SceneObject) -> Aabb<3> {
     Aabb::around(object.corners().flatten())
-}
-
-/// One search; also the objects that touch each cell.
-fn see(
-    graph: &CellGraph<Axial>,
-    boxes: &[Aabb<3>],
-    known: Known,
-    options: &SceneBakeOptions<'_>,
-) -> (Seen, Vec<Vec<u32>>) {
-    let zones = Zones::cells(graph);
-    let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
-    let network = Network::axial(graph, &zones, boxes);
-    let known = Known { visible: shoot_axial_chords(graph, &zones, search.chords), ..known };
-    let seen = visible_zones(&network, &AxialStabber::new(), &known, &search);
-    let touching = (0..graph.n_cells()).map(|zone| network.objects_of(zone).to_vec()).collect();
-    (seen, touching)
 }
 
 /// The same graph with one portal for each pair of cells: the rectangle around the exact pieces.
@@ -161,10 +140,9 @@ fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, Stri
 
 fn scene_table(
     graph: &CellGraph<Axial>,
-    seen: Seen,
+    seen: SeenInSpace,
     scene: &Scene,
     boxes: &[Aabb<3>],
-    touching: Vec<Vec<u32>>,
     info: Vec<(String, String)>,
 ) -> Result<Table, BakeError> {
     let cell = |id: CellId| {
@@ -180,9 +158,9 @@ fn scene_table(
     let table = Table::new(TableParts {
         dimension: 3,
         portals: graph.portals().iter().map(portal_record).collect(),
-        rows: seen.zones,
+        rows: seen.cells,
         objects: scene.objects().iter().zip(boxes).map(object).collect(),
-        cell_objects: touching,
+        cell_objects: seen.touching,
         objects_seen: Some(seen.objects),
         locator: Locator::build(&bounds, 3),
         cells,

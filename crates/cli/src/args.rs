@@ -1,8 +1,8 @@
 //! The arguments common to all commands.
 
 use crate::commands::{
-    build::BuildArgs, demo::DemoArgs, draw::DrawArgs, explain::ExplainArgs, export::ExportArgs, info::InfoArgs,
-    query::QueryArgs, reject::RejectArgs,
+    build::BuildArgs, demo::DemoArgs, draw::DrawArgs, explain::ExplainArgs, export::ExportArgs, generate::GenerateArgs,
+    info::InfoArgs, query::QueryArgs, reject::RejectArgs,
 };
 use clap::{Parser, Subcommand};
 
@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Build the visibility table of a plan: a Doom map in a WAD, or a GeoJSON floor plan
+    /// Build a visibility table: of a Doom map in a WAD, a GeoJSON floor plan, or a scene in space (GLB, glTF, OBJ)
     Build(BuildArgs),
     /// Write the REJECT lumps of the maps of a WAD, and leave all else as it is
     Reject(RejectArgs),
@@ -33,13 +33,15 @@ pub(crate) enum Command {
     Query(QueryArgs),
     /// Write a table as JSON
     Export(ExportArgs),
-    /// Show the line of sight between two cells, or say why there is none
+    /// Show the line of sight between two cells of a plan, or say why there is none
     Explain(ExplainArgs),
-    /// Draw a plan with its cells and portals, and what is seen from somewhere, as SVG or PNG
+    /// Draw a table and what is seen from somewhere, as SVG or PNG: plans, floor plans, isometric views
     Draw(DrawArgs),
-    /// Sum up a table, a WAD or a GeoJSON plan
+    /// Sum up a table, a WAD, a GeoJSON plan or a scene in space
     Info(InfoArgs),
-    /// Generate an office floor, build its table, sum it up and draw it
+    /// Write a generated scene of any size
+    Generate(GenerateArgs),
+    /// Generate an office floor or a small tower, build its table, sum it up and draw it
     Demo(DemoArgs),
 }
 

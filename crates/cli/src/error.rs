@@ -1,16 +1,18 @@
 //! What can go wrong, as one line for the user.
 
 use sightlines::bake::{BakeError, RejectError};
+use sightlines::formats::scene::SceneWriteError;
 use sightlines::formats::{ReadError, WriteError};
 use sightlines::pvs::DecodeError;
 use sightlines::report::{DrawError, PngError};
+use sightlines::scenes::SceneError;
 use std::io;
 use std::path::PathBuf;
 
 /// Why a command failed; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CliError {
-    /// A WAD or GeoJSON file cannot be read.
+    /// A WAD, a plan or a scene cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// A file cannot be opened or read.
@@ -34,7 +36,10 @@ pub(crate) enum CliError {
     /// `--map` for something without maps.
     #[error("{}: --map is for WADs, and this is none", .0.display())]
     MapOfPlan(PathBuf),
-    /// A plan cannot be baked.
+    /// An option that means nothing for what the file holds.
+    #[error("{}: {option} is for {meant}, and this is {found}", path.display())]
+    Option { path: PathBuf, option: &'static str, meant: &'static str, found: &'static str },
+    /// A plan or a scene cannot be baked.
     #[error("{}: {}{source}", path.display(), map.as_ref().map_or(String::new(), |name| format!("map {name}: ")))]
     Bake { path: PathBuf, map: Option<String>, source: BakeError },
     /// The REJECT lumps of a WAD cannot be built.
@@ -49,6 +54,19 @@ pub(crate) enum CliError {
     /// A table whose cells and portals are not there, so that no lines can be sought.
     #[error("{}: the table has no polygons and portals to look for lines in", .0.display())]
     Stripped(PathBuf),
+    /// A table of which no lines can be told yet.
+    #[error("{}: lines are explained in plans only, and this is the table of a scene in space", .0.display())]
+    ExplainSpace(PathBuf),
+    /// A floor plan of which nobody said where it lies.
+    #[error("{}: a floor plan of a scene in space needs --height (cells reach from {low} to {high}), --eye or --cell; \
+             without, there is --isometric", path.display())]
+    WhichHeight { path: PathBuf, low: f64, high: f64 },
+    /// A scene cannot be generated.
+    #[error(transparent)]
+    Generate(#[from] SceneError),
+    /// A scene cannot be written as GLB.
+    #[error("{}: {source}", path.display())]
+    Glb { path: PathBuf, source: SceneWriteError },
     /// A picture cannot be drawn.
     #[error("{}: {source}", path.display())]
     Draw { path: PathBuf, source: DrawError },

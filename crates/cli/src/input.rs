@@ -4,7 +4,8 @@ use crate::error::CliError;
 use sightlines::bake::graph_of;
 use sightlines::cells::{CellGraph, Plan, Planar};
 use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
-use sightlines::formats::{ReadError, Wad, geojson};
+use sightlines::formats::scene::read_scene;
+use sightlines::formats::{ReadError, SceneFile, Wad, geojson};
 use sightlines::pvs::{Table, format};
 use std::fs::File;
 use std::io::Read;
@@ -16,6 +17,8 @@ pub(crate) enum Kind {
     Wad,
     Table,
     Json,
+    /// A scene in space: GLB, glTF or OBJ.
+    Scene,
 }
 
 /// Tells what a file is by its first bytes; if they say nothing, by the end of its name.
@@ -24,12 +27,14 @@ pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>, CliError> {
     let mut start = Vec::new();
     File::open(path).and_then(|file| file.take(64).read_to_end(&mut start)).map_err(open)?;
     let name = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    Ok(kind_of_bytes(&start).or(match name.as_deref() {
-        Some("wad") => Some(Kind::Wad),
-        Some("pvs") => Some(Kind::Table),
-        Some("json" | "geojson") => Some(Kind::Json),
-        _ => None,
-    }))
+    Ok(match (kind_of_bytes(&start), name.as_deref()) {
+        // Both are JSON, and what is no glTF should not be told that it is no plan.
+        (Some(Kind::Json) | None, Some("gltf" | "glb" | "obj")) => Some(Kind::Scene),
+        (None, Some("wad")) => Some(Kind::Wad),
+        (None, Some("pvs")) => Some(Kind::Table),
+        (None, Some("json" | "geojson")) => Some(Kind::Json),
+        (kind, _) => kind,
+    })
 }
 
 fn kind_of_bytes(start: &[u8]) -> Option<Kind> {
@@ -38,6 +43,8 @@ fn kind_of_bytes(start: &[u8]) -> Option<Kind> {
         Some(Kind::Wad)
     } else if start.starts_with(&format::MAGIC) {
         Some(Kind::Table)
+    } else if start.starts_with(b"glTF") {
+        Some(Kind::Scene)
     } else if text.starts_with(b"{") {
         Some(Kind::Json)
     } else {
@@ -63,26 +70,41 @@ pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, Cli
     graph_of(table).ok_or_else(|| CliError::Stripped(path.to_owned()))
 }
 
-/// A plan to be built, and the map that it is of.
+/// What is to be built.
 #[derive(Debug)]
-pub(crate) struct Scene {
+pub(crate) enum Input {
+    /// A scene in the plane.
+    Plan(PlanFile),
+    /// A scene in space.
+    Scene(SceneFile),
+}
+
+/// A plan, and the map that it is of.
+#[derive(Debug)]
+pub(crate) struct PlanFile {
     pub(crate) plan: Plan,
     pub(crate) map: Option<String>,
 }
 
-/// Reads a plan: a map of a WAD, or a GeoJSON file.
-pub(crate) fn scene(path: &Path, map: Option<&str>) -> Result<Scene, CliError> {
+/// Reads what is to be built: a map of a WAD, a GeoJSON file, or a scene in space.
+pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, CliError> {
     match (kind_of(path)?, map) {
-        (Some(Kind::Wad), map) => doom(path, map),
-        (Some(Kind::Json), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
-        (Some(Kind::Json), None) => Ok(Scene { plan: geojson::read_plan(path)?, map: None }),
+        (Some(Kind::Wad), map) => Ok(Input::Plan(doom(path, map)?)),
+        (Some(Kind::Json | Kind::Scene), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
+        (Some(Kind::Json), None) => Ok(Input::Plan(plan(path)?)),
+        (Some(Kind::Scene), None) => Ok(Input::Scene(read_scene(path)?)),
         (Some(Kind::Table) | None, _) => {
-            Err(CliError::Kind { path: path.to_owned(), expected: "a WAD nor a GeoJSON plan" })
+            Err(CliError::Kind { path: path.to_owned(), expected: "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ" })
         }
     }
 }
 
-fn doom(path: &Path, name: Option<&str>) -> Result<Scene, CliError> {
+/// Reads a plan in a GeoJSON file.
+pub(crate) fn plan(path: &Path) -> Result<PlanFile, CliError> {
+    Ok(PlanFile { plan: geojson::read_plan(path)?, map: None })
+}
+
+fn doom(path: &Path, name: Option<&str>) -> Result<PlanFile, CliError> {
     let wad = Wad::read(path)?;
     let maps = list_maps(&wad);
     let lumps = choose(path, &maps, name)?;
@@ -93,7 +115,7 @@ fn doom(path: &Path, name: Option<&str>) -> Result<Scene, CliError> {
         map: Some(name.clone()),
         source: error.into(),
     };
-    Ok(Scene { plan: map.plan().map_err(bake)?, map: Some(name) })
+    Ok(PlanFile { plan: map.plan().map_err(bake)?, map: Some(name) })
 }
 
 /// The map of that name, which is the last one if there are several, as in the engine; or the only one.
@@ -121,6 +143,7 @@ mod tests {
         assert_eq!(kind_of_bytes(b"PWAD\x01\0\0\0"), Some(Kind::Wad));
         assert_eq!(kind_of_bytes(b"\x89PVS\r\n\x1a\n\x01"), Some(Kind::Table));
         assert_eq!(kind_of_bytes(b"\xEF\xBB\xBF \n{\"type\""), Some(Kind::Json));
+        assert_eq!(kind_of_bytes(b"glTF\x02\0\0\0"), Some(Kind::Scene));
         assert_eq!(kind_of_bytes(b"PWA"), None);
         assert_eq!(kind_of_bytes(b""), None);
     }

@@ -13,6 +13,7 @@ mod memory;
 mod output;
 mod place;
 mod progress;
+mod region;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -56,6 +57,7 @@ fn run(arguments: &Arguments) -> Result<Answer, CliError> {
         Command::Explain(args) => commands::explain::run(args),
         Command::Draw(args) => commands::draw::run(args),
         Command::Info(args) => commands::info::run(args),
+        Command::Generate(args) => commands::generate::run(args),
         Command::Demo(args) => commands::demo::run(args, show_progress),
     }
 }

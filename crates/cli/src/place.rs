@@ -59,6 +59,12 @@ impl Point {
         let coordinates = self.of(table, path)?;
         Ok(Point2::new(coordinates[0], coordinates[1]))
     }
+
+    /// The point in space, if it is one.
+    pub(crate) fn spatial(&self, table: &Table, path: &Path) -> Result<[f64; 3], CliError> {
+        let coordinates = self.of(table, path)?;
+        Ok([coordinates[0], coordinates[1], coordinates[2]])
+    }
 }
 
 /// Checks that a table has a cell.

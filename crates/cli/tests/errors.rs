@@ -35,12 +35,13 @@ fn files_of_the_wrong_kind_are_named() {
     folder.write("empty.wad", "");
     folder.write("maps.wad", wad(&["MAP01"]));
     let build = |input: &str| folder.refused(&["build", input, "-o", "out.pvs"]);
-    assert_eq!(build("noise"), "noise: neither a WAD nor a GeoJSON plan");
-    assert_eq!(build("office.pvs"), "office.pvs: neither a WAD nor a GeoJSON plan");
+    assert_eq!(build("noise"), "noise: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ");
+    assert_eq!(build("office.pvs"), "office.pvs: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ");
     assert!(build("noise.wad").starts_with("noise.wad: "));
     assert!(build("empty.wad").starts_with("empty.wad: "));
     assert!(build("noise.json").starts_with("noise.json: line 1 column 1: "));
-    assert_eq!(folder.refused(&["info", "noise"]), "noise: neither a table nor a WAD nor a GeoJSON plan");
+    let error = folder.refused(&["info", "noise"]);
+    assert_eq!(error, "noise: neither a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ");
     assert!(folder.refused(&["reject", "office.geojson", "-o", "out.wad"]).starts_with("office.geojson: "));
     assert_eq!(folder.refused(&["export", "maps.wad"]), "maps.wad: byte 0: this is no visibility table");
     assert_eq!(

@@ -24,7 +24,11 @@ fn build_says_what_it_built() {
     assert_eq!(built["n_bytes"], folder.read("again.pvs").len());
     assert_eq!((&built["subdivide"], &built["map"], &built["out"]), (&json!("kd"), &Value::Null, &json!("again.pvs")));
     let told = folder.run(&["build", "office.geojson", "-o", "again.pvs"]).expect(0).out;
-    assert!(told.starts_with("wrote again.pvs, ") && told.contains(&format!("cells          {}", table.n_cells())));
+    assert!(
+        told.starts_with("wrote again.pvs, ")
+            && told.contains("\nmethod         a k-d tree in the plane, ")
+            && told.contains(&format!("cells          {}", table.n_cells()))
+    );
     assert_eq!(folder.names(), ["again.pvs", "office.geojson", "office.pvs"]);
 }
 

@@ -1,12 +1,14 @@
 //! Points, segments, boxes and the exact predicates that every decision of `sightlines` rests on.
 //!
 //! Owns: the coordinate types ([`Point2`], [`Segment2`], [`Aabb`]), the orientation predicate in two
-//! forms with one meaning ([`Adaptive`], [`SmallGrid`]), convex polygons in the plane.
+//! forms with one meaning ([`Adaptive`], [`SmallGrid`]), convex polygons in the plane, trees of boxes
+//! ([`BoxTree`]).
 //! Does not know: walls, cells, portals, files.
 //! Invariants: a predicate reads input coordinates only and its sign is exact for every coordinate that
 //! [`check_coordinate`] accepts; nothing here compares with an epsilon.
 
 pub mod bounds;
+pub mod boxtree;
 pub mod coordinate;
 pub mod door;
 pub mod orient;
@@ -15,6 +17,7 @@ pub mod portal;
 pub mod segment;
 
 pub use bounds::Aabb;
+pub use boxtree::{BoxNode, BoxTree};
 pub use coordinate::{CoordinateError, check_coordinate};
 pub use door::AxialDoor;
 pub use orient::{Adaptive, Orient2d, SmallGrid, along, orient2d};

@@ -184,6 +184,12 @@ impl SceneSubdivision {
         Self { tree, graph, summary, detail: found.detail, cells, pieces, first_piece }
     }
 
+    /// The boxes of the tree's cells that the graph leaves out.
+    pub fn left_out(&self) -> Vec<Aabb<3>> {
+        let all = self.tree.cells().iter().zip(&self.cells);
+        all.filter(|(_, id)| id.is_none()).map(|(cell, _)| cell.bounds).collect()
+    }
+
     /// The cell of the graph that a cell of the tree is; none if it is left out.
     ///
     /// # Panics

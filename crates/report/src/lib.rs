@@ -1,7 +1,8 @@
 //! Pictures, exports and numbers of visibility tables.
 //!
-//! Owns: the drawing of a plan and of what is seen in it ([`plan_svg`], [`svg_to_png`]), the JSON
-//! export ([`export_json`]), the numbers that sum a table up ([`Summary`]).
+//! Owns: the drawing of cells and of what is seen in them, as a plan ([`plan_svg`]), as a floor plan of a
+//! scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`], [`svg_to_png`]); the JSON export
+//! ([`export_json`]); the numbers that sum a table up ([`Summary`], [`ViewerShare`]).
 //! Does not know: how a table was made, files, how the numbers are worded.
 //! Invariants: a table is only looked at, and what is shown is what it says; the same table and options
 //! give the same bytes on every machine; pictures have no text, so they need no fonts.
@@ -11,12 +12,17 @@ mod export;
 mod frame;
 mod outline;
 mod png;
+mod share;
 mod summary;
 mod theme;
 
-pub use draw::{DrawError, DrawOptions, MAX_SIZE, MIN_SIZE, View, plan_svg};
+pub use draw::{
+    DrawError, DrawOptions, IsometricOptions, MAX_SIZE, MIN_SIZE, SliceOptions, Up, View, isometric_svg, plan_svg,
+    slice_svg,
+};
 pub use export::{export_json, write_json};
 pub use png::{PngError, svg_to_png};
+pub use share::ViewerShare;
 pub use summary::Summary;
 
 #[cfg(doctest)]

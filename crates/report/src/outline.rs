@@ -1,7 +1,7 @@
-//! The walls of a plan, as a table knows them: the sides of cells where no portal is.
+//! The walls of a plan: the sides of cells where no portal is.
 
 use sightlines_geometry::{Point2, Segment2};
-use sightlines_pvs::{CellId, CellRecord, Table};
+use sightlines_pvs::CellRecord;
 
 /// The corners of a planar cell, counter-clockwise: its polygon, or its box.
 pub(crate) fn corners(cell: &CellRecord) -> Vec<Point2> {
@@ -18,20 +18,21 @@ pub(crate) fn ends(points: &[[f64; 3]]) -> Option<Segment2> {
     Some(Segment2::new(Point2::new(*ax, *ay), Point2::new(*bx, *by)))
 }
 
-/// What is left of the sides of all cells when their portals are taken out, each piece once.
+/// A convex piece of a plane, and the doors on its sides.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Outline<'a> {
+    /// Counter-clockwise; empty for nothing.
+    pub(crate) corners: &'a [Point2],
+    /// In any order and direction.
+    pub(crate) doors: Vec<Segment2>,
+}
+
+/// What is left of the sides of all outlines when their doors are taken out, each piece once.
 ///
-/// Empty for a table whose portals were stripped, which says nothing about walls.
-/// O(cells * portals of a cell).
-pub(crate) fn walls(table: &Table) -> Vec<Segment2> {
-    let mut doors: Vec<Vec<Segment2>> = vec![Vec::new(); table.n_cells()];
-    for portal in table.portals() {
-        let Some(door) = ends(&portal.points) else { continue };
-        portal.cells.iter().for_each(|cell: &CellId| doors[cell.idx()].push(door));
-    }
-    let told = table.n_cells() < 2 || !table.portals().is_empty();
+/// O(outlines * doors of an outline).
+pub(crate) fn walls(outlines: &[Outline<'_>]) -> Vec<Segment2> {
     let mut walls: Vec<Segment2> = Vec::new();
-    for (cell, doors) in table.cells().iter().zip(&doors).filter(|_| told) {
-        let corners = corners(cell);
+    for Outline { corners, doors } in outlines {
         for i in 0..corners.len() {
             closed_pieces(Segment2::new(corners[i], corners[(i + 1) % corners.len()]), doors, &mut walls);
         }

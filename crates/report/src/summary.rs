@@ -64,7 +64,7 @@ impl Summary {
 }
 
 /// Area of a planar cell, volume of one in space; rounded.
-fn size(cell: &CellRecord, dimension: u8) -> f64 {
+pub(crate) fn size(cell: &CellRecord, dimension: u8) -> f64 {
     if dimension == 2 {
         return signed_area(&corners(cell));
     }

@@ -29,6 +29,17 @@ pub(crate) const OBJECT_HIDDEN: &str = "#c3cad2";
 pub(crate) const GROUPS: [&str; 8] =
     ["#dbe9f6", "#fbe6cf", "#dcefdc", "#eee0f2", "#fdf3c8", "#d7eef0", "#f8dfe0", "#e6e6e0"];
 
+/// The top, the left and the right face of a box of which nothing is said.
+pub(crate) const CELL_SHADES: [&str; 3] = ["#eef2f6", "#c9d3de", "#dbe2ea"];
+/// The faces of a box that is seen.
+pub(crate) const SEEN_SHADES: [&str; 3] = ["#b4d9fa", "#5b9fdc", "#8fc4f5"];
+/// The faces of the box looked from.
+pub(crate) const FROM_SHADES: [&str; 3] = ["#ff9a52", "#c2540c", "#f0701a"];
+/// The edges of boxes.
+pub(crate) const EDGE: &str = "#1c2733";
+/// The edges of boxes that are not seen.
+pub(crate) const EDGE_HIDDEN: &str = "#9aa5b1";
+
 /// Stroke widths in pixels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strokes {

@@ -18,6 +18,7 @@ pub mod lp;
 mod stabber;
 pub mod witness;
 
+pub use axial::shaft::{Blockers, FreeLine, FreeSpan, Shaft, ShaftCounters, Sight, Target};
 pub use axial::{
     AxialCertificate, AxialCounters, AxialRow, AxialStabber, AxialUndo, AxialWitness, OctantProof, StabbingAxial,
     stabbing_line_axial,

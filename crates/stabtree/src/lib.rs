@@ -12,6 +12,7 @@ mod chords;
 mod explain;
 mod network;
 mod search;
+mod space;
 mod tree;
 mod zones;
 
@@ -19,6 +20,7 @@ pub use chords::{shoot_axial_chords, shoot_chords};
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
 pub use search::{Known, Progress, SearchOptions, SearchSummary, Seen, visible_zones};
+pub use space::{SeenInSpace, see_space};
 pub use tree::{StabNode, StabTree, TooLarge};
 pub use zones::Zones;
 

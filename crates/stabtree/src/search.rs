@@ -159,7 +159,7 @@ fn all_ones(n: usize) -> impl Iterator<Item = u64> {
 }
 
 /// The places of the ones of a word, ascending.
-fn ones(mut word: u64) -> impl Iterator<Item = usize> {
+pub(crate) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let place = (word != 0).then(|| word.trailing_zeros() as usize);
         word &= word.wrapping_sub(1);

@@ -11,26 +11,32 @@ const N_BINS: usize = 16;
 /// Up to so many boxes are not split.
 const LEAF: usize = 4;
 
-/// A half-line: origin and direction, which is not zero.
+/// A half-line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ray {
-    pub(crate) origin: Point3,
-    pub(crate) direction: Point3,
+    origin: Point3,
+    /// One over the direction; infinite along axes on which the ray does not move.
+    inverse: Point3,
 }
 
 impl Ray {
+    /// The ray from `origin` along `direction`, which is not zero.
+    pub(crate) fn new(origin: Point3, direction: Point3) -> Self {
+        Self { origin, inverse: direction.map(|d| 1.0 / d) }
+    }
+
     /// Where the line of the ray enters and leaves a box, as multiples of the direction; rounded.
     pub(crate) fn within(&self, b: &Aabb<3>) -> Option<[f64; 2]> {
         let mut range = [f64::NEG_INFINITY, f64::INFINITY];
         for k in 0..3 {
-            let (o, d) = (self.origin[k], self.direction[k]);
-            if d == 0.0 {
+            let (o, inverse) = (self.origin[k], self.inverse[k]);
+            if inverse.is_infinite() {
                 if o < b.min[k] || o > b.max[k] {
                     return None;
                 }
                 continue;
             }
-            let (s, t) = ((b.min[k] - o) / d, (b.max[k] - o) / d);
+            let (s, t) = ((b.min[k] - o) * inverse, (b.max[k] - o) * inverse);
             range = [range[0].max(s.min(t)), range[1].min(s.max(t))];
         }
         (range[0] <= range[1]).then_some(range)

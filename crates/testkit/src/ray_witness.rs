@@ -5,6 +5,10 @@
 //! samples and decides nothing else: rounding must not make a witness of a line that grazes an edge, or
 //! slips through a crack as wide as the last place of a coordinate.
 
+mod random;
+
+pub use random::Random;
+
 use crate::bvh::{Bvh, Ray};
 use crate::rays::{Hit, RayScene, length, sub};
 use sightlines_cells::Point3;
@@ -14,42 +18,6 @@ use std::collections::BTreeSet;
 /// A ray is shifted by the scene's size over this.
 const SHIFT: f64 = (1 << 20) as f64;
 
-/// SplitMix64's finaliser over a counter: every ray has numbers of its own, whichever thread casts it.
-struct Random(u64);
-
-impl Random {
-    fn new(seed: u64, ray: u64) -> Self {
-        Self(Self(Self(seed).next() ^ ray).next())
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Strictly between 0 and 1.
-    fn unit(&mut self) -> f64 {
-        ((self.next() >> 12) as f64 + 0.5) / (1u64 << 52) as f64
-    }
-
-    fn point(&mut self, b: &Aabb<3>) -> Point3 {
-        [0, 1, 2].map(|k| b.min[k] + (b.max[k] - b.min[k]) * self.unit())
-    }
-
-    /// Uniform over the sphere, of length 1.
-    fn direction(&mut self) -> Point3 {
-        loop {
-            let d = [0; 3].map(|_| 2.0 * self.unit() - 1.0);
-            let l = length(d);
-            if (0.1..=1.0).contains(&l) {
-                return d.map(|x| x / l);
-            }
-        }
-    }
-}
-
 /// A line through the open air, and its four parallels.
 struct Line {
     direction: Point3,
@@ -57,6 +25,65 @@ struct Line {
     origins: [Point3; 5],
     /// First hits of the line itself, forwards and backwards.
     hits: [Option<Hit>; 2],
+}
+
+/// A line through the open air, up to the first thing both ways; its four parallels, one
+/// [`RayScene::shift`] beside it, are in the open air too.
+#[derive(Debug, Clone)]
+pub struct ClearLine {
+    /// Of length 1.
+    pub direction: Point3,
+    /// First the origin of the line itself.
+    origins: [Point3; 5],
+    /// How far the line and its parallels are clear, backwards and forwards; infinite where nothing is hit.
+    pub clear: [f64; 2],
+    /// The object that the line and its parallels all first hit on fronts, backwards and forwards.
+    pub ends: [Option<u32>; 2],
+}
+
+impl ClearLine {
+    /// A point on the line, in the open air.
+    pub fn origin(&self) -> Point3 {
+        self.origins[0]
+    }
+}
+
+/// Boxes of cells, ready to be asked which of them a line passes through.
+#[derive(Debug)]
+pub struct CellIndex {
+    /// Without what is within a shift of the borders.
+    inner: Vec<Aabb<3>>,
+    bvh: Bvh,
+    shift: f64,
+    /// No clear line is followed farther back.
+    far: f64,
+}
+
+impl CellIndex {
+    /// Replaces `passed` by the cells that a line and its parallels pass through before they hit anything,
+    /// ascending. Only what is more than a shift away from the cells' borders and from the ends counts, so
+    /// an eye in any of the cells sees [`ClearLine::ends`], and all of the cells.
+    pub fn passed(&self, line: &ClearLine, passed: &mut Vec<u32>) {
+        passed.clear();
+        let [back, forth] = line.clear;
+        let rays = line.origins.map(|o| Ray::new(o, line.direction));
+        // Seen from the far end, the clear stretch begins at 0.
+        let start = back.min(self.far);
+        let from = Ray::new(step(line.origins[0], line.direction, -start), line.direction);
+        let limit = start + forth;
+        self.bvh.visit(&from, limit, |i| {
+            let b = &self.inner[i as usize];
+            let meets = |ray: &Ray| {
+                let range = ray.within(b);
+                range.is_some_and(|[s, t]| s.max(self.shift - back) + self.shift < t.min(forth - self.shift))
+            };
+            if !b.is_empty() && rays.iter().all(meets) {
+                passed.push(i);
+            }
+            limit
+        });
+        passed.sort_unstable();
+    }
 }
 
 impl RayScene {
@@ -91,42 +118,51 @@ impl RayScene {
     /// in [`Self::witness_objects`]; all cells that it and its four parallels pass through on the way,
     /// more than [`Self::shift`] from the cells' borders, see each other.
     pub fn witness_cells(&self, cells: &[Aabb<3>], seed: u64, n_rays: u64) -> BTreeSet<(u32, u32)> {
-        let shift = self.shift();
-        let shrunk = |b: &Aabb<3>| Aabb { min: b.min.map(|x| x + shift), max: b.max.map(|x| x - shift) };
-        let inner: Vec<Aabb<3>> = cells.iter().map(shrunk).collect();
-        let bvh = Bvh::new(cells, shift);
+        let index = self.cell_index(cells);
         let n_cells = u64::try_from(cells.len()).expect("sizes have 64 bits");
         in_parallel(n_rays.saturating_mul(n_cells), |ray, seen| {
-            let cell = &inner[usize::try_from(ray % n_cells).expect("an index of a cell")];
+            let cell = &index.inner[usize::try_from(ray % n_cells).expect("an index of a cell")];
             if cell.is_empty() {
                 return;
             }
-            let Some(line) = self.line(cell, Random::new(seed, ray)) else { return };
-            let Some([back, forth]) = self.clear_stretch(&line) else { return };
-            // Seen from the far end, the clear stretch begins at 0.
-            let from = step(line.origins[0], line.direction, -back.min(1e3 * self.size()));
+            let mut random = Random::new(seed, ray);
+            let Some(line) = self.clear_line(random.point(cell), random.direction()) else { return };
             let mut passed = Vec::new();
-            bvh.visit(&Ray { origin: from, direction: line.direction }, f64::INFINITY, |i| {
-                let b = &inner[i as usize];
-                let meets = |o: &Point3| {
-                    let range = Ray { origin: *o, direction: line.direction }.within(b);
-                    range.is_some_and(|[s, t]| s.max(shift - back) + shift < t.min(forth - shift))
-                };
-                if !b.is_empty() && line.origins.iter().all(meets) {
-                    passed.push(i);
-                }
-                f64::INFINITY
-            });
-            passed.sort_unstable();
+            index.passed(&line, &mut passed);
             for (k, &i) in passed.iter().enumerate() {
                 seen.extend(passed[k + 1..].iter().map(|&j| (i, j)));
             }
         })
     }
 
+    /// Makes ready to ask which of `cells` (scene units) lines pass through. O(n log n).
+    pub fn cell_index(&self, cells: &[Aabb<3>]) -> CellIndex {
+        let shift = self.shift();
+        let shrunk = |b: &Aabb<3>| Aabb { min: b.min.map(|x| x + shift), max: b.max.map(|x| x - shift) };
+        let (inner, bvh) = (cells.iter().map(shrunk).collect(), Bvh::new(cells, shift));
+        CellIndex { inner, bvh, shift, far: 1e3 * self.size() }
+    }
+
+    /// The line through `origin` along `direction`, of any length but 0, if it can be a witness: its origin
+    /// and those of its parallels are in the open air, which is to say that neither way a back is the first
+    /// thing hit, nor the line anything within [`Self::shift`].
+    pub fn clear_line(&self, origin: Point3, direction: Point3) -> Option<ClearLine> {
+        let l = length(direction);
+        if l == 0.0 {
+            return None;
+        }
+        let line = self.line_through(origin, direction.map(|x| x / l))?;
+        let (clear, ends) = self.clear_stretch(&line)?;
+        Some(ClearLine { direction: line.direction, origins: line.origins, clear, ends })
+    }
+
     /// A random line through a point of `cell`; `None` if the point is not in the open air.
     fn line(&self, cell: &Aabb<3>, mut random: Random) -> Option<Line> {
-        let (origin, direction) = (random.point(cell), random.direction());
+        self.line_through(random.point(cell), random.direction())
+    }
+
+    /// The line along a direction of length 1.
+    fn line_through(&self, origin: Point3, direction: Point3) -> Option<Line> {
         let hits = [self.first_hit(origin, direction), self.first_hit(origin, direction.map(|x| -x))];
         if hits.iter().flatten().any(|h| !h.front_facing || h.t <= self.shift()) {
             return None;
@@ -150,21 +186,23 @@ impl RayScene {
         line.origins[1..].iter().all(same).then_some(object)
     }
 
-    /// How far a line and its parallels are clear, backwards and forwards; `None` if a parallel is not
-    /// in the open air.
-    fn clear_stretch(&self, line: &Line) -> Option<[f64; 2]> {
-        let mut clear = [line.hits[1], line.hits[0]].map(|h| h.map_or(f64::INFINITY, |h| h.t));
-        for (way, clear) in [-1.0, 1.0].into_iter().zip(&mut clear) {
+    /// How far a line and its parallels are clear, backwards and forwards, and the objects whose fronts all
+    /// of them hit there; `None` if a parallel is not in the open air.
+    fn clear_stretch(&self, line: &Line) -> Option<([f64; 2], [Option<u32>; 2])> {
+        let own = [line.hits[1], line.hits[0]];
+        let mut clear = own.map(|h| h.map_or(f64::INFINITY, |h| h.t));
+        let mut ends = own.map(|h| h.map(|h| h.object));
+        for (k, way) in [-1.0, 1.0].into_iter().enumerate() {
             for origin in &line.origins[1..] {
-                if let Some(hit) = self.first_hit(*origin, line.direction.map(|x| way * x)) {
-                    if !hit.front_facing {
-                        return None;
-                    }
-                    *clear = clear.min(hit.t);
+                let hit = self.first_hit(*origin, line.direction.map(|x| way * x));
+                if hit.is_some_and(|h| !h.front_facing) {
+                    return None;
                 }
+                clear[k] = clear[k].min(hit.map_or(f64::INFINITY, |h| h.t));
+                ends[k] = ends[k].filter(|&object| hit.is_some_and(|h| h.object == object));
             }
         }
-        Some(clear)
+        Some((clear, ends))
     }
 }
 
@@ -268,6 +306,32 @@ mod tests {
         let closed = two_rooms(0.0).witness_cells(&cells, 1, 3000);
         assert_eq!(closed, BTreeSet::from([(0, 3)]));
         assert!(two_rooms(0.0).witness_cells(&[], 1, 10).is_empty());
+    }
+
+    #[test]
+    fn clear_lines_show_their_ends_to_every_cell_on_the_way() {
+        let scene = two_rooms(1.0);
+        let cells = [
+            cell([0.; 3], [4., 3., 4.]),
+            cell([4., 0., 0.], [5., 3., 1.]),
+            cell([5., 0., 0.], [9., 3., 4.]),
+            cell([0., 2., 0.], [9., 3., 4.]),
+        ];
+        let index = scene.cell_index(&cells);
+        let through_the_door = scene.clear_line([0.5, 0.5, 0.5], [2., 0., 0.]).unwrap();
+        assert_eq!((through_the_door.ends, through_the_door.origin()), ([Some(0); 2], [0.5; 3]));
+        assert!((through_the_door.clear[0] - 0.5).abs() < 1e-9 && (through_the_door.clear[1] - 8.5).abs() < 1e-9);
+        let mut passed = vec![7];
+        index.passed(&through_the_door, &mut passed);
+        assert_eq!(passed, [0, 1, 2]);
+        let at_the_wall = scene.clear_line([0.5, 0.5, 2.5], [1., 0., 0.]).unwrap();
+        index.passed(&at_the_wall, &mut passed);
+        assert_eq!((at_the_wall.ends, &passed[..]), ([Some(0), Some(1)], &[0][..]));
+        // Inside the wall; along nothing; on the wall's edge, where the parallels part.
+        assert!(scene.clear_line([4.5, 0.5, 2.5], [1., 0., 0.]).is_none());
+        assert!(scene.clear_line([0.5; 3], [0.; 3]).is_none());
+        let grazing = scene.clear_line([0.5, 0.5, 1.0], [1., 0., 0.]).unwrap();
+        assert_eq!(grazing.ends[1], None);
     }
 
     #[test]

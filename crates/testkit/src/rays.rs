@@ -8,6 +8,7 @@
 //! Techniques 2(1), 2013: no ray slips through an edge that two triangles share.
 
 use crate::bvh::{Bvh, Ray};
+pub use crate::ray_witness::{CellIndex, ClearLine, Random};
 use sightlines_cells::{Point3, Scene};
 use sightlines_geometry::Aabb;
 
@@ -85,7 +86,7 @@ impl RayScene {
         let slack = self.slack / length(direction);
         let mut nearest = f64::INFINITY;
         let mut hits: Vec<Hit> = Vec::new();
-        self.bvh.visit(&Ray { origin, direction }, f64::INFINITY, |i| {
+        self.bvh.visit(&Ray::new(origin, direction), f64::INFINITY, |i| {
             let triangle = &self.triangles[i as usize];
             if let Some((t, front_facing)) = shear.meet(origin, &triangle.corners)
                 && t <= nearest + slack

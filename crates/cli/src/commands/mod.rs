@@ -5,6 +5,7 @@ pub(crate) mod demo;
 pub(crate) mod draw;
 pub(crate) mod explain;
 pub(crate) mod export;
+pub(crate) mod generate;
 pub(crate) mod info;
 pub(crate) mod query;
 pub(crate) mod reject;

@@ -85,6 +85,15 @@ impl Folder {
         folder
     }
 
+    /// `tower.glb`, a small tower, and its table `tower.pvs`.
+    pub(crate) fn with_tower() -> Self {
+        let folder = Self::new();
+        let small = ["--floors", "1", "--rooms-x", "2", "--rooms-y", "1", "--furniture", "1"];
+        folder.run(&[&["generate", "tower", "-o", "tower.glb"][..], &small].concat()).expect(0);
+        folder.run(&["build", "tower.glb", "-o", "tower.pvs"]).expect(0);
+        folder
+    }
+
     /// `maps.wad` with maps MAP01 to MAP03 between other lumps; MAP02 has a REJECT lump made by hand.
     pub(crate) fn with_wad() -> Self {
         let folder = Self::new();

@@ -31,6 +31,7 @@ mod exact;
 mod octant;
 mod proof;
 mod rows;
+pub mod shaft;
 mod simplex;
 mod stabber;
 mod witness;

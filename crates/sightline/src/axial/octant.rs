@@ -25,10 +25,27 @@ pub(super) const SMALL_FIRST: &[f64] =
 
 /// Decides, and says whether that took fractions. `scales` are tried in turn for the weights of a proof.
 pub(super) fn decide(rows: &[Row], octant: Octant, scales: &[f64], scratch: &mut Vec<Row>) -> (Decision, bool) {
+    match decide_in_doubles(rows, octant, scales, scratch) {
+        Ok(decision) => (decision, false),
+        Err(support) => match exact::decide(rows, octant, &support) {
+            Exact::Open(witness) => (Decision::Fractions(witness), true),
+            Exact::Blocked(proof) => (Decision::Blocked(proof), true),
+        },
+    }
+}
+
+/// Decides if the program in doubles leads to a line or a proof that hold exactly; else returns the rows
+/// that it found heavy.
+pub(super) fn decide_in_doubles(
+    rows: &[Row],
+    octant: Octant,
+    scales: &[f64],
+    scratch: &mut Vec<Row>,
+) -> Result<Decision, Vec<(usize, f64)>> {
     let solution = simplex::solve(rows, octant, [true; 3], scratch);
     let obeys = |line: &Line| line.is_in(octant) && rows.iter().all(|row| line.obeys(row, octant));
     if let Some(line) = solution.line.filter(obeys) {
-        return (Decision::Line(line), false);
+        return Ok(Decision::Line(line));
     }
     let support = &solution.support[..];
     let by_cycles =
@@ -36,14 +53,7 @@ pub(super) fn decide(rows: &[Row], octant: Octant, scales: &[f64], scratch: &mut
     let proof = by_cycles(support)
         .or_else(|| by_cycles(&two_axes(rows, octant, support, scratch)?))
         .or_else(|| proof::by_elimination(rows, octant, support, solution.signs));
-    if let Some(proof) = proof {
-        return (Decision::Blocked(proof), false);
-    }
-    let decision = match exact::decide(rows, octant, support) {
-        Exact::Open(witness) => Decision::Fractions(witness),
-        Exact::Blocked(proof) => Decision::Blocked(proof),
-    };
-    (decision, true)
+    proof.map(Decision::Blocked).ok_or(solution.support)
 }
 
 /// Solves the program again without the slowness of one axis, if the weights do not need it.
@@ -51,7 +61,7 @@ pub(super) fn decide(rows: &[Row], octant: Octant, scales: &[f64], scratch: &mut
 /// Lines are blocked then by what happens along two axes, and at one coordinate of the third at most: a
 /// floor, say. The program with all slownesses has an optimum of exactly zero, where those of the two axes
 /// vanish, and its weights have no slack; this one has.
-fn two_axes(
+pub(super) fn two_axes(
     rows: &[Row],
     octant: Octant,
     support: &[(usize, f64)],

@@ -44,60 +44,101 @@ impl Proof {
     }
 }
 
-/// Writes weights as a sum of cycles; what does not fit, by rounding, is dropped.
-fn cycles(rows: &[Row], support: &[(usize, f64)]) -> Vec<(Vec<usize>, f64)> {
-    let mut left: Vec<f64> = support.iter().map(|&(_, w)| w).collect();
-    let mut found = Vec::new();
-    let mut cancel = |axes: &[usize]| {
-        loop {
-            let arrow = |i: usize| {
-                let (from, to) = (axes[i], axes[(i + 1) % axes.len()]);
+/// Most rows that weights are taken of.
+const MAX_SUPPORT: usize = 8;
+
+/// A cycle of up to three rows, by their places in the support, and its weight.
+#[derive(Debug, Clone, Copy, Default)]
+struct Cycle {
+    rows: [u8; 3],
+    n_rows: u8,
+    weight: f64,
+}
+
+impl Cycle {
+    fn rows(&self) -> impl Iterator<Item = usize> + '_ {
+        self.rows[..usize::from(self.n_rows)].iter().map(|&n| usize::from(n))
+    }
+}
+
+/// Writes weights as a sum of cycles; what does not fit, by rounding, is dropped. Returns how many.
+fn cycles(rows: &[Row], support: &[(usize, f64)], found: &mut [Cycle; MAX_SUPPORT]) -> usize {
+    const KINDS: [&[usize]; 5] = [&[0, 1], &[1, 2], &[2, 0], &[0, 1, 2], &[2, 1, 0]];
+    let mut left = [0.0; MAX_SUPPORT];
+    left.iter_mut().zip(support).for_each(|(left, s)| *left = s.1);
+    let mut n_found = 0;
+    for axes in KINDS {
+        // Each cycle uses up a row, so there is room for all.
+        while n_found < MAX_SUPPORT {
+            let mut cycle = Cycle { weight: f64::INFINITY, ..Cycle::default() };
+            for (i, &from) in axes.iter().enumerate() {
+                let to = axes[(i + 1) % axes.len()];
                 let fits = |&n: &usize| {
                     let row = &rows[support[n].0];
                     left[n] > 0.0 && row.early == from && row.late == to
                 };
-                (0..support.len()).find(fits)
-            };
-            let Some(cycle) = (0..axes.len()).map(arrow).collect::<Option<Vec<usize>>>() else { break };
-            let weight = cycle.iter().map(|&n| left[n]).fold(f64::INFINITY, f64::min);
-            for &n in &cycle {
-                left[n] -= weight;
+                let Some(n) = (0..support.len()).find(fits) else { break };
+                (cycle.rows[i], cycle.n_rows, cycle.weight) = (n as u8, cycle.n_rows + 1, cycle.weight.min(left[n]));
             }
-            found.push((cycle, weight));
+            if usize::from(cycle.n_rows) < axes.len() {
+                break;
+            }
+            cycle.rows().for_each(|n| left[n] -= cycle.weight);
+            found[n_found] = cycle;
+            n_found += 1;
         }
-    };
-    for axes in [&[0, 1][..], &[1, 2], &[2, 0], &[0, 1, 2], &[2, 1, 0]] {
-        cancel(axes);
     }
-    found
+    n_found
 }
 
 /// Rounds the cycles of `support` to integers, the largest to `scale` (at most 2^40), and checks the
-/// proof with a bound on rounding errors; `None` proves nothing.
+/// proof exactly; `None` proves nothing.
 pub(super) fn by_cycles(rows: &[Row], octant: Octant, support: &[(usize, f64)], scale: f64) -> Option<Proof> {
-    let cycles = cycles(rows, support);
-    let largest = cycles.iter().map(|c| c.1).fold(0.0, f64::max);
-    let mut weights = vec![0.0; support.len()];
-    for (cycle, weight) in &cycles {
-        // Integers below 2^43, so their sums are exact.
-        let whole = (weight / largest * scale).round();
-        for &n in cycle {
-            weights[n] += whole;
-        }
-    }
-    let terms: Vec<(usize, f64)> =
-        support.iter().zip(weights).map(|(s, w)| (s.0, w)).filter(|&(_, w)| w > 0.0).collect();
-    let proves = !terms.is_empty() && (0..3).all(|axis| certainly_slow(rows, octant, &terms, axis));
-    proves.then_some(Proof::Small(terms))
+    let mut terms = [(0, 0.0); MAX_SUPPORT];
+    let n_terms = weigh(rows, octant, support, scale, &mut terms)?;
+    Some(Proof::Small(terms[..n_terms].to_vec()))
 }
 
-/// Whether the coefficient of a slowness in the weighted sum is certainly at least zero.
+/// Whether [`by_cycles`] finds a proof.
+pub(super) fn is_proven_by_cycles(rows: &[Row], octant: Octant, support: &[(usize, f64)], scale: f64) -> bool {
+    weigh(rows, octant, support, scale, &mut [(0, 0.0); MAX_SUPPORT]).is_some()
+}
+
+/// The rows and integer weights of a proof, and how many there are.
+fn weigh(
+    rows: &[Row],
+    octant: Octant,
+    support: &[(usize, f64)],
+    scale: f64,
+    terms: &mut [(usize, f64); MAX_SUPPORT],
+) -> Option<usize> {
+    let support = support.get(..MAX_SUPPORT).unwrap_or(support);
+    let mut found = [Cycle::default(); MAX_SUPPORT];
+    let n_found = cycles(rows, support, &mut found);
+    let found = &found[..n_found];
+    let largest = found.iter().map(|c| c.weight).fold(0.0, f64::max);
+    let mut weights = [0.0; MAX_SUPPORT];
+    for cycle in found {
+        // Integers below 2^43, so their sums are exact.
+        let whole = (cycle.weight / largest * scale).round();
+        cycle.rows().for_each(|n| weights[n] += whole);
+    }
+    let mut n_terms = 0;
+    for (s, &weight) in support.iter().zip(&weights).filter(|(_, w)| **w > 0.0) {
+        terms[n_terms] = (s.0, weight);
+        n_terms += 1;
+    }
+    let terms = &terms[..n_terms];
+    (!terms.is_empty() && (0..3).all(|axis| is_slow(rows, octant, terms, axis))).then_some(n_terms)
+}
+
+/// Whether the coefficient of a slowness in the weighted sum is at least zero.
 ///
 /// As offsets cancel, coordinates may be counted from any origin; from one of the coordinates, they are
 /// small. A difference and its product with a weight err by 2^-53 of themselves each, and five sums of
 /// the total of sizes each, in all below 8 * 2^-53 to first order; 16 * 2^-53 covers the rest and the
-/// rounding of the total itself.
-fn certainly_slow(rows: &[Row], octant: Octant, terms: &[(usize, f64)], axis: usize) -> bool {
+/// rounding of the total itself. What that leaves open is added up exactly.
+fn is_slow(rows: &[Row], octant: Octant, terms: &[(usize, f64)], axis: usize) -> bool {
     let mut origin = None;
     let (mut sum, mut sizes) = (0.0, 0.0);
     for &(k, weight) in terms {
@@ -106,7 +147,36 @@ fn certainly_slow(rows: &[Row], octant: Octant, terms: &[(usize, f64)], axis: us
         sum += term;
         sizes += term.abs();
     }
-    sizes == 0.0 || sign(octant, axis) * sum > 8.0 * f64::EPSILON * sizes
+    let sum = sign(octant, axis) * sum;
+    if sum.abs() > 8.0 * f64::EPSILON * sizes {
+        return sum > 0.0;
+    }
+    let products = terms.iter().filter_map(|&(k, w)| rows[k].term(axis).map(|(factor, x)| (factor * w, x)));
+    sizes == 0.0 || sign(octant, axis) * sign_of_sum(products) >= 0.0
+}
+
+/// The sign of a sum of products of doubles, exactly: -1, 0 or 1. Products must not leave the range of
+/// doubles.
+///
+/// Source: Shewchuk, Discrete Comput. Geom. 18, 1997: a sum of doubles that do not overlap has the sign of
+/// its largest.
+fn sign_of_sum(products: impl Iterator<Item = (f64, f64)>) -> f64 {
+    // From small to large, without overlap, some zero; two for each of up to five products.
+    let mut parts: Vec<f64> = Vec::with_capacity(16);
+    for (a, b) in products {
+        let high = a * b;
+        for x in [a.mul_add(b, -high), high] {
+            let mut carry = x;
+            for part in &mut parts {
+                let sum = carry + *part;
+                let virtual_part = sum - carry;
+                *part = (carry - (sum - virtual_part)) + (*part - virtual_part);
+                carry = sum;
+            }
+            parts.push(carry);
+        }
+    }
+    parts.iter().rev().find(|x| **x != 0.0).map_or(0.0, |x| x.signum())
 }
 
 /// A finite double as `mantissa * 2^exponent`, with an odd mantissa or zero.

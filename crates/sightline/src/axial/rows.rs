@@ -64,7 +64,7 @@ impl Row {
 }
 
 /// The sides of a box by which a line of the octant enters and leaves its extent on an axis.
-fn first_and_last(bounds: &Aabb<3>, octant: Octant, axis: usize) -> [f64; 2] {
+pub(super) fn first_and_last(bounds: &Aabb<3>, octant: Octant, axis: usize) -> [f64; 2] {
     let [low, high] = [bounds.min[axis], bounds.max[axis]];
     if is_forward(octant, axis) { [low, high] } else { [high, low] }
 }

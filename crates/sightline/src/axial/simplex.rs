@@ -24,6 +24,8 @@ const PIVOT: f64 = 1e-11;
 const WEIGHT: f64 = 1e-11;
 /// Pivots after which the answer is taken as it is.
 const MAX_PIVOTS: usize = 80;
+/// Least slowness of the bounded program.
+const FLOOR: f64 = 1.0 / 64.0;
 
 /// A column of the dual program.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +34,10 @@ enum Column {
     Total,
     /// A slowness is at least the margin.
     Sign(usize),
+    /// A slowness is at least [`FLOOR`].
+    Floor(usize),
+    /// The margin is at most 1.
+    Cap,
     /// The offset of axis 1 or 2, times a sign, is at most [`FAR`].
     Offset(usize, f64),
     /// A row, by its index.
@@ -41,13 +47,13 @@ enum Column {
 /// Coordinates of each axis: where lines of the octant meet the first of them, and what they span in
 /// that direction.
 #[derive(Debug, Clone, Copy)]
-struct Frame {
+pub(super) struct Frame {
     origin: [f64; 3],
     span: [f64; 3],
 }
 
 impl Frame {
-    fn around(rows: &[Row], octant: Octant) -> Self {
+    pub(super) fn around(rows: &[Row], octant: Octant) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for row in rows {
             for (axis, x) in [(row.early, row.from), (row.late, row.to)] {
@@ -70,6 +76,18 @@ impl Frame {
     fn place(&self, axis: usize, u: f64) -> f64 {
         self.origin[axis] + self.span[axis] * u
     }
+
+    /// A row in coordinates of the unit box.
+    pub(super) fn scaled(&self, row: &Row) -> Row {
+        Row { from: self.unit(row.early, row.from), to: self.unit(row.late, row.to), ..*row }
+    }
+
+    /// Where the line of unknowns starts its time on each axis, and the time that a step of a scene unit
+    /// takes there. Slownesses that vanish are made small.
+    pub(super) fn starts_and_paces(&self, y: &[f64; N]) -> [[f64; 3]; 2] {
+        let (q, slow) = ([0.0, y[3], y[4]], [y[0], y[1], y[2]].map(|s| s.max(VIOLATED)));
+        [[0, 1, 2].map(|i| self.place(i, q[i] / slow[i])), [0, 1, 2].map(|i| slow[i] / self.span[i])]
+    }
 }
 
 /// What the program found.
@@ -83,16 +101,19 @@ pub(super) struct Solution {
     pub(super) signs: [bool; 3],
 }
 
-/// The state of the simplex method.
-struct Tableau {
+/// The state of the simplex method. A copy can go on with more rows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tableau {
     basis: [Column; N],
     inverse: [[f64; N]; N],
     weights: [f64; N],
+    /// Whether slownesses are bounded by [`FLOOR`], not by the margin.
+    bounded: bool,
 }
 
 impl Tableau {
     /// The basis without rows: slownesses of the axes in `total` equal, offsets at their bounds.
-    fn new(total: [bool; 3]) -> Self {
+    pub(super) fn new(total: [bool; 3]) -> Self {
         use Column::{Offset, Sign, Total};
         let share = 1.0 / total.iter().map(|&t| f64::from(u8::from(t))).sum::<f64>();
         let mean = [share, share, share, 0.0, 0.0, share];
@@ -107,7 +128,35 @@ impl Tableau {
         (inverse[3], weights[3]) = (mean, share);
         inverse[4][3] = 1.0;
         inverse[5][4] = 1.0;
-        Self { basis: [Sign(0), Sign(1), Sign(2), Total, Offset(1, 1.0), Offset(2, 1.0)], inverse, weights }
+        Self {
+            basis: [Sign(0), Sign(1), Sign(2), Total, Offset(1, 1.0), Offset(2, 1.0)],
+            inverse,
+            weights,
+            bounded: false,
+        }
+    }
+
+    /// The same for the bounded program, in which no slowness is less than [`FLOOR`].
+    ///
+    /// In the other program the slownesses of two axes can vanish, so its margin is zero and its weights
+    /// have no slack where lines are blocked by what happens along these two. This one finds proofs with
+    /// slack there, and lines that are not steep; that it finds none does not prove that there is none.
+    pub(super) fn bounded() -> Self {
+        use Column::{Cap, Floor, Offset, Total};
+        let mut inverse = [[0.0; N]; N];
+        for (i, row) in inverse.iter_mut().enumerate() {
+            row[i] = 1.0;
+        }
+        for (k, row) in [(1, 1), (2, 2)] {
+            (inverse[row][0], inverse[row][k]) = (1.0, -1.0);
+        }
+        let weights = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        Self {
+            basis: [Total, Floor(1), Floor(2), Offset(1, 1.0), Offset(2, 1.0), Cap],
+            inverse,
+            weights,
+            bounded: true,
+        }
     }
 
     /// The unknowns of the primal program.
@@ -115,15 +164,38 @@ impl Tableau {
         let mut y = [0.0; N];
         for (column, row) in self.basis.iter().zip(&self.inverse) {
             let cost = match column {
-                Column::Total => 1.0,
+                Column::Total | Column::Cap => 1.0,
                 Column::Offset(..) => FAR,
-                _ => continue,
+                Column::Floor(_) => -FLOOR,
+                Column::Sign(_) | Column::Row(_) => continue,
             };
             for (y, r) in y.iter_mut().zip(row) {
                 *y += cost * r;
             }
         }
         y
+    }
+
+    /// Goes on to an optimum for `rows`, of which the first are those it has seen before. Returns the
+    /// unknowns: slownesses, two offsets, the margin.
+    pub(super) fn improve(&mut self, rows: &[Row]) -> [f64; N] {
+        let mut y = self.unknowns();
+        for _ in 0..MAX_PIVOTS {
+            let Some(entering) = most_violated(&y, rows, self.bounded) else { break };
+            if !self.pivot(entering, &coefficients(entering, rows)) {
+                break;
+            }
+            y = self.unknowns();
+        }
+        y
+    }
+
+    /// The rows with positive weights.
+    pub(super) fn support(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.basis.iter().zip(&self.weights).filter_map(|(column, &weight)| match column {
+            Column::Row(k) if weight > WEIGHT => Some((*k, weight)),
+            _ => None,
+        })
     }
 
     /// Exchanges a column of the basis for `entering`; false if none can leave.
@@ -163,25 +235,14 @@ impl Tableau {
 pub(super) fn solve(rows: &[Row], octant: Octant, total: [bool; 3], scratch: &mut Vec<Row>) -> Solution {
     let frame = Frame::around(rows, octant);
     scratch.clear();
-    scratch.extend(rows.iter().map(|r| Row { from: frame.unit(r.early, r.from), to: frame.unit(r.late, r.to), ..*r }));
+    scratch.extend(rows.iter().map(|r| frame.scaled(r)));
     let mut tableau = Tableau::new(total);
-    let mut y = tableau.unknowns();
-    for _ in 0..MAX_PIVOTS {
-        let Some(entering) = most_violated(&y, scratch) else { break };
-        if !tableau.pivot(entering, &coefficients(entering, scratch)) {
-            break;
-        }
-        y = tableau.unknowns();
-    }
+    let y = tableau.improve(scratch);
     let positive =
         |column: Column| tableau.basis.iter().zip(&tableau.weights).any(|(c, w)| *c == column && *w > WEIGHT);
-    let support = tableau.basis.iter().zip(&tableau.weights).filter_map(|(column, &weight)| match column {
-        Column::Row(k) if weight > WEIGHT => Some((*k, weight)),
-        _ => None,
-    });
     Solution {
         line: line(&frame, &y, scratch),
-        support: support.collect(),
+        support: tableau.support().collect(),
         signs: [0, 1, 2].map(|i| positive(Column::Sign(i))),
     }
 }
@@ -191,7 +252,7 @@ fn value(y: &[f64; N], row: &Row) -> f64 {
     (y[row.early] * row.from - q[row.early]) - (y[row.late] * row.to - q[row.late]) + y[5]
 }
 
-fn most_violated(y: &[f64; N], rows: &[Row]) -> Option<Column> {
+fn most_violated(y: &[f64; N], rows: &[Row], bounded: bool) -> Option<Column> {
     let mut worst = (VIOLATED, None);
     let mut offer = |violation: f64, column: Column| {
         if violation > worst.0 {
@@ -199,7 +260,11 @@ fn most_violated(y: &[f64; N], rows: &[Row]) -> Option<Column> {
         }
     };
     for i in 0..3 {
-        offer(y[5] - y[i], Column::Sign(i));
+        if bounded {
+            offer(FLOOR - y[i], Column::Floor(i));
+        } else {
+            offer(y[5] - y[i], Column::Sign(i));
+        }
     }
     for axis in [1, 2] {
         offer(y[axis + 2] - FAR, Column::Offset(axis, 1.0));
@@ -217,6 +282,8 @@ fn coefficients(column: Column, rows: &[Row]) -> [f64; N] {
         // It is in the basis from the beginning and never leaves.
         Column::Total => {}
         Column::Sign(i) => (a[i], a[5]) = (-1.0, 1.0),
+        Column::Floor(i) => a[i] = -1.0,
+        Column::Cap => a[5] = 1.0,
         Column::Offset(axis, sign) => a[axis + 2] = sign,
         Column::Row(k) => {
             let row = &rows[k];

@@ -1,10 +1,10 @@
-//! `explain`: the line of sight between two cells, or why there is none.
+//! `explain`: the line of sight between two cells of a plan, or why there is none.
 
 mod answer;
 mod line;
 
 use crate::Answer;
-use crate::commands::draw::{PictureKind, picture};
+use crate::commands::draw::{PictureKind, draw_plan, save_picture};
 use crate::error::CliError;
 use crate::place::Place;
 use crate::{input, output};
@@ -47,6 +47,9 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
         output::refuse_same(&args.table, out)?;
     }
     let table = input::table(&args.table)?;
+    if table.dimension() != 2 {
+        return Err(CliError::ExplainSpace(args.table.clone()));
+    }
     let from = args.from.cells(&table, &args.table)?;
     let to = args.to.cells(&table, &args.table)?;
     for (place, cells) in [(&args.from, &from), (&args.to, &to)] {
@@ -60,7 +63,8 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
     let explanation = explain(&graph, a, b, args.proofs, args.max_visits);
     let told = Told::new(&graph, [a, b], &explanation, table.sees(a, b));
     if let Some(out) = &args.draw {
-        picture(&args.table, &table, &options(&graph, [a, b], &explanation), out)?;
+        let svg = draw_plan(&args.table, &table, &options(&graph, [a, b], &explanation))?;
+        save_picture(&svg, out)?;
     }
     output::print(args.json, &told)?;
     Ok(if told.is_visible() { Answer::Yes } else { Answer::No })

@@ -1,10 +1,11 @@
 //! `info`: what a file holds.
 
 mod plan;
+mod scene;
 mod wad;
 
 use crate::Answer;
-use crate::commands::build::Facts;
+use crate::commands::build::facts::Facts;
 use crate::error::CliError;
 use crate::input::{self, Kind};
 use crate::output::{self, bytes};
@@ -17,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
-    /// A table, a WAD or a GeoJSON plan
+    /// A table, a WAD, a GeoJSON plan, or a scene in space as GLB, glTF or OBJ
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Print the result as JSON
@@ -31,7 +32,11 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer, CliError> {
         Some(Kind::Table) => output::print(args.json, &TableInfo::new(path, &input::table(path)?))?,
         Some(Kind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
         Some(Kind::Json) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
-        None => return Err(CliError::Kind { path: path.clone(), expected: "a table nor a WAD nor a GeoJSON plan" }),
+        Some(Kind::Scene) => output::print(args.json, &scene::SceneInfo::read(path)?)?,
+        None => {
+            let expected = "a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ";
+            return Err(CliError::Kind { path: path.clone(), expected });
+        }
     }
     Ok(Answer::Yes)
 }

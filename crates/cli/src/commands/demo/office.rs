@@ -1,11 +1,11 @@
-//! `demo`: the whole road on a generated office floor.
+//! The demo in the plane: an office floor.
 
+use super::{DemoArgs, Done};
 use crate::Answer;
-use crate::commands::build::{BakeArgs, Outcome, bake};
-use crate::commands::draw::picture;
+use crate::commands::build::{BakeArgs, plan};
+use crate::commands::draw::{draw_plan, save_picture};
 use crate::error::CliError;
-use crate::input::{self, Scene};
-use crate::memory;
+use crate::input;
 use crate::output::{self, bytes, percent};
 use serde::Serialize;
 use sightlines::formats::geojson;
@@ -13,52 +13,32 @@ use sightlines::pvs::{CellId, Table};
 use sightlines::report::{DrawOptions, View};
 use sightlines::scenes::{OfficeOptions, office};
 use std::fmt;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of `demo`.
-#[derive(Debug, clap::Args)]
-pub(crate) struct DemoArgs {
-    /// The folder for the plan, the table and the pictures; files of the same names are replaced
-    #[arg(long, value_name = "FOLDER", default_value = "sightlines-demo")]
-    out: PathBuf,
-    /// Another seed gives another office
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
-    /// Print the result as JSON
-    #[arg(long)]
-    json: bool,
-}
-
-pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, CliError> {
     let start = Instant::now();
     let folder = &args.out;
-    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder { path: folder.clone(), source })?;
-    let plan = office(OfficeOptions { seed: args.seed, ..OfficeOptions::default() })
+    let office = office(OfficeOptions { seed: args.seed, ..OfficeOptions::default() })
         .expect("the default options make an office");
     let (plan_path, table_path) = (folder.join("plan.geojson"), folder.join("plan.pvs"));
-    output::save(&plan_path, geojson::write_plan(&plan).as_bytes())?;
+    output::save(&plan_path, geojson::write_plan(&office).as_bytes())?;
     // The plan is read back from the file, as `build` would do.
-    let scene: Scene = input::scene(&plan_path, None)?;
-    let baked = bake(&plan_path, &scene, &BakeArgs::standard(), show_progress)?;
+    let baked = plan::bake(&plan_path, &input::plan(&plan_path)?, &BakeArgs::default(), show_progress)?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let mut files = vec!["plan.geojson".to_owned(), "plan.pvs".to_owned()];
     for (name, view) in views(&baked.table) {
         let options = DrawOptions { view, ..DrawOptions::default() };
         for kind in ["svg", "png"] {
             let file = format!("{name}.{kind}");
-            picture(&table_path, &baked.table, &options, &folder.join(&file))?;
+            let svg = draw_plan(&table_path, &baked.table, &options)?;
+            save_picture(&svg, &folder.join(&file))?;
             files.push(file);
         }
     }
     let demo = Demo {
-        folder: folder.display().to_string(),
-        seed: args.seed,
-        n_walls: plan.lines().len(),
-        built: Outcome::new(&table_path, None, &baked),
-        seconds: start.elapsed().as_secs_f64(),
-        peak_bytes: memory::peak_bytes(),
-        files,
+        n_walls: office.lines().len(),
+        built: plan::Outcome::new(&table_path, None, &baked),
+        done: Done::new(args, start, files),
     };
     output::print(args.json, &demo)?;
     Ok(Answer::Yes)
@@ -93,30 +73,26 @@ fn by_seen_floor(table: &Table) -> Vec<CellId> {
 /// What the demo did.
 #[derive(Debug, Serialize)]
 struct Demo {
-    folder: String,
-    seed: u64,
     n_walls: usize,
-    built: Outcome,
-    seconds: f64,
-    /// Null where the system does not tell.
-    peak_bytes: Option<u64>,
-    /// In the folder.
-    files: Vec<String>,
+    built: plan::Outcome,
+    #[serde(flatten)]
+    done: Done,
 }
 
 impl fmt::Display for Demo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let table = &self.built.table;
-        writeln!(f, "an office floor of {} walls (seed {}), cut by {}", self.n_walls, self.seed, self.built.method())?;
-        write!(f, "{}", self.built.facts())?;
-        writeln!(f, "table          {}", bytes(table.n_bytes as u64))?;
-        writeln!(f, "time           {}", self.built.times())?;
-        if let Some(peak) = self.peak_bytes {
-            writeln!(f, "memory         {} at most", bytes(peak))?;
-        }
+        let Self { n_walls, built, done } = self;
+        writeln!(f, "an office floor of {n_walls} walls (seed {}), cut by {}", done.seed, built.subdivision())?;
+        write!(f, "{}", built.facts())?;
+        writeln!(f, "table          {}", bytes(built.table.n_bytes as u64))?;
+        writeln!(f, "time           {}", built.times())?;
+        done.memory(f)?;
         writeln!(f)?;
-        writeln!(f, "A viewer has to draw {} of the floor; the rest is hidden.", percent(table.mean_floor_share))?;
-        writeln!(f, "Pictures and table are in {}:", self.folder)?;
-        self.files.iter().try_for_each(|file| writeln!(f, "  {}", Path::new(&self.folder).join(file).display()))
+        writeln!(
+            f,
+            "A viewer has to draw {} of the floor; the rest is hidden.",
+            percent(built.table.mean_floor_share)
+        )?;
+        done.list_files(f)
     }
 }

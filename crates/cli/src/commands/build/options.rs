@@ -1,0 +1,126 @@
+//! How to bake, as arguments. Options that mean nothing for what is baked are refused, not ignored.
+
+use crate::error::CliError;
+use crate::region::Region;
+use sightlines::bake::{PortalMode, Subdivide};
+use sightlines::kdtree::SceneOptions;
+use std::path::Path;
+
+/// How to bake.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub(crate) struct BakeArgs {
+    /// Plans only: how to cut into cells: kd (walls along the axes only), triangulation, or auto, which is
+    /// the default
+    #[arg(long, value_name = "HOW")]
+    pub(super) subdivide: Option<Subdivide>,
+    /// For k-d trees: split along walls only where they cover at least this share of a cell, 0 to 1; with 0,
+    /// the default, no wall is left out
+    #[arg(long, value_name = "X", value_parser = share, allow_hyphen_values = true)]
+    tau: Option<f64>,
+    /// Scenes in space only: the box where a viewer can be, in scene units; the scene's box if not given
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    view_region: Option<Region>,
+    /// Scenes in space only: things smaller than this in every direction, in scene units, are seen but hide
+    /// nothing; chosen from the scene if not given
+    #[arg(long, value_name = "SIZE", value_parser = size, allow_hyphen_values = true)]
+    detail_below: Option<f64>,
+    /// Scenes in space only: look through the exact openings between cells, which is the default, or
+    /// through one rectangle around each, which shows more
+    #[arg(long, value_name = "HOW")]
+    portals: Option<Portals>,
+    /// Scenes in space only: give up beyond so many cells; 16777216 if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    max_cells: Option<u32>,
+    /// Number of threads; 0 for one for each core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    pub(super) threads: usize,
+}
+
+/// Which portals are looked through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Portals {
+    Exact,
+    Bounding,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
+        _ => Err("not a number from 0 to 1".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
+        _ => Err("not a number from 0 on".to_owned()),
+    }
+}
+
+impl BakeArgs {
+    /// The threshold of a k-d tree.
+    pub(super) fn tau(&self) -> f64 {
+        self.tau.unwrap_or(0.0)
+    }
+
+    /// How to cut a scene in space.
+    pub(super) fn cut(&self) -> SceneOptions {
+        let standard = SceneOptions::default();
+        SceneOptions {
+            view_region: self.view_region.map(|region| region.0),
+            tau: self.tau(),
+            detail_below: self.detail_below,
+            max_cells: self.max_cells.unwrap_or(standard.max_cells),
+            ..standard
+        }
+    }
+
+    /// Which portals of a scene in space to look through.
+    pub(super) fn portal_mode(&self) -> PortalMode {
+        match self.portals {
+            // The same answer as looking through the exact ones at once, only sooner.
+            None | Some(Portals::Exact) => PortalMode::TwoLevel,
+            Some(Portals::Bounding) => PortalMode::Bounding,
+        }
+    }
+
+    /// Refuses what means nothing for a plan.
+    pub(super) fn check_for_plan(&self, path: &Path) -> Result<(), CliError> {
+        let given = [
+            ("--view-region", self.view_region.is_some()),
+            ("--detail-below", self.detail_below.is_some()),
+            ("--portals", self.portals.is_some()),
+            ("--max-cells", self.max_cells.is_some()),
+        ];
+        refuse(path, &given, "scenes in space", "a plan")
+    }
+
+    /// Refuses what means nothing for a scene in space.
+    pub(super) fn check_for_space(&self, path: &Path) -> Result<(), CliError> {
+        refuse(path, &[("--subdivide", self.subdivide.is_some())], "plans", "a scene in space")
+    }
+}
+
+/// Refuses the first option that was given though it is meant for something else.
+pub(crate) fn refuse(
+    path: &Path,
+    given: &[(&'static str, bool)],
+    meant: &'static str,
+    found: &'static str,
+) -> Result<(), CliError> {
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => Err(CliError::Option { path: path.to_owned(), option, meant, found }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The help names this number.
+    #[test]
+    fn the_limit_of_cells_is_the_one_in_the_help() {
+        assert_eq!(BakeArgs::default().cut().max_cells, 16_777_216);
+    }
+}

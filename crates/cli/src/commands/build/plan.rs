@@ -1,0 +1,110 @@
+//! From a plan to its table.
+
+use super::BakeArgs;
+use super::facts::{Facts, times};
+use crate::error::CliError;
+use crate::input::PlanFile;
+use crate::output::{bytes, count};
+use crate::progress::Bar;
+use serde::Serialize;
+use sightlines::bake::{BakeOptions, BakeSummary, Baked, bake_plan};
+use sightlines::report::Summary;
+use std::fmt;
+use std::path::Path;
+
+/// Builds the table of a plan that came from `path`.
+pub(crate) fn bake(path: &Path, file: &PlanFile, args: &BakeArgs, show_progress: bool) -> Result<Baked, CliError> {
+    args.check_for_plan(path)?;
+    let bar = Bar::new("who sees whom", show_progress);
+    let progress = |done, all| bar.set(done, all);
+    let options = BakeOptions {
+        subdivide: args.subdivide.unwrap_or_default(),
+        tau: args.tau(),
+        threads: args.threads,
+        progress: Some(&progress),
+        ..BakeOptions::default()
+    };
+    let baked = bake_plan(&file.plan, &options);
+    drop(bar);
+    let baked = baked.map_err(|source| CliError::Bake { path: path.to_owned(), map: file.map.clone(), source })?;
+    warn(path, &baked.summary);
+    Ok(baked)
+}
+
+/// Says on standard error what is only approximately so.
+fn warn(path: &Path, summary: &BakeSummary) {
+    let say = |n: usize, noun: &str, what: &str| {
+        if n > 0 {
+            tracing::warn!("{}: {} {what}", path.display(), count(n as u64, noun));
+        }
+    };
+    say(summary.n_ignored_walls, "wall", "do not block sight: the k-d tree does not follow them");
+    say(summary.n_dropped_pieces, "piece", "of walls do not block sight: rounding could have closed a gap beside them");
+    if summary.n_rounded_crossings > 0 {
+        let n = count(summary.n_rounded_crossings as u64, "crossing");
+        tracing::info!("{}: {n} of lines had to be rounded, towards visible", path.display());
+    }
+    if summary.n_disputed_cells > 0 {
+        let n = count(summary.n_disputed_cells as u64, "cell");
+        tracing::info!("{}: {n} where lines disagree about the group", path.display());
+    }
+}
+
+/// What was built.
+#[derive(Debug, Serialize)]
+pub(crate) struct Outcome {
+    out: String,
+    map: Option<String>,
+    subdivide: String,
+    #[serde(flatten)]
+    pub(crate) table: Summary,
+    n_ignored_walls: usize,
+    n_rounded_crossings: usize,
+    n_dropped_pieces: usize,
+    n_disputed_cells: usize,
+    cut_seconds: f64,
+    see_seconds: f64,
+}
+
+impl Outcome {
+    pub(crate) fn new(out: &Path, map: Option<String>, baked: &Baked) -> Self {
+        let did = &baked.summary;
+        Self {
+            out: out.display().to_string(),
+            map,
+            subdivide: did.subdivide.to_string(),
+            table: Summary::of(&baked.table),
+            n_ignored_walls: did.n_ignored_walls,
+            n_rounded_crossings: did.n_rounded_crossings,
+            n_dropped_pieces: did.n_dropped_pieces,
+            n_disputed_cells: did.n_disputed_cells,
+            cut_seconds: did.cut_time.as_secs_f64(),
+            see_seconds: did.see_time.as_secs_f64(),
+        }
+    }
+
+    /// Cells, portals, visible pairs, and what has to be drawn.
+    pub(crate) fn facts(&self) -> impl fmt::Display + '_ {
+        Facts(&self.table)
+    }
+
+    /// The name of the subdivision that was used.
+    pub(crate) fn subdivision(&self) -> &'static str {
+        if self.subdivide == "kd" { "a k-d tree" } else { "a constrained triangulation" }
+    }
+
+    /// Time to cut and to see.
+    pub(crate) fn times(&self) -> String {
+        times(self.cut_seconds, "plan", self.see_seconds)
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let map = self.map.as_ref().map_or(String::new(), |name| format!(" of map {name}"));
+        writeln!(f, "wrote {}{map}, {}", self.out, bytes(self.table.n_bytes as u64))?;
+        writeln!(f, "method         {} in the plane, exact planar stabbing", self.subdivision())?;
+        write!(f, "{}", self.facts())?;
+        writeln!(f, "time           {}", self.times())
+    }
+}

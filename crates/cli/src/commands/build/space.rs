@@ -1,0 +1,230 @@
+//! From a scene in space to its table.
+
+use super::BakeArgs;
+use super::facts::{Facts, times};
+use crate::error::CliError;
+use crate::output::{bytes, count, percent};
+use crate::progress::Bar;
+use serde::Serialize;
+use sightlines::bake::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
+use sightlines::cells::SceneObject;
+use sightlines::formats::SceneFile;
+use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
+use sightlines::pvs::Table;
+use sightlines::report::{Summary, ViewerShare};
+use std::fmt;
+use std::path::Path;
+
+/// Builds the table of a scene that came from `path`. The table says which way is up, and the unit.
+pub(crate) fn bake(
+    path: &Path,
+    file: &SceneFile,
+    args: &BakeArgs,
+    show_progress: bool,
+) -> Result<BakedScene, CliError> {
+    args.check_for_space(path)?;
+    let bar = Bar::new("who sees whom", show_progress);
+    let progress = |done, all| bar.set(done, all);
+    let options = SceneBakeOptions {
+        cut: args.cut(),
+        portals: args.portal_mode(),
+        threads: args.threads,
+        progress: Some(&progress),
+    };
+    let baked = bake_scene(&file.scene, &options);
+    drop(bar);
+    let failed = |source| CliError::Bake { path: path.to_owned(), map: None, source };
+    let baked = baked.map_err(failed)?;
+    let table = informed(baked.table, &file.info).map_err(|error| failed(error.into()))?;
+    Ok(BakedScene { table, ..baked })
+}
+
+/// The table with what the file says about its scene.
+fn informed(table: Table, said: &SceneInfo) -> Result<Table, sightlines::pvs::TableError> {
+    let mut parts = table.into_parts();
+    parts.info.push(("up".to_owned(), axis(said.up).to_owned()));
+    if said.unit == LengthUnit::Metre {
+        parts.info.push(("unit".to_owned(), "metre".to_owned()));
+    }
+    parts.info.sort();
+    Table::new(parts)
+}
+
+/// The name of an axis.
+pub(crate) fn axis(axis: Axis) -> &'static str {
+    match axis {
+        Axis::X => "x",
+        Axis::Y => "y",
+        Axis::Z => "z",
+    }
+}
+
+/// What a file says about its scene, for people: format, axis, unit.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Stated {
+    format: &'static str,
+    up: &'static str,
+    up_is_assumed: bool,
+    /// Null if the file does not say.
+    unit: Option<&'static str>,
+}
+
+impl Stated {
+    pub(crate) fn new(info: &SceneInfo) -> Self {
+        let format = match info.format {
+            SceneFormat::Gltf => "glTF",
+            SceneFormat::Obj => "OBJ",
+            _ => "unknown",
+        };
+        let unit = (info.unit == LengthUnit::Metre).then_some("metre");
+        Self { format, up: axis(info.up), up_is_assumed: info.up_is_assumed, unit }
+    }
+}
+
+impl fmt::Display for Stated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let assumed = if self.up_is_assumed { " (assumed)" } else { "" };
+        write!(f, "{} in 3D, {} up{assumed}, ", self.format, self.up)?;
+        match self.unit {
+            Some(unit) => write!(f, "in {unit}s"),
+            None => f.write_str("unit unknown"),
+        }
+    }
+}
+
+/// What was built. Of the triangles, each is either axis-aligned or hides nothing; those that are detail are
+/// of both kinds.
+#[derive(Debug, Serialize)]
+pub(crate) struct Outcome {
+    out: String,
+    #[serde(flatten)]
+    stated: Stated,
+    subdivide: &'static str,
+    /// Which portals were looked through: `exact` or `bounding`.
+    portals: &'static str,
+    n_triangles: usize,
+    n_axial_triangles: usize,
+    /// Triangles that hide nothing, because they are not perpendicular to an axis.
+    n_other_triangles: usize,
+    /// Triangles without area, which were left out.
+    n_degenerate_triangles: usize,
+    /// Triangles of objects that are detail.
+    n_detail_triangles: usize,
+    n_detail_objects: usize,
+    /// In scene units.
+    detail_below: f64,
+    /// Rectangles that the scene was cut along.
+    n_faces: usize,
+    /// Pieces of them that hide nothing, because of `--tau`.
+    n_unfollowed: usize,
+    n_solid: usize,
+    n_hollow: usize,
+    n_unreachable: usize,
+    #[serde(flatten)]
+    pub(crate) table: Summary,
+    /// What a viewer sees on average, each place of the same weight.
+    pub(crate) viewer: ViewerShare,
+    /// Rectangles that walls were put together to.
+    n_blockers: usize,
+    /// Questions whether one box sees another; these counts vary from run to run with several threads.
+    n_asked: u64,
+    /// Linear programs solved in doubles.
+    n_programs: u64,
+    /// Linear programs whose margin was within rounding, so that integers had to decide.
+    n_exact: u64,
+    /// Pairs that count as visible because deciding about them would have taken too much.
+    n_assumed: u64,
+    cut_seconds: f64,
+    see_seconds: f64,
+}
+
+impl Outcome {
+    pub(crate) fn new(out: &Path, file: &SceneFile, args: &BakeArgs, baked: &BakedScene) -> Self {
+        let (cut, did) = (&baked.cut, &baked.counters);
+        let triangles: Vec<u64> = file.scene.objects().iter().map(|o| o.triangles.len() as u64).collect();
+        Self {
+            out: out.display().to_string(),
+            stated: Stated::new(&file.info),
+            subdivide: "kd",
+            portals: if args.portal_mode() == PortalMode::Bounding { "bounding" } else { "exact" },
+            n_triangles: file.info.n_triangles,
+            n_axial_triangles: cut.n_axial_triangles,
+            n_other_triangles: cut.n_other_triangles,
+            n_degenerate_triangles: file.info.n_degenerate_triangles,
+            n_detail_triangles: n_detail_triangles(file.scene.objects(), cut.detail_below),
+            n_detail_objects: cut.n_detail_objects,
+            detail_below: cut.detail_below,
+            n_faces: cut.n_faces,
+            n_unfollowed: cut.n_unfollowed,
+            n_solid: cut.n_solid,
+            n_hollow: cut.n_hollow,
+            n_unreachable: cut.n_unreachable,
+            table: Summary::of(&baked.table),
+            viewer: ViewerShare::of(&baked.table, &triangles),
+            n_blockers: baked.n_blockers,
+            n_asked: did.n_asked,
+            n_programs: did.n_programs,
+            n_exact: did.n_exact,
+            n_assumed: baked.n_assumed,
+            cut_seconds: baked.cut_time.as_secs_f64(),
+            see_seconds: baked.see_time.as_secs_f64(),
+        }
+    }
+
+    /// All lines but the first, which says what was written.
+    pub(crate) fn facts(&self) -> impl fmt::Display + '_ {
+        SpaceFacts(self)
+    }
+}
+
+/// Triangles of objects that are smaller in every direction than detail may be.
+fn n_detail_triangles(objects: &[SceneObject], detail_below: f64) -> usize {
+    let is_small = |o: &&SceneObject| {
+        let b = o.bounds();
+        (0..3).all(|k| b.max[k] - b.min[k] < detail_below)
+    };
+    objects.iter().filter(is_small).map(|o| o.triangles.len()).sum()
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.table.n_bytes as u64))?;
+        write!(f, "{}", self.facts())
+    }
+}
+
+struct SpaceFacts<'a>(&'a Outcome);
+
+impl fmt::Display for SpaceFacts<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let o = self.0;
+        writeln!(f, "scene          {}", o.stated)?;
+        let openings = if o.portals == "exact" { "exact portals" } else { "rectangles around portals" };
+        writeln!(f, "method         a k-d tree in space, exact axial stabbing of {openings}")?;
+        let [n, axial, others] = [o.n_triangles, o.n_axial_triangles, o.n_other_triangles];
+        writeln!(f, "triangles      {n}: {axial} axis-aligned, {others} others that hide nothing")?;
+        if o.n_degenerate_triangles > 0 {
+            writeln!(f, "left out       {} without area", count(o.n_degenerate_triangles as u64, "triangle"))?;
+        }
+        let objects = count(o.n_detail_objects as u64, "object");
+        let small = count(o.n_detail_triangles as u64, "triangle");
+        writeln!(f, "detail         {objects} below {} units with {small}, which hide nothing", o.detail_below)?;
+        if o.n_unfollowed > 0 {
+            writeln!(f, "given up       {} of faces, for --tau", count(o.n_unfollowed as u64, "piece"))?;
+        }
+        let [solid, hollow, far] = [o.n_solid, o.n_hollow, o.n_unreachable];
+        writeln!(f, "not cells      {solid} boxes of solid matter, {hollow} hollow, {far} out of reach")?;
+        write!(f, "{}", Facts(&o.table))?;
+        let [polygons, objects, cells] = [o.viewer.polygons, o.viewer.objects, o.viewer.cells].map(percent);
+        writeln!(
+            f,
+            "a viewer has   {polygons} of the polygons on average, {objects} of the objects, {cells} of the cells"
+        )?;
+        let [asked, programs, exact, assumed] = [o.n_asked, o.n_programs, o.n_exact, o.n_assumed];
+        writeln!(f, "effort         {asked} questions, {programs} linear programs, {exact} decided in integers")?;
+        if assumed > 0 {
+            writeln!(f, "assumed        {} visible, as too hard to decide", count(assumed, "pair"))?;
+        }
+        writeln!(f, "time           {}", times(o.cut_seconds, "scene", o.see_seconds))
+    }
+}

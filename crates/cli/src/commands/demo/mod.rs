@@ -1,0 +1,80 @@
+//! `demo`: the whole road on a generated scene.
+
+mod office;
+mod tower;
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::memory;
+use crate::output::bytes;
+use serde::Serialize;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Arguments of `demo`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct DemoArgs {
+    /// What to generate: an office floor as a plan, or a small furnished tower in space
+    #[arg(value_name = "SCENE", value_enum, default_value_t = Example::Office)]
+    example: Example,
+    /// The folder for the scene, the table and the pictures; files of the same names are replaced
+    #[arg(long, value_name = "FOLDER", default_value = "sightlines-demo")]
+    out: PathBuf,
+    /// Another seed gives another scene
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// The scenes that can be shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Example {
+    Office,
+    Tower,
+}
+
+pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, CliError> {
+    let folder = &args.out;
+    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder { path: folder.clone(), source })?;
+    match args.example {
+        Example::Office => office::run(args, show_progress),
+        Example::Tower => tower::run(args, show_progress),
+    }
+}
+
+/// What all demos did: where their files are, and what they took.
+#[derive(Debug, Serialize)]
+struct Done {
+    folder: String,
+    seed: u64,
+    seconds: f64,
+    /// Null where the system does not tell.
+    peak_bytes: Option<u64>,
+    /// In the folder.
+    files: Vec<String>,
+}
+
+impl Done {
+    fn new(args: &DemoArgs, start: Instant, files: Vec<String>) -> Self {
+        Self {
+            folder: args.out.display().to_string(),
+            seed: args.seed,
+            seconds: start.elapsed().as_secs_f64(),
+            peak_bytes: memory::peak_bytes(),
+            files,
+        }
+    }
+
+    /// The line about memory, if the system tells.
+    fn memory(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.peak_bytes.map_or(Ok(()), |peak| writeln!(f, "memory         {} at most", bytes(peak)))
+    }
+
+    fn list_files(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "Pictures and table are in {}:", self.folder)?;
+        self.files.iter().try_for_each(|file| writeln!(f, "  {}", Path::new(&self.folder).join(file).display()))
+    }
+}

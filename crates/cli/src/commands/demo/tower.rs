@@ -1,0 +1,97 @@
+//! The demo in space: a small furnished tower.
+
+use super::{DemoArgs, Done};
+use crate::Answer;
+use crate::commands::build::{BakeArgs, space};
+use crate::commands::draw::{save_picture, space as draw};
+use crate::commands::generate::save_glb;
+use crate::error::CliError;
+use crate::output::{self, bytes, percent};
+use serde::Serialize;
+use sightlines::formats::scene::read_scene;
+use sightlines::pvs::{CellId, Table};
+use sightlines::report::{IsometricOptions, SliceOptions, View, isometric_svg, slice_svg};
+use sightlines::scenes::{TowerOptions, tower};
+use std::fmt;
+use std::path::Path;
+use std::time::Instant;
+
+pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, CliError> {
+    let start = Instant::now();
+    let options = TowerOptions { seed: args.seed, floors: 2, rooms_x: 3, rooms_y: 1, ..TowerOptions::default() };
+    let [scene_path, table_path] = ["tower.glb", "tower.pvs"].map(|name| args.out.join(name));
+    save_glb(&scene_path, &tower(options)?)?;
+    // The scene is read back from the file, as `build` would do.
+    let file = read_scene(&scene_path)?;
+    let standard = BakeArgs::default();
+    let baked = space::bake(&scene_path, &file, &standard, show_progress)?;
+    output::save(&table_path, &baked.table.to_bytes())?;
+    let mut files = vec!["tower.glb".to_owned(), "tower.pvs".to_owned()];
+    for (name, svg) in pictures(&table_path, &baked.table)? {
+        for kind in ["svg", "png"] {
+            let picture = format!("tower-{name}.{kind}");
+            save_picture(&svg, &args.out.join(&picture))?;
+            files.push(picture);
+        }
+    }
+    let demo = Demo {
+        n_floors: options.floors,
+        built: space::Outcome::new(&table_path, &file, &standard, &baked),
+        done: Done::new(args, start, files),
+    };
+    output::print(args.json, &demo)?;
+    Ok(Answer::Yes)
+}
+
+/// The cells, and what the largest of those that see less than half of the cells sees: a floor plan at its
+/// height, and the boxes.
+fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>, CliError> {
+    let up = draw::up_of(table);
+    let viewer = viewer(table);
+    let view = viewer.map_or(View::Plan, View::Cell);
+    let below = |view| IsometricOptions { view, up, ..IsometricOptions::default() };
+    let mut drawn =
+        vec![("cells", isometric_svg(table, &below(View::Plan))), ("seen", isometric_svg(table, &below(view)))];
+    if let Some(cell) = viewer {
+        let height = draw::middle(table, cell, up);
+        drawn.push(("floor", slice_svg(table, &SliceOptions { view, up, height, ..SliceOptions::default() })));
+    }
+    let named = |(name, svg): (&'static str, Result<String, _>)| {
+        Ok((name, svg.map_err(|source| CliError::Draw { path: path.to_owned(), source })?))
+    };
+    drawn.into_iter().map(named).collect()
+}
+
+/// A cell to look from; none in a table without cells.
+fn viewer(table: &Table) -> Option<CellId> {
+    let volume = |cell: CellId| {
+        let record = &table.cells()[cell.idx()];
+        (0..3).map(|k| record.max[k] - record.min[k]).product::<f64>()
+    };
+    let sees_little = |cell: &CellId| 2 * table.visible(*cell).count() < table.n_cells();
+    let larger = |a: &CellId, b: &CellId| volume(*a).total_cmp(&volume(*b)).then(b.cmp(a));
+    let cells = || (0u32..).take(table.n_cells()).map(CellId);
+    cells().filter(sees_little).max_by(larger).or_else(|| cells().max_by(larger))
+}
+
+/// What the demo did.
+#[derive(Debug, Serialize)]
+struct Demo {
+    n_floors: u32,
+    built: space::Outcome,
+    #[serde(flatten)]
+    done: Done,
+}
+
+impl fmt::Display for Demo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { n_floors, built, done } = self;
+        writeln!(f, "a furnished tower of {} (seed {})", output::count(*n_floors, "floor"), done.seed)?;
+        write!(f, "{}", built.facts())?;
+        writeln!(f, "table          {}", bytes(built.table.n_bytes as u64))?;
+        done.memory(f)?;
+        writeln!(f)?;
+        writeln!(f, "A viewer has to draw {} of the polygons; the rest is hidden.", percent(built.viewer.polygons))?;
+        done.list_files(f)
+    }
+}

@@ -1,0 +1,109 @@
+//! `draw`: a table as a picture.
+
+pub(crate) mod space;
+
+use crate::Answer;
+use crate::commands::build::refuse;
+use crate::error::CliError;
+use crate::place::{self, Point};
+use crate::{input, output};
+use sightlines::geometry::check_coordinate;
+use sightlines::pvs::Table;
+use sightlines::report::{DrawOptions, MAX_SIZE, MIN_SIZE, View, plan_svg, svg_to_png};
+use std::path::{Path, PathBuf};
+
+/// Arguments of `draw`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct DrawArgs {
+    /// The table
+    #[arg(value_name = "FILE.pvs")]
+    table: PathBuf,
+    /// The picture to write
+    #[arg(short, long, value_name = "OUT.svg|OUT.png")]
+    output: PathBuf,
+    /// Show what this cell sees
+    #[arg(long, value_name = "N", conflicts_with = "eye")]
+    cell: Option<u32>,
+    /// Show what a viewer at this point sees; exit code 1, and no picture, if that is outside every cell
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    eye: Option<Point>,
+    /// Scenes in space only: draw the floor plan at this height in scene units; that of the eye or of the
+    /// middle of the cell if not given. With --isometric: leave out what is above
+    #[arg(long, value_name = "Y", value_parser = height, allow_hyphen_values = true)]
+    height: Option<f64>,
+    /// Scenes in space only: draw the cells as boxes, as seen from the positive side of all axes
+    #[arg(long)]
+    isometric: bool,
+    /// Scenes in space only: which axis points up, if not the one that the table names (y if it names none)
+    #[arg(long, value_name = "AXIS")]
+    up: Option<space::UpAxis>,
+    /// The longer side of the picture in pixels
+    #[arg(long, value_name = "PX", default_value_t = 1600)]
+    #[arg(value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIZE)..=i64::from(MAX_SIZE)))]
+    size: u32,
+}
+
+fn height(text: &str) -> Result<f64, String> {
+    let height: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    check_coordinate(height).map_err(|error| error.to_string())
+}
+
+/// The kinds of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PictureKind {
+    Svg,
+    Png,
+}
+
+impl PictureKind {
+    /// Tells the kind of a picture by the end of its name.
+    pub(crate) fn of(path: &Path) -> Result<Self, CliError> {
+        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(CliError::PictureKind(path.to_owned())),
+        }
+    }
+}
+
+/// The picture of a plan's table that came from `source`.
+pub(crate) fn draw_plan(source: &Path, table: &Table, options: &DrawOptions) -> Result<String, CliError> {
+    plan_svg(table, options).map_err(|error| CliError::Draw { path: source.to_owned(), source: error })
+}
+
+/// Writes a picture in the kind that the file's name says.
+pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<(), CliError> {
+    match PictureKind::of(out)? {
+        PictureKind::Svg => output::save(out, svg.as_bytes()),
+        PictureKind::Png => {
+            let png = svg_to_png(svg).map_err(|error| CliError::Png { path: out.to_owned(), source: error })?;
+            output::save(out, &png)
+        }
+    }
+}
+
+pub(crate) fn run(args: &DrawArgs) -> Result<Answer, CliError> {
+    PictureKind::of(&args.output)?;
+    output::refuse_same(&args.table, &args.output)?;
+    let table = input::table(&args.table)?;
+    if let Some(eye) = &args.eye
+        && table.locate(eye.of(&table, &args.table)?).is_empty()
+    {
+        output::stdout(|out| std::io::Write::write_fmt(out, format_args!("the point {eye} is outside every cell\n")))?;
+        return Ok(Answer::No);
+    }
+    let svg = if table.dimension() == 2 { plan(args, &table)? } else { space::draw(args, &table)? };
+    save_picture(&svg, &args.output)?;
+    Ok(Answer::Yes)
+}
+
+fn plan(args: &DrawArgs, table: &Table) -> Result<String, CliError> {
+    let given = [("--height", args.height.is_some()), ("--isometric", args.isometric), ("--up", args.up.is_some())];
+    refuse(&args.table, &given, "scenes in space", "the table of a plan")?;
+    let view = match (args.cell, &args.eye) {
+        (Some(id), _) => View::Cell(place::cell(id, table, &args.table)?),
+        (None, Some(eye)) => View::Eye(eye.planar(table, &args.table)?),
+        (None, None) => View::Plan,
+    };
+    draw_plan(&args.table, table, &DrawOptions { view, size: args.size, ..DrawOptions::default() })
+}

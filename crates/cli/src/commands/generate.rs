@@ -1,0 +1,112 @@
+//! `generate`: scenes to try things on.
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::output::{self, bytes, count};
+use serde::Serialize;
+use sightlines::cells::Scene;
+use sightlines::formats::scene::write_glb;
+use sightlines::scenes::{TowerOptions, tower, tower_rooms};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `generate`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct GenerateArgs {
+    #[command(subcommand)]
+    what: What,
+}
+
+/// What to generate.
+#[derive(Debug, clap::Subcommand)]
+enum What {
+    /// A furnished office tower in metres, y up, as GLB
+    Tower(TowerArgs),
+}
+
+/// Arguments of `generate tower`.
+#[derive(Debug, clap::Args)]
+struct TowerArgs {
+    /// The scene to write
+    #[arg(short, long, value_name = "OUT.glb")]
+    output: PathBuf,
+    /// Another seed gives another tower
+    #[arg(long, value_name = "N", default_value_t = TowerOptions::default().seed)]
+    seed: u64,
+    /// Floors, from 1 to 256; a higher tower has the same lower floors
+    #[arg(long, value_name = "N", default_value_t = TowerOptions::default().floors)]
+    floors: u32,
+    /// Room places side by side, from 1 to 128
+    #[arg(long, value_name = "N", default_value_t = TowerOptions::default().rooms_x)]
+    rooms_x: u32,
+    /// Rows of rooms, from 1 to 128
+    #[arg(long, value_name = "N", default_value_t = TowerOptions::default().rooms_y)]
+    rooms_y: u32,
+    /// Furniture: 0 for none, up to 3 for the finest
+    #[arg(long, value_name = "LEVEL", default_value_t = TowerOptions::default().furniture)]
+    furniture: u32,
+    /// Leave out the windows
+    #[arg(long)]
+    no_windows: bool,
+    /// Thickness of walls: 0, 0.25 or 0.5
+    #[arg(long, value_name = "UNITS", default_value_t = TowerOptions::default().wall_thickness, allow_hyphen_values = true)]
+    wall_thickness: f64,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &GenerateArgs) -> Result<Answer, CliError> {
+    let What::Tower(args) = &args.what;
+    let options = TowerOptions {
+        seed: args.seed,
+        floors: args.floors,
+        rooms_x: args.rooms_x,
+        rooms_y: args.rooms_y,
+        furniture: args.furniture,
+        windows: !args.no_windows,
+        wall_thickness: args.wall_thickness,
+    };
+    let scene = tower(options)?;
+    let n_bytes = save_glb(&args.output, &scene)?;
+    let outcome = Outcome {
+        out: args.output.display().to_string(),
+        seed: args.seed,
+        n_floors: args.floors,
+        n_rooms: tower_rooms(options)?.len(),
+        n_objects: scene.objects().len(),
+        n_triangles: scene.n_triangles(),
+        n_bytes,
+    };
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// Writes a scene as GLB; how many bytes it has.
+pub(crate) fn save_glb(path: &Path, scene: &Scene) -> Result<usize, CliError> {
+    let glb = write_glb(scene).map_err(|source| CliError::Glb { path: path.to_owned(), source })?;
+    output::save(path, &glb)?;
+    Ok(glb.len())
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    out: String,
+    seed: u64,
+    n_floors: u32,
+    /// Stairwells are rooms, corridors are not.
+    n_rooms: usize,
+    n_objects: usize,
+    n_triangles: usize,
+    n_bytes: usize,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
+        let [floors, rooms] = [count(self.n_floors, "floor"), count(self.n_rooms as u64, "room")];
+        writeln!(f, "a tower of {floors} and {rooms} (seed {})", self.seed)?;
+        writeln!(f, "objects        {}\ntriangles      {}", self.n_objects, self.n_triangles)
+    }
+}

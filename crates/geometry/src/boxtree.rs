@@ -1,0 +1,199 @@
+//! A tree of boxes: many boxes, so arranged that those near a line or a box are found quickly.
+
+use crate::Aabb;
+
+/// A node of a [`BoxTree`]: the boxes of a contiguous range of [`BoxTree::order`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxNode<const D: usize> {
+    /// Around all of its boxes.
+    pub bounds: Aabb<D>,
+    /// Its boxes are `order()[start..end]`.
+    pub start: u32,
+    /// One past the last.
+    pub end: u32,
+    /// The second child; 0 for a leaf. The first child is the next node.
+    second: u32,
+    /// The node after all of its descendants.
+    past: u32,
+}
+
+impl<const D: usize> BoxNode<D> {
+    /// Whether it has no children.
+    pub const fn is_leaf(&self) -> bool {
+        self.second == 0
+    }
+
+    /// Number of boxes.
+    pub const fn len(&self) -> usize {
+        (self.end - self.start) as usize
+    }
+
+    /// Whether it has no boxes; only the root of an empty tree has none.
+    pub const fn is_empty(&self) -> bool {
+        self.start == self.end
+    }
+}
+
+/// A binary tree of boxes, cut where the surfaces of the halves, weighted by their numbers, are least.
+///
+/// Deterministic: equal boxes in equal order give an equal tree.
+///
+/// Source: Goldsmith and Salmon, IEEE CG&A 7(5), 1987, for the cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoxTree<const D: usize> {
+    nodes: Vec<BoxNode<D>>,
+    order: Vec<u32>,
+}
+
+/// Half the surface of a box.
+fn surface<const D: usize>(b: &Aabb<D>) -> f64 {
+    let size = |k: usize| b.max[k] - b.min[k];
+    (0..D).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| size(i) * size(j)).sum()
+}
+
+fn union<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
+    Aabb { min: std::array::from_fn(|k| a.min[k].min(b.min[k])), max: std::array::from_fn(|k| a.max[k].max(b.max[k])) }
+}
+
+impl<const D: usize> BoxTree<D> {
+    /// Builds the tree of `boxes`, with at most `per_leaf` boxes in a leaf. O(n log² n).
+    ///
+    /// # Panics
+    /// If `per_leaf` is 0.
+    pub fn build(boxes: &[Aabb<D>], per_leaf: usize) -> Self {
+        assert!(per_leaf > 0, "a leaf holds something");
+        let mut tree = Self { nodes: Vec::new(), order: (0..boxes.len() as u32).collect() };
+        let mut costs = vec![0.0; boxes.len()];
+        tree.split(boxes, per_leaf, 0, boxes.len(), &mut costs);
+        tree
+    }
+
+    fn split(&mut self, boxes: &[Aabb<D>], per_leaf: usize, start: usize, end: usize, costs: &mut [f64]) {
+        let of = |i: u32| boxes[i as usize];
+        let bounds = self.order[start..end].iter().fold(Aabb::EMPTY, |all, &i| union(&all, &of(i)));
+        let node = self.nodes.len();
+        self.nodes.push(BoxNode { bounds, start: start as u32, end: end as u32, second: 0, past: node as u32 + 1 });
+        if end - start <= per_leaf {
+            return;
+        }
+        let key = |i: u32, axis: usize| (of(i).min[axis] + of(i).max[axis], of(i).min[axis], i);
+        let by = |axis: usize| {
+            move |&a: &u32, &b: &u32| {
+                let (a, b) = (key(a, axis), key(b, axis));
+                a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
+            }
+        };
+        // The smaller half has at least a sixteenth, so the depth is at most logarithmic.
+        let (middle, least) = (start + (end - start) / 2, ((end - start) / 16).max(1));
+        let mut best = (f64::INFINITY, usize::MAX, 0, middle);
+        for axis in 0..D {
+            self.order[start..end].sort_unstable_by(by(axis));
+            let mut all = Aabb::EMPTY;
+            for (n, (cost, &i)) in (1u32..).zip(costs[start..end].iter_mut().zip(&self.order[start..end])) {
+                all = union(&all, &of(i));
+                *cost = surface(&all) * f64::from(n);
+            }
+            let mut all = Aabb::EMPTY;
+            for k in (start + 1..end).rev() {
+                all = union(&all, &of(self.order[k]));
+                let cost = costs[k - 1] + surface(&all) * (end - k) as f64;
+                let off = k.abs_diff(middle);
+                if k >= start + least && k + least <= end && (cost, off) < (best.0, best.1) {
+                    best = (cost, off, axis, k);
+                }
+            }
+        }
+        let (_, _, axis, middle) = best;
+        self.order[start..end].sort_unstable_by(by(axis));
+        self.split(boxes, per_leaf, start, middle, costs);
+        self.nodes[node].second = self.nodes.len() as u32;
+        self.split(boxes, per_leaf, middle, end, costs);
+        self.nodes[node].past = self.nodes.len() as u32;
+    }
+
+    /// The nodes; the first is the root, which is there even without boxes.
+    pub fn nodes(&self) -> &[BoxNode<D>] {
+        &self.nodes
+    }
+
+    /// The indices of all boxes, in the order of the leaves.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// The children of a node that is not a leaf.
+    #[inline]
+    pub fn children(&self, node: u32) -> [u32; 2] {
+        debug_assert!(!self.nodes[node as usize].is_leaf(), "leaves have no children");
+        [node + 1, self.nodes[node as usize].second]
+    }
+
+    /// Visits the boxes of all leaves that are reached through nodes which `enter` accepts.
+    #[inline]
+    pub fn visit(&self, mut enter: impl FnMut(&Aabb<D>) -> bool, mut each: impl FnMut(u32)) {
+        // The nodes of a subtree follow each other: what is not entered is skipped to `past`.
+        let mut n = 0;
+        while let Some(node) = self.nodes.get(n) {
+            if !enter(&node.bounds) {
+                n = node.past as usize;
+                continue;
+            }
+            if node.is_leaf() {
+                self.order[node.start as usize..node.end as usize].iter().for_each(|&i| each(i));
+            }
+            n += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn boxes() -> impl Strategy<Value = Vec<Aabb<3>>> {
+        let corner = || [-4i32..5, -4i32..5, -4i32..5].prop_map(|p| p.map(f64::from));
+        let one = (corner(), [0i32..4, 0i32..4, 0i32..4])
+            .prop_map(|(min, size)| Aabb { min, max: std::array::from_fn(|k| min[k] + f64::from(size[k])) });
+        prop::collection::vec(one, 0..40)
+    }
+
+    fn touch(a: &Aabb<3>, b: &Aabb<3>) -> bool {
+        (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
+    }
+
+    proptest! {
+        /// Invariant: a visit finds exactly what one by one is found.
+        #[test]
+        fn a_visit_misses_nothing(boxes in boxes(), at in boxes(), per_leaf in 1usize..4) {
+            let tree = BoxTree::build(&boxes, per_leaf);
+            let mut order = tree.order().to_vec();
+            order.sort_unstable();
+            prop_assert_eq!(order, (0..boxes.len() as u32).collect::<Vec<_>>());
+            for probe in &at {
+                let mut found = Vec::new();
+                tree.visit(|b| touch(b, probe), |i| if touch(&boxes[i as usize], probe) { found.push(i) });
+                found.sort_unstable();
+                let all = (0..boxes.len() as u32).filter(|&i| touch(&boxes[i as usize], probe));
+                prop_assert_eq!(found, all.collect::<Vec<_>>());
+            }
+        }
+
+        /// Invariant: nodes hold what their children hold, children come after their parents, and leaves
+        /// are no larger than asked for.
+        #[test]
+        fn nodes_nest(boxes in boxes(), per_leaf in 1usize..4) {
+            let tree = BoxTree::build(&boxes, per_leaf);
+            for (n, node) in (0u32..).zip(tree.nodes()) {
+                if node.is_leaf() {
+                    prop_assert!(node.len() <= per_leaf);
+                    continue;
+                }
+                let [a, b] = tree.children(n).map(|c| tree.nodes()[c as usize]);
+                prop_assert_eq!((a.start, a.end, b.end), (node.start, b.start, node.end));
+                prop_assert!(!a.is_empty() && !b.is_empty());
+                prop_assert_eq!(union(&a.bounds, &b.bounds), node.bounds);
+            }
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! What is seen in a picture, and from where.
+
+use sightlines_pvs::{CellId, Table};
+
+/// What a cell or a viewer sees.
+#[derive(Debug)]
+pub(super) struct Seen {
+    /// The cells looked from, ascending; none for a viewer outside every cell.
+    pub(super) from: Vec<CellId>,
+    /// For each cell of the table whether it is seen.
+    cells: Vec<bool>,
+    /// The objects that are seen, ascending.
+    objects: Vec<u32>,
+}
+
+impl Seen {
+    /// What a cell of the table sees.
+    pub(super) fn from_cell(table: &Table, cell: CellId) -> Self {
+        Self::new(table, vec![cell], table.visible(cell), table.visible_objects(cell))
+    }
+
+    /// What a viewer at a point with as many coordinates as the table has dimensions sees.
+    pub(super) fn from_point(table: &Table, point: &[f64]) -> Self {
+        let objects = table.visible_objects_from(point);
+        Self::new(table, table.locate(point), table.visible_from(point).iter(), objects)
+    }
+
+    fn new(table: &Table, from: Vec<CellId>, ids: impl Iterator<Item = CellId>, objects: Vec<u32>) -> Self {
+        let mut cells = vec![false; table.n_cells()];
+        ids.for_each(|id| cells[id.idx()] = true);
+        Self { from, cells, objects }
+    }
+
+    /// Whether a cell is seen.
+    pub(super) fn sees(&self, cell: CellId) -> bool {
+        self.cells[cell.idx()]
+    }
+
+    /// Whether an object is seen.
+    pub(super) fn sees_object(&self, object: u32) -> bool {
+        self.objects.binary_search(&object).is_ok()
+    }
+
+    /// Whether it is looked from this cell.
+    pub(super) fn is_from(&self, cell: CellId) -> bool {
+        self.from.binary_search(&cell).is_ok()
+    }
+}

@@ -1,0 +1,464 @@
+//! Lines from one box to another, past opaque rectangles: is there one, and which?
+//!
+//! # Method
+//! Lazy subtraction. In each octant of directions the lines between two boxes are those that obey a few
+//! linear rows (see the [module above](super)). Some line in the middle of them is followed. If it meets
+//! nothing, it is the answer. If it meets a rectangle, all lines through that rectangle are blocked, and
+//! the others pass it beside one of its four edges, which is one more row each; or they cross its plane
+//! before they leave the first box or after they enter the second, which is two. So the lines fall into
+//! at most six smaller sets, each a linear program again, and most of them are empty. What decides is
+//! what stands between the boxes, not into how many cells the space between them is cut.
+//!
+//! Doubles choose the line and the rectangle. That a set is empty is proven by integer weights, as for
+//! doors; that a line is free is checked exactly; so no answer depends on rounding.
+//!
+//! # Ties
+//! Rectangles are closed and the boxes' insides are open: a line that only grazes does not count.
+//!
+//! # Source
+//! Haumont, Makinen and Nirenstein, "A low dimensional framework for exact polygon-to-polygon occlusion
+//! queries", EGSR 2005, and Mora and Aveneau, for the laziness, in Plücker space; that lines along the
+//! axes' octants are linear is the observation of the module above.
+
+mod blockers;
+mod cuts;
+mod ray;
+mod trace;
+
+pub use blockers::Blockers;
+pub use trace::{FreeLine, FreeSpan};
+
+use super::octant::{Decision, FINE, SMALL_FIRST, decide_in_doubles, two_axes};
+use super::proof;
+use super::rows::{Line, Octant, Row, others, sign};
+use super::simplex::{Frame, Tableau};
+use cuts::{Ends, Way};
+use ray::Ray;
+use sightlines_geometry::Aabb;
+
+/// What has to be reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// The inside of the box: a rectangle on its surface is in the way.
+    Inside,
+    /// The closed box: a rectangle on its surface is not in the way.
+    Surface,
+}
+
+/// What is between two boxes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sight {
+    /// This line, from its first point towards its second, leaves the first box and enters the second
+    /// without meeting a rectangle; so does an open set of lines.
+    Open(FreeLine),
+    /// No line does.
+    Blocked,
+    /// It would have taken more effort than allowed.
+    Undecided,
+}
+
+/// How questions were decided.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ShaftCounters {
+    /// Pairs of boxes asked about.
+    pub n_asked: u64,
+    /// Linear programs solved in doubles.
+    pub n_programs: u64,
+    /// Linear programs whose margin was within rounding, so that integers had to decide.
+    pub n_exact: u64,
+    /// Questions that were given up.
+    pub n_undecided: u64,
+}
+
+impl std::ops::Add for ShaftCounters {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            n_asked: self.n_asked + other.n_asked,
+            n_programs: self.n_programs + other.n_programs,
+            n_exact: self.n_exact + other.n_exact,
+            n_undecided: self.n_undecided + other.n_undecided,
+        }
+    }
+}
+
+impl std::ops::Sub for ShaftCounters {
+    type Output = Self;
+
+    /// What was done since `other`.
+    fn sub(self, other: Self) -> Self {
+        Self {
+            n_asked: self.n_asked - other.n_asked,
+            n_programs: self.n_programs - other.n_programs,
+            n_exact: self.n_exact - other.n_exact,
+            n_undecided: self.n_undecided - other.n_undecided,
+        }
+    }
+}
+
+/// Rectangles gone past one after the other at which a branch is given up.
+const DEEPEST: usize = 64;
+
+/// Number of rectangles on a line that are compared, the largest ones.
+const COMPARED: usize = 6;
+
+/// A margin of at least this, in the unit box of a program, is not rounding. What depends on it is only
+/// which check comes first.
+const CLEAR_MARGIN: f64 = 1e-9;
+
+/// Decides about boxes among the same rectangles. Holds scratch memory; use one for each thread.
+#[derive(Debug, Clone)]
+pub struct Shaft<'a> {
+    blockers: &'a Blockers,
+    rows: Vec<Row>,
+    unit: Vec<Row>,
+    hits: Vec<u32>,
+    /// Rectangles that the current branch has gone past.
+    passed: Vec<u32>,
+    scratch: Vec<Row>,
+    left: u32,
+    counters: ShaftCounters,
+}
+
+/// An answer for one octant, or a part of it.
+enum Part {
+    Open(FreeLine),
+    Blocked,
+    Undecided,
+}
+
+impl<'a> Shaft<'a> {
+    /// A solver among `blockers`.
+    pub fn new(blockers: &'a Blockers) -> Self {
+        Self {
+            blockers,
+            rows: Vec::new(),
+            unit: Vec::new(),
+            hits: Vec::new(),
+            passed: Vec::new(),
+            scratch: Vec::new(),
+            left: 0,
+            counters: ShaftCounters::default(),
+        }
+    }
+
+    /// What was done since it was made.
+    pub const fn counters(&self) -> ShaftCounters {
+        self.counters
+    }
+
+    /// Whether an open set of lines leads from inside of `from` to `to` without meeting a rectangle in
+    /// between.
+    ///
+    /// * `from`, `to`: boxes in scene units. Along some axis they must not overlap (touching is fine).
+    ///   `from` must have an inside; `to` may be flat along one axis if its surface is asked for.
+    /// * `budget`: linear programs after which it gives up; the answer for a budget does not depend on
+    ///   anything else.
+    ///
+    /// Exact, except for [`Sight::Undecided`], which errs on neither side. Rectangles inside of the boxes
+    /// count only for lines that have to pass them between leaving the first and entering the second.
+    pub fn decide(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target, budget: u32) -> Sight {
+        self.counters.n_asked += 1;
+        self.left = budget;
+        self.middle_blockers(from, to, target);
+        let guesses = std::mem::take(&mut self.hits);
+        let mut given_up = false;
+        for octant in likely_first(from, to) {
+            let ends = Ends { from, to, target, octant };
+            if !ends.are_in_order() || guesses.iter().any(|&g| self.covers(&ends, g)) {
+                continue;
+            }
+            self.rows.clear();
+            self.rows.extend(ends.rows());
+            let frame = Frame::around(&self.rows, octant);
+            self.unit.clear();
+            self.unit.extend(self.rows.iter().map(|row| frame.scaled(row)));
+            self.passed.clear();
+            match self.search(&ends, &frame, Tableau::bounded()) {
+                Part::Open(line) => return Sight::Open(line),
+                Part::Blocked => {}
+                Part::Undecided => given_up = true,
+            }
+        }
+        if given_up {
+            self.counters.n_undecided += 1;
+            return Sight::Undecided;
+        }
+        Sight::Blocked
+    }
+
+    /// Whether no line between the boxes gets past a rectangle.
+    fn covers(&self, ends: &Ends<'_>, rectangle: u32) -> bool {
+        let mut ways = 0;
+        ends.ways_past(self.blockers.rectangle(rectangle), self.blockers.axis(rectangle), |_| ways += 1);
+        ways == 0
+    }
+
+    /// What stands between the middles of two boxes.
+    fn middle_blockers(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target) -> Option<()> {
+        let middle = |b: &Aabb<3>| [0, 1, 2].map(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
+        let (a, mut b) = (middle(from), middle(to));
+        for k in 0..3 {
+            if a[k] == b[k] {
+                // A ray needs a direction along every axis.
+                b[k] += (from.max[k] - from.min[k]) / 64.0;
+            }
+        }
+        let ray = Ray::through(&Line::new(a, b)?)?;
+        let times = [ray.span(from)[1], ray.span(to)[0]];
+        self.look(&ray, times, target);
+        self.hits.sort_by_cached_key(|&i| {
+            std::cmp::Reverse((filled(self.blockers.rectangle(i), self.blockers.axis(i), from, to) * 1e6) as u32)
+        });
+        self.hits.truncate(COMPARED);
+        Some(())
+    }
+
+    /// Collects the rectangles that a ray meets between two times.
+    fn look(&mut self, ray: &Ray, times: [f64; 2], target: Target) {
+        self.hits.clear();
+        let hits = &mut self.hits;
+        let blockers = self.blockers;
+        blockers.near(ray, times, |i| {
+            let rectangle = blockers.rectangle(i);
+            let axis = blockers.axis(i);
+            let at = ray.time(axis, rectangle.min[axis]);
+            if target == Target::Inside || at < times[1] {
+                hits.push(i);
+            }
+        });
+    }
+
+    /// A rectangle in the way of a ray that the current branch has not gone past.
+    fn ahead(&mut self, ends: &Ends<'_>, ray: &Ray) -> Option<u32> {
+        self.look(ray, [ray.span(ends.from)[1], ray.span(ends.to)[0]], ends.target);
+        let passed = &self.passed;
+        self.hits.retain(|hit| !passed.contains(hit));
+        self.best(ends)
+    }
+
+    /// The rectangle met that leaves the fewest ways past it, or of those the one that seems to fill most
+    /// of the way between two boxes.
+    fn best(&self, ends: &Ends<'_>) -> Option<u32> {
+        let blockers = self.blockers;
+        // The largest come first, and few are looked at.
+        let mut largest = [(0.0, u32::MAX); COMPARED];
+        for &i in &self.hits {
+            let mut new = (filled(blockers.rectangle(i), blockers.axis(i), ends.from, ends.to), i);
+            for old in &mut largest {
+                if new.0 > old.0 || (new.0 == old.0 && new.1 < old.1) {
+                    std::mem::swap(old, &mut new);
+                }
+            }
+        }
+        let ways = |i: u32| {
+            let mut ways = 0;
+            ends.ways_past(blockers.rectangle(i), blockers.axis(i), |_| ways += 1);
+            ways
+        };
+        largest.into_iter().map(|l| l.1).filter(|&i| i != u32::MAX).min_by_key(|&i| ways(i))
+    }
+
+    /// Searches the lines that obey the current rows.
+    fn search(&mut self, ends: &Ends<'_>, frame: &Frame, mut tableau: Tableau) -> Part {
+        if self.left == 0 || self.passed.len() > DEEPEST {
+            return Part::Undecided;
+        }
+        self.left -= 1;
+        self.counters.n_programs += 1;
+        let mut y = tableau.improve(&self.unit);
+        if y[5] <= CLEAR_MARGIN {
+            if self.is_proven_empty(ends.octant, tableau.support().collect()) {
+                return Part::Blocked;
+            }
+            let mut full = Tableau::new([true; 3]);
+            y = full.improve(&self.unit);
+            if y[5] <= CLEAR_MARGIN && self.is_proven_empty(ends.octant, full.support().collect()) {
+                return Part::Blocked;
+            }
+        }
+        let Some(mut ray) = Ray::new(frame.starts_and_paces(&y)) else { return Part::Undecided };
+        let mut blocker = self.ahead(ends, &ray);
+        if blocker.is_none() && y[5] <= CLEAR_MARGIN {
+            // Nothing is left to go past, so it has to be known whether there are lines at all.
+            self.counters.n_exact += 1;
+            ray = match decide_in_doubles(&self.rows, ends.octant, FINE, &mut self.scratch) {
+                Ok(Decision::Blocked(_)) => return Part::Blocked,
+                Ok(Decision::Line(line)) => match Ray::through(&line) {
+                    Some(ray) => ray,
+                    None => return Part::Undecided,
+                },
+                Ok(Decision::Fractions(_)) | Err(_) => return Part::Undecided,
+            };
+            blocker = self.ahead(ends, &ray);
+        }
+        let blocker = match blocker {
+            Some(blocker) => blocker,
+            None => match self.free_line(ends, &ray) {
+                Ok(line) => return Part::Open(line),
+                Err(Some(blocker)) if !self.passed.contains(&blocker) => blocker,
+                Err(_) => return Part::Undecided,
+            },
+        };
+        self.passed.push(blocker);
+        let part = self.past(ends, frame, tableau, blocker, &ray);
+        self.passed.pop();
+        part
+    }
+
+    /// Whether weights of rows lead to a proof that no line obeys all current rows.
+    fn is_proven_empty(&mut self, octant: Octant, support: Vec<(usize, f64)>) -> bool {
+        let proves = |support: &[(usize, f64)], scales: &[f64]| {
+            scales.iter().any(|&scale| proof::is_proven_by_cycles(&self.rows, octant, support, scale))
+        };
+        if proves(&support, FINE) {
+            return true;
+        }
+        // Where two axes are enough, another program finds weights with more slack.
+        two_axes(&self.rows, octant, &support, &mut self.scratch).is_some_and(|s| proves(&s, FINE))
+            || proves(&support, SMALL_FIRST)
+    }
+
+    /// Searches the lines that obey the current rows and go past a rectangle; those ways first that are
+    /// nearest to a ray that does not.
+    fn past(&mut self, ends: &Ends<'_>, frame: &Frame, tableau: Tableau, blocker: u32, ray: &Ray) -> Part {
+        let mut ways: Vec<(f64, Way)> = Vec::with_capacity(6);
+        ends.ways_past(self.blockers.rectangle(blocker), self.blockers.axis(blocker), |way| {
+            let late = |row: &Row| ray.time(row.early, row.from) - ray.time(row.late, row.to);
+            ways.push((way.rows().iter().map(late).fold(f64::NEG_INFINITY, f64::max), way));
+        });
+        ways.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let n_rows = self.rows.len();
+        let mut given_up = false;
+        for (_, way) in ways {
+            let own = self.rows.len();
+            way.rows().iter().for_each(|row| self.push(frame, row));
+            let part = if way.rows().iter().any(|row| self.contradicts(row, ends.octant)) {
+                Part::Blocked
+            } else {
+                self.search(ends, frame, tableau)
+            };
+            self.truncate(own);
+            match part {
+                Part::Open(_) => {
+                    self.truncate(n_rows);
+                    return part;
+                }
+                Part::Blocked => {}
+                Part::Undecided => given_up = true,
+            }
+            if self.left == 0 {
+                given_up = true;
+                break;
+            }
+            if let Some(row) = way.complement() {
+                self.push(frame, &row);
+                if self.contradicts(&row, ends.octant) {
+                    break;
+                }
+            }
+        }
+        self.truncate(n_rows);
+        if given_up { Part::Undecided } else { Part::Blocked }
+    }
+
+    /// Whether the rows lead from the late end of one of them around to its early end by themselves: each
+    /// says that one coordinate is reached before another, and on one axis coordinates are reached in
+    /// their order. Exact: nothing is computed.
+    fn contradicts(&self, row: &Row, octant: Octant) -> bool {
+        // The first coordinate on each axis that is known to be reached after the row's late end.
+        let mut after = [f64::INFINITY; 3];
+        let along = |axis: usize, x: f64| sign(octant, axis) * x;
+        after[row.late] = along(row.late, row.to);
+        loop {
+            let mut changed = false;
+            for r in &self.rows {
+                if after[r.early] <= along(r.early, r.from) && along(r.late, r.to) < after[r.late] {
+                    after[r.late] = along(r.late, r.to);
+                    changed = true;
+                }
+            }
+            if after[row.early] <= along(row.early, row.from) {
+                return true;
+            }
+            if !changed {
+                return false;
+            }
+        }
+    }
+
+    fn push(&mut self, frame: &Frame, row: &Row) {
+        self.rows.push(*row);
+        self.unit.push(frame.scaled(row));
+    }
+
+    fn truncate(&mut self, n_rows: usize) {
+        self.rows.truncate(n_rows);
+        self.unit.truncate(n_rows);
+    }
+
+    /// A ray as a line that is checked exactly to lead from box to box past all rectangles; else the
+    /// rectangle that it touches, if it is that.
+    fn free_line(&self, ends: &Ends<'_>, ray: &Ray) -> Result<FreeLine, Option<u32>> {
+        let ([enter, out], [into, leave]) = (ray.span(ends.from), ray.span(ends.to));
+        let middle = |a: f64, b: f64| a + (b - a) / 2.0;
+        let at = |t: f64| [0, 1, 2].map(|i| ray.place(i, t));
+        let (start, stop) = (at(middle(enter, out)), at(middle(into, leave)));
+        let line = Line::new(start, stop).ok_or(None)?;
+        let octant = ends.octant;
+        if !line.is_in(octant) || !ends.rows().all(|row| line.obeys(&row, octant)) {
+            return Err(None);
+        }
+        let free = FreeLine::new(line, octant).ok_or(None)?;
+        let mut touched = None;
+        self.blockers.near(&free.ray, [free.ray.span(ends.from)[1], free.ray.span(ends.to)[0]], |i| {
+            if touched.is_none()
+                && !self.blockers.missed(i, &line, octant)
+                && !is_outside(ends, self.blockers, i, &line)
+            {
+                touched = Some(i);
+            }
+        });
+        if touched.is_some() { Err(touched) } else { Ok(free) }
+    }
+}
+
+/// Whether a line that passes two boxes crosses the plane of a rectangle before it leaves the first, or
+/// after it enters the second. Exact.
+fn is_outside(ends: &Ends<'_>, blockers: &Blockers, index: u32, line: &Line) -> bool {
+    let mut outside = false;
+    ends.ways_past(blockers.rectangle(index), blockers.axis(index), |way| {
+        outside |= way.complement().is_none() && way.rows().iter().all(|row| line.obeys(row, ends.octant));
+    });
+    outside
+}
+
+/// The octants, the one from middle to middle first.
+fn likely_first(from: &Aabb<3>, to: &Aabb<3>) -> impl Iterator<Item = Octant> + use<> {
+    let likely: u8 = (0..3).map(|i| u8::from(to.min[i] + to.max[i] >= from.min[i] + from.max[i]) << i).sum();
+    (0..8).map(move |turned| likely ^ turned)
+}
+
+/// About what share of the way between two boxes a rectangle fills, where its plane cuts it.
+fn filled(rectangle: &Aabb<3>, axis: usize, from: &Aabb<3>, to: &Aabb<3>) -> f64 {
+    let at = rectangle.min[axis];
+    let (near, far) = if from.max[axis] <= to.min[axis] {
+        (from.max[axis], to.min[axis])
+    } else if to.max[axis] <= from.min[axis] {
+        (from.min[axis], to.max[axis])
+    } else {
+        // The plane is beside one of the boxes for many lines.
+        let middle = |b: &Aabb<3>| b.min[axis] + (b.max[axis] - b.min[axis]) / 2.0;
+        (middle(from), middle(to))
+    };
+    let along = if far == near { 0.5 } else { ((at - near) / (far - near)).clamp(0.0, 1.0) };
+    let between = |a: f64, b: f64| a + (b - a) * along;
+    let share = |k: usize| {
+        let (low, high) = (between(from.min[k], to.min[k]), between(from.max[k], to.max[k]));
+        ((rectangle.max[k].min(high) - rectangle.min[k].max(low)) / (high - low)).max(0.0)
+    };
+    let [b, c] = others(axis);
+    share(b) * share(c)
+}

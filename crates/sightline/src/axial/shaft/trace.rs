@@ -1,0 +1,108 @@
+//! A free line beyond the two boxes it was found for: how far it goes, and what it meets on its way.
+
+use super::super::rows::{Line, Octant, Row, first_and_last, others, sign};
+use super::blockers::Blockers;
+use super::ray::Ray;
+use sightlines_geometry::Aabb;
+
+/// Times closer than this share of themselves may be equal: twice the error of a time.
+const SAME_TIME: f64 = 8.0 * f64::EPSILON;
+
+/// A line that was checked to lead from one box to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeLine {
+    line: Line,
+    octant: Octant,
+    pub(super) ray: Ray,
+}
+
+/// The part of a line between the nearest rectangles that it meets before and behind some place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeSpan {
+    free: FreeLine,
+    /// When it is free, in doubles.
+    times: [f64; 2],
+    /// Axis and coordinate of the planes that may be its two ends.
+    ends: [Vec<(usize, f64)>; 2],
+}
+
+impl FreeLine {
+    pub(super) fn new(line: Line, octant: Octant) -> Option<Self> {
+        Some(Self { line, octant, ray: Ray::through(&line)? })
+    }
+
+    /// Two points of the line, in its direction: the first inside the first box, the second in the second.
+    pub const fn points(&self) -> [[f64; 3]; 2] {
+        [self.line.from, self.line.to]
+    }
+
+    /// Whether it passes the inside of a box, or crosses a flat one. Exact.
+    pub fn passes(&self, bounds: &Aabb<3>) -> bool {
+        let extents = [0, 1, 2].map(|i| first_and_last(bounds, self.octant, i));
+        let after = |i: usize, j: usize| Row { early: i, late: j, from: extents[i][0], to: extents[j][1] };
+        (0..3).all(|i| others(i).into_iter().all(|j| self.line.obeys(&after(i, j), self.octant)))
+    }
+
+    /// How far the line goes both ways from where it leaves `from` and enters `to`, the boxes that it
+    /// was found for. O(log n) for each rectangle near it.
+    pub fn span(&self, from: &Aabb<3>, to: &Aabb<3>, blockers: &Blockers) -> FreeSpan {
+        let (leave, enter) = (self.ray.span(from)[1], self.ray.span(to)[0]);
+        let middle = leave + (enter - leave) / 2.0;
+        let mut met: Vec<(f64, usize, f64)> = Vec::new();
+        blockers.near(&self.ray, [f64::NEG_INFINITY, f64::INFINITY], |i| {
+            if !blockers.missed(i, &self.line, self.octant) {
+                let (axis, at) = (blockers.axis(i), blockers.rectangle(i).min[blockers.axis(i)]);
+                met.push((self.ray.time(axis, at), axis, at));
+            }
+        });
+        let before = met.iter().map(|m| m.0).filter(|t| *t <= middle).fold(f64::NEG_INFINITY, f64::max);
+        let behind = met.iter().map(|m| m.0).filter(|t| *t > middle).fold(f64::INFINITY, f64::min);
+        let close = |limit: f64| {
+            let near = |m: &&(f64, usize, f64)| (m.0 - limit).abs() <= SAME_TIME * (m.0.abs() + limit.abs());
+            met.iter().filter(near).map(|m| (m.1, m.2)).collect()
+        };
+        FreeSpan { free: *self, times: [before, behind], ends: [close(before), close(behind)] }
+    }
+}
+
+impl FreeSpan {
+    /// Whether the line may meet a closed box on its free part: certain if it says no.
+    #[inline]
+    pub fn may_meet(&self, bounds: &Aabb<3>) -> bool {
+        self.free.ray.may_meet(bounds, self.times)
+    }
+
+    /// Whether the free part certainly passes the inside of a box that no rectangle cuts.
+    pub fn passes(&self, bounds: &Aabb<3>) -> bool {
+        let [enter, leave] = self.free.ray.span(bounds);
+        // As nothing cuts the box, the whole of it lies on one side of each end.
+        let middle = enter + (leave - enter) / 2.0;
+        let [before, behind] = self.times;
+        let apart = |early: f64, late: f64| late - early > SAME_TIME * (early.abs() + late.abs());
+        let inside = (before.is_infinite() || apart(before, middle)) && (behind.is_infinite() || apart(middle, behind));
+        inside && apart(enter, leave) && self.free.passes(bounds)
+    }
+
+    /// Whether the free part, with its ends, meets a closed box in more than its edges. Exact.
+    pub fn meets(&self, bounds: &Aabb<3>) -> bool {
+        let (free, octant) = (&self.free, self.free.octant);
+        if !free.passes(bounds) {
+            return false;
+        }
+        let extents = [0, 1, 2].map(|i| first_and_last(bounds, octant, i));
+        let [before, behind] = &self.ends;
+        let enters_by = |&(axis, at): &(usize, f64)| {
+            sign(octant, axis) * extents[axis][0] <= sign(octant, axis) * at
+                && others(axis)
+                    .into_iter()
+                    .all(|i| free.line.obeys(&Row { early: i, late: axis, from: extents[i][0], to: at }, octant))
+        };
+        let leaves_after = |&(axis, at): &(usize, f64)| {
+            sign(octant, axis) * extents[axis][1] >= sign(octant, axis) * at
+                && others(axis)
+                    .into_iter()
+                    .all(|i| free.line.obeys(&Row { early: axis, late: i, from: at, to: extents[i][1] }, octant))
+        };
+        before.iter().all(leaves_after) && behind.iter().all(enters_by)
+    }
+}

@@ -1,0 +1,78 @@
+//! Bits that many threads set.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// A matrix of bits that are only ever set.
+#[derive(Debug)]
+pub(super) struct Marks {
+    width: usize,
+    words: Vec<AtomicU64>,
+}
+
+impl Marks {
+    pub(super) fn new(n_rows: usize, n_cols: usize) -> Self {
+        let width = n_cols.div_ceil(64);
+        Self { width, words: std::iter::repeat_with(AtomicU64::default).take(n_rows * width).collect() }
+    }
+
+    #[inline]
+    pub(super) fn get(&self, row: usize, col: usize) -> bool {
+        self.words[row * self.width + col / 64].load(Relaxed) >> (col % 64) & 1 == 1
+    }
+
+    #[inline]
+    pub(super) fn set(&self, row: usize, col: usize) {
+        let (word, bit) = (&self.words[row * self.width + col / 64], 1 << (col % 64));
+        // Most bits are set already, and loading is cheaper.
+        if word.load(Relaxed) & bit == 0 {
+            word.fetch_or(bit, Relaxed);
+        }
+    }
+
+    /// The bits of a row from one column to before another, as masked words.
+    fn part(&self, row: usize, [from, to]: [usize; 2]) -> impl Iterator<Item = (u64, u64)> + '_ {
+        let words = &self.words[row * self.width..][..self.width];
+        (from / 64..to.div_ceil(64)).map(move |i| {
+            let low = if i * 64 < from { u64::MAX << (from % 64) } else { u64::MAX };
+            let high = if (i + 1) * 64 > to { u64::MAX >> (64 - to % 64) } else { u64::MAX };
+            (words[i].load(Relaxed), low & high)
+        })
+    }
+
+    /// Whether any bit of some rows and columns is set.
+    pub(super) fn any(&self, rows: [usize; 2], cols: [usize; 2]) -> bool {
+        (rows[0]..rows[1]).any(|row| self.part(row, cols).any(|(word, mask)| word & mask != 0))
+    }
+
+    /// Whether all bits of some rows and columns are set.
+    pub(super) fn all(&self, rows: [usize; 2], cols: [usize; 2]) -> bool {
+        (rows[0]..rows[1]).all(|row| self.part(row, cols).all(|(word, mask)| word & mask == mask))
+    }
+
+    /// The set columns of a row, ascending.
+    pub(super) fn ones(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
+        let words = &self.words[row * self.width..][..self.width];
+        words.iter().enumerate().flat_map(|(i, word)| crate::search::ones(word.load(Relaxed)).map(move |b| i * 64 + b))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_read_as_bits_one_by_one() {
+        let marks = Marks::new(3, 130);
+        let set = [(0, 0), (1, 63), (1, 64), (2, 129), (0, 65)];
+        set.iter().for_each(|&(r, c)| marks.set(r, c));
+        let ends = [0, 1, 62, 63, 64, 65, 66, 127, 128, 129, 130];
+        for rows in [[0, 1], [0, 2], [1, 3]] {
+            for cols in ends.iter().flat_map(|&a| ends.iter().filter(move |&&b| b > a).map(move |&b| [a, b])) {
+                let inside = || (rows[0]..rows[1]).flat_map(|r| (cols[0]..cols[1]).map(move |c| (r, c)));
+                assert_eq!(marks.any(rows, cols), inside().any(|p| set.contains(&p)), "{rows:?} {cols:?}");
+                assert_eq!(marks.all(rows, cols), inside().all(|p| set.contains(&p)), "{rows:?} {cols:?}");
+            }
+        }
+        assert_eq!(marks.ones(1).collect::<Vec<_>>(), [63, 64]);
+    }
+}

@@ -1,0 +1,239 @@
+//! Which boxes of a graph in space see each other, and which objects: from pairs of groups to pairs of
+//! cells.
+//!
+//! Not sequences of portals are followed here: in open space that is cut into many cells there are
+//! more of them than can be counted. What is asked is what stands *between* two boxes
+//! ([`Shaft`]), first for large groups of cells, then for their halves, until a wall hides one group
+//! from the other or single cells are left. Lines found on the way are followed through all cells that
+//! they pass, all of which see each other.
+//!
+//! A group is asked about with the box around its cells, so when nothing of its box is visible, none of
+//! its cells is; when something is, nothing follows, and its halves are asked about. Single cells are
+//! decided exactly, but for [`slivers`]. So the answer does not depend on how cells are grouped, nor on the order of work.
+
+mod grid;
+mod objects;
+mod opaque;
+mod pairs;
+mod slivers;
+
+use crate::search::{Known, SearchOptions};
+use grid::Marks;
+use opaque::opaque_rectangles;
+use rayon::prelude::*;
+use sightlines_cells::{Axial, CellGraph};
+use sightlines_geometry::Aabb;
+use sightlines_geometry::BoxTree;
+use sightlines_pvs::BitMatrix;
+use sightlines_sightline::Shaft;
+use sightlines_sightline::{Blockers, ShaftCounters};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+
+/// The answer for a graph in space.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SeenInSpace {
+    /// Cells by cells: symmetric, with the diagonal set.
+    pub cells: BitMatrix,
+    /// Cells by objects.
+    pub objects: BitMatrix,
+    /// For each cell the objects whose closed boxes touch it, ascending.
+    pub touching: Vec<Vec<u32>>,
+    /// Opaque rectangles that the walls were put together to.
+    pub n_blockers: usize,
+    /// Pairs of a cell and a cell or object that count as visible because it would have taken too much
+    /// effort, or more digits than doubles have, to decide about them.
+    pub n_assumed: u64,
+    /// What it took. With several threads the counts vary from run to run; the answer does not.
+    pub counters: ShaftCounters,
+}
+
+/// What all threads see. Places count the cells in the order of the tree.
+struct Question<'a> {
+    graph: &'a CellGraph<Axial>,
+    boxes: &'a [Aabb<3>],
+    blockers: &'a Blockers,
+    possible: Option<&'a (BitMatrix, BitMatrix)>,
+    tree: BoxTree<3>,
+    object_tree: BoxTree<3>,
+    /// The cells that are no slivers, which the tree is made of.
+    regular: Vec<u32>,
+    /// The cell at each place of the tree.
+    cell_at: Vec<u32>,
+    /// The place of each cell; [`SLIVER`] for slivers.
+    place: Vec<u32>,
+    touching: Vec<Vec<u32>>,
+    /// Places by places.
+    cells: Marks,
+    /// Places by objects.
+    objects: Marks,
+    n_assumed: AtomicU64,
+}
+
+/// The place of a cell that is too thin to be asked about.
+const SLIVER: u32 = u32::MAX;
+
+/// Pairs of groups are halved on one thread until there are this many for each thread.
+const TASKS_PER_THREAD: usize = 256;
+
+/// Finds which cells of a graph see each other, and which objects they see.
+///
+/// * `solid`: boxes beside the cells, that no line from a cell gets into; they change no answer, and
+///   make walls larger, which saves much.
+/// * `objects`: closed boxes, scene units. A cell sees those that touch it, and those that an open set
+///   of lines reaches from inside of it without meeting a wall before. Flat boxes can be seen; boxes
+///   that are flat along two axes are seen only where they touch. Empty ones never are.
+/// * `known`: pairs known to see each other, and pairs that may (subsets and supersets of the answer,
+///   by cells and by cells and objects).
+///
+/// Exact, unless a pair takes thousands of linear programs: such pairs count as visible, and are counted
+/// in [`SeenInSpace::n_assumed`].
+///
+/// Cost: in practice near-linear in the number of cells as long as each sees only those near it; cells
+/// that see each other cost a few bits each. Memory: two bit matrices.
+///
+/// # Panics
+/// If a matrix of `known` is not about as many cells and objects.
+pub fn see_space(
+    graph: &CellGraph<Axial>,
+    solid: &[Aabb<3>],
+    objects: &[Aabb<3>],
+    known: &Known,
+    options: &SearchOptions<'_>,
+) -> SeenInSpace {
+    let n = graph.n_cells();
+    let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == n && m.n_cols() == n_cols;
+    let possible_fits = known.possible.iter().all(|(c, o)| fits(c, n) && fits(o, objects.len()));
+    assert!(fits(&known.visible, n) && possible_fits, "what is known is about these cells and objects");
+    let blockers = Blockers::new(opaque_rectangles(graph, solid));
+    let question = Question::new(graph, objects, &blockers, known);
+    let threads = match options.threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        t => t,
+    };
+    let run = || question.answer(threads, options);
+    let counters = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(run),
+        // Threads cannot be had: the threads of the process will do.
+        Err(_) => run(),
+    };
+    question.into_seen(counters)
+}
+
+impl<'a> Question<'a> {
+    fn new(graph: &'a CellGraph<Axial>, boxes: &'a [Aabb<3>], blockers: &'a Blockers, known: &'a Known) -> Self {
+        let extents: Vec<Aabb<3>> = graph.cells().iter().map(|c| c.bounds).collect();
+        let slivers = slivers::find(&extents);
+        let regular: Vec<u32> = (0u32..).zip(&slivers).filter(|(_, sliver)| !**sliver).map(|(cell, _)| cell).collect();
+        let boxes_of: Vec<Aabb<3>> = regular.iter().map(|&cell| extents[cell as usize]).collect();
+        let tree = BoxTree::build(&boxes_of, 1);
+        let object_tree = BoxTree::build(boxes, 2);
+        let cell_at: Vec<u32> = tree.order().iter().map(|&i| regular[i as usize]).collect();
+        let mut place = vec![SLIVER; extents.len()];
+        for (at, &cell) in (0u32..).zip(&cell_at) {
+            place[cell as usize] = at;
+        }
+        let touching = extents.par_iter().map(|cell| {
+            let mut found = Vec::new();
+            object_tree.visit(
+                |b| objects::touch(b, cell),
+                |o| {
+                    if objects::touch(&boxes[o as usize], cell) {
+                        found.push(o);
+                    }
+                },
+            );
+            found.sort_unstable();
+            found
+        });
+        let touching = touching.collect();
+        let cells = Marks::new(cell_at.len(), cell_at.len());
+        for (row, &cell) in cell_at.iter().enumerate() {
+            let places = known.visible.iter_ones(cell as usize).map(|col| place[col]).filter(|p| *p != SLIVER);
+            places.for_each(|col| cells.set(row, col as usize));
+        }
+        let objects = Marks::new(cell_at.len(), boxes.len());
+        let possible = known.possible.as_ref();
+        Self {
+            graph,
+            boxes,
+            blockers,
+            possible,
+            tree,
+            object_tree,
+            regular,
+            cell_at,
+            place,
+            touching,
+            cells,
+            objects,
+            n_assumed: AtomicU64::new(0),
+        }
+    }
+
+    fn may_see_cell(&self, a: usize, b: usize) -> bool {
+        let cell = |place: usize| self.cell_at[place] as usize;
+        self.possible.is_none_or(|(cells, _)| cells.get(cell(a), cell(b)))
+    }
+
+    fn may_see_object(&self, place: usize, object: usize) -> bool {
+        self.possible.is_none_or(|(_, objects)| objects.get(self.cell_at[place] as usize, object))
+    }
+
+    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> ShaftCounters {
+        let n = self.cell_at.len();
+        if n == 0 {
+            return ShaftCounters::default();
+        }
+        let mut first = Shaft::new(self.blockers);
+        let mut tasks = vec![[0, 0]];
+        while tasks.len() < TASKS_PER_THREAD * threads {
+            let mut smaller = Vec::new();
+            tasks.iter().for_each(|&pair| self.settle(pair, &mut first, &mut |p| smaller.push(p)));
+            tasks = smaller;
+            if tasks.is_empty() {
+                break;
+            }
+        }
+        let (done, all) = (AtomicUsize::new(0), tasks.len() + n);
+        let step = || {
+            let done = done.fetch_add(1, Relaxed) + 1;
+            options.progress.iter().for_each(|progress| progress(done, all));
+        };
+        let shaft = || Shaft::new(self.blockers);
+        let pairs = tasks.into_par_iter().with_max_len(1).map_init(shaft, |shaft, task| {
+            let before = shaft.counters();
+            let mut stack = vec![task];
+            while let Some(pair) = stack.pop() {
+                self.settle(pair, shaft, &mut |p| stack.push(p));
+            }
+            step();
+            shaft.counters() - before
+        });
+        let pairs = pairs.reduce(ShaftCounters::default, |a, b| a + b);
+        let state = || (Shaft::new(self.blockers), Vec::new());
+        let objects = (0..n).into_par_iter().with_max_len(16).map_init(state, |(shaft, seen), place| {
+            let before = shaft.counters();
+            self.settle_objects(place, shaft, seen);
+            step();
+            shaft.counters() - before
+        });
+        first.counters() + pairs + objects.reduce(ShaftCounters::default, |a, b| a + b)
+    }
+
+    fn into_seen(self, counters: ShaftCounters) -> SeenInSpace {
+        let n = self.graph.n_cells();
+        let mut cells = BitMatrix::identity(n);
+        let mut objects = BitMatrix::new(n, self.boxes.len());
+        for (place, &cell) in self.cell_at.iter().enumerate() {
+            for other in self.cells.ones(place) {
+                cells.set(cell as usize, self.cell_at[other] as usize, true);
+            }
+            for object in self.objects.ones(place) {
+                objects.set(cell as usize, object, true);
+            }
+        }
+        slivers::fill(self.graph, |cell| self.place[cell] == SLIVER, &self.touching, &mut cells, &mut objects);
+        let n_assumed = self.n_assumed.into_inner();
+        SeenInSpace { cells, objects, touching: self.touching, n_blockers: self.blockers.len(), n_assumed, counters }
+    }
+}

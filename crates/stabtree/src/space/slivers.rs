@@ -1,0 +1,75 @@
+//! Cells so thin that programs in doubles cannot tell their sides apart.
+//!
+//! Coordinates of real buildings differ by rounding where they are meant to be equal, and a subdivision
+//! that is exact has cells of that thickness. No viewer gets into one, but it must not be called hidden
+//! where it is not. Every line through a cell that is not in it altogether comes through a portal from a
+//! neighbour, so what a sliver sees, its neighbours together see; and that is what it is said to see.
+
+use sightlines_cells::{Axial, CellGraph, CellId};
+use sightlines_geometry::Aabb;
+use sightlines_pvs::BitMatrix;
+
+/// A cell thinner than this share of the longest side of the box around all cells is a sliver. What is
+/// said of slivers is sound whatever this is; doubles resolve 2^-52 of the box, and programs lose some
+/// twenty bits of them.
+const THIN: f64 = 1.0 / (1u64 << 32) as f64;
+
+/// Which cells are slivers.
+pub(super) fn find(extents: &[Aabb<3>]) -> Vec<bool> {
+    let all = Aabb::<3>::around(extents.iter().flat_map(|b| [b.min, b.max]));
+    let size = |b: &Aabb<3>| [0, 1, 2].map(|k| b.max[k] - b.min[k]);
+    let thin = size(&all).into_iter().fold(0.0, f64::max) * THIN;
+    extents.iter().map(|b| size(b).into_iter().any(|x| x < thin)).collect()
+}
+
+/// Fills in the rows and columns of slivers, when those of all other cells are known.
+pub(super) fn fill(
+    graph: &CellGraph<Axial>,
+    is_sliver: impl Fn(usize) -> bool,
+    touching: &[Vec<u32>],
+    cells: &mut BitMatrix,
+    objects: &mut BitMatrix,
+) {
+    let slivers: Vec<usize> = (0..graph.n_cells()).filter(|&cell| is_sliver(cell)).collect();
+    let around: Vec<Vec<usize>> = slivers.iter().map(|&cell| neighbours(graph, &is_sliver, cell)).collect();
+    for (&sliver, around) in slivers.iter().zip(&around) {
+        for &cell in around {
+            cells.or_into(sliver, cell);
+            objects.or_into(sliver, cell);
+        }
+        touching[sliver].iter().for_each(|&o| objects.set(sliver, o as usize, true));
+    }
+    // A sliver sees another if a neighbour does: so first all that neighbours see, then the others.
+    for _ in 0..2 {
+        for &sliver in &slivers {
+            let seen: Vec<usize> = cells.iter_ones(sliver).collect();
+            seen.into_iter().for_each(|cell| cells.set(cell, sliver, true));
+        }
+        for (&sliver, around) in slivers.iter().zip(&around) {
+            around.iter().for_each(|&cell| cells.or_into(sliver, cell));
+        }
+    }
+    for &sliver in &slivers {
+        let seen: Vec<usize> = cells.iter_ones(sliver).collect();
+        seen.into_iter().for_each(|cell| cells.set(cell, sliver, true));
+    }
+}
+
+/// A sliver's neighbours beyond other slivers, and those slivers.
+fn neighbours(graph: &CellGraph<Axial>, is_sliver: &impl Fn(usize) -> bool, cell: usize) -> Vec<usize> {
+    let mut found = vec![cell];
+    let mut next = 0;
+    while let Some(&at) = found.get(next) {
+        next += 1;
+        if !is_sliver(at) {
+            continue;
+        }
+        for exit in graph.exits(CellId(at as u32)) {
+            if !found.contains(&exit.to.idx()) {
+                found.push(exit.to.idx());
+            }
+        }
+    }
+    found.retain(|&other| other != cell);
+    found
+}

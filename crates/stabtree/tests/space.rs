@@ -1,0 +1,135 @@
+//! Pairs of boxes in space against the search that follows every sequence of portals, which shares only
+//! the linear programs with them.
+
+use proptest::prelude::*;
+use sightlines_cells::{Axial, BoxCell, CellGraph, CellId, Portal};
+use sightlines_geometry::{Aabb, AxialDoor};
+use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
+use sightlines_pvs::BitMatrix;
+use sightlines_sightline::AxialStabber;
+use sightlines_stabtree::{Known, Network, SearchOptions, SeenInSpace, Zones, see_space, visible_zones};
+use std::cell::Cell;
+
+/// Side of the cube that scenes are in.
+const SIDE: i32 = 4;
+
+fn unordered([p, q]: [[i32; 3]; 2]) -> Aabb<3> {
+    let corner = |k: usize, high: bool| f64::from(if high { p[k].max(q[k]) } else { p[k].min(q[k]) });
+    Aabb { min: [0, 1, 2].map(|k| corner(k, false)), max: [0, 1, 2].map(|k| corner(k, true)) }
+}
+
+fn faces(most: usize) -> impl Strategy<Value = Vec<AxialFace<3>>> {
+    let ends = || prop::array::uniform3(0..=SIDE);
+    let face = (0..3usize, ends(), ends()).prop_map(|(axis, p, mut q)| {
+        q[axis] = p[axis];
+        let Aabb { min, max } = unordered([p, q]);
+        AxialFace::new(axis, min, max)
+    });
+    prop::collection::vec(face, 1..most)
+}
+
+/// Boxes with corners at halves of the grid; some are flat, some are points.
+fn objects() -> impl Strategy<Value = Vec<Aabb<3>>> {
+    let ends = || prop::array::uniform3(-1..=2 * SIDE + 1);
+    let half = |b: Aabb<3>| Aabb { min: b.min.map(|x| x / 2.0), max: b.max.map(|x| x / 2.0) };
+    prop::collection::vec((ends(), ends()).prop_map(move |(p, q)| half(unordered([p, q]))), 0..6)
+}
+
+/// Cuts the cube along faces, and leaves some cells out: those at which `out` says so.
+fn cut(faces: &[AxialFace<3>], out: &[bool]) -> (CellGraph<Axial>, Vec<Aabb<3>>) {
+    let side = f64::from(SIDE);
+    let tree =
+        subdivide(faces, Aabb { min: [0.0; 3], max: [side; 3] }, &Options::default()).expect("the scene is good");
+    let is_out = |cell: CellId| out[cell.idx() % out.len()];
+    let (mut cells, mut solid, mut ids) = (Vec::new(), Vec::new(), Vec::new());
+    for (id, cell) in (0u32..).map(CellId).zip(tree.cells()) {
+        ids.push(CellId(cells.len() as u32));
+        if is_out(id) { solid.push(cell.bounds) } else { cells.push(BoxCell { bounds: cell.bounds }) }
+    }
+    let portal = |p: &AxialPortal<3>| {
+        let axis = p.axis as u8;
+        let shape = AxialDoor { extent: Aabb { min: p.min, max: p.max }, axis, forward: true };
+        let sides = [2 * u32::from(axis) + 1, 2 * u32::from(axis)];
+        Portal { cells: p.cells.map(|c| ids[c.idx()]), sides, shape }
+    };
+    let kept = tree.portals().iter().filter(|p| p.cells.into_iter().all(|c| !is_out(c)));
+    let graph = CellGraph::<Axial>::new(cells, kept.map(portal).collect());
+    graph.assert_well_formed();
+    (graph, solid)
+}
+
+fn by_pairs(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> SeenInSpace {
+    let options = SearchOptions { threads, ..SearchOptions::default() };
+    see_space(graph, solid, objects, &Known::nothing(graph.n_cells()), &options)
+}
+
+fn by_sequences(graph: &CellGraph<Axial>, objects: &[Aabb<3>]) -> (BitMatrix, BitMatrix) {
+    let network = Network::axial(graph, &Zones::cells(graph), objects);
+    let options = SearchOptions { threads: 1, ..SearchOptions::default() };
+    let seen = visible_zones(&network, &AxialStabber::new(), &Known::nothing(graph.n_cells()), &options);
+    (seen.zones, seen.objects)
+}
+
+/// Invariant: pairs of boxes and sequences of portals give the same answer, for cells and for objects;
+/// what is solid, and how many threads there are, changes nothing.
+#[test]
+fn pairs_and_sequences_agree() {
+    let (seen, hidden) = (Cell::new(0u64), Cell::new(0u64));
+    let out = || prop::collection::vec(prop::bool::weighted(0.2), 1..9);
+    let config = ProptestConfig::with_source_file(file!());
+    let cases = u64::from(config.cases);
+    let mut runner = proptest::test_runner::TestRunner::new(config);
+    let strategy = (faces(24), out(), objects());
+    let result = runner.run(&strategy, |(faces, out, objects)| {
+        let (graph, solid) = cut(&faces, &out);
+        if graph.n_cells() == 0 {
+            return Ok(());
+        }
+        let (cells, things) = by_sequences(&graph, &objects);
+        let pairs = by_pairs(&graph, &solid, &objects, 1);
+        prop_assert_eq!(&pairs.cells, &cells);
+        prop_assert_eq!(&pairs.objects, &things);
+        prop_assert_eq!(pairs.n_assumed, 0);
+        let without = by_pairs(&graph, &[], &objects, 2);
+        prop_assert_eq!(&without.cells, &cells);
+        prop_assert_eq!(&without.objects, &things);
+        let ones = cells.count_ones() + things.count_ones();
+        let all = (graph.n_cells() * (graph.n_cells() + objects.len())) as u64;
+        seen.set(seen.get() + ones);
+        hidden.set(hidden.get() + all - ones);
+        Ok(())
+    });
+    result.unwrap_or_else(|e| panic!("pairs_and_sequences_agree: {e}"));
+    assert!(seen.get() > cases && hidden.get() > cases, "{} seen, {} hidden", seen.get(), hidden.get());
+}
+
+/// A comparison that has to fail: the same graph with one portal closed sees less.
+#[test]
+fn a_closed_portal_is_noticed() {
+    let wall = AxialFace::new(0, [2.0, 0.0, 0.0], [2.0, 2.0, 4.0]);
+    let (graph, _) = cut(&[wall], &[false]);
+    assert_eq!((graph.n_cells(), graph.portals().len()), (2, 1));
+    let open = by_pairs(&graph, &[], &[], 1);
+    let closed = CellGraph::<Axial>::new(graph.cells().to_vec(), Vec::new());
+    let closed = by_pairs(&closed, &[], &[], 1);
+    assert!(open.cells.get(0, 1) && !closed.cells.get(0, 1));
+}
+
+/// Cells thinner than doubles can tell see what their neighbours see, and are seen by whom those see.
+#[test]
+fn slivers_take_after_their_neighbours() {
+    let ulp = f64::EPSILON;
+    let wall = |x: f64| AxialFace::new(0, [x, 0.0, 0.0], [x, 1.0, 4.0]);
+    let (graph, _) = cut(&[wall(1.0), wall(1.0 + ulp), wall(3.0)], &[false]);
+    let thin = (0..graph.n_cells()).find(|&c| {
+        let b = &graph.cells()[c].bounds;
+        b.max[0] - b.min[0] == ulp
+    });
+    let thin = thin.expect("the sliver is a cell");
+    let seen = by_pairs(&graph, &[], &[], 1);
+    let (exact, _) = by_sequences(&graph, &[]);
+    assert!((0..graph.n_cells()).all(|c| seen.cells.get(thin, c) && seen.cells.get(c, thin)));
+    for row in 0..graph.n_cells() {
+        assert!(exact.iter_ones(row).all(|col| seen.cells.get(row, col)), "{row}");
+    }
+}
