@@ -38,7 +38,7 @@ fn small_tower() -> Scene {
 fn rays_in_a_small_tower_are_in_the_table() {
     const RAYS: u64 = 3_000;
     let scene = small_tower();
-    let table = bake(&scene, PortalMode::TwoLevel, 0).table;
+    let table = bake(&scene, PortalMode::Exact, 0).table;
     let rays = RayScene::new(&scene);
     let mut n_seen = 0;
     for (cell, record) in (0u32..).map(CellId).zip(table.cells()).step_by(7) {
@@ -100,7 +100,7 @@ fn a_real_building_shows_what_was_seen() {
     let Some(folder) = data_folder("SIGHTLINES_DATA") else { return };
     let folder = folder.join("scenes/whale_large");
     let scene = read_scene(folder.join("whale_large.glb")).unwrap_or_else(|e| panic!("{e}")).scene;
-    let table = bake(&scene, PortalMode::TwoLevel, 0).table;
+    let table = bake(&scene, PortalMode::Exact, 0).table;
     let rays = RayScene::new(&scene);
     let mut n_seen = 0;
     for (seed, witness) in (0..).zip(scene_witness(&folder)) {

@@ -1,7 +1,7 @@
 //! The offline pipeline: from a scene to its visibility table in one call.
 //!
 //! Owns: the choice of subdivision and predicate ([`bake_plan`]), the table made from a cell graph
-//! ([`table_of`]) and the way back ([`graph_of`]), the REJECT lumps of a WAD ([`reject_wad`]).
+//! ([`table_of`]) and the way back ([`graph_of`], [`axial_graph_of`]), the REJECT lumps of a WAD ([`reject_wad`]).
 //! Does not know: paths, the command line, pictures.
 //! Invariants: the same scene and options give the same table, byte for byte, with any number of
 //! threads; every approximation on the way errs towards visible.
@@ -19,7 +19,7 @@ pub use reject::{
 };
 pub use scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
-pub use table::{TableOptions, graph_of, table_of};
+pub use table::{TableOptions, axial_graph_of, graph_of, table_of};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

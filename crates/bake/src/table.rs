@@ -1,9 +1,12 @@
 //! Tables from cell graphs, and back.
 
 use crate::objects::cell_objects;
-use sightlines_cells::{CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
-use sightlines_geometry::{Point2, Portal2};
-use sightlines_pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableParts};
+use crate::scene;
+use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
+use sightlines_geometry::{Aabb, Point2, Portal2, check_coordinate};
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableParts,
+};
 
 /// What goes into a table beside cells and rows.
 #[derive(Debug, Clone, Default)]
@@ -83,5 +86,35 @@ pub fn graph_of(table: &Table) -> Option<CellGraph<Planar>> {
     };
     let portals: Option<Vec<Portal<Planar>>> = table.portals().iter().map(portal).collect();
     let graph = CellGraph::new(table.cells().iter().map(cell).collect(), portals?);
+    graph.check_well_formed().is_ok().then_some(graph)
+}
+
+/// The graph of boxes that a table of a scene in space stores; `None` if the table is none, or the stored
+/// cells and portals do not fit together. Portals are those that the table was made with, exact pieces or
+/// the rectangles around them.
+pub fn axial_graph_of(table: &Table) -> Option<CellGraph<Axial>> {
+    // Cells that see each other are joined by portals, so without any they were stripped.
+    let joined = (0u32..).take(table.n_cells()).map(CellId).any(|cell| table.visible(cell).any(|other| other != cell));
+    let stripped = table.portals().is_empty() && joined;
+    if table.dimension() != 3 || stripped {
+        return None;
+    }
+    let cells: Vec<BoxCell> =
+        table.cells().iter().map(|c| BoxCell { bounds: Aabb { min: c.min, max: c.max } }).collect();
+    let portal = |p: &PortalRecord| {
+        let extent = Aabb::<3>::around(p.points.iter().copied());
+        let axis = u8::try_from(p.sides[0] / 2).ok().filter(|axis| *axis < 3)?;
+        let shape = AxialDoor { extent, axis, forward: p.sides[0] % 2 == 1 };
+        let portal = Portal { cells: p.cells, sides: p.sides, shape };
+        // Other points than the corners of a rectangle would not come back.
+        (scene::portal_record(&portal) == *p).then_some(portal)
+    };
+    let portals: Option<Vec<Portal<Axial>>> = table.portals().iter().map(portal).collect();
+    // Portals lie within cells, which is checked below.
+    let in_range = |b: &Aabb<3>| b.min.into_iter().chain(b.max).all(|x| check_coordinate(x).is_ok());
+    if !cells.iter().all(|c| in_range(&c.bounds)) {
+        return None;
+    }
+    let graph = CellGraph::<Axial>::new(cells, portals?);
     graph.check_well_formed().is_ok().then_some(graph)
 }

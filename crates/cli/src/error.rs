@@ -54,9 +54,6 @@ pub(crate) enum CliError {
     /// A table whose cells and portals are not there, so that no lines can be sought.
     #[error("{}: the table has no polygons and portals to look for lines in", .0.display())]
     Stripped(PathBuf),
-    /// A table of which no lines can be told yet.
-    #[error("{}: lines are explained in plans only, and this is the table of a scene in space", .0.display())]
-    ExplainSpace(PathBuf),
     /// A floor plan of which nobody said where it lies.
     #[error("{}: a floor plan of a scene in space needs --height (cells reach from {low} to {high}), --eye or --cell; \
              without, there is --isometric", path.display())]

@@ -3,7 +3,7 @@
 mod common;
 
 use common::Folder;
-use serde_json::json;
+use serde_json::{Value, json};
 use sightlines::formats::scene::read_scene;
 use sightlines::pvs::{CellId, Table};
 
@@ -215,8 +215,140 @@ fn pictures_that_cannot_be_are_refused() {
     }
     folder.run(&["draw", "tower.pvs", "-o", "out.svg", "--height", "nan"]).expect(2);
     let error = folder.refused(&["explain", "tower.pvs", "0", "1", "--draw", "out.svg"]);
-    assert_eq!(error, "tower.pvs: lines are explained in plans only, and this is the table of a scene in space");
+    assert_eq!(error, "tower.pvs: --draw is for plans, and this is the table of a scene in space");
     assert!(!folder.path("out.svg").exists());
+}
+
+/// Invariant: what `explain` says of two cells is what the table says; lines pass their portals in order,
+/// and proofs name walls.
+#[test]
+fn explain_agrees_with_tables_in_space() {
+    let folder = Folder::with_tower();
+    folder.run(&["build", "tower.glb", "-o", "loose.pvs", "--portals", "bounding"]).expect(0);
+    let (mut n_seen, mut n_hidden) = (0, 0);
+    for (name, step) in [("tower.pvs", 7), ("loose.pvs", 13)] {
+        let made = table(&folder, name);
+        for (a, b) in some_pairs(made.n_cells() as u32, step) {
+            let run = folder.run(&["explain", name, &a.to_string(), &b.to_string(), "--json"]);
+            let sees = made.sees(CellId(a), CellId(b));
+            assert_eq!(run.code, i32::from(!sees), "{name}: cells {a} and {b}: {}", run.out);
+            let told = run.json();
+            assert_eq!((&told["from"], &told["to"], &told["listed"]), (&json!(a), &json!(b), &json!(sees)));
+            match told["answer"].as_str().unwrap() {
+                "same" => assert_eq!(a, b),
+                "visible" => {
+                    n_seen += 1;
+                    check_line(&made, &told);
+                }
+                "hidden" => {
+                    n_hidden += 1;
+                    check_proof(&told);
+                }
+                other => panic!("{other}"),
+            }
+        }
+    }
+    assert!(n_seen > 50 && n_hidden > 50, "{n_seen} seen, {n_hidden} hidden");
+}
+
+fn some_pairs(n_cells: u32, step: usize) -> impl Iterator<Item = (u32, u32)> {
+    (0..n_cells).step_by(step).flat_map(move |a| (a..n_cells).step_by(step).map(move |b| (a, b)))
+}
+
+fn point(value: &Value) -> [f64; 3] {
+    [0, 1, 2].map(|k| value[k].as_f64().unwrap_or_else(|| panic!("{value} is no point")))
+}
+
+/// The portals lead from the first cell into the last one, each point lies on its portal, and the line
+/// begins and ends inside of the two cells.
+fn check_line(table: &Table, told: &Value) {
+    let list = |key: &str| told[key].as_array().unwrap().clone();
+    let (portals, cells, points) = (list("portals"), list("cells"), list("points"));
+    assert!(portals.len() == cells.len() && cells.len() == points.len() && cells.last() == Some(&told["to"]));
+    let mut here = told["from"].clone();
+    for ((portal, cell), at) in portals.iter().zip(cells).zip(points) {
+        let portal = &table.portals()[portal.as_u64().unwrap() as usize];
+        assert!(portal.cells.map(|c| json!(c.0)).contains(&here) && portal.cells.map(|c| json!(c.0)).contains(&cell));
+        for (k, p) in point(&at).into_iter().enumerate() {
+            let [low, high] = [f64::min, f64::max].map(|f| portal.points.iter().map(|p| p[k]).reduce(f).unwrap());
+            assert!(low - 1e-9 <= p && p <= high + 1e-9, "{at} is on {portal:?}");
+        }
+        here = cell;
+    }
+    assert!(told["line"]["point"].is_array() && told["line"]["direction"].is_array());
+    if let Some(ends) = told["ends"].as_array() {
+        for (end, cell) in ends.iter().zip(["from", "to"]) {
+            let cell = &table.cells()[told[cell].as_u64().unwrap() as usize];
+            assert!((0..3).all(|k| cell.min[k] <= point(end)[k] && point(end)[k] <= cell.max[k]), "{told}");
+        }
+    }
+}
+
+/// Walls are flat, and as often in the tree as is said; unless nothing joins the cells.
+fn check_proof(told: &Value) {
+    if told["connected"] == json!(false) {
+        return;
+    }
+    let walls = told["walls"].as_array().unwrap();
+    assert!(!walls.is_empty() && told["n_blockers"].as_u64().unwrap() >= walls.len() as u64, "{told}");
+    let flat = |w: &Value| (0..3).filter(|&k| w["min"][k] == w["max"][k]).count() == 1;
+    assert!(walls.iter().all(flat), "{told}");
+    let n_nodes: u64 = walls.iter().map(|w| w["n_nodes"].as_u64().unwrap()).sum();
+    let text = told["proof"].to_string();
+    assert_eq!((&told["n_nodes"], text.matches("\"wall\":").count() as u64), (&json!(n_nodes), n_nodes));
+    assert_eq!(told["n_contradictions"], json!(text.matches("[{\"row\":").count()));
+}
+
+#[test]
+fn explain_speaks_in_space() {
+    let folder = Folder::with_tower();
+    let made = table(&folder, "tower.pvs");
+    let sees = |b: &u32| made.sees(CellId(0), CellId(*b));
+    let ids = 0..made.n_cells() as u32;
+    let (seen, hidden) = (ids.clone().rfind(sees).unwrap().to_string(), ids.clone().rfind(|b| !sees(b)).unwrap());
+    let told = folder.run(&["explain", "tower.pvs", "0", &seen]).expect(0).out;
+    assert!(
+        told.starts_with(&format!("cell 0 sees cell {seen} through ")) && told.contains("along the line from ("),
+        "{told}"
+    );
+    let hidden = hidden.to_string();
+    let told = folder.run(&["explain", "tower.pvs", "0", &hidden]).expect(1).out;
+    assert!(
+        told.contains("every line meets one ") && told.contains("  wall x") && told.contains("the proof goes"),
+        "{told}"
+    );
+    assert!(!folder.run(&["explain", "tower.pvs", "0", &hidden, "--proofs", "0"]).expect(1).out.contains("  wall"));
+    // Points are cells too, and a cell sees itself.
+    let told = folder.run(&["explain", "tower.pvs", &eye(&made, CellId(0)), "0"]).expect(0).out;
+    assert_eq!(told, "both are in cell 0, and a cell sees itself\n");
+    assert!(folder.run(&["explain", "tower.pvs", "1e4,0,0", "0"]).expect(1).out.contains("outside every cell"));
+    // Given up at once: what the table says is told as that. A single wall in the way takes no program.
+    let told = folder.run(&["explain", "tower.pvs", "0", &seen, "--max-programs", "0"]).expect(0).out;
+    assert!(told.contains("in 0 linear programs; see --max-programs\nthe table assumes that they see each"), "{told}");
+    let at_once =
+        |b: u32| folder.run(&["explain", "tower.pvs", "0", &b.to_string(), "--max-programs", "0"]).expect(1).out;
+    let told = ids.filter(|b| !sees(b)).map(at_once).find(|told| told.contains("see --max-programs"));
+    assert!(told.is_some_and(|told| told.ends_with("the table says that they do not see each other\n")));
+}
+
+#[test]
+fn explain_refuses_what_it_cannot_use() {
+    let folder = Folder::with_tower();
+    let office = Folder::with_office();
+    folder.write("office.pvs", office.read("office.pvs"));
+    assert_eq!(
+        folder.refused(&["explain", "tower.pvs", "0", "1", "--max-visits", "9"]),
+        "tower.pvs: --max-visits is for plans, and this is the table of a scene in space"
+    );
+    assert_eq!(
+        folder.refused(&["explain", "office.pvs", "0", "1", "--max-programs", "9"]),
+        "office.pvs: --max-programs is for scenes in space, and this is the table of a plan"
+    );
+    assert!(folder.refused(&["explain", "tower.pvs", "0", "9999"]).contains("no cell 9999"));
+    assert!(folder.refused(&["explain", "tower.pvs", "0", "1,1"]).contains("3 dimensions"));
+    folder.write("bare.pvs", table(&folder, "tower.pvs").strip_geometry().to_bytes());
+    let error = folder.refused(&["explain", "bare.pvs", "0", "1"]);
+    assert!(error.starts_with("bare.pvs: the table has no "), "{error}");
 }
 
 #[test]

@@ -25,16 +25,18 @@ pub struct SceneOptions {
     pub detail_below: Option<f64>,
     /// Shape of the portals of the graph.
     pub portals: PortalForm,
-    /// Limit for the number of cells, see [`Options::max_cells`].
+    /// Limit for the number of cells, those that are left out included, see [`Options::max_cells`].
     pub max_cells: u32,
     /// Whether the insides of walls and other solid things stay cells.
     pub keep_solid: bool,
 }
 
+/// Cells beyond which a table of who sees whom takes gigabytes: 2^32 bits are half of one.
+const MAX_CELLS: u32 = 1 << 16;
+
 impl Default for SceneOptions {
     fn default() -> Self {
-        let Options { tau, max_cells } = Options::default();
-        let portals = PortalForm::Exact;
+        let (tau, portals, max_cells) = (Options::default().tau, PortalForm::Exact, MAX_CELLS);
         Self { view_region: None, tau, detail_below: None, portals, max_cells, keep_solid: false }
     }
 }

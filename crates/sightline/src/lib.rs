@@ -18,7 +18,10 @@ pub mod lp;
 mod stabber;
 pub mod witness;
 
-pub use axial::shaft::{Blockers, FreeLine, FreeSpan, Shaft, ShaftCounters, Sight, Target};
+pub use axial::shaft::{
+    BlockedProof, Blockers, Branch, BranchRow, Contradiction, FreeLine, FreeSpan, ProofSize, Shaft, ShaftCounters,
+    Sight, Target, WayPast,
+};
 pub use axial::{
     AxialCertificate, AxialCounters, AxialRow, AxialStabber, AxialUndo, AxialWitness, OctantProof, StabbingAxial,
     stabbing_line_axial,

@@ -1,6 +1,6 @@
 //! Why one cell sees another, or why it does not.
 
-use sightlines_cells::{CellGraph, CellId, Exit, Planar, PortalId};
+use sightlines_cells::{CellGraph, CellId, Exit, Planar, PortalId, Space};
 use sightlines_geometry::{Adaptive, Portal2};
 use sightlines_sightline::{Certificate, Funnel, Witness};
 
@@ -128,7 +128,7 @@ impl Search<'_> {
 }
 
 /// Cells from which a chain of portals leads to `to`.
-fn reaching(graph: &CellGraph<Planar>, to: CellId) -> Vec<bool> {
+pub(crate) fn reaching<S: Space>(graph: &CellGraph<S>, to: CellId) -> Vec<bool> {
     let mut reached = vec![false; graph.n_cells()];
     reached[to.idx()] = true;
     let mut stack = vec![to];

@@ -1,8 +1,8 @@
 //! Cell-to-cell visibility: a depth-first search over portals, driven by a stabber.
 //!
 //! Owns: [`visible_zones`] (which cells, or groups of cells, see each other), [`StabTree`] (every
-//! stabbable portal sequence out of one cell), [`explain`](fn@explain) (the line between two cells, or
-//! why there is none).
+//! stabbable portal sequence out of one cell), [`explain`](fn@explain) and [`explain_space`] (the line
+//! between two cells, or why there is none).
 //! Does not know: files, tables, how cells were cut. The search is generic over the
 //! [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
 //! Invariants: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and
@@ -20,7 +20,7 @@ pub use chords::{shoot_axial_chords, shoot_chords};
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
 pub use search::{Known, Progress, SearchOptions, SearchSummary, Seen, visible_zones};
-pub use space::{SeenInSpace, see_space};
+pub use space::{SeenInSpace, SpaceExplanation, explain_space, see_space};
 pub use tree::{StabNode, StabTree, TooLarge};
 pub use zones::Zones;
 

@@ -5,14 +5,17 @@
 //! that replays it. Run by `cargo xtask fuzz`.
 
 use sightlines::bake::reject::{RejectOptions, reject_wad};
-use sightlines::bake::{BakeOptions, bake_plan, graph_of};
+use sightlines::bake::{BakeOptions, PortalMode, SceneBakeOptions, bake_plan, bake_scene, graph_of};
+use sightlines::cells::Scene;
 use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
 use sightlines::formats::geojson::{parse_plan, write_plan};
 use sightlines::formats::scene::{SceneFile, parse_glb, parse_obj, write_glb};
 use sightlines::formats::wad::WadKind;
 use sightlines::formats::{LumpName, Wad, WadBuilder};
-use sightlines::pvs::Table;
-use sightlines::scenes;
+use sightlines::kdtree::{SceneOptions, subdivide_scene};
+use sightlines::pvs::{CellId, Table};
+use sightlines::scenes::{self, TowerOptions, tower};
+use sightlines::stabtree::{Zones, shoot_axial_chords};
 use sightlines_testkit::mutate::{SplitMix, mutate};
 use std::panic::catch_unwind;
 use std::process::ExitCode;
@@ -25,13 +28,14 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 8] = [
+const TARGETS: [Target; 9] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
     Target { name: "glb", seeds: glbs, check: check_glb },
     Target { name: "obj", seeds: objs, check: check_obj },
     Target { name: "bake", seeds: plans, check: check_bake },
+    Target { name: "scene", seeds: buildings, check: check_building },
     Target { name: "pvs", seeds: tables, check: check_pvs },
     Target { name: "garbage", seeds: garbage, check: check_anything },
 ];
@@ -101,6 +105,31 @@ fn objs() -> Vec<Vec<u8>> {
     vec![OBJ.into()]
 }
 
+/// A scene as OBJ text, in which a broken digit moves a wall.
+fn obj_of(scene: &Scene) -> Vec<u8> {
+    let mut text = String::new();
+    let mut n = 0;
+    for object in scene.objects() {
+        text.push_str(&format!("o {}\n", object.name));
+        for corners in object.corners() {
+            corners.iter().for_each(|[x, y, z]| text.push_str(&format!("v {x} {y} {z}\n")));
+            text.push_str(&format!("f {} {} {}\n", n + 1, n + 2, n + 3));
+            n += 3;
+        }
+    }
+    text.into_bytes()
+}
+
+fn buildings() -> Vec<Vec<u8>> {
+    let options = TowerOptions { floors: 1, rooms_x: 1, rooms_y: 1, furniture: 0, ..TowerOptions::default() };
+    let house = tower(options).expect("valid options");
+    let room = "o room\nv 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 9\nv 4 0 9\nv 4 3 9\nv 0 3 9\n\
+        f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 4 3 7 8\nf 1 4 8 5\nf 2 3 7 6\n\
+        o wall\nv 0 0 4\nv 3 0 4\nv 3 3 4\nv 0 3 4\nf 9 10 11 12\n\
+        o bar\nv 1 0 6\nv 4 0 6\nv 4 2 6\nv 1 2 6\nf 13 14 15 16\n";
+    vec![obj_of(&house), room.into()]
+}
+
 fn tables() -> Vec<Vec<u8>> {
     let bake = |plan| bake_plan(&plan, &BakeOptions::default()).map(|b| b.table.to_bytes());
     scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1)).flat_map(bake).collect()
@@ -156,6 +185,28 @@ fn check_bake(bytes: &[u8]) -> bool {
     graph.assert_well_formed();
     let decoded = Table::from_bytes(&baked.table.to_bytes()).expect("what was written is read");
     assert_eq!(decoded, baked.table);
+    true
+}
+
+fn check_building(bytes: &[u8]) -> bool {
+    let Ok(file) = parse_obj(bytes) else { return false };
+    let cut = SceneOptions { detail_below: Some(0.0), max_cells: 300, ..SceneOptions::default() };
+    let bake = |portals| {
+        let options = SceneBakeOptions { cut, portals, threads: 1, ..SceneBakeOptions::default() };
+        bake_scene(&file.scene, &options).map(|baked| baked.table)
+    };
+    let Ok(exact) = bake(PortalMode::Exact) else { return false };
+    let wide = bake(PortalMode::Bounding).expect("the same cells");
+    let graph = subdivide_scene(&file.scene, &cut).expect("it was cut before").graph;
+    let chords = shoot_axial_chords(&graph, &Zones::cells(&graph), 4);
+    for row in 0..exact.n_cells() {
+        let cell = CellId(row as u32);
+        assert!(chords.iter_ones(row).all(|col| exact.sees(cell, CellId(col as u32))), "a chord is hidden");
+        assert!(exact.visible(cell).all(|other| wide.sees(cell, other)), "less is seen through larger portals");
+        let objects = wide.visible_objects(cell);
+        assert!(exact.visible_objects(cell).iter().all(|o| objects.binary_search(o).is_ok()));
+    }
+    assert_eq!(Table::from_bytes(&exact.to_bytes()).expect("what was written is read"), exact);
     true
 }
 

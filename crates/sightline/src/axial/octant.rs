@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn each_stage_is_needed() {
         let (mut lines, mut cycles, mut eliminations) = (0, 0, 0);
-        for doors in sightlines_testkit::draw(&axial_corridor(), 1000) {
+        for doors in sightlines_testkit::draw(&axial_corridor(), 6_000) {
             let Some((octant, rows)) = one_octant(&doors) else { continue };
             match decide(&rows, octant, FINE, &mut Vec::new()).0 {
                 Decision::Line(_) => lines += 1,

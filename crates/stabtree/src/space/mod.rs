@@ -11,11 +11,14 @@
 //! its cells is; when something is, nothing follows, and its halves are asked about. Single cells are
 //! decided exactly, but for [`slivers`]. So the answer does not depend on how cells are grouped, nor on the order of work.
 
+mod explain;
 mod grid;
 mod objects;
 mod opaque;
 mod pairs;
 mod slivers;
+
+pub use explain::{SpaceExplanation, explain_space};
 
 use crate::search::{Known, SearchOptions};
 use grid::Marks;
@@ -62,11 +65,30 @@ struct Question<'a> {
     /// The place of each cell; [`SLIVER`] for slivers.
     place: Vec<u32>,
     touching: Vec<Vec<u32>>,
+    /// For each cell, which cells it hangs together with through portals, as the least of them.
+    component: Vec<u32>,
     /// Places by places.
     cells: Marks,
-    /// Places by objects.
+    /// Objects by places: which see it.
     objects: Marks,
+    /// Objects by places: which may see it.
+    maybe: Marks,
     n_assumed: AtomicU64,
+}
+
+/// For each cell the least cell that chains of portals join it with.
+fn components(graph: &CellGraph<Axial>) -> Vec<u32> {
+    let mut of = vec![u32::MAX; graph.n_cells()];
+    for first in graph.cell_ids() {
+        let mut stack = vec![first];
+        while let Some(cell) = stack.pop() {
+            if of[cell.idx()] == u32::MAX {
+                of[cell.idx()] = first.0;
+                stack.extend(graph.exits(cell).iter().map(|exit| exit.to));
+            }
+        }
+    }
+    of
 }
 
 /// The place of a cell that is too thin to be asked about.
@@ -151,7 +173,7 @@ impl<'a> Question<'a> {
             let places = known.visible.iter_ones(cell as usize).map(|col| place[col]).filter(|p| *p != SLIVER);
             places.for_each(|col| cells.set(row, col as usize));
         }
-        let objects = Marks::new(cell_at.len(), boxes.len());
+        let [objects, maybe] = [(); 2].map(|()| Marks::new(boxes.len(), cell_at.len()));
         let possible = known.possible.as_ref();
         Self {
             graph,
@@ -164,15 +186,18 @@ impl<'a> Question<'a> {
             cell_at,
             place,
             touching,
+            component: components(graph),
             cells,
             objects,
+            maybe,
             n_assumed: AtomicU64::new(0),
         }
     }
 
     fn may_see_cell(&self, a: usize, b: usize) -> bool {
         let cell = |place: usize| self.cell_at[place] as usize;
-        self.possible.is_none_or(|(cells, _)| cells.get(cell(a), cell(b)))
+        self.component[cell(a)] == self.component[cell(b)]
+            && self.possible.is_none_or(|(cells, _)| cells.get(cell(a), cell(b)))
     }
 
     fn may_see_object(&self, place: usize, object: usize) -> bool {
@@ -194,7 +219,7 @@ impl<'a> Question<'a> {
                 break;
             }
         }
-        let (done, all) = (AtomicUsize::new(0), tasks.len() + n);
+        let (done, all) = (AtomicUsize::new(0), tasks.len() + self.boxes.len());
         let step = || {
             let done = done.fetch_add(1, Relaxed) + 1;
             options.progress.iter().for_each(|progress| progress(done, all));
@@ -210,13 +235,15 @@ impl<'a> Question<'a> {
             shaft.counters() - before
         });
         let pairs = pairs.reduce(ShaftCounters::default, |a, b| a + b);
+        (0..n).into_par_iter().for_each(|place| self.survey_objects(place));
         let state = || (Shaft::new(self.blockers), Vec::new());
-        let objects = (0..n).into_par_iter().with_max_len(16).map_init(state, |(shaft, seen), place| {
-            let before = shaft.counters();
-            self.settle_objects(place, shaft, seen);
-            step();
-            shaft.counters() - before
-        });
+        let objects =
+            (0..self.boxes.len()).into_par_iter().with_max_len(4).map_init(state, |(shaft, stack), object| {
+                let before = shaft.counters();
+                self.settle_object(object, shaft, stack);
+                step();
+                shaft.counters() - before
+            });
         first.counters() + pairs + objects.reduce(ShaftCounters::default, |a, b| a + b)
     }
 
@@ -228,8 +255,10 @@ impl<'a> Question<'a> {
             for other in self.cells.ones(place) {
                 cells.set(cell as usize, self.cell_at[other] as usize, true);
             }
-            for object in self.objects.ones(place) {
-                objects.set(cell as usize, object, true);
+        }
+        for object in 0..self.boxes.len() {
+            for place in self.objects.ones(object) {
+                objects.set(self.cell_at[place] as usize, object, true);
             }
         }
         slivers::fill(self.graph, |cell| self.place[cell] == SLIVER, &self.touching, &mut cells, &mut objects);

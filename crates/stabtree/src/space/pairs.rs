@@ -6,7 +6,7 @@ use sightlines_sightline::{FreeLine, Shaft, Sight, Target};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Linear programs spent on a pair of groups; one that takes more is halved.
-const GROUP_BUDGET: u32 = 100;
+pub(super) const GROUP_BUDGET: u32 = 64;
 
 /// Linear programs spent on a pair of single cells, or a cell and an object, before it counts as visible.
 pub(super) const CELL_BUDGET: u32 = 2000;
@@ -15,7 +15,7 @@ pub(super) const CELL_BUDGET: u32 = 2000;
 pub(super) type Pair = [u32; 2];
 
 /// Whether two boxes do not overlap along some axis.
-fn apart(a: &Aabb<3>, b: &Aabb<3>) -> bool {
+pub(super) fn apart(a: &Aabb<3>, b: &Aabb<3>) -> bool {
     (0..3).any(|k| a.max[k] <= b.min[k] || b.max[k] <= a.min[k])
 }
 
@@ -95,7 +95,7 @@ impl Question<'_> {
             |b| span.may_meet(b),
             |object| {
                 if span.meets(&self.boxes[object as usize]) {
-                    cells.iter().for_each(|&cell| self.objects.set(cell, object as usize));
+                    cells.iter().for_each(|&cell| self.objects.set(object as usize, cell));
                 }
             },
         );

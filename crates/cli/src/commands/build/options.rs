@@ -28,9 +28,13 @@ pub(crate) struct BakeArgs {
     /// through one rectangle around each, which shows more
     #[arg(long, value_name = "HOW")]
     portals: Option<Portals>,
-    /// Scenes in space only: give up beyond so many cells; 16777216 if not given
+    /// Scenes in space only: give up beyond so many cells; 65536 if not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_cells: Option<u32>,
+    /// Scenes in space only: keep the insides of walls and other solid things as cells, for eyes that get
+    /// into them
+    #[arg(long)]
+    keep_solid: bool,
     /// Number of threads; 0 for one for each core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
     pub(super) threads: usize,
@@ -71,6 +75,7 @@ impl BakeArgs {
             tau: self.tau(),
             detail_below: self.detail_below,
             max_cells: self.max_cells.unwrap_or(standard.max_cells),
+            keep_solid: self.keep_solid,
             ..standard
         }
     }
@@ -78,8 +83,7 @@ impl BakeArgs {
     /// Which portals of a scene in space to look through.
     pub(super) fn portal_mode(&self) -> PortalMode {
         match self.portals {
-            // The same answer as looking through the exact ones at once, only sooner.
-            None | Some(Portals::Exact) => PortalMode::TwoLevel,
+            None | Some(Portals::Exact) => PortalMode::Exact,
             Some(Portals::Bounding) => PortalMode::Bounding,
         }
     }
@@ -91,6 +95,7 @@ impl BakeArgs {
             ("--detail-below", self.detail_below.is_some()),
             ("--portals", self.portals.is_some()),
             ("--max-cells", self.max_cells.is_some()),
+            ("--keep-solid", self.keep_solid),
         ];
         refuse(path, &given, "scenes in space", "a plan")
     }
@@ -121,6 +126,6 @@ mod tests {
     /// The help names this number.
     #[test]
     fn the_limit_of_cells_is_the_one_in_the_help() {
-        assert_eq!(BakeArgs::default().cut().max_cells, 16_777_216);
+        assert_eq!(BakeArgs::default().cut().max_cells, 65_536);
     }
 }

@@ -1,7 +1,8 @@
-//! `explain`: the line of sight between two cells of a plan, or why there is none.
+//! `explain`: the line of sight between two cells, or why there is none.
 
 mod answer;
 mod line;
+mod space;
 
 use crate::Answer;
 use crate::commands::draw::{PictureKind, draw_plan, save_picture};
@@ -9,11 +10,19 @@ use crate::error::CliError;
 use crate::place::Place;
 use crate::{input, output};
 use answer::{Outside, Told};
+use sightlines::bake::axial_graph_of;
 use sightlines::cells::{CellGraph, Planar};
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{DrawOptions, View};
-use sightlines::stabtree::{Explanation, explain};
+use sightlines::stabtree::{Explanation, explain, explain_space};
+use space::ToldInSpace;
 use std::path::PathBuf;
+
+/// Cells entered on the way in a plan before the search is given up.
+const MAX_VISITS: u64 = 20_000_000;
+
+/// Linear programs in space before it is given up.
+const MAX_PROGRAMS: u32 = 20_000;
 
 /// Arguments of `explain`.
 #[derive(Debug, clap::Args)]
@@ -27,15 +36,18 @@ pub(crate) struct ExplainArgs {
     /// What is looked for: a cell's id, or a point X,Y; exit code 1 if it is hidden
     #[arg(value_name = "B", allow_hyphen_values = true)]
     to: Place,
-    /// Draw the line, or what blocks it
+    /// Draw the line, or what blocks it; of plans
     #[arg(long, value_name = "OUT.svg|OUT.png")]
     draw: Option<PathBuf>,
-    /// If hidden: how many of the blocked ways to show
+    /// If hidden: how many of the blocked ways to show, or of the walls in space
     #[arg(long, value_name = "N", default_value_t = 3)]
     proofs: usize,
-    /// Give up after so many cells on the way
-    #[arg(long, value_name = "N", default_value_t = 20_000_000)]
-    max_visits: u64,
+    /// In plans: give up after so many cells on the way [default: 20000000]
+    #[arg(long, value_name = "N")]
+    max_visits: Option<u64>,
+    /// In space: give up after so many linear programs [default: 20000]
+    #[arg(long, value_name = "N")]
+    max_programs: Option<u32>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -47,9 +59,8 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
         output::refuse_same(&args.table, out)?;
     }
     let table = input::table(&args.table)?;
-    if table.dimension() != 2 {
-        return Err(CliError::ExplainSpace(args.table.clone()));
-    }
+    let is_plan = table.dimension() == 2;
+    args.refuse_meaningless(is_plan)?;
     let from = args.from.cells(&table, &args.table)?;
     let to = args.to.cells(&table, &args.table)?;
     for (place, cells) in [(&args.from, &from), (&args.to, &to)] {
@@ -58,12 +69,42 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
             return Ok(Answer::No);
         }
     }
-    let graph = input::graph(&table, &args.table)?;
-    let (a, b) = choose(&table, &from, &to);
-    let explanation = explain(&graph, a, b, args.proofs, args.max_visits);
+    let pair = choose(&table, &from, &to);
+    if is_plan { in_plan(args, &table, pair) } else { in_space(args, &table, pair) }
+}
+
+impl ExplainArgs {
+    /// Refuses options that say nothing about such a table.
+    fn refuse_meaningless(&self, is_plan: bool) -> Result<(), CliError> {
+        let (plan, space) = (("plans", "the table of a plan"), ("scenes in space", "the table of a scene in space"));
+        let given = if is_plan {
+            [self.max_programs.is_some().then_some("--max-programs"), None]
+        } else {
+            [self.draw.is_some().then_some("--draw"), self.max_visits.is_some().then_some("--max-visits")]
+        };
+        let (meant, found) = if is_plan { (space.0, plan.1) } else { (plan.0, space.1) };
+        match given.into_iter().flatten().next() {
+            Some(option) => Err(CliError::Option { path: self.table.clone(), option, meant, found }),
+            None => Ok(()),
+        }
+    }
+}
+
+fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, CliError> {
+    let graph = axial_graph_of(table).ok_or_else(|| CliError::Stripped(args.table.clone()))?;
+    // The table does not tell what was left out beside its cells, and no answer depends on that.
+    let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
+    let told = ToldInSpace::new([a, b], explanation, table.sees(a, b), args.proofs);
+    output::print(args.json, &told)?;
+    Ok(if told.is_visible() { Answer::Yes } else { Answer::No })
+}
+
+fn in_plan(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, CliError> {
+    let graph = input::graph(table, &args.table)?;
+    let explanation = explain(&graph, a, b, args.proofs, args.max_visits.unwrap_or(MAX_VISITS));
     let told = Told::new(&graph, [a, b], &explanation, table.sees(a, b));
     if let Some(out) = &args.draw {
-        let svg = draw_plan(&args.table, &table, &options(&graph, [a, b], &explanation))?;
+        let svg = draw_plan(&args.table, table, &options(&graph, [a, b], &explanation))?;
         save_picture(&svg, out)?;
     }
     output::print(args.json, &told)?;

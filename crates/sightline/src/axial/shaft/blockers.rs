@@ -41,6 +41,11 @@ impl Blockers {
         self.rectangles.is_empty()
     }
 
+    /// All rectangles, by index.
+    pub fn rectangles(&self) -> &[Aabb<3>] {
+        &self.rectangles
+    }
+
     /// A rectangle.
     ///
     /// # Panics
@@ -63,6 +68,19 @@ impl Blockers {
                 each(i);
             }
         });
+    }
+
+    /// Rectangles that a ray seems to meet between two times; rounding may leave one out or let one in.
+    #[inline]
+    pub(super) fn met(&self, ray: &Ray, times: [f64; 2], mut each: impl FnMut(u32)) {
+        self.tree.visit(
+            |b| ray.seems_to_meet(b, times),
+            |i| {
+                if ray.seems_to_meet(&self.rectangles[i as usize], times) {
+                    each(i);
+                }
+            },
+        );
     }
 
     /// Whether a line in the octant misses the closed rectangle. Exact.

@@ -21,11 +21,16 @@
 //! axes' octants are linear is the observation of the module above.
 
 mod blockers;
+mod certificate;
 mod cuts;
 mod ray;
+mod record;
+#[cfg(test)]
+mod tests;
 mod trace;
 
 pub use blockers::Blockers;
+pub use certificate::{BlockedProof, Branch, BranchRow, Contradiction, ProofSize, WayPast};
 pub use trace::{FreeLine, FreeSpan};
 
 use super::octant::{Decision, FINE, SMALL_FIRST, decide_in_doubles, two_axes};
@@ -221,7 +226,7 @@ impl<'a> Shaft<'a> {
         self.hits.clear();
         let hits = &mut self.hits;
         let blockers = self.blockers;
-        blockers.near(ray, times, |i| {
+        blockers.met(ray, times, |i| {
             let rectangle = blockers.rectangle(i);
             let axis = blockers.axis(i);
             let at = ray.time(axis, rectangle.min[axis]);
@@ -236,12 +241,12 @@ impl<'a> Shaft<'a> {
         self.look(ray, [ray.span(ends.from)[1], ray.span(ends.to)[0]], ends.target);
         let passed = &self.passed;
         self.hits.retain(|hit| !passed.contains(hit));
-        self.best(ends)
+        self.best(ends, ray)
     }
 
-    /// The rectangle met that leaves the fewest ways past it, or of those the one that seems to fill most
-    /// of the way between two boxes.
-    fn best(&self, ends: &Ends<'_>) -> Option<u32> {
+    /// The rectangle met that leaves the fewest ways past it, or of those the one that the ray meets
+    /// farthest from any of them.
+    fn best(&self, ends: &Ends<'_>, ray: &Ray) -> Option<u32> {
         let blockers = self.blockers;
         // The largest come first, and few are looked at.
         let mut largest = [(0.0, u32::MAX); COMPARED];
@@ -254,11 +259,15 @@ impl<'a> Shaft<'a> {
             }
         }
         let ways = |i: u32| {
-            let mut ways = 0;
-            ends.ways_past(blockers.rectangle(i), blockers.axis(i), |_| ways += 1);
-            ways
+            let (mut ways, mut depth) = (0u32, f64::INFINITY);
+            ends.ways_past(blockers.rectangle(i), blockers.axis(i), |way| {
+                ways += 1;
+                depth = depth.min(lateness(&way, ray));
+            });
+            (ways, depth)
         };
-        largest.into_iter().map(|l| l.1).filter(|&i| i != u32::MAX).min_by_key(|&i| ways(i))
+        let met = largest.into_iter().map(|l| l.1).filter(|&i| i != u32::MAX).map(|i| (ways(i), i));
+        met.min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1))).map(|best| best.1)
     }
 
     /// Searches the lines that obey the current rows.
@@ -326,8 +335,7 @@ impl<'a> Shaft<'a> {
     fn past(&mut self, ends: &Ends<'_>, frame: &Frame, tableau: Tableau, blocker: u32, ray: &Ray) -> Part {
         let mut ways: Vec<(f64, Way)> = Vec::with_capacity(6);
         ends.ways_past(self.blockers.rectangle(blocker), self.blockers.axis(blocker), |way| {
-            let late = |row: &Row| ray.time(row.early, row.from) - ray.time(row.late, row.to);
-            ways.push((way.rows().iter().map(late).fold(f64::NEG_INFINITY, f64::max), way));
+            ways.push((lateness(&way, ray), way));
         });
         ways.sort_by(|a, b| a.0.total_cmp(&b.0));
         let n_rows = self.rows.len();
@@ -433,6 +441,12 @@ fn is_outside(ends: &Ends<'_>, blockers: &Blockers, index: u32, line: &Line) -> 
         outside |= way.complement().is_none() && way.rows().iter().all(|row| line.obeys(row, ends.octant));
     });
     outside
+}
+
+/// By how much a ray fails to take a way, in time.
+fn lateness(way: &Way, ray: &Ray) -> f64 {
+    let late = |row: &Row| ray.time(row.early, row.from) - ray.time(row.late, row.to);
+    way.rows().iter().map(late).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The octants, the one from middle to middle first.

@@ -52,6 +52,13 @@ impl Ray {
         [enter, leave]
     }
 
+    /// Whether it seems to meet the closed box between two times.
+    #[inline(always)]
+    pub(super) fn seems_to_meet(&self, b: &Aabb<3>, [from, to]: [f64; 2]) -> bool {
+        let [enter, leave] = self.span(b);
+        enter.max(from) <= leave.min(to)
+    }
+
     /// Whether it may meet the closed box between two times: certain if it says no.
     #[inline(always)]
     pub(super) fn may_meet(&self, b: &Aabb<3>, [from, to]: [f64; 2]) -> bool {

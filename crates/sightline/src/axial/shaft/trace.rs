@@ -1,9 +1,10 @@
 //! A free line beyond the two boxes it was found for: how far it goes, and what it meets on its way.
 
-use super::super::rows::{Line, Octant, Row, first_and_last, others, sign};
+use super::super::rows::{Line, Octant, Row, first_and_last, is_forward, others, sign};
+use super::super::witness::AxialWitness;
 use super::blockers::Blockers;
 use super::ray::Ray;
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, AxialDoor};
 
 /// Times closer than this share of themselves may be equal: twice the error of a time.
 const SAME_TIME: f64 = 8.0 * f64::EPSILON;
@@ -34,6 +35,22 @@ impl FreeLine {
     /// Two points of the line, in its direction: the first inside the first box, the second in the second.
     pub const fn points(&self) -> [[f64; 3]; 2] {
         [self.line.from, self.line.to]
+    }
+
+    /// The same line in fractions.
+    pub fn witness(&self) -> AxialWitness {
+        AxialWitness::through(&self.line)
+    }
+
+    /// Whether it crosses the plane of a door in the door's direction and meets the closed rectangle. Exact.
+    pub fn touches(&self, door: &AxialDoor) -> bool {
+        let (axis, at) = (usize::from(door.axis), door.at());
+        let misses = |b: usize| {
+            let [first, last] = first_and_last(&door.extent, self.octant, b);
+            self.line.obeys(&Row { early: axis, late: b, from: at, to: first }, self.octant)
+                || self.line.obeys(&Row { early: b, late: axis, from: last, to: at }, self.octant)
+        };
+        door.forward == is_forward(self.octant, axis) && !others(axis).into_iter().any(misses)
     }
 
     /// Whether it passes the inside of a box, or crosses a flat one. Exact.
