@@ -63,7 +63,7 @@ pub struct BakedScene {
     /// Rectangles that the walls between the cells were put together to.
     pub n_blockers: usize,
     /// Pairs of a cell and a cell or object that count as visible because deciding about them took too
-    /// much effort, or more digits than doubles have.
+    /// much effort, or more digits than doubles have. Varies a little with threads.
     pub n_assumed: u64,
     /// How it was decided who sees what. Varies from run to run with several threads.
     pub counters: ShaftCounters,

@@ -24,6 +24,9 @@ pub(crate) enum CliError {
     /// A file is none of the kinds that the command takes.
     #[error("{}: neither {expected}", path.display())]
     Kind { path: PathBuf, expected: &'static str },
+    /// A scene is written as GLB, so its name should say so.
+    #[error("{}: the scene is written as GLB; give a name that ends in .glb", path.display())]
+    NotGlb { path: PathBuf },
     /// A WAD without maps.
     #[error("{}: there are no maps in the file", .0.display())]
     NoMaps(PathBuf),

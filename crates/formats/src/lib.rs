@@ -1,9 +1,10 @@
 //! Readers and writers of the files that scenes come from: Doom WADs, GeoJSON floor plans,
-//! glTF and OBJ scenes in space.
+//! glTF and OBJ scenes in space, maps of the Quake family with their portals.
 //!
 //! Owns: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
-//! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]), files that are replaced as a whole
-//! ([`files::atomic_write`]), and errors that name the file and the place in it ([`ReadError`]).
+//! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]), maps of the Quake family and their visibility
+//! ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), and errors that name the file
+//! and the place in it ([`ReadError`], [`QuakeReadError`]).
 //! Does not know: how a plan is cut into cells, what a sightline is, how a REJECT table is computed.
 //! Invariants: no input causes a panic; memory stays within a small multiple of the input's size
 //! (of a scene in space: with its meshes as often as it shows them, up to a limit), whatever counts
@@ -14,6 +15,7 @@ pub mod doom;
 pub mod error;
 pub mod files;
 pub mod geojson;
+pub mod quake;
 pub mod reject;
 pub mod scene;
 pub mod wad;
@@ -22,6 +24,7 @@ pub use doom::{DoomError, DoomMap, MapLumps};
 pub use error::{ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
 pub use geojson::GeoJsonError;
+pub use quake::{Bsp, Prt, QuakeReadError};
 pub use reject::RejectTable;
 pub use scene::{SceneFile, SceneInfo, SceneReadError};
 pub use wad::{LumpName, Wad, WadBuilder, WadError};

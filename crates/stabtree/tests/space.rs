@@ -103,6 +103,52 @@ fn pairs_and_sequences_agree() {
     assert!(seen.get() > cases && hidden.get() > cases, "{} seen, {} hidden", seen.get(), hidden.get());
 }
 
+/// Invariant: where coordinates that were meant to be equal differ by a little, nothing that sequences show
+/// is hidden; more may be visible.
+#[test]
+fn nothing_is_hidden_by_slivers() {
+    let (seen, slivers) = (Cell::new(0u64), Cell::new(0u64));
+    let config = ProptestConfig::with_source_file(file!());
+    let cases = u64::from(config.cases);
+    let mut runner = proptest::test_runner::TestRunner::new(config);
+    let nudges = || prop::collection::vec(-1i8..=1, 1..13);
+    let strategy = (faces(6), objects(), nudges(), nudges());
+    let result = runner.run(&strategy, |(mut faces, mut objects, nudges, more)| {
+        let thin = 2f64.powi(-40);
+        let mut nudges = nudges.into_iter().cycle();
+        // Each face comes twice, once a little moved.
+        faces.extend(faces.clone());
+        let n_faces = faces.len();
+        for face in &mut faces[n_faces / 2..] {
+            let by = f64::from(nudges.next().unwrap_or(0)) * thin;
+            // Inside of the cube, whichever way.
+            let moved = |x: f64| if x > 0.0 && x < f64::from(SIDE) { x + by } else { x };
+            *face = AxialFace::new(face.axis, face.min.map(moved), face.max.map(moved));
+        }
+        let mut more = more.into_iter().cycle();
+        for object in &mut objects {
+            let by = f64::from(more.next().unwrap_or(0)) * thin;
+            *object = Aabb { min: object.min.map(|x| x + by), max: object.max.map(|x| x + by) };
+        }
+        let (graph, _) = cut(&faces, &[false]);
+        if graph.n_cells() > 60 {
+            return Ok(());
+        }
+        let (cells, things) = by_sequences(&graph, &objects);
+        let pairs = by_pairs(&graph, &[], &objects, 1);
+        let is_thin = |b: &Aabb<3>| (0..3).any(|k| b.max[k] - b.min[k] < 4.0 * thin);
+        for row in 0..graph.n_cells() {
+            prop_assert!(cells.iter_ones(row).all(|col| pairs.cells.get(row, col)), "cells from {}", row);
+            prop_assert!(things.iter_ones(row).all(|col| pairs.objects.get(row, col)), "objects from {}", row);
+            slivers.set(slivers.get() + u64::from(is_thin(&graph.cells()[row].bounds)));
+        }
+        seen.set(seen.get() + things.count_ones());
+        Ok(())
+    });
+    result.unwrap_or_else(|e| panic!("nothing_is_hidden_by_slivers: {e}"));
+    assert!(seen.get() > cases && slivers.get() > cases / 4, "{} seen, {} slivers", seen.get(), slivers.get());
+}
+
 /// A comparison that has to fail: the same graph with one portal closed sees less.
 #[test]
 fn a_closed_portal_is_noticed() {
@@ -113,6 +159,43 @@ fn a_closed_portal_is_noticed() {
     let closed = CellGraph::<Axial>::new(graph.cells().to_vec(), Vec::new());
     let closed = by_pairs(&closed, &[], &[], 1);
     assert!(open.cells.get(0, 1) && !closed.cells.get(0, 1));
+}
+
+/// Boxes in a row along one axis, with the whole of each border open.
+fn row_of_boxes(ends: &[f64]) -> CellGraph<Axial> {
+    let cell = |w: &[f64]| BoxCell { bounds: Aabb { min: [w[0], 0.0, 0.0], max: [w[1], 1.0, 1.0] } };
+    let portal = |(i, x): (u32, &f64)| {
+        let extent = Aabb { min: [*x, 0.0, 0.0], max: [*x, 1.0, 1.0] };
+        let shape = AxialDoor { extent, axis: 0, forward: true };
+        Portal { cells: [CellId(i), CellId(i + 1)], sides: [1, 0], shape }
+    };
+    let portals = (0u32..).zip(&ends[1..ends.len() - 1]).map(portal).collect();
+    CellGraph::<Axial>::new(ends.windows(2).map(cell).collect(), portals)
+}
+
+/// An object that touches only slivers is seen by whom those lie before, and by slivers beside them.
+#[test]
+fn objects_behind_slivers_are_seen() {
+    let thin = 2f64.powi(-40);
+    for n_slivers in 1..5u32 {
+        let ends: Vec<f64> = [0.0].into_iter().chain((0..=n_slivers).map(|i| 1.0 + f64::from(i) * thin)).collect();
+        let graph = row_of_boxes(&ends);
+        let end = ends[ends.len() - 1];
+        let object = Aabb { min: [end, 0.25, 0.25], max: [end + 1.0, 0.75, 0.75] };
+        for objects in [vec![object], vec![object, object]] {
+            let seen = by_pairs(&graph, &[], &objects, 1);
+            let (_, exact) = by_sequences(&graph, &objects);
+            for cell in 0..graph.n_cells() {
+                assert!((0..objects.len()).all(|o| exact.get(cell, o)), "{n_slivers} {cell}");
+                assert!((0..objects.len()).all(|o| seen.objects.get(cell, o)), "{n_slivers} {cell}");
+            }
+        }
+    }
+    // Nothing but slivers.
+    let graph = row_of_boxes(&[0.0, thin, 2.0 * thin, 3.0 * thin]);
+    let object = Aabb { min: [3.0 * thin, 0.25, 0.25], max: [1.0, 0.75, 0.75] };
+    let seen = by_pairs(&graph, &[], &[object], 1);
+    assert!((0..3).all(|cell| seen.objects.get(cell, 0) && (0..3).all(|other| seen.cells.get(cell, other))));
 }
 
 /// Cells thinner than doubles can tell see what their neighbours see, and are seen by whom those see.

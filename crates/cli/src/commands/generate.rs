@@ -58,6 +58,10 @@ struct TowerArgs {
 
 pub(crate) fn run(args: &GenerateArgs) -> Result<Answer, CliError> {
     let What::Tower(args) = &args.what;
+    let is_glb = args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+    if !is_glb {
+        return Err(CliError::NotGlb { path: args.output.clone() });
+    }
     let options = TowerOptions {
         seed: args.seed,
         floors: args.floors,

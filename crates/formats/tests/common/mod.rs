@@ -3,6 +3,7 @@
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part of this module")]
 
 pub mod glb;
+pub mod quake;
 
 use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine, Thing};
 use sightlines_formats::wad::{WadBuilder, WadKind};

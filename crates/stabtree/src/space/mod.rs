@@ -44,7 +44,8 @@ pub struct SeenInSpace {
     /// Opaque rectangles that the walls were put together to.
     pub n_blockers: usize,
     /// Pairs of a cell and a cell or object that count as visible because it would have taken too much
-    /// effort, or more digits than doubles have, to decide about them.
+    /// effort, or more digits than doubles have, to decide about them. Like `counters`, it varies with
+    /// threads, as a line for another pair may prove such a pair visible first.
     pub n_assumed: u64,
     /// What it took. With several threads the counts vary from run to run; the answer does not.
     pub counters: ShaftCounters,
@@ -65,6 +66,8 @@ struct Question<'a> {
     /// The place of each cell; [`SLIVER`] for slivers.
     place: Vec<u32>,
     touching: Vec<Vec<u32>>,
+    /// For each cell the objects that a line may reach in it or in a sliver behind it.
+    within_reach: Vec<Vec<u32>>,
     /// For each cell, which cells it hangs together with through portals, as the least of them.
     component: Vec<u32>,
     /// Places by places.
@@ -99,8 +102,8 @@ const TASKS_PER_THREAD: usize = 256;
 
 /// Finds which cells of a graph see each other, and which objects they see.
 ///
-/// * `solid`: boxes beside the cells, that no line from a cell gets into; they change no answer, and
-///   make walls larger, which saves much.
+/// * `solid`: boxes beside the cells, that no line from a cell gets into; they make walls larger, which saves
+///   much, and change no answer but that fewer pairs are assumed visible.
 /// * `objects`: closed boxes, scene units. A cell sees those that touch it, and those that an open set
 ///   of lines reaches from inside of it without meeting a wall before. Flat boxes can be seen; boxes
 ///   that are flat along two axes are seen only where they touch. Empty ones never are.
@@ -167,7 +170,8 @@ impl<'a> Question<'a> {
             found.sort_unstable();
             found
         });
-        let touching = touching.collect();
+        let touching: Vec<Vec<u32>> = touching.collect();
+        let within_reach = slivers::within_reach(graph, &slivers, &touching);
         let cells = Marks::new(cell_at.len(), cell_at.len());
         for (row, &cell) in cell_at.iter().enumerate() {
             let places = known.visible.iter_ones(cell as usize).map(|col| place[col]).filter(|p| *p != SLIVER);
@@ -186,6 +190,7 @@ impl<'a> Question<'a> {
             cell_at,
             place,
             touching,
+            within_reach,
             component: components(graph),
             cells,
             objects,

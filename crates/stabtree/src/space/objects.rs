@@ -21,13 +21,13 @@ impl Question<'_> {
     /// known which cells it sees.
     ///
     /// A line to an object ends in a cell that the object touches, so only objects that touch a visible
-    /// cell may be seen; those that a visible cell lies in are.
+    /// cell, or a sliver behind it, may be seen; those that a visible cell lies in are.
     pub(super) fn survey_objects(&self, place: usize) {
         let own = self.cell_at[place] as usize;
         self.touching[own].iter().for_each(|&o| self.objects.set(o as usize, place));
         for other in self.cells.ones(place) {
             let cell = self.cell_at[other] as usize;
-            for &object in &self.touching[cell] {
+            for &object in &self.within_reach[cell] {
                 let o = object as usize;
                 if self.may_see_object(place, o) {
                     self.maybe.set(o, place);

@@ -22,6 +22,24 @@ pub(super) fn find(extents: &[Aabb<3>]) -> Vec<bool> {
     extents.iter().map(|b| size(b).into_iter().any(|x| x < thin)).collect()
 }
 
+/// For each cell the objects that touch it or a sliver that lines from it lead into.
+///
+/// A line that reaches an object in a sliver came into that sliver from a neighbour; so who asks only the
+/// neighbours misses nothing.
+pub(super) fn within_reach(graph: &CellGraph<Axial>, slivers: &[bool], touching: &[Vec<u32>]) -> Vec<Vec<u32>> {
+    let mut reach = touching.to_vec();
+    for sliver in (0..slivers.len()).filter(|&cell| slivers[cell]) {
+        for cell in neighbours(graph, &|cell| slivers[cell], sliver) {
+            reach[cell].extend(&touching[sliver]);
+        }
+    }
+    for objects in &mut reach {
+        objects.sort_unstable();
+        objects.dedup();
+    }
+    reach
+}
+
 /// Fills in the rows and columns of slivers, when those of all other cells are known.
 pub(super) fn fill(
     graph: &CellGraph<Axial>,
@@ -32,12 +50,15 @@ pub(super) fn fill(
 ) {
     let slivers: Vec<usize> = (0..graph.n_cells()).filter(|&cell| is_sliver(cell)).collect();
     let around: Vec<Vec<usize>> = slivers.iter().map(|&cell| neighbours(graph, &is_sliver, cell)).collect();
+    for &sliver in &slivers {
+        touching[sliver].iter().for_each(|&o| objects.set(sliver, o as usize, true));
+    }
+    // What is around a sliver are all slivers that hang together with it, and the cells around those.
     for (&sliver, around) in slivers.iter().zip(&around) {
         for &cell in around {
             cells.or_into(sliver, cell);
             objects.or_into(sliver, cell);
         }
-        touching[sliver].iter().for_each(|&o| objects.set(sliver, o as usize, true));
     }
     // A sliver sees another if a neighbour does: so first all that neighbours see, then the others.
     for _ in 0..2 {

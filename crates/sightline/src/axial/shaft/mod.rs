@@ -203,6 +203,7 @@ impl<'a> Shaft<'a> {
 
     /// What stands between the middles of two boxes.
     fn middle_blockers(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target) -> Option<()> {
+        self.hits.clear();
         let middle = |b: &Aabb<3>| [0, 1, 2].map(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
         let (a, mut b) = (middle(from), middle(to));
         for k in 0..3 {

@@ -1,0 +1,216 @@
+//! What can be heard in a leaf: its faces of water, sky and lava.
+
+use super::{Bsp, BspError, BspFormat, i32_at, u16_at, u32_at};
+
+const TEXTURES: usize = 2;
+const TEXINFO: usize = 6;
+const FACES: usize = 7;
+const MARKS: usize = 11;
+/// Bytes of a texinfo; the texture's index is behind 8 floats.
+const TEXINFO_LEN: usize = 40;
+const TEXINFO_TEXTURE: usize = 32;
+/// Bytes of a texture's name.
+const NAME_LEN: usize = 16;
+
+/// A sound that faces make, by the place of its loudness in a leaf.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AmbientKind {
+    /// Water and slime.
+    Water = 0,
+    /// Wind.
+    Sky = 1,
+    /// Lava. Place 2 is slime's own, and nothing sets it: slime sounds like water.
+    Lava = 3,
+}
+
+impl AmbientKind {
+    const ALL: [Self; 3] = [Self::Water, Self::Sky, Self::Lava];
+
+    /// The sound of a texture, by the beginning of its name, in any case of letters.
+    ///
+    /// # Source
+    /// The manual of ericw-tools' vis (its options that turn sounds off) names the beginnings.
+    pub fn of_texture(name: &[u8]) -> Option<Self> {
+        let begins = |with: &str| name.get(..with.len()).is_some_and(|n| n.eq_ignore_ascii_case(with.as_bytes()));
+        if begins("sky") {
+            Some(Self::Sky)
+        } else if begins("*lava") {
+            Some(Self::Lava)
+        } else if ["*water", "*04water", "*slime"].into_iter().any(begins) {
+            Some(Self::Water)
+        } else {
+            None
+        }
+    }
+
+    const fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
+/// What a face, or an entry of the list of faces, turns out to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Face {
+    /// It makes the sounds of these bits.
+    Sounds(u8),
+    /// Its texture cannot be looked up.
+    NoTexture,
+    /// There is no such face.
+    Missing,
+}
+
+impl Bsp {
+    /// Which sounds the faces of each visible leaf make: bit `k` is set for the [`AmbientKind`] of place `k`.
+    /// Zeros in Quake II, which has no such sounds. O(file).
+    ///
+    /// A map whose lump of textures is empty makes no sounds.
+    ///
+    /// # Errors
+    /// [`BspError`] for a list of faces, a face or a texture of a visible leaf that is not there.
+    pub fn leaf_sounds(&self) -> Result<Vec<u8>, BspError> {
+        if self.format() == BspFormat::Quake2 {
+            return Ok(vec![0; self.n_visible_leafs()]);
+        }
+        let faces = self.face_sounds();
+        let marks = self.marks();
+        let is_sound = |mark: &u32| faces.get(*mark as usize).copied().unwrap_or(Face::Missing);
+        let marked: Vec<Face> = marks.iter().map(is_sound).collect();
+        let runs = Runs::new(&marked);
+        let leafs = self.visible_leafs().iter().zip(1..);
+        leafs
+            .map(|(leaf, index)| {
+                let (first, count, n_listed) = (leaf.first_face, leaf.n_faces, marks.len());
+                let error = BspError::LeafFaces { leaf: index, first, count, n_listed };
+                let end = u64::from(first) + u64::from(count);
+                if count == 0 {
+                    return Ok(0);
+                }
+                if end > n_listed as u64 {
+                    return Err(error);
+                }
+                let range = first as usize..end as usize;
+                if runs.has_errors(range.clone()) {
+                    return Err(self.first_error(index, &marks[range.clone()], &marked[range]));
+                }
+                Ok(runs.sounds(range))
+            })
+            .collect()
+    }
+
+    /// The first face of a leaf that cannot be used, where there is one.
+    fn first_error(&self, leaf: usize, marks: &[u32], marked: &[Face]) -> BspError {
+        let bad = marked.iter().position(|face| !matches!(face, Face::Sounds(_)));
+        let k = bad.expect("the caller counted faces with errors");
+        match marked[k] {
+            Face::Missing => BspError::Face { leaf, face: marks[k], n_faces: self.n_faces() },
+            _ => BspError::Texture { leaf, face: marks[k] },
+        }
+    }
+
+    fn face_len(&self) -> usize {
+        if self.format() == BspFormat::Bsp29 { 20 } else { 28 }
+    }
+
+    fn n_faces(&self) -> usize {
+        self.lump_bytes(FACES).len() / self.face_len()
+    }
+
+    fn marks(&self) -> Vec<u32> {
+        let bytes = self.lump_bytes(MARKS);
+        match self.format() {
+            BspFormat::Bsp29 => bytes.chunks_exact(2).map(|mark| u32::from(u16_at(mark, 0))).collect(),
+            _ => bytes.chunks_exact(4).map(|mark| u32_at(mark, 0)).collect(),
+        }
+    }
+
+    fn face_sounds(&self) -> Vec<Face> {
+        let textures = self.texture_sounds();
+        let texinfos = self.lump_bytes(TEXINFO).chunks_exact(TEXINFO_LEN);
+        let texture = |info: &[u8]| usize::try_from(i32_at(info, TEXINFO_TEXTURE)).ok();
+        let of_texinfo: Vec<Face> = texinfos
+            .map(|info| match &textures {
+                None => Face::Sounds(0),
+                Some(sounds) => texture(info).and_then(|k| sounds.get(k).copied()).unwrap_or(Face::NoTexture),
+            })
+            .collect();
+        let texinfo = |face: &[u8]| match self.format() {
+            BspFormat::Bsp29 => usize::from(u16_at(face, 10)),
+            _ => u32_at(face, 16) as usize,
+        };
+        let faces = self.lump_bytes(FACES).chunks_exact(self.face_len());
+        faces.map(|face| of_texinfo.get(texinfo(face)).copied().unwrap_or(Face::NoTexture)).collect()
+    }
+
+    /// The sounds of all textures; `None` if the map has no lump of them.
+    fn texture_sounds(&self) -> Option<Vec<Face>> {
+        let lump = self.lump_bytes(TEXTURES);
+        let count = lump.first_chunk::<4>().map(|&count| i32::from_le_bytes(count))?;
+        let places = lump[4..].chunks_exact(4).take(usize::try_from(count).unwrap_or(0));
+        let sound = |place: &[u8]| match i32_at(place, 0) {
+            // A texture that was not found when the map was made.
+            -1 => Face::Sounds(0),
+            start => {
+                let start = usize::try_from(start).ok();
+                let name = start.and_then(|start| lump.get(start..start.checked_add(NAME_LEN)?));
+                name.map_or(Face::NoTexture, |n| Face::Sounds(AmbientKind::of_texture(n).map_or(0, AmbientKind::bit)))
+            }
+        };
+        Some(places.map(sound).collect())
+    }
+}
+
+/// For each sound, and for errors, how many there are before each place of a list: leafs may share their
+/// places as they like, and each is still answered in O(1).
+struct Runs {
+    before: Vec<[u32; AmbientKind::ALL.len() + 1]>,
+}
+
+impl Runs {
+    fn new(marked: &[Face]) -> Self {
+        let mut before = Vec::with_capacity(marked.len() + 1);
+        let mut sum = [0; AmbientKind::ALL.len() + 1];
+        before.push(sum);
+        for face in marked {
+            match face {
+                Face::Sounds(bits) => {
+                    let counts = AmbientKind::ALL.iter().zip(&mut sum);
+                    counts.for_each(|(kind, n)| *n += u32::from(bits & kind.bit() != 0));
+                }
+                _ => sum[AmbientKind::ALL.len()] += 1,
+            }
+            before.push(sum);
+        }
+        Self { before }
+    }
+
+    fn any(&self, k: usize, range: std::ops::Range<usize>) -> bool {
+        self.before[range.end][k] > self.before[range.start][k]
+    }
+
+    fn has_errors(&self, range: std::ops::Range<usize>) -> bool {
+        self.any(AmbientKind::ALL.len(), range)
+    }
+
+    fn sounds(&self, range: std::ops::Range<usize>) -> u8 {
+        let heard = AmbientKind::ALL.iter().enumerate().filter(|(k, _)| self.any(*k, range.clone()));
+        heard.fold(0, |bits, (_, kind)| bits | kind.bit())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn textures_sound_by_their_names() {
+        let kind = |name: &str| AmbientKind::of_texture(name.as_bytes());
+        for name in ["*water1", "*WATER", "*04water2", "*slime0", "*Slime"] {
+            assert_eq!(kind(name), Some(AmbientKind::Water), "{name}");
+        }
+        assert_eq!((kind("sky4"), kind("SKY")), (Some(AmbientKind::Sky), Some(AmbientKind::Sky)));
+        assert_eq!((kind("*lava"), kind("*lava1")), (Some(AmbientKind::Lava), Some(AmbientKind::Lava)));
+        for name in ["", "sk", "water", "*teleport", "*04mwat1", "brick\0*water", "*wate\0"] {
+            assert_eq!(kind(name), None, "{name:?}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Writing a map again with another visibility lump.
+
+use super::leaf::{LEAF_ROW, leaf_len};
+use super::{BSPX_ENTRY, BSPX_HEADER, Bsp, BspError, i32_at, u32_at};
+use crate::quake::VisibilityLump;
+use std::ops::Range;
+
+impl Bsp {
+    /// The file with another visibility lump, and with the places of rows and the loudness that go with it in the
+    /// leafs that can be seen. Everything else keeps its bytes: what lies behind the lump is moved by a multiple
+    /// of four, and the directories (BSPX too) follow. A lump of the same length is replaced in place.
+    ///
+    /// The lump stays where the directory has it. Where that is no place for a lump (inside another, or not at a
+    /// multiple of four), it goes behind the last of all, and the bytes of the old one stay where they are.
+    ///
+    /// # Errors
+    /// [`BspError::RowCount`] for a lump that was made for another number of leafs, [`BspError::Shared`] if leafs
+    /// would have to change under another lump, [`BspError::TooLarge`].
+    pub fn with_visibility(&self, new: &VisibilityLump) -> Result<Vec<u8>, BspError> {
+        let vis = self.format.visibility_lump();
+        let splice = self.splice(new.bytes.len());
+        let (old, pad) = (splice.old.clone(), splice.pad);
+        let len = (self.bytes.len() - old.len() + splice.lead + new.bytes.len() + pad) as u64;
+        if i32::try_from(len).is_err() {
+            return Err(BspError::TooLarge { len });
+        }
+        let leafs = self.changed_leafs(new)?;
+        let mut out = Vec::with_capacity(len as usize);
+        out.extend_from_slice(&self.bytes[..old.start]);
+        out.resize(out.len() + splice.lead, 0);
+        let start = out.len();
+        out.extend_from_slice(&new.bytes);
+        out.resize(out.len() + pad, 0);
+        out.extend_from_slice(&self.bytes[old.end..]);
+
+        let moved = |at: usize| if at >= old.end { at - old.len() + splice.lead + new.bytes.len() + pad } else { at };
+        let entry = |lump: usize| self.format.magic().len() + 8 * lump;
+        for lump in 0..self.lumps.len() {
+            let at = entry(lump);
+            let offset = i32_at(&self.bytes, at);
+            // An empty lump may claim a place outside, which is left alone.
+            if let Some(place) = usize::try_from(offset).ok().filter(|&p| p <= self.bytes.len() && lump != vis) {
+                put(&mut out, at, moved(place));
+            }
+        }
+        put(&mut out, entry(vis), start);
+        put(&mut out, entry(vis) + 4, new.bytes.len());
+        if let Some(bspx) = self.bspx {
+            for k in 0..bspx.n_lumps {
+                let at = bspx.at + BSPX_HEADER + k * BSPX_ENTRY + 24;
+                let place = u32_at(&self.bytes, at) as usize;
+                if place <= self.bytes.len() {
+                    put(&mut out, moved(at), moved(place));
+                }
+            }
+        }
+        let place = moved(self.lumps[self.format.leaf_lump()].start);
+        out[place..place + leafs.len()].copy_from_slice(&leafs);
+        Ok(out)
+    }
+
+    /// Where the new lump goes.
+    fn splice(&self, new_len: usize) -> Splice {
+        let n_bytes = self.bytes.len();
+        // Multiples of four stay such: what follows moves by a multiple of four. If nothing follows, the file
+        // ends at one.
+        let pad = |end: usize, old_end: usize| (4 + if old_end < n_bytes { old_end % 4 } else { 0 } - end % 4) % 4;
+        match self.free_place() {
+            Some(old) if old.len() == new_len => Splice { old, lead: 0, pad: 0 },
+            Some(old) if old.start.is_multiple_of(4) => {
+                // The padding behind the old lump goes with it, up to what comes next.
+                let behind = self.others().map(|l| l.start).filter(|&start| start >= old.end).min();
+                let end = old.end.next_multiple_of(4).min(behind.unwrap_or(n_bytes)).min(n_bytes);
+                Splice { pad: pad(old.start + new_len, end), old: old.start..end, lead: 0 }
+            }
+            // Behind everything that the directory names, and before a directory of additional lumps.
+            _ => {
+                let at = self.end_of_lumps().next_multiple_of(4);
+                let (at, lead) = (at.min(n_bytes), at.saturating_sub(n_bytes));
+                Splice { old: at..at, lead, pad: pad(at + lead + new_len, at) }
+            }
+        }
+    }
+
+    /// The bytes of the old lump, if they are its own; for an empty one its place, if it is no other's.
+    fn free_place(&self) -> Option<Range<usize>> {
+        let vis = self.format.visibility_lump();
+        let mut old = self.lumps[vis].clone();
+        if old.is_empty() {
+            let claimed = usize::try_from(i32_at(&self.bytes, self.format.magic().len() + 8 * vis)).ok()?;
+            old = claimed..claimed;
+        }
+        let inside = self.format.header_len() <= old.start && old.end <= self.end_of_lumps();
+        let is_own = self.others().all(|l| l.end <= old.start || old.end <= l.start);
+        (inside && is_own).then_some(old)
+    }
+
+    /// The places of all lumps besides that of visibility, but for empty ones.
+    fn others(&self) -> impl Iterator<Item = &Range<usize>> {
+        let vis = self.format.visibility_lump();
+        self.lumps.iter().enumerate().filter(move |(k, l)| *k != vis && !l.is_empty()).map(|(_, l)| l)
+    }
+
+    fn end_of_lumps(&self) -> usize {
+        self.lumps.iter().map(|l| l.end).max().unwrap_or(0).max(self.format.header_len())
+    }
+
+    /// The lump of leafs with new places and loudness, or with its old bytes where nothing is to change.
+    fn changed_leafs(&self, new: &VisibilityLump) -> Result<Vec<u8>, BspError> {
+        let index = self.format.leaf_lump();
+        let mut leafs = self.lump_bytes(index).to_vec();
+        let n_leafs = if self.format.has_clusters() { 0 } else { self.n_visible_leafs };
+        for found in [new.leaf_rows.len(), new.ambient.len()] {
+            if found != n_leafs {
+                return Err(BspError::RowCount { found, n_leafs });
+            }
+        }
+        let len = leaf_len(self.format);
+        for (k, record) in leafs.chunks_exact_mut(len).skip(1).take(n_leafs).enumerate() {
+            // A lump that fits a file has no row past what 31 bits can say.
+            put(record, LEAF_ROW, new.leaf_rows[k] as usize);
+            record[len - 4..].copy_from_slice(&new.ambient[k]);
+        }
+        let range = &self.lumps[index];
+        let over = |l: &Range<usize>| l.start < range.end && range.start < l.end;
+        let other = (0..self.lumps.len()).find(|&k| k != index && over(&self.lumps[k]));
+        match other.filter(|_| leafs != self.lump_bytes(index)) {
+            Some(other) => {
+                Err(BspError::Shared { lump: self.format.lump_id(index), other: self.format.lump_id(other) })
+            }
+            None => Ok(leafs),
+        }
+    }
+}
+
+/// `old` gives way to `lead` zeros, the new lump, and `pad` zeros.
+struct Splice {
+    old: Range<usize>,
+    lead: usize,
+    pad: usize,
+}
+
+/// Writes a number that is known to fit 31 bits.
+fn put(bytes: &mut [u8], at: usize, number: usize) {
+    bytes[at..at + 4].copy_from_slice(&(number as u32).to_le_bytes());
+}

@@ -1,0 +1,49 @@
+//! Maps of the Quake family: portal files (`.prt`) and maps (`.bsp`), as far as visibility needs them.
+//!
+//! | | read | refused by name |
+//! | --- | --- | --- |
+//! | portals ([`prt`]) | `PRT1`, `PRT2`, `PRT1-AM` | anything else |
+//! | maps ([`bsp`]) | Quake's version 29, `BSP2`, `2PSB`, Quake II's `IBSP` 38 | other versions |
+//!
+//! Words of these files: a *leaf* is a cell of the map's tree; a *cluster* is one leaf, or several that
+//! are seen as one. Portal files count leafs from 0, maps from 1, because their leaf 0 is what is solid.
+//! Who sees whom is said for clusters here ([`LeafClusters`] leads from one to the other), and written in the
+//! form that engines load by [`visibility`] and [`rle`].
+
+pub mod bsp;
+mod error;
+mod leafs;
+pub mod prt;
+pub mod rle;
+pub mod visibility;
+
+pub use bsp::{Bsp, BspError, BspFormat};
+pub use error::{QuakeErrorKind, QuakeReadError};
+pub use leafs::{LeafClusters, LeafError};
+pub use prt::{Prt, PrtError};
+pub use visibility::{VisibilityError, VisibilityLump};
+
+use std::path::Path;
+
+/// The most clusters that are read: their table takes 512 MiB. Engines hold as many leafs.
+pub const MAX_CLUSTERS: u32 = 1 << 16;
+
+/// Reads a portal file.
+///
+/// # Errors
+/// [`QuakeReadError`] with the file's name, and line and column in it.
+pub fn read_prt(path: impl AsRef<Path>) -> Result<Prt, QuakeReadError> {
+    let path = path.as_ref();
+    let read = || Ok(prt::parse_prt(&std::fs::read(path)?)?);
+    read().map_err(|kind| QuakeReadError { path: path.to_owned(), kind })
+}
+
+/// Reads a map.
+///
+/// # Errors
+/// [`QuakeReadError`] with the file's name, and the place in it.
+pub fn read_bsp(path: impl AsRef<Path>) -> Result<Bsp, QuakeReadError> {
+    let path = path.as_ref();
+    let read = || Ok(Bsp::parse(std::fs::read(path)?)?);
+    read().map_err(|kind| QuakeReadError { path: path.to_owned(), kind })
+}

@@ -1,0 +1,221 @@
+//! Portal files: the clusters of a map, the openings between them, and which leafs they are made of.
+//!
+//! Text, in pieces that whitespace divides; a carriage return is whitespace.
+//!
+//! ```text
+//! PRT1     clusters portals           portal*
+//! PRT2     leafs clusters portals     portal*  (leaf* -1){clusters}
+//! PRT1-AM  clusters portals leafs     portal*  cluster{leafs}
+//! portal = points a b ("(" x y z ")"){points}
+//! ```
+//!
+//! Behind the last piece nothing may follow: more would mean that a count is wrong, or that the file is of a
+//! dialect that only begins alike.
+
+mod error;
+mod lexer;
+mod read;
+mod write;
+
+pub use error::{PrtError, PrtErrorKind, PrtItem};
+pub use read::parse_prt;
+pub use write::write_prt;
+
+use super::{LeafClusters, MAX_CLUSTERS};
+use sightlines_cells::Point3;
+use sightlines_geometry::coordinate::MIN_MAGNITUDE;
+use sightlines_geometry::{CoordinateError, Point2, check_coordinate, orient2d};
+use std::fmt;
+use std::ops::RangeInclusive;
+
+/// How many points a portal may have.
+pub const PORTAL_POINTS: RangeInclusive<usize> = 3..=64;
+
+/// A way of writing portals, with the word that such a file begins with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PrtDialect {
+    /// `PRT1`: clusters are leafs (Quake), or the map says which leafs they are made of (Quake II).
+    Prt1,
+    /// `PRT2` of ericw-tools: the leafs of each cluster.
+    Prt2,
+    /// `PRT1-AM` of bjptools: the cluster of each leaf.
+    Prt1Am,
+}
+
+impl PrtDialect {
+    /// All that are read.
+    pub const ALL: [Self; 3] = [Self::Prt1, Self::Prt2, Self::Prt1Am];
+
+    /// The word that a file begins with.
+    pub const fn magic(self) -> &'static str {
+        match self {
+            Self::Prt1 => "PRT1",
+            Self::Prt2 => "PRT2",
+            Self::Prt1Am => "PRT1-AM",
+        }
+    }
+}
+
+impl fmt::Display for PrtDialect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.magic())
+    }
+}
+
+/// How leafs that are not clusters are listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LeafList {
+    /// The leafs of each cluster, as `PRT2` does.
+    PerCluster,
+    /// The cluster of each leaf, as `PRT1-AM` does.
+    PerLeaf,
+}
+
+/// The clusters of a map and the portals between them, checked: there is a cluster, portals join two
+/// clusters that exist, have 3 to 64 points and coordinates that predicates accept; if leafs are listed, each
+/// is in one cluster. That portals are flat and convex is not checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prt {
+    n_clusters: u32,
+    portals: Vec<Record>,
+    points: Vec<Point3>,
+    leafs: Option<(LeafList, LeafClusters)>,
+}
+
+/// A portal, without its points: they end at `end`, and begin where those of the portal before end.
+#[derive(Debug, Clone, PartialEq)]
+struct Record {
+    clusters: [u32; 2],
+    end: usize,
+}
+
+/// An opening between two clusters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrtPortal<'p> {
+    /// The clusters `a` and `b` that it joins; any order of numbers occurs.
+    pub clusters: [u32; 2],
+    /// Its 3 to 64 corners in turn, in scene units. Their right-hand normal points from `a` into `b`: seen from
+    /// inside `b` they go round counter-clockwise.
+    pub points: &'p [Point3],
+}
+
+impl PrtPortal<'_> {
+    /// Whether all points lie on one line, exactly: nothing is seen through such a portal.
+    pub fn is_degenerate(&self) -> bool {
+        let first = self.points[0];
+        let Some(&other) = self.points.iter().find(|&&p| p != first) else { return true };
+        self.points.iter().all(|&p| are_collinear([first, other, p]))
+    }
+}
+
+impl Prt {
+    /// Clusters without portals, each of them one leaf: a `PRT1`.
+    ///
+    /// # Errors
+    /// [`PrtErrorKind::Count`] unless there are 1 to [`MAX_CLUSTERS`].
+    pub fn new(n_clusters: u32) -> Result<Self, PrtErrorKind> {
+        if !(1..=MAX_CLUSTERS).contains(&n_clusters) {
+            let (found, max) = (n_clusters.to_string(), u64::from(MAX_CLUSTERS));
+            return Err(PrtErrorKind::Count { item: PrtItem::Clusters, found, min: 1, max });
+        }
+        Ok(Self { n_clusters, portals: Vec::new(), points: Vec::new(), leafs: None })
+    }
+
+    /// Adds a portal. Its points keep their order; coordinates nearer to zero than 2^-140 become zero.
+    ///
+    /// # Errors
+    /// [`PrtErrorKind`] with the number of the portal; it is then not added.
+    pub fn push_portal(&mut self, clusters: [u32; 2], points: &[Point3]) -> Result<(), PrtErrorKind> {
+        let portal = self.portals.len();
+        if !PORTAL_POINTS.contains(&points.len()) {
+            return Err(read::count_error(PrtItem::Points { portal }, points.len(), 3..=64));
+        }
+        let max = u64::from(self.n_clusters - 1);
+        if let Some(&cluster) = clusters.iter().find(|&&c| c >= self.n_clusters) {
+            return Err(read::count_error(PrtItem::Cluster { portal }, cluster, 0..=max));
+        }
+        if clusters[0] == clusters[1] {
+            return Err(PrtErrorKind::SelfPortal { portal, cluster: clusters[0] });
+        }
+        let before = self.points.len();
+        for (point, &p) in points.iter().enumerate() {
+            match check_point(p) {
+                Ok(p) => self.points.push(p),
+                Err(source) => {
+                    self.points.truncate(before);
+                    return Err(PrtErrorKind::Coordinate { portal, point, source });
+                }
+            }
+        }
+        self.portals.push(Record { clusters, end: self.points.len() });
+        Ok(())
+    }
+
+    /// The same portals, but clusters are made of these leafs: a `PRT2` or a `PRT1-AM`.
+    ///
+    /// # Errors
+    /// [`PrtErrorKind::Leafs`] if a leaf is in a cluster that is not there.
+    pub fn with_leafs(mut self, list: LeafList, cluster_of_leaf: Vec<u32>) -> Result<Self, PrtErrorKind> {
+        self.leafs = Some((list, LeafClusters::new(self.n_clusters, cluster_of_leaf)?));
+        Ok(self)
+    }
+
+    /// How it is written.
+    pub fn dialect(&self) -> PrtDialect {
+        match &self.leafs {
+            None => PrtDialect::Prt1,
+            Some((LeafList::PerCluster, _)) => PrtDialect::Prt2,
+            Some((LeafList::PerLeaf, _)) => PrtDialect::Prt1Am,
+        }
+    }
+
+    /// Number of clusters, at least 1.
+    pub fn n_clusters(&self) -> u32 {
+        self.n_clusters
+    }
+
+    /// Number of portals; each is passed in both directions.
+    pub fn n_portals(&self) -> usize {
+        self.portals.len()
+    }
+
+    /// A portal.
+    ///
+    /// # Panics
+    /// If there is no portal of that number.
+    pub fn portal(&self, portal: usize) -> PrtPortal<'_> {
+        let start = portal.checked_sub(1).map_or(0, |before| self.portals[before].end);
+        let Record { clusters, end } = self.portals[portal];
+        PrtPortal { clusters, points: &self.points[start..end] }
+    }
+
+    /// The portals, in the order of the file.
+    pub fn portals(&self) -> impl ExactSizeIterator<Item = PrtPortal<'_>> {
+        (0..self.portals.len()).map(|k| self.portal(k))
+    }
+
+    /// The leafs of the clusters, where the file lists them.
+    pub fn listed_leafs(&self) -> Option<&LeafClusters> {
+        self.leafs.as_ref().map(|(_, leafs)| leafs)
+    }
+
+    /// The leafs of the clusters; where the file does not list them, every leaf is a cluster.
+    pub fn leaf_clusters(&self) -> LeafClusters {
+        let identity = || LeafClusters::identity(self.n_clusters).expect("a Prt has 1 to MAX_CLUSTERS clusters");
+        self.listed_leafs().cloned().unwrap_or_else(identity)
+    }
+}
+
+/// A point as predicates accept it; numbers too near to zero are what rounding leaves of zeros.
+fn check_point(p: Point3) -> Result<Point3, CoordinateError> {
+    let [x, y, z] = p.map(|x| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x });
+    Ok([check_coordinate(x)?, check_coordinate(y)?, check_coordinate(z)?])
+}
+
+/// Whether three points lie on one line, exactly: they do in all three projections.
+fn are_collinear(points: [Point3; 3]) -> bool {
+    [(0, 1), (1, 2), (2, 0)].iter().all(|&(u, v)| {
+        let [a, b, c] = points.map(|p| Point2::new(p[u], p[v]));
+        orient2d(a, b, c) == 0.0
+    })
+}

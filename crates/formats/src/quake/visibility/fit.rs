@@ -1,0 +1,63 @@
+//! Whether portals and map are of the same map.
+
+use super::{Bsp, LeafClusters, VisibilityError};
+use crate::quake::Prt;
+
+/// Checks that portals and map are of the same map, as far as their counts tell: leafs that can be seen (Quake),
+/// or clusters (Quake II).
+///
+/// # Errors
+/// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`].
+pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityError> {
+    if bsp.format().has_clusters() {
+        let (portals, map) = (leafs.n_clusters(), bsp.n_clusters());
+        return if portals == map { Ok(()) } else { Err(VisibilityError::Clusters { portals, map }) };
+    }
+    let (portals, map) = (leafs.n_leafs(), bsp.n_visible_leafs());
+    if portals == map { Ok(()) } else { Err(VisibilityError::Leafs { portals, map }) }
+}
+
+/// Checks that portals and map are of the same map: by their counts, as [`check_match`] does, and by their places,
+/// because two maps may have as many leafs. Each portal should lie within the bounds of the leafs on both its
+/// sides; if most do not, the map is another. O(leafs + points).
+///
+/// Portals do stick out where a cluster has solid detail, which is not in its leafs: one in twenty sides on the
+/// maps that were looked at, none on maps without detail, and all of them with the portals of another map. So half
+/// of them is taken as the limit. It protects from a mistake and decides nothing about who sees whom.
+///
+/// # Errors
+/// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`], [`VisibilityError::OtherMap`].
+pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
+    let leafs = prt.leaf_clusters();
+    check_match(bsp, &leafs)?;
+    let boxes = cluster_boxes(bsp, &leafs);
+    let (mut n_outside, mut n_sides) = (0, 0);
+    for portal in prt.portals() {
+        for cluster in portal.clusters {
+            let (low, high) = boxes[cluster as usize];
+            // Bounds are whole numbers in most formats, and may have been rounded.
+            let is_inside = |p: &[f64; 3]| (0..3).all(|k| low[k] - 1.0 <= p[k] && p[k] <= high[k] + 1.0);
+            n_sides += 1;
+            n_outside += usize::from(!portal.points.iter().all(is_inside));
+        }
+    }
+    if 2 * n_outside > n_sides { Err(VisibilityError::OtherMap { n_outside, n_sides }) } else { Ok(()) }
+}
+
+/// Low and high corner of the leafs of each cluster; of one without leafs nothing is inside.
+fn cluster_boxes(bsp: &Bsp, leafs: &LeafClusters) -> Vec<([f64; 3], [f64; 3])> {
+    let mut boxes = vec![([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]); leafs.n_clusters()];
+    for (k, leaf) in bsp.visible_leafs().iter().enumerate() {
+        let cluster = if bsp.format().has_clusters() {
+            leaf.cluster().map(usize::from)
+        } else {
+            leafs.cluster_of_leaf().get(k).map(|&c| c as usize)
+        };
+        let Some((low, high)) = cluster.and_then(|c| boxes.get_mut(c)) else { continue };
+        for axis in 0..3 {
+            low[axis] = low[axis].min(f64::from(leaf.mins[axis]));
+            high[axis] = high[axis].max(f64::from(leaf.maxs[axis]));
+        }
+    }
+    boxes
+}

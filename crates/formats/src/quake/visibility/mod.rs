@@ -1,0 +1,140 @@
+//! Who sees whom, as engines load it: the visibility lump of a map.
+//!
+//! Quake has a row of leafs for each leaf; the leafs of a cluster share theirs. Quake II has a row of clusters
+//! for each cluster, and a second one for what can be heard. Rows are coded by [`rle`].
+
+use super::{Bsp, BspError, BspFormat, LeafClusters, rle};
+use sightlines_pvs::BitMatrix;
+use sightlines_pvs::bits::{ones, or_words};
+
+mod error;
+mod fit;
+mod read;
+
+pub use error::VisibilityError;
+pub use fit::{check_match, check_portals};
+pub use read::{read_hearing, read_visibility};
+
+/// A visibility lump, and what goes with it in the leafs; [`Bsp::with_visibility`] puts it into a map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct VisibilityLump {
+    /// The lump.
+    pub bytes: Vec<u8>,
+    /// For each leaf that can be seen where its row begins in the lump; empty for Quake II.
+    pub leaf_rows: Vec<u32>,
+    /// For each of those leafs how loud water, sky, slime and lava are; empty for Quake II.
+    pub ambient: Vec<[u8; 4]>,
+}
+
+/// Makes the lump for a map, and the loudness of its leafs.
+///
+/// * `leafs`: the leafs of the clusters, as the portal file says; Quake II ignores them.
+/// * `seen`: row `a` has the clusters that cluster `a` sees. Written as it is: that everything sees itself, and
+///   that who is seen sees, is the caller's promise.
+///
+/// Rows are in the order of clusters, those of Quake II's second kind behind all of the first; a cluster without
+/// leafs has none. Clusters that see the same have equal rows, but not one row. O(clusters × leafs / 8).
+///
+/// # Errors
+/// [`VisibilityError`] if the three do not fit together, if the lump would be too large, or if the
+/// faces of a leaf cannot be looked up.
+pub fn lump(bsp: &Bsp, leafs: &LeafClusters, seen: &BitMatrix) -> Result<VisibilityLump, VisibilityError> {
+    check_match(bsp, leafs)?;
+    match bsp.format() {
+        BspFormat::Quake2 => quake2_lump(seen),
+        _ => {
+            let (bytes, leaf_rows) = quake_lump(leafs, seen)?;
+            Ok(VisibilityLump { bytes, leaf_rows, ambient: ambient(bsp, leafs, seen)? })
+        }
+    }
+}
+
+/// How loud water, sky, slime and lava are in each leaf that can be seen: 255 where a face of the kind lies on a
+/// leaf that it sees, else 0. Slime counts as water. O(file + clusters²).
+///
+/// # Errors
+/// [`VisibilityError`] if the three do not fit together, or the faces of a leaf cannot be looked up.
+///
+/// # Source
+/// What Quake's vis has always written: it meant to soften with distance, but takes every distance as 0.25.
+pub fn ambient(bsp: &Bsp, leafs: &LeafClusters, seen: &BitMatrix) -> Result<Vec<[u8; 4]>, VisibilityError> {
+    check_match(bsp, leafs)?;
+    check_square(seen, leafs.n_clusters())?;
+    let made = bsp.leaf_sounds()?;
+    let own: Vec<u8> =
+        (0..leafs.n_clusters()).map(|c| leafs.leafs_of(c).iter().fold(0, |bits, &l| bits | made[l as usize])).collect();
+    let heard: Vec<u8> =
+        (0..own.len()).map(|cluster| seen.iter_ones(cluster).fold(0, |bits, other| bits | own[other])).collect();
+    let level = |bits: u8| std::array::from_fn(|k| if bits >> k & 1 == 1 { u8::MAX } else { 0 });
+    Ok(leafs.cluster_of_leaf().iter().map(|&cluster| level(heard[cluster as usize])).collect())
+}
+
+fn check_square(seen: &BitMatrix, n_clusters: usize) -> Result<(), VisibilityError> {
+    let (n_rows, n_cols) = (seen.n_rows(), seen.n_cols());
+    let fits = n_rows == n_clusters && n_cols == n_clusters;
+    if fits { Ok(()) } else { Err(VisibilityError::Matrix { n_rows, n_cols, n_clusters }) }
+}
+
+/// Rows of leafs, and where the row of each leaf begins.
+fn quake_lump(leafs: &LeafClusters, seen: &BitMatrix) -> Result<(Vec<u8>, Vec<u32>), VisibilityError> {
+    check_square(seen, leafs.n_clusters())?;
+    let mut bytes = Vec::new();
+    let mut row = vec![0; rle::row_len(leafs.n_leafs())];
+    let mut leaf_rows = vec![0; leafs.n_leafs()];
+    for cluster in 0..leafs.n_clusters() {
+        let own = leafs.leafs_of(cluster);
+        if own.is_empty() {
+            continue;
+        }
+        row.fill(0);
+        for other in seen.iter_ones(cluster) {
+            for &leaf in leafs.leafs_of(other) {
+                row[leaf as usize / 8] |= 1 << (leaf % 8);
+            }
+        }
+        let place = place(bytes.len())?;
+        own.iter().for_each(|&leaf| leaf_rows[leaf as usize] = place);
+        rle::encode(&row, &mut bytes);
+    }
+    place(bytes.len())?;
+    Ok((bytes, leaf_rows))
+}
+
+/// Quake II's lump: the number of clusters, two places for each, rows of what is seen, rows of what is heard.
+///
+/// Heard in a cluster is what is seen from any cluster that it sees.
+fn quake2_lump(seen: &BitMatrix) -> Result<VisibilityLump, VisibilityError> {
+    let n = seen.n_rows();
+    check_square(seen, n)?;
+    let mut bytes = vec![0; 4 + 8 * n];
+    let (mut seen_at, mut heard_at) = (Vec::with_capacity(n), Vec::with_capacity(n));
+    for cluster in 0..n {
+        seen_at.push(place(bytes.len())?);
+        append_row(seen.row(cluster), n, &mut bytes);
+    }
+    let mut heard = vec![0u64; n.div_ceil(64)];
+    for cluster in 0..n {
+        heard.fill(0);
+        ones(seen.row(cluster)).for_each(|other| or_words(&mut heard, seen.row(other)));
+        heard_at.push(place(bytes.len())?);
+        append_row(&heard, n, &mut bytes);
+    }
+    // The lump's length fits 31 bits, so does the number of clusters.
+    place(bytes.len())?;
+    bytes[..4].copy_from_slice(&(n as u32).to_le_bytes());
+    let places = seen_at.iter().zip(&heard_at).flat_map(|(seen, heard)| [seen, heard]);
+    for (entry, place) in bytes[4..].chunks_exact_mut(4).zip(places) {
+        entry.copy_from_slice(&place.to_le_bytes());
+    }
+    Ok(VisibilityLump { bytes, leaf_rows: Vec::new(), ambient: Vec::new() })
+}
+
+fn append_row(words: &[u64], n_columns: usize, out: &mut Vec<u8>) {
+    let row: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).take(rle::row_len(n_columns)).collect();
+    rle::encode(&row, out);
+}
+
+/// A place in a lump, as files can say it.
+fn place(at: usize) -> Result<u32, VisibilityError> {
+    i32::try_from(at).map(i32::cast_unsigned).map_err(|_| VisibilityError::TooLarge { len: at })
+}
