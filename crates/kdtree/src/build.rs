@@ -222,6 +222,9 @@ mod tests {
         assert_eq!(tau(-0.5), "obscuration threshold -0.5 is not a number from 0 to 1");
         assert_eq!(tau(f64::NAN), "obscuration threshold NaN is not a number from 0 to 1");
         let limited = Options { max_cells: 1, ..plain };
-        assert_eq!(message(&[good], unit, limited), "the scene falls into more than 1 cells");
+        assert_eq!(
+            message(&[good], unit, limited),
+            "the scene falls into more than 1 cells; raise the limit, the threshold tau, or the size of detail"
+        );
     }
 }

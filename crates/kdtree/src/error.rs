@@ -72,7 +72,7 @@ pub enum KdError {
     #[error("{0} faces are more than a tree can hold")]
     TooManyFaces(usize),
     /// The subdivision was given up; [`Options::max_cells`](crate::Options::max_cells) says when.
-    #[error("the scene falls into more than {limit} cells")]
+    #[error("the scene falls into more than {limit} cells; raise the limit, the threshold tau, or the size of detail")]
     TooManyCells {
         /// The limit.
         limit: u32,

@@ -1,9 +1,11 @@
-//! Cell-to-cell visibility: a depth-first search over portals, driven by a stabber.
+//! Cell-to-cell visibility: a depth-first search over portals, driven by a stabber; and, in space, pairs of
+//! boxes, driven by what stands between them.
 //!
-//! Owns: [`visible_zones`] (which cells, or groups of cells, see each other), [`StabTree`] (every
-//! stabbable portal sequence out of one cell), [`explain`](fn@explain) and [`explain_space`] (the line
-//! between two cells, or why there is none).
-//! Does not know: files, tables, how cells were cut. The search is generic over the
+//! Owns: [`visible_zones`] (which cells, or groups of cells, see each other, by portal sequences),
+//! [`see_space`] (the same for boxes in space, and for objects, by what stands between them),
+//! [`StabTree`] (every stabbable portal sequence out of one cell), [`explain`](fn@explain) and
+//! [`explain_space`] (the line between two cells, or why there is none).
+//! Does not know: files, tables, how cells were cut. The search over sequences is generic over the
 //! [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
 //! Invariants: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and
 //! does not depend on the number of threads or on which hints a caller gives.
