@@ -39,7 +39,7 @@ struct Args {
     #[arg(long, default_value_t = 0.0)]
     tau: f64,
     /// Portal mode: bounding, exact, two-level.
-    #[arg(long, default_value = "two-level", value_parser = portals_of)]
+    #[arg(long, default_value = "exact", value_parser = portals_of)]
     portals: PortalMode,
     /// Seconds that one bake may take.
     #[arg(long, default_value_t = 1800.0)]
