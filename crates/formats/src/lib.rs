@@ -15,6 +15,7 @@ pub mod doom;
 pub mod error;
 pub mod files;
 pub mod geojson;
+mod point;
 pub mod quake;
 pub mod reject;
 pub mod scene;

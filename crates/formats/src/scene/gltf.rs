@@ -2,11 +2,12 @@
 
 use super::accessor::Elements;
 use super::buffers::{Buffers, split_glb};
-use super::build::{Builder, Compact, check_point};
+use super::build::{Builder, Compact};
 use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
 use super::json::{Document, Mesh, Node, Primitive, TRIANGLES};
 use super::transform::Transform;
 use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
+use crate::point::check_point;
 use std::path::Path;
 
 pub(super) use super::buffers::MAGIC;

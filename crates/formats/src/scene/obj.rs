@@ -1,9 +1,10 @@
 //! Wavefront OBJ: corners and faces, line by line.
 
-use super::build::{Builder, Compact, check_point};
+use super::build::{Builder, Compact};
 use super::error::{ObjErrorKind, SceneReadError};
 use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
 use super::{MAX_ELEMENTS, SceneFile, SceneFormat};
+use crate::point::check_point;
 use sightlines_cells::Point3;
 use std::borrow::Cow;
 

@@ -22,9 +22,8 @@ pub use read::parse_prt;
 pub use write::write_prt;
 
 use super::{LeafClusters, MAX_CLUSTERS};
+use crate::point::{are_collinear, check_point};
 use sightlines_cells::Point3;
-use sightlines_geometry::coordinate::MIN_MAGNITUDE;
-use sightlines_geometry::{CoordinateError, Point2, check_coordinate, orient2d};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -204,18 +203,4 @@ impl Prt {
         let identity = || LeafClusters::identity(self.n_clusters).expect("a Prt has 1 to MAX_CLUSTERS clusters");
         self.listed_leafs().cloned().unwrap_or_else(identity)
     }
-}
-
-/// A point as predicates accept it; numbers too near to zero are what rounding leaves of zeros.
-fn check_point(p: Point3) -> Result<Point3, CoordinateError> {
-    let [x, y, z] = p.map(|x| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x });
-    Ok([check_coordinate(x)?, check_coordinate(y)?, check_coordinate(z)?])
-}
-
-/// Whether three points lie on one line, exactly: they do in all three projections.
-fn are_collinear(points: [Point3; 3]) -> bool {
-    [(0, 1), (1, 2), (2, 0)].iter().all(|&(u, v)| {
-        let [a, b, c] = points.map(|p| Point2::new(p[u], p[v]));
-        orient2d(a, b, c) == 0.0
-    })
 }
