@@ -5,6 +5,7 @@
 //! of any size.
 
 use crate::exact::{Form, Hp, Int, Place, crossing, scaled, small};
+use crate::mutate::SplitMix;
 use sightlines_cells::Plan;
 use sightlines_geometry::{Aabb, Point2};
 
@@ -46,14 +47,8 @@ fn random_chords(bounds: &Aabb<2>, seed: u64, n: usize) -> Vec<Chord> {
         return Vec::new();
     }
     let step = snap(bounds);
-    let mut state = seed;
-    let mut next = || {
-        // A counter through the finaliser of SplitMix64.
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        f64::from((z >> 48) as u16) / 65536.0
-    };
+    let mut random = SplitMix(seed);
+    let mut next = || f64::from((random.next() >> 48) as u16) / 65536.0;
     let mut point = || {
         let [x, y] = [0, 1].map(|k| bounds.min[k] + (bounds.max[k] - bounds.min[k]) * next());
         let [x, y] = [x, y].map(|x| step.map_or(x, |step| (x / step).floor() * step));

@@ -1,24 +1,18 @@
 //! Chance that does not depend on threads.
 
+use crate::mutate::SplitMix;
 use crate::rays::length;
 use sightlines_cells::Point3;
 use sightlines_geometry::Aabb;
 
-/// SplitMix64's finaliser over a counter: every ray has numbers of its own, whichever thread casts it.
+/// Every ray has numbers of its own, whichever thread casts it.
 #[derive(Debug, Clone)]
-pub struct Random(u64);
+pub struct Random(SplitMix);
 
 impl Random {
     /// The numbers of one ray of the rays of one seed.
     pub fn new(seed: u64, ray: u64) -> Self {
-        Self(Self(Self(seed).next() ^ ray).next())
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        Self(SplitMix(SplitMix(SplitMix(seed).next() ^ ray).next()))
     }
 
     /// From 0 to one less than `n`; uniform up to rounding.
@@ -32,7 +26,7 @@ impl Random {
 
     /// Strictly between 0 and 1.
     pub fn unit(&mut self) -> f64 {
-        ((self.next() >> 12) as f64 + 0.5) / (1u64 << 52) as f64
+        ((self.0.next() >> 12) as f64 + 0.5) / (1u64 << 52) as f64
     }
 
     /// Uniform over a box.
