@@ -144,6 +144,16 @@ impl Line {
         })
     }
 
+    /// Whether it passes the plane of a closed rectangle outside of it, if it is in the octant. Exact.
+    pub(super) fn misses(&self, rectangle: &Aabb<3>, axis: usize, octant: Octant) -> bool {
+        let at = rectangle.min[axis];
+        others(axis).into_iter().any(|b| {
+            let [first, last] = first_and_last(rectangle, octant, b);
+            self.obeys(&Row { early: axis, late: b, from: at, to: first }, octant)
+                || self.obeys(&Row { early: b, late: axis, from: last, to: at }, octant)
+        })
+    }
+
     /// Whether its direction is strictly in the octant. Exact.
     pub(super) fn is_in(&self, octant: Octant) -> bool {
         (0..3).all(|i| sign(octant, i) * self.from[i] < sign(octant, i) * self.to[i])

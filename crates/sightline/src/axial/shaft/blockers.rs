@@ -1,6 +1,6 @@
 //! Opaque rectangles, found along lines.
 
-use super::super::rows::{Line, Octant, Row, first_and_last, others};
+use super::super::rows::{Line, Octant};
 use super::ray::Ray;
 use sightlines_geometry::{Aabb, BoxTree};
 
@@ -85,12 +85,6 @@ impl Blockers {
 
     /// Whether a line in the octant misses the closed rectangle. Exact.
     pub(super) fn missed(&self, index: u32, line: &Line, octant: Octant) -> bool {
-        let (rectangle, axis) = (self.rectangle(index), self.axis(index));
-        let at = rectangle.min[axis];
-        others(axis).into_iter().any(|b| {
-            let [first, last] = first_and_last(rectangle, octant, b);
-            line.obeys(&Row { early: axis, late: b, from: at, to: first }, octant)
-                || line.obeys(&Row { early: b, late: axis, from: last, to: at }, octant)
-        })
+        line.misses(self.rectangle(index), self.axis(index), octant)
     }
 }

@@ -44,13 +44,8 @@ impl FreeLine {
 
     /// Whether it crosses the plane of a door in the door's direction and meets the closed rectangle. Exact.
     pub fn touches(&self, door: &AxialDoor) -> bool {
-        let (axis, at) = (usize::from(door.axis), door.at());
-        let misses = |b: usize| {
-            let [first, last] = first_and_last(&door.extent, self.octant, b);
-            self.line.obeys(&Row { early: axis, late: b, from: at, to: first }, self.octant)
-                || self.line.obeys(&Row { early: b, late: axis, from: last, to: at }, self.octant)
-        };
-        door.forward == is_forward(self.octant, axis) && !others(axis).into_iter().any(misses)
+        let axis = usize::from(door.axis);
+        door.forward == is_forward(self.octant, axis) && !self.line.misses(&door.extent, axis, self.octant)
     }
 
     /// Whether it passes the inside of a box, or crosses a flat one. Exact.
