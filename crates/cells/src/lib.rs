@@ -7,17 +7,19 @@
 //! side, then portal; every cell lies on the left of its own sides.
 
 pub mod axial;
+pub mod convex;
 pub mod graph;
 pub mod plan;
 pub mod planar;
 pub mod scene;
 
 pub use axial::{Axial, BoxCell};
+pub use convex::{Convex, ConvexCell3};
 pub use graph::{CellGraph, Exit, Portal, PortalId, Space};
 pub use plan::{LineId, Plan, PlanError, PlanLine, PlanObject};
 pub use planar::{ConvexCell2, Planar, WellFormedError};
-pub use scene::{Point3, Scene, SceneError, SceneObject};
-pub use sightlines_geometry::{AxialDoor, Portal2};
+pub use scene::{Scene, SceneError, SceneObject};
+pub use sightlines_geometry::{AxialDoor, Point3, Portal2, Portal3};
 pub use sightlines_pvs::CellId;
 
 #[cfg(doctest)]

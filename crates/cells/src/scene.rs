@@ -1,9 +1,6 @@
 //! Scenes in space: objects made of triangles.
 
-use sightlines_geometry::{Aabb, CoordinateError, check_coordinate};
-
-/// A point of space in scene units.
-pub type Point3 = [f64; 3];
+use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate};
 
 /// Something that is seen or not as a whole: a mesh of triangles.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,8 @@
 //! Points, segments, boxes and the exact predicates that every decision of `sightlines` rests on.
 //!
-//! Owns: the coordinate types ([`Point2`], [`Segment2`], [`Aabb`]), the orientation predicate in two
-//! forms with one meaning ([`Adaptive`], [`SmallGrid`]), convex polygons in the plane, trees of boxes
-//! ([`BoxTree`]).
+//! Owns: the coordinate types ([`Point2`], [`Point3`], [`Segment2`], [`Aabb`]), the orientation predicate of
+//! the plane in two forms with one meaning ([`Adaptive`], [`SmallGrid`]) and that of space ([`orient3d`]),
+//! convex polygons in the plane, oriented portals of each kind, trees of boxes ([`BoxTree`]).
 //! Does not know: walls, cells, portals, files.
 //! Invariants: a predicate reads input coordinates only and its sign is exact for every coordinate that
 //! [`check_coordinate`] accepts; nothing here compares with an epsilon.
@@ -12,8 +12,10 @@ pub mod boxtree;
 pub mod coordinate;
 pub mod door;
 pub mod orient;
+pub mod orient3;
 pub mod polygon;
 pub mod portal;
+pub mod portal3;
 pub mod segment;
 
 pub use bounds::Aabb;
@@ -21,8 +23,10 @@ pub use boxtree::{BoxNode, BoxTree};
 pub use coordinate::{CoordinateError, check_coordinate};
 pub use door::AxialDoor;
 pub use orient::{Adaptive, Orient2d, SmallGrid, along, orient2d};
+pub use orient3::orient3d;
 pub use polygon::{is_convex_ccw, polygon_contains, signed_area};
 pub use portal::Portal2;
+pub use portal3::Portal3;
 pub use segment::Segment2;
 
 #[cfg(doctest)]
@@ -31,3 +35,6 @@ struct ReadmeDoctests;
 
 /// A point of the plane in scene units.
 pub type Point2 = glam::DVec2;
+
+/// A point of space: x, y and z in scene units.
+pub type Point3 = [f64; 3];

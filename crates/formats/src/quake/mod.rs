@@ -20,7 +20,7 @@ pub mod visibility;
 pub use bsp::{Bsp, BspError, BspFormat};
 pub use error::{QuakeErrorKind, QuakeReadError};
 pub use leafs::{LeafClusters, LeafError};
-pub use prt::{Prt, PrtError};
+pub use prt::{Prt, PrtError, graph_of_prt};
 pub use visibility::{VisibilityError, VisibilityLump};
 
 use std::path::Path;

@@ -134,6 +134,12 @@ pub enum PrtErrorKind {
         /// What is wrong with it.
         source: CoordinateError,
     },
+    /// A portal's points span an area but go round none, so that it has no direction.
+    #[error("portal {portal} is not a convex polygon: its points go round no area")]
+    NotConvex {
+        /// The portal.
+        portal: usize,
+    },
     /// A portal leads back to where it comes from.
     #[error("portal {portal} joins cluster {cluster} with itself")]
     SelfPortal {

@@ -13,17 +13,19 @@
 //! dialect that only begins alike.
 
 mod error;
+mod graph;
 mod lexer;
 mod read;
 mod write;
 
 pub use error::{PrtError, PrtErrorKind, PrtItem};
+pub use graph::graph_of_prt;
 pub use read::parse_prt;
 pub use write::write_prt;
 
 use super::{LeafClusters, MAX_CLUSTERS};
 use crate::point::{are_collinear, check_point};
-use sightlines_cells::Point3;
+use sightlines_cells::{Point3, Portal3};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -72,7 +74,8 @@ pub enum LeafList {
 
 /// The clusters of a map and the portals between them, checked: there is a cluster, portals join two
 /// clusters that exist, have 3 to 64 points and coordinates that predicates accept; if leafs are listed, each
-/// is in one cluster. That portals are flat and convex is not checked.
+/// is in one cluster; the points of a portal go round an area, or lie on one line. That portals are flat is
+/// not checked, and corners of theirs may turn inwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prt {
     n_clusters: u32,
@@ -147,6 +150,12 @@ impl Prt {
             }
         }
         self.portals.push(Record { clusters, end: self.points.len() });
+        let added = self.portal(portal);
+        if Portal3::around(added.points).is_none() && !added.is_degenerate() {
+            self.portals.pop();
+            self.points.truncate(before);
+            return Err(PrtErrorKind::NotConvex { portal });
+        }
         Ok(())
     }
 
