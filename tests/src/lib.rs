@@ -1,6 +1,7 @@
 //! What tests across crates share: where real data is, and what was seen there.
 
 pub mod scenes;
+pub mod world_files;
 
 pub use scenes::{CellWitness, scene_folders, scene_witness};
 

@@ -2,7 +2,7 @@
 
 use crate::commands::{
     build::BuildArgs, demo::DemoArgs, draw::DrawArgs, explain::ExplainArgs, export::ExportArgs, generate::GenerateArgs,
-    info::InfoArgs, query::QueryArgs, reject::RejectArgs,
+    info::InfoArgs, query::QueryArgs, reject::RejectArgs, vis::VisArgs,
 };
 use clap::{Parser, Subcommand};
 
@@ -25,10 +25,13 @@ pub(crate) struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Build a visibility table: of a Doom map in a WAD, a GeoJSON floor plan, or a scene in space (GLB, glTF, OBJ)
+    /// Build a visibility table: of a Doom map in a WAD, a GeoJSON floor plan, a scene in space (GLB, glTF, OBJ), or a
+    /// portal file of a Quake map (PRT)
     Build(BuildArgs),
     /// Write the REJECT lumps of the maps of a WAD, and leave all else as it is
     Reject(RejectArgs),
+    /// Write the visibility of a map of Quake or Quake II, and leave all else as it is
+    Vis(VisArgs),
     /// Say which cells and objects may be seen from a point
     Query(QueryArgs),
     /// Write a table as JSON
@@ -37,7 +40,7 @@ pub(crate) enum Command {
     Explain(ExplainArgs),
     /// Draw a table and what is seen from somewhere, as SVG or PNG: plans, floor plans, isometric views
     Draw(DrawArgs),
-    /// Sum up a table, a WAD, a GeoJSON plan or a scene in space
+    /// Sum up a table, a WAD, a GeoJSON plan, a scene in space, a Quake map or a portal file
     Info(InfoArgs),
     /// Write a generated scene of any size
     Generate(GenerateArgs),

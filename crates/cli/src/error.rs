@@ -1,6 +1,8 @@
 //! What can go wrong, as one line for the user.
 
-use sightlines::bake::{BakeError, RejectError};
+use sightlines::bake::quake::StateError;
+use sightlines::bake::{BakeError, PrtBakeError, RejectError};
+use sightlines::formats::quake::VisibilityError;
 use sightlines::formats::scene::SceneWriteError;
 use sightlines::formats::{ReadError, WriteError};
 use sightlines::pvs::DecodeError;
@@ -45,6 +47,24 @@ pub(crate) enum CliError {
     /// A plan or a scene cannot be baked.
     #[error("{}: {}{source}", path.display(), map.as_ref().map_or(String::new(), |name| format!("map {name}: ")))]
     Bake { path: PathBuf, map: Option<String>, source: BakeError },
+    /// A portal file, or the map that it is of, cannot be baked.
+    #[error("{}: {source}", path.display())]
+    BakePrt { path: PathBuf, source: PrtBakeError },
+    /// A portal file of another map.
+    #[error("{}: does not go with {}: {source}", prt.display(), bsp.display())]
+    OtherMap { prt: PathBuf, bsp: PathBuf, source: VisibilityError },
+    /// A Quake map where its portals are needed.
+    #[error("{}: a Quake map does not have its portals: build its portal file (.prt), or use vis", .0.display())]
+    MapWithoutPortals(PathBuf),
+    /// A table that does not know where its cells are.
+    #[error("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())]
+    NoPlaces { path: PathBuf, what: &'static str },
+    /// The state of a search is none that can be resumed.
+    #[error("{}: {source}; without --resume the search begins anew", path.display())]
+    State { path: PathBuf, source: StateError },
+    /// Something else is where the state of the search would be written.
+    #[error("{}: this is no state of a search, and would be overwritten; name another with --state", .0.display())]
+    NotState(PathBuf),
     /// The REJECT lumps of a WAD cannot be built.
     #[error("{}: {source}", path.display())]
     Reject { path: PathBuf, source: RejectError },

@@ -2,8 +2,11 @@
 
 use crate::error::CliError;
 use sightlines::bake::graph_of;
+use sightlines::bake::quake::{SOURCE_KEY, SOURCE_PRT};
 use sightlines::cells::{CellGraph, Plan, Planar};
 use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
+use sightlines::formats::quake::prt::PrtDialect;
+use sightlines::formats::quake::{BspFormat, Prt, read_prt};
 use sightlines::formats::scene::read_scene;
 use sightlines::formats::{ReadError, SceneFile, Wad, geojson};
 use sightlines::pvs::{Table, format};
@@ -19,6 +22,10 @@ pub(crate) enum Kind {
     Json,
     /// A scene in space: GLB, glTF or OBJ.
     Scene,
+    /// The portals of a Quake map.
+    Prt,
+    /// A map of Quake or Quake II.
+    Bsp,
 }
 
 /// Tells what a file is by its first bytes; if they say nothing, by the end of its name.
@@ -33,6 +40,8 @@ pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>, CliError> {
         (None, Some("wad")) => Some(Kind::Wad),
         (None, Some("pvs")) => Some(Kind::Table),
         (None, Some("json" | "geojson")) => Some(Kind::Json),
+        (None, Some("prt")) => Some(Kind::Prt),
+        (None, Some("bsp")) => Some(Kind::Bsp),
         (kind, _) => kind,
     })
 }
@@ -45,6 +54,10 @@ fn kind_of_bytes(start: &[u8]) -> Option<Kind> {
         Some(Kind::Table)
     } else if start.starts_with(b"glTF") {
         Some(Kind::Scene)
+    } else if PrtDialect::ALL.iter().any(|dialect| start.starts_with(dialect.magic().as_bytes())) {
+        Some(Kind::Prt)
+    } else if BspFormat::ALL.iter().any(|format| start.starts_with(format.magic())) {
+        Some(Kind::Bsp)
     } else if text.starts_with(b"{") {
         Some(Kind::Json)
     } else {
@@ -65,6 +78,16 @@ pub(crate) fn table(path: &Path) -> Result<Table, CliError> {
     Table::from_bytes(&bytes).map_err(|source| CliError::Table { path: path.to_owned(), source })
 }
 
+/// Whether a table is of a portal file: its cells have portals, but nobody knows where they are.
+pub(crate) fn is_of_portals(table: &Table) -> bool {
+    table.info_value(SOURCE_KEY).is_some_and(|source| source.starts_with(SOURCE_PRT))
+}
+
+/// Refuses a table that does not know where its cells are; `what` says what cannot be done for that.
+pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static str) -> Result<(), CliError> {
+    if is_of_portals(table) { Err(CliError::NoPlaces { path: path.to_owned(), what }) } else { Ok(()) }
+}
+
 /// The cell graph that a table holds.
 pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, CliError> {
     graph_of(table).ok_or_else(|| CliError::Stripped(path.to_owned()))
@@ -77,6 +100,8 @@ pub(crate) enum Input {
     Plan(PlanFile),
     /// A scene in space.
     Scene(SceneFile),
+    /// The clusters of a Quake map.
+    Portals(Prt),
 }
 
 /// A plan, and the map that it is of.
@@ -86,16 +111,19 @@ pub(crate) struct PlanFile {
     pub(crate) map: Option<String>,
 }
 
-/// Reads what is to be built: a map of a WAD, a GeoJSON file, or a scene in space.
+/// What `build` takes, as errors say it.
+const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a portal file";
+
+/// Reads what is to be built: a map of a WAD, a GeoJSON file, a scene in space, or a portal file.
 pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, CliError> {
     match (kind_of(path)?, map) {
         (Some(Kind::Wad), map) => Ok(Input::Plan(doom(path, map)?)),
-        (Some(Kind::Json | Kind::Scene), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
+        (Some(Kind::Json | Kind::Scene | Kind::Prt), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
         (Some(Kind::Json), None) => Ok(Input::Plan(plan(path)?)),
         (Some(Kind::Scene), None) => Ok(Input::Scene(read_scene(path)?)),
-        (Some(Kind::Table) | None, _) => {
-            Err(CliError::Kind { path: path.to_owned(), expected: "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ" })
-        }
+        (Some(Kind::Prt), None) => Ok(Input::Portals(read_prt(path)?)),
+        (Some(Kind::Bsp), _) => Err(CliError::MapWithoutPortals(path.to_owned())),
+        (Some(Kind::Table) | None, _) => Err(CliError::Kind { path: path.to_owned(), expected: BUILDABLE }),
     }
 }
 

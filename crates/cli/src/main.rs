@@ -50,8 +50,9 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<Answer, CliError> {
     let show_progress = !arguments.quiet;
     match &arguments.command {
-        Command::Build(args) => commands::build::run(args, show_progress),
+        Command::Build(args) => commands::build::run(args, show_progress, arguments.verbose > 0),
         Command::Reject(args) => commands::reject::run(args, show_progress),
+        Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0),
         Command::Query(args) => commands::query::run(args),
         Command::Export(args) => commands::export::run(args),
         Command::Explain(args) => commands::explain::run(args),

@@ -13,6 +13,7 @@ fn missing_files_are_named() {
     for args in [
         &["build", "no.wad", "-o", "out.pvs"][..],
         &["reject", "no.wad", "-o", "out.wad"],
+        &["vis", "no.bsp"],
         &["query", "no.pvs", "--eye", "0,0"],
         &["export", "no.pvs"],
         &["explain", "no.pvs", "0", "1"],
@@ -35,13 +36,19 @@ fn files_of_the_wrong_kind_are_named() {
     folder.write("empty.wad", "");
     folder.write("maps.wad", wad(&["MAP01"]));
     let build = |input: &str| folder.refused(&["build", input, "-o", "out.pvs"]);
-    assert_eq!(build("noise"), "noise: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ");
-    assert_eq!(build("office.pvs"), "office.pvs: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ");
+    assert_eq!(build("noise"), "noise: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a portal file");
+    assert_eq!(
+        build("office.pvs"),
+        "office.pvs: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a portal file"
+    );
     assert!(build("noise.wad").starts_with("noise.wad: "));
     assert!(build("empty.wad").starts_with("empty.wad: "));
     assert!(build("noise.json").starts_with("noise.json: line 1 column 1: "));
     let error = folder.refused(&["info", "noise"]);
-    assert_eq!(error, "noise: neither a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ");
+    assert_eq!(
+        error,
+        "noise: neither a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
+    );
     assert!(folder.refused(&["reject", "office.geojson", "-o", "out.wad"]).starts_with("office.geojson: "));
     assert_eq!(folder.refused(&["export", "maps.wad"]), "maps.wad: byte 0: this is no visibility table");
     assert_eq!(

@@ -1,5 +1,6 @@
 //! Errors of reading a file: its path, and what is wrong inside.
 
+use crate::quake::{BspError, PrtError};
 use crate::{DoomError, GeoJsonError, SceneReadError, WadError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -41,6 +42,12 @@ pub enum ReadErrorKind {
     /// It is not a scene in space.
     #[error(transparent)]
     Scene(Box<SceneReadError>),
+    /// It is not a sound portal file of a Quake map.
+    #[error(transparent)]
+    Prt(#[from] PrtError),
+    /// It is not a sound Quake map.
+    #[error(transparent)]
+    Bsp(#[from] BspError),
 }
 
 impl From<SceneReadError> for ReadErrorKind {

@@ -4,7 +4,7 @@
 //! Owns: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
 //! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]), maps of the Quake family and their visibility
 //! ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), and errors that name the file
-//! and the place in it ([`ReadError`], [`QuakeReadError`]).
+//! and the place in it ([`ReadError`]).
 //! Does not know: how a plan is cut into cells, what a sightline is, how a REJECT table is computed.
 //! Invariants: no input causes a panic; memory stays within a small multiple of the input's size
 //! (of a scene in space: with its meshes as often as it shows them, up to a limit), whatever counts
@@ -25,7 +25,7 @@ pub use doom::{DoomError, DoomMap, MapLumps};
 pub use error::{ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
 pub use geojson::GeoJsonError;
-pub use quake::{Bsp, Prt, QuakeReadError};
+pub use quake::{Bsp, Prt};
 pub use reject::RejectTable;
 pub use scene::{SceneFile, SceneInfo, SceneReadError};
 pub use wad::{LumpName, Wad, WadBuilder, WadError};

@@ -2,8 +2,8 @@
 
 use sightlines_cells::Plan;
 use sightlines_scenes::{
-    OfficeOptions, SceneError, TowerOptions, degenerate, doom_like, maze, office, pillared_hall, tower,
-    turned_pillared_hall,
+    BspWorldOptions, OfficeOptions, QuakeLikeOptions, SceneError, TowerOptions, World, bsp_world, degenerate,
+    doom_like, maze, office, pillared_hall, quake_like, tower, turned_pillared_hall, world,
 };
 
 fn main() -> Result<(), SceneError> {
@@ -24,6 +24,16 @@ fn main() -> Result<(), SceneError> {
     for floors in [1, 4, 16, 64] {
         let scene = tower(TowerOptions { floors, ..Default::default() })?;
         println!("tower of {floors} floors: {} objects, {} triangles", scene.objects().len(), scene.n_triangles());
+    }
+    let show = |name: &str, world: &World| {
+        let (leafs, cells, portals) = (world.leafs.len(), world.graph.n_cells(), world.graph.portals().len());
+        println!("{name}: {leafs} leafs, {cells} cells, {portals} portals");
+    };
+    show("random world", &bsp_world(BspWorldOptions { leafs: 1000, ..Default::default() })?);
+    show("Quake-like level", &quake_like(QuakeLikeOptions::default())?);
+    show("large Quake-like level", &quake_like(QuakeLikeOptions { rooms_x: 8, rooms_y: 8, floors: 2, seed: 1 })?);
+    for (name, world) in world::world_families() {
+        show(name, &world);
     }
     Ok(())
 }

@@ -1,8 +1,9 @@
 //! Deterministic generators of scenes: offices, mazes, pillared halls, Doom-like maps, the degenerate
-//! families that a subdivision has to survive, and in space furnished office towers.
+//! families that a subdivision has to survive, and in space furnished office towers and worlds of convex
+//! cells, cut as the compilers of maps cut them.
 //!
 //! Owns: the generators, their options, their source of chance.
-//! Does not know: cells, sightlines, files.
+//! Does not know: sightlines, files; cells only where a scene is made of them.
 //! Invariants: the same options give the same bytes on every machine (integers only until the last
 //! step, which divides by a power of two); a plan is closed by an outer wall unless its description
 //! says otherwise; meshes are closed and face outwards; bad options give an error, never a panic.
@@ -20,6 +21,7 @@ mod rng;
 mod spanning;
 mod stroke;
 pub mod tower;
+pub mod world;
 
 pub use doom_like::{DoomLike, DoomLikeLine, doom_like};
 pub use error::SceneError;
@@ -27,6 +29,7 @@ pub use hall::{pillared_hall, turned_pillared_hall};
 pub use maze::maze;
 pub use office::{OfficeOptions, office};
 pub use tower::{TowerOptions, TowerRoom, tower, tower_rooms};
+pub use world::{BspWorldOptions, QuakeLikeOptions, World, bsp_world, quake_like};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

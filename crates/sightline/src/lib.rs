@@ -2,8 +2,9 @@
 //!
 //! Owns: the [`Stabber`] contract that a search drives, the planar [`Funnel`] (exact, incremental), the
 //! proofs of its answers ([`Witness`], [`Certificate`]) with checkers that share no code with it; the same
-//! for axis-aligned rectangles in space ([`AxialStabber`], [`AxialWitness`], [`AxialCertificate`]); and both
-//! questions as linear programs ([`lp`]), for reference.
+//! for axis-aligned rectangles in space ([`AxialStabber`], [`AxialWitness`], [`AxialCertificate`]) and for convex
+//! polygons ([`ConvexStabber`], [`Line3`], [`ConvexCertificate`]); and the first two questions as linear
+//! programs ([`lp`]), for reference.
 //! Does not know: cells, graphs, tables, files.
 //! Invariants: every decision is exact for the coordinates given; a sequence that an open set of lines
 //! passes is never called blocked, and one that only grazing lines pass is never called open.
@@ -13,6 +14,7 @@
 
 pub mod axial;
 pub mod certificate;
+pub mod convex;
 pub mod funnel;
 pub mod lp;
 mod stabber;
@@ -27,6 +29,10 @@ pub use axial::{
     stabbing_line_axial,
 };
 pub use certificate::{Certificate, End};
+pub use convex::{
+    Block, BoxProof, ConvexCertificate, ConvexCounters, ConvexNode, ConvexStabber, ConvexTerm, Line3, PlaneProof,
+    StabLimits, Stabbing3,
+};
 pub use funnel::{Funnel, FunnelUndo};
 pub use stabber::Stabber;
 pub use witness::Witness;

@@ -11,6 +11,7 @@
 //! does not depend on the number of threads or on which hints a caller gives.
 
 mod chords;
+mod convex;
 mod explain;
 mod network;
 mod search;
@@ -19,6 +20,7 @@ mod tree;
 mod zones;
 
 pub use chords::{shoot_axial_chords, shoot_chords};
+pub use convex::{ConvexCounters, ConvexOptions, ConvexSearch, ConvexState, SeenThroughPortals};
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
 pub use search::{Known, Progress, SearchOptions, SearchSummary, Seen, visible_zones};

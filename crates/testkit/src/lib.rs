@@ -1,8 +1,8 @@
 //! Oracles and proptest strategies for the tests of `sightlines`; not published.
 //!
 //! Owns: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
-//! [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`]), sampled lower bounds, and strategies that
-//! draw from small grids.
+//! [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`]), sampled lower
+//! bounds, what is known of worlds of convex cells ([`convex`]), and strategies that draw from small grids.
 //! Does not know: how the real code works; an oracle that shares a method with it proves nothing.
 //! Invariants: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
 //! space are traced in doubles, and what is sampled with them stands clear of rounding.
@@ -10,6 +10,7 @@
 pub mod axial;
 mod bvh;
 mod candidates;
+pub mod convex;
 pub mod corridor;
 mod exact;
 pub mod mutate;

@@ -4,22 +4,30 @@
 //! Each target begins with small files, breaks them at random, and checks. A failure prints the seed
 //! that replays it. Run by `cargo xtask fuzz`.
 
+use sightlines::bake::quake::{StateKey, state};
 use sightlines::bake::reject::{RejectOptions, reject_wad};
-use sightlines::bake::{BakeOptions, PortalMode, SceneBakeOptions, bake_plan, bake_scene, graph_of};
+use sightlines::bake::{
+    BakeOptions, PortalMode, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, convex_graph_of, graph_of,
+};
 use sightlines::cells::Scene;
 use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
 use sightlines::formats::geojson::{parse_plan, write_plan};
+use sightlines::formats::quake::{graph_of_prt, prt::parse_prt};
 use sightlines::formats::scene::{SceneFile, parse_glb, parse_obj, write_glb};
 use sightlines::formats::wad::WadKind;
 use sightlines::formats::{LumpName, Wad, WadBuilder};
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{self, TowerOptions, tower};
-use sightlines::stabtree::{Zones, shoot_axial_chords};
+use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
 use sightlines_testkit::mutate::{SplitMix, mutate};
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+
+#[path = "../../../crates/formats/tests/common/quake.rs"]
+#[expect(unreachable_pub, reason = "it is shared with tests of another crate")]
+mod quake_files;
 
 /// What is broken and how it is checked; `true` if the broken file was read.
 struct Target {
@@ -28,7 +36,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 9] = [
+const TARGETS: [Target; 12] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
@@ -37,6 +45,9 @@ const TARGETS: [Target; 9] = [
     Target { name: "bake", seeds: plans, check: check_bake },
     Target { name: "scene", seeds: buildings, check: check_building },
     Target { name: "pvs", seeds: tables, check: check_pvs },
+    Target { name: "prt", seeds: prts, check: check_prt },
+    Target { name: "bsp", seeds: quake_files::small_bsps, check: quake_files::check_bsp },
+    Target { name: "vis-state", seeds: vis_states, check: check_vis_state },
     Target { name: "garbage", seeds: garbage, check: check_anything },
 ];
 
@@ -135,6 +146,30 @@ fn tables() -> Vec<Vec<u8>> {
     scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1)).flat_map(bake).collect()
 }
 
+fn prts() -> Vec<Vec<u8>> {
+    quake_files::SMALL_PRTS.iter().map(|text| text.as_bytes().to_vec()).collect()
+}
+
+/// What the state of a search of the first small portal file belongs to.
+fn vis_state_key() -> StateKey {
+    StateKey::new(quake_files::SMALL_PRTS[0].as_bytes(), false)
+}
+
+/// States before each step of a search, without the hash behind them, which is put there when they are broken.
+fn vis_states() -> Vec<Vec<u8>> {
+    let graph = graph_of_prt(&parse_prt(quake_files::SMALL_PRTS[0].as_bytes()).expect("sound portals"));
+    let mut search = ConvexSearch::new(&graph, ConvexOptions::default());
+    let mut states = Vec::new();
+    loop {
+        let mut bytes = state::encode(&vis_state_key(), search.state());
+        bytes.truncate(bytes.len() - state::HASH_LEN);
+        states.push(bytes);
+        if states.len() == 8 || !search.advance() {
+            return states;
+        }
+    }
+}
+
 fn garbage() -> Vec<Vec<u8>> {
     vec![vec![], b"PWAD".to_vec(), b"{\"type\":".to_vec(), (0..=255).collect()]
 }
@@ -219,8 +254,42 @@ fn check_pvs(bytes: &[u8]) -> bool {
     true
 }
 
+/// Portals are read or refused, and what is read is seen through: the table is written and read again.
+fn check_prt(bytes: &[u8]) -> bool {
+    if !quake_files::check_prt(bytes) {
+        return false;
+    }
+    let prt = parse_prt(bytes).expect("it was read before");
+    // A digit more is a table of a gigabyte.
+    if prt.n_clusters() > 100 {
+        return true;
+    }
+    let Ok(baked) = bake_prt(&prt, PrtOptions::default()) else { return true };
+    // Portals far from flat may not come back.
+    if let Some(graph) = convex_graph_of(&baked.table) {
+        assert_eq!(graph.cells(), graph_of_prt(&prt).cells());
+    }
+    assert_eq!(Table::from_bytes(&baked.table.to_bytes()).expect("what was written is read"), baked.table);
+    true
+}
+
+/// A state is refused, or is one that a search can go on from and that is written as it was read.
+fn check_vis_state(bytes: &[u8]) -> bool {
+    let graph = graph_of_prt(&parse_prt(quake_files::SMALL_PRTS[0].as_bytes()).expect("sound portals"));
+    assert!(state::decode(&vis_state_key(), &graph, bytes).is_err(), "it has no hash");
+    let whole = state::with_hash(bytes);
+    let Ok(read) = state::decode(&vis_state_key(), &graph, &whole) else { return false };
+    assert_eq!(state::encode(&vis_state_key(), &read), whole);
+    if let Some(mut search) = ConvexSearch::resume(&graph, ConvexOptions::default(), read) {
+        while search.advance() {}
+        assert_eq!(search.finish().cells.n_rows(), graph.n_cells());
+    }
+    true
+}
+
 fn check_anything(bytes: &[u8]) -> bool {
-    check_reject(bytes) | check_bake(bytes) | check_pvs(bytes) | check_glb(bytes) | check_obj(bytes)
+    let text = check_prt(bytes) | quake_files::check_bsp(bytes) | check_vis_state(bytes);
+    text | check_reject(bytes) | check_bake(bytes) | check_pvs(bytes) | check_glb(bytes) | check_obj(bytes)
 }
 
 struct Settings {

@@ -9,3 +9,4 @@ pub(crate) mod generate;
 pub(crate) mod info;
 pub(crate) mod query;
 pub(crate) mod reject;
+pub(crate) mod vis;

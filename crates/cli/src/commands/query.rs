@@ -25,6 +25,7 @@ pub(crate) struct QueryArgs {
 
 pub(crate) fn run(args: &QueryArgs) -> Result<Answer, CliError> {
     let table = input::table(&args.table)?;
+    input::refuse_without_places(&table, &args.table, "no cell can be found at a point")?;
     let eye = args.eye.of(&table, &args.table)?;
     let cells: Vec<u32> = table.locate(eye).iter().map(|cell| cell.0).collect();
     let seen = table.visible_from(eye);

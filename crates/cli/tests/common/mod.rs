@@ -2,6 +2,8 @@
 
 #![expect(dead_code, reason = "each test file uses a part of this")]
 
+pub(crate) mod quake;
+
 use sightlines::formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine};
 use sightlines::formats::geojson;
 use sightlines::formats::wad::{LumpName, WadBuilder, WadKind};

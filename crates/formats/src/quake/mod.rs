@@ -11,18 +11,18 @@
 //! form that engines load by [`visibility`] and [`rle`].
 
 pub mod bsp;
-mod error;
 mod leafs;
 pub mod prt;
 pub mod rle;
 pub mod visibility;
 
 pub use bsp::{Bsp, BspError, BspFormat};
-pub use error::{QuakeErrorKind, QuakeReadError};
 pub use leafs::{LeafClusters, LeafError};
 pub use prt::{Prt, PrtError, graph_of_prt};
 pub use visibility::{VisibilityError, VisibilityLump};
 
+use crate::ReadError;
+use crate::error::ReadErrorKind;
 use std::path::Path;
 
 /// The most clusters that are read: their table takes 512 MiB. Engines hold as many leafs.
@@ -31,19 +31,19 @@ pub const MAX_CLUSTERS: u32 = 1 << 16;
 /// Reads a portal file.
 ///
 /// # Errors
-/// [`QuakeReadError`] with the file's name, and line and column in it.
-pub fn read_prt(path: impl AsRef<Path>) -> Result<Prt, QuakeReadError> {
+/// [`ReadError`] with the file's name, and line and column in it.
+pub fn read_prt(path: impl AsRef<Path>) -> Result<Prt, ReadError> {
     let path = path.as_ref();
-    let read = || Ok(prt::parse_prt(&std::fs::read(path)?)?);
-    read().map_err(|kind| QuakeReadError { path: path.to_owned(), kind })
+    let read = || -> Result<_, ReadErrorKind> { Ok(prt::parse_prt(&std::fs::read(path)?)?) };
+    read().map_err(|kind| ReadError::new(path, kind))
 }
 
 /// Reads a map.
 ///
 /// # Errors
-/// [`QuakeReadError`] with the file's name, and the place in it.
-pub fn read_bsp(path: impl AsRef<Path>) -> Result<Bsp, QuakeReadError> {
+/// [`ReadError`] with the file's name, and the place in it.
+pub fn read_bsp(path: impl AsRef<Path>) -> Result<Bsp, ReadError> {
     let path = path.as_ref();
-    let read = || Ok(Bsp::parse(std::fs::read(path)?)?);
-    read().map_err(|kind| QuakeReadError { path: path.to_owned(), kind })
+    let read = || -> Result<_, ReadErrorKind> { Ok(Bsp::parse(std::fs::read(path)?)?) };
+    read().map_err(|kind| ReadError::new(path, kind))
 }

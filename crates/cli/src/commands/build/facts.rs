@@ -5,7 +5,7 @@ use sightlines::report::Summary;
 use std::fmt;
 use std::time::Duration;
 
-/// Cells, portals, visible pairs, and what has to be drawn.
+/// Cells, portals, visible pairs, and what has to be drawn; a share of the floor that is no number is not known.
 pub(crate) struct Facts<'a>(pub(crate) &'a Summary);
 
 impl fmt::Display for Facts<'_> {
@@ -20,6 +20,9 @@ impl fmt::Display for Facts<'_> {
         let all = s.n_cells as u64 * (s.n_cells as u64).saturating_sub(1) / 2;
         writeln!(f, "visible pairs  {} of {all}", s.n_visible_pairs)?;
         let [cells, floor] = [s.mean_cell_share, s.mean_floor_share].map(percent);
+        if s.mean_floor_share.is_nan() {
+            return writeln!(f, "to draw        {cells} of the cells on average");
+        }
         let what = if s.dimension == 2 { "floor" } else { "volume" };
         writeln!(f, "to draw        {floor} of the {what} on average ({cells} of the cells)")
     }

@@ -1,8 +1,9 @@
-//! `build`: from a plan or a scene in space to its table.
+//! `build`: from a plan, a scene in space or a portal file to its table.
 
 pub(crate) mod facts;
 mod options;
 pub(crate) mod plan;
+mod portals;
 pub(crate) mod space;
 
 pub(crate) use options::{BakeArgs, refuse};
@@ -16,7 +17,7 @@ use std::path::PathBuf;
 /// Arguments of `build`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct BuildArgs {
-    /// A WAD, a floor plan as GeoJSON, or a scene in space as GLB, glTF or OBJ
+    /// A WAD, a floor plan as GeoJSON, a scene in space as GLB, glTF or OBJ, or a portal file of a Quake map
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// The table to write
@@ -32,7 +33,7 @@ pub(crate) struct BuildArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &BuildArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
     let BuildArgs { input: path, output: out, bake, .. } = args;
     output::refuse_same(path, out)?;
     match input::read(path, args.map.as_deref())? {
@@ -45,6 +46,12 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool) -> Result<Answer, CliEr
             let baked = space::bake(path, &file, bake, show_progress)?;
             output::save(out, &baked.table.to_bytes())?;
             output::print(args.json, &space::Outcome::new(out, &file, bake, &baked))?;
+        }
+        Input::Portals(prt) => {
+            let baked = portals::bake(path, &prt, bake, show_progress)?;
+            let bytes = baked.table.to_bytes();
+            output::save(out, &bytes)?;
+            output::print(args.json, &portals::Outcome::new(out, &prt, bake, &baked, bytes.len()).verbose(verbose))?;
         }
     }
     Ok(Answer::Yes)

@@ -35,6 +35,9 @@ pub(crate) struct BakeArgs {
     /// into them
     #[arg(long)]
     keep_solid: bool,
+    /// Portal files only: only the first, coarse bound: quick, and shows much that is hidden
+    #[arg(long)]
+    pub(super) fast: bool,
     /// Number of threads; 0 for one for each core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
     pub(super) threads: usize,
@@ -88,21 +91,35 @@ impl BakeArgs {
         }
     }
 
-    /// Refuses what means nothing for a plan.
-    pub(super) fn check_for_plan(&self, path: &Path) -> Result<(), CliError> {
-        let given = [
+    /// Options that mean something for scenes in space only.
+    fn of_space(&self) -> [(&'static str, bool); 5] {
+        [
             ("--view-region", self.view_region.is_some()),
             ("--detail-below", self.detail_below.is_some()),
             ("--portals", self.portals.is_some()),
             ("--max-cells", self.max_cells.is_some()),
             ("--keep-solid", self.keep_solid),
-        ];
-        refuse(path, &given, "scenes in space", "a plan")
+        ]
+    }
+
+    /// Refuses what means nothing for a plan.
+    pub(super) fn check_for_plan(&self, path: &Path) -> Result<(), CliError> {
+        refuse(path, &self.of_space(), "scenes in space", "a plan")?;
+        refuse(path, &[("--fast", self.fast)], "portal files", "a plan")
     }
 
     /// Refuses what means nothing for a scene in space.
     pub(super) fn check_for_space(&self, path: &Path) -> Result<(), CliError> {
-        refuse(path, &[("--subdivide", self.subdivide.is_some())], "plans", "a scene in space")
+        refuse(path, &[("--subdivide", self.subdivide.is_some())], "plans", "a scene in space")?;
+        refuse(path, &[("--fast", self.fast)], "portal files", "a scene in space")
+    }
+
+    /// Refuses what means nothing for a portal file, whose cells are cut already.
+    pub(super) fn check_for_portals(&self, path: &Path) -> Result<(), CliError> {
+        let found = "a portal file";
+        refuse(path, &[("--subdivide", self.subdivide.is_some())], "plans", found)?;
+        refuse(path, &[("--tau", self.tau.is_some())], "plans and scenes in space", found)?;
+        refuse(path, &self.of_space(), "scenes in space", found)
     }
 }
 

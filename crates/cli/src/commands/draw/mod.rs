@@ -86,6 +86,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer, CliError> {
     PictureKind::of(&args.output)?;
     output::refuse_same(&args.table, &args.output)?;
     let table = input::table(&args.table)?;
+    input::refuse_without_places(&table, &args.table, "there is nothing to draw")?;
     if let Some(eye) = &args.eye
         && table.locate(eye.of(&table, &args.table)?).is_empty()
     {

@@ -59,6 +59,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
         output::refuse_same(&args.table, out)?;
     }
     let table = input::table(&args.table)?;
+    input::refuse_without_places(&table, &args.table, "no line between two of them can be shown")?;
     let is_plan = table.dimension() == 2;
     args.refuse_meaningless(is_plan)?;
     let from = args.from.cells(&table, &args.table)?;

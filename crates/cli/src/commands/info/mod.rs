@@ -1,6 +1,7 @@
 //! `info`: what a file holds.
 
 mod plan;
+mod quake;
 mod scene;
 mod wad;
 
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
-    /// A table, a WAD, a GeoJSON plan, or a scene in space as GLB, glTF or OBJ
+    /// A table, a WAD, a GeoJSON plan, a scene in space as GLB, glTF or OBJ, a Quake map or its portal file
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Print the result as JSON
@@ -33,8 +34,10 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer, CliError> {
         Some(Kind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
         Some(Kind::Json) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
         Some(Kind::Scene) => output::print(args.json, &scene::SceneInfo::read(path)?)?,
+        Some(Kind::Prt) => output::print(args.json, &quake::PrtInfo::read(path)?)?,
+        Some(Kind::Bsp) => output::print(args.json, &quake::BspInfo::read(path)?)?,
         None => {
-            let expected = "a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ";
+            let expected = "a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
             return Err(CliError::Kind { path: path.clone(), expected });
         }
     }
@@ -60,7 +63,12 @@ fn as_map<S: serde::Serializer>(pairs: &[(String, String)], out: S) -> Result<S:
 impl TableInfo {
     fn new(path: &Path, table: &Table) -> Self {
         let file = path.display().to_string();
-        Self { file, kind: "table", summary: Summary::of(table), info: table.info().to_vec() }
+        let mut summary = Summary::of(table);
+        if input::is_of_portals(table) {
+            // The boxes are around portals, not around cells: nothing is known of volumes. Null in JSON.
+            (summary.mean_floor_share, summary.floor) = (f64::NAN, f64::NAN);
+        }
+        Self { file, kind: "table", summary, info: table.info().to_vec() }
     }
 }
 

@@ -1,0 +1,29 @@
+//! Why portals cannot be baked.
+
+use super::StateError;
+use sightlines_formats::quake::{BspError, VisibilityError};
+use sightlines_pvs::TableError;
+
+/// Why portals, or a map with them, could not be baked.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PrtBakeError {
+    /// There is no way from any cluster to another, which no map with several clusters means.
+    #[error("there are {n_clusters} clusters, but no portals between them")]
+    NoPortals {
+        /// Clusters of the file.
+        n_clusters: u32,
+    },
+    /// Portals and map do not fit together, or the answer does not fit into the map.
+    #[error(transparent)]
+    Visibility(#[from] VisibilityError),
+    /// The map cannot be written with its visibility.
+    #[error(transparent)]
+    Bsp(#[from] BspError),
+    /// The state to begin with is none of these portals.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The parts of the table do not fit together: a defect of this crate.
+    #[error("the table is inconsistent: {0}")]
+    Table(#[from] TableError),
+}

@@ -1,0 +1,144 @@
+//! Quake maps: from a portal file to who sees whom, and from there into the map or a table.
+//!
+//! The graph of clusters comes from the file ([`graph_of_prt`]); [`ConvexSearch`] finds out which clusters see
+//! which. [`vis_map`] puts the answer into the map, [`bake_prt`] into a table. Both take a search up again where
+//! an earlier one stopped ([`PrtOptions::from`]); [`state`] has the bytes in which that is kept.
+
+mod error;
+pub mod state;
+mod table;
+
+pub use error::PrtBakeError;
+pub use state::{StateError, StateKey, named_counters};
+pub use table::{SOURCE_KEY, SOURCE_PRT, convex_graph_of};
+
+use sightlines_cells::{CellGraph, Convex};
+use sightlines_formats::quake::visibility::{check_portals, lump};
+use sightlines_formats::quake::{Bsp, Prt, graph_of_prt};
+use sightlines_pvs::Table;
+use sightlines_stabtree::{ConvexOptions, ConvexSearch, ConvexState, SeenThroughPortals};
+use std::fmt;
+use std::time::{Duration, Instant};
+
+/// How to find out which clusters see which.
+#[derive(Default)]
+pub struct PrtOptions<'a> {
+    /// How to search.
+    pub search: ConvexOptions,
+    /// Where to begin, instead of at the beginning: how far another run with the same portals and options came.
+    pub from: Option<ConvexState>,
+    /// Shown the search before its first step and after each.
+    pub watch: Option<&'a mut dyn FnMut(&ConvexSearch)>,
+}
+
+impl fmt::Debug for PrtOptions<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PrtOptions")
+            .field("search", &self.search)
+            .field("from", &self.from.as_ref().map(|state| (state.stage, state.done)))
+            .finish_non_exhaustive()
+    }
+}
+
+/// A map with its visibility, and how that came about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VisMap {
+    /// The map.
+    pub bytes: Vec<u8>,
+    /// Which clusters see which.
+    pub clusters: SeenClusters,
+}
+
+/// A table of clusters, and how it came about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakedPrt {
+    /// The table. It has the cells and portals of the file, but not where the cells are ([`bake_prt`]).
+    pub table: Table,
+    /// Which clusters see which.
+    pub clusters: SeenClusters,
+}
+
+/// Which clusters see which.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeenClusters {
+    /// The answer of the search, and what it did.
+    pub seen: SeenThroughPortals,
+    /// Portals that the search went through: all of the file but those without area.
+    pub n_portals: usize,
+    /// Time of the search, of this run.
+    pub see_time: Duration,
+}
+
+impl SeenClusters {
+    /// Number of clusters.
+    pub fn n_clusters(&self) -> usize {
+        self.seen.cells.n_rows()
+    }
+
+    /// Unordered pairs of different clusters that see each other.
+    pub fn n_visible_pairs(&self) -> u64 {
+        (self.seen.cells.count_ones() - self.n_clusters() as u64) / 2
+    }
+
+    /// Unordered pairs of different clusters.
+    pub fn n_pairs(&self) -> u64 {
+        let n = self.n_clusters() as u64;
+        n * n.saturating_sub(1) / 2
+    }
+}
+
+/// Finds out which clusters of a map see which, and writes that into the map: its visibility lump, and what
+/// leafs say of it. Everything else stays as it is; visibility that was there is replaced.
+///
+/// # Errors
+/// [`PrtBakeError`], before the search, for portals of another map, for several clusters without a portal, and
+/// for a state that cannot be one of these portals; after it, for a map that cannot hold the answer.
+pub fn vis_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<VisMap, PrtBakeError> {
+    check_portals(bsp, prt)?;
+    // What only the sounds of the leafs need is looked up before the search too: it may take hours.
+    bsp.leaf_sounds()?;
+    let clusters = see(&graph(prt)?, options)?;
+    let lump = lump(bsp, &prt.leaf_clusters(), &clusters.seen.cells)?;
+    Ok(VisMap { bytes: bsp.with_visibility(&lump)?, clusters })
+}
+
+/// Finds out which clusters of a portal file see which, and makes a table of them: cell `k` is cluster `k`.
+///
+/// A portal file says nothing of walls, so the table does not know where its cells are: the box of a cell is that
+/// around its portals, which the cell may leave on all sides, and a cell without portals has a box without volume.
+/// Who asks such a table, which says [`SOURCE_PRT`] under [`SOURCE_KEY`], names cells instead of points.
+///
+/// # Errors
+/// As [`vis_map`].
+pub fn bake_prt(prt: &Prt, options: PrtOptions<'_>) -> Result<BakedPrt, PrtBakeError> {
+    let graph = graph(prt)?;
+    let fast = options.search.fast;
+    let clusters = see(&graph, options)?;
+    let table = table::table_of_clusters(prt, &graph, clusters.seen.cells.clone(), fast)?;
+    Ok(BakedPrt { table, clusters })
+}
+
+fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
+    match (prt.n_clusters(), prt.n_portals()) {
+        // One room is a map; several without a way between them are a file that lost its portals.
+        (2.., 0) => Err(PrtBakeError::NoPortals { n_clusters: prt.n_clusters() }),
+        _ => Ok(graph_of_prt(prt)),
+    }
+}
+
+fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<SeenClusters, PrtBakeError> {
+    let PrtOptions { search, from, watch } = options;
+    let start = Instant::now();
+    let mut running = match from {
+        None => ConvexSearch::new(graph, search),
+        Some(state) => ConvexSearch::resume(graph, search, state).ok_or(StateError::Unfit)?,
+    };
+    let mut nobody = |_: &ConvexSearch| {};
+    let watch = watch.unwrap_or(&mut nobody);
+    watch(&running);
+    while running.advance() {
+        watch(&running);
+    }
+    watch(&running);
+    Ok(SeenClusters { seen: running.finish(), n_portals: graph.portals().len(), see_time: start.elapsed() })
+}

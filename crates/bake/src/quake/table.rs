@@ -1,0 +1,79 @@
+//! Tables of clusters, and the way back to their graph.
+
+use sightlines_cells::{CellGraph, CellId, Convex, Portal, Portal3};
+use sightlines_formats::quake::Prt;
+use sightlines_geometry::check_coordinate;
+use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableError, TableParts};
+
+/// Under this key a table says what it was made from, if that is a portal file.
+pub const SOURCE_KEY: &str = "source";
+/// What a table of a portal file says under [`SOURCE_KEY`], followed by the dialect.
+pub const SOURCE_PRT: &str = "portal file";
+
+/// The table of a graph of clusters.
+pub(super) fn table_of_clusters(
+    prt: &Prt,
+    graph: &CellGraph<Convex>,
+    rows: BitMatrix,
+    fast: bool,
+) -> Result<Table, TableError> {
+    let cell = |bounds: sightlines_geometry::Aabb<3>| {
+        // A cell without portals is nowhere that is known.
+        let (min, max) = if bounds.is_empty() { ([0.0; 3], [0.0; 3]) } else { (bounds.min, bounds.max) };
+        CellRecord { min, max, group: None, polygon: Vec::new() }
+    };
+    let cells: Vec<CellRecord> = graph.cells().iter().map(|c| cell(c.bounds)).collect();
+    let bounds: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|c| (c.min, c.max)).collect();
+    let pair = |k: &str, v: String| (k.to_owned(), v);
+    // Ascending keys.
+    let info = vec![
+        pair("search", if fast { "fast" } else { "full" }.to_owned()),
+        pair(SOURCE_KEY, format!("{SOURCE_PRT} {}", prt.dialect())),
+        pair("up", "z".to_owned()),
+    ];
+    Table::new(TableParts {
+        dimension: 3,
+        portals: graph.portals().iter().map(portal_record).collect(),
+        rows,
+        objects: Vec::new(),
+        cell_objects: vec![Vec::new(); cells.len()],
+        objects_seen: None,
+        locator: Locator::build(&bounds, 3),
+        cells,
+        info,
+    })
+}
+
+/// Tables have corners counter-clockwise as seen from the first cell, portals about the direction of crossing,
+/// which points away from there.
+fn portal_record(portal: &Portal<Convex>) -> PortalRecord {
+    let points = portal.shape.reversed().corners().to_vec();
+    PortalRecord { cells: portal.cells, sides: portal.sides, points }
+}
+
+/// The graph of clusters that a table of a portal file stores: every portal with its corners in turn, though it may
+/// begin with another. `None` if the table was not made from a portal file, or its portals were stripped, are no convex
+/// polygons, or so far from flat that the corners of a convex polygon cannot be told.
+pub fn convex_graph_of(table: &Table) -> Option<CellGraph<Convex>> {
+    let is_prt = table.info_value(SOURCE_KEY).is_some_and(|source| source.starts_with(SOURCE_PRT));
+    // Cells that see each other are joined by portals, so without any they were stripped.
+    let joined = (0u32..).take(table.n_cells()).map(CellId).any(|cell| table.visible(cell).any(|other| other != cell));
+    if table.dimension() != 3 || !is_prt || (table.portals().is_empty() && joined) {
+        return None;
+    }
+    let portal = |p: &PortalRecord| {
+        let in_range = p.points.as_flattened().iter().all(|&x| check_coordinate(x).is_ok());
+        let points: Vec<[f64; 3]> = p.points.iter().rev().copied().collect();
+        let shape = Portal3::around(&points).filter(|_| in_range)?;
+        // Other points than the corners of a convex polygon would not come back.
+        is_turned(shape.corners(), &points).then_some((p.cells, shape))
+    };
+    let portals: Option<Vec<_>> = table.portals().iter().map(portal).collect();
+    Some(CellGraph::of_portals(table.n_cells(), portals?))
+}
+
+/// Whether two lists are the same but for where they begin.
+fn is_turned(a: &[[f64; 3]], b: &[[f64; 3]]) -> bool {
+    let starts = (0..b.len()).filter(|&k| a.first() == Some(&b[k]));
+    a.len() == b.len() && starts.into_iter().any(|k| a.iter().eq(b[k..].iter().chain(&b[..k])))
+}

@@ -1,0 +1,150 @@
+//! What a Quake map or its portal file holds.
+
+use crate::commands::vis::format_name;
+use crate::error::CliError;
+use crate::output::{count, percent};
+use serde::Serialize;
+use sightlines::formats::Bsp;
+use sightlines::formats::quake::visibility::read_visibility;
+use sightlines::formats::quake::{LeafClusters, read_bsp, read_prt};
+use std::fmt;
+use std::path::Path;
+
+/// The numbers of a portal file.
+#[derive(Debug, Serialize)]
+pub(super) struct PrtInfo {
+    file: String,
+    kind: &'static str,
+    portal_format: &'static str,
+    n_clusters: u32,
+    /// Null where the file does not list them.
+    n_leafs: Option<usize>,
+    n_portals: usize,
+    /// Portals without area, through which nothing is seen; counted in `n_portals`.
+    n_degenerate_portals: usize,
+    /// Clusters that no portal leads to.
+    n_closed_clusters: usize,
+}
+
+impl PrtInfo {
+    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+        let prt = read_prt(path)?;
+        let mut is_closed = vec![true; prt.n_clusters() as usize];
+        prt.portals().flat_map(|portal| portal.clusters).for_each(|cluster| is_closed[cluster as usize] = false);
+        Ok(Self {
+            file: path.display().to_string(),
+            kind: "portals",
+            portal_format: prt.dialect().magic(),
+            n_clusters: prt.n_clusters(),
+            n_leafs: prt.listed_leafs().map(LeafClusters::n_leafs),
+            n_portals: prt.n_portals(),
+            n_degenerate_portals: prt.portals().filter(|portal| portal.is_degenerate()).count(),
+            n_closed_clusters: is_closed.iter().filter(|closed| **closed).count(),
+        })
+    }
+}
+
+impl fmt::Display for PrtInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: portal file of a Quake map, {}", self.file, self.portal_format)?;
+        let closed = match self.n_closed_clusters {
+            0 => String::new(),
+            n => format!(", {n} of them without a portal"),
+        };
+        writeln!(f, "clusters       {}{closed}", self.n_clusters)?;
+        match self.n_leafs {
+            Some(n) => writeln!(f, "leafs          {n}")?,
+            None => writeln!(f, "leafs          not listed")?,
+        }
+        let degenerate = match self.n_degenerate_portals {
+            0 => String::new(),
+            n => format!(", {n} of them without area"),
+        };
+        writeln!(f, "portals        {}{degenerate}", self.n_portals)
+    }
+}
+
+/// The numbers of a map.
+#[derive(Debug, Serialize)]
+pub(super) struct BspInfo {
+    file: String,
+    kind: &'static str,
+    format: &'static str,
+    /// All leafs, those of doors and the like and the solid one included.
+    n_leafs: usize,
+    n_visible_leafs: usize,
+    /// Null but in Quake II.
+    n_clusters: Option<usize>,
+    /// `none`, `there` or `damaged`.
+    visibility: &'static str,
+    visibility_bytes: usize,
+    /// What sees and is seen: `leaf`, or `cluster` in Quake II.
+    pairs_of: &'static str,
+    /// Ordered pairs of different ones of which the first sees the second, as the map says; null without
+    /// visibility.
+    n_seen_pairs: Option<u64>,
+    /// Of all ordered pairs of different ones.
+    seen_share: Option<f64>,
+    /// Why the visibility cannot be read.
+    error: Option<String>,
+}
+
+impl BspInfo {
+    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+        let bsp = read_bsp(path)?;
+        let has_clusters = bsp.format().has_clusters();
+        let mut info = Self {
+            file: path.display().to_string(),
+            kind: "bsp",
+            format: format_name(bsp.format()),
+            n_leafs: bsp.leafs().len(),
+            n_visible_leafs: bsp.n_visible_leafs(),
+            n_clusters: has_clusters.then(|| bsp.n_clusters()),
+            visibility: if bsp.visibility().is_empty() { "none" } else { "there" },
+            visibility_bytes: bsp.visibility().len(),
+            pairs_of: if has_clusters { "cluster" } else { "leaf" },
+            n_seen_pairs: None,
+            seen_share: None,
+            error: None,
+        };
+        if !bsp.visibility().is_empty() {
+            match seen_pairs(&bsp) {
+                Err(error) => (info.visibility, info.error) = ("damaged", Some(error)),
+                Ok((n_seen, n_pairs)) => {
+                    info.n_seen_pairs = Some(n_seen);
+                    info.seen_share = Some(n_seen as f64 / n_pairs.max(1) as f64);
+                }
+            }
+        }
+        Ok(info)
+    }
+}
+
+/// How many ordered pairs of different leafs or clusters see each other, and how many there are.
+fn seen_pairs(bsp: &Bsp) -> Result<(u64, u64), String> {
+    let n = if bsp.format().has_clusters() { bsp.n_clusters() } else { bsp.n_visible_leafs() };
+    let leafs = LeafClusters::identity(u32::try_from(n).unwrap_or(u32::MAX)).map_err(|error| error.to_string())?;
+    let seen = read_visibility(bsp, &leafs).map_err(|error| error.to_string())?;
+    let Some(seen) = seen else { return Ok((0, 0)) };
+    let itself = (0..n).filter(|&k| seen.get(k, k)).count() as u64;
+    Ok((seen.count_ones() - itself, n as u64 * (n as u64).saturating_sub(1)))
+}
+
+impl fmt::Display for BspInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let game = if self.n_clusters.is_some() { "Quake II" } else { "Quake" };
+        writeln!(f, "{}: {game} map, {}", self.file, self.format)?;
+        writeln!(f, "leafs          {}, {} of them can be seen", self.n_leafs, self.n_visible_leafs)?;
+        if let Some(n) = self.n_clusters {
+            writeln!(f, "clusters       {n}")?;
+        }
+        let size = count(self.visibility_bytes as u64, "byte");
+        match (&self.error, self.n_seen_pairs, self.seen_share) {
+            (Some(error), _, _) => writeln!(f, "visibility     {size}, cannot be read: {error}"),
+            (None, Some(n), Some(share)) => {
+                writeln!(f, "visibility     {size}: {n} pairs of {}s, {}", self.pairs_of, percent(share))
+            }
+            _ => writeln!(f, "visibility     none: nobody has worked it out yet"),
+        }
+    }
+}

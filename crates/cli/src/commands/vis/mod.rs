@@ -1,0 +1,118 @@
+//! `vis`: the visibility of a Quake map.
+
+mod outcome;
+mod saved;
+
+pub(crate) use outcome::{Clusters, format_name};
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::output;
+use crate::progress::ShareBar;
+use outcome::Outcome;
+use saved::Saved;
+use sightlines::bake::quake::StateKey;
+use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
+use sightlines::formats::quake::visibility::check_portals;
+use sightlines::formats::quake::{VisibilityError, graph_of_prt, prt, read_bsp};
+use sightlines::formats::{Prt, ReadError, WriteError};
+use sightlines::stabtree::{ConvexOptions, ConvexSearch};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Arguments of `vis`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct VisArgs {
+    /// The map: Quake's BSP 29, BSP2 or 2PSB, or Quake II's IBSP 38
+    #[arg(value_name = "MAP.bsp")]
+    map: PathBuf,
+    /// Its portal file, as the compiler wrote it; beside the map if not given
+    #[arg(long, value_name = "MAP.prt")]
+    prt: Option<PathBuf>,
+    /// Where to write; the map itself if not given
+    #[arg(short, long, value_name = "OUT.bsp")]
+    output: Option<PathBuf>,
+    /// Only the first, coarse bound: quick, and shows much that is hidden
+    #[arg(long)]
+    fast: bool,
+    /// Number of threads; 0 for one for each core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    threads: usize,
+    /// Go on where an earlier run with the same portals and options was stopped
+    #[arg(long)]
+    resume: bool,
+    /// Where a run keeps how far it came; beside the output, as .vis-state, if not given
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Seconds between two savings of the state
+    #[arg(long, hide = true, value_name = "SECONDS", default_value_t = 30)]
+    save_every: u64,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
+    let start = Instant::now();
+    let prt_path = args.prt.clone().unwrap_or_else(|| args.map.with_extension("prt"));
+    let out = args.output.as_ref().unwrap_or(&args.map);
+    let state_path = args.state.clone().unwrap_or_else(|| out.with_extension("vis-state"));
+    for other in [&prt_path, &state_path] {
+        output::refuse_same(other, out)?;
+    }
+    check_folder(out)?;
+    let bsp = read_bsp(&args.map)?;
+    let (prt, text) = read_portals(&prt_path)?;
+    let other_map = |source| CliError::OtherMap { prt: prt_path.clone(), bsp: args.map.clone(), source };
+    check_portals(&bsp, &prt).map_err(other_map)?;
+
+    let key = StateKey::new(&text, args.fast);
+    drop(text);
+    let every = Duration::from_secs(args.save_every);
+    let (mut saved, from) = Saved::open(state_path, every, key, &graph_of_prt(&prt), args.resume)?;
+    let resumed = from.is_some();
+    let mut bar = ShareBar::new("which clusters see which", show_progress);
+    let mut watch = |search: &ConvexSearch| {
+        bar.set(search.share_done());
+        saved.save(search.state());
+    };
+    let search = ConvexOptions { fast: args.fast, threads: args.threads };
+    let map = vis_map(&bsp, &prt, PrtOptions { search, from, watch: Some(&mut watch) });
+    drop(bar);
+    let map = map.map_err(|source| explained(source, args, &prt_path, &saved))?;
+    output::save(out, &map.bytes)?;
+    saved.remove();
+    let mut outcome = Outcome::new(out, &bsp, &prt, &map);
+    (outcome.fast, outcome.resumed, outcome.verbose) = (args.fast, resumed, verbose);
+    outcome.seconds = start.elapsed().as_secs_f64();
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// The portals, and the bytes of their file.
+fn read_portals(path: &Path) -> Result<(Prt, Vec<u8>), CliError> {
+    let text = std::fs::read(path).map_err(|error| ReadError::new(path, error))?;
+    let prt = prt::parse_prt(&text).map_err(|error| ReadError::new(path, error))?;
+    Ok((prt, text))
+}
+
+/// Says before hours of search that the folder of the output is not there.
+fn check_folder(out: &Path) -> Result<(), CliError> {
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let found = std::fs::metadata(folder)
+        .and_then(|found| if found.is_dir() { Ok(()) } else { Err(io::ErrorKind::NotADirectory.into()) });
+    Ok(found.map_err(|source| WriteError { path: out.to_owned(), source })?)
+}
+
+/// Puts the name of the file before what is wrong with it.
+fn explained(source: PrtBakeError, args: &VisArgs, prt: &Path, saved: &Saved) -> CliError {
+    let about = |path: &Path, source| CliError::BakePrt { path: path.to_owned(), source };
+    match source {
+        PrtBakeError::State(source) => CliError::State { path: saved.path().to_owned(), source },
+        PrtBakeError::Bsp(_) | PrtBakeError::Visibility(VisibilityError::Bsp(_) | VisibilityError::TooLarge { .. }) => {
+            about(&args.map, source)
+        }
+        source => about(prt, source),
+    }
+}

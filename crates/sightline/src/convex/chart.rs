@@ -1,0 +1,146 @@
+//! Where a line meets two portals of a sequence: the parameters of all lines in question.
+
+use super::certificate::Block;
+use super::vector::{along, cross, dot, scale, size, sub, unit};
+use sightlines_geometry::{Point3, Portal3};
+
+/// What a frame of unit vectors, made and used in doubles, may be wrong by, relative to lengths. Each
+/// coefficient of the frame is right up to 2^-50, and so its inverse is its transpose up to 2^-47; a
+/// difference of points and three products add 2^-50. This is four times their sum.
+const SKEW: f64 = f64::EPSILON * 512.0;
+
+/// What the corner of a block may be wrong by, relative to the magnitudes added up in it: three
+/// additions and the rounding of each product.
+const PLACE: f64 = f64::EPSILON * 8.0;
+
+/// A box around a portal: as long and wide as the portal, and as thick as rounding asks for.
+#[derive(Debug, Clone, Copy)]
+struct Plate {
+    block: Block,
+    centre: Point3,
+    /// Unit vector in the direction of crossing.
+    normal: Point3,
+    /// Length and width.
+    extent: [f64; 2],
+}
+
+impl Plate {
+    /// The box along the portal's longest edge. It contains every corner, rigorously.
+    fn around(portal: &Portal3) -> Option<Self> {
+        let longest = portal.edges().map(|[p, q]| sub(q, p)).max_by(|p, q| dot(*p, *p).total_cmp(&dot(*q, *q)))?;
+        let first = unit(longest)?;
+        let across = cross(unit(portal.normal())?, first);
+        // Of a sliver the normal may be all rounding. The frame is accurate if it is not along the edge.
+        let second = unit(across).filter(|_| dot(across, across) > 0.25)?;
+        let third = unit(cross(first, second))?;
+        let frame = [first, second, third];
+        let origin = portal.corners()[0];
+        let (mut low, mut high, mut reach) = ([0.0f64; 3], [0.0f64; 3], 0.0f64);
+        for &corner in portal.corners() {
+            let from = sub(corner, origin);
+            reach = reach.max(size(from));
+            for i in 0..3 {
+                let x = dot(frame[i], from);
+                (low[i], high[i]) = (low[i].min(x), high[i].max(x));
+            }
+        }
+        let slack = SKEW * reach + PLACE * (size(origin) + reach);
+        let mut corner = origin;
+        for i in 0..3 {
+            corner = along(corner, frame[i], low[i] - slack);
+        }
+        let extent = [0, 1, 2].map(|i| high[i] - low[i] + 2.0 * slack);
+        let edges = [0, 1, 2].map(|i| scale(frame[i], extent[i]));
+        let finite = corner.into_iter().chain(extent).all(f64::is_finite);
+        finite.then(|| Self {
+            block: Block { corner, edges },
+            centre: [0, 1, 2].map(|i| corner[i] + 0.5 * (edges[0][i] + edges[1][i] + edges[2][i])),
+            normal: third,
+            extent: [extent[0], extent[1]],
+        })
+    }
+
+    /// The least and the greatest of `w · x` in it.
+    fn span(&self, w: Point3) -> [f64; 2] {
+        let middle = dot(w, self.centre);
+        let half: f64 = self.block.edges.iter().map(|e| dot(w, *e).abs()).sum::<f64>() * 0.5;
+        [middle - half, middle + half]
+    }
+}
+
+/// Two portals of a sequence, the earlier first, and the boxes around them: a line is given by a point of
+/// each, and these by coordinates from 0 to 1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Chart {
+    pub(super) portals: [usize; 2],
+    pub(super) blocks: [Block; 2],
+    /// A length of the order of the boxes.
+    pub(super) unit: f64,
+    /// The distance of their centres.
+    pub(super) distance: f64,
+    /// Whether the second box lies wholly beyond the first. Else no box of lines can be refuted that
+    /// has lines of no direction among them.
+    pub(super) apart: bool,
+}
+
+impl Chart {
+    /// The two portals between which lines are most alike: their extents multiplied, over what is between
+    /// them, is the least. Of boxes that touch or overlap, the last resort, the farthest. `None` if
+    /// there are not two portals or one has no size. O(n²), with little to do for most pairs.
+    pub(super) fn best(portals: &[&Portal3]) -> Option<Self> {
+        let plates: Vec<Plate> = portals.iter().map(|p| Plate::around(p)).collect::<Option<_>>()?;
+        let reach = |p: &Plate| p.extent[0] + p.extent[1];
+        let mut best: Option<(f64, [usize; 2])> = None;
+        let mut farthest: Option<(f64, [usize; 2])> = None;
+        for j in 1..plates.len() {
+            for i in 0..j {
+                let (p, q) = (&plates[i], &plates[j]);
+                let between = sub(q.centre, p.centre);
+                let distance = dot(between, between).sqrt();
+                let likeness = reach(p) * reach(q);
+                if best.is_some_and(|(score, _)| likeness >= score * distance) {
+                    continue;
+                }
+                if best.is_none() && farthest.is_none_or(|(d, _)| distance > d) {
+                    farthest = Some((distance, [i, j]));
+                }
+                let gap = |w: Point3| q.span(w)[0] - p.span(w)[1];
+                let gap = gap(p.normal).max(gap(q.normal));
+                if gap > 1e-6 * distance && best.is_none_or(|(score, _)| likeness < score * gap) {
+                    best = Some((likeness / gap, [i, j]));
+                }
+            }
+        }
+        let pair = best.or(farthest)?.1;
+        let [p, q] = pair.map(|i| &plates[i]);
+        let between = sub(q.centre, p.centre);
+        Some(Self {
+            portals: pair,
+            blocks: [p.block, q.block],
+            unit: reach(p).max(reach(q)),
+            distance: dot(between, between).sqrt().max(1e-3 * reach(p).max(reach(q))),
+            apart: best.is_some(),
+        })
+    }
+
+    /// The points with coordinates `at`: two of the first box, two of the second; in the middle of their
+    /// thickness.
+    pub(super) fn points(&self, at: &[f64; 4]) -> [Point3; 2] {
+        let place = |block: &Block, x: f64, y: f64| {
+            along(along(along(block.corner, block.edges[0], x), block.edges[1], y), block.edges[2], 0.5)
+        };
+        [place(&self.blocks[0], at[0], at[1]), place(&self.blocks[1], at[2], at[3])]
+    }
+
+    /// The coordinates, within the first box, of where a line meets it: rounded, and the middle if it is
+    /// parallel to it or the place is far off.
+    pub(super) fn coordinates(&self, a: Point3, b: Point3) -> [f64; 2] {
+        let block = &self.blocks[0];
+        let normal = cross(block.edges[0], block.edges[1]);
+        let (direction, to) = (sub(b, a), sub(block.corner, a));
+        let place = along(to, direction, -dot(normal, to) / dot(normal, direction));
+        let coordinate = |edge: Point3| -dot(place, edge) / dot(edge, edge);
+        let at = [coordinate(block.edges[0]), coordinate(block.edges[1])];
+        at.map(|x| if x > -1.0 && x < 2.0 { x.clamp(0.0, 1.0) } else { 0.5 })
+    }
+}

@@ -1,0 +1,300 @@
+//! The decision for one sequence: lines by turns, the relaxed program, boxes cut in two.
+
+use super::Stabbing3;
+use super::certificate::{BoxProof, ConvexCertificate, ConvexNode};
+use super::chart::Chart;
+use super::counters::ConvexCounters;
+use super::hull::{self, N_HULL};
+use super::line::Line3;
+use super::planes::stopping;
+use super::rows::{self, Edge, on_box, range};
+use super::simplex::Program;
+use super::vector::{along, dot};
+use super::verify::{named, refutes};
+use super::witness::alternate;
+use sightlines_geometry::Portal3;
+
+/// A bound on the margin, in units of the chart, below which a box is refuted without looking for the
+/// least bound.
+const CLEARLY_HIDDEN: f64 = -1e-6;
+/// A bound on the margin below which cutting is given up: what is left is within the rounding of checks.
+const WITHIN_ROUNDING: f64 = 1e-11;
+/// Portals of a sequence among which planes are looked for.
+const MOST_SUSPECTS: usize = 12;
+/// Places on the way to the other side, within which a box is cut.
+const CUT: [f64; 2] = [0.2, 0.8];
+
+/// How much effort a question may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StabLimits {
+    /// Boxes of lines after which it is given up; each takes one program of nine unknowns.
+    pub boxes: u32,
+    /// Turns for one line, each a program of three unknowns.
+    pub turns: u32,
+}
+
+impl Default for StabLimits {
+    fn default() -> Self {
+        Self { boxes: 200, turns: 8 }
+    }
+}
+
+/// A part of all lines that is not refuted yet.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    low: [f64; 4],
+    high: [f64; 4],
+    /// No line of the part has a larger margin, up to rounding.
+    bound: f64,
+    /// The relaxed line: u, v, s, t and products, in coordinates of the part.
+    relaxed: [f64; 8],
+    /// Its node of the certificate.
+    node: usize,
+}
+
+impl Part {
+    /// The coordinates of the relaxed line in the chart.
+    fn relaxed_line(&self) -> [f64; 4] {
+        [0, 1, 2, 3].map(|i| self.low[i] + (self.high[i] - self.low[i]) * self.relaxed[i].clamp(0.0, 1.0))
+    }
+
+    /// Where to cut it: an axis of the product that is relaxed most, near the relaxed line.
+    fn cut(&self, chart: &Chart) -> (usize, f64) {
+        let length = |i: usize| {
+            let edge = chart.blocks[i / 2].edges[i % 2];
+            dot(edge, edge).sqrt() * (self.high[i] - self.low[i])
+        };
+        let x = &self.relaxed;
+        let mut worst = (f64::NEG_INFINITY, 0, 2);
+        for (k, (i, j)) in [(0, 2), (0, 3), (1, 2), (1, 3)].into_iter().enumerate() {
+            let gap = ((x[4 + k] - x[i] * x[j]).abs() + 1e-9) * length(i) * length(j);
+            if gap > worst.0 {
+                worst = (gap, i, j);
+            }
+        }
+        let (_, i, j) = worst;
+        let axis = if length(i) >= length(j) { i } else { j };
+        let at = self.low[axis] + (self.high[axis] - self.low[axis]) * x[axis].clamp(CUT[0], CUT[1]);
+        (axis, at)
+    }
+}
+
+/// Decides about sequences of convex polygons. Holds scratch memory; use one for each thread.
+#[derive(Debug, Clone)]
+pub struct ConvexStabber {
+    limits: StabLimits,
+    counters: ConvexCounters,
+    edges: Vec<Edge>,
+    /// Edges of the program's rows after those of the hull.
+    kept: Vec<usize>,
+    support: Vec<(usize, f64)>,
+    wide: Program<9>,
+    narrow: Program<3>,
+}
+
+impl ConvexStabber {
+    /// A solver with limits for each question.
+    pub fn new(limits: StabLimits) -> Self {
+        Self {
+            limits,
+            counters: ConvexCounters::default(),
+            edges: Vec::new(),
+            kept: Vec::new(),
+            support: Vec::new(),
+            wide: Program::new(),
+            narrow: Program::new(),
+        }
+    }
+
+    /// What was done since it was made.
+    pub const fn counters(&self) -> ConvexCounters {
+        self.counters
+    }
+
+    /// Whether an open set of directed lines passes `portals` in order.
+    ///
+    /// * `portals`: in one common frame, scene units, as a chain of convex cells gives them; coordinates
+    ///   that [`check_coordinate`](sightlines_geometry::check_coordinate) accepts.
+    /// * `hint`: a line that may pass, or nearly does.
+    /// * Returns a line that passes, verified exactly; or a certificate that none does, verified with
+    ///   bounds on rounding; or that neither was found. The answer depends on nothing but the arguments
+    ///   and the limits.
+    ///
+    /// Cost: some programs with a row for each edge; see the [module](super).
+    pub fn stab(&mut self, portals: &[&Portal3], hint: Option<&Line3>) -> Stabbing3 {
+        self.counters.n_asked += 1;
+        if let Some(line) = hint.filter(|line| passes(line, portals)) {
+            self.counters.n_by_hint += 1;
+            return Stabbing3::Visible(*line);
+        }
+        if let [portal] = portals
+            && let Some(line) = across(portal)
+        {
+            self.counters.n_by_turns += 1;
+            return Stabbing3::Visible(line);
+        }
+        let answer = Chart::best(portals).and_then(|chart| self.decide(&chart, portals, hint));
+        answer.unwrap_or_else(|| {
+            self.counters.n_undecided += 1;
+            Stabbing3::Undecided
+        })
+    }
+
+    fn decide(&mut self, chart: &Chart, portals: &[&Portal3], hint: Option<&Line3>) -> Option<Stabbing3> {
+        rows::edges(portals, chart, &mut self.edges);
+        let start = hint.map_or([0.5, 0.5], |line| chart.coordinates(line.a, line.b));
+        if let Some(line) = self.by_turns(chart, portals, start) {
+            self.counters.n_by_turns += 1;
+            return Some(Stabbing3::Visible(line));
+        }
+        let mut proof =
+            BoxProof { portals: chart.portals, blocks: chart.blocks, nodes: vec![ConvexNode::Leaf(Vec::new())] };
+        let Some(whole) = self.refute(chart, [0.0; 4], [1.0; 4], 0, &mut proof.nodes) else {
+            if self.wide.support().all(|(k, _)| k >= N_HULL) {
+                self.counters.n_hidden_free += 1;
+            } else {
+                self.counters.n_hidden_bounded += 1;
+            }
+            return Some(Stabbing3::Hidden(ConvexCertificate::Boxes(proof)));
+        };
+        let at = whole.relaxed_line();
+        if let Some(line) = self.by_turns(chart, portals, [at[0], at[1]]) {
+            self.counters.n_by_relaxed += 1;
+            return Some(Stabbing3::Visible(line));
+        }
+        if self.limits.boxes <= 1 {
+            return None;
+        }
+        if let Some(plane) = stopping(portals, &self.suspects(chart, portals.len())) {
+            self.counters.n_hidden_plane += 1;
+            return Some(Stabbing3::Hidden(ConvexCertificate::Plane(plane)));
+        }
+        self.cut(chart, portals, whole, proof)
+    }
+
+    /// Branch and bound, the part with the largest bound first.
+    fn cut(&mut self, chart: &Chart, portals: &[&Portal3], whole: Part, mut proof: BoxProof) -> Option<Stabbing3> {
+        let mut open = vec![whole];
+        let mut boxes = 1;
+        while let Some(best) = (0..open.len()).max_by(|&i, &j| open[i].bound.total_cmp(&open[j].bound).then(j.cmp(&i)))
+        {
+            let part = open.swap_remove(best);
+            if boxes + 2 > self.limits.boxes || part.bound < WITHIN_ROUNDING {
+                return None;
+            }
+            boxes += 2;
+            let (axis, at) = part.cut(chart);
+            if !(part.low[axis] < at && at < part.high[axis]) {
+                return None;
+            }
+            let first = proof.nodes.len();
+            proof.nodes[part.node] = ConvexNode::Split { axis: axis as u8, at, parts: [first, first + 1] };
+            proof.nodes.extend([ConvexNode::Leaf(Vec::new()), ConvexNode::Leaf(Vec::new())]);
+            for side in 0..2 {
+                let (mut low, mut high) = (part.low, part.high);
+                if side == 0 {
+                    high[axis] = at;
+                } else {
+                    low[axis] = at;
+                }
+                let Some(part) = self.refute(chart, low, high, first + side, &mut proof.nodes) else { continue };
+                let at = part.relaxed_line();
+                if let Some(line) = self.by_turns(chart, portals, [at[0], at[1]]) {
+                    self.counters.n_by_cutting += 1;
+                    return Some(Stabbing3::Visible(line));
+                }
+                open.push(part);
+            }
+        }
+        self.counters.n_hidden_cut += 1;
+        Some(Stabbing3::Hidden(ConvexCertificate::Boxes(proof)))
+    }
+
+    /// Solves the relaxed program of a box and fills its leaf if that refutes it; else the part.
+    fn refute(
+        &mut self,
+        chart: &Chart,
+        low: [f64; 4],
+        high: [f64; 4],
+        node: usize,
+        nodes: &mut [ConvexNode],
+    ) -> Option<Part> {
+        self.counters.n_boxes += 1;
+        hull::start(&mut self.wide);
+        self.kept.clear();
+        for (k, edge) in self.edges.iter().enumerate() {
+            let c = on_box(&edge.row, &low, &high);
+            if range(&c)[0] <= 0.0 {
+                self.wide.push([-c[1], -c[2], -c[3], -c[4], -c[5], -c[6], -c[7], -c[8], 1.0], c[0]);
+                self.kept.push(k);
+            }
+        }
+        let mut enough = CLEARLY_HIDDEN;
+        loop {
+            let (y, pivots) = self.wide.solve(enough);
+            self.counters.n_programs += 1;
+            self.counters.n_pivots += pivots;
+            let bound = y[8];
+            if bound < 0.0 && chart.apart {
+                self.support.clear();
+                self.support.extend(self.wide.support().filter(|(k, _)| *k >= N_HULL));
+                let terms = || {
+                    self.support.iter().map(|&(k, weight)| {
+                        let edge = &self.edges[self.kept[k - N_HULL]];
+                        (edge, weight * edge.scale)
+                    })
+                };
+                if refutes(chart, [&low, &high], terms()) {
+                    nodes[node] = ConvexNode::Leaf(named(terms()));
+                    return None;
+                }
+                if enough > f64::NEG_INFINITY {
+                    enough = f64::NEG_INFINITY;
+                    continue;
+                }
+            }
+            let relaxed = std::array::from_fn(|i| y[i]);
+            return Some(Part { low, high, bound, relaxed, node });
+        }
+    }
+
+    /// The portals of which the last relaxed program says that they are in the way, with those of the chart;
+    /// all if they are few. Ascending.
+    fn suspects(&self, chart: &Chart, n_portals: usize) -> Vec<usize> {
+        if n_portals <= MOST_SUSPECTS {
+            return (0..n_portals).collect();
+        }
+        let rows = self.wide.support().filter(|(k, _)| *k >= N_HULL);
+        let named = rows.map(|(k, _)| self.edges[self.kept[k - N_HULL]].portal);
+        let mut suspects: Vec<usize> = named.chain(chart.portals).collect();
+        suspects.sort_unstable();
+        suspects.dedup();
+        suspects
+    }
+
+    fn by_turns(&mut self, chart: &Chart, portals: &[&Portal3], start: [f64; 2]) -> Option<Line3> {
+        let mut found = None;
+        let mut counts = [0; 2];
+        alternate(&self.edges, start, self.limits.turns, &mut self.narrow, &mut counts, |turn| {
+            let [a, b] = chart.points(&turn.at);
+            found = Line3::through(a, b).filter(|line| passes(line, portals));
+            found.is_some()
+        });
+        self.counters.n_programs += counts[0];
+        self.counters.n_pivots += counts[1];
+        found
+    }
+}
+
+fn passes(line: &Line3, portals: &[&Portal3]) -> bool {
+    portals.iter().all(|portal| line.passes(portal))
+}
+
+/// A line through the middle of a single portal.
+fn across(portal: &Portal3) -> Option<Line3> {
+    let n = portal.corners().len() as f64;
+    let middle = [0, 1, 2].map(|i| portal.corners().iter().map(|p| p[i]).sum::<f64>() / n);
+    let normal = portal.normal();
+    let by = 1.0 / dot(normal, normal).sqrt().sqrt();
+    Line3::through(along(middle, normal, -by), along(middle, normal, by)).filter(|line| line.passes(portal))
+}

@@ -1,0 +1,35 @@
+//! Vectors of three doubles, rounded.
+
+use sightlines_geometry::Point3;
+
+pub(super) fn sub(a: Point3, b: Point3) -> Point3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub(super) fn dot(a: Point3, b: Point3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(super) fn cross(a: Point3, b: Point3) -> Point3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+pub(super) fn scale(a: Point3, by: f64) -> Point3 {
+    a.map(|x| x * by)
+}
+
+/// `a + by * b`.
+pub(super) fn along(a: Point3, b: Point3, by: f64) -> Point3 {
+    [a[0] + by * b[0], a[1] + by * b[1], a[2] + by * b[2]]
+}
+
+/// The sum of magnitudes. Of three vectors, the product of these bounds the determinant.
+pub(super) fn size(a: Point3) -> f64 {
+    a[0].abs() + a[1].abs() + a[2].abs()
+}
+
+/// The vector of length 1, or `None` of no direction.
+pub(super) fn unit(a: Point3) -> Option<Point3> {
+    let length = dot(a, a).sqrt();
+    (length > 0.0 && length.is_finite()).then(|| scale(a, 1.0 / length))
+}

@@ -1,0 +1,47 @@
+//! Threads that work on a batch.
+
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Mutex;
+
+/// A pool of threads, or the thread of the caller.
+#[derive(Debug)]
+pub(super) struct Workers {
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl Workers {
+    /// `threads` of them; 0 for one for each core. Where no threads can be made, the caller's does the work.
+    pub(super) fn new(threads: usize) -> Self {
+        let pool = (threads != 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok());
+        Self { pool: pool.flatten() }
+    }
+
+    /// `work` on each unit, in the order of units; `scratch` makes what a thread needs for it.
+    pub(super) fn map<S: Send, T: Send>(
+        &self,
+        units: Range<usize>,
+        scratch: impl Fn() -> S + Sync + Send,
+        work: impl Fn(&mut S, usize) -> T + Sync + Send,
+    ) -> Vec<T> {
+        let Some(pool) = &self.pool else {
+            let mut scratch = scratch();
+            return units.map(|unit| work(&mut scratch, unit)).collect();
+        };
+        // As many as there are threads are made, whoever takes which unit.
+        let spare = Mutex::new(Vec::new());
+        let one = |unit: usize| {
+            let taken = lock(&spare).pop();
+            let mut used = taken.unwrap_or_else(&scratch);
+            let result = work(&mut used, unit);
+            lock(&spare).push(used);
+            result
+        };
+        pool.install(|| units.into_par_iter().with_max_len(1).map(one).collect())
+    }
+}
+
+/// The list behind a lock; a panic of another thread is passed on by the pool.
+fn lock<T>(list: &Mutex<Vec<T>>) -> std::sync::MutexGuard<'_, Vec<T>> {
+    list.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}

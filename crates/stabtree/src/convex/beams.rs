@@ -1,0 +1,353 @@
+//! What may be seen through one gate: beams of lines, followed from portal to portal.
+//!
+//! A beam is all lines through the source gate and a part of a later gate. In the cell behind that gate it meets
+//! further gates; planes between the source and the part (see [`cut`](super::cut)) cut off what the beam cannot
+//! reach, and what is left of a gate makes the next beam. Cells that no beam reaches are hidden.
+//!
+//! Three things keep the number of beams small:
+//!
+//! * Only cells that are in doubt are looked for, and they go down with the beam: those that the new planes
+//!   have on the wrong side, or that cannot be seen through the gate as is known already, are dropped, and a beam
+//!   without any ends.
+//! * What lies beyond a part of a gate depends on the source and the part, not on the way that led there. So a
+//!   beam whose part lies within the part of an earlier beam, and looks for nothing that the earlier one did not
+//!   look for, ends. (The earlier one may still wait to be followed; all of them are followed in the end.)
+//! * After [`MOST_PARTS`] parts of one gate, the next one is the whole gate: from then on every beam through it
+//!   ends at once. This bounds the work for a source by the number of gates, at the price of looser answers
+//!   where a thousand ways lead through open space; later stages decide those exactly.
+//!
+//! When a beam reaches a cell in doubt, a line is sought through the gates that it came by, exactly. If there is
+//! none, the cell is left to a later stage, which follows sequences of gates one by one.
+
+use super::ConvexCounters;
+use super::cut::{Cutter, Part, Plane, Vertex, is_within, middle};
+use super::gates::{Gate, Gates};
+use super::vector::{add, scale, sub, unit};
+use sightlines_cells::Portal3;
+use sightlines_pvs::BitMatrix;
+use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
+
+/// How many different parts of one gate are followed before the whole gate is.
+const MOST_PARTS: usize = 8;
+
+/// Beams want a line, and leave proofs to a later stage.
+const ONLY_LINES: StabLimits = StabLimits { boxes: 1, turns: 8 };
+
+/// A part of a gate, and what is looked for behind it.
+#[derive(Debug)]
+struct Beam {
+    gate: u32,
+    /// The beam that it came from; the first is its own.
+    parent: u32,
+    part: Part,
+    wanted: Vec<u64>,
+}
+
+/// Scratch space for beams; one for each thread.
+#[derive(Debug)]
+pub(super) struct BeamTracer {
+    cutter: Cutter,
+    stabber: ConvexStabber,
+    programs_before: u64,
+    n_lines: u64,
+    n_beams: u64,
+    beams: Vec<Beam>,
+    n_beams_used: usize,
+    waiting: Vec<u32>,
+    /// The beams of each gate.
+    by_gate: Vec<Vec<u32>>,
+    planes: Vec<Plane>,
+    chain: Vec<u32>,
+    source: Part,
+    part: Part,
+    wanted: Vec<u64>,
+    followed: Vec<u64>,
+    sequence: Vec<u32>,
+}
+
+/// What was found out about one gate.
+#[derive(Debug, Default)]
+pub(super) struct Traced {
+    /// Cells that nobody sees through the gate, of those that were in doubt.
+    pub(super) hidden: Vec<u64>,
+    /// Lines that show that cells see each other: the gates that each passes.
+    pub(super) chains: Vec<Vec<u32>>,
+}
+
+impl BeamTracer {
+    pub(super) fn new(gates: &Gates) -> Self {
+        Self {
+            cutter: Cutter::new(gates.largest),
+            stabber: ConvexStabber::new(ONLY_LINES),
+            programs_before: 0,
+            n_lines: 0,
+            n_beams: 0,
+            beams: Vec::new(),
+            n_beams_used: 0,
+            waiting: Vec::new(),
+            by_gate: vec![Vec::new(); gates.len()],
+            planes: Vec::new(),
+            chain: Vec::new(),
+            source: Vec::new(),
+            part: Vec::new(),
+            wanted: Vec::new(),
+            followed: Vec::new(),
+            sequence: Vec::new(),
+        }
+    }
+
+    /// What was done since this was last asked.
+    pub(super) fn take_counters(&mut self) -> ConvexCounters {
+        let programs = self.stabber.counters().n_programs;
+        let counters = ConvexCounters {
+            clips: std::mem::take(&mut self.cutter.clips),
+            lines: std::mem::take(&mut self.n_lines),
+            programs: programs - self.programs_before,
+            beams: std::mem::take(&mut self.n_beams),
+            sequences: 0,
+        };
+        self.programs_before = programs;
+        counters
+    }
+
+    /// Looks through the gate `source` for the cells in `in_doubt`. Row `g` of `through` has the cells that may be
+    /// seen through gate `g`.
+    pub(super) fn trace(&mut self, gates: &Gates, source: u32, mut in_doubt: Vec<u64>, through: &BitMatrix) -> Traced {
+        let mut traced = Traced::default();
+        if in_doubt.iter().all(|&w| w == 0) {
+            traced.hidden = in_doubt;
+            return traced;
+        }
+        let Gate { from: home, to: next, .. } = *gates.get(source);
+        if in_doubt[next as usize / 64] >> (next % 64) & 1 == 1 {
+            self.seek(gates, source, None, source, &[], &mut in_doubt, &mut traced);
+        }
+        self.part.clear();
+        self.part.extend_from_slice(gates.corners(source));
+        self.wanted.clone_from(&in_doubt);
+        self.push(source, 0);
+        while let Some(beam) = self.waiting.pop() {
+            self.follow(gates, source, home, beam, &mut in_doubt, through, &mut traced);
+        }
+        for beam in &self.beams[..self.n_beams_used] {
+            self.by_gate[beam.gate as usize].clear();
+        }
+        self.n_beams_used = 0;
+        // What is still in doubt was not reached.
+        traced.hidden = in_doubt;
+        traced
+    }
+
+    /// Adds the beam of `self.part` and `self.wanted`.
+    fn push(&mut self, gate: u32, parent: u32) {
+        if self.n_beams_used == self.beams.len() {
+            self.beams.push(Beam { gate: 0, parent: 0, part: Vec::new(), wanted: Vec::new() });
+        }
+        let beam = &mut self.beams[self.n_beams_used];
+        (beam.gate, beam.parent) = (gate, parent);
+        std::mem::swap(&mut beam.part, &mut self.part);
+        std::mem::swap(&mut beam.wanted, &mut self.wanted);
+        self.by_gate[gate as usize].push(self.n_beams_used as u32);
+        self.waiting.push(self.n_beams_used as u32);
+        self.n_beams_used += 1;
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the state of one trace, borrowed in pieces")]
+    fn follow(
+        &mut self,
+        gates: &Gates,
+        source: u32,
+        home: u32,
+        beam: u32,
+        in_doubt: &mut [u64],
+        through: &BitMatrix,
+        traced: &mut Traced,
+    ) {
+        let Beam { gate: at, wanted: ref looked_for, .. } = self.beams[beam as usize];
+        let mut wanted = std::mem::take(&mut self.followed);
+        wanted.clear();
+        wanted.extend(looked_for.iter().zip(&*in_doubt).map(|(w, doubt)| w & doubt));
+        if wanted.iter().any(|&w| w != 0) {
+            self.n_beams += 1;
+            let meets = self.find_planes(gates, source, beam);
+            drop_hidden(&self.planes, gates, self.cutter.eps, &mut wanted);
+            if meets && wanted.iter().any(|&w| w != 0) {
+                for &exit in gates.exits(gates.get(at).to) {
+                    if exit != at ^ 1 && gates.get(exit).to != home {
+                        self.pass(gates, source, beam, exit, &wanted, in_doubt, through, traced);
+                    }
+                }
+            }
+        }
+        self.followed = wanted;
+    }
+
+    /// The planes that bound a beam: those between the source and the part, and the source's own.
+    ///
+    /// `false` if the source lies wholly in front of the part, so that no line passes both.
+    fn find_planes(&mut self, gates: &Gates, source: u32, beam: u32) -> bool {
+        self.planes.clear();
+        let Beam { gate: at, ref part, .. } = self.beams[beam as usize];
+        if at == source {
+            return true;
+        }
+        self.source.clear();
+        self.source.extend_from_slice(gates.corners(source));
+        let gate = gates.get(at);
+        // Who passes the gate comes from behind its plane.
+        let behind = Plane { normal: scale(gate.normal, -1.0), origin: gate.center, offset: gates.flat };
+        if !self.cutter.cut(&mut self.source, &behind) {
+            return false;
+        }
+        self.cutter.separators(&self.source, part, &mut self.planes);
+        let first = gates.get(source);
+        self.planes.push(Plane { normal: first.normal, origin: first.center, offset: gates.flat });
+        true
+    }
+
+    /// Goes on through a gate, if something is left of it and of what is wanted behind it.
+    #[expect(clippy::too_many_arguments, reason = "the state of one trace, borrowed in pieces")]
+    fn pass(
+        &mut self,
+        gates: &Gates,
+        source: u32,
+        beam: u32,
+        exit: u32,
+        wanted: &[u64],
+        in_doubt: &mut [u64],
+        through: &BitMatrix,
+        traced: &mut Traced,
+    ) {
+        self.wanted.clear();
+        let behind = wanted.iter().zip(&*in_doubt).zip(through.row(exit as usize));
+        self.wanted.extend(behind.map(|((w, doubt), through)| w & doubt & through));
+        if self.wanted.iter().all(|&w| w == 0) {
+            return;
+        }
+        let at = self.beams[beam as usize].gate;
+        if !gates.may_follow(at, exit) || (at != source && !gates.may_follow(source, exit)) {
+            return;
+        }
+        let gate = gates.get(exit);
+        self.part.clear();
+        self.part.extend_from_slice(gates.corners(exit));
+        for plane in &self.planes {
+            let value = plane.at(gate.center);
+            // The plane's normal is at most 1.01 long.
+            if value < 1.02 * gate.radius && !self.cutter.cut(&mut self.part, plane) {
+                return;
+            }
+        }
+        let cell = gate.to as usize;
+        if self.wanted[cell / 64] >> (cell % 64) & 1 == 1 {
+            // The line is sought through the gates themselves; the part is only a hint.
+            let part = std::mem::take(&mut self.part);
+            self.seek(gates, source, Some(beam), exit, &part, in_doubt, traced);
+            self.part = part;
+        }
+        let mut left = 0;
+        for (w, doubt) in self.wanted.iter_mut().zip(&*in_doubt) {
+            *w &= doubt;
+            left |= *w;
+        }
+        if left == 0 {
+            return;
+        }
+        for &earlier in &self.by_gate[exit as usize] {
+            let earlier = &self.beams[earlier as usize];
+            let common = self.wanted.iter().zip(&earlier.wanted).any(|(a, b)| a & b != 0);
+            if common && is_within(&self.part, &earlier.part, gate.normal) {
+                left = 0;
+                for (w, theirs) in self.wanted.iter_mut().zip(&earlier.wanted) {
+                    *w &= !theirs;
+                    left |= *w;
+                }
+                if left == 0 {
+                    return;
+                }
+            }
+        }
+        if self.by_gate[exit as usize].len() >= MOST_PARTS {
+            self.part.clear();
+            self.part.extend_from_slice(gates.corners(exit));
+        }
+        self.push(exit, beam);
+    }
+
+    /// Seeks a line through the gates that lead to `exit`, whose cell is in doubt. Found or not, the cell is no
+    /// longer in doubt here: if not, it is left to a later stage.
+    #[expect(clippy::too_many_arguments, reason = "the state of one trace, borrowed in pieces")]
+    fn seek(
+        &mut self,
+        gates: &Gates,
+        source: u32,
+        beam: Option<u32>,
+        exit: u32,
+        part: &[Vertex],
+        in_doubt: &mut [u64],
+        traced: &mut Traced,
+    ) {
+        let (cell, first) = (gates.get(exit).to as usize, gates.get(source));
+        let (start, end) = match beam {
+            None => (first.center, add(first.center, first.normal)),
+            Some(beam) if self.beams[beam as usize].gate == source => (first.center, middle(part)),
+            Some(_) => (middle(&self.source), middle(part)),
+        };
+        self.n_lines += 1;
+        gates.chain(source, start, unit(sub(end, start)), &mut self.chain);
+        if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
+            self.chain.clear();
+            self.sequence_to(beam, exit);
+            let shapes: Vec<&Portal3> = self.sequence.iter().map(|&g| gates.shape(g)).collect();
+            let hint = Line3::through(start, end);
+            if let Stabbing3::Visible(line) = self.stabber.stab(&shapes, hint.as_ref()) {
+                // Followed on, it may pass more; where rounding could matter, it is what was decided exactly.
+                self.n_lines += 1;
+                gates.chain(source, line.a, unit(sub(line.b, line.a)), &mut self.chain);
+                if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
+                    self.chain.clone_from(&self.sequence);
+                }
+            }
+        }
+        in_doubt[cell / 64] &= !(1 << (cell % 64));
+        for &g in &self.chain {
+            for cell in [gates.get(g).from as usize, gates.get(g).to as usize] {
+                in_doubt[cell / 64] &= !(1 << (cell % 64));
+            }
+        }
+        if !self.chain.is_empty() {
+            traced.chains.push(self.chain.clone());
+        }
+    }
+
+    /// The gates from the source to `exit`, by the way that the beam came; without one, `exit` is the source.
+    fn sequence_to(&mut self, beam: Option<u32>, exit: u32) {
+        self.sequence.clear();
+        self.sequence.push(exit);
+        let mut last = beam;
+        while let Some(beam) = last {
+            let Beam { gate, parent, .. } = self.beams[beam as usize];
+            self.sequence.push(gate);
+            last = (parent != beam).then_some(parent);
+        }
+        self.sequence.reverse();
+    }
+}
+
+/// Drops the cells whose portals all lie below one of the planes.
+pub(super) fn drop_hidden(planes: &[Plane], gates: &Gates, eps: f64, wanted: &mut [u64]) {
+    if planes.is_empty() {
+        return;
+    }
+    for (w, word) in wanted.iter_mut().enumerate() {
+        let mut bits = *word;
+        while bits != 0 {
+            let bit = bits.trailing_zeros();
+            bits &= bits - 1;
+            let [min, max] = &gates.boxes[w * 64 + bit as usize];
+            if planes.iter().any(|plane| plane.highest(min, max) < -2.0 * eps) {
+                *word &= !(1 << bit);
+            }
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! Parts of portals, cut by planes that rounding cannot make too tight.
+//!
+//! A [`Part`] stands for a superset of the points in which some lines cross a portal: the convex hull of its
+//! vertices, of which each constructed one is grown to a ball of radius `eta`. With `m` the largest coordinate
+//! of the graph and `u = 2^-53`:
+//!
+//! * A plane is evaluated with an error below `eps = 2^-48 m`: its normal has a length near 1, and a point
+//!   differs from the plane's origin by at most `2 √3 m`, so that three products and their sum are off by less
+//!   than `24 u m`.
+//! * A vertex is constructed on an edge with an error below `8 u m = 2^-50 m` across the edge; along it, it is
+//!   placed beyond the plane, see [`Cutter::cut`]. Each cut makes vertices from vertices of the cut before,
+//!   so that errors add up; `eta = 2^-40 m` has room for 1024 cuts of one part, and [`MAX_CUTS`] keeps to it.
+//! * Planes between two parts ([`Cutter::separators`]) have the first on one side and the second on the
+//!   other, *strictly and by more than these errors*, but for one point that both have in common (a corner
+//!   of two portals, the same bits), where the plane is exactly zero. So a line that passes the first, then
+//!   the second, is on the second side ever after: exactly, not up to a tolerance. Where two parts share
+//!   more than a corner, or come closer than errors, there is no such plane and nothing is cut.
+//!
+//! Source: the planes are those of Quake's vis (Abrash, Graphics Programming Black Book, chapter 70), there
+//! with a tolerance of a tenth of a unit; Teller, PhD thesis, 1992, section 5.4. The margins are ours.
+
+use super::vector::{Point3, add, cross, dot, scale, sub};
+
+/// A corner of a part.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Vertex {
+    pub(super) at: Point3,
+    /// How far a plane has to be from it to be certainly on one side: `eps`, and `eta` if it was constructed.
+    pub(super) clearance: f64,
+    /// Whether the edge that ends here was cut, and is not one of the portal.
+    pub(super) cut: bool,
+}
+
+/// A convex part of a portal.
+pub(super) type Part = Vec<Vertex>;
+
+/// Most cuts of one part.
+const MAX_CUTS: usize = 1000;
+
+/// Vertices of a part that is still cut; one with more stays as it is, which is a superset.
+const MAX_VERTICES: usize = 24;
+
+/// The points with `normal · (x - origin) + offset >= 0`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plane {
+    pub(super) normal: Point3,
+    pub(super) origin: Point3,
+    pub(super) offset: f64,
+}
+
+impl Plane {
+    #[inline(always)]
+    pub(super) fn at(&self, x: Point3) -> f64 {
+        dot(self.normal, sub(x, self.origin)) + self.offset
+    }
+
+    /// Value at the corner of a box that is farthest on the positive side.
+    #[inline(always)]
+    pub(super) fn highest(&self, min: &Point3, max: &Point3) -> f64 {
+        self.at(std::array::from_fn(|k| if self.normal[k] > 0.0 { max[k] } else { min[k] }))
+    }
+
+    fn flipped(self) -> Self {
+        Self { normal: scale(self.normal, -1.0), origin: self.origin, offset: -self.offset }
+    }
+}
+
+/// Cuts parts; counts how often.
+#[derive(Debug, Clone)]
+pub(super) struct Cutter {
+    pub(super) eps: f64,
+    pub(super) eta: f64,
+    /// Parts cut, or tried to.
+    pub(super) clips: u64,
+    spare: Part,
+}
+
+impl Cutter {
+    /// For a graph whose largest coordinate is `m`.
+    pub(super) fn new(m: f64) -> Self {
+        Self { eps: m * 2f64.powi(-48), eta: m * 2f64.powi(-40), clips: 0, spare: Vec::new() }
+    }
+
+    /// Cuts off what lies below the plane; `false` if nothing is left, and then the part is not to be used.
+    ///
+    /// The cut is made below the plane by the part's own inaccuracy and once more by the error of evaluation,
+    /// so that a constructed vertex lies beyond the true cut.
+    pub(super) fn cut(&mut self, part: &mut Part, plane: &Plane) -> bool {
+        self.clips += 1;
+        let n = part.len();
+        if n > MAX_VERTICES {
+            return true;
+        }
+        let mut values = [0.0f64; MAX_VERTICES];
+        let (mut low, mut high, mut clearance) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+        for (v, f) in part.iter().zip(&mut values) {
+            *f = plane.at(v.at);
+            low = low.min(*f);
+            high = high.max(*f);
+            clearance = clearance.max(v.clearance);
+        }
+        let below = clearance + self.eps;
+        if high < -below {
+            return false;
+        }
+        if low >= -below {
+            return true;
+        }
+        self.spare.clear();
+        let (mut before, mut f_before) = (part[n - 1], values[n - 1] + below);
+        for (v, f) in part.iter().zip(&values) {
+            let f = f + below;
+            if (f < 0.0) != (f_before < 0.0) {
+                let at = add(before.at, scale(sub(v.at, before.at), f_before / (f_before - f)));
+                // Coming back up, the edge that ends here is the cut; going down it is what is left of v's.
+                self.spare.push(Vertex { at, clearance: self.eta + self.eps, cut: f >= 0.0 || v.cut });
+            }
+            if f >= 0.0 {
+                self.spare.push(*v);
+            }
+            (before, f_before) = (*v, f);
+        }
+        std::mem::swap(part, &mut self.spare);
+        part.len() >= 3
+    }
+
+    /// Cuts by all planes, of which there are few enough for the error bound.
+    pub(super) fn cut_all(&mut self, part: &mut Part, planes: &[Plane]) -> bool {
+        planes.iter().take(MAX_CUTS).all(|plane| self.cut(part, plane))
+    }
+
+    /// Appends planes that have `first` below and `second` above: for each edge of either, the one that leans on
+    /// the other. Both go round counter-clockwise about the direction in which lines pass them.
+    pub(super) fn separators(&self, first: &[Vertex], second: &[Vertex], planes: &mut Vec<Plane>) {
+        let mut shared = None;
+        for a in first {
+            for b in second {
+                if a.at == b.at {
+                    if shared.is_some() {
+                        return;
+                    }
+                    shared = Some(a.at);
+                }
+            }
+        }
+        leaning(first, second, 1.0, shared, |plane| {
+            if separates(&plane, first, second, shared) {
+                planes.push(plane);
+            }
+        });
+        leaning(second, first, -1.0, shared, |plane| {
+            let plane = plane.flipped();
+            if separates(&plane, first, second, shared) {
+                planes.push(plane);
+            }
+        });
+    }
+}
+
+/// For each edge of `part`, the plane through it that leans on `other`: `part` below, `other` above, as far as
+/// the points that it leans on tell. `turn` is 1 if lines pass `part` first, and -1 if they pass it last: then its
+/// corners go round the other way as seen from `other`.
+#[inline(always)]
+fn leaning(part: &[Vertex], other: &[Vertex], turn: f64, shared: Option<Point3>, mut found: impl FnMut(Plane)) {
+    let mut last = part[part.len() - 1];
+    for &b in part {
+        let a = std::mem::replace(&mut last, b);
+        if shared.is_some_and(|c| a.at != c && b.at != c) {
+            continue;
+        }
+        let edge = scale(sub(b.at, a.at), turn);
+        let mut touched: Option<(&Vertex, Point3)> = None;
+        for v in other {
+            let from = sub(v.at, a.at);
+            // Of the planes through the edge, the first one that meets the other part.
+            if touched.is_none_or(|(_, normal)| dot(normal, from) < 0.0) && shared != Some(v.at) {
+                touched = Some((v, cross(edge, from)));
+            }
+        }
+        if let Some((v, normal)) = touched
+            && let Some(plane) = lean([&a, &b, v], normal, shared)
+        {
+            found(plane);
+        }
+    }
+}
+
+/// The plane through the edge `a`, `b` and the point `v`, turned a little, so that the edge lies below it by one and
+/// a half times its clearance, and `v` above by as much; a shared corner stays on it. `normal` is theirs, of any
+/// length. `None` if the three are nearly in line, so that the turn would be large.
+#[inline(always)]
+fn lean([a, b, v]: [&Vertex; 3], normal: Point3, shared: Option<Point3>) -> Option<Plane> {
+    let (e, f) = (sub(b.at, a.at), sub(v.at, a.at));
+    let (ee, ff, ef, nn) = (dot(e, e), dot(f, f), dot(e, f), dot(normal, normal));
+    // Otherwise the normal is mostly rounding; also false for what is not a number.
+    if nn.partial_cmp(&(1e-12 * ee * ff)) != Some(std::cmp::Ordering::Greater) {
+        return None;
+    }
+    let wanted = |x: &Vertex, side: f64| if shared == Some(x.at) { 0.0 } else { 1.5 * side * x.clearance };
+    let (at_a, at_b, at_v) = (wanted(a, -1.0), wanted(b, -1.0), wanted(v, 1.0));
+    // The gradient, within the plane of the three, of the linear function with these values.
+    let (x, y) = ((at_b - at_a) * ff - (at_v - at_a) * ef, (at_v - at_a) * ee - (at_b - at_a) * ef);
+    let turn = scale(add(scale(e, x), scale(f, y)), 1.0 / nn);
+    // A normal longer than 1.01 would spoil the error bound of evaluation.
+    if dot(turn, turn) > 1e-4 {
+        return None;
+    }
+    let normal = add(scale(normal, 1.0 / nn.sqrt()), turn);
+    Some(match shared {
+        Some(corner) => Plane { normal, origin: corner, offset: 0.0 },
+        None => Plane { normal, origin: a.at, offset: at_a },
+    })
+}
+
+/// Whether all of `first` is certainly below the plane and all of `second` above, but for the shared corner,
+/// which is the plane's origin and so exactly on it.
+#[inline(always)]
+fn separates(plane: &Plane, first: &[Vertex], second: &[Vertex], shared: Option<Point3>) -> bool {
+    let is_shared = |v: &Vertex| shared == Some(v.at);
+    first.iter().all(|v| is_shared(v) || plane.at(v.at) <= -v.clearance)
+        && second.iter().all(|v| is_shared(v) || plane.at(v.at) >= v.clearance)
+}
+
+/// Whether all of `inner` is certainly within `outer`, both of them parts of one portal with this normal, as far as
+/// points of the portal itself are concerned: edges of the portal are not looked at.
+pub(super) fn is_within(inner: &[Vertex], outer: &[Vertex], normal: Point3) -> bool {
+    let mut last = outer[outer.len() - 1];
+    outer.iter().all(|&b| {
+        let a = std::mem::replace(&mut last, b);
+        if !b.cut {
+            return true;
+        }
+        let inwards = cross(normal, sub(b.at, a.at));
+        let length = dot(inwards, inwards).sqrt();
+        let is_end = |v: &Vertex| v.at == a.at || v.at == b.at;
+        inner.iter().all(|v| is_end(v) || dot(inwards, sub(v.at, a.at)) >= length * (v.clearance + b.clearance))
+    })
+}
+
+/// The middle of the corners.
+pub(super) fn middle(part: &[Vertex]) -> Point3 {
+    scale(part.iter().fold([0.0; 3], |sum, v| add(sum, v.at)), 1.0 / part.len() as f64)
+}

@@ -1,0 +1,185 @@
+//! The graph as a search uses it: portals with a direction of crossing.
+
+use super::cut::{Part, Vertex};
+use super::vector::{Point3, cross, dot, scale, sub, unit};
+use sightlines_cells::{CellGraph, Convex, Portal3};
+
+/// A portal with the direction in which it is crossed. Gate `2 p` leads from the first cell of portal `p` into
+/// the second, gate `2 p + 1` back.
+#[derive(Debug, Clone)]
+pub(super) struct Gate {
+    pub(super) from: u32,
+    pub(super) to: u32,
+    first: u32,
+    n_corners: u32,
+    pub(super) center: Point3,
+    /// Of the ball around the center that holds the corners, rounded up.
+    pub(super) radius: f64,
+    /// The direction of crossing, of length 1.
+    pub(super) normal: Point3,
+}
+
+/// All gates, and the cells that they lead out of.
+#[derive(Debug, Clone)]
+pub(super) struct Gates {
+    gates: Vec<Gate>,
+    shapes: Vec<Portal3>,
+    corners: Part,
+    first_exit: Vec<u32>,
+    exits: Vec<u32>,
+    /// Boxes around the portals of each cell.
+    pub(super) boxes: Vec<[Point3; 2]>,
+    /// Largest coordinate, at least the smallest positive one.
+    pub(super) largest: f64,
+    /// How far corners that are meant to be on one plane are from it: `2^-44` of the largest coordinate.
+    ///
+    /// Portals of a subdivision lie on its planes, and a line crosses a plane but once. The corners in files are
+    /// rounded, each some units in its last place (2^-53) off, which planes through nearby corners magnify by
+    /// the ratio of portal sizes. So what is nearer than this counts as on the plane.
+    pub(super) flat: f64,
+}
+
+impl Gates {
+    pub(super) fn new(graph: &CellGraph<Convex>) -> Self {
+        let coordinates = graph.portals().iter().flat_map(|p| p.shape.corners()).flatten();
+        let largest = coordinates.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
+        let clearance = super::cut::Cutter::new(largest).eps;
+        let (mut gates, mut shapes, mut corners) = (Vec::new(), Vec::new(), Vec::new());
+        for portal in graph.portals() {
+            for (shape, [from, to]) in
+                [(portal.shape.clone(), portal.cells), (portal.shape.reversed(), [portal.cells[1], portal.cells[0]])]
+            {
+                let first = corners.len() as u32;
+                corners.extend(shape.corners().iter().map(|&at| Vertex { at, clearance, cut: false }));
+                let center = super::cut::middle(&corners[first as usize..]);
+                let far = |p: &Point3| dot(sub(*p, center), sub(*p, center)).sqrt();
+                let radius = shape.corners().iter().map(far).fold(0.0, f64::max) * (1.0 + 1e-9);
+                let n_corners = shape.corners().len() as u32;
+                gates.push(Gate {
+                    from: from.0,
+                    to: to.0,
+                    first,
+                    n_corners,
+                    center,
+                    radius,
+                    normal: unit(shape.normal()),
+                });
+                shapes.push(shape);
+            }
+        }
+        let (mut first_exit, mut exits, mut boxes) = (vec![0u32], Vec::with_capacity(gates.len()), Vec::new());
+        for cell in graph.cell_ids() {
+            exits.extend(graph.exits(cell).iter().map(|exit| 2 * exit.portal.0 + u32::from(!exit.forward)));
+            first_exit.push(exits.len() as u32);
+            let bounds = graph.cell(cell).bounds;
+            boxes.push([bounds.min, bounds.max]);
+        }
+        let flat = largest * 2f64.powi(-44);
+        Self { gates, shapes, corners, first_exit, exits, boxes, largest, flat }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.gates.len()
+    }
+
+    pub(super) fn n_cells(&self) -> usize {
+        self.boxes.len()
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, gate: u32) -> &Gate {
+        &self.gates[gate as usize]
+    }
+
+    pub(super) fn shape(&self, gate: u32) -> &Portal3 {
+        &self.shapes[gate as usize]
+    }
+
+    #[inline(always)]
+    pub(super) fn corners(&self, gate: u32) -> &[Vertex] {
+        let g = self.get(gate);
+        &self.corners[g.first as usize..(g.first + g.n_corners) as usize]
+    }
+
+    /// The gates out of a cell.
+    #[inline(always)]
+    pub(super) fn exits(&self, cell: u32) -> &[u32] {
+        &self.exits[self.first_exit[cell as usize] as usize..self.first_exit[cell as usize + 1] as usize]
+    }
+
+    /// Whether a line may pass gate `s` and after it gate `t`, as far as their planes tell: `t` has a corner in front
+    /// of the plane of `s`, and `s` one behind the plane of `t`.
+    #[inline]
+    pub(super) fn may_follow(&self, s: u32, t: u32) -> bool {
+        let (gs, gt) = (self.get(s), self.get(t));
+        let between = sub(gt.center, gs.center);
+        // Balls decide nearly all; their margin is far above the error of evaluation.
+        let margin = self.largest * 1e-9;
+        let ahead = dot(gs.normal, between);
+        if ahead < gt.radius + margin {
+            let in_front = |v: &Vertex| dot(gs.normal, sub(v.at, gs.center)) > self.flat;
+            if ahead < -gt.radius - margin || !self.corners(t).iter().any(in_front) {
+                return false;
+            }
+        }
+        let ahead = dot(gt.normal, between);
+        if ahead < gs.radius + margin {
+            let behind = |v: &Vertex| dot(gt.normal, sub(v.at, gt.center)) < -self.flat;
+            if ahead < -gs.radius - margin || !self.corners(s).iter().any(behind) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether the line through `origin` in the direction `d` certainly passes a gate: every edge on its inner
+    /// side, by more than rounding.
+    ///
+    /// The side of an edge is a determinant of three vectors: `d`, of length 1, and the differences of two corners
+    /// with the origin, at most `r` long. Two subtractions, two levels of products and a sum of three are off by
+    /// less than `16 u r²`; asked for is twice as much.
+    #[inline]
+    pub(super) fn passes(&self, gate: u32, origin: Point3, d: Point3) -> bool {
+        let corners = self.corners(gate);
+        let mut last = sub(corners[corners.len() - 1].at, origin);
+        let (mut farthest, mut least) = (dot(last, last), f64::INFINITY);
+        for v in corners {
+            let r = sub(v.at, origin);
+            farthest = farthest.max(dot(r, r));
+            least = least.min(dot(d, cross(last, r)));
+            last = r;
+        }
+        least > farthest * (32.0 * 0.5 * f64::EPSILON)
+    }
+
+    /// Appends the gates that the line passes after `gate`, until it meets a wall or comes so near to an edge that
+    /// rounding could matter.
+    pub(super) fn follow(&self, gate: u32, origin: Point3, d: Point3, passed: &mut Vec<u32>) {
+        let (mut last, most) = (gate, passed.len() + self.n_cells());
+        'cells: while passed.len() < most {
+            for &exit in self.exits(self.get(last).to) {
+                // The way back has the line on the wrong side.
+                if exit != last ^ 1 && dot(self.get(exit).normal, d) > 0.0 && self.passes(exit, origin, d) {
+                    passed.push(exit);
+                    last = exit;
+                    continue 'cells;
+                }
+            }
+            return;
+        }
+    }
+
+    /// The gates that the line through `origin` along `d` passes, in order, `gate` among them; empty if it does
+    /// not certainly pass that one. Replaces `passed`.
+    pub(super) fn chain(&self, gate: u32, origin: Point3, d: Point3, passed: &mut Vec<u32>) {
+        passed.clear();
+        if !self.passes(gate, origin, d) {
+            return;
+        }
+        self.follow(gate ^ 1, origin, scale(d, -1.0), passed);
+        passed.reverse();
+        passed.iter_mut().for_each(|g| *g ^= 1);
+        passed.push(gate);
+        self.follow(gate, origin, d, passed);
+    }
+}

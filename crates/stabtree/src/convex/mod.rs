@@ -1,0 +1,391 @@
+//! Which convex cells see each other through convex portals.
+//!
+//! Four stages, each quick where the one after it is exact:
+//!
+//! 1. **Bound** ([`bound`]): what may be seen through each gate, by the planes of portals alone.
+//! 2. **Lines** ([`sampled`]): some lines through every gate; all cells on a line see each other.
+//! 3. **Beams** ([`beams`]): for each gate, what is still in doubt is looked for by beams of lines. Most of it is
+//!    hidden, and shown to be; for most of the rest an exact line is found.
+//! 4. **Pairs** ([`pairs`]): what beams neither hide nor show, decided sequence by sequence.
+//!
+//! Visibility is symmetric, and each answer counts for both sides. Every stage works through its gates or cells
+//! in batches that do not depend on the number of threads: members of a batch know what batches before have found,
+//! and nothing of each other. So the answer, the lines tried and the operations counted are the same with any
+//! number of threads.
+//!
+//! Source: the question is Teller's (PhD thesis, 1992, chapter 5); planes between portals are those of Quake's
+//! vis. Lines first, beams that depend on two portals only, exact sequences last: ours.
+
+mod batch;
+mod beams;
+mod bound;
+mod cut;
+mod gates;
+mod pairs;
+mod sampled;
+mod vector;
+
+use batch::Workers;
+use beams::BeamTracer;
+use gates::Gates;
+use pairs::{SequenceTracer, cells_of};
+use sightlines_cells::{CellGraph, Convex};
+use sightlines_pvs::BitMatrix;
+
+/// Lines followed through each portal before anything else.
+const LINES_EACH: u32 = 64;
+/// Gates of a batch, for the stages whose gates take little.
+const MANY: usize = 1024;
+/// Gates or cells of a batch, for the stages whose gates may take long.
+const FEW: usize = 64;
+
+/// How to search.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ConvexOptions {
+    /// Only the first, coarse bound: quick, and shows much that is hidden.
+    pub fast: bool,
+    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    pub threads: usize,
+}
+
+/// What a search did: counts of elementary operations, the same for the same input and options, whatever the
+/// machine and the number of threads.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ConvexCounters {
+    /// Polygons cut by planes.
+    pub clips: u64,
+    /// Lines followed through the graph.
+    pub lines: u64,
+    /// Linear programs.
+    pub programs: u64,
+    /// Beams followed.
+    pub beams: u64,
+    /// Sequences of gates looked at one by one.
+    pub sequences: u64,
+}
+
+impl std::ops::AddAssign for ConvexCounters {
+    fn add_assign(&mut self, other: Self) {
+        self.clips += other.clips;
+        self.lines += other.lines;
+        self.programs += other.programs;
+        self.beams += other.beams;
+        self.sequences += other.sequences;
+    }
+}
+
+/// Where a search stands: all that is needed to go on with it later, for the same graph and options.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvexState {
+    /// Which stage is under way, from 0; 4 when all is done.
+    pub stage: u32,
+    /// How many gates or cells of that stage are done.
+    pub done: u64,
+    /// Pairs of cells known to see each other; symmetric.
+    pub visible: BitMatrix,
+    /// Pairs of cells not known to be hidden; symmetric, a superset of `visible`.
+    pub possible: BitMatrix,
+    /// Row `2 p` has the cells that may be seen through portal `p`, row `2 p + 1` those that may be seen through it
+    /// the other way.
+    pub through: BitMatrix,
+    /// Pairs (lower id first, ascending) that count as visible without a line that shows it.
+    pub undecided: Vec<[u32; 2]>,
+    /// What was done so far.
+    pub counters: ConvexCounters,
+}
+
+/// The answer of a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeenThroughPortals {
+    /// Which cells see each other; symmetric, diagonal set.
+    pub cells: BitMatrix,
+    /// Pairs (lower id first, ascending) that count as visible without a line that shows it. Empty for
+    /// [`ConvexOptions::fast`], which shows no lines at all.
+    pub undecided: Vec<[u32; 2]>,
+    /// What was done.
+    pub counters: ConvexCounters,
+}
+
+/// A search that can be stopped between any two steps.
+#[derive(Debug)]
+pub struct ConvexSearch {
+    gates: Gates,
+    options: ConvexOptions,
+    state: ConvexState,
+    /// Gates, those behind which there is least to see first.
+    order: Vec<u32>,
+    /// The places of cells in an order of the same kind.
+    rank: Vec<u32>,
+    workers: Workers,
+}
+
+impl ConvexSearch {
+    /// A search that has not begun.
+    pub fn new(graph: &CellGraph<Convex>, options: ConvexOptions) -> Self {
+        let gates = Gates::new(graph);
+        let n = gates.n_cells();
+        let state = ConvexState {
+            stage: 0,
+            done: 0,
+            visible: BitMatrix::identity(n),
+            possible: BitMatrix::identity(n),
+            through: BitMatrix::new(gates.len(), n),
+            undecided: Vec::new(),
+            counters: ConvexCounters::default(),
+        };
+        let workers = Workers::new(options.threads);
+        Self { gates, options, state, order: Vec::new(), rank: Vec::new(), workers }
+    }
+
+    /// Goes on with a search of the same graph with the same options (the number of threads may differ).
+    /// `None` if the state cannot be one of this graph.
+    pub fn resume(graph: &CellGraph<Convex>, options: ConvexOptions, state: ConvexState) -> Option<Self> {
+        let mut search = Self::new(graph, options);
+        let size = |m: &BitMatrix| (m.n_rows(), m.n_cols());
+        let fits = [&state.visible, &state.possible].iter().all(|m| size(m) == size(&search.state.visible))
+            && size(&state.through) == size(&search.state.through)
+            && state.undecided.iter().all(|&[a, b]| a < b && (b as usize) < search.gates.n_cells());
+        if !fits {
+            return None;
+        }
+        if state.stage > 0 {
+            // The order follows from the first stage, which is quick.
+            while search.state.stage == 0 {
+                search.bound();
+            }
+        }
+        search.state = state;
+        Some(search)
+    }
+
+    /// Where the search stands.
+    pub fn state(&self) -> &ConvexState {
+        &self.state
+    }
+
+    /// Done share of the whole, from 0 to 1, as an estimate of time.
+    pub fn share_done(&self) -> f64 {
+        let ConvexState { stage, done, .. } = self.state;
+        let part = |all: usize| if all == 0 { 1.0 } else { (done as f64 / all as f64).min(1.0) };
+        match stage {
+            0 => 0.02 * part(self.gates.len()),
+            1 => 0.02 + 0.05 * part(self.gates.len() / 2),
+            // Gates come in the order of what is behind them, and take about its square.
+            2 => 0.07 + 0.63 * part(self.gates.len()).powi(3),
+            3 => 0.7 + 0.3 * part(self.gates.n_cells()),
+            _ => 1.0,
+        }
+    }
+
+    /// Does a step; whether more is left.
+    pub fn advance(&mut self) -> bool {
+        match self.state.stage {
+            0 => self.bound(),
+            1 => self.shoot(),
+            2 => self.trace_beams(),
+            3 => self.decide_pairs(),
+            _ => {}
+        }
+        self.state.stage < 4
+    }
+
+    /// The answer.
+    ///
+    /// # Panics
+    /// If [`ConvexSearch::advance`] still had something left to do.
+    pub fn finish(self) -> SeenThroughPortals {
+        let ConvexState { stage, visible, possible, mut undecided, counters, .. } = self.state;
+        assert!(stage == 4, "the search is not done");
+        if self.options.fast {
+            return SeenThroughPortals { cells: possible, undecided, counters };
+        }
+        undecided.retain(|&[a, b]| !visible.get(a as usize, b as usize));
+        undecided.sort_unstable();
+        let mut cells = visible;
+        for &[a, b] in &undecided {
+            cells.set(a as usize, b as usize, true);
+            cells.set(b as usize, a as usize, true);
+        }
+        SeenThroughPortals { cells, undecided, counters }
+    }
+
+    fn next_stage(&mut self) {
+        self.state.stage += 1;
+        self.state.done = 0;
+    }
+
+    /// The units of the next batch, as a range; moves on.
+    fn take(&mut self, all: usize, size: usize) -> std::ops::Range<usize> {
+        let start = self.state.done as usize;
+        let end = (start + size).min(all);
+        self.state.done = end as u64;
+        start.min(end)..end
+    }
+
+    fn bound(&mut self) {
+        let range = self.take(self.gates.len(), MANY);
+        let gates = &self.gates;
+        let rows = self.workers.map(range.clone(), || (), |(), gate| bound::seen_through(gates, gate as u32));
+        for (gate, row) in range.zip(rows) {
+            self.state.through.row_mut(gate).copy_from_slice(&row);
+        }
+        if self.state.done as usize == self.gates.len() {
+            self.set_order();
+            self.set_possible();
+            self.next_stage();
+            if self.options.fast {
+                self.state.stage = 4;
+            }
+        }
+    }
+
+    fn set_order(&mut self) {
+        let count = |gate: u32| self.state.through.count_row(gate as usize);
+        let mut order: Vec<u32> = (0..self.gates.len() as u32).collect();
+        order.sort_by_cached_key(|&gate| (count(gate), gate));
+        let total = |cell: u32| self.gates.exits(cell).iter().map(|&gate| count(gate)).sum::<u64>();
+        let mut cells: Vec<u32> = (0..self.gates.n_cells() as u32).collect();
+        cells.sort_by_cached_key(|&cell| (total(cell), cell));
+        let mut rank = vec![0; cells.len()];
+        cells.iter().zip(0u32..).for_each(|(&cell, place)| rank[cell as usize] = place);
+        (self.order, self.rank) = (order, rank);
+    }
+
+    /// Says that two cells may see each other if each may see the other through one of its gates; and takes the
+    /// others out of what may be seen through gates.
+    fn set_possible(&mut self) {
+        let n = self.gates.n_cells();
+        let mut reach = BitMatrix::identity(n);
+        for gate in 0..self.gates.len() {
+            let from = self.gates.get(gate as u32).from as usize;
+            let row = self.state.through.row(gate);
+            reach.row_mut(from).iter_mut().zip(row).for_each(|(reach, row)| *reach |= row);
+        }
+        self.state.possible = BitMatrix::identity(n);
+        for a in 0..n {
+            for b in reach.iter_ones(a).filter(|&b| reach.get(b, a)) {
+                self.state.possible.set(a, b, true);
+            }
+        }
+        for gate in 0..self.gates.len() {
+            let from = self.gates.get(gate as u32).from as usize;
+            let possible = self.state.possible.row(from);
+            self.state.through.row_mut(gate).iter_mut().zip(possible).for_each(|(row, possible)| *row &= possible);
+        }
+    }
+
+    fn shoot(&mut self) {
+        let n_portals = self.gates.len() / 2;
+        let range = self.take(n_portals, MANY);
+        let gates = &self.gates;
+        let chains = self.workers.map(
+            range.clone(),
+            || (),
+            |(), portal| {
+                let mut chains: Vec<Vec<u32>> = Vec::new();
+                sampled::shoot_through(gates, 2 * portal as u32, LINES_EACH, |chain| {
+                    if chain.len() > 1 {
+                        chains.push(chain.to_vec());
+                    }
+                });
+                chains
+            },
+        );
+        chains.iter().flatten().for_each(|chain| sampled::mark(gates, chain, &mut self.state.visible));
+        self.state.counters.lines += range.len() as u64 * u64::from(LINES_EACH);
+        if self.state.done as usize == n_portals {
+            self.next_stage();
+        }
+    }
+
+    fn trace_beams(&mut self) {
+        let range = self.take(self.order.len(), FEW);
+        let (gates, state, order) = (&self.gates, &self.state, &self.order);
+        let done = state.done as usize;
+        let traced = self.workers.map(
+            range.clone(),
+            || BeamTracer::new(gates),
+            |tracer, place| {
+                let gate = order[place];
+                let from = gates.get(gate).from as usize;
+                let row = state.through.row(gate as usize).iter().zip(state.visible.row(from));
+                let in_doubt = row.map(|(through, visible)| through & !visible).collect();
+                let traced = tracer.trace(gates, gate, in_doubt, &state.through);
+                (traced, tracer.take_counters())
+            },
+        );
+        let mut touched: Vec<u32> = Vec::new();
+        for (place, (traced, counters)) in range.zip(traced) {
+            let gate = self.order[place];
+            let row = self.state.through.row_mut(gate as usize);
+            row.iter_mut().zip(&traced.hidden).for_each(|(row, hidden)| *row &= !hidden);
+            traced.chains.iter().for_each(|chain| sampled::mark(&self.gates, chain, &mut self.state.visible));
+            self.state.counters += counters;
+            touched.push(self.gates.get(gate).from);
+        }
+        // What a cell, all gates of which are done, cannot see, cannot see it either.
+        touched.sort_unstable();
+        touched.dedup();
+        let mut place_of = vec![0u32; self.order.len()];
+        self.order.iter().zip(0u32..).for_each(|(&gate, place)| place_of[gate as usize] = place);
+        let is_done = |cell: u32| self.gates.exits(cell).iter().all(|&g| (place_of[g as usize] as usize) < done);
+        for cell in touched.into_iter().filter(|&cell| is_done(cell)) {
+            let mut reach = vec![0u64; self.state.through.row(0).len()];
+            for &gate in self.gates.exits(cell) {
+                let row = self.state.through.row(gate as usize);
+                reach.iter_mut().zip(row).for_each(|(reach, row)| *reach |= row);
+            }
+            for gate in 0..self.gates.len() as u32 {
+                let from = self.gates.get(gate).from as usize;
+                if reach[from / 64] >> (from % 64) & 1 == 0 && from != cell as usize {
+                    self.state.through.set(gate as usize, cell as usize, false);
+                }
+            }
+        }
+        if done == self.order.len() {
+            self.set_possible();
+            self.next_stage();
+        }
+    }
+
+    fn decide_pairs(&mut self) {
+        let range = self.take(self.gates.n_cells(), FEW);
+        let (gates, state, rank) = (&self.gates, &self.state, &self.rank);
+        let decided = self.workers.map(
+            range.clone(),
+            || SequenceTracer::new(gates),
+            |tracer, cell| {
+                let row = state.possible.row(cell).iter().zip(state.visible.row(cell));
+                let mut in_doubt: Vec<u64> = row.map(|(possible, visible)| possible & !visible).collect();
+                for other in cells_of(&in_doubt.clone()).filter(|&other| rank[other as usize] < rank[cell]) {
+                    in_doubt[other as usize / 64] &= !(1 << (other % 64));
+                }
+                if in_doubt.iter().all(|&w| w == 0) {
+                    return None;
+                }
+                let decided = tracer.decide(gates, cell as u32, in_doubt, &state.through);
+                Some((decided, tracer.take_counters()))
+            },
+        );
+        for (cell, decided) in range.zip(decided) {
+            let Some((decided, counters)) = decided else { continue };
+            self.state.counters += counters;
+            decided.chains.iter().for_each(|chain| sampled::mark(&self.gates, chain, &mut self.state.visible));
+            for other in cells_of(&decided.hidden) {
+                let other = other as usize;
+                self.state.possible.set(cell, other, false);
+                self.state.possible.set(other, cell, false);
+                for (from, to) in [(cell, other), (other, cell)] {
+                    for &gate in self.gates.exits(from as u32) {
+                        self.state.through.set(gate as usize, to, false);
+                    }
+                }
+            }
+            let pair = |other: u32| [other.min(cell as u32), other.max(cell as u32)];
+            self.state.undecided.extend(cells_of(&decided.undecided).map(pair));
+        }
+        if self.state.done as usize == self.gates.n_cells() {
+            self.next_stage();
+        }
+    }
+}

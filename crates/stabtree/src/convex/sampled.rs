@@ -1,0 +1,62 @@
+//! Pairs that a line shows to see each other, found by following many lines.
+
+use super::gates::Gates;
+use super::vector::{Point3, add, dot, scale};
+use sightlines_pvs::BitMatrix;
+
+/// Says that all cells on a line see each other. `chain` has the gates that the line passes, in order.
+pub(super) fn mark(gates: &Gates, chain: &[u32], visible: &mut BitMatrix) {
+    let Some(&last) = chain.last() else { return };
+    let mut mask = vec![0u64; gates.n_cells().div_ceil(64)];
+    let cells = || chain.iter().map(|&g| gates.get(g).from).chain([gates.get(last).to]);
+    cells().for_each(|c| mask[c as usize / 64] |= 1 << (c % 64));
+    for cell in cells() {
+        visible.row_mut(cell as usize).iter_mut().zip(&mask).for_each(|(row, mask)| *row |= mask);
+    }
+}
+
+/// A source of chance that is the same everywhere (SplitMix64).
+struct Chance(u64);
+
+impl Chance {
+    /// From 0 up to 1.
+    fn share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 * 2f64.powi(-53)
+    }
+
+    fn point_in(&mut self, corners: &[super::cut::Vertex]) -> Point3 {
+        let (mut sum, mut weights) = ([0.0; 3], 0.0);
+        for v in corners {
+            let weight = self.share() + 2f64.powi(-20);
+            sum = add(sum, scale(v.at, weight));
+            weights += weight;
+        }
+        scale(sum, 1.0 / weights)
+    }
+
+    fn direction(&mut self) -> Point3 {
+        loop {
+            let d: Point3 = std::array::from_fn(|_| 2.0 * self.share() - 1.0);
+            let square = dot(d, d);
+            if (0.01..1.0).contains(&square) {
+                return scale(d, 1.0 / square.sqrt());
+            }
+        }
+    }
+}
+
+/// Follows `n` lines through a gate, the same ones each time, and hands over what each passes.
+pub(super) fn shoot_through(gates: &Gates, gate: u32, n: u32, mut each: impl FnMut(&[u32])) {
+    let mut chance = Chance(u64::from(gate) << 32);
+    let mut chain = Vec::new();
+    for _ in 0..n {
+        let origin = chance.point_in(gates.corners(gate));
+        let d = chance.direction();
+        let d = if dot(d, gates.get(gate).normal) < 0.0 { scale(d, -1.0) } else { d };
+        gates.chain(gate, origin, d, &mut chain);
+        each(&chain);
+    }
+}
