@@ -162,26 +162,61 @@ impl Cutter {
 /// corners go round the other way as seen from `other`.
 #[inline(always)]
 fn leaning(part: &[Vertex], other: &[Vertex], turn: f64, shared: Option<Point3>, mut found: impl FnMut(Plane)) {
-    let mut last = part[part.len() - 1];
-    for &b in part {
-        let a = std::mem::replace(&mut last, b);
-        if shared.is_some_and(|c| a.at != c && b.at != c) {
-            continue;
-        }
-        let edge = scale(sub(b.at, a.at), turn);
-        let mut touched: Option<(&Vertex, Point3)> = None;
-        for v in other {
-            let from = sub(v.at, a.at);
-            // Of the planes through the edge, the first one that meets the other part.
-            if touched.is_none_or(|(_, normal)| dot(normal, from) < 0.0) && shared != Some(v.at) {
-                touched = Some((v, cross(edge, from)));
-            }
-        }
-        if let Some((v, normal)) = touched
-            && let Some(plane) = lean([&a, &b, v], normal, shared)
+    for_edges(part, |a, b| {
+        let is_apart = shared.is_none_or(|c| a.at == c || b.at == c);
+        if is_apart
+            && let Some((v, normal)) = first_met(a, b, turn, other.iter().filter(|v| shared != Some(v.at)))
+            && let Some(plane) = lean([a, b, v], normal, shared)
         {
             found(plane);
         }
+    });
+}
+
+#[inline(always)]
+fn for_edges(part: &[Vertex], mut edge: impl FnMut(&Vertex, &Vertex)) {
+    let mut last = &part[part.len() - 1];
+    for b in part {
+        edge(std::mem::replace(&mut last, b), b);
+    }
+}
+
+/// Of the planes through an edge, the first one that meets one of the points as it turns from the edge's own part (or
+/// towards it, with the other `turn`): the point and the normal, of any length, that has the others above.
+#[inline(always)]
+fn first_met<'v>(
+    a: &Vertex,
+    b: &Vertex,
+    turn: f64,
+    points: impl Iterator<Item = &'v Vertex>,
+) -> Option<(&'v Vertex, Point3)> {
+    let edge = scale(sub(b.at, a.at), turn);
+    let mut met: Option<(&Vertex, Point3)> = None;
+    for v in points {
+        let from = sub(v.at, a.at);
+        if met.is_none_or(|(_, normal)| dot(normal, from) < 0.0) {
+            met = Some((v, cross(edge, from)));
+        }
+    }
+    met
+}
+
+/// Appends planes that have both parts above, and with them all segments between the two: for each edge of either,
+/// the one that leans on the other. Where rounding or a strange shape would have a point below, the plane is moved
+/// down by as much, so it holds in any case.
+pub(super) fn enclosing(first: &[Vertex], second: &[Vertex], planes: &mut Vec<Plane>) {
+    for (part, other, turn) in [(first, second, -1.0), (second, first, 1.0)] {
+        for_edges(part, |a, b| {
+            let Some((_, normal)) = first_met(a, b, turn, other.iter()) else { return };
+            let square = dot(normal, normal);
+            // A plane from three points in line is none.
+            if square.partial_cmp(&f64::MIN_POSITIVE) == Some(std::cmp::Ordering::Greater) {
+                let mut plane = Plane { normal: scale(normal, 1.0 / square.sqrt()), origin: a.at, offset: 0.0 };
+                let lowest = first.iter().chain(second).map(|v| plane.at(v.at) - v.clearance);
+                plane.offset = -lowest.fold(f64::INFINITY, f64::min);
+                planes.push(plane);
+            }
+        });
     }
 }
 
@@ -241,3 +276,6 @@ pub(super) fn is_within(inner: &[Vertex], outer: &[Vertex], normal: Point3) -> b
 pub(super) fn middle(part: &[Vertex]) -> Point3 {
     scale(part.iter().fold([0.0; 3], |sum, v| add(sum, v.at)), 1.0 / part.len() as f64)
 }
+
+#[cfg(test)]
+mod tests;

@@ -20,91 +20,36 @@ mod batch;
 mod beams;
 mod bound;
 mod cut;
+mod explain;
 mod gates;
 mod pairs;
 mod sampled;
+mod state;
 mod vector;
+
+pub use explain::{
+    BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexGate, MOST_EXPLAINED, explain_convex,
+};
+
+pub use state::{ConvexCounters, ConvexOptions, ConvexState, SeenThroughPortals};
 
 use batch::Workers;
 use beams::BeamTracer;
 use gates::Gates;
-use pairs::{SequenceTracer, cells_of};
+use pairs::{SequenceTracer, Sight, cells_of};
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_pvs::BitMatrix;
 
+/// The stages; their number also says that all are done.
+const N_STAGES: u32 = 4;
 /// Lines followed through each portal before anything else.
 const LINES_EACH: u32 = 64;
 /// Gates of a batch, for the stages whose gates take little.
 const MANY: usize = 1024;
-/// Gates or cells of a batch, for the stages whose gates may take long.
+/// Gates of a batch, for the stage whose gates may take long.
 const FEW: usize = 64;
-
-/// How to search.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct ConvexOptions {
-    /// Only the first, coarse bound: quick, and shows much that is hidden.
-    pub fast: bool,
-    /// Number of threads; 0 for one for each core. Changes nothing but the time.
-    pub threads: usize,
-}
-
-/// What a search did: counts of elementary operations, the same for the same input and options, whatever the
-/// machine and the number of threads.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct ConvexCounters {
-    /// Polygons cut by planes.
-    pub clips: u64,
-    /// Lines followed through the graph.
-    pub lines: u64,
-    /// Linear programs.
-    pub programs: u64,
-    /// Beams followed.
-    pub beams: u64,
-    /// Sequences of gates looked at one by one.
-    pub sequences: u64,
-}
-
-impl std::ops::AddAssign for ConvexCounters {
-    fn add_assign(&mut self, other: Self) {
-        self.clips += other.clips;
-        self.lines += other.lines;
-        self.programs += other.programs;
-        self.beams += other.beams;
-        self.sequences += other.sequences;
-    }
-}
-
-/// Where a search stands: all that is needed to go on with it later, for the same graph and options.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ConvexState {
-    /// Which stage is under way, from 0; 4 when all is done.
-    pub stage: u32,
-    /// How many gates or cells of that stage are done.
-    pub done: u64,
-    /// Pairs of cells known to see each other; symmetric.
-    pub visible: BitMatrix,
-    /// Pairs of cells not known to be hidden; symmetric, a superset of `visible`.
-    pub possible: BitMatrix,
-    /// Row `2 p` has the cells that may be seen through portal `p`, row `2 p + 1` those that may be seen through it
-    /// the other way.
-    pub through: BitMatrix,
-    /// Pairs (lower id first, ascending) that count as visible without a line that shows it.
-    pub undecided: Vec<[u32; 2]>,
-    /// What was done so far.
-    pub counters: ConvexCounters,
-}
-
-/// The answer of a search.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SeenThroughPortals {
-    /// Which cells see each other; symmetric, diagonal set.
-    pub cells: BitMatrix,
-    /// Pairs (lower id first, ascending) that count as visible without a line that shows it. Empty for
-    /// [`ConvexOptions::fast`], which shows no lines at all.
-    pub undecided: Vec<[u32; 2]>,
-    /// What was done.
-    pub counters: ConvexCounters,
-}
+/// Cells of a batch whose pairs may take long.
+const CELLS: usize = 16;
 
 /// A search that can be stopped between any two steps.
 #[derive(Debug)]
@@ -116,6 +61,9 @@ pub struct ConvexSearch {
     order: Vec<u32>,
     /// The places of cells in an order of the same kind.
     rank: Vec<u32>,
+    /// All cells in an order without meaning, so that neighbours, which take alike, are far from each other and what
+    /// is left can be told from what is done.
+    scattered: Vec<u32>,
     workers: Workers,
 }
 
@@ -134,7 +82,10 @@ impl ConvexSearch {
             counters: ConvexCounters::default(),
         };
         let workers = Workers::new(options.threads);
-        Self { gates, options, state, order: Vec::new(), rank: Vec::new(), workers }
+        let mut scattered: Vec<u32> = (0..n as u32).collect();
+        // Bits reversed: halves, then quarters, and so on.
+        scattered.sort_by_key(|cell| cell.reverse_bits());
+        Self { gates, options, state, order: Vec::new(), rank: Vec::new(), scattered, workers }
     }
 
     /// Goes on with a search of the same graph with the same options (the number of threads may differ).
@@ -144,7 +95,9 @@ impl ConvexSearch {
         let size = |m: &BitMatrix| (m.n_rows(), m.n_cols());
         let fits = [&state.visible, &state.possible].iter().all(|m| size(m) == size(&search.state.visible))
             && size(&state.through) == size(&search.state.through)
-            && state.undecided.iter().all(|&[a, b]| a < b && (b as usize) < search.gates.n_cells());
+            && state.undecided.iter().all(|&[a, b]| a < b && (b as usize) < search.gates.n_cells())
+            && state.stage <= N_STAGES
+            && state.done <= search.gates.len().max(search.gates.n_cells()) as u64;
         if !fits {
             return None;
         }
@@ -169,10 +122,11 @@ impl ConvexSearch {
         let part = |all: usize| if all == 0 { 1.0 } else { (done as f64 / all as f64).min(1.0) };
         match stage {
             0 => 0.02 * part(self.gates.len()),
-            1 => 0.02 + 0.05 * part(self.gates.len() / 2),
-            // Gates come in the order of what is behind them, and take about its square.
-            2 => 0.07 + 0.63 * part(self.gates.len()).powi(3),
-            3 => 0.7 + 0.3 * part(self.gates.n_cells()),
+            1 => 0.02 + 0.03 * part(self.gates.len() / 2),
+            // Gates come in the order of what is behind them; on maps, time grows with the square of their number.
+            2 => 0.05 + 0.4 * part(self.gates.len()).powi(2),
+            // Between a half and twice the time of all before, on the maps that were looked at.
+            3 => 0.45 + 0.55 * part(self.gates.n_cells()),
             _ => 1.0,
         }
     }
@@ -186,7 +140,7 @@ impl ConvexSearch {
             3 => self.decide_pairs(),
             _ => {}
         }
-        self.state.stage < 4
+        self.state.stage < N_STAGES
     }
 
     /// The answer.
@@ -195,7 +149,7 @@ impl ConvexSearch {
     /// If [`ConvexSearch::advance`] still had something left to do.
     pub fn finish(self) -> SeenThroughPortals {
         let ConvexState { stage, visible, possible, mut undecided, counters, .. } = self.state;
-        assert!(stage == 4, "the search is not done");
+        assert!(stage == N_STAGES, "the search is not done");
         if self.options.fast {
             return SeenThroughPortals { cells: possible, undecided, counters };
         }
@@ -234,7 +188,7 @@ impl ConvexSearch {
             self.set_possible();
             self.next_stage();
             if self.options.fast {
-                self.state.stage = 4;
+                self.state.stage = N_STAGES;
             }
         }
     }
@@ -349,40 +303,37 @@ impl ConvexSearch {
     }
 
     fn decide_pairs(&mut self) {
-        let range = self.take(self.gates.n_cells(), FEW);
+        let range = self.take(self.gates.n_cells(), CELLS);
         let (gates, state, rank) = (&self.gates, &self.state, &self.rank);
+        // Each pair is decided from the cell from which there is less to see.
+        let others = |cell: usize| -> Vec<u32> {
+            let row = state.possible.row(cell).iter().zip(state.visible.row(cell));
+            let in_doubt: Vec<u64> = row.map(|(possible, visible)| possible & !visible).collect();
+            cells_of(&in_doubt).filter(|&other| rank[other as usize] > rank[cell]).collect()
+        };
+        let pairs: Vec<[u32; 2]> = self.scattered[range]
+            .iter()
+            .flat_map(|&cell| others(cell as usize).into_iter().map(move |other| [cell, other]))
+            .collect();
         let decided = self.workers.map(
-            range.clone(),
+            0..pairs.len(),
             || SequenceTracer::new(gates),
-            |tracer, cell| {
-                let row = state.possible.row(cell).iter().zip(state.visible.row(cell));
-                let mut in_doubt: Vec<u64> = row.map(|(possible, visible)| possible & !visible).collect();
-                for other in cells_of(&in_doubt.clone()).filter(|&other| rank[other as usize] < rank[cell]) {
-                    in_doubt[other as usize / 64] &= !(1 << (other % 64));
-                }
-                if in_doubt.iter().all(|&w| w == 0) {
-                    return None;
-                }
-                let decided = tracer.decide(gates, cell as u32, in_doubt, &state.through);
-                Some((decided, tracer.take_counters()))
-            },
+            |tracer, k| (tracer.decide(gates, pairs[k], &state.through), tracer.take_counters()),
         );
-        for (cell, decided) in range.zip(decided) {
-            let Some((decided, counters)) = decided else { continue };
+        for ([a, b], (sight, counters)) in pairs.into_iter().zip(decided) {
             self.state.counters += counters;
-            decided.chains.iter().for_each(|chain| sampled::mark(&self.gates, chain, &mut self.state.visible));
-            for other in cells_of(&decided.hidden) {
-                let other = other as usize;
-                self.state.possible.set(cell, other, false);
-                self.state.possible.set(other, cell, false);
-                for (from, to) in [(cell, other), (other, cell)] {
-                    for &gate in self.gates.exits(from as u32) {
-                        self.state.through.set(gate as usize, to, false);
+            match sight {
+                Sight::Visible(chain) => sampled::mark(&self.gates, &chain, &mut self.state.visible),
+                Sight::Undecided => self.state.undecided.push([a.min(b), a.max(b)]),
+                Sight::Hidden => {
+                    for [from, to] in [[a, b], [b, a]] {
+                        self.state.possible.set(from as usize, to as usize, false);
+                        for &gate in self.gates.exits(from) {
+                            self.state.through.set(gate as usize, to as usize, false);
+                        }
                     }
                 }
             }
-            let pair = |other: u32| [other.min(cell as u32), other.max(cell as u32)];
-            self.state.undecided.extend(cells_of(&decided.undecided).map(pair));
         }
         if self.state.done as usize == self.gates.n_cells() {
             self.next_stage();

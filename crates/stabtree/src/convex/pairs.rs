@@ -1,13 +1,15 @@
-//! Cells that beams leave in doubt, decided exactly: sequence by sequence.
+//! Pairs of cells that beams leave in doubt, decided exactly: sequence by sequence.
 //!
-//! From a gate of one cell, all sequences of gates are followed that could lead to a cell in doubt, and as far as
-//! an open set of lines passes them, which [`ConvexStabber`] decides exactly. A sequence is left as soon as
-//! planes show that no line passes it, or that nothing in doubt lies in its beam, or when it is known that from
-//! one of its gates the first or the last cell cannot be seen.
+//! From each gate of one cell, sequences of gates are followed towards each gate into the other, as far as planes
+//! (see [`cut`](super::cut)) leave something of the first gate, of the last, of the gate that is the goal, and of
+//! the space between first and goal. Where a sequence arrives, [`ConvexStabber`] decides exactly whether an open
+//! set of lines passes it.
+//!
+//! If none does, its proof names the gates that make it so: the search goes back to before the last of them, and
+//! leaves other sequences with the same gates at once.
 
 use super::ConvexCounters;
-use super::beams::drop_hidden;
-use super::cut::{Cutter, Part, Plane, middle};
+use super::cut::{Cutter, Part, Plane, enclosing, middle};
 use super::gates::Gates;
 use super::vector::{scale, sub, unit};
 use sightlines_cells::Portal3;
@@ -16,14 +18,17 @@ use sightlines_pvs::bits::ones;
 use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
 use std::collections::HashMap;
 
-/// How many questions about sequences may be asked for one cell, for each cell that is in doubt about it.
+/// How many questions about sequences may be asked for a pair; one that takes more counts as visible.
 const MOST_QUESTIONS: u64 = 20_000;
 
 /// How many planes of earlier gates cut a gate: the last ones cut most, the others hardly any more.
-const PLANES: usize = 24;
+const PLANES: usize = 12;
 
 /// Of how many gates, without the last, it is remembered that no line passes them all.
 const MOST_LEARNT: usize = 5;
+
+/// How many sequences are looked at behind one before it is asked whether it can lead to the goal.
+const WORTH_ASKING: u64 = 32;
 
 /// One gate of the sequence that is followed.
 #[derive(Debug, Default)]
@@ -33,7 +38,19 @@ struct Level {
     source: Part,
     /// The same of this gate.
     part: Part,
-    wanted: Vec<u64>,
+    /// The same of the gate that is the goal.
+    goal: Part,
+}
+
+/// What is known about a pair.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Sight {
+    /// A line joins the cells; the gates that it passes, which may be more than those between the cells.
+    Visible(Vec<u32>),
+    /// No open set of lines joins them.
+    Hidden,
+    /// Neither could be shown.
+    Undecided,
 }
 
 /// Follows sequences; one for each thread.
@@ -46,28 +63,15 @@ pub(super) struct SequenceTracer {
     n_sequences: u64,
     levels: Vec<Level>,
     planes: Vec<Plane>,
-    turned: [Part; 2],
-    back: Vec<Plane>,
     chain: Vec<u32>,
-    in_doubt: Vec<u64>,
-    open: Vec<u64>,
-    /// Gates that no line passes all of, by the last of them, for the cell that is decided.
+    /// Gates that no line passes all of, by the last of them, for the pair that is decided.
     learnt: HashMap<u32, Vec<Vec<u32>>>,
+    asked: u64,
+    undecided: bool,
     /// The level up to which no line passes the sequence, and behind which there is nothing to follow.
     blocked: usize,
-    asked: u64,
-    most_asked: u64,
-}
-
-/// What was found out about one cell.
-#[derive(Debug, Default)]
-pub(super) struct Decided {
-    /// Cells that it does not see.
-    pub(super) hidden: Vec<u64>,
-    /// Cells of which it could not be decided whether it sees them.
-    pub(super) undecided: Vec<u64>,
-    /// Lines that show that cells see each other: the gates that each passes.
-    pub(super) chains: Vec<Vec<u32>>,
+    turned: [Part; 2],
+    back: Vec<Plane>,
 }
 
 impl SequenceTracer {
@@ -80,15 +84,13 @@ impl SequenceTracer {
             n_sequences: 0,
             levels: Vec::new(),
             planes: Vec::new(),
+            chain: Vec::new(),
+            learnt: HashMap::new(),
+            asked: 0,
+            undecided: false,
+            blocked: usize::MAX,
             turned: Default::default(),
             back: Vec::new(),
-            chain: Vec::new(),
-            in_doubt: Vec::new(),
-            open: Vec::new(),
-            learnt: HashMap::new(),
-            blocked: usize::MAX,
-            asked: 0,
-            most_asked: 0,
         }
     }
 
@@ -106,41 +108,35 @@ impl SequenceTracer {
         counters
     }
 
-    /// Decides which of the cells `in_doubt` the cell sees. Row `g` of `through` has the cells that may be seen
+    /// Decides whether cell `a` sees cell `b`, another one. Row `g` of `through` has the cells that may be seen
     /// through gate `g`.
-    pub(super) fn decide(&mut self, gates: &Gates, cell: u32, in_doubt: Vec<u64>, through: &BitMatrix) -> Decided {
-        let mut decided = Decided::default();
-        self.asked = 0;
+    pub(super) fn decide(&mut self, gates: &Gates, [a, b]: [u32; 2], through: &BitMatrix) -> Sight {
+        (self.asked, self.undecided) = (0, false);
         self.learnt.clear();
-        self.most_asked = MOST_QUESTIONS * in_doubt.iter().map(|w| u64::from(w.count_ones())).sum::<u64>();
-        self.open = vec![0; in_doubt.len()];
-        self.in_doubt = in_doubt;
-        for &gate in gates.exits(cell) {
-            self.planes.clear();
-            let level = self.level(0);
-            level.gate = gate;
-            level.source.clear();
-            level.source.extend_from_slice(gates.corners(gate));
-            level.part.clone_from(&level.source);
-            let mut wanted = std::mem::take(&mut level.wanted);
-            wanted.clear();
-            wanted.extend(self.in_doubt.iter().zip(through.row(gate as usize)).map(|(a, b)| a & b));
-            self.levels[0].wanted = wanted;
-            let behind = gates.get(gate).to as usize;
-            if self.levels[0].wanted[behind / 64] >> (behind % 64) & 1 == 1 {
-                let answer = self.stabber.stab(&[gates.shape(gate)], None);
-                self.reached(gates, 0, answer, &mut decided);
+        for goal in gates.exits(b).iter().map(|&exit| exit ^ 1) {
+            if !through.get((goal ^ 1) as usize, a as usize) {
+                continue;
             }
-            self.follow(gates, 0, through, &mut decided);
-            self.blocked = usize::MAX;
+            for &first in gates.exits(a).iter().filter(|&&first| through.get(first as usize, b as usize)) {
+                if first != goal && !gates.may_follow(first, goal) {
+                    continue;
+                }
+                self.planes.clear();
+                self.blocked = usize::MAX;
+                let level = self.level(0);
+                level.gate = first;
+                for (part, gate) in [(&mut level.source, first), (&mut level.part, first), (&mut level.goal, goal)] {
+                    part.clear();
+                    part.extend_from_slice(gates.corners(gate));
+                }
+                if first == goal && self.ask(gates, 0, None)
+                    || first != goal && self.follow(gates, 0, &Pair { a, b, goal, through })
+                {
+                    return Sight::Visible(self.chain.clone());
+                }
+            }
         }
-        if self.asked >= self.most_asked {
-            // What was not looked at may be anything.
-            self.open.iter_mut().zip(&self.in_doubt).for_each(|(open, doubt)| *open |= doubt);
-        }
-        decided.undecided = self.open.iter().zip(&self.in_doubt).map(|(open, doubt)| open & doubt).collect();
-        decided.hidden = self.open.iter().zip(&self.in_doubt).map(|(open, doubt)| !open & doubt).collect();
-        decided
+        if self.undecided || self.asked >= MOST_QUESTIONS { Sight::Undecided } else { Sight::Hidden }
     }
 
     fn level(&mut self, depth: usize) -> &mut Level {
@@ -150,56 +146,82 @@ impl SequenceTracer {
         &mut self.levels[depth]
     }
 
-    /// Goes on behind the gate of a level.
-    fn follow(&mut self, gates: &Gates, depth: usize, through: &BitMatrix, decided: &mut Decided) {
+    /// Goes on behind the gate of a level; whether a line was found, with the gates that it passes in the chain.
+    fn follow(&mut self, gates: &Gates, depth: usize, pair: &Pair<'_>) -> bool {
         let n_planes = self.planes.len();
-        let level = &self.levels[depth];
+        let mut found = false;
+        if !self.is_learnt(depth + 1, pair.goal) && self.narrow(gates, depth) {
+            let (first, mut has_asked) = (self.n_sequences, false);
+            for &exit in gates.exits(gates.get(self.levels[depth].gate).to) {
+                // Where much lies behind a sequence, it is asked whether its lines lead to the goal at all.
+                if !has_asked && self.n_sequences > first + WORTH_ASKING {
+                    has_asked = true;
+                    found = self.ask(gates, depth, Some(pair.goal));
+                }
+                // Behind what is blocked there is nothing to follow; what is blocked later is left by now.
+                if found || self.blocked <= depth || self.asked >= MOST_QUESTIONS {
+                    break;
+                }
+                self.blocked = usize::MAX;
+                found = self.enter(gates, depth, exit, pair)
+                    && if exit == pair.goal {
+                        self.ask(gates, depth + 1, None)
+                    } else {
+                        self.follow(gates, depth + 1, pair)
+                    };
+                if found {
+                    break;
+                }
+            }
+        }
+        self.planes.truncate(n_planes);
+        found
+    }
+
+    /// Finds the planes of a level, and cuts the goal by them; whether something is left of it.
+    fn narrow(&mut self, gates: &Gates, depth: usize) -> bool {
+        let n_planes = self.planes.len();
+        let level = &mut self.levels[depth];
         let gate = gates.get(level.gate);
         if depth > 0 {
             self.cutter.separators(&level.source, &level.part, &mut self.planes);
         }
         self.planes.push(Plane { normal: gate.normal, origin: gate.center, offset: gates.flat });
-        let mut wanted = std::mem::take(&mut self.levels[depth].wanted);
-        drop_hidden(&self.planes[n_planes..], gates, self.cutter.eps, &mut wanted);
-        self.levels[depth].wanted = wanted;
-        for &exit in gates.exits(gate.to) {
-            if self.asked < self.most_asked && self.enter(gates, depth, exit, through, decided) {
-                self.follow(gates, depth + 1, through, decided);
-            }
-            if self.blocked <= depth {
-                break;
-            }
-            self.blocked = usize::MAX;
+        let left = self.planes[n_planes..].iter().all(|plane| self.cutter.cut(&mut level.goal, plane));
+        if left {
+            enclosing(&level.source, &level.goal, &mut self.planes);
         }
-        self.planes.truncate(n_planes);
+        left
     }
 
     /// Lengthens the sequence by a gate; whether it is worth following.
-    fn enter(&mut self, gates: &Gates, depth: usize, exit: u32, through: &BitMatrix, decided: &mut Decided) -> bool {
-        let home = gates.get(self.levels[0].gate).from;
+    fn enter(&mut self, gates: &Gates, depth: usize, exit: u32, pair: &Pair<'_>) -> bool {
         let gate = gates.get(exit);
-        // A line meets each cell once, and sees the first cell from wherever it is.
-        let sees_home = gate.from == home || through.get((exit ^ 1) as usize, home as usize);
-        let is_on_way = gate.to == home || self.levels[..=depth].iter().any(|l| gates.get(l.gate).to == gate.to);
-        if !sees_home || is_on_way {
+        // A line meets each cell once; and from wherever it is, it sees the first cell and the last.
+        let sees_both = exit == pair.goal
+            || gate.to != pair.b
+                && pair.through.get(exit as usize, pair.b as usize)
+                && pair.through.get((exit ^ 1) as usize, pair.a as usize)
+                && gates.may_follow(exit, pair.goal);
+        let is_on_way = gate.to == pair.a || self.levels[..=depth].iter().any(|l| gates.get(l.gate).to == gate.to);
+        if !sees_both
+            || is_on_way
+            || self.is_learnt(depth + 1, exit)
+            || !self.levels[..=depth].iter().all(|l| gates.may_follow(l.gate, exit))
+        {
             return false;
         }
         self.level(depth + 1);
         let [.., before, level] = &mut self.levels[..=depth + 1] else { unreachable!("two levels at least") };
-        level.wanted.clear();
-        let behind = before.wanted.iter().zip(&self.in_doubt).zip(through.row(exit as usize));
-        level.wanted.extend(behind.map(|((w, doubt), through)| w & doubt & through));
-        if level.wanted.iter().all(|&w| w == 0) {
-            return false;
-        }
         level.gate = exit;
         level.part.clear();
-        level.part.extend_from_slice(gates.corners(exit));
+        level.part.extend_from_slice(if exit == pair.goal { &before.goal } else { gates.corners(exit) });
         for plane in self.planes.iter().rev().take(PLANES) {
             if plane.at(gate.center) < 1.02 * gate.radius && !self.cutter.cut(&mut level.part, plane) {
                 return false;
             }
         }
+        level.goal.clone_from(&before.goal);
         level.source.clone_from(&before.source);
         let behind = Plane { normal: scale(gate.normal, -1.0), origin: gate.center, offset: gates.flat };
         if !self.cutter.cut(&mut level.source, &behind) {
@@ -218,74 +240,72 @@ impl SequenceTracer {
                 return false;
             }
         }
-        if !self.levels[..=depth].iter().all(|l| gates.may_follow(l.gate, exit)) {
-            return false;
-        }
         self.n_sequences += 1;
-        if self.is_learnt(depth + 1) {
-            return false;
-        }
-        let cell = gate.to as usize;
-        self.levels[depth + 1].wanted[cell / 64] >> (cell % 64) & 1 == 0 || self.ask(gates, depth + 1, decided)
-    }
-
-    /// Asks whether a line passes the sequence up to a level, whose gate leads into a cell in doubt. `false` if
-    /// none does; then `self.blocked` is the first level up to which none does.
-    fn ask(&mut self, gates: &Gates, depth: usize, decided: &mut Decided) -> bool {
-        self.asked += 1;
-        let level = &self.levels[depth];
-        let hint = Line3::through(middle(&level.source), middle(&level.part));
-        let shapes: Vec<&Portal3> = self.levels[..=depth].iter().map(|l| gates.shape(l.gate)).collect();
-        let answer = self.stabber.stab(&shapes, hint.as_ref());
-        if let Stabbing3::Hidden(proof) = &answer {
-            self.learn(&proof.named());
-            return false;
-        }
-        self.reached(gates, depth, answer, decided);
         true
     }
 
-    /// Remembers that no line passes some gates of the sequence, given by their places in it, ascending.
-    fn learn(&mut self, named: &[usize]) {
-        let Some((&last, others)) = named.split_last() else { return };
-        self.blocked = last;
-        if others.len() <= MOST_LEARNT {
-            let gate = |place: usize| self.levels[place].gate;
-            let others = others.iter().map(|&place| gate(place)).collect();
-            self.learnt.entry(gate(last)).or_default().push(others);
-        }
-    }
-
-    /// Whether it was learnt that no line passes the sequence up to a level.
-    fn is_learnt(&self, depth: usize) -> bool {
-        let on_way = |gate: &u32| self.levels[..depth].iter().any(|level| level.gate == *gate);
-        let learnt = self.learnt.get(&self.levels[depth].gate);
-        learnt.is_some_and(|sets| sets.iter().any(|set| set.iter().all(on_way)))
-    }
-
-    /// The sequence has reached a cell in doubt.
-    fn reached(&mut self, gates: &Gates, depth: usize, answer: Stabbing3, decided: &mut Decided) {
-        let cell = gates.get(self.levels[depth].gate).to as usize;
-        match answer {
-            Stabbing3::Hidden(_) => {}
-            Stabbing3::Undecided => self.open[cell / 64] |= 1 << (cell % 64),
+    /// Asks whether a line passes the sequence up to a level, then the goal, if that is not the last gate.
+    ///
+    /// `true` if a line was found that reaches the goal's cell; the gates that it passes are then in the chain. If no
+    /// line passes, `self.blocked` is the level up to which none does.
+    fn ask(&mut self, gates: &Gates, depth: usize, goal: Option<u32>) -> bool {
+        self.asked += 1;
+        let level = &self.levels[depth];
+        let hint =
+            Line3::through(middle(&level.source), middle(if goal.is_some() { &level.goal } else { &level.part }));
+        let sequence: Vec<u32> = self.levels[..=depth].iter().map(|l| l.gate).chain(goal).collect();
+        let shapes: Vec<&Portal3> = sequence.iter().map(|&gate| gates.shape(gate)).collect();
+        match self.stabber.stab(&shapes, hint.as_ref()) {
             Stabbing3::Visible(line) => {
+                // Followed on, it may pass more; where rounding could matter, it is what was decided exactly.
                 self.n_lines += 1;
-                let first = self.levels[0].gate;
-                gates.chain(first, line.a, unit(sub(line.b, line.a)), &mut self.chain);
-                if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
-                    self.chain.clear();
-                    self.chain.extend(self.levels[..=depth].iter().map(|l| l.gate));
+                gates.chain(sequence[0], line.a, unit(sub(line.b, line.a)), &mut self.chain);
+                if self.chain.contains(&sequence[sequence.len() - 1]) {
+                    return true;
                 }
-                for &g in &self.chain {
-                    for cell in [gates.get(g).from as usize, gates.get(g).to as usize] {
-                        self.in_doubt[cell / 64] &= !(1 << (cell % 64));
+                self.chain = sequence;
+                goal.is_none()
+            }
+            Stabbing3::Undecided => {
+                self.undecided |= goal.is_none();
+                false
+            }
+            Stabbing3::Hidden(proof) => {
+                let mut named = proof.named();
+                if let Some(mut last) = named.pop() {
+                    if named.len() <= MOST_LEARNT {
+                        let others = named.iter().map(|&place| sequence[place]).collect();
+                        self.learnt.entry(sequence[last]).or_default().push(others);
                     }
+                    // The goal comes last whatever lies between.
+                    if goal.is_some() && last > depth {
+                        last = named.pop().unwrap_or(0);
+                    }
+                    self.blocked = last;
                 }
-                decided.chains.push(self.chain.clone());
+                false
             }
         }
     }
+
+    /// Whether it was learnt that no line passes the first levels, then a gate. Gates are learnt in order, and a
+    /// proof may depend on it.
+    fn is_learnt(&self, n_levels: usize, gate: u32) -> bool {
+        let Some(sets) = self.learnt.get(&gate) else { return false };
+        sets.iter().any(|set| {
+            let mut on_way = self.levels[..n_levels].iter().map(|level| level.gate);
+            set.iter().all(|other| on_way.any(|gate| gate == *other))
+        })
+    }
+}
+
+/// What is sought.
+struct Pair<'a> {
+    a: u32,
+    b: u32,
+    /// The gate into `b` by which it is to be reached.
+    goal: u32,
+    through: &'a BitMatrix,
 }
 
 /// The cells of a row, as ids.
