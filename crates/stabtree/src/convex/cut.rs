@@ -37,6 +37,9 @@ pub(super) type Part = Vec<Vertex>;
 /// Most cuts of one part.
 const MAX_CUTS: usize = 1000;
 
+/// Cosine above which two separating planes of two parts are so much alike that one of them is enough.
+const ALIKE: f64 = 1.0 - 1e-9;
+
 /// Vertices of a part that is still cut; one with more stays as it is, which is a superset.
 const MAX_VERTICES: usize = 24;
 
@@ -143,14 +146,18 @@ impl Cutter {
                 }
             }
         }
+        let start = planes.len();
         leaning(first, second, 1.0, shared, |plane| {
             if separates(&plane, first, second, shared) {
                 planes.push(plane);
             }
         });
+        let found = planes.len();
         leaning(second, first, -1.0, shared, |plane| {
             let plane = plane.flipped();
-            if separates(&plane, first, second, shared) {
+            // Parallel edges lean on each other; one plane for both will do.
+            let is_known = |other: &Plane| dot(other.normal, plane.normal) > ALIKE;
+            if !planes[start..found].iter().any(is_known) && separates(&plane, first, second, shared) {
                 planes.push(plane);
             }
         });

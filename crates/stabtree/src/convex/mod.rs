@@ -43,7 +43,7 @@ use sightlines_pvs::BitMatrix;
 /// The stages; their number also says that all are done.
 const N_STAGES: u32 = 4;
 /// Lines followed through each portal before anything else.
-const LINES_EACH: u32 = 64;
+const LINES_EACH: u32 = 32;
 /// Gates of a batch, for the stages whose gates take little.
 const MANY: usize = 1024;
 /// Gates of a batch, for the stage whose gates may take long.
