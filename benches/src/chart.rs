@@ -116,7 +116,7 @@ impl std::fmt::Display for Short {
     }
 }
 
-fn rule(out: &mut String, a: [f64; 2], b: [f64; 2]) {
+pub(crate) fn rule(out: &mut String, a: [f64; 2], b: [f64; 2]) {
     let _ = writeln!(
         out,
         "<line x1=\"{:.2}\" y1=\"{:.2}\" x2=\"{:.2}\" y2=\"{:.2}\" stroke=\"#d5dae0\"/>",
@@ -124,12 +124,12 @@ fn rule(out: &mut String, a: [f64; 2], b: [f64; 2]) {
     );
 }
 
-fn text(out: &mut String, at: [f64; 2], anchor: &str, what: &str) {
+pub(crate) fn text(out: &mut String, at: [f64; 2], anchor: &str, what: &str) {
     let _ =
         writeln!(out, "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"{anchor}\">{}</text>", at[0], at[1], escaped(what));
 }
 
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

@@ -1,10 +1,11 @@
 //! What benches share: portal sequences as a search meets them, bakes in processes of their own, rays against
-//! tables, a z-buffer, charts.
+//! tables, a z-buffer, methods on Quake maps, charts.
 
 pub mod bits;
 pub mod chart;
 pub mod child;
 pub mod path;
+pub mod quake;
 pub mod raster;
 pub mod recorded;
 pub mod shares;

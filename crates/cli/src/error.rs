@@ -59,6 +59,15 @@ pub(crate) enum CliError {
     /// A table that does not know where its cells are.
     #[error("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())]
     NoPlaces { path: PathBuf, what: &'static str },
+    /// A point where a portal file, or the table of one, has no places.
+    #[error("{}: a portal file does not say where its clusters are: name them by their numbers", .0.display())]
+    NoPoints(PathBuf),
+    /// A cluster that a portal file does not have.
+    #[error("{}: there is no cluster {cluster}: there are {n_clusters}", path.display())]
+    NoSuchCluster { path: PathBuf, cluster: u32, n_clusters: usize },
+    /// What was found out about two clusters contradicts what is listed of them.
+    #[error("{}: clusters {} and {} are listed as {listed}, but {found}; nothing was written", path.display(), pair[0], pair[1])]
+    Contradiction { path: PathBuf, pair: [u32; 2], listed: &'static str, found: &'static str },
     /// The state of a search is none that can be resumed.
     #[error("{}: {source}; without --resume the search begins anew", path.display())]
     State { path: PathBuf, source: StateError },

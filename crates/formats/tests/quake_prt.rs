@@ -212,6 +212,28 @@ fn degenerate_windings_are_kept_and_told() {
     assert!(!told("(10000000 0 0) (10000000 0 5) (10000000.000000002 0 9)"));
 }
 
+/// What rounding explains is read, as compilers round: to 17 digits, to six decimals, to whole numbers nearby. More
+/// is refused where it stands.
+#[test]
+fn hostile_portals_that_are_not_flat() {
+    let text = |off: f64| format!("PRT1\n2\n2\n{PORTAL}4 1 0 (0 0 0) (64 0 64) (64 64 {}) (0 64 0)\n", 64.0 + off);
+    let n_read = [0.0, 1e-13, 1e-6, 0.05, -0.2].map(|off| parse_prt(text(off).as_bytes()).is_ok());
+    assert_eq!(n_read, [true; 5]);
+    for off in [2.0, -2.0, 40.0, 1e6] {
+        let error = refused(text(off).as_bytes());
+        let start = "line 5, column 1: portal 1 is not flat: a point is ";
+        assert!(error.starts_with(start) && error.ends_with(" units off the plane of the others"), "{error}");
+    }
+    // Far away, what doubles hold is rounding too.
+    let far = |off: f64| {
+        let x = 2f64.powi(60);
+        let points = [[x, 0.0, 0.0], [x, 2.0 * x, 0.0], [0.0, 2.0 * x, x + off], [0.0, 0.0, x]];
+        Prt::new(2).unwrap().push_portal([0, 1], &points)
+    };
+    assert_eq!(far(1024.0), Ok(()));
+    assert!(matches!(far(2f64.powi(30)), Err(PrtErrorKind::NotFlat { portal: 0, by }) if by > 1e6));
+}
+
 #[test]
 fn portals_are_built_with_the_same_checks() {
     let square = [[0., 0., 0.], [0., 8., 0.], [0., 8., 8.], [0., 0., 8.]];
@@ -285,9 +307,17 @@ fn portals() -> impl Strategy<Value = Prt> {
     (proptest::collection::vec(portal, 0..12), leafs).prop_map(|(portals, leafs)| {
         let mut prt = Prt::new(20).unwrap();
         for (a, step, points) in portals {
-            // Points that go round nothing are refused; the file then has a portal less.
-            let added = prt.push_portal([a, (a + step) % 20], &points);
-            assert!(matches!(added, Ok(()) | Err(PrtErrorKind::NotConvex { .. })), "{added:?}");
+            // Points that go round nothing or are on no plane are refused; of them a triangle is left, or nothing.
+            let pair = [a, (a + step) % 20];
+            let refused = |added: &Result<(), PrtErrorKind>| match added {
+                Ok(()) => false,
+                Err(PrtErrorKind::NotConvex { .. } | PrtErrorKind::NotFlat { .. }) => true,
+                Err(error) => panic!("{error}"),
+            };
+            if refused(&prt.push_portal(pair, &points)) {
+                let again = prt.push_portal(pair, &points[..3]);
+                assert!(!matches!(again, Err(PrtErrorKind::NotFlat { .. })), "a triangle is flat: {again:?}");
+            }
         }
         match leafs {
             None => prt,

@@ -20,7 +20,10 @@ mod tree;
 mod zones;
 
 pub use chords::{shoot_axial_chords, shoot_chords};
-pub use convex::{ConvexCounters, ConvexOptions, ConvexSearch, ConvexState, SeenThroughPortals};
+pub use convex::{
+    BlockedConvex, Blocking, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,
+    ConvexSearch, ConvexState, MOST_EXPLAINED, SeenThroughPortals, explain_convex,
+};
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
 pub use search::{Known, Progress, SearchOptions, SearchSummary, Seen, visible_zones};

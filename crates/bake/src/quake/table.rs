@@ -51,9 +51,9 @@ fn portal_record(portal: &Portal<Convex>) -> PortalRecord {
     PortalRecord { cells: portal.cells, sides: portal.sides, points }
 }
 
-/// The graph of clusters that a table of a portal file stores: every portal with its corners in turn, though it may
-/// begin with another. `None` if the table was not made from a portal file, or its portals were stripped, are no convex
-/// polygons, or so far from flat that the corners of a convex polygon cannot be told.
+/// The graph of clusters that a table of a portal file stores: the one that the table was made from, to the bit. `None`
+/// if the table was not made from a portal file, or its portals were stripped, or have coordinates that predicates do
+/// not bear or corners that go round nothing. That portals are convex and flat is believed, as bits of rows are.
 pub fn convex_graph_of(table: &Table) -> Option<CellGraph<Convex>> {
     let is_prt = table.info_value(SOURCE_KEY).is_some_and(|source| source.starts_with(SOURCE_PRT));
     // Cells that see each other are joined by portals, so without any they were stripped.
@@ -63,17 +63,9 @@ pub fn convex_graph_of(table: &Table) -> Option<CellGraph<Convex>> {
     }
     let portal = |p: &PortalRecord| {
         let in_range = p.points.as_flattened().iter().all(|&x| check_coordinate(x).is_ok());
-        let points: Vec<[f64; 3]> = p.points.iter().rev().copied().collect();
-        let shape = Portal3::around(&points).filter(|_| in_range)?;
-        // Other points than the corners of a convex polygon would not come back.
-        is_turned(shape.corners(), &points).then_some((p.cells, shape))
+        let shape = Portal3::of_corners(p.points.iter().rev().copied().collect()).filter(|_| in_range)?;
+        Some((p.cells, shape))
     };
     let portals: Option<Vec<_>> = table.portals().iter().map(portal).collect();
     Some(CellGraph::of_portals(table.n_cells(), portals?))
-}
-
-/// Whether two lists are the same but for where they begin.
-fn is_turned(a: &[[f64; 3]], b: &[[f64; 3]]) -> bool {
-    let starts = (0..b.len()).filter(|&k| a.first() == Some(&b[k]));
-    a.len() == b.len() && starts.into_iter().any(|k| a.iter().eq(b[k..].iter().chain(&b[..k])))
 }

@@ -187,7 +187,7 @@ fn worlds_are_the_same_everywhere() {
     assert_ne!(checksum(&other), checksum(&random));
 }
 
-const PINNED: [u64; 3] = [13918440663669391076, 2884911381457091231, 1477699259871053826];
+const PINNED: [u64; 3] = [1085901256612171324, 16892977601015940143, 9394820553867789378];
 
 #[test]
 fn corridors_are_boxes_in_a_row() {

@@ -22,7 +22,8 @@
 use super::ConvexCounters;
 use super::cut::{Cutter, Part, Plane, Vertex, is_within, middle};
 use super::gates::{Gate, Gates};
-use super::vector::{add, scale, sub, unit};
+use super::vector::{add, sub, unit};
+use super::wanted::Wanted;
 use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
@@ -40,7 +41,7 @@ struct Beam {
     /// The beam that it came from; the first is its own.
     parent: u32,
     part: Part,
-    wanted: Vec<u64>,
+    wanted: Wanted,
 }
 
 /// Scratch space for beams; one for each thread.
@@ -60,8 +61,8 @@ pub(super) struct BeamTracer {
     chain: Vec<u32>,
     source: Part,
     part: Part,
-    wanted: Vec<u64>,
-    followed: Vec<u64>,
+    wanted: Wanted,
+    followed: Wanted,
     sequence: Vec<u32>,
 }
 
@@ -90,8 +91,8 @@ impl BeamTracer {
             chain: Vec::new(),
             source: Vec::new(),
             part: Vec::new(),
-            wanted: Vec::new(),
-            followed: Vec::new(),
+            wanted: Wanted::default(),
+            followed: Wanted::default(),
             sequence: Vec::new(),
         }
     }
@@ -124,7 +125,7 @@ impl BeamTracer {
         }
         self.part.clear();
         self.part.extend_from_slice(gates.corners(source));
-        self.wanted.clone_from(&in_doubt);
+        self.wanted.set(&in_doubt);
         self.push(source, 0);
         while let Some(beam) = self.waiting.pop() {
             self.follow(gates, source, home, beam, &mut in_doubt, through, &mut traced);
@@ -141,7 +142,7 @@ impl BeamTracer {
     /// Adds the beam of `self.part` and `self.wanted`.
     fn push(&mut self, gate: u32, parent: u32) {
         if self.n_beams_used == self.beams.len() {
-            self.beams.push(Beam { gate: 0, parent: 0, part: Vec::new(), wanted: Vec::new() });
+            self.beams.push(Beam { gate: 0, parent: 0, part: Vec::new(), wanted: Wanted::default() });
         }
         let beam = &mut self.beams[self.n_beams_used];
         (beam.gate, beam.parent) = (gate, parent);
@@ -165,13 +166,12 @@ impl BeamTracer {
     ) {
         let Beam { gate: at, wanted: ref looked_for, .. } = self.beams[beam as usize];
         let mut wanted = std::mem::take(&mut self.followed);
-        wanted.clear();
-        wanted.extend(looked_for.iter().zip(&*in_doubt).map(|(w, doubt)| w & doubt));
-        if wanted.iter().any(|&w| w != 0) {
+        wanted.set_common(looked_for, in_doubt, in_doubt);
+        if !wanted.is_empty() {
             self.n_beams += 1;
             let meets = self.find_planes(gates, source, beam);
             drop_hidden(&self.planes, gates, self.cutter.eps, &mut wanted);
-            if meets && wanted.iter().any(|&w| w != 0) {
+            if meets && !wanted.is_empty() {
                 for &exit in gates.exits(gates.get(at).to) {
                     if exit != at ^ 1 && gates.get(exit).to != home {
                         self.pass(gates, source, beam, exit, &wanted, in_doubt, through, traced);
@@ -193,15 +193,12 @@ impl BeamTracer {
         }
         self.source.clear();
         self.source.extend_from_slice(gates.corners(source));
-        let gate = gates.get(at);
         // Who passes the gate comes from behind its plane.
-        let behind = Plane { normal: scale(gate.normal, -1.0), origin: gate.center, offset: gates.flat };
-        if !self.cutter.cut(&mut self.source, &behind) {
+        if !self.cutter.cut(&mut self.source, &gates.behind(at)) {
             return false;
         }
         self.cutter.separators(&self.source, part, &mut self.planes);
-        let first = gates.get(source);
-        self.planes.push(Plane { normal: first.normal, origin: first.center, offset: gates.flat });
+        self.planes.push(gates.in_front(source));
         true
     }
 
@@ -213,15 +210,13 @@ impl BeamTracer {
         source: u32,
         beam: u32,
         exit: u32,
-        wanted: &[u64],
+        wanted: &Wanted,
         in_doubt: &mut [u64],
         through: &BitMatrix,
         traced: &mut Traced,
     ) {
-        self.wanted.clear();
-        let behind = wanted.iter().zip(&*in_doubt).zip(through.row(exit as usize));
-        self.wanted.extend(behind.map(|((w, doubt), through)| w & doubt & through));
-        if self.wanted.iter().all(|&w| w == 0) {
+        self.wanted.set_common(wanted, in_doubt, through.row(exit as usize));
+        if self.wanted.is_empty() {
             return;
         }
         let at = self.beams[beam as usize].gate;
@@ -238,31 +233,21 @@ impl BeamTracer {
                 return;
             }
         }
-        let cell = gate.to as usize;
-        if self.wanted[cell / 64] >> (cell % 64) & 1 == 1 {
+        if self.wanted.has(gate.to) {
             // The line is sought through the gates themselves; the part is only a hint.
             let part = std::mem::take(&mut self.part);
             self.seek(gates, source, Some(beam), exit, &part, in_doubt, traced);
             self.part = part;
         }
-        let mut left = 0;
-        for (w, doubt) in self.wanted.iter_mut().zip(&*in_doubt) {
-            *w &= doubt;
-            left |= *w;
-        }
-        if left == 0 {
+        self.wanted.keep(in_doubt);
+        if self.wanted.is_empty() {
             return;
         }
         for &earlier in &self.by_gate[exit as usize] {
             let earlier = &self.beams[earlier as usize];
-            let common = self.wanted.iter().zip(&earlier.wanted).any(|(a, b)| a & b != 0);
-            if common && is_within(&self.part, &earlier.part, gate.normal) {
-                left = 0;
-                for (w, theirs) in self.wanted.iter_mut().zip(&earlier.wanted) {
-                    *w &= !theirs;
-                    left |= *w;
-                }
-                if left == 0 {
+            if self.wanted.meets(&earlier.wanted) && is_within(&self.part, &earlier.part, gate.normal) {
+                self.wanted.remove(&earlier.wanted);
+                if self.wanted.is_empty() {
                     return;
                 }
             }
@@ -335,19 +320,11 @@ impl BeamTracer {
 }
 
 /// Drops the cells whose portals all lie below one of the planes.
-pub(super) fn drop_hidden(planes: &[Plane], gates: &Gates, eps: f64, wanted: &mut [u64]) {
-    if planes.is_empty() {
-        return;
-    }
-    for (w, word) in wanted.iter_mut().enumerate() {
-        let mut bits = *word;
-        while bits != 0 {
-            let bit = bits.trailing_zeros();
-            bits &= bits - 1;
-            let [min, max] = &gates.boxes[w * 64 + bit as usize];
-            if planes.iter().any(|plane| plane.highest(min, max) < -2.0 * eps) {
-                *word &= !(1 << bit);
-            }
-        }
+fn drop_hidden(planes: &[Plane], gates: &Gates, eps: f64, wanted: &mut Wanted) {
+    if !planes.is_empty() {
+        wanted.retain(|cell| {
+            let [min, max] = &gates.boxes[cell];
+            planes.iter().all(|plane| plane.highest(min, max) >= -2.0 * eps)
+        });
     }
 }

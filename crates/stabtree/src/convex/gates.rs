@@ -1,6 +1,6 @@
 //! The graph as a search uses it: portals with a direction of crossing.
 
-use super::cut::{Part, Vertex};
+use super::cut::{Part, Plane, Vertex};
 use super::vector::{Point3, cross, dot, scale, sub, unit};
 use sightlines_cells::{CellGraph, Convex, Portal3};
 
@@ -17,6 +17,8 @@ pub(super) struct Gate {
     pub(super) radius: f64,
     /// The direction of crossing, of length 1.
     pub(super) normal: Point3,
+    /// How far corners are from the plane through the center with this normal.
+    pub(super) uneven: f64,
 }
 
 /// All gates, and the cells that they lead out of.
@@ -55,15 +57,10 @@ impl Gates {
                 let far = |p: &Point3| dot(sub(*p, center), sub(*p, center)).sqrt();
                 let radius = shape.corners().iter().map(far).fold(0.0, f64::max) * (1.0 + 1e-9);
                 let n_corners = shape.corners().len() as u32;
-                gates.push(Gate {
-                    from: from.0,
-                    to: to.0,
-                    first,
-                    n_corners,
-                    center,
-                    radius,
-                    normal: unit(shape.normal()),
-                });
+                let normal = unit(shape.normal());
+                let off = |p: &Point3| dot(normal, sub(*p, center)).abs();
+                let uneven = shape.corners().iter().map(off).fold(0.0, f64::max);
+                gates.push(Gate { from: from.0, to: to.0, first, n_corners, center, radius, normal, uneven });
                 shapes.push(shape);
             }
         }
@@ -113,18 +110,20 @@ impl Gates {
     pub(super) fn may_follow(&self, s: u32, t: u32) -> bool {
         let (gs, gt) = (self.get(s), self.get(t));
         let between = sub(gt.center, gs.center);
+        // A line meets a gate no farther behind its plane than the gate's own corners lie.
+        let (flat_s, flat_t) = (self.flat - gs.uneven, self.flat - gt.uneven);
         // Balls decide nearly all; their margin is far above the error of evaluation.
-        let margin = self.largest * 1e-9;
+        let margin = self.largest * 1e-9 + gs.uneven.max(gt.uneven);
         let ahead = dot(gs.normal, between);
         if ahead < gt.radius + margin {
-            let in_front = |v: &Vertex| dot(gs.normal, sub(v.at, gs.center)) > self.flat;
+            let in_front = |v: &Vertex| dot(gs.normal, sub(v.at, gs.center)) > flat_s;
             if ahead < -gt.radius - margin || !self.corners(t).iter().any(in_front) {
                 return false;
             }
         }
         let ahead = dot(gt.normal, between);
         if ahead < gs.radius + margin {
-            let behind = |v: &Vertex| dot(gt.normal, sub(v.at, gt.center)) < -self.flat;
+            let behind = |v: &Vertex| dot(gt.normal, sub(v.at, gt.center)) < -flat_t;
             if ahead < -gs.radius - margin || !self.corners(s).iter().any(behind) {
                 return false;
             }
@@ -150,6 +149,17 @@ impl Gates {
             last = r;
         }
         least > farthest * (32.0 * 0.5 * f64::EPSILON)
+    }
+
+    /// The points that a line may meet after it has passed a gate, as far as the gate's plane tells.
+    pub(super) fn in_front(&self, gate: u32) -> Plane {
+        let gate = self.get(gate);
+        Plane { normal: gate.normal, origin: gate.center, offset: self.flat + gate.uneven }
+    }
+
+    /// The points that a line may meet before it passes a gate.
+    pub(super) fn behind(&self, gate: u32) -> Plane {
+        self.in_front(gate ^ 1)
     }
 
     /// Appends the gates that the line passes after `gate`, until it meets a wall or comes so near to an edge that

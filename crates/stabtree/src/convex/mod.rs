@@ -26,6 +26,7 @@ mod pairs;
 mod sampled;
 mod state;
 mod vector;
+mod wanted;
 
 pub use explain::{
     BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexGate, MOST_EXPLAINED, explain_convex,

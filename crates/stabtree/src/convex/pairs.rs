@@ -11,7 +11,7 @@
 use super::ConvexCounters;
 use super::cut::{Cutter, Part, Plane, enclosing, middle};
 use super::gates::Gates;
-use super::vector::{scale, sub, unit};
+use super::vector::{sub, unit};
 use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::ones;
@@ -22,7 +22,7 @@ use std::collections::HashMap;
 const MOST_QUESTIONS: u64 = 20_000;
 
 /// How many planes of earlier gates cut a gate: the last ones cut most, the others hardly any more.
-const PLANES: usize = 12;
+const PLANES: usize = 20;
 
 /// Of how many gates, without the last, it is remembered that no line passes them all.
 const MOST_LEARNT: usize = 5;
@@ -182,11 +182,10 @@ impl SequenceTracer {
     fn narrow(&mut self, gates: &Gates, depth: usize) -> bool {
         let n_planes = self.planes.len();
         let level = &mut self.levels[depth];
-        let gate = gates.get(level.gate);
         if depth > 0 {
             self.cutter.separators(&level.source, &level.part, &mut self.planes);
         }
-        self.planes.push(Plane { normal: gate.normal, origin: gate.center, offset: gates.flat });
+        self.planes.push(gates.in_front(level.gate));
         let left = self.planes[n_planes..].iter().all(|plane| self.cutter.cut(&mut level.goal, plane));
         if left {
             enclosing(&level.source, &level.goal, &mut self.planes);
@@ -223,8 +222,7 @@ impl SequenceTracer {
         }
         level.goal.clone_from(&before.goal);
         level.source.clone_from(&before.source);
-        let behind = Plane { normal: scale(gate.normal, -1.0), origin: gate.center, offset: gates.flat };
-        if !self.cutter.cut(&mut level.source, &behind) {
+        if !self.cutter.cut(&mut level.source, &gates.behind(exit)) {
             return false;
         }
         if depth > 0 {

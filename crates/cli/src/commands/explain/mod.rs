@@ -1,20 +1,24 @@
 //! `explain`: the line of sight between two cells, or why there is none.
 
 mod answer;
+mod convex;
 mod line;
 mod space;
 
 use crate::Answer;
 use crate::commands::draw::{PictureKind, draw_plan, save_picture};
 use crate::error::CliError;
+use crate::input::Kind;
 use crate::place::Place;
 use crate::{input, output};
 use answer::{Outside, Told};
-use sightlines::bake::axial_graph_of;
-use sightlines::cells::{CellGraph, Planar};
+use convex::Asked;
+use sightlines::bake::{axial_graph_of, convex_graph_of};
+use sightlines::cells::{CellGraph, Convex, Planar};
+use sightlines::formats::quake::{graph_of_prt, read_prt};
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{DrawOptions, View};
-use sightlines::stabtree::{Explanation, explain, explain_space};
+use sightlines::stabtree::{Explanation, MOST_EXPLAINED, explain, explain_space};
 use space::ToldInSpace;
 use std::path::PathBuf;
 
@@ -27,10 +31,10 @@ const MAX_PROGRAMS: u32 = 20_000;
 /// Arguments of `explain`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExplainArgs {
-    /// The table
-    #[arg(value_name = "FILE.pvs")]
+    /// The table, or the portal file of a Quake map
+    #[arg(value_name = "FILE.pvs|MAP.prt")]
     table: PathBuf,
-    /// The viewer: a cell's id, or a point X,Y
+    /// The viewer: a cell's id, or a point X,Y; of portal files a cluster's number
     #[arg(value_name = "A", allow_hyphen_values = true)]
     from: Place,
     /// What is looked for: a cell's id, or a point X,Y; exit code 1 if it is hidden
@@ -39,7 +43,7 @@ pub(crate) struct ExplainArgs {
     /// Draw the line, or what blocks it; of plans
     #[arg(long, value_name = "OUT.svg|OUT.png")]
     draw: Option<PathBuf>,
-    /// If hidden: how many of the blocked ways to show, or of the walls in space
+    /// If hidden: how many of the blocked ways or sequences to show, or of the walls in space
     #[arg(long, value_name = "N", default_value_t = 3)]
     proofs: usize,
     /// In plans: give up after so many cells on the way [default: 20000000]
@@ -48,6 +52,9 @@ pub(crate) struct ExplainArgs {
     /// In space: give up after so many linear programs [default: 20000]
     #[arg(long, value_name = "N")]
     max_programs: Option<u32>,
+    /// Of portal files: give up after so many questions about sequences of portals [default: 100000]
+    #[arg(long, value_name = "N")]
+    max_questions: Option<u64>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -58,10 +65,23 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
         PictureKind::of(out)?;
         output::refuse_same(&args.table, out)?;
     }
+    if input::kind_of(&args.table)? == Some(Kind::Prt) {
+        args.refuse_meaningless(Of::Portals, "a portal file")?;
+        let graph = graph_of_prt(&read_prt(&args.table)?);
+        return args.asked(&graph).answer(|_, _| None);
+    }
     let table = input::table(&args.table)?;
-    input::refuse_without_places(&table, &args.table, "no line between two of them can be shown")?;
+    if input::is_of_portals(&table) {
+        args.refuse_meaningless(Of::Portals, "the table of a portal file")?;
+        let graph = convex_graph_of(&table).ok_or_else(|| CliError::Stripped(args.table.clone()))?;
+        return args.asked(&graph).answer(|a, b| Some(table.sees(a, b)));
+    }
     let is_plan = table.dimension() == 2;
-    args.refuse_meaningless(is_plan)?;
+    if is_plan {
+        args.refuse_meaningless(Of::Plan, "the table of a plan")?;
+    } else {
+        args.refuse_meaningless(Of::Space, "the table of a scene in space")?;
+    }
     let from = args.from.cells(&table, &args.table)?;
     let to = args.to.cells(&table, &args.table)?;
     for (place, cells) in [(&args.from, &from), (&args.to, &to)] {
@@ -75,20 +95,38 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
 }
 
 impl ExplainArgs {
-    /// Refuses options that say nothing about such a table.
-    fn refuse_meaningless(&self, is_plan: bool) -> Result<(), CliError> {
-        let (plan, space) = (("plans", "the table of a plan"), ("scenes in space", "the table of a scene in space"));
-        let given = if is_plan {
-            [self.max_programs.is_some().then_some("--max-programs"), None]
-        } else {
-            [self.draw.is_some().then_some("--draw"), self.max_visits.is_some().then_some("--max-visits")]
-        };
-        let (meant, found) = if is_plan { (space.0, plan.1) } else { (plan.0, space.1) };
-        match given.into_iter().flatten().next() {
-            Some(option) => Err(CliError::Option { path: self.table.clone(), option, meant, found }),
+    /// Refuses options that say nothing about such a file.
+    fn refuse_meaningless(&self, of: Of, found: &'static str) -> Result<(), CliError> {
+        let given = [
+            (self.draw.is_some(), "--draw", Of::Plan, "plans"),
+            (self.max_visits.is_some(), "--max-visits", Of::Plan, "plans"),
+            (self.max_programs.is_some(), "--max-programs", Of::Space, "scenes in space"),
+            (self.max_questions.is_some(), "--max-questions", Of::Portals, "portal files"),
+        ];
+        match given.into_iter().find(|&(is_given, _, meant, _)| is_given && meant != of) {
+            Some((_, option, _, meant)) => Err(CliError::Option { path: self.table.clone(), option, meant, found }),
             None => Ok(()),
         }
     }
+
+    fn asked<'a>(&'a self, graph: &'a CellGraph<Convex>) -> Asked<'a> {
+        Asked {
+            path: &self.table,
+            graph,
+            places: [&self.from, &self.to],
+            limit: self.max_questions.unwrap_or(MOST_EXPLAINED),
+            n_shown: self.proofs,
+            json: self.json,
+        }
+    }
+}
+
+/// What a file is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Of {
+    Plan,
+    Space,
+    Portals,
 }
 
 fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, CliError> {

@@ -1,5 +1,6 @@
 //! `vis`: the visibility of a Quake map.
 
+mod certify;
 mod outcome;
 mod saved;
 
@@ -8,7 +9,8 @@ pub(crate) use outcome::{Clusters, format_name};
 use crate::Answer;
 use crate::error::CliError;
 use crate::output;
-use crate::progress::ShareBar;
+use crate::progress::{Bar, ShareBar};
+use certify::certify;
 use outcome::Outcome;
 use saved::Saved;
 use sightlines::bake::quake::StateKey;
@@ -48,6 +50,9 @@ pub(crate) struct VisArgs {
     /// Seconds between two savings of the state
     #[arg(long, hide = true, value_name = "SECONDS", default_value_t = 30)]
     save_every: u64,
+    /// Prove so many of the visible pairs and as many of the hidden ones, and check the proofs independently
+    #[arg(long, value_name = "N")]
+    certify: Option<usize>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -81,10 +86,17 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
     let map = vis_map(&bsp, &prt, PrtOptions { search, from, watch: Some(&mut watch) });
     drop(bar);
     let map = map.map_err(|source| explained(source, args, &prt_path, &saved))?;
+    // Before anything is written: a table that is proven wrong should not be.
+    let certified = args.certify.map(|n| {
+        let bar = Bar::new("proofs", show_progress);
+        certify(&prt_path, &graph_of_prt(&prt), &map.clusters.seen, n, args.fast, &bar)
+    });
+    let certified = certified.transpose()?;
     output::save(out, &map.bytes)?;
     saved.remove();
     let mut outcome = Outcome::new(out, &bsp, &prt, &map);
     (outcome.fast, outcome.resumed, outcome.verbose) = (args.fast, resumed, verbose);
+    outcome.certified = certified;
     outcome.seconds = start.elapsed().as_secs_f64();
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)

@@ -1,5 +1,6 @@
 //! What `vis` says that it did.
 
+use super::certify::Certified;
 use crate::memory;
 use crate::output::{bytes, count, percent, seconds};
 use serde::Serialize;
@@ -99,6 +100,8 @@ pub(super) struct Outcome {
     pub(super) fast: bool,
     /// Whether it went on from an earlier run.
     pub(super) resumed: bool,
+    /// What was proven, if that was asked for.
+    pub(super) certified: Option<Certified>,
     n_bytes: usize,
     /// Reading and writing included.
     pub(super) seconds: f64,
@@ -117,6 +120,7 @@ impl Outcome {
             clusters: Clusters::new(&map.clusters),
             fast: false,
             resumed: false,
+            certified: None,
             n_bytes: map.bytes.len(),
             seconds: 0.0,
             peak_bytes: memory::peak_bytes(),
@@ -135,6 +139,9 @@ impl fmt::Display for Outcome {
         write!(f, "{}", self.clusters)?;
         if self.verbose {
             write!(f, "{}", self.clusters.undecided_pairs())?;
+        }
+        if let Some(certified) = &self.certified {
+            write!(f, "{certified}")?;
         }
         let all = seconds(Duration::from_secs_f64(self.seconds));
         let run = if self.resumed { ", in this run" } else { "" };

@@ -140,6 +140,14 @@ pub enum PrtErrorKind {
         /// The portal.
         portal: usize,
     },
+    /// The points of a portal are farther from one plane than rounding explains.
+    #[error("portal {portal} is not flat: a point is {by:.3} units off the plane of the others")]
+    NotFlat {
+        /// The portal.
+        portal: usize,
+        /// How far the farthest point is from the plane in the middle, map units.
+        by: f64,
+    },
     /// A portal leads back to where it comes from.
     #[error("portal {portal} joins cluster {cluster} with itself")]
     SelfPortal {

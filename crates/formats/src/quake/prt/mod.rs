@@ -29,6 +29,14 @@ use sightlines_cells::{Point3, Portal3};
 use std::fmt;
 use std::ops::RangeInclusive;
 
+/// How far the points of a portal may be from a plane, in map units, beside what doubles of their size cannot hold
+/// (2^-44 of the largest).
+///
+/// Compilers round what they write: to 17 digits (ericw-tools), or to six decimals and, nearer than 0.001 to 0.05, to
+/// whole numbers (id Software's and those that follow it). Rounding three coordinates by 0.05 each moves a point by
+/// 0.09 and the plane of the others by as much at most; this is somewhat more.
+pub const MAX_UNEVENNESS: f64 = 0.25;
+
 /// How many points a portal may have.
 pub const PORTAL_POINTS: RangeInclusive<usize> = 3..=64;
 
@@ -74,8 +82,8 @@ pub enum LeafList {
 
 /// The clusters of a map and the portals between them, checked: there is a cluster, portals join two
 /// clusters that exist, have 3 to 64 points and coordinates that predicates accept; if leafs are listed, each
-/// is in one cluster; the points of a portal go round an area, or lie on one line. That portals are flat is
-/// not checked, and corners of theirs may turn inwards.
+/// is in one cluster; the points of a portal go round an area and are within [`MAX_UNEVENNESS`] of a plane, or lie on
+/// one line. Corners of theirs may turn inwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prt {
     n_clusters: u32,
@@ -151,12 +159,16 @@ impl Prt {
         }
         self.portals.push(Record { clusters, end: self.points.len() });
         let added = self.portal(portal);
-        if Portal3::around(added.points).is_none() && !added.is_degenerate() {
-            self.portals.pop();
-            self.points.truncate(before);
-            return Err(PrtErrorKind::NotConvex { portal });
-        }
-        Ok(())
+        let largest = added.points.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let wrong = match Portal3::around(added.points).map(|shape| shape.unevenness()) {
+            None if !added.is_degenerate() => Some(PrtErrorKind::NotConvex { portal }),
+            Some(by) if by > MAX_UNEVENNESS.max(largest * 2f64.powi(-44)) => Some(PrtErrorKind::NotFlat { portal, by }),
+            _ => None,
+        };
+        let Some(wrong) = wrong else { return Ok(()) };
+        self.portals.pop();
+        self.points.truncate(before);
+        Err(wrong)
     }
 
     /// The same portals, but clusters are made of these leafs: a `PRT2` or a `PRT1-AM`.

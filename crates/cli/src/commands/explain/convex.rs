@@ -1,0 +1,240 @@
+//! The answer of `explain` for clusters of a portal file, for people and for programs.
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::output::{self, count};
+use crate::place::Place;
+use serde::Serialize;
+use serde_json::{Value, json};
+use sightlines::cells::{CellGraph, CellId, Convex};
+use sightlines::sightline::{ConvexCertificate, ConvexNode, Line3};
+use sightlines::stabtree::{BlockedConvex, Blocking, ConvexExplanation, ConvexGate, explain_convex};
+use std::fmt;
+use std::path::Path;
+
+/// Where clusters come from, and what is asked of them.
+#[derive(Debug)]
+pub(super) struct Asked<'a> {
+    pub(super) path: &'a Path,
+    pub(super) graph: &'a CellGraph<Convex>,
+    pub(super) places: [&'a Place; 2],
+    pub(super) limit: u64,
+    /// How many of the blocked sequences are shown to people; programs get them all.
+    pub(super) n_shown: usize,
+    pub(super) json: bool,
+}
+
+impl Asked<'_> {
+    /// Explains and prints; `listed` is what a table says of two cells.
+    pub(super) fn answer(&self, listed: impl Fn(CellId, CellId) -> Option<bool>) -> Result<Answer, CliError> {
+        let n_clusters = self.graph.n_cells();
+        let cluster = |place: &Place| match *place {
+            Place::Cell(id) if (id as usize) < n_clusters => Ok(CellId(id)),
+            Place::Cell(cluster) => Err(CliError::NoSuchCluster { path: self.path.to_owned(), cluster, n_clusters }),
+            Place::Point(_) => Err(CliError::NoPoints(self.path.to_owned())),
+        };
+        let (from, to) = (cluster(self.places[0])?, cluster(self.places[1])?);
+        let explanation = explain_convex(self.graph, from, to, self.limit);
+        let told = Told {
+            from: from.0,
+            to: to.0,
+            listed: listed(from, to),
+            checked: explanation.check(self.graph, from, to),
+            reason: reason(self.graph, &explanation),
+            n_shown: self.n_shown,
+        };
+        output::print(self.json, &told)?;
+        Ok(if told.is_visible() { Answer::Yes } else { Answer::No })
+    }
+}
+
+/// What is told about two clusters.
+#[derive(Debug, Serialize)]
+struct Told {
+    from: u32,
+    to: u32,
+    /// What the table says of the two, if there is one.
+    listed: Option<bool>,
+    /// Whether the independent checker accepts the answer as proven.
+    checked: bool,
+    #[serde(flatten)]
+    reason: Reason,
+    #[serde(skip)]
+    n_shown: usize,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(tag = "answer", rename_all = "lowercase")]
+enum Reason {
+    /// They are one cluster.
+    Same,
+    Visible {
+        /// The portals passed, in order.
+        portals: Vec<Passed>,
+        /// Two points of the line: exact, as it was checked with these.
+        line: [[f64; 3]; 2],
+    },
+    Hidden {
+        /// From which cluster the sequences lead, to the other.
+        start: u32,
+        n_blocked: usize,
+        blocked: Vec<Blocked>,
+    },
+    /// The search was given up.
+    Unknown { max_questions: u64 },
+    /// A sequence about which it could not be decided.
+    Undecided { portals: Vec<Passed> },
+}
+
+/// A portal on the way.
+#[derive(Debug, Serialize)]
+struct Passed {
+    portal: u32,
+    /// The cluster behind it.
+    cell: u32,
+    /// Where the line crosses it, rounded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at: Option<[f64; 3]>,
+}
+
+/// A sequence that no line passes.
+#[derive(Debug, Serialize)]
+struct Blocked {
+    portals: Vec<Passed>,
+    certificate: Value,
+    #[serde(skip)]
+    words: String,
+}
+
+fn passed(graph: &CellGraph<Convex>, gate: ConvexGate, line: Option<&Line3>) -> Passed {
+    let at = line.map(|line| gate.crossing(graph, line));
+    Passed { portal: gate.portal.0, cell: gate.cells(graph)[1].0, at }
+}
+
+fn reason(graph: &CellGraph<Convex>, explanation: &ConvexExplanation) -> Reason {
+    match explanation {
+        ConvexExplanation::Same => Reason::Same,
+        ConvexExplanation::Visible { gates, line } => Reason::Visible {
+            portals: gates.iter().map(|&gate| passed(graph, gate, Some(line))).collect(),
+            line: [line.a, line.b],
+        },
+        ConvexExplanation::Hidden { start, blocked } => Reason::Hidden {
+            start: start.0,
+            n_blocked: blocked.len(),
+            blocked: blocked.iter().map(|b| told(graph, b)).collect(),
+        },
+        ConvexExplanation::TooMany { limit } => Reason::Unknown { max_questions: *limit },
+        ConvexExplanation::Undecided { gates } => {
+            Reason::Undecided { portals: gates.iter().map(|&gate| passed(graph, gate, None)).collect() }
+        }
+    }
+}
+
+fn told(graph: &CellGraph<Convex>, blocked: &BlockedConvex) -> Blocked {
+    let certificate = match &blocked.reason {
+        Blocking::Behind => None,
+        Blocking::Certificate(certificate) => Some(&**certificate),
+    };
+    let (certificate, words) = match certificate {
+        None => (json!("behind"), "one of the two is not ahead of the other".to_owned()),
+        Some(ConvexCertificate::Plane(plane)) => (
+            json!({"plane": {"edge": plane.edge, "corner": plane.corner, "stops": plane.stops}}),
+            "a plane has the first, the next and the last of them on alternate sides".to_owned(),
+        ),
+        Some(certificate @ ConvexCertificate::Boxes(proof)) => {
+            let blocks: Vec<Value> =
+                proof.blocks.iter().map(|b| json!({"corner": b.corner, "edges": b.edges})).collect();
+            let nodes: Vec<Value> = proof.nodes.iter().map(node).collect();
+            let n = count(certificate.n_leaves() as u64, "part");
+            (
+                json!({"boxes": {"portals": proof.portals, "blocks": blocks, "nodes": nodes}}),
+                format!("sums of edges are negative for all lines, in {n}"),
+            )
+        }
+        Some(_) => (Value::Null, "a certificate of another kind".to_owned()),
+    };
+    Blocked { portals: blocked.gates.iter().map(|&gate| passed(graph, gate, None)).collect(), certificate, words }
+}
+
+fn node(node: &ConvexNode) -> Value {
+    match node {
+        ConvexNode::Split { axis, at, parts } => json!({"axis": axis, "at": at, "parts": parts}),
+        ConvexNode::Leaf(terms) => {
+            terms.iter().map(|t| json!({"portal": t.portal, "edge": t.edge, "times": t.multiplier})).collect()
+        }
+    }
+}
+
+impl Told {
+    /// Whether they see each other; what the table says if that is not known, and yes without one.
+    fn is_visible(&self) -> bool {
+        match self.reason {
+            Reason::Same | Reason::Visible { .. } => true,
+            Reason::Hidden { .. } => false,
+            Reason::Unknown { .. } | Reason::Undecided { .. } => self.listed.unwrap_or(true),
+        }
+    }
+}
+
+fn place([x, y, z]: [f64; 3]) -> String {
+    format!("({x}, {y}, {z})")
+}
+
+fn list(portals: &[Passed]) -> String {
+    portals.iter().map(|p| p.portal.to_string()).collect::<Vec<_>>().join(" ")
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { from, to, .. } = self;
+        match &self.reason {
+            Reason::Same => writeln!(f, "both are cluster {from}, and a cluster sees itself")?,
+            Reason::Visible { portals, line } => {
+                writeln!(f, "cluster {from} sees cluster {to} through {}", count(portals.len() as u64, "portal"))?;
+                for Passed { portal, cell, at } in portals {
+                    let at = at.map_or(String::new(), |at| format!(" at {}", place(at)));
+                    writeln!(f, "  portal {portal} into cluster {cell}{at}")?;
+                }
+                writeln!(f, "along the line from {} to {}", place(line[0]), place(line[1]))?;
+            }
+            Reason::Hidden { blocked, .. } if blocked.is_empty() => {
+                writeln!(f, "cluster {from} does not see cluster {to}: no way through portals joins them")?;
+            }
+            Reason::Hidden { start, n_blocked, blocked } => {
+                let n = count(*n_blocked as u64, "sequence");
+                writeln!(
+                    f,
+                    "cluster {from} does not see cluster {to}: every way from cluster {start} passes one of {n} of \
+                     portals that no line passes"
+                )?;
+                for way in blocked.iter().take(self.n_shown) {
+                    writeln!(f, "  blocked: portals {}: {}", list(&way.portals), way.words)?;
+                }
+                if blocked.len() > self.n_shown && self.n_shown > 0 {
+                    writeln!(f, "  and {} more", blocked.len() - self.n_shown)?;
+                }
+            }
+            Reason::Unknown { max_questions } => {
+                let n = count(*max_questions, "question");
+                writeln!(f, "cluster {from} and cluster {to}: given up after {n}; see --max-questions")?;
+            }
+            Reason::Undecided { portals } => {
+                let ways = list(portals);
+                writeln!(f, "cluster {from} and cluster {to}: undecided whether a line passes portals {ways}")?;
+            }
+        }
+        match (&self.reason, self.listed) {
+            (Reason::Unknown { .. } | Reason::Undecided { .. }, Some(listed)) => {
+                writeln!(f, "the table says that they {} each other", if listed { "see" } else { "do not see" })?;
+            }
+            (Reason::Hidden { .. }, Some(true)) => writeln!(f, "the table lists them as visible all the same")?,
+            (Reason::Visible { .. }, Some(false)) => writeln!(f, "the table says that they do not: it is wrong")?,
+            _ => {}
+        }
+        match (&self.reason, self.checked) {
+            (Reason::Unknown { .. } | Reason::Undecided { .. }, _) => Ok(()),
+            (_, true) => writeln!(f, "the independent checker accepts this"),
+            (_, false) => writeln!(f, "the independent checker does not accept this"),
+        }
+    }
+}

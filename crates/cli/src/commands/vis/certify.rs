@@ -1,0 +1,203 @@
+//! Proofs for some of the pairs of a table, before it is written.
+
+use crate::error::CliError;
+use crate::output::count;
+use crate::progress::Bar;
+use serde::Serialize;
+use sightlines::cells::{CellGraph, CellId, Convex};
+use sightlines::stabtree::{ConvexExplainer, ConvexExplanation, MOST_EXPLAINED, SeenThroughPortals};
+use std::fmt;
+use std::path::Path;
+
+/// What was proven of the pairs that were picked.
+#[derive(Debug, Default, PartialEq, Eq, Serialize)]
+pub(super) struct Certified {
+    visible: Proven,
+    /// Of hidden pairs those were picked of which one cluster is beside another that the other one sees.
+    hidden: Proven,
+}
+
+/// How many pairs of a kind.
+#[derive(Debug, Default, PartialEq, Eq, Serialize)]
+struct Proven {
+    n_picked: usize,
+    /// Proven as listed, and the independent checker accepts the proof.
+    n_accepted: usize,
+    /// Listed as visible, but proven to be hidden: of a fast search, or undecided pairs.
+    n_loose: usize,
+    /// Given up, as there were too many sequences.
+    n_too_many: usize,
+    /// Undecided sequences of portals.
+    n_undecided: usize,
+}
+
+/// Explains `n` visible and `n` hidden pairs, the same ones each time, and checks what it finds.
+///
+/// Refuses a table that is wrong: a hidden pair with a line, a visible one without (unless it is listed as undecided,
+/// or the search was a fast one), and proofs that do not hold.
+pub(super) fn certify(
+    path: &Path,
+    graph: &CellGraph<Convex>,
+    seen: &SeenThroughPortals,
+    n: usize,
+    fast: bool,
+    bar: &Bar,
+) -> Result<Certified, CliError> {
+    let explainer = ConvexExplainer::new(graph);
+    let (visible, hidden) = (spread(visible_pairs(seen), n), spread(border_pairs(graph, seen), n));
+    let mut certified = Certified::default();
+    let all = visible.len() + hidden.len();
+    let pairs = visible.iter().map(|p| (p, true)).chain(hidden.iter().map(|p| (p, false)));
+    for (done, (&pair, listed)) in pairs.enumerate() {
+        bar.set(done, all);
+        let [a, b] = pair.map(CellId);
+        let explanation = explainer.explain(a, b, MOST_EXPLAINED);
+        let proven = if listed { &mut certified.visible } else { &mut certified.hidden };
+        proven.n_picked += 1;
+        let wrong = |found| {
+            let listed = if listed { "visible" } else { "hidden" };
+            Err(CliError::Contradiction { path: path.to_owned(), pair, listed, found })
+        };
+        let shown = match explanation {
+            ConvexExplanation::TooMany { .. } => {
+                proven.n_too_many += 1;
+                continue;
+            }
+            ConvexExplanation::Undecided { .. } => {
+                proven.n_undecided += 1;
+                continue;
+            }
+            ConvexExplanation::Hidden { .. } => false,
+            ConvexExplanation::Visible { .. } | ConvexExplanation::Same => true,
+        };
+        match (explanation.check(graph, a, b), listed, shown) {
+            (false, _, _) => return wrong("the proof that was found does not hold"),
+            (true, false, true) => return wrong("a line joins them"),
+            (true, true, false) if !fast && !seen.undecided.contains(&pair) => {
+                return wrong("no line joins them");
+            }
+            (true, true, false) => proven.n_loose += 1,
+            (true, _, _) => proven.n_accepted += 1,
+        }
+    }
+    Ok(certified)
+}
+
+/// Pairs of different clusters that see each other, lower number first.
+fn visible_pairs(seen: &SeenThroughPortals) -> Vec<[u32; 2]> {
+    let row = |a: usize| seen.cells.iter_ones(a).filter(move |&b| b > a).map(move |b| [a as u32, b as u32]);
+    (0..seen.cells.n_rows()).flat_map(row).collect()
+}
+
+/// Pairs of clusters that do not see each other, though one is beside a cluster that the other sees.
+fn border_pairs(graph: &CellGraph<Convex>, seen: &SeenThroughPortals) -> Vec<[u32; 2]> {
+    let mut pairs = Vec::new();
+    for portal in graph.portals() {
+        let [c, d] = portal.cells.map(|cell| cell.0);
+        for (b, beside) in [(c, d), (d, c)] {
+            let sees = seen.cells.iter_ones(beside as usize).map(|a| a as u32);
+            pairs.extend(sees.filter(|&a| !seen.cells.get(a as usize, b as usize)).map(|a| [a.min(b), a.max(b)]));
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// `n` of the pairs, as far from each other in the list as can be.
+fn spread(pairs: Vec<[u32; 2]>, n: usize) -> Vec<[u32; 2]> {
+    let n = n.min(pairs.len());
+    (0..n).map(|k| pairs[(2 * k + 1) * pairs.len() / (2 * n)]).collect()
+}
+
+impl fmt::Display for Certified {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (what, proven) in [("visible", &self.visible), ("hidden", &self.hidden)] {
+            let Proven { n_picked, n_accepted, n_loose, n_too_many, n_undecided } = proven;
+            write!(f, "certified      {n_accepted} of {} checked", count(*n_picked as u64, &format!("{what} pair")))?;
+            for (n, why) in
+                [(n_loose, "hidden after all"), (n_too_many, "with too many sequences"), (n_undecided, "undecided")]
+            {
+                if *n > 0 {
+                    write!(f, ", {n} {why}")?;
+                }
+            }
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sightlines::formats::quake::graph_of_prt;
+    use sightlines::formats::quake::prt::parse_prt;
+    use sightlines::stabtree::{ConvexOptions, ConvexSearch};
+
+    /// Three rooms in a row, of which the first and the last do not see each other, and a fourth behind the last.
+    const ROOMS: &str = "PRT1\n4\n3\n4 0 1 (8 0 0) (8 1 0) (8 1 1) (8 0 1)\n4 1 2 (16 6 0) (16 7 0) (16 7 1) (16 6 1)\n\
+                         4 2 3 (17 0 0) (17 1 0) (17 1 1) (17 0 1)\n";
+
+    fn searched() -> (CellGraph<Convex>, SeenThroughPortals) {
+        let graph = graph_of_prt(&parse_prt(ROOMS.as_bytes()).unwrap());
+        let mut search = ConvexSearch::new(&graph, ConvexOptions { fast: false, threads: 1 });
+        while search.advance() {}
+        (graph, search.finish())
+    }
+
+    fn tried(graph: &CellGraph<Convex>, seen: &SeenThroughPortals, fast: bool) -> Result<Certified, String> {
+        let bar = Bar::new("test", false);
+        certify(Path::new("a.prt"), graph, seen, 99, fast, &bar).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn tables_are_proven() {
+        let (graph, seen) = searched();
+        let certified = tried(&graph, &seen, false).unwrap();
+        for proven in [&certified.visible, &certified.hidden] {
+            assert!(proven.n_picked > 0 && proven.n_accepted == proven.n_picked, "{certified:?}");
+        }
+        assert_eq!(certified.visible.n_picked + certified.hidden.n_picked, 6);
+    }
+
+    /// The impostors: a table with a pair more or less is found out.
+    #[test]
+    fn tables_that_are_wrong_are_refused() {
+        let (graph, seen) = searched();
+        let (shown, hidden) = (visible_pairs(&seen), border_pairs(&graph, &seen));
+        let with = |[a, b]: [u32; 2], bit: bool| {
+            let mut other = seen.clone();
+            other.cells.set(a as usize, b as usize, bit);
+            other.cells.set(b as usize, a as usize, bit);
+            other
+        };
+        for &pair in &hidden {
+            let mut other = with(pair, true);
+            let error = tried(&graph, &other, false).unwrap_err();
+            assert!(error.ends_with("are listed as visible, but no line joins them; nothing was written"), "{error}");
+            // Whoever says that it does not know is not wrong.
+            assert_eq!(tried(&graph, &other, true).unwrap().visible.n_loose, 1);
+            other.undecided.push(pair);
+            assert_eq!(tried(&graph, &other, false).unwrap().visible.n_loose, 1);
+        }
+        let mut n_refused = 0;
+        for &pair in &shown {
+            let other = with(pair, false);
+            if border_pairs(&graph, &other).contains(&pair) {
+                let error = tried(&graph, &other, false).unwrap_err();
+                assert!(error.starts_with("a.prt: clusters ") && error.contains("but a line joins them"), "{error}");
+                n_refused += 1;
+            }
+        }
+        assert!(!hidden.is_empty() && n_refused > 2, "{} {n_refused}", hidden.len());
+    }
+
+    #[test]
+    fn picked_pairs_are_spread() {
+        let pairs: Vec<[u32; 2]> = (0..10).map(|k| [k, k + 1]).collect();
+        assert_eq!(spread(pairs.clone(), 2), [[2, 3], [7, 8]]);
+        assert_eq!(spread(pairs.clone(), 99), pairs);
+        assert!(spread(pairs, 0).is_empty() && spread(Vec::new(), 5).is_empty());
+    }
+}
