@@ -1,7 +1,7 @@
 //! Lines through convex polygons in space: found by linear programs, decided exactly, proven.
 //!
 //! # Question
-//! A directed line passes a [`Portal3`](sightlines_geometry::Portal3) if it has every edge strictly on its
+//! A directed line passes a [`Portal3`] if it has every edge strictly on its
 //! inner side. It passes a sequence in order if it passes every portal, and of any two meets the hull of
 //! the earlier one's corners before the hull of the later one's, at another point. Through a chain of
 //! convex cells every line goes in order, but for those through a common point of two portals, without
