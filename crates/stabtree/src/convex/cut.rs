@@ -1,15 +1,17 @@
 //! Parts of portals, cut by planes that rounding cannot make too tight.
 //!
 //! A [`Part`] stands for a superset of the points in which some lines cross a portal: the convex hull of its
-//! vertices, of which each constructed one is grown to a ball of radius `eta`. With `m` the largest coordinate
-//! of the graph and `u = 2^-53`:
+//! vertices, each grown to a ball: of radius zero for a corner of a flat portal, of twice its unevenness for a
+//! corner of one that is not flat, and larger for a constructed vertex. With `m` the largest coordinate of the graph
+//! and `u = 2^-53`:
 //!
 //! * A plane is evaluated with an error below `eps = 2^-48 m`: its normal has a length near 1, and a point
 //!   differs from the plane's origin by at most `2 √3 m`, so that three products and their sum are off by less
 //!   than `24 u m`.
-//! * A vertex is constructed on an edge with an error below `8 u m = 2^-50 m` across the edge; along it, it is
-//!   placed beyond the plane, see [`Cutter::cut`]. Each cut makes vertices from vertices of the cut before,
-//!   so that errors add up; `eta = 2^-40 m` has room for 1024 cuts of one part, and [`MAX_CUTS`] keeps to it.
+//! * A vertex is constructed on an edge with an error below `8 u m = 2^-50 m` across the edge, so its radius is that
+//!   of the larger of the edge's ends and `step = 2^-49 m` more; along the edge, it is placed beyond the plane, see
+//!   [`Cutter::cut`].
+//! * Each vertex carries its `clearance`: the radius and `eps`.
 //! * Planes between two parts ([`Cutter::separators`]) have the first on one side and the second on the
 //!   other, *strictly and by more than these errors*, but for one point that both have in common (a corner
 //!   of two portals, the same bits), where the plane is exactly zero. So a line that passes the first, then
@@ -25,8 +27,10 @@ use super::vector::{Point3, add, cross, dot, scale, sub};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     pub(super) at: Point3,
-    /// How far a plane has to be from it to be certainly on one side: `eps`, and `eta` if it was constructed.
+    /// How far a plane has to be from it to be certainly on one side.
     pub(super) clearance: f64,
+    /// Whether it is a corner of a flat portal, with no error at all.
+    pub(super) exact: bool,
     /// Whether the edge that ends here was cut, and is not one of the portal.
     pub(super) cut: bool,
 }
@@ -34,11 +38,11 @@ pub(super) struct Vertex {
 /// A convex part of a portal.
 pub(super) type Part = Vec<Vertex>;
 
-/// Most cuts of one part.
-const MAX_CUTS: usize = 1000;
-
 /// Cosine above which two separating planes of two parts are so much alike that one of them is enough.
 const ALIKE: f64 = 1.0 - 1e-9;
+
+/// Normals are at most so long, rounding included.
+const LONGEST: f64 = 1.02;
 
 /// Vertices of a part that is still cut; one with more stays as it is, which is a superset.
 const MAX_VERTICES: usize = 24;
@@ -72,7 +76,7 @@ impl Plane {
 #[derive(Debug, Clone)]
 pub(super) struct Cutter {
     pub(super) eps: f64,
-    pub(super) eta: f64,
+    step: f64,
     /// Parts cut, or tried to.
     pub(super) clips: u64,
     spare: Part,
@@ -81,7 +85,7 @@ pub(super) struct Cutter {
 impl Cutter {
     /// For a graph whose largest coordinate is `m`.
     pub(super) fn new(m: f64) -> Self {
-        Self { eps: m * 2f64.powi(-48), eta: m * 2f64.powi(-40), clips: 0, spare: Vec::new() }
+        Self { eps: m * 2f64.powi(-48), step: m * 2f64.powi(-49), clips: 0, spare: Vec::new() }
     }
 
     /// Cuts off what lies below the plane; `false` if nothing is left, and then the part is not to be used.
@@ -102,7 +106,11 @@ impl Cutter {
             high = high.max(*f);
             clearance = clearance.max(v.clearance);
         }
-        let below = clearance + self.eps;
+        let below = LONGEST * clearance + self.eps;
+        // What is not a number tells nothing.
+        if !(low.is_finite() && high.is_finite()) {
+            return true;
+        }
         if high < -below {
             return false;
         }
@@ -116,7 +124,8 @@ impl Cutter {
             if (f < 0.0) != (f_before < 0.0) {
                 let at = add(before.at, scale(sub(v.at, before.at), f_before / (f_before - f)));
                 // Coming back up, the edge that ends here is the cut; going down it is what is left of v's.
-                self.spare.push(Vertex { at, clearance: self.eta + self.eps, cut: f >= 0.0 || v.cut });
+                let clearance = before.clearance.max(v.clearance) + self.step;
+                self.spare.push(Vertex { at, clearance, exact: false, cut: f >= 0.0 || v.cut });
             }
             if f >= 0.0 {
                 self.spare.push(*v);
@@ -127,9 +136,9 @@ impl Cutter {
         part.len() >= 3
     }
 
-    /// Cuts by all planes, of which there are few enough for the error bound.
+    /// Cuts by all planes.
     pub(super) fn cut_all(&mut self, part: &mut Part, planes: &[Plane]) -> bool {
-        planes.iter().take(MAX_CUTS).all(|plane| self.cut(part, plane))
+        planes.iter().all(|plane| self.cut(part, plane))
     }
 
     /// Appends planes that have `first` below and `second` above: for each edge of either, the one that leans on
@@ -138,7 +147,7 @@ impl Cutter {
         let mut shared = None;
         for a in first {
             for b in second {
-                if a.at == b.at {
+                if a.exact && b.exact && a.at == b.at {
                     if shared.is_some() {
                         return;
                     }
@@ -170,9 +179,9 @@ impl Cutter {
 #[inline(always)]
 fn leaning(part: &[Vertex], other: &[Vertex], turn: f64, shared: Option<Point3>, mut found: impl FnMut(Plane)) {
     for_edges(part, |a, b| {
-        let is_apart = shared.is_none_or(|c| a.at == c || b.at == c);
-        if is_apart
-            && let Some((v, normal)) = first_met(a, b, turn, other.iter().filter(|v| shared != Some(v.at)))
+        let may_lean = shared.is_none() || is_shared(a, shared) || is_shared(b, shared);
+        if may_lean
+            && let Some((v, normal)) = first_met(a, b, turn, other.iter().filter(|v| !is_shared(v, shared)))
             && let Some(plane) = lean([a, b, v], normal, shared)
         {
             found(plane);
@@ -238,12 +247,12 @@ fn lean([a, b, v]: [&Vertex; 3], normal: Point3, shared: Option<Point3>) -> Opti
     if nn.partial_cmp(&(1e-12 * ee * ff)) != Some(std::cmp::Ordering::Greater) {
         return None;
     }
-    let wanted = |x: &Vertex, side: f64| if shared == Some(x.at) { 0.0 } else { 1.5 * side * x.clearance };
+    let wanted = |x: &Vertex, side: f64| if is_shared(x, shared) { 0.0 } else { 1.5 * side * x.clearance };
     let (at_a, at_b, at_v) = (wanted(a, -1.0), wanted(b, -1.0), wanted(v, 1.0));
     // The gradient, within the plane of the three, of the linear function with these values.
     let (x, y) = ((at_b - at_a) * ff - (at_v - at_a) * ef, (at_v - at_a) * ee - (at_b - at_a) * ef);
     let turn = scale(add(scale(e, x), scale(f, y)), 1.0 / nn);
-    // A normal longer than 1.01 would spoil the error bound of evaluation.
+    // A normal longer than 1.01 would spoil the error bound of evaluation, and `LONGEST`.
     if dot(turn, turn) > 1e-4 {
         return None;
     }
@@ -258,14 +267,22 @@ fn lean([a, b, v]: [&Vertex; 3], normal: Point3, shared: Option<Point3>) -> Opti
 /// which is the plane's origin and so exactly on it.
 #[inline(always)]
 fn separates(plane: &Plane, first: &[Vertex], second: &[Vertex], shared: Option<Point3>) -> bool {
-    let is_shared = |v: &Vertex| shared == Some(v.at);
-    first.iter().all(|v| is_shared(v) || plane.at(v.at) <= -v.clearance)
-        && second.iter().all(|v| is_shared(v) || plane.at(v.at) >= v.clearance)
+    first.iter().all(|v| is_shared(v, shared) || plane.at(v.at) <= -LONGEST * v.clearance)
+        && second.iter().all(|v| is_shared(v, shared) || plane.at(v.at) >= LONGEST * v.clearance)
+}
+
+/// Whether a vertex is the corner that two parts share.
+#[inline(always)]
+fn is_shared(v: &Vertex, shared: Option<Point3>) -> bool {
+    v.exact && shared == Some(v.at)
 }
 
 /// Whether all of `inner` is certainly within `outer`, both of them parts of one portal with this normal, as far as
 /// points of the portal itself are concerned: edges of the portal are not looked at.
 pub(super) fn is_within(inner: &[Vertex], outer: &[Vertex], normal: Point3) -> bool {
+    // A vertex of the outer part, no less sure, is within it.
+    let is_same = |v: &Vertex| outer.iter().any(|w| w.at == v.at && w.clearance >= v.clearance);
+    let others: Vec<&Vertex> = inner.iter().filter(|v| !is_same(v)).collect();
     let mut last = outer[outer.len() - 1];
     outer.iter().all(|&b| {
         let a = std::mem::replace(&mut last, b);
@@ -274,8 +291,13 @@ pub(super) fn is_within(inner: &[Vertex], outer: &[Vertex], normal: Point3) -> b
         }
         let inwards = cross(normal, sub(b.at, a.at));
         let length = dot(inwards, inwards).sqrt();
-        let is_end = |v: &Vertex| v.at == a.at || v.at == b.at;
-        inner.iter().all(|v| is_end(v) || dot(inwards, sub(v.at, a.at)) >= length * (v.clearance + b.clearance))
+        // The edge's ends are off by less than their clearances, so that its direction is off the more the shorter
+        // it is; of an edge without length nothing is known, and nothing is within.
+        others.iter().all(|v| {
+            let from = sub(v.at, a.at);
+            let off = length * (v.clearance + b.clearance) + (a.clearance + b.clearance) * dot(from, from).sqrt();
+            dot(inwards, from) > off
+        })
     })
 }
 

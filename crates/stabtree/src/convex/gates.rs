@@ -18,7 +18,16 @@ pub(super) struct Gate {
     /// The direction of crossing, of length 1.
     pub(super) normal: Point3,
     /// How far corners are from the plane through the center with this normal.
-    pub(super) uneven: f64,
+    uneven: f64,
+    /// How much the normal may lean, by rounding: sixteen units in the last place of 1, times how long the gate is for
+    /// its width.
+    lean: f64,
+    /// How far corners that are meant to be on the gate's plane are from it: `2^-44` of its largest coordinate.
+    ///
+    /// Portals of a subdivision lie on its planes, and a line crosses a plane but once. The corners in files are
+    /// rounded, each some units in its last place (2^-53) off, which planes through nearby corners magnify by
+    /// the ratio of portal sizes. So what is nearer than this counts as on the plane.
+    flat: f64,
 }
 
 /// All gates, and the cells that they lead out of.
@@ -33,12 +42,6 @@ pub(super) struct Gates {
     pub(super) boxes: Vec<[Point3; 2]>,
     /// Largest coordinate, at least the smallest positive one.
     pub(super) largest: f64,
-    /// How far corners that are meant to be on one plane are from it: `2^-44` of the largest coordinate.
-    ///
-    /// Portals of a subdivision lie on its planes, and a line crosses a plane but once. The corners in files are
-    /// rounded, each some units in its last place (2^-53) off, which planes through nearby corners magnify by
-    /// the ratio of portal sizes. So what is nearer than this counts as on the plane.
-    pub(super) flat: f64,
 }
 
 impl Gates {
@@ -52,7 +55,7 @@ impl Gates {
                 [(portal.shape.clone(), portal.cells), (portal.shape.reversed(), [portal.cells[1], portal.cells[0]])]
             {
                 let first = corners.len() as u32;
-                corners.extend(shape.corners().iter().map(|&at| Vertex { at, clearance, cut: false }));
+                corners.extend(shape.corners().iter().map(|&at| Vertex { at, clearance, exact: true, cut: false }));
                 let center = super::cut::middle(&corners[first as usize..]);
                 let far = |p: &Point3| dot(sub(*p, center), sub(*p, center)).sqrt();
                 let radius = shape.corners().iter().map(far).fold(0.0, f64::max) * (1.0 + 1e-9);
@@ -60,7 +63,27 @@ impl Gates {
                 let normal = unit(shape.normal());
                 let off = |p: &Point3| dot(normal, sub(*p, center)).abs();
                 let uneven = shape.corners().iter().map(off).fold(0.0, f64::max);
-                gates.push(Gate { from: from.0, to: to.0, first, n_corners, center, radius, normal, uneven });
+                let flat = shape.corners().iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs())) * 2f64.powi(-44);
+                let twice_area = dot(shape.normal(), shape.normal()).sqrt();
+                let lean = 8.0 * f64::EPSILON * (radius * radius / twice_area).max(1.0);
+                if uneven > flat {
+                    // Such portals reach into each other where they meet, by as much as they are uneven.
+                    for v in &mut corners[first as usize..] {
+                        (v.clearance, v.exact) = (clearance + 2.0 * uneven, false);
+                    }
+                }
+                gates.push(Gate {
+                    from: from.0,
+                    to: to.0,
+                    first,
+                    n_corners,
+                    center,
+                    radius,
+                    normal,
+                    uneven,
+                    lean,
+                    flat,
+                });
                 shapes.push(shape);
             }
         }
@@ -71,8 +94,7 @@ impl Gates {
             let bounds = graph.cell(cell).bounds;
             boxes.push([bounds.min, bounds.max]);
         }
-        let flat = largest * 2f64.powi(-44);
-        Self { gates, shapes, corners, first_exit, exits, boxes, largest, flat }
+        Self { gates, shapes, corners, first_exit, exits, boxes, largest }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -110,10 +132,13 @@ impl Gates {
     pub(super) fn may_follow(&self, s: u32, t: u32) -> bool {
         let (gs, gt) = (self.get(s), self.get(t));
         let between = sub(gt.center, gs.center);
-        // A line meets a gate no farther behind its plane than the gate's own corners lie.
-        let (flat_s, flat_t) = (self.flat - gs.uneven, self.flat - gt.uneven);
+        // A line meets a gate no farther behind its plane than the gate's own corners lie, and the plane leans by
+        // rounding.
+        let flat = gs.flat.max(gt.flat);
+        let reach = dot(between, between).sqrt() + gs.radius + gt.radius;
+        let (flat_s, flat_t) = (flat - gs.uneven - gs.lean * reach, flat - gt.uneven - gt.lean * reach);
         // Balls decide nearly all; their margin is far above the error of evaluation.
-        let margin = self.largest * 1e-9 + gs.uneven.max(gt.uneven);
+        let margin = self.largest * 1e-9 + gs.uneven.max(gt.uneven) + gs.lean.max(gt.lean) * reach;
         let ahead = dot(gs.normal, between);
         if ahead < gt.radius + margin {
             let in_front = |v: &Vertex| dot(gs.normal, sub(v.at, gs.center)) > flat_s;
@@ -154,7 +179,8 @@ impl Gates {
     /// The points that a line may meet after it has passed a gate, as far as the gate's plane tells.
     pub(super) fn in_front(&self, gate: u32) -> Plane {
         let gate = self.get(gate);
-        Plane { normal: gate.normal, origin: gate.center, offset: self.flat + gate.uneven }
+        let lean = gate.lean * 4.0 * self.largest;
+        Plane { normal: gate.normal, origin: gate.center, offset: gate.flat + gate.uneven + lean }
     }
 
     /// The points that a line may meet before it passes a gate.

@@ -53,7 +53,7 @@ fn start(at: i32) -> impl Strategy<Value = Start> {
         let points: Vec<Point3> = flat.into_iter().map(lift).collect();
         let portal = hull(&points)?;
         let clearance = Cutter::new(LARGEST).eps;
-        let part: Part = portal.into_iter().map(|at| Vertex { at, clearance, cut: false }).collect();
+        let part: Part = portal.into_iter().map(|at| Vertex { at, clearance, exact: true, cut: false }).collect();
         let cut = |(n, offset, by): ([i32; 3], i32, i32)| {
             let normal = n.map(f64::from);
             let length = dot(normal, normal).sqrt();
@@ -104,7 +104,7 @@ proptest! {
             let length = dot(inwards, inwards).sqrt();
             if length > 1e-3 {
                 let plane = Plane { normal: scale(inwards, 1.0 / length), origin: a.at, offset: 0.0 };
-                prop_assert!(value(&plane, &x) >= exact(-2.0 * (cutter.eta + cutter.eps)), "{x:?} outside of {plane:?}");
+                prop_assert!(value(&plane, &x) >= exact(-2.0 * b.clearance), "{x:?} outside of {plane:?}");
             }
         }
     }
@@ -146,7 +146,7 @@ fn separators_are_tight() {
     let clearance = Cutter::new(LARGEST).eps;
     let square = |x: f64, low: f64, high: f64| -> Part {
         let corners = [[x, low, low], [x, high, low], [x, high, high], [x, low, high]];
-        corners.map(|at| Vertex { at, clearance, cut: false }).to_vec()
+        corners.map(|at| Vertex { at, clearance, exact: true, cut: false }).to_vec()
     };
     let (first, second) = (square(0.0, 0.0, 8.0), square(10.0, 2.0, 6.0));
     let mut planes = Vec::new();
@@ -167,7 +167,7 @@ fn separators_are_tight() {
 fn parts_within_parts() {
     let clearance = Cutter::new(LARGEST).eps;
     let corners = [[0.0, 0.0, 0.0], [0.0, 8.0, 0.0], [0.0, 8.0, 8.0], [0.0, 0.0, 8.0]];
-    let whole: Part = corners.map(|at| Vertex { at, clearance, cut: false }).to_vec();
+    let whole: Part = corners.map(|at| Vertex { at, clearance, exact: true, cut: false }).to_vec();
     let mut cutter = Cutter::new(LARGEST);
     let mut half = |z: f64| {
         let mut part = whole.clone();
