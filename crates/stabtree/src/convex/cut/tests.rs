@@ -178,4 +178,8 @@ fn parts_within_parts() {
     let (more, less) = (half(2.0), half(4.0));
     assert!(is_within(&less, &more, normal) && is_within(&more, &whole, normal) && is_within(&less, &less, normal));
     assert!(!is_within(&more, &less, normal) && !is_within(&whole, &more, normal));
+    // Of a corner that is cut off so near that both ends of the cut are the same number, nothing is known.
+    let end = |cut: bool| Vertex { at: [0.0, 1e-9, 1e-9], clearance: 2.0 * clearance, exact: false, cut };
+    let speck = vec![whole[0], end(false), end(true)];
+    assert!(!is_within(&whole, &speck, normal) && !is_within(&less, &speck, normal));
 }
