@@ -49,8 +49,8 @@ const LINES_EACH: u32 = 32;
 const MANY: usize = 1024;
 /// Gates of a batch, for the stage whose gates may take long.
 const FEW: usize = 64;
-/// Cells of a batch whose pairs may take long.
-const CELLS: usize = 16;
+/// Pairs of a batch, at least, but for the last one.
+const PAIRS: usize = 256;
 
 /// A search that can be stopped between any two steps.
 #[derive(Debug)]
@@ -290,9 +290,10 @@ impl ConvexSearch {
                 let row = self.state.through.row(gate as usize);
                 reach.iter_mut().zip(row).for_each(|(reach, row)| *reach |= row);
             }
-            for gate in 0..self.gates.len() as u32 {
-                let from = self.gates.get(gate).from as usize;
-                if reach[from / 64] >> (from % 64) & 1 == 0 && from != cell as usize {
+            let possible = self.state.possible.row(cell as usize);
+            let hidden: Vec<u64> = possible.iter().zip(&reach).map(|(possible, reach)| possible & !reach).collect();
+            for other in cells_of(&hidden).filter(|&other| other != cell) {
+                for &gate in self.gates.exits(other) {
                     self.state.through.set(gate as usize, cell as usize, false);
                 }
             }
@@ -304,7 +305,6 @@ impl ConvexSearch {
     }
 
     fn decide_pairs(&mut self) {
-        let range = self.take(self.gates.n_cells(), CELLS);
         let (gates, state, rank) = (&self.gates, &self.state, &self.rank);
         // Each pair is decided from the cell from which there is less to see.
         let others = |cell: usize| -> Vec<u32> {
@@ -312,15 +312,18 @@ impl ConvexSearch {
             let in_doubt: Vec<u64> = row.map(|(possible, visible)| possible & !visible).collect();
             cells_of(&in_doubt).filter(|&other| rank[other as usize] > rank[cell]).collect()
         };
-        let pairs: Vec<[u32; 2]> = self.scattered[range]
-            .iter()
-            .flat_map(|&cell| others(cell as usize).into_iter().map(move |other| [cell, other]))
-            .collect();
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        let mut done = state.done as usize;
+        while let Some(&cell) = self.scattered.get(done).filter(|_| pairs.len() < PAIRS) {
+            pairs.extend(others(cell as usize).into_iter().map(|other| [cell, other]));
+            done += 1;
+        }
         let decided = self.workers.map(
             0..pairs.len(),
             || SequenceTracer::new(gates),
             |tracer, k| (tracer.decide(gates, pairs[k], &state.through), tracer.take_counters()),
         );
+        self.state.done = done as u64;
         for ([a, b], (sight, counters)) in pairs.into_iter().zip(decided) {
             self.state.counters += counters;
             match sight {

@@ -7,11 +7,15 @@ use sightlines_pvs::BitMatrix;
 /// Says that all cells on a line see each other. `chain` has the gates that the line passes, in order.
 pub(super) fn mark(gates: &Gates, chain: &[u32], visible: &mut BitMatrix) {
     let Some(&last) = chain.last() else { return };
-    let mut mask = vec![0u64; gates.n_cells().div_ceil(64)];
     let cells = || chain.iter().map(|&g| gates.get(g).from).chain([gates.get(last).to]);
-    cells().for_each(|c| mask[c as usize / 64] |= 1 << (c % 64));
+    // Only the words that the line's cells are in.
+    let (low, high) = cells().fold((u32::MAX, 0), |(low, high), c| (low.min(c / 64), high.max(c / 64)));
+    let words = low as usize..high as usize + 1;
+    let mut mask = vec![0u64; words.len()];
+    cells().for_each(|c| mask[(c / 64 - low) as usize] |= 1 << (c % 64));
     for cell in cells() {
-        visible.row_mut(cell as usize).iter_mut().zip(&mask).for_each(|(row, mask)| *row |= mask);
+        let row = &mut visible.row_mut(cell as usize)[words.clone()];
+        row.iter_mut().zip(&mask).for_each(|(row, mask)| *row |= mask);
     }
 }
 
