@@ -85,7 +85,7 @@ pub enum Blocking {
     ///
     /// That is up to rounding, as the search takes it too: cells are convex, so that a line crosses the plane of a
     /// portal once, but corners of files are off their planes, and so what is nearer to a plane than `2^-44` of the
-    /// largest coordinate counts as on it. (Where corners are exactly on one plane, it is exact.)
+    /// largest coordinate of the two portals counts as on it. (Where corners are exactly on one plane, it is exact.)
     Behind,
 }
 

@@ -56,7 +56,7 @@ fn holds(blocked: &BlockedConvex, graph: &CellGraph<Convex>) -> bool {
     match (&blocked.reason, &shapes[..]) {
         (Blocking::Certificate(certificate), shapes) => certificate.check(&shapes.iter().collect::<Vec<_>>()),
         (Blocking::Behind, [first, second]) => {
-            let corners = graph.portals().iter().flat_map(|portal| portal.shape.corners()).flatten();
+            let corners = first.corners().iter().chain(second.corners()).flatten();
             // Twice what the search has: rounding may let one call near what the other calls far.
             let near = 2f64.powi(-43) * corners.fold(0.0, |m: f64, x| m.max(x.abs()));
             highest(second, first, 1.0) <= near || highest(first, second, -1.0) <= near
