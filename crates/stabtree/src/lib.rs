@@ -3,8 +3,9 @@
 //!
 //! Owns: [`visible_zones`] (which cells, or groups of cells, see each other, by portal sequences),
 //! [`see_space`] (the same for boxes in space, and for objects, by what stands between them),
-//! [`StabTree`] (every stabbable portal sequence out of one cell), [`explain`](fn@explain) and
-//! [`explain_space`] (the line between two cells, or why there is none).
+//! [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
+//! [`StabTree`] (every stabbable portal sequence out of one cell), [`explain`](fn@explain),
+//! [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none).
 //! Does not know: files, tables, how cells were cut. The search over sequences is generic over the
 //! [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
 //! Invariants: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and

@@ -83,8 +83,6 @@ fn cut(start: &Start, cutter: &mut Cutter) -> Option<Part> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 512, ..ProptestConfig::default() })]
-
     /// Points of the portal that are above all cuts are within the part, up to the radius that constructed vertices are
     /// grown by: so they are on no wrong side of any plane that has the part above by that much.
     #[test]
