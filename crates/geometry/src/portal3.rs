@@ -79,8 +79,12 @@ impl Portal3 {
         newell_normal(&self.corners)
     }
 
-    /// How far the farthest corner is from the plane through their middle across the normal, rounded. O(n).
+    /// How far the farthest corner is from the plane through their middle across the normal, rounded; 0 for a
+    /// triangle. O(n).
     pub fn unevenness(&self) -> f64 {
+        if self.corners.len() == 3 {
+            return 0.0;
+        }
         let normal = self.normal();
         let largest = normal.into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         // Squares of what is far from 1 would not be doubles.
