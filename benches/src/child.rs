@@ -99,13 +99,19 @@ pub fn portals_of(name: &str) -> Result<PortalMode, String> {
 /// If this process was started by [`run`], bakes, answers and ends; else does nothing. To be called first by
 /// every program that runs jobs.
 pub fn serve() {
+    serve_jobs(BAKE, |args| answer(args).map(|measured| to_text(&measured)));
+}
+
+/// If this process was started with `word` as its first argument, prints what `answer` makes of the others and ends;
+/// else does nothing.
+pub(crate) fn serve_jobs(word: &str, answer: impl Fn(&[String]) -> Result<String, Box<dyn std::error::Error>>) {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    if args.first().is_none_or(|a| a != BAKE) {
+    if args.first().is_none_or(|a| a != word) {
         return;
     }
     let code = match answer(&args[1..]) {
-        Ok(measured) => {
-            print!("{}", to_text(&measured));
+        Ok(text) => {
+            print!("{text}");
             0
         }
         Err(error) => {

@@ -127,21 +127,7 @@ impl Answer {
 /// If this process was started by [`run`], does the job, answers and ends; else does nothing. To be called first by
 /// every program that runs jobs.
 pub fn serve() {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    if args.first().is_none_or(|a| a != JOB) {
-        return;
-    }
-    let code = match answer(&args[1..]) {
-        Ok(measured) => {
-            print!("{}", to_text(&measured));
-            0
-        }
-        Err(error) => {
-            eprintln!("{error}");
-            2
-        }
-    };
-    std::process::exit(code);
+    crate::child::serve_jobs(JOB, |args| answer(args).map(|measured| to_text(&measured)));
 }
 
 fn answer(args: &[String]) -> Result<Measured, Box<dyn std::error::Error>> {
