@@ -50,8 +50,7 @@ pub(super) struct BeamTracer {
     cutter: Cutter,
     stabber: ConvexStabber,
     programs_before: u64,
-    n_lines: u64,
-    n_beams: u64,
+    counted: ConvexCounters,
     beams: Vec<Beam>,
     n_beams_used: usize,
     waiting: Vec<u32>,
@@ -81,8 +80,7 @@ impl BeamTracer {
             cutter: Cutter::new(gates.largest),
             stabber: ConvexStabber::new(ONLY_LINES),
             programs_before: 0,
-            n_lines: 0,
-            n_beams: 0,
+            counted: ConvexCounters::default(),
             beams: Vec::new(),
             n_beams_used: 0,
             waiting: Vec::new(),
@@ -100,15 +98,9 @@ impl BeamTracer {
     /// What was done since this was last asked.
     pub(super) fn take_counters(&mut self) -> ConvexCounters {
         let programs = self.stabber.counters().n_programs;
-        let counters = ConvexCounters {
-            clips: std::mem::take(&mut self.cutter.clips),
-            lines: std::mem::take(&mut self.n_lines),
-            programs: programs - self.programs_before,
-            beams: std::mem::take(&mut self.n_beams),
-            sequences: 0,
-        };
-        self.programs_before = programs;
-        counters
+        self.counted.programs = programs - std::mem::replace(&mut self.programs_before, programs);
+        self.counted.clips = std::mem::take(&mut self.cutter.clips);
+        std::mem::take(&mut self.counted)
     }
 
     /// Looks through the gate `source` for the cells in `in_doubt`. Row `g` of `through` has the cells that may be
@@ -168,7 +160,7 @@ impl BeamTracer {
         let mut wanted = std::mem::take(&mut self.followed);
         wanted.set_common(looked_for, in_doubt, in_doubt);
         if !wanted.is_empty() {
-            self.n_beams += 1;
+            self.counted.beams += 1;
             let meets = self.find_planes(gates, source, beam);
             drop_hidden(&self.planes, gates, self.cutter.eps, &mut wanted);
             if meets && !wanted.is_empty() {
@@ -278,7 +270,7 @@ impl BeamTracer {
             Some(beam) if self.beams[beam as usize].gate == source => (first.center, middle(part)),
             Some(_) => (middle(&self.source), middle(part)),
         };
-        self.n_lines += 1;
+        self.counted.lines += 1;
         gates.chain(source, start, unit(sub(end, start)), &mut self.chain);
         if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
             self.chain.clear();
@@ -287,7 +279,7 @@ impl BeamTracer {
             let hint = Line3::through(start, end);
             if let Stabbing3::Visible(line) = self.stabber.stab(&shapes, hint.as_ref()) {
                 // Followed on, it may pass more; where rounding could matter, it is what was decided exactly.
-                self.n_lines += 1;
+                self.counted.lines += 1;
                 gates.chain(source, line.a, unit(sub(line.b, line.a)), &mut self.chain);
                 if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
                     self.chain.clone_from(&self.sequence);

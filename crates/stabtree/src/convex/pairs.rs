@@ -59,8 +59,7 @@ pub(super) struct SequenceTracer {
     cutter: Cutter,
     stabber: ConvexStabber,
     programs_before: u64,
-    n_lines: u64,
-    n_sequences: u64,
+    counted: ConvexCounters,
     levels: Vec<Level>,
     planes: Vec<Plane>,
     chain: Vec<u32>,
@@ -80,8 +79,7 @@ impl SequenceTracer {
             cutter: Cutter::new(gates.largest),
             stabber: ConvexStabber::new(StabLimits::default()),
             programs_before: 0,
-            n_lines: 0,
-            n_sequences: 0,
+            counted: ConvexCounters::default(),
             levels: Vec::new(),
             planes: Vec::new(),
             chain: Vec::new(),
@@ -97,15 +95,9 @@ impl SequenceTracer {
     /// What was done since this was last asked.
     pub(super) fn take_counters(&mut self) -> ConvexCounters {
         let programs = self.stabber.counters().n_programs;
-        let counters = ConvexCounters {
-            clips: std::mem::take(&mut self.cutter.clips),
-            lines: std::mem::take(&mut self.n_lines),
-            programs: programs - self.programs_before,
-            beams: 0,
-            sequences: std::mem::take(&mut self.n_sequences),
-        };
-        self.programs_before = programs;
-        counters
+        self.counted.programs = programs - std::mem::replace(&mut self.programs_before, programs);
+        self.counted.clips = std::mem::take(&mut self.cutter.clips);
+        std::mem::take(&mut self.counted)
     }
 
     /// Decides whether cell `a` sees cell `b`, another one. Row `g` of `through` has the cells that may be seen
@@ -151,10 +143,10 @@ impl SequenceTracer {
         let n_planes = self.planes.len();
         let mut found = false;
         if !self.is_learnt(depth + 1, pair.goal) && self.narrow(gates, depth) {
-            let (first, mut has_asked) = (self.n_sequences, false);
+            let (first, mut has_asked) = (self.counted.sequences, false);
             for &exit in gates.exits(gates.get(self.levels[depth].gate).to) {
                 // Where much lies behind a sequence, it is asked whether its lines lead to the goal at all.
-                if !has_asked && self.n_sequences > first + WORTH_ASKING {
+                if !has_asked && self.counted.sequences > first + WORTH_ASKING {
                     has_asked = true;
                     found = self.ask(gates, depth, Some(pair.goal));
                 }
@@ -238,7 +230,7 @@ impl SequenceTracer {
                 return false;
             }
         }
-        self.n_sequences += 1;
+        self.counted.sequences += 1;
         true
     }
 
@@ -256,7 +248,7 @@ impl SequenceTracer {
         match self.stabber.stab(&shapes, hint.as_ref()) {
             Stabbing3::Visible(line) => {
                 // Followed on, it may pass more; where rounding could matter, it is what was decided exactly.
-                self.n_lines += 1;
+                self.counted.lines += 1;
                 gates.chain(sequence[0], line.a, unit(sub(line.b, line.a)), &mut self.chain);
                 if self.chain.contains(&sequence[sequence.len() - 1]) {
                     return true;
