@@ -32,8 +32,6 @@ fn house() -> TableParts {
         rows.set(b, a, true);
     }
     TableParts {
-        dimension: 2,
-        objects_seen: None,
         locator: Locator::build(&bounds, 2),
         cells,
         portals: vec![door(0, 0.0), door(1, 3.0), door(2, 0.0)],
@@ -41,6 +39,7 @@ fn house() -> TableParts {
         objects: vec![ObjectRecord { name: "lamp".to_owned(), min: [14.0, 1.0, 0.0], max: [15.0, 2.0, 0.0] }],
         cell_objects: vec![vec![], vec![], vec![], vec![0]],
         info: vec![("source".to_owned(), "by hand".to_owned())],
+        ..TableParts::empty(2)
     }
 }
 

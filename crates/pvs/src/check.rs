@@ -1,7 +1,7 @@
 //! What must be true of a table's parts.
 
-use crate::parts::{CellRecord, ObjectRecord, PortalRecord, TableParts};
-use crate::{BitMatrix, CellId, LocatorError, side};
+use crate::parts::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord, TableParts};
+use crate::{BitMatrix, CellId, LocatorError, PlaneError, StabError, side};
 
 /// A kind of thing with coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,6 +14,8 @@ pub enum Item {
     Portal,
     /// An object's box.
     Object,
+    /// A part of a mirror.
+    Mirror,
 }
 
 impl std::fmt::Display for Item {
@@ -23,6 +25,7 @@ impl std::fmt::Display for Item {
             Self::Polygon => "the polygon of cell",
             Self::Portal => "portal",
             Self::Object => "object",
+            Self::Mirror => "mirror",
         })
     }
 }
@@ -175,6 +178,36 @@ pub enum TableError {
         /// The object.
         object: u32,
     },
+    /// Numbers of polygons, but not one for each object.
+    #[error("{n} numbers of polygons do not fit {n_objects} objects")]
+    ObjectPolygons {
+        /// Number of numbers.
+        n: usize,
+        /// Number of objects.
+        n_objects: usize,
+    },
+    /// A mirror in a cell that does not exist.
+    #[error("mirror {mirror} is in cell {cell}, which does not exist")]
+    MirrorCell {
+        /// The part of a mirror.
+        mirror: usize,
+        /// The cell.
+        cell: CellId,
+    },
+    /// A mirror with the wrong number of points.
+    #[error("mirror {mirror} cannot have {n} points")]
+    MirrorPoints {
+        /// The part of a mirror.
+        mirror: usize,
+        /// Number of points.
+        n: usize,
+    },
+    /// The plane tree is wrong.
+    #[error(transparent)]
+    Planes(#[from] PlaneError),
+    /// The stab trees are wrong.
+    #[error(transparent)]
+    Stab(#[from] StabError),
     /// The locator is wrong.
     #[error(transparent)]
     Locator(#[from] LocatorError),
@@ -199,7 +232,10 @@ impl TableParts {
         self.check_rows()?;
         self.check_objects()?;
         self.objects_seen.as_ref().map_or(Ok(()), |seen| self.check_seen(seen))?;
+        self.mirrors.iter().enumerate().try_for_each(|(i, mirror)| self.check_mirror(i, mirror))?;
         self.locator.check(&self.cell_bounds(), self.dimension)?;
+        self.planes.as_ref().map_or(Ok(()), |planes| planes.check(self.cells.len(), self.dimension))?;
+        self.stab.as_ref().map_or(Ok(()), |stab| stab.check(&self.portals, self.cells.len()))?;
         match self.info.windows(2).position(|pair| pair[0].0 >= pair[1].0) {
             Some(i) => Err(TableError::InfoOrder(i + 1)),
             None => Ok(()),
@@ -215,6 +251,7 @@ impl TableParts {
             (Item::Polygon, corners),
             (Item::Portal, self.portals.len()),
             (Item::Object, self.objects.len().max(touches)),
+            (Item::Mirror, self.mirrors.len()),
         ];
         if let Some(&(item, n)) = counts.iter().find(|(_, n)| u32::try_from(*n).is_err()) {
             return Err(TableError::TooMany { item, n });
@@ -266,11 +303,26 @@ impl TableParts {
             return Err(TableError::PortalLoop { portal: index, cell: portal.cells[0] });
         }
         let n = portal.points.len();
-        let fits = if self.dimension == 2 { n == 2 } else { n >= 3 && u32::try_from(n).is_ok() };
-        if !fits {
+        if !self.outlines(n) {
             return Err(TableError::PortalPoints { portal: index, n });
         }
         self.check_points(Item::Portal, index, &portal.points)
+    }
+
+    /// Whether `n` points can go round something flat.
+    fn outlines(&self, n: usize) -> bool {
+        if self.dimension == 2 { n == 2 } else { n >= 3 && u32::try_from(n).is_ok() }
+    }
+
+    fn check_mirror(&self, index: usize, mirror: &MirrorRecord) -> Result<(), TableError> {
+        if mirror.cell.idx() >= self.cells.len() {
+            return Err(TableError::MirrorCell { mirror: index, cell: mirror.cell });
+        }
+        let n = mirror.points.len();
+        if !self.outlines(n) {
+            return Err(TableError::MirrorPoints { mirror: index, n });
+        }
+        self.check_points(Item::Mirror, index, &mirror.points)
     }
 
     fn check_rows(&self) -> Result<(), TableError> {
@@ -307,6 +359,10 @@ impl TableParts {
     fn check_objects(&self) -> Result<(), TableError> {
         for (index, ObjectRecord { min, max, .. }) in self.objects.iter().enumerate() {
             self.check_box(Item::Object, index, min, max)?;
+        }
+        let n_objects = self.objects.len();
+        if !self.object_polygons.is_empty() && self.object_polygons.len() != n_objects {
+            return Err(TableError::ObjectPolygons { n: self.object_polygons.len(), n_objects });
         }
         let (n, n_cells) = (self.cell_objects.len(), self.cells.len());
         if n != n_cells {

@@ -1,6 +1,6 @@
 //! What a table is made of.
 
-use crate::{BitMatrix, CellId, Locator};
+use crate::{BitMatrix, CellId, Locator, PlaneTree, StabTrees};
 
 /// A convex cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,21 @@ pub struct ObjectRecord {
     pub max: [f64; 3],
 }
 
+/// The part of a mirror that lies in a cell or on its border.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MirrorRecord {
+    /// The closed cell that the part lies in or on; it reflects what comes from there.
+    pub cell: CellId,
+    /// The mirror, of which there may be parts in several cells; not checked.
+    pub face: u32,
+    /// Its corners in scene units. In a plane (z is 0) two: the left end, then the right end, as seen
+    /// looking from the cell towards the mirror. In space at least three, counter-clockwise as seen so.
+    pub points: Vec<[f64; 3]>,
+}
+
 /// The parts of a [`crate::Table`], not yet checked.
+///
+/// [`TableParts::empty`] has the values of what a table need not have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableParts {
     /// 2 for a plane, 3 for space.
@@ -57,13 +71,40 @@ pub struct TableParts {
     /// Bit `o` of row `i`: cell `i` may see object `o`. Cells by objects; each cell sees the objects that
     /// touch it. `None`: a cell sees the objects that touch any cell that it sees.
     pub objects_seen: Option<BitMatrix>,
+    /// Number of polygons of each object, in the order of `objects`. Empty: not known.
+    pub object_polygons: Vec<u32>,
+    /// The parts of mirrors; may be empty.
+    pub mirrors: Vec<MirrorRecord>,
     /// Finds the cells at a point; complete for the cells' boxes.
     pub locator: Locator,
+    /// In space: says which cells a point is in, instead of the cells' boxes. `None`: the boxes do.
+    pub planes: Option<PlaneTree>,
+    /// The stab trees of all cells, over the portals of the table; `None`: not known.
+    pub stab: Option<StabTrees>,
     /// Free keys and values (source, method, options), with strictly ascending keys.
     pub info: Vec<(String, String)>,
 }
 
 impl TableParts {
+    /// The parts of a table without anything, in a plane (2) or in space (3): to be filled.
+    pub fn empty(dimension: u8) -> Self {
+        Self {
+            dimension,
+            cells: Vec::new(),
+            portals: Vec::new(),
+            rows: BitMatrix::default(),
+            objects: Vec::new(),
+            cell_objects: Vec::new(),
+            objects_seen: None,
+            object_polygons: Vec::new(),
+            mirrors: Vec::new(),
+            locator: Locator::default(),
+            planes: None,
+            stab: None,
+            info: Vec::new(),
+        }
+    }
+
     /// The boxes around the cells, as [`Locator::build`] takes them.
     pub fn cell_bounds(&self) -> Vec<([f64; 3], [f64; 3])> {
         self.cells.iter().map(|cell| (cell.min, cell.max)).collect()

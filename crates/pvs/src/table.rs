@@ -1,7 +1,7 @@
 //! The table and what it can be asked.
 
-use crate::parts::{CellRecord, ObjectRecord, PortalRecord, TableParts};
-use crate::{CellId, CellSet, Locator, TableError, bits, side};
+use crate::parts::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord, TableParts};
+use crate::{CellId, CellSet, Locator, PlaneTree, StabTrees, TableError, bits, side};
 
 /// Which cells of a scene can be seen from which: checked, and never changed.
 ///
@@ -32,14 +32,16 @@ impl Table {
         self.parts
     }
 
-    /// The same table without portals and polygons: smaller, and all that a game needs.
+    /// The same table without portals, stab trees and polygons: smaller, and enough for a game that asks
+    /// by cell or by position.
     ///
     /// The cells become their boxes, so a point may be found in more cells than before, and never in
-    /// fewer. Rows, objects and ids stay.
+    /// fewer. Rows, objects, mirrors, planes and ids stay.
     #[must_use]
     pub fn strip_geometry(&self) -> Self {
         let mut parts = self.parts.clone();
         parts.portals.clear();
+        parts.stab = None;
         parts.cells.iter_mut().for_each(|cell| cell.polygon.clear());
         Self { parts }
     }
@@ -72,6 +74,31 @@ impl Table {
     /// What finds the cells at a point.
     pub fn locator(&self) -> &Locator {
         &self.parts.locator
+    }
+
+    /// Number of polygons of an object; 1 if the table does not know.
+    ///
+    /// # Panics
+    /// If the table has no such object.
+    pub fn polygons_of(&self, object: u32) -> u32 {
+        let n_objects = self.parts.objects.len();
+        assert!((object as usize) < n_objects, "object {object} of {n_objects}");
+        self.parts.object_polygons.get(object as usize).copied().unwrap_or(1)
+    }
+
+    /// The parts of mirrors, in the order in which they were given.
+    pub fn mirrors(&self) -> &[MirrorRecord] {
+        &self.parts.mirrors
+    }
+
+    /// What says instead of the cells' boxes which cells a point is in, if there is such a thing.
+    pub fn planes(&self) -> Option<&PlaneTree> {
+        self.parts.planes.as_ref()
+    }
+
+    /// The stab trees of all cells, if the table has them.
+    pub fn stab(&self) -> Option<&StabTrees> {
+        self.parts.stab.as_ref()
     }
 
     /// Free keys and values, by ascending key.
@@ -158,27 +185,44 @@ impl Table {
         objects
     }
 
-    /// Every cell whose closed polygon (or box, if it has no polygon) contains the point `p`,
-    /// ascending; none if `p` is outside the scene or has a NaN.
+    /// Every cell that contains the point `p`, ascending; none if `p` is outside the scene or has a
+    /// coordinate that is not finite.
     ///
-    /// A point on the border between cells is in all of them: a viewer there sees what any of them
-    /// sees. Decided in plain doubles with an error bound that errs towards "inside": a point within
-    /// rounding of a border may be found in cells on both sides of it, never in none of them.
-    /// O(log n + candidates).
+    /// A cell contains the points of its closed polygon, or of its box if it has no polygon. If the table
+    /// has a [`PlaneTree`], that alone decides. A point on the border between cells is in all of them: a
+    /// viewer there sees what any of them sees. Decided in plain doubles with an error bound that errs
+    /// towards "inside": a point within rounding of a border may be found in cells on both sides of it,
+    /// never in none of them. O(log n + candidates), with planes O(depth of the tree).
     ///
     /// # Panics
     /// If `p` does not have [`Table::dimension`] coordinates (scene units).
     pub fn locate(&self, p: &[f64]) -> Vec<CellId> {
-        let point = self.point(p);
         let mut found = Vec::new();
-        self.parts.locator.for_each_candidate(point, |id| {
-            if self.may_contain(&self.parts.cells[id.idx()], point) {
-                found.push(id);
-            }
-        });
+        self.locate_into(p, &mut Vec::new(), &mut found);
+        found
+    }
+
+    /// As [`Table::locate`], into `found`, which is cleared first; `pending` is scratch. Who keeps the two
+    /// asks without any new memory after a while.
+    ///
+    /// # Panics
+    /// As [`Table::locate`].
+    pub fn locate_into(&self, p: &[f64], pending: &mut Vec<u32>, found: &mut Vec<CellId>) {
+        let point = self.point(p);
+        found.clear();
+        if !point.iter().all(|x| x.is_finite()) {
+            return;
+        }
+        match &self.parts.planes {
+            Some(planes) => planes.for_each_cell(point, pending, |id| found.push(id)),
+            None => self.parts.locator.for_each_candidate_in(point, pending, |id| {
+                if self.may_contain(&self.parts.cells[id.idx()], point) {
+                    found.push(id);
+                }
+            }),
+        }
         found.sort_unstable();
         found.dedup();
-        found
     }
 
     /// What a viewer at `p` may see: the union of the rows of all cells that contain `p`. Empty if `p`

@@ -1,7 +1,7 @@
 //! Header, section table, checksums: everything about the file but what the sections mean.
 
 use super::error::{DecodeError, DecodeErrorKind as Kind, SectionId};
-use super::{ENTRY, FIXED, KNOWN, MAGIC, MAJOR, MINOR, OPTIONAL, SEEN};
+use super::{ENTRY, FIXED, KNOWN, MAGIC, MAJOR, OPTIONAL};
 use std::collections::BTreeSet;
 
 /// A section to be written.
@@ -20,7 +20,7 @@ pub(super) struct Section<'a> {
 
 /// Whether this version has the section; if so, whether as an optional one.
 fn known(id: SectionId) -> Option<bool> {
-    KNOWN.iter().find(|(known, _)| *known == id).map(|&(_, optional)| optional)
+    KNOWN.iter().find(|(known, ..)| *known == id).map(|&(_, optional, _)| optional)
 }
 
 /// Writes the sections behind a header.
@@ -30,8 +30,8 @@ pub(super) fn write(sections: &[Payload]) -> Vec<u8> {
     let mut out = Vec::with_capacity(total);
     out.extend(MAGIC);
     out.extend(MAJOR.to_le_bytes());
-    // The least version that has all the sections, so that files without the new one stay as they were.
-    let minor = if sections.iter().any(|s| s.id == SEEN) { MINOR } else { 0 };
+    let written = |id: SectionId| sections.iter().any(|section| section.id == id);
+    let minor = KNOWN.iter().filter(|known| written(known.0)).map(|known| known.2).max().unwrap_or(0);
     out.extend(minor.to_le_bytes());
     out.extend((sections.len() as u32).to_le_bytes());
     out.extend((total as u64).to_le_bytes());

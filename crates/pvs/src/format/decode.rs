@@ -3,9 +3,12 @@
 use super::container::{self, Section};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::Reader;
-use super::{CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, OBJECTS, POLYGONS, PORTALS, ROWS, SEEN, SectionId, n_row_words};
+use super::{
+    CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN,
+    STAB, SectionId, n_row_words, planes, stab,
+};
 use crate::locator::Node;
-use crate::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, ObjectRecord, PortalRecord};
+use crate::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, MirrorRecord, ObjectRecord, PortalRecord};
 use crate::{Table, TableError, TableParts};
 
 impl Table {
@@ -26,7 +29,19 @@ impl Table {
         let portals = sections.find(PORTALS).map_or(Ok(Vec::new()), |s| read(s, |r| portals(r, d)))?;
         let objects = read(sections.need(OBJECTS)?, |r| objects(r, d))?;
         let seen = sections.find(SEEN).map(|s| read(s, |r| whole_rows(r, cells.len(), objects.len())));
+        let mirrors = sections.find(MIRRORS).map_or(Ok(Vec::new()), |s| read(s, |r| mirrors(r, d)))?;
+        let polygons_of = |s| read(s, |r: &mut Reader<'_>| r.u32s(objects.len() as u64));
+        let object_polygons = sections.find(OBJECT_POLYGONS).map_or(Ok(Vec::new()), polygons_of)?;
+        // Stab trees are told by the portals of cells, so these must be there.
+        if let (Some(_), Some(error)) = (sections.find(STAB), unknown_cell(&portals, cells.len())) {
+            return Err(sections.blame(error));
+        }
+        let stab = sections.find(STAB).map(|s| read(s, |r| stab::parse(r, &portals, cells.len()))).transpose()?;
         let parts = TableParts {
+            mirrors,
+            object_polygons,
+            planes: sections.find(PLANES).map(planes::parse).transpose()?,
+            stab,
             dimension,
             portals,
             rows: read(sections.need(ROWS)?, |r| rows(r, cells.len()))?,
@@ -63,6 +78,12 @@ impl<'a> Sections<'a> {
     }
 }
 
+/// The first portal that leads to a cell that does not exist, as an error.
+fn unknown_cell(portals: &[PortalRecord], n_cells: usize) -> Option<TableError> {
+    let mut ends = portals.iter().enumerate().flat_map(|(i, portal)| portal.cells.map(|cell| (i, cell)));
+    ends.find(|(_, cell)| cell.idx() >= n_cells).map(|(portal, cell)| TableError::PortalCell { portal, cell })
+}
+
 fn section_of(error: &TableError) -> SectionId {
     match error {
         TableError::TooMany { item, .. }
@@ -73,6 +94,7 @@ fn section_of(error: &TableError) -> SectionId {
             Item::Polygon => POLYGONS,
             Item::Portal => PORTALS,
             Item::Object => OBJECTS,
+            Item::Mirror => MIRRORS,
         },
         TableError::Dimension(_) => CELLS,
         TableError::Corners { .. } | TableError::NotConvex { .. } | TableError::OutsideBox { .. } => POLYGONS,
@@ -83,13 +105,17 @@ fn section_of(error: &TableError) -> SectionId {
         | TableError::NotSymmetric(_) => ROWS,
         TableError::CellObjects { .. } | TableError::ObjectOrder(_) | TableError::UnknownObject { .. } => CELL_OBJECTS,
         TableError::SeenShape { .. } | TableError::SeenTail(_) | TableError::Unseen { .. } => SEEN,
+        TableError::ObjectPolygons { .. } => OBJECT_POLYGONS,
+        TableError::MirrorCell { .. } | TableError::MirrorPoints { .. } => MIRRORS,
+        TableError::Planes(_) => PLANES,
+        TableError::Stab(_) => STAB,
         TableError::Locator(_) => LOCATOR,
         TableError::InfoOrder(_) | TableError::TooLong(_) => INFO,
     }
 }
 
 /// Reads a whole section.
-fn read<'a, T>(
+pub(super) fn read<'a, T>(
     section: Section<'a>,
     parse: impl FnOnce(&mut Reader<'a>) -> Result<T, DecodeError>,
 ) -> Result<T, DecodeError> {
@@ -148,6 +174,18 @@ fn portals(r: &mut Reader<'_>, d: usize) -> Result<Vec<PortalRecord>, DecodeErro
         portals.push(PortalRecord { cells, sides, points });
     }
     Ok(portals)
+}
+
+fn mirrors(r: &mut Reader<'_>, d: usize) -> Result<Vec<MirrorRecord>, DecodeError> {
+    let n = r.count(12)?;
+    let mut mirrors = Vec::with_capacity(n);
+    for _ in 0..n {
+        let (cell, face) = (CellId(r.u32()?), r.u32()?);
+        let n_points = r.count(8 * d)?;
+        let points = (0..n_points).map(|_| r.point(d)).collect::<Result<_, _>>()?;
+        mirrors.push(MirrorRecord { cell, face, points });
+    }
+    Ok(mirrors)
 }
 
 fn rows(r: &mut Reader<'_>, n: usize) -> Result<BitMatrix, DecodeError> {

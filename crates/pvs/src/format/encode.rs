@@ -1,14 +1,17 @@
 //! Writes a table.
 
 use super::container::{self, Payload};
-use super::{CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, OBJECTS, POLYGONS, PORTALS, ROWS, SEEN, SectionId};
+use super::{
+    CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN,
+    STAB, SectionId, planes, stab,
+};
 use crate::locator::Node;
-use crate::{BitMatrix, CellRecord, ObjectRecord, PortalRecord, Table, TableParts};
+use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectRecord, PortalRecord, Table, TableParts};
 
 impl Table {
     /// The table as the bytes of a `.pvs` file, the same on every machine. O(size).
     ///
-    /// Sections for polygons, portals and rows of objects are written only if there are any.
+    /// Optional sections are written only if there is something in them.
     pub fn to_bytes(&self) -> Vec<u8> {
         let parts = self.parts();
         let d = usize::from(parts.dimension);
@@ -26,6 +29,18 @@ impl Table {
         if let Some(seen) = &parts.objects_seen {
             sections.push(section(SEEN, |out| whole_rows(out, seen)));
         }
+        if !parts.mirrors.is_empty() {
+            sections.push(section(MIRRORS, |out| mirrors(out, &parts.mirrors, d)));
+        }
+        if !parts.object_polygons.is_empty() {
+            sections.push(section(OBJECT_POLYGONS, |out| parts.object_polygons.iter().for_each(|&n| out.u32(n))));
+        }
+        if let Some(planes) = &parts.planes {
+            sections.push(section(PLANES, |out| planes::write(out, planes)));
+        }
+        if let Some(trees) = &parts.stab {
+            sections.push(section(STAB, |out| stab::write(out, trees, &parts.portals)));
+        }
         sections.push(section(INFO, |out| info(out, &parts.info)));
         container::write(&sections)
     }
@@ -37,20 +52,30 @@ fn section(id: SectionId, fill: impl FnOnce(&mut Writer)) -> Payload {
     Payload { id, bytes: out.0 }
 }
 
+/// The bytes of a section to be.
 #[derive(Default)]
-struct Writer(Vec<u8>);
+pub(super) struct Writer(pub(super) Vec<u8>);
 
 impl Writer {
-    fn u32(&mut self, x: u32) {
+    pub(super) fn u32(&mut self, x: u32) {
         self.0.extend(x.to_le_bytes());
     }
 
     /// A count; [`Table::new`] has checked that it fits.
-    fn count(&mut self, n: usize) {
+    pub(super) fn count(&mut self, n: usize) {
         self.u32(u32::try_from(n).expect("a checked table counts with 32 bits"));
     }
 
-    fn floats(&mut self, xs: &[f64]) {
+    /// Seven bits in a byte, the lowest first; the high bit says that another byte follows.
+    pub(super) fn varint(&mut self, mut x: u64) {
+        while x >= 0x80 {
+            self.0.push(x as u8 | 0x80);
+            x >>= 7;
+        }
+        self.0.push(x as u8);
+    }
+
+    pub(super) fn floats(&mut self, xs: &[f64]) {
         xs.iter().for_each(|x| self.0.extend(x.to_le_bytes()));
     }
 
@@ -81,6 +106,16 @@ fn portals(out: &mut Writer, portals: &[PortalRecord], d: usize) {
     out.count(portals.len());
     for PortalRecord { cells, sides, points } in portals {
         [cells[0].0, cells[1].0, sides[0], sides[1]].into_iter().for_each(|x| out.u32(x));
+        out.count(points.len());
+        points.iter().for_each(|p| out.floats(&p[..d]));
+    }
+}
+
+fn mirrors(out: &mut Writer, mirrors: &[MirrorRecord], d: usize) {
+    out.count(mirrors.len());
+    for MirrorRecord { cell, face, points } in mirrors {
+        out.u32(cell.0);
+        out.u32(*face);
         out.count(points.len());
         points.iter().for_each(|p| out.floats(&p[..d]));
     }

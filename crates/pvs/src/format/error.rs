@@ -132,6 +132,15 @@ pub enum DecodeErrorKind {
         /// The row.
         row: u32,
     },
+    /// A number that is longer than it need be, or does not fit.
+    #[error("the number is not written as short as it can be, or is too large")]
+    Number,
+    /// A reference to a node of stab trees that was not there yet.
+    #[error("the node of the stab trees is not there")]
+    NoNode,
+    /// Stab trees that are not written in the one way that they can be.
+    #[error("the stab trees are not in order")]
+    StabOrder,
     /// The bytes say clearly what no table can be; the offset is that of the section.
     #[error(transparent)]
     Table(#[from] TableError),

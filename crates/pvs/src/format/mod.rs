@@ -32,17 +32,52 @@
 //! | `OBJS` | number of objects; for each: min (d), max (d), number of bytes of the name, the name in UTF-8 |
 //! | `COBJ` | for each cell its number of objects; then the objects (`u32`) of all cells |
 //! | `SEEN`, optional | for each cell, `u64` words of the bits of the objects that it sees |
+//! | `MIRR`, optional | number of parts of mirrors; for each: cell, face (`u32`), number of points, points (d each) |
+//! | `OPOL`, optional | for each object its number of polygons (`u32`) |
+//! | `PLNS`, optional, only in space | slack (`f64`), number of nodes; for each: normal (3), offset, two children (`u32`): 0 for nothing, the number of a node, or 2^31 plus a cell |
+//! | `STAB`, optional | the stab trees, see below |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
 //! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are
 //! their boxes, a missing `PORT` that there are no portals, a missing `SEEN` (new in 1.1) that a cell sees
-//! the objects that touch any cell that it sees.
+//! the objects that touch any cell that it sees. Of what is new in 1.2, a missing `MIRR` means that there are
+//! no mirrors, a missing `OPOL` that the numbers of polygons are not known, a missing `PLNS` that the cells'
+//! outlines say where a point is, a missing `STAB` that the stab trees are not known.
+//!
+//! # Stab trees
+//!
+//! The graph of [`crate::StabTrees`], in its order, which is the only one that is read. A *varint* is a number of up to
+//! 64 bits in bytes of seven, the lowest first; the high bit says that another byte follows; no longer than it
+//! need be. A *gate* is twice the number of a portal, and 1 more if it is crossed from its second cell into its
+//! first; the *entries* of a cell are the gates into it, ascending. All numbers are varints.
+//!
+//! ```text
+//! for each level of the graph, the nodes without children first:
+//!     number of groups, at least 1
+//!     for each group, ascending by its key, twice the cell that its nodes lead into, plus 1 if they are open:
+//!         key - key of the group before - 1, or the key
+//!         for each list of children in the group, ascending:
+//!             header, children
+//! 0
+//! for each cell: twice the number of roots, plus 1 if it is open; roots
+//! ```
+//!
+//! A header says which nodes have the list. With at most 16 entries it is one number: bit 0 says whether
+//! another list follows in the group, bit `1 + i` whether there is a node that crosses entry `i`, the rest is
+//! the number of children, less 1 but for the first level. With more entries it is several: the number of
+//! children (less 1 likewise) above the bit for another list; the number of nodes; and for each how many
+//! entries are passed over since the one before.
+//!
+//! Children, and roots, are nodes out of one cell. Of the nodes out of this cell on the levels before (for
+//! roots, on all) they are told from the last to the first, each as the number of nodes that are passed over.
 
 mod container;
 mod decode;
 mod encode;
 mod error;
+mod planes;
 mod reader;
+mod stab;
 
 pub use error::{DecodeError, DecodeErrorKind, SectionId};
 
@@ -53,8 +88,9 @@ pub use error::{DecodeError, DecodeErrorKind, SectionId};
 pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 /// Major version that this crate writes, and the largest that it reads.
 pub const MAJOR: u16 = 1;
-/// Largest minor version that this crate writes: 1 if there are rows of objects, else 0.
-pub const MINOR: u16 = 1;
+/// Largest minor version that this crate writes. It writes the least that has all the sections of a
+/// table, so that files without the new ones stay as they were.
+pub const MINOR: u16 = 2;
 
 const CELLS: SectionId = SectionId(*b"CELL");
 const POLYGONS: SectionId = SectionId(*b"POLY");
@@ -64,19 +100,27 @@ const LOCATOR: SectionId = SectionId(*b"LOCA");
 const OBJECTS: SectionId = SectionId(*b"OBJS");
 const CELL_OBJECTS: SectionId = SectionId(*b"COBJ");
 const SEEN: SectionId = SectionId(*b"SEEN");
+const MIRRORS: SectionId = SectionId(*b"MIRR");
+const OBJECT_POLYGONS: SectionId = SectionId(*b"OPOL");
+const PLANES: SectionId = SectionId(*b"PLNS");
+const STAB: SectionId = SectionId(*b"STAB");
 const INFO: SectionId = SectionId(*b"INFO");
 
-/// The sections of this version, and whether they are optional.
-const KNOWN: [(SectionId, bool); 9] = [
-    (CELLS, false),
-    (POLYGONS, true),
-    (PORTALS, true),
-    (ROWS, false),
-    (LOCATOR, false),
-    (OBJECTS, false),
-    (CELL_OBJECTS, false),
-    (SEEN, true),
-    (INFO, false),
+/// The sections of this version, whether they are optional, and the minor version that brought them.
+const KNOWN: [(SectionId, bool, u16); 13] = [
+    (CELLS, false, 0),
+    (POLYGONS, true, 0),
+    (PORTALS, true, 0),
+    (ROWS, false, 0),
+    (LOCATOR, false, 0),
+    (OBJECTS, false, 0),
+    (CELL_OBJECTS, false, 0),
+    (SEEN, true, 1),
+    (MIRRORS, true, 2),
+    (OBJECT_POLYGONS, true, 2),
+    (PLANES, true, 2),
+    (STAB, true, MINOR),
+    (INFO, false, 0),
 ];
 
 /// The first field of a leaf, where an inner node has its axis.

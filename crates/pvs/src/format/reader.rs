@@ -43,6 +43,24 @@ impl<'a> Reader<'a> {
         Ok(u64::from_le_bytes(array(self.take(8)?, 0)))
     }
 
+    /// A number as bytes of seven bits, the lowest first; refused if it is longer than it need be.
+    pub(super) fn varint(&mut self) -> Result<u64, DecodeError> {
+        let mut x = 0u64;
+        for k in 0..10 {
+            let byte = self.take(1)?[0];
+            let bits = u64::from(byte & 0x7f);
+            let fits = bits << (7 * k) >> (7 * k) == bits;
+            if !fits || (k > 0 && byte == 0) {
+                return Err(self.fail(k + 1, Kind::Number));
+            }
+            x |= bits << (7 * k);
+            if byte & 0x80 == 0 {
+                return Ok(x);
+            }
+        }
+        Err(self.fail(10, Kind::Number))
+    }
+
     pub(super) fn f64(&mut self) -> Result<f64, DecodeError> {
         Ok(f64::from_bits(self.u64()?))
     }

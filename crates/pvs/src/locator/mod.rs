@@ -214,8 +214,14 @@ impl Locator {
     /// Calls `visit` with every cell listed in a leaf whose closed region contains `p`; a cell comes
     /// more than once if `p` lies on a split. O(depth), if `p` lies on no split.
     #[inline]
-    pub fn for_each_candidate(&self, p: [f64; 3], mut visit: impl FnMut(CellId)) {
-        let mut pending: Vec<u32> = Vec::new();
+    pub fn for_each_candidate(&self, p: [f64; 3], visit: impl FnMut(CellId)) {
+        self.for_each_candidate_in(p, &mut Vec::new(), visit);
+    }
+
+    /// As [`Locator::for_each_candidate`], with the scratch given: no new memory after a while.
+    #[inline]
+    pub fn for_each_candidate_in(&self, p: [f64; 3], pending: &mut Vec<u32>, mut visit: impl FnMut(CellId)) {
+        pending.clear();
         let mut at = 0;
         loop {
             match self.nodes[at] {

@@ -1,6 +1,9 @@
 //! Tests of the table through its public interface.
 
 mod common;
+mod extras;
 mod format;
+mod planes;
 mod seen;
+mod stab;
 mod table;

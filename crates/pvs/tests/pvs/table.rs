@@ -132,15 +132,11 @@ fn small_house_answers() {
 fn empty_tables_are_tables() {
     for dimension in [2, 3] {
         let nothing = TableParts {
-            dimension,
             cells: vec![],
-            portals: vec![],
             rows: BitMatrix::default(),
-            objects: vec![],
             cell_objects: vec![],
-            objects_seen: None,
             locator: Locator::default(),
-            info: vec![],
+            ..TableParts::empty(dimension)
         };
         let table = Table::new(nothing).unwrap();
         assert_eq!(table.mean_visible_share(), 0.0);

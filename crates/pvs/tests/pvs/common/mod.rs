@@ -5,6 +5,7 @@ use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Porta
 use std::collections::BTreeMap;
 
 pub(crate) mod file;
+pub(crate) mod full;
 
 /// Four rooms in a row, doors alternating between the lower and the upper wall, a triangular closet
 /// without doors, a lamp and a point. Small, with every section and every kind of field.
@@ -33,7 +34,6 @@ pub(crate) fn rooms() -> TableParts {
     let inner = |axis, split, low, high| sightlines_pvs::LocatorNode::Inner { axis, split, low, high };
     let tree = [inner(0, 8.0, 1, 2), inner(1, 4.5, 3, 4), leaf(&[2, 3]), leaf(&[0, 1]), leaf(&[4])];
     TableParts {
-        dimension: 2,
         cells,
         portals: vec![door(0, 0.0), door(1, 3.0), door(2, 0.0)],
         rows,
@@ -42,9 +42,9 @@ pub(crate) fn rooms() -> TableParts {
             ObjectRecord { name: "Wächter".to_owned(), min: [15.0, 1.0, 0.0], max: [15.0, 1.0, 0.0] },
         ],
         cell_objects: vec![vec![0], vec![0], vec![], vec![1], vec![]],
-        objects_seen: None,
         locator: Locator::from_nodes(&tree).expect("a tree"),
         info: vec![pair("method", "by hand"), pair("source", "")],
+        ..TableParts::empty(2)
     }
 }
 
@@ -165,8 +165,6 @@ fn assemble(
     let touched = |bits: &u8| (0..objects.len() as u32).filter(|o| bits >> o & 1 == 1).collect();
     let bounds: Vec<_> = cells.iter().map(|cell| (cell.min, cell.max)).collect();
     TableParts {
-        dimension,
-        objects_seen: None,
         locator: Locator::build(&bounds, dimension),
         cells,
         portals,
@@ -174,6 +172,7 @@ fn assemble(
         cell_objects: touches.iter().map(touched).collect(),
         objects,
         info: info.into_iter().collect(),
+        ..TableParts::empty(dimension)
     }
 }
 

@@ -1,0 +1,270 @@
+//! What a table need not have: mirrors, numbers of polygons, planes and stab trees in files.
+
+use crate::common::assert_well_formed;
+use crate::common::file::{File, Part};
+use crate::common::full::{any_full_parts, villa, wedges};
+use crate::common::rooms;
+use proptest::prelude::*;
+use sightlines_pvs::{CellId, DecodeErrorKind as Kind, Item, MirrorRecord, Table, TableError, TableParts};
+
+proptest! {
+    #[test]
+    fn extras_round_trip_is_bit_identical(parts in any_full_parts()) {
+        let table = Table::new(parts).unwrap();
+        let bytes = table.to_bytes();
+        let read = Table::from_bytes(&bytes).unwrap();
+        prop_assert_eq!(&read, &table);
+        prop_assert_eq!(&read.to_bytes(), &bytes);
+        let bare = table.strip_geometry();
+        prop_assert_eq!((bare.mirrors(), bare.planes()), (table.mirrors(), table.planes()));
+        prop_assert!(bare.stab().is_none());
+        prop_assert_eq!(Table::from_bytes(&bare.to_bytes()).unwrap(), bare);
+        // The least version that has all that is there.
+        let parts = table.parts();
+        let new = parts.stab.is_some() || parts.planes.is_some() || !parts.mirrors.is_empty() || !parts.object_polygons.is_empty();
+        prop_assert_eq!(bytes[10], if new { 2 } else { 0 });
+    }
+
+    #[test]
+    fn extras_damage_is_an_error(parts in any_full_parts(), at in any::<prop::sample::Index>(), flip in 1u8..=255) {
+        let bytes = Table::new(parts).unwrap().to_bytes();
+        let at = at.index(bytes.len());
+        prop_assert!(Table::from_bytes(&bytes[..at]).is_err(), "cut to {} bytes", at);
+        let mut changed = bytes;
+        changed[at] ^= flip;
+        prop_assert!(Table::from_bytes(&changed).is_err(), "byte {} changed", at);
+    }
+
+    /// Bytes changed, removed or added in the new sections, with right checksums: no panic, and what is a
+    /// table after all is a good one. Stab trees have one way only to be written.
+    #[test]
+    fn extras_forgeries_are_errors_or_tables(
+        parts in any_full_parts(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0u8..6, any::<u8>()), 1..4),
+    ) {
+        let mut file = File::parse(&Table::new(parts).unwrap().to_bytes());
+        let new: Vec<usize> = (0..file.parts.len()).filter(|&i| is_new(&file.parts[i])).collect();
+        // Most have something new, the others pass untouched.
+        for (which, place, action, value) in changes.into_iter().filter(|_| !new.is_empty()) {
+            let bytes = &mut file.parts[new[which.index(new.len())]].bytes;
+            let at = place.index(bytes.len() + 1);
+            match action {
+                0 => bytes.truncate(at),
+                1 => bytes.insert(at, value),
+                2 if at < bytes.len() => drop(bytes.remove(at)),
+                3 if at < bytes.len() => bytes[at] ^= 1 << (value % 8),
+                _ if at < bytes.len() => bytes[at] = value,
+                _ => {}
+            }
+        }
+        if let Ok(table) = Table::from_bytes(&file.write()) {
+            assert_well_formed(&table);
+            let again = File::parse(&table.to_bytes());
+            let stab = |file: &File| file.parts.iter().find(|part| part.id == *b"STAB").cloned();
+            prop_assert_eq!(stab(&again), stab(&file));
+        }
+    }
+}
+
+fn is_new(part: &Part) -> bool {
+    [b"MIRR", b"OPOL", b"PLNS", b"STAB"].contains(&&part.id)
+}
+
+fn full() -> [Table; 2] {
+    [villa(), wedges()].map(|parts| Table::new(parts).unwrap())
+}
+
+/// Every strict prefix, and every byte changed into every other value.
+#[test]
+fn every_prefix_and_changed_byte_of_extras_is_an_error() {
+    for table in full() {
+        let mut bytes = table.to_bytes();
+        assert!((0..bytes.len()).all(|n| Table::from_bytes(&bytes[..n]).is_err()));
+        let mut n_tried = 0;
+        for at in 0..bytes.len() {
+            for flip in 1..=255 {
+                bytes[at] ^= flip;
+                assert!(Table::from_bytes(&bytes).is_err(), "byte {at} xor {flip}");
+                bytes[at] ^= flip;
+                n_tried += 1;
+            }
+        }
+        assert_eq!((n_tried, Table::from_bytes(&bytes)), (255 * bytes.len(), Ok(table)));
+    }
+}
+
+/// Every byte of the new sections, changed into every other value, with right checksums; and every length.
+#[test]
+fn every_forged_byte_of_extras_is_an_error_or_a_table() {
+    let (mut n_tables, mut n_errors) = (0, 0);
+    let mut try_file = |file: &File| {
+        let bytes = file.write();
+        match Table::from_bytes(&bytes) {
+            Ok(table) => {
+                assert_well_formed(&table);
+                assert_eq!(table.to_bytes(), bytes, "not written as it was read");
+                n_tables += 1;
+            }
+            Err(error) => {
+                assert!(error.offset <= bytes.len() as u64, "{error}");
+                n_errors += 1;
+            }
+        }
+    };
+    for table in full() {
+        let original = table.to_bytes();
+        let file = File::parse(&original);
+        assert_eq!(file.write(), original, "the files of these tests are right themselves");
+        for part in (0..file.parts.len()).filter(|&i| is_new(&file.parts[i])) {
+            for at in 0..file.parts[part].bytes.len() {
+                let mut forged = file.clone();
+                for flip in 1..=255 {
+                    forged.parts[part].bytes[at] = file.parts[part].bytes[at] ^ flip;
+                    try_file(&forged);
+                }
+                forged = file.clone();
+                forged.parts[part].bytes.truncate(at);
+                assert!(Table::from_bytes(&forged.write()).is_err(), "section cut to {at} bytes");
+            }
+        }
+    }
+    assert!(n_tables > 1000 && n_errors > 1000, "{n_tables} tables, {n_errors} errors");
+}
+
+/// Each optional section may go, but stab trees not without their portals.
+#[test]
+fn extras_may_go() {
+    let mut n_gone = 0;
+    for table in full() {
+        let file = File::parse(&table.to_bytes());
+        for i in (0..file.parts.len()).filter(|&i| file.parts[i].flags == 1) {
+            let mut fewer = file.clone();
+            let gone = fewer.parts.remove(i);
+            match (&gone.id, Table::from_bytes(&fewer.write())) {
+                (b"PORT", Err(error)) => assert_eq!(error.section.unwrap().0, *b"STAB"),
+                (b"PORT", Ok(_)) => panic!("stab trees without portals"),
+                (_, result) => assert_well_formed(&result.unwrap()),
+            }
+            n_gone += 1;
+        }
+        // A reader that does not know the new sections has the table without them.
+        let old = |parts: TableParts| {
+            let (mirrors, object_polygons) = (vec![], vec![]);
+            Table::new(TableParts { mirrors, object_polygons, planes: None, stab: None, ..parts }).unwrap()
+        };
+        let mut renamed = file.clone();
+        renamed.parts.iter_mut().filter(|part| is_new(part)).for_each(|part| part.id[0] = b'x');
+        assert_eq!(Table::from_bytes(&renamed.write()), Ok(old(table.into_parts())));
+    }
+    assert_eq!(n_gone, 5 + 4);
+}
+
+/// The files of version 1.2 must be read as long as there is a reader.
+#[test]
+fn golden_v1_2_is_read_and_written() {
+    for (name, table) in ["v1_2.pvs", "v1_2_space.pvs"].into_iter().zip(full()) {
+        let path = format!("{}/tests/golden/{name}", env!("CARGO_MANIFEST_DIR"));
+        let bytes = table.to_bytes();
+        if std::env::var_os("BLESS").is_some_and(|v| v == "1") {
+            std::fs::write(&path, &bytes).unwrap();
+        }
+        let golden = std::fs::read(&path).unwrap_or_else(|e| panic!("{path}: {e}; write it with BLESS=1"));
+        assert_eq!(Table::from_bytes(&golden), Ok(table));
+        assert!(golden == bytes, "the bytes of version 1.2 have changed: {name}");
+        assert_eq!(bytes[10], 2, "the minor version");
+    }
+}
+
+#[test]
+fn extras_answer() {
+    let [villa, wedges] = full();
+    assert_eq!((villa.polygons_of(0), villa.polygons_of(1)), (12, 0));
+    assert_eq!(Table::new(rooms()).unwrap().polygons_of(1), 1, "not known");
+    assert_eq!((villa.mirrors().len(), villa.mirrors()[1].face), (2, u32::MAX));
+    assert_eq!(wedges.mirrors()[0].points.len(), 3);
+    assert!(villa.planes().is_none() && wedges.planes().is_some_and(|planes| planes.slack() == 0.5));
+}
+
+#[test]
+#[should_panic(expected = "object 2 of 2")]
+fn an_unknown_object_has_no_polygons() {
+    Table::new(rooms()).unwrap().polygons_of(2);
+}
+
+/// Each defect alone is refused, with its place and in words.
+#[test]
+fn defects_of_extras_are_refused() {
+    let refused = |parts: TableParts, spoil: &dyn Fn(&mut TableParts)| {
+        let mut parts = parts;
+        spoil(&mut parts);
+        let error = Table::new(parts).unwrap_err();
+        (error.clone(), error.to_string())
+    };
+    let (error, text) = refused(villa(), &|p| p.object_polygons.truncate(1));
+    assert_eq!(error, TableError::ObjectPolygons { n: 1, n_objects: 2 });
+    assert_eq!(text, "1 numbers of polygons do not fit 2 objects");
+    let (error, text) = refused(villa(), &|p| p.mirrors[1].cell = CellId(5));
+    assert_eq!(error, TableError::MirrorCell { mirror: 1, cell: CellId(5) });
+    assert_eq!(text, "mirror 1 is in cell 5, which does not exist");
+    let (error, text) = refused(villa(), &|p| p.mirrors[1].points.push([0.0; 3]));
+    assert_eq!(error, TableError::MirrorPoints { mirror: 1, n: 3 });
+    assert_eq!(text, "mirror 1 cannot have 3 points");
+    let two = |p: &mut TableParts| p.mirrors[0].points.truncate(2);
+    assert_eq!(refused(wedges(), &two).0, TableError::MirrorPoints { mirror: 0, n: 2 });
+    let (error, text) = refused(villa(), &|p| p.mirrors[0].points[1][0] = f64::NAN);
+    assert_eq!(error, TableError::NotFinite { item: Item::Mirror, index: 0 });
+    assert_eq!(text, "mirror 0 has a coordinate that is not a finite number");
+    let upright = |p: &mut TableParts| p.mirrors[0].points[1][2] = -0.0;
+    assert_eq!(refused(villa(), &upright).0, TableError::OffPlane { item: Item::Mirror, index: 0 });
+}
+
+/// Writes over, or replaces, a section of the villa and returns the error, which must name the section.
+fn forge(id: &[u8; 4], change: impl Fn(&mut Vec<u8>)) -> Kind {
+    let mut file = File::parse(&Table::new(villa()).unwrap().to_bytes());
+    change(&mut file.part(id).bytes);
+    let error = Table::from_bytes(&file.write()).unwrap_err();
+    assert_eq!(error.section.unwrap().0, *id);
+    error.kind
+}
+
+#[test]
+fn forged_extras_are_refused() {
+    let huge = u32::MAX.to_le_bytes();
+    for at in [0, 12] {
+        assert!(matches!(forge(b"MIRR", |b| b[at..at + 4].copy_from_slice(&huge)), Kind::Cut { .. }), "{at}");
+    }
+    let cell = TableError::MirrorCell { mirror: 0, cell: CellId(9) };
+    assert_eq!(forge(b"MIRR", |b| b[4] = 9), Kind::Table(cell));
+    assert!(matches!(forge(b"OPOL", |b| b.truncate(4)), Kind::Cut { .. }));
+    assert!(matches!(forge(b"OPOL", |b| b.extend([0; 4])), Kind::Surplus { .. }));
+    // A number that is longer than it need be, one that does not fit, one that does not end.
+    let replaced = |bytes: &'static [u8]| move |b: &mut Vec<u8>| *b = bytes.to_vec();
+    assert_eq!(forge(b"STAB", replaced(&[0x80, 0])), Kind::Number);
+    let long = [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 2];
+    assert_eq!(forge(b"STAB", |b| *b = long.to_vec()), Kind::Number);
+    assert!(matches!(forge(b"STAB", replaced(&[0xff; 3])), Kind::Cut { .. }));
+    // Too many groups, a group of no cell, a list without a gate, a child where none was, roots likewise.
+    assert!(matches!(forge(b"STAB", replaced(&[100, 1])), Kind::Cut { .. }));
+    assert_eq!(forge(b"STAB", replaced(&[1, 10, 2])), Kind::StabOrder);
+    assert_eq!(forge(b"STAB", replaced(&[1, 0, 0])), Kind::StabOrder);
+    assert!(matches!(forge(b"STAB", replaced(&[1, 0, 6])), Kind::Cut { .. }), "a child is promised");
+    assert_eq!(forge(b"STAB", replaced(&[1, 0, 6, 0])), Kind::NoNode);
+    assert_eq!(forge(b"STAB", replaced(&[0, 2, 0])), Kind::NoNode);
+    // A node that nothing leads to.
+    assert_eq!(forge(b"STAB", replaced(&[1, 0, 2, 0, 0, 0, 0, 0, 0])), Kind::StabOrder);
+    assert!(matches!(forge(b"STAB", |b| b.push(0)), Kind::Surplus { .. }));
+    let text = |kind: Kind| kind.to_string();
+    assert_eq!(text(Kind::Number), "the number is not written as short as it can be, or is too large");
+    assert_eq!(text(Kind::NoNode), "the node of the stab trees is not there");
+    assert_eq!(text(Kind::StabOrder), "the stab trees are not in order");
+}
+
+/// A table may be of nothing but mirrors' cells; nothing in it is taken for granted.
+#[test]
+fn mirrors_have_any_number_of_corners_in_space() {
+    let mut parts = wedges();
+    let ring = (0..200).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+    parts.mirrors = vec![MirrorRecord { cell: CellId(0), face: 3, points: ring }];
+    let table = Table::new(parts).unwrap();
+    assert_eq!(Table::from_bytes(&table.to_bytes()), Ok(table));
+}

@@ -1,0 +1,199 @@
+//! Point location by planes, against whole numbers.
+
+use crate::common::full::{plane_choices, plane_nodes, wedges};
+use proptest::prelude::*;
+use sightlines_pvs::{CellId, DecodeErrorKind, PlaneChild, PlaneError, PlaneNode, PlaneTree, Table, TableError};
+
+fn found(tree: &PlaneTree, p: [f64; 3]) -> Vec<CellId> {
+    let (mut cells, mut pending) = (Vec::new(), vec![9, 9]);
+    tree.for_each_cell(p, &mut pending, |cell| cells.push(cell));
+    cells.sort_unstable();
+    cells.dedup();
+    cells
+}
+
+/// Height over a plane, which must have whole numbers.
+fn height(node: &PlaneNode, p: [i64; 3]) -> i128 {
+    let product = |k: usize| node.normal[k] as i128 * i128::from(p[k]);
+    (0..3).map(product).sum::<i128>() - node.offset as i128
+}
+
+/// The oracle, from node to node: the cells on leaves whose planes all have `p` on the right side, or no
+/// more than `slack` on the wrong one.
+fn expected(nodes: &[PlaneNode], p: [i64; 3], slack: impl Fn(&PlaneNode, [i64; 3]) -> i128 + Copy) -> Vec<CellId> {
+    fn walk(
+        nodes: &[PlaneNode],
+        child: PlaneChild,
+        p: [i64; 3],
+        slack: impl Fn(&PlaneNode, [i64; 3]) -> i128 + Copy,
+        out: &mut Vec<CellId>,
+    ) {
+        match child {
+            PlaneChild::Nothing => {}
+            PlaneChild::Cell(cell) => out.push(cell),
+            PlaneChild::Node(node) => {
+                let node = &nodes[node as usize];
+                let (height, slack_here) = (height(node, p), slack(node, p));
+                if height >= -slack_here {
+                    walk(nodes, node.children[0], p, slack, out);
+                }
+                if height <= slack_here {
+                    walk(nodes, node.children[1], p, slack, out);
+                }
+            }
+        }
+    }
+    let mut out = Vec::new();
+    walk(nodes, PlaneChild::Node(0), p, slack, &mut out);
+    out.sort_unstable();
+    out.dedup();
+    out
+}
+
+/// A point of the plane through 0 with normal `n`, given a direction, moved by some steps.
+fn beside(n: [i64; 3], m: [i64; 3], by: i64) -> [i64; 3] {
+    let cross = |i: usize, j: usize| n[i] * m[j] - n[j] * m[i];
+    [cross(1, 2) + by, cross(2, 0) - 2 * by, cross(0, 1) + by]
+}
+
+/// Planes and points whose products do not fit doubles; half of the points nearly on the plane.
+fn large() -> impl Strategy<Value = (PlaneNode, [i64; 3])> {
+    let wide = || prop::array::uniform3(-(1i64 << 50)..(1i64 << 50));
+    (wide(), wide(), any::<bool>(), -4i64..5).prop_map(|(n, p, near, by)| {
+        let small = |v: [i64; 3]| v.map(|x| x >> 25);
+        let (n, p) = if near { (small(n), beside(small(n), small(p), by)) } else { (n, p) };
+        let children = [PlaneChild::Cell(CellId(0)), PlaneChild::Cell(CellId(1))];
+        (PlaneNode { normal: n.map(|x| x as f64), offset: 0.0, children }, p)
+    })
+}
+
+proptest! {
+    /// Invariant: on a small grid, where doubles are exact but for their bound, a point is found in the
+    /// cells whose closed leaves have it, in all and in no others; with a slack, in those not farther off.
+    #[test]
+    fn planes_small_grid_is_exact(choices in plane_choices(), p in [-5i64..6, -5i64..6, -5i64..6], slack in 0u8..3) {
+        let nodes = plane_nodes(&choices, 5, 1.0);
+        let tree = PlaneTree::new(nodes.clone(), f64::from(slack)).unwrap();
+        let expected = expected(&nodes, p, |_, _| i128::from(slack));
+        prop_assert_eq!(found(&tree, p.map(|x| x as f64)), expected);
+    }
+
+    /// Invariant: no rounding loses a cell.
+    #[test]
+    fn planes_soundness_no_cell_is_lost((node, p) in large(), slack in 0u8..3) {
+        let tree = PlaneTree::new(vec![node], f64::from(slack)).unwrap();
+        let found = found(&tree, p.map(|x| x as f64));
+        prop_assert!(expected(&[node], p, |_, _| i128::from(slack)).iter().all(|cell| found.contains(cell)));
+    }
+
+    /// The tightness twin: a point goes to both sides only where rounding could hide on which it is.
+    #[test]
+    fn planes_tightness_clear_is_certain((node, p) in large()) {
+        let tree = PlaneTree::new(vec![node], 0.0).unwrap();
+        let size = |node: &PlaneNode, p: [i64; 3]| (0..3).map(|k| (node.normal[k] as i128 * i128::from(p[k])).abs()).sum::<i128>();
+        let clear = expected(&[node], p, |node, p| size(node, p) >> 49);
+        let found = found(&tree, p.map(|x| x as f64));
+        prop_assert!(found.iter().all(|cell| clear.contains(cell)), "{:?} {:?}", found, clear);
+    }
+
+    /// Whatever the numbers, one side at least is open.
+    #[test]
+    fn planes_extreme_numbers_lose_nothing(n in any::<[f64; 4]>(), p in any::<[f64; 3]>(), slack in any::<f64>()) {
+        let children = [PlaneChild::Cell(CellId(0)), PlaneChild::Cell(CellId(1))];
+        if let Ok(tree) = PlaneTree::new(vec![PlaneNode { normal: [n[0], n[1], n[2]], offset: n[3], children }], slack.abs()) {
+            prop_assert!(!found(&tree, p).is_empty());
+        }
+    }
+}
+
+/// The impostor: without the bound, the plain formula loses cells that the oracle has.
+#[test]
+fn impostor_plain_doubles_lose_cells() {
+    let lost = (0..1000i64).filter(|&t| {
+        let n = [(1 << 25) - 12_345, (1 << 24) + 6_789 + t, 9_876_543];
+        let p = beside(n, [7_654_321 + 31 * t, -(1 << 25) + 5, 12_345_677], t % 3 - 1);
+        let node = PlaneNode { normal: n.map(|x| x as f64), offset: 0.0, children: [PlaneChild::Nothing; 2] };
+        let plain: f64 = (0..3).map(|k| node.normal[k] * p[k] as f64).sum();
+        let exact = height(&node, p);
+        (exact >= 0 && plain < 0.0) || (exact <= 0 && plain > 0.0)
+    });
+    assert!(lost.count() > 0);
+}
+
+#[test]
+fn tables_in_space_ask_the_planes() {
+    let table = Table::new(wedges()).unwrap();
+    let both = [CellId(0), CellId(1)];
+    assert_eq!(table.locate(&[3.0, 1.0, 1.0]), [CellId(0)]);
+    assert_eq!(table.locate(&[1.0, 3.0, 1.0]), [CellId(1)]);
+    assert_eq!(table.locate(&[1.0, 1.0, 1.0]), both);
+    assert_eq!(table.locate(&[1.0, 1.5, 1.0]), both, "within the slack");
+    assert_eq!(table.locate(&[3.0, 1.0, -0.25]), [CellId(0)], "within the slack of the floor");
+    assert_eq!(table.locate(&[3.0, 1.0, -1.0]), []);
+    assert_eq!(table.locate(&[9.0, 1.0, 1.0]), [CellId(0)], "the planes alone decide, not the boxes");
+    assert_eq!(table.locate(&[f64::NAN, 1.0, 1.0]), []);
+    assert_eq!(table.locate(&[f64::INFINITY, 1.0, 1.0]), []);
+    // Without the planes, the boxes do; a stripped table keeps the planes.
+    let mut parts = wedges();
+    parts.planes = None;
+    assert_eq!(Table::new(parts).unwrap().locate(&[3.0, 1.0, 1.0]), both);
+    assert_eq!(table.strip_geometry().locate(&[3.0, 1.0, 1.0]), [CellId(0)]);
+    // The scratch does not change the answer.
+    let (mut pending, mut cells) = (vec![7; 5], vec![CellId(9)]);
+    table.locate_into(&[1.0, 1.0, 1.0], &mut pending, &mut cells);
+    assert_eq!(cells, both);
+    table.locate_into(&[1.0, f64::NAN, 1.0], &mut pending, &mut cells);
+    assert_eq!(cells, []);
+}
+
+#[test]
+fn defects_of_planes_are_refused() {
+    let node = |a, b| PlaneNode { normal: [1.0, 0.0, 0.0], offset: 0.0, children: [a, b] };
+    let (at, none) = (PlaneChild::Node, PlaneChild::Nothing);
+    let refused = |nodes: Vec<PlaneNode>| PlaneTree::new(nodes, 0.0).unwrap_err();
+    assert_eq!(refused(vec![]), PlaneError::Empty);
+    assert_eq!(refused(vec![node(at(0), none)]), PlaneError::Child { node: 0, child: 0 });
+    assert_eq!(refused(vec![node(at(1), none)]), PlaneError::Child { node: 0, child: 1 });
+    assert_eq!(refused(vec![node(at(1), at(1)), node(none, none)]), PlaneError::Shared { node: 1 });
+    assert_eq!(refused(vec![node(at(1), none), node(at(0), none)]), PlaneError::Child { node: 1, child: 0 });
+    assert_eq!(refused(vec![node(none, none), node(none, none)]), PlaneError::Unreachable { node: 1 });
+    let far = PlaneChild::Cell(CellId(1 << 31));
+    assert_eq!(refused(vec![node(far, none)]), PlaneError::TooMany { n: 1 << 31 });
+    for bad in [f64::NAN, f64::INFINITY] {
+        assert_eq!(refused(vec![PlaneNode { offset: bad, ..node(none, none) }]), PlaneError::NotFinite { node: 0 });
+        assert_eq!(PlaneTree::new(vec![node(none, none)], bad).unwrap_err(), PlaneError::Slack);
+    }
+    assert_eq!(PlaneTree::new(vec![node(none, none)], -1.0).unwrap_err(), PlaneError::Slack);
+    let chain = |n: u32| (0..n).map(|i| node(if i + 1 < n { at(i + 1) } else { none }, none)).collect::<Vec<_>>();
+    assert!(PlaneTree::new(chain(1024), 0.0).is_ok());
+    let deep = refused(chain(1025));
+    assert_eq!(deep, PlaneError::TooDeep { node: 1024 });
+    assert_eq!(deep.to_string(), "plane 1024 is deeper than 1024 levels");
+
+    let mut parts = wedges();
+    parts.planes = Some(PlaneTree::new(vec![node(PlaneChild::Cell(CellId(2)), none)], 0.0).unwrap());
+    let error = Table::new(parts).unwrap_err();
+    assert_eq!(error, TableError::Planes(PlaneError::UnknownCell { node: 0, cell: CellId(2) }));
+    assert_eq!(error.to_string(), "plane 0 leads to cell 2, which does not exist");
+    let mut flat = crate::common::rooms();
+    flat.planes = wedges().planes;
+    assert_eq!(Table::new(flat).unwrap_err(), TableError::Planes(PlaneError::Dimension));
+}
+
+/// The same mistakes in a file, with right checksums.
+#[test]
+fn forged_planes_are_refused() {
+    let forge = |at: usize, value: &[u8]| {
+        let mut file = crate::common::file::File::parse(&Table::new(wedges()).unwrap().to_bytes());
+        file.part(b"PLNS").bytes[at..at + value.len()].copy_from_slice(value);
+        let error = Table::from_bytes(&file.write()).unwrap_err();
+        assert_eq!(error.section.unwrap().0, *b"PLNS");
+        error.kind
+    };
+    let planes = |error| DecodeErrorKind::Table(TableError::Planes(error));
+    assert_eq!(forge(0, &f64::NAN.to_le_bytes()), planes(PlaneError::Slack));
+    assert!(matches!(forge(8, &u32::MAX.to_le_bytes()), DecodeErrorKind::Cut { .. }));
+    assert_eq!(forge(12, &f64::NAN.to_le_bytes()), planes(PlaneError::NotFinite { node: 0 }));
+    assert_eq!(forge(12 + 32, &[5]), planes(PlaneError::Child { node: 0, child: 5 }));
+    assert_eq!(forge(12 + 40 + 32, &[2]), planes(PlaneError::UnknownCell { node: 1, cell: CellId(2) }));
+}
