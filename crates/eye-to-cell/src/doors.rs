@@ -1,0 +1,75 @@
+//! Portals that are closed for now.
+
+/// Which portals are closed: doors, hatches, whatever stands in an opening at the moment.
+///
+/// A table is made with all portals open, so it stays right whatever is closed: a closed portal only keeps the methods
+/// that follow portals from going on behind it. Opening and closing are O(1); nothing is computed anew.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Doors {
+    closed: Vec<u64>,
+    n_closed: usize,
+}
+
+impl Doors {
+    /// All portals are open.
+    pub fn all_open() -> Self {
+        Self::default()
+    }
+
+    /// Closes a portal; whether it was open. A portal that the table does not have changes no answer.
+    pub fn close(&mut self, portal: u32) -> bool {
+        let word = portal as usize / 64;
+        if self.closed.len() <= word {
+            self.closed.resize(word + 1, 0);
+        }
+        let bit = 1u64 << (portal % 64);
+        let was_open = self.closed[word] & bit == 0;
+        self.closed[word] |= bit;
+        self.n_closed += usize::from(was_open);
+        was_open
+    }
+
+    /// Opens a portal; whether it was closed.
+    pub fn open(&mut self, portal: u32) -> bool {
+        let was_closed = !self.is_open(portal);
+        if was_closed {
+            self.closed[portal as usize / 64] &= !(1u64 << (portal % 64));
+            self.n_closed -= 1;
+        }
+        was_closed
+    }
+
+    /// Opens all.
+    pub fn open_all(&mut self) {
+        self.closed.fill(0);
+        self.n_closed = 0;
+    }
+
+    /// Whether a portal can be passed.
+    #[inline]
+    pub fn is_open(&self, portal: u32) -> bool {
+        self.n_closed == 0 || self.closed.get(portal as usize / 64).is_none_or(|word| word >> (portal % 64) & 1 == 0)
+    }
+
+    /// Number of closed portals.
+    pub fn n_closed(&self) -> usize {
+        self.n_closed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn doors_open_and_close() {
+        let mut doors = Doors::all_open();
+        assert!(doors.is_open(7) && !doors.open(7));
+        assert!(doors.close(200) && !doors.close(200) && !doors.is_open(200) && doors.is_open(199));
+        assert_eq!(doors.n_closed(), 1);
+        assert!(doors.open(200) && doors.is_open(200));
+        doors.close(3);
+        doors.open_all();
+        assert!(doors.is_open(3) && doors.n_closed() == 0);
+    }
+}

@@ -1,0 +1,191 @@
+//! On which side of a portal's plane the eye is.
+
+use crate::side::{Vector, cross, dot, minus, norm};
+use sightlines_geometry::{Point2, orient2d};
+
+/// What a sum of a few products may be off by, as a share of their sizes: 32 times the unit roundoff, 2^-53.
+const SMALL: f64 = 1.0 / (1u64 << 48) as f64;
+
+/// What tells on which side of a portal a point is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Front {
+    /// In the plane: the line through the two corners, left end first.
+    Line { left: [f64; 2], right: [f64; 2] },
+    /// In space: all corners have the same coordinate `at` along `axis`; crossed upwards or downwards.
+    Axis { axis: u8, upwards: bool, at: f64 },
+    /// In space: a point of the plane, its unit normal in the direction of crossing, how far corners are from it at
+    /// most, and how much the normal may be off.
+    Plane { point: Vector, normal: Vector, uneven: f64, tilt: f64 },
+}
+
+/// Where the eye is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Facing {
+    /// Before the portal: lines from the eye may cross it.
+    Before,
+    /// In the portal itself, or in its plane, as far as can be told: uneven portals and rounded eyes leave a doubt.
+    Level,
+    /// In its plane or behind: no line from the eye crosses it in its direction.
+    Behind,
+}
+
+impl Front {
+    /// Of corners in the order in which who crosses the portal sees them.
+    pub(crate) fn of(corners: &[Vector], planar: bool) -> Self {
+        if let (true, [l, r]) = (planar, corners) {
+            return Self::Line { left: [l[0], l[1]], right: [r[0], r[1]] };
+        }
+        let Some(&point) = corners.first() else {
+            return Self::Plane { point: [0.0; 3], normal: [0.0; 3], uneven: f64::INFINITY, tilt: 0.0 };
+        };
+        let normal = towards(corners);
+        for axis in 0..3 {
+            if corners.iter().all(|c| c[axis] == point[axis]) && normal[axis] != 0.0 {
+                return Self::Axis { axis: axis as u8, upwards: normal[axis] > 0.0, at: point[axis] };
+            }
+        }
+        let length = dot(normal, normal).sqrt();
+        let normal = normal.map(|x| x / length);
+        let size = corners.iter().fold(0.0f64, |m, &c| m.max(norm(minus(c, point))));
+        let off = corners.iter().fold(0.0f64, |m, &c| m.max(dot(normal, minus(c, point)).abs()));
+        // Each of the cross products is off by some 8 u size², and the rest of the sum by less: 2^-48 has room for 32.
+        let tilt = corners.len() as f64 * size * size / length * SMALL;
+        let uneven = off + size * SMALL;
+        // Where sizes are no numbers, nothing is told.
+        let told = uneven.is_finite() && tilt.is_finite();
+        let (uneven, tilt) = if told { (uneven, tilt) } else { (f64::INFINITY, 0.0) };
+        Self::Plane { point, normal, uneven, tilt }
+    }
+
+    /// A point of the plane, and its unit normal.
+    pub(crate) fn plane(&self) -> (Vector, Vector) {
+        match *self {
+            Self::Line { left, right } => {
+                let along = [left[0] - right[0], left[1] - right[1]];
+                let length = along[0].hypot(along[1]);
+                // Along an axis exactly so, whatever the length's rounding.
+                let unit = |x: f64| if x == 0.0 { 0.0 } else { x / length };
+                let normal = match (along[0] == 0.0, along[1] == 0.0) {
+                    (true, _) => [1.0, 0.0, 0.0],
+                    (_, true) => [0.0, 1.0, 0.0],
+                    _ => [unit(along[1]), -unit(along[0]), 0.0],
+                };
+                ([right[0], right[1], 0.0], normal)
+            }
+            Self::Axis { axis, at, .. } => {
+                let (mut point, mut normal) = ([0.0; 3], [0.0; 3]);
+                (point[usize::from(axis)], normal[usize::from(axis)]) = (at, 1.0);
+                (point, normal)
+            }
+            Self::Plane { point, normal, .. } => (point, normal),
+        }
+    }
+
+    /// Where `eye`, whose coordinates are off by at most `slack`, is. Exact in the plane and for portals along
+    /// an axis if `slack` is 0.
+    ///
+    /// An uneven portal counts as flat: who is in its plane, within its unevenness, but not near the portal, cannot
+    /// look through it, as who is in the plane of a flat one cannot.
+    #[inline]
+    pub(crate) fn facing(&self, corners: &[Vector], eye: Vector, slack: f64) -> Facing {
+        match *self {
+            Self::Line { left, right } => {
+                if slack > 0.0 {
+                    return facing_line(eye, left, right, slack);
+                }
+                let point = |p: [f64; 2]| Point2::new(p[0], p[1]);
+                match orient2d(Point2::new(eye[0], eye[1]), point(right), point(left)) > 0.0 {
+                    true => Facing::Before,
+                    false => Facing::Behind,
+                }
+            }
+            Self::Axis { axis, upwards, at } => {
+                let e = eye[usize::from(axis)];
+                if slack > 0.0 && (at - e).abs() <= 2.0 * slack {
+                    return Facing::Level;
+                }
+                if if upwards { e < at } else { e > at } { Facing::Before } else { Facing::Behind }
+            }
+            Self::Plane { point, normal, uneven, tilt } => {
+                let v = minus(point, eye);
+                let margin = uneven + norm(v) * (SMALL + tilt) + 3.0 * slack;
+                let before = dot(normal, v);
+                if before > margin {
+                    Facing::Before
+                } else if before < -margin {
+                    Facing::Behind
+                } else if slack > 0.0 || near(corners, eye, margin) {
+                    Facing::Level
+                } else {
+                    Facing::Behind
+                }
+            }
+        }
+    }
+}
+
+/// Whether `eye` is in the box around the corners, or outside by at most `margin`.
+fn near(corners: &[Vector], eye: Vector, margin: f64) -> bool {
+    (0..3).all(|k| corners.iter().any(|c| eye[k] >= c[k] - margin) && corners.iter().any(|c| eye[k] <= c[k] + margin))
+}
+
+fn facing_line(eye: Vector, left: [f64; 2], right: [f64; 2], slack: f64) -> Facing {
+    let along = [left[0] - right[0], left[1] - right[1]];
+    let v = [right[0] - eye[0], right[1] - eye[1]];
+    let before = v[0] * along[1] - v[1] * along[0];
+    let size = along[0].abs() + along[1].abs();
+    let margin = size * ((v[0].abs() + v[1].abs()) * SMALL + 2.0 * slack) + f64::MIN_POSITIVE;
+    if before > margin {
+        Facing::Before
+    } else if before < -margin {
+        Facing::Behind
+    } else {
+        Facing::Level
+    }
+}
+
+/// A vector in the direction of crossing, as long as twice the area: Newell's sum, about the first corner.
+fn towards(corners: &[Vector]) -> Vector {
+    let mut sum = [0.0; 3];
+    for pair in corners.windows(2) {
+        let n = cross(minus(pair[1], corners[0]), minus(pair[0], corners[0]));
+        (0..3).for_each(|k| sum[k] += n[k]);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_are_told() {
+        // A door at x = 2, crossed towards larger x: the left end has the larger y.
+        let line = Front::of(&[[2.0, 1.0, 0.0], [2.0, 0.0, 0.0]], true);
+        for slack in [0.0, 1e-12] {
+            assert_eq!(line.facing(&[], [1.0, 5.0, 0.0], slack), Facing::Before);
+            assert_eq!(line.facing(&[], [3.0, 5.0, 0.0], slack), Facing::Behind);
+        }
+        assert_eq!(line.facing(&[], [2.0, 5.0, 0.0], 0.0), Facing::Behind);
+        assert_eq!(line.facing(&[], [2.0, 5.0, 0.0], 1e-12), Facing::Level);
+        // Counter-clockwise as seen from the origin.
+        let square = [[2.0, 0.0, 0.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0], [2.0, 1.0, 0.0]];
+        let axis = Front::of(&square, false);
+        assert_eq!(axis, Front::Axis { axis: 0, upwards: true, at: 2.0 });
+        assert_eq!(
+            [1.0, 2.0, 3.0].map(|x| axis.facing(&[], [x, 0.0, 0.0], 0.0)),
+            [Facing::Before, Facing::Behind, Facing::Behind]
+        );
+        let tilted = square.map(|[x, y, z]| [x + 1e-3 * y, y, z]);
+        let plane = Front::of(&tilted, false);
+        assert!(matches!(plane, Front::Plane { .. }));
+        assert_eq!(
+            [1.0, 2.0, 3.0].map(|x| plane.facing(&tilted, [x, 0.0, 0.0], 0.0)),
+            [Facing::Before, Facing::Level, Facing::Behind]
+        );
+        assert_eq!(plane.facing(&tilted, [2.0, 0.0, 5.0], 0.0), Facing::Behind);
+        assert_eq!(plane.facing(&tilted, [2.0, 0.0, 5.0], 1e-9), Facing::Level);
+        assert_eq!(Front::of(&[[f64::NAN; 3]; 3], false).facing(&[], [0.0; 3], 1e-9), Facing::Level);
+        assert_eq!(Front::of(&[], false).facing(&[], [0.0; 3], 1e-9), Facing::Level);
+    }
+}

@@ -1,0 +1,78 @@
+//! What is seen in mirrors, and in mirrors in mirrors.
+//!
+//! A mirror is a portal into reflected space. Instead of reflecting the space, the eye is reflected: from behind the
+//! mirror it looks through the mirror's frame into the cells as they are. So the table, the portals and the methods
+//! are used as they are, and only the eye's place may be rounded; mirrors along an axis round it hardly ever.
+//! A line goes on in the cell that the mirror is in, so what it may meet there is what that cell may see.
+
+use crate::doors::Doors;
+use crate::method::EyeToCell;
+use crate::outlook::Outlook;
+use crate::scratch::Scratch;
+use crate::seen::{Reflection, Seen};
+use sightlines_pvs::CellId;
+use std::borrow::Borrow;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The most views in mirrors that are followed for one frame; mirrors that face each other show many.
+const MOST_VIEWS: usize = 4096;
+
+/// What is seen by way of one mirror after another.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Image {
+    /// The mirrors, in the order in which a line from the eye meets them.
+    pub mirrors: Vec<u32>,
+    /// The cells, ascending.
+    pub cells: Vec<CellId>,
+    /// The objects, ascending.
+    pub objects: Vec<u32>,
+    /// Whether that is all. If not, an outlook was missing or there were too many views, and anything may be seen.
+    pub complete: bool,
+}
+
+/// Follows reflections, of `bounces` mirrors at most: the first are what [`EyeToCell::look`] left in `seen`.
+///
+/// `outlook` gives the outlook of a cell, or none if it is not there; what is seen in that mirror is then not
+/// complete. Images come by ascending mirrors. Allocates.
+pub fn follow_reflections<O: Borrow<Outlook>>(
+    method: &impl EyeToCell,
+    first: &Seen,
+    bounces: usize,
+    doors: &Doors,
+    scratch: &mut Scratch,
+    [n_cells, n_objects]: [usize; 2],
+    mut outlook: impl FnMut(CellId) -> Option<O>,
+) -> Vec<Image> {
+    let mut images: BTreeMap<Vec<u32>, (BTreeSet<u32>, BTreeSet<u32>, bool)> = BTreeMap::new();
+    let step = |mirrors: &[u32], next: &Reflection| ([mirrors, &[next.face]].concat(), next.clone());
+    let mut pending: Vec<(Vec<u32>, Reflection)> = match bounces {
+        0 => Vec::new(),
+        _ => first.reflections.iter().map(|r| step(&[], r)).collect(),
+    };
+    let mut seen = Seen::new();
+    let mut n_views = 0;
+    while let Some((mirrors, reflection)) = pending.pop() {
+        let (cells, objects, complete) =
+            images.entry(mirrors.clone()).or_insert_with(|| (BTreeSet::new(), BTreeSet::new(), true));
+        n_views += 1;
+        let there = outlook(reflection.cell).filter(|_| n_views <= MOST_VIEWS);
+        let Some(there) = there else {
+            *complete = false;
+            continue;
+        };
+        seen.clear(n_cells, n_objects);
+        method.look(there.borrow(), &reflection.view, doors, scratch, &mut seen);
+        cells.extend(seen.cells());
+        objects.extend(seen.objects());
+        if mirrors.len() < bounces {
+            pending.extend(seen.reflections.iter().map(|r| step(&mirrors, r)));
+        }
+    }
+    let image = |(mirrors, (cells, objects, complete)): (Vec<u32>, (BTreeSet<u32>, BTreeSet<u32>, bool))| Image {
+        mirrors,
+        cells: cells.into_iter().map(CellId).collect(),
+        objects: objects.into_iter().collect(),
+        complete,
+    };
+    images.into_iter().map(image).collect()
+}

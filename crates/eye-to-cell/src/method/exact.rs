@@ -1,0 +1,195 @@
+//! The exact method: all sequences of portals that the eye looks through.
+
+use super::missing::{list_missing, meets};
+use super::query::{Query, reflection};
+use super::reach;
+use super::sweep::sweep;
+use crate::front::Facing;
+use crate::scratch::Scratch;
+use crate::side::Side;
+use crate::trees::NO_NODE;
+
+/// Portals that are looked at sequence by sequence, before the method turns to putting pieces together.
+///
+/// An eye in the open can look through very many sequences of portals, as open space is cut into many cells. The
+/// limit is about where the other way begins to be quicker, by measurement.
+const MOST_STEPS: u64 = 200;
+
+/// A cell on the way from the eye.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Frame {
+    cell: u32,
+    /// The portal that was crossed into it; none has this number at the root.
+    entry: u32,
+    /// The node of the stab tree, or none: then any way may follow.
+    node: u32,
+    /// What is to be tried next, and where that ends: children of the node, or ways of the cell.
+    next: u32,
+    end: u32,
+    /// Whether ways are tried rather than children.
+    by_ways: bool,
+    /// Where its cone begins among the sides; it goes on to the next frame's.
+    first_side: u32,
+}
+
+/// Keeps what a line from the eye leads to, through open portals, within the view; within rounding.
+pub(super) fn exact(query: &mut Query<'_>) {
+    list_missing(query);
+    if !by_sequences(query, MOST_STEPS) && !sweep(query) {
+        reach::incident(query);
+    }
+}
+
+/// Looks along the sequences of portals, at `most` portals at most; `false` if there are more. What was kept until
+/// then is right.
+pub(super) fn by_sequences(query: &mut Query<'_>, most: u64) -> bool {
+    let limit = query.scratch.n_steps.saturating_add(most);
+    Search::begin(query).run(limit)
+}
+
+struct Search<'q, 'a> {
+    query: &'q mut Query<'a>,
+}
+
+impl<'q, 'a> Search<'q, 'a> {
+    fn begin(query: &'q mut Query<'a>) -> Self {
+        let n_cells = query.outlook.cells.len();
+        let scratch = &mut *query.scratch;
+        scratch.frames.clear();
+        scratch.sides.clear();
+        scratch.sides.extend_from_slice(&scratch.view);
+        scratch.on_way.clear();
+        scratch.on_way.resize(n_cells, false);
+        Self { query }
+    }
+
+    /// Goes through all sequences; `false` if they are more than `limit` allows.
+    fn run(&mut self, limit: u64) -> bool {
+        self.enter(
+            self.query.outlook.root,
+            u32::MAX,
+            self.query.outlook.trees.as_ref().map_or(NO_NODE, |t| t.root()),
+            0,
+        );
+        while let Some((way, node)) = self.next_way() {
+            self.query.scratch.n_steps += 1;
+            if self.query.scratch.n_steps > limit {
+                return false;
+            }
+            self.step(way, node);
+        }
+        true
+    }
+
+    /// The next way to try, and the node that it leads to; leaves cells that are done. `None` at the end.
+    fn next_way(&mut self) -> Option<(u32, u32)> {
+        loop {
+            let outlook = self.query.outlook;
+            let scratch = &mut *self.query.scratch;
+            let frame = scratch.frames.last_mut()?;
+            if frame.next < frame.end {
+                frame.next += 1;
+                let at = frame.next - 1;
+                return Some(match &outlook.trees {
+                    Some(trees) if !frame.by_ways => {
+                        let node = trees.child(at);
+                        (trees.way(node), node)
+                    }
+                    _ => (at, NO_NODE),
+                });
+            }
+            match &outlook.trees {
+                // The tree was cut here: whatever it has not, the ways have.
+                Some(trees) if !frame.by_ways && trees.is_open(frame.node) => {
+                    let ways = outlook.ways_of(frame.cell);
+                    (frame.by_ways, frame.next, frame.end) = (true, ways.start, ways.end);
+                }
+                _ => {
+                    scratch.on_way[frame.cell as usize] = false;
+                    scratch.sides.truncate(frame.first_side as usize);
+                    scratch.frames.pop();
+                }
+            }
+        }
+    }
+
+    fn step(&mut self, index: u32, node: u32) {
+        let (outlook, view) = (self.query.outlook, self.query.view);
+        let way = &outlook.ways[index as usize];
+        let Some(&Frame { entry, first_side, .. }) = self.query.scratch.frames.last() else { return };
+        // A line goes through a convex cell once, and not back through the portal it came by.
+        if way.portal == entry || self.query.scratch.on_way[way.to as usize] || !self.query.way_in_view(index) {
+            return;
+        }
+        let (first, end) = (first_side as usize, self.query.scratch.sides.len());
+        let passes = match way.front.facing(outlook.corners(way.first_corner, way.n_corners), view.eye, view.slack) {
+            Facing::Behind => false,
+            Facing::Before => {
+                let corners = outlook.corners(way.first_corner, way.n_corners);
+                let eye = self.query.eye();
+                let Scratch { sides, cone, clipper, .. } = &mut *self.query.scratch;
+                cone.clear();
+                let passes = clipper.narrow(eye, corners, &sides[first..end], cone);
+                sides.extend_from_slice(cone);
+                passes
+            }
+            // The portal cannot narrow what its plane may contain.
+            Facing::Level => {
+                self.query.scratch.sides.extend_from_within(first..end);
+                true
+            }
+        };
+        let Query { outlook, view, scratch, seen, .. } = &mut *self.query;
+        if passes && meets(&mut scratch.missing, &scratch.sides[end..], outlook, view, seen) {
+            self.enter(way.to, way.portal, node, end as u32);
+        } else {
+            scratch.sides.truncate(end);
+        }
+    }
+
+    /// Enters a cell with the cone of the sides from `first_side` on, and keeps what that meets there.
+    fn enter(&mut self, cell: u32, entry: u32, node: u32, first_side: u32) {
+        let outlook = self.query.outlook;
+        let ways = outlook.ways_of(cell);
+        let (by_ways, range) = match &outlook.trees {
+            Some(trees) if node != NO_NODE => (false, trees.children_range(node)),
+            _ => (true, ways),
+        };
+        let frame = Frame { cell, entry, node, next: range.start, end: range.end, by_ways, first_side };
+        self.query.scratch.frames.push(frame);
+        self.query.scratch.on_way[cell as usize] = true;
+        self.keep(cell, first_side as usize);
+    }
+
+    fn keep(&mut self, cell: u32, first_side: usize) {
+        let outlook = self.query.outlook;
+        self.query.seen.add_cell(outlook.cells[cell as usize]);
+        // Nothing that is asked now adds sides.
+        let sides = std::mem::take(&mut self.query.scratch.sides);
+        let cone = &sides[first_side..];
+        self.query.keep_objects_in(cell, cone);
+        keep_mirrors(self.query, cell, cone);
+        self.query.scratch.sides = sides;
+    }
+}
+
+/// Notes what the eye sees in the mirrors of a cell, within the cone by which it sees the cell.
+pub(super) fn keep_mirrors(query: &mut Query<'_>, cell: u32, cone: &[Side]) {
+    let (outlook, eye) = (query.outlook, query.eye());
+    let Query { view, scratch, seen, .. } = query;
+    for mirror in outlook.mirrors_of(cell) {
+        let corners = outlook.corners(mirror.first_corner, mirror.n_corners);
+        let mut window = Vec::new();
+        let seen_in = match mirror.front.facing(corners, view.eye, view.slack) {
+            Facing::Behind => false,
+            Facing::Before => scratch.clipper.narrow(eye, corners, cone, &mut window),
+            Facing::Level => {
+                window.extend_from_slice(cone);
+                true
+            }
+        };
+        if seen_in {
+            seen.reflections.push(reflection(outlook, view, cell, mirror, &window));
+        }
+    }
+}

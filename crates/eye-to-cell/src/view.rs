@@ -1,0 +1,259 @@
+//! Where the viewer is, and which directions the picture covers.
+
+use crate::front::Front;
+use crate::side::{MOST_SIDES, Reach, Side, Vector, cross, dot, minus, norm};
+use std::f64::consts::{PI, TAU};
+
+/// An eye and the cone of directions that it looks at, in the plane or in space.
+///
+/// The cone is a convex one, or two side by side where it is wider than half of all directions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    pub(crate) eye: Vector,
+    /// Bound on the error of each coordinate of the eye; 0 but for eyes seen in mirrors.
+    pub(crate) slack: f64,
+    pub(crate) parts: Vec<ViewPart>,
+}
+
+/// A convex cone: the directions within all sides.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct ViewPart {
+    /// At most [`MOST_SIDES`].
+    pub(crate) sides: Vec<Side>,
+}
+
+/// Why numbers are no view.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// NaN or an infinity in the eye's place.
+    #[error("the eye is at no finite place")]
+    Eye,
+    /// NaN, an infinity, or no direction at all.
+    #[error("the direction of view is not finite, or has no length")]
+    Direction,
+    /// Not above 0, or more than a full turn.
+    #[error("a field of view of {0} is not above 0 and at most a full turn")]
+    Fov(f64),
+    /// Not above 0, or not finite.
+    #[error("an aspect of {0} is not a finite number above 0")]
+    Aspect(f64),
+}
+
+impl View {
+    /// All directions from `eye` (scene units; z is 0 in a plane).
+    ///
+    /// # Errors
+    /// [`ViewError::Eye`].
+    pub fn all_round(eye: [f64; 3]) -> Result<Self, ViewError> {
+        match eye.iter().all(|x| x.is_finite()) {
+            true => Ok(Self { eye, slack: 0.0, parts: vec![ViewPart::default()] }),
+            false => Err(ViewError::Eye),
+        }
+    }
+
+    /// In the plane: the directions within `fov / 2` on both sides of `dir`. `fov` in radians, above 0 and at most
+    /// a full turn; `dir` need not have unit length.
+    ///
+    /// # Errors
+    /// [`ViewError`] for numbers out of range.
+    pub fn planar(eye: [f64; 2], dir: [f64; 2], fov: f64) -> Result<Self, ViewError> {
+        let d = unit([dir[0], dir[1], 0.0])?;
+        check_fov(fov)?;
+        let mut view = Self::all_round([eye[0], eye[1], 0.0])?;
+        view.cut_by_wedge(d, [d[1], -d[0], 0.0], fov);
+        Ok(view)
+    }
+
+    /// In space: what a picture shows whose width takes the angle `fov` (radians) and whose width is `aspect` times its height.
+    ///
+    /// `up` says what is up in the picture; it need not be at a right angle to `dir`, and if it is parallel to it,
+    /// or zero, some direction is chosen. No picture takes half a turn or more; then the directions are meant whose
+    /// angle to `dir` around `up` is at most `fov / 2`, however steep, which is what the picture tends to.
+    ///
+    /// # Errors
+    /// [`ViewError`] for numbers out of range.
+    pub fn pinhole(eye: [f64; 3], dir: [f64; 3], up: [f64; 3], fov: f64, aspect: f64) -> Result<Self, ViewError> {
+        let forward = unit(dir)?;
+        check_fov(fov)?;
+        if !(aspect.is_finite() && aspect > 0.0) {
+            return Err(ViewError::Aspect(aspect));
+        }
+        let right = right_of(forward, up);
+        let mut view = Self::all_round(eye)?;
+        view.cut_by_wedge(forward, right, fov);
+        if fov < PI {
+            let up = cross(right, forward);
+            // Half the height is tan(fov / 2) / aspect.
+            let (sin, cos) = (0.5 * fov).sin_cos();
+            for up_or_down in [1.0, -1.0] {
+                let normal = std::array::from_fn(|k| sin * forward[k] + up_or_down * aspect * cos * up[k]);
+                view.parts[0].sides.push(Side::given(unit(normal)?));
+            }
+        }
+        Ok(view)
+    }
+
+    /// The eye, in scene units.
+    pub fn eye(&self) -> [f64; 3] {
+        self.eye
+    }
+
+    /// What is looked at in a mirror: the eye behind it, and the cone with these sides as the mirror shows it.
+    pub(crate) fn mirrored(&self, mirror: &Front, cone: &[Side]) -> Self {
+        let (point, across) = mirror.plane();
+        let v = minus(self.eye, point);
+        let along = 2.0 * dot(v, across);
+        let eye: Vector = std::array::from_fn(|k| self.eye[k] - along * across[k]);
+        // Along an axis only the last subtraction of each of the two steps rounds. Any other unit normal is off by a few
+        // units in the last place, and so is the sum. Both are below 16 u of the sizes.
+        let size = norm(v) + norm(self.eye) + norm(eye);
+        let exact = across.iter().filter(|x| **x != 0.0).count() == 1 && {
+            let k = across.iter().position(|x| *x != 0.0).unwrap_or(0);
+            midway(self.eye[k], eye[k], point[k])
+        };
+        let rounding = if exact { 0.0 } else { size * 2.0 * f64::EPSILON * 4.0 };
+        let sides = cone.iter().take(MOST_SIDES).map(|side| side.mirrored(across)).collect();
+        Self { eye, slack: self.slack + rounding, parts: vec![ViewPart { sides }] }
+    }
+
+    /// Keeps the directions whose angle to `forward`, towards `right` or away from it, is at most `fov / 2`.
+    fn cut_by_wedge(&mut self, forward: Vector, right: Vector, fov: f64) {
+        let (sin, cos) = (0.5 * fov).sin_cos();
+        // At the angle a to the right of forward its value is sin(fov / 2 - a).
+        let end = |right: f64, v: Vector| Side::given(std::array::from_fn(|k| sin * forward[k] - right * cos * v[k]));
+        let half = |right_or_left: f64, v: Vector| {
+            let towards = Side::given(v.map(|x| right_or_left * x));
+            ViewPart { sides: vec![towards, end(right_or_left, v)] }
+        };
+        self.parts = if fov < PI {
+            vec![ViewPart { sides: vec![end(1.0, right), end(-1.0, right)] }]
+        } else if fov < TAU {
+            vec![half(1.0, right), half(-1.0, right)]
+        } else {
+            vec![ViewPart::default()]
+        };
+    }
+
+    /// What rounding does to vectors that are at most `radius` long.
+    pub(crate) fn reach(&self, radius: f64) -> Reach {
+        Reach { radius, slack: self.slack }
+    }
+}
+
+impl ViewPart {
+    /// The sides, ready to be asked about vectors within reach.
+    pub(crate) fn sides(&self, reach: Reach) -> impl Iterator<Item = Side> + '_ {
+        self.sides.iter().take(MOST_SIDES).map(move |side| side.within(reach))
+    }
+}
+
+/// Whether `m` is exactly in the middle of `a` and `b`: the two differences are made without rounding, and are equal.
+fn midway(a: f64, b: f64, m: f64) -> bool {
+    let exact = |x: f64, y: f64| {
+        let d = x - y;
+        // Knuth's two-sum: what the subtraction lost.
+        let back = d - x;
+        (d, (x - (d - back)) + (-y - back))
+    };
+    let ((left, lost), (right, gone)) = (exact(m, a), exact(b, m));
+    lost == 0.0 && gone == 0.0 && left == right
+}
+
+fn check_fov(fov: f64) -> Result<(), ViewError> {
+    if fov > 0.0 && fov <= TAU { Ok(()) } else { Err(ViewError::Fov(fov)) }
+}
+
+/// The vector with unit length; large and small ones do not over- or underflow.
+fn unit(v: Vector) -> Result<Vector, ViewError> {
+    let largest = v.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    // A NaN is passed over by `max`.
+    if !v.iter().all(|x| x.is_finite()) || largest == 0.0 {
+        return Err(ViewError::Direction);
+    }
+    let scaled = v.map(|x| x / largest);
+    let length = dot(scaled, scaled).sqrt();
+    Ok(scaled.map(|x| x / length))
+}
+
+/// The unit vector to the right of who looks along the unit vector `forward` with `up` above.
+fn right_of(forward: Vector, up: Vector) -> Vector {
+    let flat = forward.map(f64::abs);
+    let least = (0..3).min_by(|&a, &b| flat[a].total_cmp(&flat[b])).unwrap_or(0);
+    let mut other = [0.0; 3];
+    other[least] = 1.0;
+    // Nearly parallel: the cross product would be mostly rounding.
+    let across = unit(up).map(|up| cross(forward, up)).ok().filter(|r| dot(*r, *r) > 1e-12);
+    unit(across.unwrap_or_else(|| cross(forward, other))).unwrap_or([1.0, 0.0, 0.0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contains(view: &View, v: Vector) -> bool {
+        let reach = view.reach(10.0);
+        view.parts.iter().any(|part| part.sides(reach).all(|side| !side.lets_go(side.value(v))))
+    }
+
+    fn at(degrees: f64) -> Vector {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        [cos, sin, 0.0]
+    }
+
+    #[test]
+    fn planar_fields_of_view_of_all_widths() {
+        for fov in [0.5, 1.0, 60.0, 179.0, 180.0, 181.0, 270.0, 359.5, 360.0f64] {
+            for turn in [0.0, 33.0, 90.0, 200.0] {
+                let d = at(turn);
+                let view = View::planar([1.0, 2.0], [7.0 * d[0], 7.0 * d[1]], fov.to_radians()).unwrap();
+                for k in -3599..3600 {
+                    let angle = f64::from(k) * 0.05;
+                    // On the border either is right.
+                    if (angle.abs() - 0.5 * fov).abs() > 0.01 {
+                        assert_eq!(contains(&view, at(turn + angle)), angle.abs() < 0.5 * fov, "{fov} {turn} {angle}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn pictures_have_their_width_and_height() {
+        let view = View::pinhole([0.0; 3], [0.0, 2.0, 0.0], [0.0, 0.5, 9.0], PI / 2.0, 2.0).unwrap();
+        // Forward is y, right is x, up is z: half a width of 1 and half a height of 0.5 at distance 1.
+        for (v, inside) in [
+            ([0.99, 1.0, 0.0], true),
+            ([1.01, 1.0, 0.0], false),
+            ([-0.99, 1.0, 0.49], true),
+            ([0.0, 1.0, 0.51], false),
+            ([0.0, 1.0, -0.49], true),
+            ([0.0, -1.0, 0.0], false),
+        ] {
+            assert_eq!(contains(&view, v), inside, "{v:?}");
+        }
+        let wide = View::pinhole([0.0; 3], [0.0, 2.0, 0.0], [0.0, 0.0, 9.0], 1.5 * PI, 2.0).unwrap();
+        assert!(contains(&wide, [0.0, 0.1, 9.0]) && contains(&wide, [1.0, -0.9, 0.0]));
+        assert!(!contains(&wide, [0.9, -1.0, 0.0]));
+        // Straight up, with up along it: some picture.
+        let up = View::pinhole([0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 1.0, 1.0).unwrap();
+        assert!(contains(&up, [0.0, 0.0, 1.0]) && !contains(&up, [0.0, 0.0, -1.0]));
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let nan = f64::NAN;
+        assert_eq!(View::planar([nan, 0.0], [1.0, 0.0], 1.0), Err(ViewError::Eye));
+        assert_eq!(View::planar([0.0, 0.0], [0.0, 0.0], 1.0), Err(ViewError::Direction));
+        assert_eq!(View::planar([0.0, 0.0], [nan, 1.0], 1.0), Err(ViewError::Direction));
+        assert!(matches!(View::planar([0.0, 0.0], [1.0, 0.0], nan), Err(ViewError::Fov(_))));
+        for fov in [0.0, -1.0, 6.3] {
+            assert_eq!(View::planar([0.0, 0.0], [1.0, 0.0], fov), Err(ViewError::Fov(fov)));
+        }
+        assert_eq!(View::pinhole([0.0; 3], [1.0, 0.0, 0.0], [0.0; 3], 1.0, 0.0), Err(ViewError::Aspect(0.0)));
+        assert_eq!(
+            View::planar([0.0, 0.0], [1.0, 0.0], 0.0).unwrap_err().to_string(),
+            "a field of view of 0 is not above 0 and at most a full turn"
+        );
+    }
+}
