@@ -1,0 +1,48 @@
+//! Small visibility tables with random access: a file that a run-time asks piece by piece.
+//!
+//! Owns: the coding of rows ([`Distinct`], blocks through zstd), merging within a budget ([`PackOptions`]), the byte
+//! [`format`](mod@format), reading on demand ([`Packed`]), the coarse table to fall back on.
+//! Does not know: how a table was made, cones and eyes, threads of its own, paths of files.
+//! Invariants: without a budget a table comes back exactly; with one, everything that was visible still is.
+//! Bytes that are not what was written are errors, never a panic, and never ask for memory that neither the
+//! length of the file nor a stated limit justifies. Same table and options, same bytes.
+//!
+//! # Why positional reads and no map
+//! A file could be mapped into memory and left to the system's page cache. This crate reads at positions
+//! instead. Mapping needs `unsafe`, which the workspace forbids, for a reason: a mapped file that another
+//! process cuts ends the program with SIGBUS in the middle of a frame, where a read gives an error. And a
+//! map bounds nothing that counts: rows have to be unpacked anyway, and a budget on unpacked blocks is
+//! exact, while the pages of a map come and go as the system likes. A host that maps its files itself
+//! passes the map: every `&'static [u8]` is a [`Source`].
+
+#![forbid(unsafe_code)]
+
+mod bytes;
+mod cache;
+pub mod classes;
+mod container;
+mod error;
+pub mod format;
+mod locate;
+mod merge;
+mod pack;
+mod packed;
+mod query;
+mod sizes;
+mod source;
+mod store;
+mod whole;
+mod write;
+
+pub use cache::PackedStats;
+pub use classes::Distinct;
+pub use error::{PackError, PackedError, PackedErrorKind};
+pub use pack::{PackOptions, PackReport, pack, pack_report};
+pub use packed::Packed;
+pub use query::{ExitVisitor, StabNode};
+pub use sizes::PartSize;
+pub use source::Source;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

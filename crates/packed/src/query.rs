@@ -1,0 +1,299 @@
+//! Questions about cells, objects and stab trees.
+
+use crate::bytes::Reader;
+use crate::error::{PackedError, PackedErrorKind as Kind};
+use crate::format::{self, POLYGONS_KNOWN};
+use crate::packed::Packed;
+use crate::source::Source;
+use sightlines_pvs::{CellId, ObjectRecord, PlaneTree, PortalRecord};
+
+/// What [`Packed::exits`] calls: portal, whether it is crossed from its first cell into its second, the cell it
+/// leads to, its corners.
+pub type ExitVisitor<'a> = dyn FnMut(u32, bool, CellId, &[[f64; 3]]) + 'a;
+
+/// A node of stab trees, without its children.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StabNode {
+    /// The portal that is crossed.
+    pub portal: u32,
+    /// Whether from its first cell into its second.
+    pub forward: bool,
+    /// Whether the tree was cut here: any sequence may follow.
+    pub open: bool,
+}
+
+impl<S: Source> Packed<S> {
+    /// The box around a cell, in scene units; z is 0 in a plane.
+    ///
+    /// # Errors
+    /// If there is no such cell.
+    pub fn cell_box(&self, cell: CellId) -> Result<([f64; 3], [f64; 3]), PackedError> {
+        self.check_cell(cell)?;
+        Ok(self.places.cell_box(&self.resident, cell.idx()))
+    }
+
+    /// Puts the corners of a cell into `out`, which is cleared; none if the cell is its box.
+    ///
+    /// # Errors
+    /// If there is no such cell.
+    pub fn cell_polygon(&self, cell: CellId, out: &mut Vec<[f64; 2]>) -> Result<(), PackedError> {
+        out.clear();
+        self.check_cell(cell)?;
+        out.extend(self.places.polygon(&self.resident, cell.idx()));
+        Ok(())
+    }
+
+    /// What says instead of the cells' boxes which cells a point is in, if there is such a thing.
+    pub fn planes(&self) -> Option<&PlaneTree> {
+        self.places.planes.as_ref()
+    }
+
+    /// Puts every cell that may contain the point `p` (scene units) into `out`, which is cleared, ascending:
+    /// the same as [`sightlines_pvs::Table::locate`]. Reads nothing.
+    ///
+    /// # Errors
+    /// If `p` does not have [`Packed::dimension`] coordinates.
+    pub fn locate(&self, p: &[f64], out: &mut Vec<CellId>) -> Result<(), PackedError> {
+        out.clear();
+        let dimension = self.dimension();
+        if p.len() != usize::from(dimension) {
+            return Err(PackedError::asked(Kind::Coordinates { dimension, given: p.len() }));
+        }
+        let mut point = [0.0; 3];
+        point[..p.len()].copy_from_slice(p);
+        self.places.locate(&self.resident, point, out);
+        Ok(())
+    }
+
+    /// Puts the cells that `cell` may see, itself included, into `out`, which is cleared, ascending.
+    ///
+    /// # Errors
+    /// If there is no such cell, or its block cannot be read.
+    pub fn visible(&self, cell: CellId, out: &mut Vec<CellId>) -> Result<(), PackedError> {
+        self.items(&self.rows, cell, out, CellId)
+    }
+
+    /// Puts the objects that `cell` may see into `out`, which is cleared, ascending.
+    ///
+    /// Without own rows of objects these are the objects of all cells that it sees, and the blocks of all
+    /// of them are read.
+    ///
+    /// # Errors
+    /// If there is no such cell, or a block cannot be read.
+    pub fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
+        if let Some(seen) = &self.seen {
+            return self.items(seen, cell, out, |object| object);
+        }
+        out.clear();
+        let mut cells = Vec::new();
+        self.visible(cell, &mut cells)?;
+        let mut set = vec![0u64; if cells.is_empty() { 0 } else { self.n_objects().div_ceil(64) }];
+        for cell in cells {
+            self.for_each_object(cell, |object| set[object as usize / 64] |= 1 << (object % 64))?;
+        }
+        out.extend(sightlines_pvs::bits::ones(&set).map(|object| object as u32));
+        Ok(())
+    }
+
+    /// Puts the objects that touch a cell into `out`, which is cleared, ascending.
+    ///
+    /// # Errors
+    /// If there is no such cell, or its block cannot be read.
+    pub fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
+        out.clear();
+        self.check_cell(cell)?;
+        self.for_each_object(cell, |object| out.push(object))
+    }
+
+    fn for_each_object(&self, cell: CellId, visit: impl FnMut(u32)) -> Result<(), PackedError> {
+        self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
+            r.varint()?;
+            self.for_each_exit(&mut r, |_, _, _| Ok(()))?;
+            r.ascending(u64::from(self.head.n_objects), visit)
+        })
+    }
+
+    /// What a cell belongs to, such as a Doom sector.
+    ///
+    /// # Errors
+    /// If there is no such cell, or its block cannot be read.
+    pub fn group(&self, cell: CellId) -> Result<Option<u32>, PackedError> {
+        self.check_cell(cell)?;
+        self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
+            let group = r.varint()?;
+            match group.checked_sub(1).map(u32::try_from) {
+                None => Ok(None),
+                Some(Ok(group)) => Ok(Some(group)),
+                Some(Err(_)) => Err(r.fail(Kind::Value { value: group })),
+            }
+        })
+    }
+
+    /// Reads the exits of a cell: portal, whether it leads forward, to-cell.
+    fn for_each_exit(
+        &self,
+        r: &mut Reader<'_>,
+        mut visit: impl FnMut(u32, bool, CellId) -> Result<(), PackedError>,
+    ) -> Result<(), PackedError> {
+        for _ in 0..r.count(2)? {
+            let (gate, to) = (r.varint()?, r.below(u64::from(self.head.n_cells))?);
+            if gate / 2 >= u64::from(self.head.n_portals) {
+                return Err(r.fail(Kind::Value { value: gate }));
+            }
+            visit((gate / 2) as u32, gate % 2 == 0, CellId(to))?;
+        }
+        Ok(())
+    }
+
+    /// Calls `visit` for each way out of a cell: the portal, whether it is crossed from its first cell into
+    /// its second, the cell it leads to, and its corners as [`PortalRecord::points`], that is, as seen from
+    /// its first cell whatever the direction.
+    ///
+    /// # Errors
+    /// If there is no such cell, or a block cannot be read; then some exits may have been visited.
+    pub fn exits(&self, cell: CellId, visit: &mut ExitVisitor<'_>) -> Result<(), PackedError> {
+        self.check_cell(cell)?;
+        let mut points = Vec::new();
+        self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
+            r.varint()?;
+            self.for_each_exit(&mut r, |portal, forward, to| {
+                self.read_portal(portal, &mut points)?;
+                visit(portal, forward, to, &points);
+                Ok(())
+            })
+        })
+    }
+
+    /// A portal.
+    ///
+    /// # Errors
+    /// If there is no such portal, or its block cannot be read.
+    pub fn portal(&self, portal: u32) -> Result<PortalRecord, PackedError> {
+        let n_portals = self.head.n_portals;
+        if portal >= n_portals {
+            return Err(PackedError::asked(Kind::NoPortal { portal, n_portals }));
+        }
+        let mut points = Vec::new();
+        let [a, b, s, t] = self.read_portal(portal, &mut points)?;
+        Ok(PortalRecord { cells: [CellId(a), CellId(b)], sides: [s, t], points })
+    }
+
+    /// Puts the corners into `points`; the cells and sides of the portal.
+    fn read_portal(&self, portal: u32, points: &mut Vec<[f64; 3]>) -> Result<[u32; 4], PackedError> {
+        let d = usize::from(self.head.dimension);
+        self.with_record((format::PORTALS, self.portals), portal, |mut r| {
+            let mut ids = [0; 4];
+            for (k, id) in ids.iter_mut().enumerate() {
+                *id = r.below(if k < 2 { u64::from(self.head.n_cells) } else { 1 << 32 })?;
+            }
+            points.clear();
+            for _ in 0..r.count(8 * d)? {
+                points.push(r.point(d)?);
+            }
+            r.finish()?;
+            Ok(ids)
+        })
+    }
+
+    fn with_object<T>(
+        &self,
+        object: u32,
+        visit: impl FnOnce(&mut Reader<'_>) -> Result<T, PackedError>,
+    ) -> Result<T, PackedError> {
+        let n_objects = self.head.n_objects;
+        if object >= n_objects {
+            return Err(PackedError::asked(Kind::NoObject { object, n_objects }));
+        }
+        self.with_record((format::OBJECTS, self.objects), object, |mut r| visit(&mut r))
+    }
+
+    /// The box around an object, in scene units; z is 0 in a plane.
+    ///
+    /// # Errors
+    /// If there is no such object, or its block cannot be read.
+    pub fn object_box(&self, object: u32) -> Result<([f64; 3], [f64; 3]), PackedError> {
+        let d = usize::from(self.head.dimension);
+        self.with_object(object, |r| Ok((r.point(d)?, r.point(d)?)))
+    }
+
+    /// The name of an object.
+    ///
+    /// # Errors
+    /// As [`Packed::object_box`].
+    pub fn object_name(&self, object: u32) -> Result<String, PackedError> {
+        Ok(self.object(object)?.0.name)
+    }
+
+    /// The number of polygons of an object; 1 if the table does not know.
+    ///
+    /// # Errors
+    /// As [`Packed::object_box`].
+    pub fn object_polygons(&self, object: u32) -> Result<u32, PackedError> {
+        let polygons = self.object(object)?.1;
+        Ok(if self.head.flags & POLYGONS_KNOWN == 0 { 1 } else { polygons })
+    }
+
+    pub(crate) fn object(&self, object: u32) -> Result<(ObjectRecord, u32), PackedError> {
+        let d = usize::from(self.head.dimension);
+        self.with_object(object, |r| {
+            let (min, max, polygons) = (r.point(d)?, r.point(d)?, r.below(1 << 32)?);
+            let name = r.take(r.left())?;
+            let name = std::str::from_utf8(name).map_err(|_| r.fail(Kind::Text))?.to_owned();
+            Ok((ObjectRecord { name, min, max }, polygons))
+        })
+    }
+
+    /// Number of nodes of all stab trees, if there are any; see [`sightlines_pvs::StabTrees`].
+    pub fn n_stab_nodes(&self) -> Option<u32> {
+        self.head.n_nodes
+    }
+
+    /// Puts the nodes that begin the sequences out of a cell into `out`, which is cleared, ascending; whether
+    /// the tree was cut at once, so that any sequence may be seen. Without stab trees, so it is.
+    ///
+    /// # Errors
+    /// If there is no such cell, or its block cannot be read.
+    pub fn stab_roots(&self, cell: CellId, out: &mut Vec<u32>) -> Result<bool, PackedError> {
+        out.clear();
+        self.check_cell(cell)?;
+        let Some(n_nodes) = self.head.n_nodes else { return Ok(true) };
+        self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
+            r.varint()?;
+            self.for_each_exit(&mut r, |_, _, _| Ok(()))?;
+            r.ascending(u64::from(self.head.n_objects), |_| {})?;
+            let open = r.below(2)? == 1;
+            r.ascending(u64::from(n_nodes), |node| out.push(node))?;
+            r.finish()?;
+            Ok(open)
+        })
+    }
+
+    /// A node of the stab trees; puts what may be crossed after it into `children`, which is cleared,
+    /// ascending.
+    ///
+    /// # Errors
+    /// If there is no such node, or its block cannot be read.
+    pub fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabNode, PackedError> {
+        children.clear();
+        let n_nodes = self.head.n_nodes.unwrap_or(0);
+        let Some(store) = self.nodes.filter(|_| node < n_nodes) else {
+            return Err(PackedError::asked(Kind::NoNode { node, n_nodes }));
+        };
+        self.with_record((format::STAB, store), node, |mut r| {
+            let (gate, n) = (r.varint()?, r.varint()?);
+            if gate / 2 >= u64::from(self.head.n_portals) || n / 2 > r.left() as u64 {
+                return Err(r.fail(Kind::Value { value: gate }));
+            }
+            let mut above = u64::from(node);
+            for _ in 0..n / 2 {
+                let down = r.varint()?;
+                let child = above.checked_sub(1).and_then(|above| above.checked_sub(down));
+                above = child.ok_or_else(|| r.fail(Kind::Value { value: down }))?;
+                children.push(above as u32);
+            }
+            r.finish()?;
+            children.reverse();
+            Ok(StabNode { portal: (gate / 2) as u32, forward: gate % 2 == 0, open: n % 2 == 1 })
+        })
+    }
+}

@@ -1,0 +1,129 @@
+//! Everything at once: back to a table, and the check of all that a file says.
+
+use crate::error::{PackedError, PackedErrorKind as Kind};
+use crate::format::{self, MAX_TABLE, POLYGONS_KNOWN};
+use crate::packed::Packed;
+use crate::source::Source;
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, Locator, SectionId, StabParts, StabTrees, Table, TableError, TableParts,
+};
+
+impl<S: Source> Packed<S> {
+    /// The whole table, checked as every table is: the one that was packed, if nothing had to be merged.
+    /// O(size of the table).
+    ///
+    /// # Errors
+    /// If a block cannot be read, if this is no table, or if its rows take more than [`MAX_TABLE`] bytes.
+    pub fn to_table(&self) -> Result<Table, PackedError> {
+        let table_error = |id: SectionId| {
+            let offset = self.resident.find(id).map_or(0, |section| section.place.offset);
+            move |error: TableError| PackedError::new(Some(id), offset, Kind::Table(error))
+        };
+        let (n_cells, n_objects) = (self.n_cells(), self.n_objects());
+        let mut parts = TableParts {
+            rows: self.matrix(format::ROWS, n_cells, |cell, out| self.items(&self.rows, cell, out, |i| i))?,
+            info: self.info().to_vec(),
+            mirrors: self.mirrors().to_vec(),
+            planes: self.planes().cloned(),
+            locator: Locator::from_nodes(&self.places.locator_nodes(&self.resident))
+                .map_err(|error| table_error(format::LOCATOR)(error.into()))?,
+            ..TableParts::empty(self.dimension())
+        };
+        if let Some(seen) = &self.seen {
+            parts.objects_seen =
+                Some(self.matrix(format::SEEN, n_objects, |cell, out| self.items(seen, cell, out, |o| o))?);
+        }
+        for cell in (0..n_cells as u32).map(CellId) {
+            let (min, max) = self.cell_box(cell)?;
+            let mut polygon = Vec::new();
+            self.cell_polygon(cell, &mut polygon)?;
+            parts.cells.push(CellRecord { min, max, group: self.group(cell)?, polygon });
+            let mut objects = Vec::new();
+            self.objects_of(cell, &mut objects)?;
+            parts.cell_objects.push(objects);
+        }
+        for portal in 0..self.head.n_portals {
+            parts.portals.push(self.portal(portal)?);
+        }
+        let known = self.head.flags & POLYGONS_KNOWN != 0;
+        for object in 0..self.head.n_objects {
+            let (record, polygons) = self.object(object)?;
+            parts.objects.push(record);
+            parts.object_polygons.extend(known.then_some(polygons));
+        }
+        if let Some(n_nodes) = self.n_stab_nodes() {
+            let stab = StabTrees::new(self.stab_parts(n_nodes)?, &parts.portals, n_cells);
+            parts.stab = Some(stab.map_err(|error| table_error(format::STAB)(error.into()))?);
+        }
+        Table::new(parts).map_err(table_error(format::HEAD))
+    }
+
+    /// Checks all that the file says: every block, that it is a table, that the exits of cells are its
+    /// portals, and that the coarse table is what the rows say. O(size of the table).
+    ///
+    /// # Errors
+    /// As [`Packed::to_table`], or what else is wrong.
+    pub fn verify(&self) -> Result<(), PackedError> {
+        let table = self.to_table()?;
+        let page = self.head.page as usize;
+        let n_pages = self.head.n_pages();
+        let mut pages = BitMatrix::new(n_pages, n_pages);
+        for cell in (0..table.n_cells() as u32).map(CellId) {
+            table.visible(cell).for_each(|other| pages.set(cell.idx() / page, other.idx() / page, true));
+        }
+        for p in 0..n_pages {
+            if (0..n_pages).any(|q| pages.get(p, q) != self.page_sees(p, q)) {
+                return Err(PackedError::new(Some(format::COARSE), 0, Kind::Coarse { page: p as u32 }));
+            }
+        }
+        let mut exits: Vec<Vec<(u32, bool, CellId)>> = vec![Vec::new(); table.n_cells()];
+        for (portal, record) in (0u32..).zip(table.portals()) {
+            let [a, b] = record.cells;
+            exits[a.idx()].push((portal, true, b));
+            exits[b.idx()].push((portal, false, a));
+        }
+        for (cell, expected) in (0u32..).map(CellId).zip(&exits) {
+            let mut found = Vec::new();
+            self.exits(cell, &mut |portal, forward, to, _| found.push((portal, forward, to)))?;
+            if found != *expected {
+                return Err(PackedError::new(Some(format::CELLS), 0, Kind::Exits { cell }));
+            }
+        }
+        Ok(())
+    }
+
+    /// A matrix of cells by `n_columns`, from what `read` gives for each cell.
+    fn matrix(
+        &self,
+        id: SectionId,
+        n_columns: usize,
+        read: impl Fn(CellId, &mut Vec<u32>) -> Result<(), PackedError>,
+    ) -> Result<BitMatrix, PackedError> {
+        let bytes = self.n_cells() as u64 * 8 * n_columns.div_ceil(64) as u64;
+        if bytes > MAX_TABLE {
+            return Err(PackedError::new(Some(id), 0, Kind::TooLarge { bytes }));
+        }
+        let mut matrix = BitMatrix::new(self.n_cells(), n_columns);
+        let mut items = Vec::new();
+        for cell in 0..self.n_cells() {
+            read(CellId(cell as u32), &mut items)?;
+            let row = matrix.row_mut(cell);
+            items.iter().for_each(|&i| row[i as usize / 64] |= 1 << (i % 64));
+        }
+        Ok(matrix)
+    }
+
+    fn stab_parts(&self, n_nodes: u32) -> Result<StabParts, PackedError> {
+        let mut parts = StabParts::default();
+        let mut list = Vec::new();
+        for node in 0..n_nodes {
+            let crossed = self.stab_node(node, &mut list)?;
+            parts.push_node(crossed.portal, crossed.forward, &list, crossed.open);
+        }
+        for cell in (0..self.n_cells() as u32).map(CellId) {
+            let open = self.stab_roots(cell, &mut list)?;
+            parts.push_cell(&list, open);
+        }
+        Ok(parts)
+    }
+}

@@ -1,0 +1,219 @@
+//! Sections and records as bytes, as [`crate::format`] describes them.
+
+use crate::bytes::{Writer, bytes_of};
+use crate::classes::{Classes, Distinct};
+use crate::error::PackError;
+use crate::format::{HAS_SEEN, MAX_BLOCK, NONE, POLYGONS_KNOWN};
+use crate::pack::page_size;
+use crate::store::LEVEL;
+use sightlines_pvs::{
+    BitMatrix, CellRecord, Locator, LocatorNode, PlaneChild, PlaneTree, SectionId, StabTrees, TableParts,
+};
+
+/// Numbers of cells, objects, portals and nodes, and the flags of `HEAD`. A checked table counts with 32 bits.
+pub(crate) fn counts(parts: &TableParts) -> [u32; 5] {
+    let known = if parts.object_polygons.is_empty() { 0 } else { POLYGONS_KNOWN };
+    let seen = if parts.objects_seen.is_some() { HAS_SEEN } else { 0 };
+    let n_nodes = parts.stab.as_ref().map_or(NONE, |stab| stab.n_nodes() as u32);
+    [parts.cells.len() as u32, parts.objects.len() as u32, parts.portals.len() as u32, n_nodes, known | seen]
+}
+
+pub(crate) fn boxes(parts: &TableParts) -> Vec<u8> {
+    let d = usize::from(parts.dimension);
+    let mut out = Writer::default();
+    for CellRecord { min, max, .. } in &parts.cells {
+        out.floats(&min[..d]);
+        out.floats(&max[..d]);
+    }
+    out.0
+}
+
+pub(crate) fn polygons(cells: &[CellRecord]) -> Vec<u8> {
+    let mut out = Writer::default();
+    let mut before = 0;
+    out.u32(0);
+    for cell in cells {
+        before += cell.polygon.len() as u32;
+        out.u32(before);
+    }
+    cells.iter().for_each(|cell| out.floats(cell.polygon.as_flattened()));
+    out.0
+}
+
+pub(crate) fn locator(locator: &Locator) -> Vec<u8> {
+    let (mut out, mut entries) = (Writer::default(), Writer::default());
+    out.u32(locator.n_nodes() as u32);
+    out.u32(locator.n_entries() as u32);
+    for node in locator.to_nodes() {
+        match node {
+            LocatorNode::Inner { axis, split, high, .. } => {
+                out.u32(u32::from(axis));
+                out.u32(high);
+                out.floats(&[split]);
+            }
+            LocatorNode::Leaf { cells } => {
+                out.u32(NONE);
+                out.u32(cells.len() as u32);
+                out.u64(entries.0.len() as u64 / 4);
+                cells.iter().for_each(|cell| entries.u32(cell.0));
+            }
+        }
+    }
+    out.0.extend(entries.0);
+    out.0
+}
+
+pub(crate) fn planes(planes: &PlaneTree) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.floats(&[planes.slack()]);
+    out.u32(planes.nodes().len() as u32);
+    for node in planes.nodes() {
+        out.floats(&node.normal);
+        out.floats(&[node.offset]);
+        for child in node.children {
+            let (kind, id) = match child {
+                PlaneChild::Node(id) => (0, id),
+                PlaneChild::Cell(cell) => (1, cell.0),
+                PlaneChild::Nothing => (2, 0),
+            };
+            out.u32(kind);
+            out.u32(id);
+        }
+    }
+    out.0
+}
+
+pub(crate) fn mirrors(parts: &TableParts) -> Vec<u8> {
+    let d = usize::from(parts.dimension);
+    let mut out = Writer::default();
+    out.varint(parts.mirrors.len() as u64);
+    for mirror in &parts.mirrors {
+        out.varint(u64::from(mirror.cell.0));
+        out.varint(u64::from(mirror.face));
+        out.varint(mirror.points.len() as u64);
+        mirror.points.iter().for_each(|p| out.floats(&p[..d]));
+    }
+    out.0
+}
+
+pub(crate) fn info(info: &[(String, String)]) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.varint(info.len() as u64);
+    for (key, value) in info {
+        out.text(key);
+        out.text(value);
+    }
+    out.0
+}
+
+/// The classes of each, packed; nothing if each is its own.
+///
+/// Classes are counted by their first members, so most entries are "the next new one", which is 0.
+pub(crate) fn classes(id: SectionId, classes: &Classes) -> Result<Vec<u8>, PackError> {
+    if classes.is_identity() {
+        return Ok(Vec::new());
+    }
+    let mut raw = Writer::default();
+    let mut next = 0;
+    for &class in &classes.of {
+        raw.varint(u64::from(next - class));
+        next = next.max(class + 1);
+    }
+    let mut out = Writer::default();
+    let n_raw = u32::try_from(raw.0.len()).ok().filter(|n| *n <= MAX_BLOCK);
+    out.u32(n_raw.ok_or(PackError::Record { store: id, bytes: raw.0.len() as u64 })?);
+    out.0.extend(zstd::bulk::compress(&raw.0, LEVEL).map_err(|_| PackError::Zstd { store: id })?);
+    Ok(out.0)
+}
+
+/// Which pages of cells see which. O(cells * classes / 64 + ones of the distinct rows).
+pub(crate) fn coarse(rows: &Distinct, n_cells: usize) -> Vec<u8> {
+    let page = page_size(n_cells);
+    let n_pages = n_cells.div_ceil(page);
+    // First pages by classes, then the classes become the pages in which they have members.
+    let mut seen = BitMatrix::new(n_pages, rows.bits.n_cols());
+    for (i, &class) in rows.rows.of.iter().enumerate() {
+        sightlines_pvs::bits::or_words(seen.row_mut(i / page), rows.bits.row(class as usize));
+    }
+    let mut out = BitMatrix::new(n_pages, n_pages);
+    for p in 0..n_pages {
+        for (j, &class) in rows.columns.of.iter().enumerate() {
+            if seen.get(p, class as usize) {
+                out.set(p, j / page, true);
+            }
+        }
+    }
+    (0..n_pages).flat_map(|p| bytes_of(out.row(p))).collect()
+}
+
+/// The records of `CELL`.
+pub(crate) fn cells(parts: &TableParts) -> Vec<Vec<u8>> {
+    let mut exits: Vec<Vec<(u64, u64)>> = vec![Vec::new(); parts.cells.len()];
+    for (portal, record) in (0u64..).zip(&parts.portals) {
+        let [a, b] = record.cells;
+        exits[a.idx()].push((2 * portal, u64::from(b.0)));
+        exits[b.idx()].push((2 * portal + 1, u64::from(a.0)));
+    }
+    let record = |i: usize| {
+        let mut out = Writer::default();
+        out.varint(parts.cells[i].group.map_or(0, |group| u64::from(group) + 1));
+        out.varint(exits[i].len() as u64);
+        for &(gate, to) in &exits[i] {
+            out.varint(gate);
+            out.varint(to);
+        }
+        out.ascending(&parts.cell_objects[i]);
+        if let Some(stab) = &parts.stab {
+            let cell = sightlines_pvs::CellId(i as u32);
+            out.varint(u64::from(stab.is_root_open(cell)));
+            out.ascending(stab.roots(cell));
+        }
+        out.0
+    };
+    (0..parts.cells.len()).map(record).collect()
+}
+
+/// The records of `PORT`.
+pub(crate) fn portals(parts: &TableParts) -> Vec<Vec<u8>> {
+    let d = usize::from(parts.dimension);
+    let record = |portal: &sightlines_pvs::PortalRecord| {
+        let mut out = Writer::default();
+        let ids = [portal.cells[0].0, portal.cells[1].0, portal.sides[0], portal.sides[1]];
+        ids.into_iter().for_each(|x| out.varint(u64::from(x)));
+        out.varint(portal.points.len() as u64);
+        portal.points.iter().for_each(|p| out.floats(&p[..d]));
+        out.0
+    };
+    parts.portals.iter().map(record).collect()
+}
+
+/// The records of `OBJS`.
+pub(crate) fn objects(parts: &TableParts) -> Vec<Vec<u8>> {
+    let d = usize::from(parts.dimension);
+    let record = |(o, object): (usize, &sightlines_pvs::ObjectRecord)| {
+        let mut out = Writer::default();
+        out.floats(&object.min[..d]);
+        out.floats(&object.max[..d]);
+        out.varint(u64::from(parts.object_polygons.get(o).copied().unwrap_or(0)));
+        out.0.extend_from_slice(object.name.as_bytes());
+        out.0
+    };
+    parts.objects.iter().enumerate().map(record).collect()
+}
+
+/// The records of `STAB`.
+pub(crate) fn nodes(stab: &StabTrees) -> Vec<Vec<u8>> {
+    let record = |node: u32| {
+        let mut out = Writer::default();
+        let ((portal, forward), children) = (stab.gate(node), stab.children(node));
+        out.varint(2 * u64::from(portal) + u64::from(!forward));
+        out.varint(2 * children.len() as u64 + u64::from(stab.is_open(node)));
+        let mut above = node;
+        for &child in children.iter().rev() {
+            out.varint(u64::from(above - 1 - child));
+            above = child;
+        }
+        out.0
+    };
+    (0..stab.n_nodes() as u32).map(record).collect()
+}

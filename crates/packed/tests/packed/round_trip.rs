@@ -1,0 +1,116 @@
+//! What comes out is what went in.
+
+use crate::common::{points, recipes, table};
+use proptest::prelude::*;
+use sightlines_packed::{PackOptions, Packed, PackedErrorKind, pack, pack_report};
+use sightlines_pvs::{CellId, Table};
+
+/// All that a packed table answers, compared with the table; the number of comparisons.
+pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
+    let (mut cells, mut numbers, mut n) = (Vec::new(), Vec::new(), 0);
+    assert_eq!((packed.n_cells(), packed.dimension()), (table.n_cells(), table.dimension()));
+    assert_eq!((packed.info(), packed.mirrors(), packed.planes()), (table.info(), table.mirrors(), table.planes()));
+    for p in points(table.dimension()) {
+        packed.locate(&p, &mut cells).unwrap();
+        assert_eq!(cells, table.locate(&p), "{p:?}");
+    }
+    for (i, record) in (0u32..).zip(table.cells()) {
+        let cell = CellId(i);
+        packed.visible(cell, &mut cells).unwrap();
+        assert!(cells.iter().copied().eq(table.visible(cell)));
+        n += cells.len();
+        let mut coarse = Vec::new();
+        packed.coarse(cell, &mut coarse).unwrap();
+        assert!(coarse.is_sorted() && cells.iter().all(|c| coarse.binary_search(c).is_ok()));
+        packed.objects_of(cell, &mut numbers).unwrap();
+        assert_eq!(numbers, table.objects_of(cell));
+        packed.objects_seen(cell, &mut numbers).unwrap();
+        assert_eq!(numbers, table.visible_objects(cell));
+        assert_eq!(packed.cell_box(cell).unwrap(), (record.min, record.max));
+        let mut polygon = Vec::new();
+        packed.cell_polygon(cell, &mut polygon).unwrap();
+        assert_eq!((&polygon, packed.group(cell).unwrap()), (&record.polygon, record.group));
+        let mut exits = Vec::new();
+        packed
+            .exits(cell, &mut |portal, forward, to, points| exits.push((portal, forward, to, points.to_vec())))
+            .unwrap();
+        let leads = |(k, portal): (usize, &sightlines_pvs::PortalRecord)| {
+            let forward = portal.cells[0] == cell;
+            let to = portal.cells[usize::from(forward)];
+            portal.cells.contains(&cell).then(|| (k as u32, forward, to, portal.points.clone()))
+        };
+        assert_eq!(exits, table.portals().iter().enumerate().filter_map(leads).collect::<Vec<_>>());
+        let open = packed.stab_roots(cell, &mut numbers).unwrap();
+        match table.stab() {
+            Some(stab) => assert_eq!((open, &numbers[..]), (stab.is_root_open(cell), stab.roots(cell))),
+            None => assert!(open && numbers.is_empty()),
+        }
+    }
+    for (o, object) in (0u32..).zip(table.objects()) {
+        assert_eq!(packed.object_box(o).unwrap(), (object.min, object.max));
+        assert_eq!(
+            (packed.object_name(o).unwrap(), packed.object_polygons(o).unwrap()),
+            (object.name.clone(), table.polygons_of(o))
+        );
+    }
+    for node in 0..packed.n_stab_nodes().unwrap_or(0) {
+        let (stab, found) = (table.stab().unwrap(), packed.stab_node(node, &mut numbers).unwrap());
+        assert_eq!(((found.portal, found.forward), found.open), (stab.gate(node), stab.is_open(node)));
+        assert_eq!(numbers, stab.children(node));
+        n += 1;
+    }
+    n
+}
+
+proptest! {
+    #[test]
+    fn a_table_comes_back_and_answers_the_same(recipe in recipes()) {
+        let table = table(recipe);
+        let (bytes, report) = pack_report(&table, &PackOptions::default()).unwrap();
+        prop_assert_eq!(&bytes, &pack(&table, &PackOptions { max_bytes: Some(bytes.len() as u64) }).unwrap());
+        prop_assert_eq!((report.bytes, report.n_merges), (bytes.len() as u64, 0));
+        let packed = Packed::open(bytes, 1 << 20).unwrap();
+        compare(&packed, &table);
+        packed.verify().unwrap();
+        prop_assert_eq!(packed.to_table().unwrap(), table);
+    }
+}
+
+/// A comparison can fail: a table with one pair less is another one.
+#[test]
+fn impostor_a_table_without_a_pair_is_told_apart() {
+    let table = table((2, 6, 5, 7, 0xFF));
+    let mut parts = table.clone().into_parts();
+    let (a, b) = (0..30).flat_map(|a| (0..a).map(move |b| (a, b))).find(|&(a, b)| parts.rows.get(a, b)).unwrap();
+    parts.rows.set(a, b, false);
+    parts.rows.set(b, a, false);
+    let other = Packed::open(pack(&Table::new(parts).unwrap(), &PackOptions::default()).unwrap(), 0).unwrap();
+    assert_ne!(other.to_table().unwrap(), table);
+    assert!(std::panic::catch_unwind(|| compare(&other, &table)).is_err());
+    let same = Packed::open(pack(&table, &PackOptions::default()).unwrap(), 0).unwrap();
+    assert!(compare(&same, &table) > 100);
+}
+
+#[test]
+fn what_is_not_there_is_an_error_that_says_so() {
+    let table = table((2, 4, 2, 5, 0xFF));
+    let packed = Packed::open(pack(&table, &PackOptions::default()).unwrap(), 0).unwrap();
+    let (mut cells, mut numbers) = (vec![CellId(1)], vec![1]);
+    let errors = [
+        packed.visible(CellId(8), &mut cells).unwrap_err(),
+        packed.object_box(packed.n_objects() as u32).unwrap_err(),
+        packed.portal(u32::MAX).unwrap_err(),
+        packed.locate(&[1.0], &mut cells).unwrap_err(),
+        packed.stab_node(u32::MAX, &mut numbers).unwrap_err(),
+    ];
+    assert!(cells.is_empty() && numbers.is_empty());
+    let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    assert_eq!(texts[0], "there is no cell 8, only 8");
+    assert_eq!(texts[1], format!("there is no object {0}, only {0}", packed.n_objects()));
+    assert_eq!(texts[2], "there is no portal 4294967295, only 10");
+    assert_eq!(texts[3], "a point of this table has 2 coordinates, not 1");
+    assert!(texts[4].starts_with("there is no node 4294967295, only "));
+    let error = Packed::open(b"\x89PVS\r\n\x1a\n".to_vec(), 0).unwrap_err();
+    assert!(matches!(error.kind, PackedErrorKind::Magic));
+    assert_eq!(error.to_string(), "byte 0: this is no packed visibility table");
+}
