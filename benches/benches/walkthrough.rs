@@ -1,12 +1,14 @@
 //! A walk through a furnished tower with a z-buffer: what a frame costs with all triangles and with those
-//! that the table shows from the eye's cells, and the same with what is outside the view left out.
+//! that the table shows from the eye's cells, the same with what is outside the view left out, and with what each
+//! eye-to-cell method leaves.
 //!
-//! All pictures of a frame must be the same, pixel by pixel: the table errs towards visible. Ends with 1 if
-//! one differs.
+//! All pictures of a frame must be the same, pixel by pixel: the table and the methods err towards visible. Ends with 1
+//! if one differs.
 
 use clap::Parser;
 use sightlines::bake::{PortalMode, SceneBakeOptions, bake_scene};
-use sightlines::cells::Scene;
+use sightlines::cells::{CellId, Scene};
+use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
 use sightlines::pvs::Table;
@@ -14,13 +16,19 @@ use sightlines::scenes::{TowerOptions, tower};
 use sightlines_benches::child::portals_of;
 use sightlines_benches::path::{Stand, walk};
 use sightlines_benches::raster::{Camera, Drawn, Picture};
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// The ways in which each frame is drawn.
-const WAYS: [&str; 4] = ["all", "table", "all, by view", "table, by view"];
+const WAYS: [&str; N_WAYS] =
+    ["all", "table", "all, by view", "table, by view", "disjoint cell", "connected component", "incident portals", "exact"];
+const N_WAYS: usize = 8;
+/// The methods of the ways behind the fourth; these leave out by box what is outside the view as well.
+const METHODS: [Method; 4] =
+    [Method::DisjointCell, Method::ConnectedComponent, Method::IncidentPortals, Method::Exact];
 
 /// A walkthrough with and without the table.
 #[derive(Debug, Clone, Parser)]
@@ -97,7 +105,7 @@ fn run(args: &Args) -> Result<usize, Box<dyn Error>> {
     let table = table(args, &scene)?;
     let stands = walk(&scene, options, n_frames)?;
     let mut show = Show::new(&scene, &table, [width, height]);
-    let frames: Vec<[Frame; 4]> = stands.iter().map(|stand| show.frame(stand)).collect();
+    let frames: Vec<[Frame; N_WAYS]> = stands.iter().map(|stand| show.frame(stand)).collect();
     for (k, frame) in frames.iter().enumerate() {
         for (way, f) in WAYS.iter().zip(frame).filter(|(_, f)| f.n_wrong > 0) {
             eprintln!("WRONG frame {k}, {way}: {} pixels differ, at {:?}", f.n_wrong, stands[k]);
@@ -135,6 +143,11 @@ struct Show<'a> {
     boxes: Vec<Aabb<3>>,
     whole: Picture,
     other: Picture,
+    cells: TableCells<&'a Table>,
+    /// Of the cells that were visited; made before the time is taken, as a run-time would.
+    outlooks: BTreeMap<CellId, Outlook>,
+    scratch: Scratch,
+    seen: Seen,
 }
 
 impl<'a> Show<'a> {
@@ -148,18 +161,42 @@ impl<'a> Show<'a> {
         let first = scene.objects().iter().map(count).collect();
         let boxes = scene.objects().iter().map(|o| o.bounds()).collect();
         let picture = Picture::new(width, height);
-        Self { scene, table, first, boxes, whole: picture.clone(), other: picture }
+        Self {
+            scene,
+            table,
+            first,
+            boxes,
+            whole: picture.clone(),
+            other: picture,
+            cells: TableCells::new(table),
+            outlooks: BTreeMap::new(),
+            scratch: Scratch::new(),
+            seen: Seen::new(),
+        }
     }
 
     /// Draws one frame in every way. What the table is asked for counts to the time.
-    fn frame(&mut self, stand: &Stand) -> [Frame; 4] {
+    fn frame(&mut self, stand: &Stand) -> [Frame; N_WAYS] {
         let camera = Camera::new(stand.eye, stand.ahead);
         let n = self.scene.objects().len() as u32;
+        for cell in self.table.locate(&stand.eye) {
+            let prepare = || Outlook::prepare(&self.cells, cell).unwrap_or_else(|never| match never {});
+            self.outlooks.entry(cell).or_insert_with(prepare);
+        }
+        let view = camera.view(self.whole.aspect());
         std::array::from_fn(|way| {
             let boxes = (way >= 2).then_some(&self.boxes[..]);
             let picture = if way == 0 { &mut self.whole } else { &mut self.other };
             let start = Instant::now();
-            let drawn = if way % 2 == 0 {
+            let drawn = if let Some(method) = way.checked_sub(4).map(|k| METHODS[k]) {
+                self.seen.clear(self.table.n_cells(), n as usize);
+                for cell in self.table.locate(&stand.eye) {
+                    let outlook = &self.outlooks[&cell];
+                    method.look(outlook, &view, &Doors::all_open(), &mut self.scratch, &mut self.seen);
+                }
+                self.seen.sort();
+                picture.draw(self.scene, &self.first, self.seen.objects().iter().copied(), boxes, &camera)
+            } else if way % 2 == 0 {
                 picture.draw(self.scene, &self.first, 0..n, boxes, &camera)
             } else {
                 let objects = self.table.visible_objects_from(&stand.eye);
@@ -178,8 +215,10 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-fn csv(frames: &[[Frame; 4]]) -> String {
-    let mut text = "frame,all_ms,table_ms,all_view_ms,table_view_ms,all,table,all_view,table_view\n".to_owned();
+fn csv(frames: &[[Frame; N_WAYS]]) -> String {
+    let short = ["all", "table", "all_view", "table_view", "disjoint", "component", "incident", "exact"];
+    let times = short.map(|way| format!("{way}_ms")).join(",");
+    let mut text = format!("frame,{times},{}\n", short.join(","));
     for (k, frame) in frames.iter().enumerate() {
         let times = frame.map(|f| format!("{:.4}", milliseconds(f.time))).join(",");
         let drawn = frame.map(|f| f.drawn.n_triangles.to_string()).join(",");
@@ -188,7 +227,7 @@ fn csv(frames: &[[Frame; 4]]) -> String {
     text
 }
 
-fn report(scene: &Scene, frames: &[[Frame; 4]], [width, height]: [usize; 2]) {
+fn report(scene: &Scene, frames: &[[Frame; N_WAYS]], [width, height]: [usize; 2]) {
     let n = frames.len().max(1) as f64;
     let mean = |way: usize, of: &dyn Fn(&Frame) -> f64| frames.iter().map(|f| of(&f[way])).sum::<f64>() / n;
     let ms = |way: usize| mean(way, &|f| milliseconds(f.time));
@@ -218,10 +257,11 @@ fn report(scene: &Scene, frames: &[[Frame; 4]], [width, height]: [usize; 2]) {
 }
 
 /// Pictures are alike, less is drawn, and a table that lacks something is found out.
-fn check(scene: &Scene, table: &Table, stands: &[Stand], frames: &[[Frame; 4]]) {
+fn check(scene: &Scene, table: &Table, stands: &[Stand], frames: &[[Frame; N_WAYS]]) {
     assert!(frames.len() >= 30 && frames.iter().flatten().all(|f| f.n_wrong == 0), "the pictures are the same");
     let drawn = |way: usize| frames.iter().map(|f| f[way].drawn.n_triangles).sum::<u64>();
     assert!(drawn(1) < drawn(0) && drawn(2) < drawn(0) && drawn(3) < drawn(1).min(drawn(2)), "less is drawn");
+    assert!((3..N_WAYS - 1).all(|way| drawn(way + 1) <= drawn(way)) && drawn(N_WAYS - 1) < drawn(3), "still less");
     let mut parts = table.clone().into_parts();
     let seen = parts.objects_seen.as_mut().expect("tables of scenes say which objects are seen");
     for (cell, own) in parts.cell_objects.iter().enumerate() {

@@ -6,7 +6,9 @@
 //! triangles that share an edge leave no gap.
 
 use sightlines::cells::{Point3, Scene};
+use sightlines::eye_to_cell::View;
 use sightlines::geometry::Aabb;
+use std::f64::consts::FRAC_PI_2;
 
 /// Nothing nearer than this is drawn, in scene units.
 const NEAR: f64 = 1.0 / 64.0;
@@ -29,6 +31,14 @@ impl Camera {
         let ahead = unit(ahead);
         let right = unit(cross(ahead, [0.0, 1.0, 0.0]));
         Self { eye, right, up: cross(right, ahead), ahead }
+    }
+
+    /// The same eye for a picture 90 degrees wide, `aspect` times as wide as high.
+    ///
+    /// # Panics
+    /// If the eye is nowhere.
+    pub fn view(&self, aspect: f64) -> View {
+        View::pinhole(self.eye, self.ahead, self.up, FRAC_PI_2, aspect).expect("an eye somewhere, looking somewhere")
     }
 
     /// Right, up and ahead of the eye.
@@ -67,6 +77,11 @@ impl Picture {
         let n = width * height;
         let (faces, nearness) = (vec![NOTHING; n], vec![0.0; n]);
         Self { width, height, focal: width as f64 / 2.0, faces, nearness, seen: Vec::new() }
+    }
+
+    /// How much wider it is than high.
+    pub fn aspect(&self) -> f64 {
+        self.width as f64 / self.height as f64
     }
 
     /// Draws `objects` of a scene anew. The number of a triangle counts through the whole scene, object by

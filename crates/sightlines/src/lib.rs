@@ -12,12 +12,16 @@
 pub use sightlines_bake as bake;
 #[cfg(feature = "cells")]
 pub use sightlines_cells as cells;
+#[cfg(feature = "eye-to-cell")]
+pub use sightlines_eye_to_cell as eye_to_cell;
 #[cfg(feature = "formats")]
 pub use sightlines_formats as formats;
 #[cfg(feature = "geometry")]
 pub use sightlines_geometry as geometry;
 #[cfg(feature = "kdtree")]
 pub use sightlines_kdtree as kdtree;
+#[cfg(feature = "packed")]
+pub use sightlines_packed as packed;
 #[cfg(feature = "pvs")]
 pub use sightlines_pvs as pvs;
 #[cfg(feature = "report")]
@@ -30,6 +34,8 @@ pub use sightlines_sightline as sightline;
 pub use sightlines_stabtree as stabtree;
 #[cfg(feature = "triangulation")]
 pub use sightlines_triangulation as triangulation;
+#[cfg(feature = "walkthrough")]
+pub use sightlines_walkthrough as walkthrough;
 
 #[cfg(all(doctest, feature = "bake", feature = "cells", feature = "geometry"))]
 #[doc = include_str!("../README.md")]

@@ -1,0 +1,268 @@
+//! What the eye-to-cell methods cost, and what they leave: queries on walks through a tower and a Quake map; and that
+//! no frame waits for a source that is slow.
+//!
+//! Each query is asked three times in a row, and the least time counts: what the first takes longer is the machine's
+//! caches and whoever else runs on it. Beside it stands the time of the first. The bars are those that a
+//! frame can spare: 5 µs for the disjoint cell, 50 µs in the median and 500 µs at the 99th percentile for the exact method.
+
+use clap::Parser;
+use sightlines::bake::quake::bake_map;
+use sightlines::bake::{PrtOptions, SceneBakeOptions, bake_scene};
+use sightlines::eye_to_cell::{
+    CellSource, Doors, EyeToCell, Method, MirrorWay, Outlook, Scratch, Seen, StabStep, TableCells, View, Way,
+};
+use sightlines::formats::quake::{read_bsp, read_prt};
+use sightlines::geometry::Aabb;
+use sightlines::kdtree::SceneOptions;
+use sightlines::pvs::{CellId, Table};
+use sightlines::scenes::{TowerOptions, tower};
+use sightlines::walkthrough::{Answer, Stand, WalkOptions, Walkthrough, wander};
+use sightlines_tests::data_folder;
+use std::convert::Infallible;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Eye-to-cell queries.
+#[derive(Debug, Clone, Parser)]
+struct Args {
+    /// Runs only if this bench's name contains it.
+    filter: Option<String>,
+    /// Floors of the tower; 10 have 274,000 triangles.
+    #[arg(long, default_value_t = 10)]
+    floors: u32,
+    /// A Quake map with its portal file beside it; e1m1 of $SIGHTLINES_DATA if not given, and none without that.
+    #[arg(long, value_name = "MAP.bsp")]
+    map: Option<PathBuf>,
+    /// Frames of each walk.
+    #[arg(long, default_value_t = 10_000)]
+    frames: usize,
+    /// Width of the view, in degrees.
+    #[arg(long, default_value_t = 75.0)]
+    fov: f64,
+    /// Checks the answers in a small tower.
+    #[arg(long)]
+    test: bool,
+    /// Given by cargo.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    if args.filter.as_ref().is_some_and(|f| !"eye_to_cell".contains(f.as_str())) {
+        return ExitCode::SUCCESS;
+    }
+    match run(&args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(args: &Args) -> Result<(), Box<dyn Error>> {
+    let mut options = TowerOptions { floors: args.floors, ..TowerOptions::default() };
+    let mut n_frames = args.frames;
+    if args.test {
+        options = TowerOptions { floors: 2, rooms_x: 2, rooms_y: 2, ..options };
+        n_frames = 300;
+    }
+    let scene = tower(options)?;
+    let cut = SceneOptions { tau: 0.0, ..SceneOptions::default() };
+    let table = bake_scene(&scene, &SceneBakeOptions { cut, ..SceneBakeOptions::default() })?.table;
+    println!("tower of {} floors, {} triangles", options.floors, scene.n_triangles());
+    let stands = measure(&table, [0.0, 1.0, 0.0], n_frames, args.fov)?;
+    slow_source(&table, &stands[..n_frames.min(1000)], args.fov)?;
+    let map = args.map.clone().or_else(|| Some(data_folder("SIGHTLINES_DATA")?.join("quake/e1m1.bsp"))).filter(|_| !args.test);
+    if let Some(path) = map {
+        println!("{}", path.display());
+        measure(&table_of_map(&path)?, [0.0, 0.0, 1.0], n_frames, args.fov)?;
+    }
+    Ok(())
+}
+
+fn table_of_map(path: &Path) -> Result<Table, Box<dyn Error>> {
+    let (bsp, prt) = (read_bsp(path)?, read_prt(path.with_extension("prt"))?);
+    Ok(bake_map(&bsp, &prt, PrtOptions::default())?.table)
+}
+
+fn diagonal(table: &Table) -> f64 {
+    let around = Aabb::around(table.cells().iter().flat_map(|cell| [cell.min, cell.max]));
+    (0..3).map(|k| (around.max[k] - around.min[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+fn view(stand: &Stand, up: [f64; 3], fov: f64) -> Result<View, Box<dyn Error>> {
+    Ok(View::pinhole(stand.eye, stand.dir, up, fov.to_radians(), 4.0 / 3.0)?)
+}
+
+/// The time of one query, the first time and the least.
+#[derive(Debug, Clone, Copy)]
+struct Times([Duration; 2]);
+
+/// What a method took and left, over a walk.
+struct Measured {
+    method: Method,
+    times: Vec<Times>,
+    n_cells: usize,
+    n_objects: usize,
+    n_polygons: u64,
+}
+
+fn measure(table: &Table, up: [f64; 3], n_frames: usize, fov: f64) -> Result<Vec<Stand>, Box<dyn Error>> {
+    let cells = TableCells::new(table);
+    let start = Instant::now();
+    let all: Result<Vec<Outlook>, Infallible> =
+        (0..table.n_cells() as u32).map(|cell| Outlook::prepare(&cells, CellId(cell))).collect();
+    let (all, time) = (all?, start.elapsed());
+    let bytes: usize = all.iter().map(Outlook::n_bytes).sum();
+    println!(
+        "{} cells, {} objects; an outlook takes {:.0} us and {:.1} KiB on average",
+        table.n_cells(),
+        table.objects().len(),
+        time.as_secs_f64() * 1e6 / all.len().max(1) as f64,
+        bytes as f64 / 1024.0 / all.len().max(1) as f64
+    );
+    let stands = wander(&cells, n_frames, diagonal(table) / 400.0, 1)?;
+    let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
+    let mut measured = Vec::new();
+    for method in Method::ALL {
+        let mut m = Measured { method, times: Vec::new(), n_cells: 0, n_objects: 0, n_polygons: 0 };
+        // The first walk makes room in memory.
+        for warm in [false, true] {
+            for stand in &stands {
+                let view = view(stand, up, fov)?;
+                let at = table.locate(&stand.eye);
+                let times = [0; 3].map(|_| {
+                    let start = Instant::now();
+                    seen.clear(table.n_cells(), table.objects().len());
+                    for cell in &at {
+                        method.look(&all[cell.idx()], &view, &Doors::all_open(), &mut scratch, &mut seen);
+                    }
+                    start.elapsed()
+                });
+                if warm {
+                    m.times.push(Times([times[0], times.into_iter().min().unwrap_or_default()]));
+                    m.n_cells += seen.cells().len();
+                    m.n_objects += seen.objects().len();
+                    m.n_polygons += seen.objects().iter().map(|&o| u64::from(table.polygons_of(o))).sum::<u64>();
+                }
+            }
+        }
+        measured.push(m);
+    }
+    report(table, &mut measured);
+    let kept: Vec<usize> = measured.iter().map(|m| m.n_cells).collect();
+    assert!(kept.is_sorted_by(|a, b| a >= b) && kept[4] < kept[0], "each method leaves no more than the one before");
+    Ok(stands)
+}
+
+fn report(table: &Table, measured: &mut [Measured]) {
+    println!("| method | cells | objects | polygons | median, us | p99, us | first time: median | p99 |");
+    println!("| --- | --: | --: | --: | --: | --: | --: | --: |");
+    let all_polygons: u64 = (0..table.objects().len() as u32).map(|o| u64::from(table.polygons_of(o))).sum();
+    for m in &mut *measured {
+        let n = m.times.len().max(1);
+        let share = |kept: f64, all: f64| 100.0 * kept / (n as f64 * all.max(1.0));
+        let at = |m: &Measured, k: usize, q: f64| quantile(m.times.iter().map(|t| t.0[k]).collect(), q);
+        println!(
+            "| {} | {:.2} % | {:.2} % | {:.2} % | {:.2} | {:.1} | {:.2} | {:.1} |",
+            m.method,
+            share(m.n_cells as f64, table.n_cells() as f64),
+            share(m.n_objects as f64, table.objects().len() as f64),
+            share(m.n_polygons as f64, all_polygons as f64),
+            at(m, 1, 0.5),
+            at(m, 1, 0.99),
+            at(m, 0, 0.5),
+            at(m, 0, 0.99),
+        );
+    }
+    for (method, q, bar) in [(Method::DisjointCell, 0.5, 5.0), (Method::Exact, 0.5, 50.0), (Method::Exact, 0.99, 500.0)] {
+        let Some(m) = measured.iter().find(|m| m.method == method) else { continue };
+        let us = quantile(m.times.iter().map(|t| t.0[1]).collect(), q);
+        let kept = if us <= bar { "kept" } else { "NOT KEPT" };
+        println!("{method}, {:.0} % of the queries: {us:.2} us, bar {bar} us: {kept}", 100.0 * q);
+    }
+}
+
+/// In microseconds.
+fn quantile(mut times: Vec<Duration>, q: f64) -> f64 {
+    times.sort_unstable();
+    times.get((times.len().saturating_sub(1) as f64 * q) as usize).map_or(0.0, |t| t.as_secs_f64() * 1e6)
+}
+
+/// A source that takes its time.
+struct Slow(TableCells<Arc<Table>>, Duration);
+
+impl CellSource for Slow {
+    type Error = Infallible;
+
+    fn dimension(&self) -> u8 {
+        CellSource::dimension(&self.0)
+    }
+    fn n_cells(&self) -> usize {
+        CellSource::n_cells(&self.0)
+    }
+    fn n_objects(&self) -> usize {
+        CellSource::n_objects(&self.0)
+    }
+    fn cell_box(&self, cell: CellId) -> Result<Aabb<3>, Infallible> {
+        self.0.cell_box(cell)
+    }
+    fn visible(&self, cell: CellId, out: &mut Vec<CellId>) -> Result<(), Infallible> {
+        std::thread::sleep(self.1);
+        self.0.visible(cell, out)
+    }
+    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), Infallible> {
+        self.0.ways(cell, show)
+    }
+    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Infallible> {
+        self.0.objects_of(cell, out)
+    }
+    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Infallible> {
+        self.0.objects_seen(cell, out)
+    }
+    fn object_box(&self, object: u32) -> Result<Aabb<3>, Infallible> {
+        self.0.object_box(object)
+    }
+    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), Infallible> {
+        self.0.mirrors(cell, show)
+    }
+    fn stab_roots(&self, cell: CellId, out: &mut Vec<u32>) -> Result<Option<bool>, Infallible> {
+        self.0.stab_roots(cell, out)
+    }
+    fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabStep, Infallible> {
+        self.0.stab_node(node, children)
+    }
+}
+
+/// Walks with a source that takes 20 ms for each cell, at full speed and at 60 frames a second.
+fn slow_source(table: &Table, stands: &[Stand], fov: f64) -> Result<(), Box<dyn Error>> {
+    let table = Arc::new(table.clone());
+    let at_hand = TableCells::new(Arc::clone(&table));
+    for pause in [Duration::ZERO, Duration::from_millis(2)] {
+        let slow = Slow(at_hand.clone(), Duration::from_millis(20));
+        let mut walk = Walkthrough::new(at_hand.clone(), slow, WalkOptions::default());
+        let mut times = Vec::new();
+        let mut late = 0;
+        for stand in stands {
+            let view = view(stand, [0.0, 1.0, 0.0], fov)?;
+            let start = Instant::now();
+            late += usize::from(walk.frame(&view, Method::Exact).answer == Answer::Late);
+            times.push(start.elapsed());
+            std::thread::sleep(pause);
+        }
+        println!(
+            "a source that takes 20 ms a cell, {} ms between frames: frames take {:.1} us in the median, {:.1} us at p99, {:.1} us at most; {:.1} % were late",
+            pause.as_millis(),
+            quantile(times.clone(), 0.5),
+            quantile(times.clone(), 0.99),
+            quantile(times, 1.0),
+            100.0 * late as f64 / stands.len().max(1) as f64
+        );
+    }
+    Ok(())
+}

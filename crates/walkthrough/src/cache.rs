@@ -1,0 +1,112 @@
+//! What was prepared, within a budget of bytes.
+
+use sightlines_pvs::CellId;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Prepared things by cell; when they take more than the budget, those that were not used for longest go first.
+#[derive(Debug)]
+pub(crate) struct Cache<T> {
+    budget: usize,
+    n_bytes: usize,
+    /// By cell: the thing, its bytes, and when it was used last.
+    things: BTreeMap<CellId, (Arc<T>, usize, u64)>,
+    /// The cells by when they were used last. No two have the same time.
+    by_use: BTreeMap<u64, CellId>,
+    now: u64,
+    n_dropped: u64,
+}
+
+impl<T> Cache<T> {
+    pub(crate) fn new(budget: usize) -> Self {
+        Self { budget, n_bytes: 0, things: BTreeMap::new(), by_use: BTreeMap::new(), now: 0, n_dropped: 0 }
+    }
+
+    /// What was prepared for a cell, which counts as used now. O(log n).
+    pub(crate) fn get(&mut self, cell: CellId) -> Option<&Arc<T>> {
+        self.now += 1;
+        let (thing, _, used) = self.things.get_mut(&cell)?;
+        self.by_use.remove(used);
+        self.by_use.insert(self.now, cell);
+        *used = self.now;
+        Some(thing)
+    }
+
+    /// Whether a cell is prepared; it does not count as used.
+    pub(crate) fn has(&self, cell: CellId) -> bool {
+        self.things.contains_key(&cell)
+    }
+
+    /// Adds what was prepared for a cell, which counts as used now. Others are dropped until the budget is kept or only
+    /// this one is left.
+    pub(crate) fn add(&mut self, cell: CellId, thing: T, n_bytes: usize) {
+        self.remove(cell);
+        self.now += 1;
+        self.things.insert(cell, (Arc::new(thing), n_bytes, self.now));
+        self.by_use.insert(self.now, cell);
+        self.n_bytes += n_bytes;
+        while self.n_bytes > self.budget && self.things.len() > 1 {
+            let Some(&oldest) = self.by_use.values().next() else { break };
+            self.remove(oldest);
+            self.n_dropped += 1;
+        }
+    }
+
+    fn remove(&mut self, cell: CellId) {
+        if let Some((_, n_bytes, used)) = self.things.remove(&cell) {
+            self.by_use.remove(&used);
+            self.n_bytes -= n_bytes;
+        }
+    }
+
+    pub(crate) fn n_bytes(&self) -> usize {
+        self.n_bytes
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.things.len()
+    }
+
+    pub(crate) fn n_dropped(&self) -> u64 {
+        self.n_dropped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Invariant: never above the budget unless by one thing alone; who was used last stays; the books balance.
+        #[test]
+        fn budget_is_kept(budget in 0usize..50, steps in prop::collection::vec((0u32..8, 1usize..20, any::<bool>()), 1..60)) {
+            let mut cache = Cache::new(budget);
+            for (cell, n_bytes, ask) in steps {
+                let cell = CellId(cell);
+                if ask {
+                    let there = cache.has(cell);
+                    prop_assert_eq!(cache.get(cell).is_some(), there);
+                } else {
+                    cache.add(cell, n_bytes, n_bytes);
+                    prop_assert!(cache.has(cell));
+                }
+                prop_assert!(cache.n_bytes() <= budget || cache.len() == 1);
+                prop_assert_eq!(cache.n_bytes(), cache.things.values().map(|t| *t.0).sum::<usize>());
+                prop_assert_eq!(cache.by_use.len(), cache.len());
+            }
+        }
+    }
+
+    #[test]
+    fn oldest_goes_first() {
+        let mut cache = Cache::new(20);
+        for cell in 0..2 {
+            cache.add(CellId(cell), (), 10);
+        }
+        cache.get(CellId(0));
+        cache.add(CellId(2), (), 10);
+        assert!(cache.has(CellId(0)) && !cache.has(CellId(1)) && cache.has(CellId(2)));
+        assert_eq!(cache.n_dropped(), 1);
+    }
+}

@@ -1,0 +1,125 @@
+//! Packed tables, for both sides: what is at hand, and what is read on demand.
+
+use crate::resident::Resident;
+use sightlines_eye_to_cell::{CellSource, MirrorWay, StabStep, Way};
+use sightlines_geometry::Aabb;
+use sightlines_packed::{Packed, PackedError, Source};
+use sightlines_pvs::CellId;
+use std::sync::Arc;
+
+/// A packed table, shared by the frames and the thread that reads ahead.
+#[derive(Debug)]
+pub struct PackedCells<S: Source>(Arc<Packed<S>>);
+
+impl<S: Source> Clone for PackedCells<S> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<S: Source> PackedCells<S> {
+    /// Shares a table.
+    pub fn new(packed: Packed<S>) -> Self {
+        Self(Arc::new(packed))
+    }
+
+    /// The table.
+    pub fn packed(&self) -> &Packed<S> {
+        &self.0
+    }
+}
+
+fn bounds((min, max): ([f64; 3], [f64; 3])) -> Aabb<3> {
+    Aabb { min, max }
+}
+
+impl<S: Source> CellSource for PackedCells<S> {
+    type Error = PackedError;
+
+    fn dimension(&self) -> u8 {
+        self.0.dimension()
+    }
+
+    fn n_cells(&self) -> usize {
+        self.0.n_cells()
+    }
+
+    fn n_objects(&self) -> usize {
+        self.0.n_objects()
+    }
+
+    fn cell_box(&self, cell: CellId) -> Result<Aabb<3>, PackedError> {
+        self.0.cell_box(cell).map(bounds)
+    }
+
+    fn visible(&self, cell: CellId, out: &mut Vec<CellId>) -> Result<(), PackedError> {
+        self.0.visible(cell, out)
+    }
+
+    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), PackedError> {
+        self.0.exits(cell, &mut |portal, forward, to, corners| show(Way { portal, forward, to, corners }))
+    }
+
+    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
+        self.0.objects_of(cell, out)
+    }
+
+    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
+        self.0.objects_seen(cell, out)
+    }
+
+    fn object_box(&self, object: u32) -> Result<Aabb<3>, PackedError> {
+        self.0.object_box(object).map(bounds)
+    }
+
+    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), PackedError> {
+        for mirror in self.0.mirrors().iter().filter(|mirror| mirror.cell == cell) {
+            show(MirrorWay { face: mirror.face, corners: &mirror.points });
+        }
+        Ok(())
+    }
+
+    fn stab_roots(&self, cell: CellId, out: &mut Vec<u32>) -> Result<Option<bool>, PackedError> {
+        let open = self.0.stab_roots(cell, out)?;
+        Ok(self.0.n_stab_nodes().map(|_| open))
+    }
+
+    fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabStep, PackedError> {
+        let step = self.0.stab_node(node, children)?;
+        Ok(StabStep { portal: step.portal, open: step.open })
+    }
+}
+
+impl<S: Source> Resident for PackedCells<S> {
+    fn dimension(&self) -> u8 {
+        self.0.dimension()
+    }
+
+    fn n_cells(&self) -> usize {
+        self.0.n_cells()
+    }
+
+    fn n_objects(&self) -> usize {
+        self.0.n_objects()
+    }
+
+    fn locate(&self, eye: [f64; 3], _pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
+        let n = usize::from(self.0.dimension());
+        // What is resident is read and checked when the file is opened; a place is not refused.
+        if self.0.locate(&eye[..n], out).is_err() {
+            out.clear();
+        }
+    }
+
+    fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId)) {
+        let mut cells = Vec::new();
+        match self.0.coarse(cell, &mut cells) {
+            Ok(()) => cells.into_iter().for_each(show),
+            Err(_) => (0..self.0.n_cells() as u32).map(CellId).for_each(show),
+        }
+    }
+
+    fn coarse_objects(&self, _cell: CellId, _show: &mut dyn FnMut(u32)) -> bool {
+        false
+    }
+}

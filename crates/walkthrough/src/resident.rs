@@ -1,0 +1,82 @@
+//! What is at hand in every frame, whatever is still on its way.
+
+use sightlines_eye_to_cell::TableCells;
+use sightlines_pvs::{CellId, Table};
+use std::borrow::Borrow;
+use std::sync::Arc;
+
+/// The part of a table that a frame may ask without waiting: no disk, no lock that another thread may hold for long.
+pub trait Resident {
+    /// 2 or 3.
+    fn dimension(&self) -> u8;
+
+    /// Number of cells.
+    fn n_cells(&self) -> usize;
+
+    /// Number of objects.
+    fn n_objects(&self) -> usize;
+
+    /// Puts the cells at a point (z is 0 in a plane) into `out`, which is cleared; ascending; none outside. `pending` is
+    /// room to work in.
+    fn locate(&self, eye: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>);
+
+    /// Shows cells that contain all that `cell` may see, and perhaps more.
+    fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId));
+
+    /// Shows objects that contain all that `cell` may see, and perhaps more; `false` if it cannot tell which.
+    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(u32)) -> bool;
+}
+
+impl<T: Borrow<Table>> Resident for TableCells<T> {
+    fn dimension(&self) -> u8 {
+        self.table().dimension()
+    }
+
+    fn n_cells(&self) -> usize {
+        self.table().n_cells()
+    }
+
+    fn n_objects(&self) -> usize {
+        self.table().objects().len()
+    }
+
+    fn locate(&self, eye: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
+        let n = usize::from(self.table().dimension());
+        self.table().locate_into(&eye[..n], pending, out);
+    }
+
+    fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId)) {
+        self.table().visible(cell).for_each(show);
+    }
+
+    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(u32)) -> bool {
+        self.table().visible_objects(cell).into_iter().for_each(show);
+        true
+    }
+}
+
+impl<R: Resident + ?Sized> Resident for Arc<R> {
+    fn dimension(&self) -> u8 {
+        (**self).dimension()
+    }
+
+    fn n_cells(&self) -> usize {
+        (**self).n_cells()
+    }
+
+    fn n_objects(&self) -> usize {
+        (**self).n_objects()
+    }
+
+    fn locate(&self, eye: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
+        (**self).locate(eye, pending, out);
+    }
+
+    fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId)) {
+        (**self).coarse(cell, show);
+    }
+
+    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(u32)) -> bool {
+        (**self).coarse_objects(cell, show)
+    }
+}

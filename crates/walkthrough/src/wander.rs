@@ -1,0 +1,126 @@
+//! A walk through a scene without a goal, for measuring.
+
+use sightlines_eye_to_cell::CellSource;
+use sightlines_pvs::CellId;
+
+/// Where the viewer of a frame is, and looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stand {
+    /// The eye, in scene units; z is 0 in a plane.
+    pub eye: [f64; 3],
+    /// The direction of view; of any length but zero.
+    pub dir: [f64; 3],
+}
+
+/// The share of its old direction that a view keeps in each frame.
+const INERTIA: f64 = 0.875;
+
+/// Walks through a scene for `n_frames` frames: from the middle of a cell through a portal into the next, seldom back,
+/// looking where it goes, with smooth turns; every so often it begins anew somewhere else, so that long walks see most
+/// of a scene. `step` is the way from frame to frame in scene units.
+///
+/// The same numbers give the same walk on every machine. Empty if no cell has a portal.
+///
+/// # Errors
+/// The first of the source.
+pub fn wander<S: CellSource + ?Sized>(
+    source: &S,
+    n_frames: usize,
+    step: f64,
+    seed: u64,
+) -> Result<Vec<Stand>, S::Error> {
+    let mut chance = Chance(seed);
+    let mut frames = Vec::with_capacity(n_frames);
+    let n_cells = source.n_cells();
+    // Tries without finding a portal in a row.
+    let mut n_failed = 0;
+    while frames.len() < n_frames && n_failed < 16 * n_cells {
+        let mut cell = CellId(chance.below(n_cells) as u32);
+        let mut doors = doors(source, cell)?;
+        let Some(mut place) = middle(&doors) else {
+            n_failed += 1;
+            continue;
+        };
+        n_failed = 0;
+        let mut came_by = None;
+        let mut dir = [0.0; 3];
+        for _ in 0..40 {
+            let others: Vec<&Door> = doors.iter().filter(|door| Some(door.portal) != came_by).collect();
+            let &next = match others.len() {
+                0 => &doors[chance.below(doors.len())],
+                n => others[chance.below(n)],
+            };
+            (cell, came_by) = (next.to, Some(next.portal));
+            doors = self::doors(source, cell)?;
+            let inside = middle(&doors).unwrap_or(next.at);
+            for goal in [next.at, inside] {
+                go(&mut place, &mut dir, goal, step, n_frames, &mut frames);
+            }
+        }
+    }
+    Ok(frames)
+}
+
+/// Goes straight to `goal`, a frame at each step.
+fn go(place: &mut [f64; 3], dir: &mut [f64; 3], goal: [f64; 3], step: f64, n_frames: usize, frames: &mut Vec<Stand>) {
+    let way: [f64; 3] = std::array::from_fn(|k| goal[k] - place[k]);
+    let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if !(length > 0.0 && length.is_finite() && step > 0.0) {
+        return;
+    }
+    let n = (length / step).ceil().clamp(1.0, 1e6);
+    let start = *place;
+    for k in 1..=n as usize {
+        if frames.len() == n_frames {
+            return;
+        }
+        *dir = std::array::from_fn(|i| INERTIA * dir[i] + (1.0 - INERTIA) * way[i] / length);
+        // The last step ends where it should, without rounding.
+        *place = if k as f64 == n { goal } else { std::array::from_fn(|i| start[i] + way[i] * (k as f64 / n)) };
+        let looks = if dir.iter().all(|x| x.abs() < 1e-3) { way } else { *dir };
+        frames.push(Stand { eye: *place, dir: looks });
+    }
+}
+
+/// A portal out of a cell.
+#[derive(Debug, Clone, Copy)]
+struct Door {
+    portal: u32,
+    to: CellId,
+    /// Its middle.
+    at: [f64; 3],
+}
+
+fn doors<S: CellSource + ?Sized>(source: &S, cell: CellId) -> Result<Vec<Door>, S::Error> {
+    let mut doors = Vec::new();
+    source.ways(cell, &mut |way| {
+        if let Some(at) = mean(way.corners.iter().copied()) {
+            doors.push(Door { portal: way.portal, to: way.to, at });
+        }
+    })?;
+    Ok(doors)
+}
+
+/// A point of the cell, as it is convex: between its portals. Not on a portal if there are several on different sides.
+fn middle(doors: &[Door]) -> Option<[f64; 3]> {
+    mean(doors.iter().map(|door| door.at))
+}
+
+fn mean(points: impl ExactSizeIterator<Item = [f64; 3]>) -> Option<[f64; 3]> {
+    let n = points.len() as f64;
+    let sum = points.fold([0.0; 3], |sum: [f64; 3], p| std::array::from_fn(|k| sum[k] + p[k]));
+    (n > 0.0).then(|| sum.map(|x| x / n))
+}
+
+/// Chance that is the same everywhere: splitmix64 (Steele, Lea, Flood 2014).
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((u128::from(z ^ (z >> 31)) * n as u128) >> 64) as usize
+    }
+}

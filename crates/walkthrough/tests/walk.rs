@@ -1,0 +1,303 @@
+//! A viewer walks along a row of rooms: with everything at hand, with a source that is late, that fails, that is gone.
+
+use sightlines_eye_to_cell::{CellSource, Method, MirrorWay, StabStep, TableCells, View, Way};
+use sightlines_geometry::Aabb;
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines_walkthrough::{Answer, Prefetcher, Prepare, WalkOptions, Walkthrough};
+use std::collections::BTreeSet;
+use std::sync::{Arc, Condvar, Mutex};
+
+/// `n` rooms of unit size in a row, each with an object, seen by those at most two away; doors in the middle.
+fn rooms(n: u32) -> Arc<Table> {
+    let record = |i: u32| {
+        let x = f64::from(i);
+        CellRecord { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 0.0], group: None, polygon: vec![] }
+    };
+    let cells: Vec<CellRecord> = (0..n).map(record).collect();
+    let bounds: Vec<_> = cells.iter().map(|c| (c.min, c.max)).collect();
+    let mut rows = BitMatrix::identity(n as usize);
+    for a in 0..n as usize {
+        for b in a.saturating_sub(2)..(a + 3).min(n as usize) {
+            rows.set(a, b, true);
+        }
+    }
+    let door = |i: u32| {
+        let x = f64::from(i) + 1.0;
+        PortalRecord { cells: [CellId(i), CellId(i + 1)], sides: [0, 1], points: vec![[x, 0.75, 0.0], [x, 0.25, 0.0]] }
+    };
+    let object = |c: &CellRecord| {
+        let middle = [c.min[0] + 0.5, 0.5, 0.0];
+        ObjectRecord { name: String::new(), min: middle, max: middle }
+    };
+    let parts = TableParts {
+        rows,
+        portals: (0..n - 1).map(door).collect(),
+        objects: cells.iter().map(object).collect(),
+        cell_objects: (0..n).map(|i| vec![i]).collect(),
+        locator: Locator::build(&bounds, 2),
+        cells,
+        ..TableParts::empty(2)
+    };
+    Arc::new(Table::new(parts).unwrap())
+}
+
+fn looking_right(x: f64) -> View {
+    View::planar([x, 0.5], [1.0, 0.0], 0.5).unwrap()
+}
+
+/// A gate that is shut until it is opened.
+#[derive(Default)]
+struct Gate(Mutex<bool>, Condvar);
+
+impl Gate {
+    fn wait(&self) {
+        let mut open = self.0.lock().unwrap();
+        while !*open {
+            open = self.1.wait(open).unwrap();
+        }
+    }
+
+    fn open(&self) {
+        *self.0.lock().unwrap() = true;
+        self.1.notify_all();
+    }
+}
+
+/// A source that waits at a gate before each cell, and fails on one.
+struct Slow {
+    table: TableCells<Arc<Table>>,
+    gate: Arc<Gate>,
+    broken: Option<CellId>,
+}
+
+impl CellSource for Slow {
+    type Error = String;
+
+    fn dimension(&self) -> u8 {
+        CellSource::dimension(&self.table)
+    }
+    fn n_cells(&self) -> usize {
+        CellSource::n_cells(&self.table)
+    }
+    fn n_objects(&self) -> usize {
+        CellSource::n_objects(&self.table)
+    }
+    fn cell_box(&self, cell: CellId) -> Result<Aabb<3>, String> {
+        self.table.cell_box(cell).map_err(|e| match e {})
+    }
+    fn visible(&self, cell: CellId, out: &mut Vec<CellId>) -> Result<(), String> {
+        self.gate.wait();
+        if self.broken == Some(cell) {
+            return Err(format!("cell {cell} is broken"));
+        }
+        self.table.visible(cell, out).map_err(|e| match e {})
+    }
+    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), String> {
+        self.table.ways(cell, show).map_err(|e| match e {})
+    }
+    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), String> {
+        self.table.objects_of(cell, out).map_err(|e| match e {})
+    }
+    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), String> {
+        self.table.objects_seen(cell, out).map_err(|e| match e {})
+    }
+    fn object_box(&self, object: u32) -> Result<Aabb<3>, String> {
+        self.table.object_box(object).map_err(|e| match e {})
+    }
+    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), String> {
+        self.table.mirrors(cell, show).map_err(|e| match e {})
+    }
+    fn stab_roots(&self, cell: CellId, out: &mut Vec<u32>) -> Result<Option<bool>, String> {
+        self.table.stab_roots(cell, out).map_err(|e| match e {})
+    }
+    fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabStep, String> {
+        self.table.stab_node(node, children).map_err(|e| match e {})
+    }
+}
+
+fn slow(table: &Arc<Table>, broken: Option<CellId>) -> (Slow, Arc<Gate>) {
+    let gate = Arc::new(Gate::default());
+    (Slow { table: TableCells::new(Arc::clone(table)), gate: Arc::clone(&gate), broken }, gate)
+}
+
+type Walk = Walkthrough<TableCells<Arc<Table>>, Slow>;
+
+fn walk(table: &Arc<Table>, source: Slow, options: WalkOptions) -> Walk {
+    Walkthrough::new(TableCells::new(Arc::clone(table)), source, options)
+}
+
+/// Repeats a frame until its answer is not late, and returns its cells and objects.
+fn until_full(walk: &mut Walk, view: &View, method: Method) -> (BTreeSet<u32>, BTreeSet<u32>) {
+    loop {
+        let frame = walk.frame(view, method);
+        if frame.answer == Answer::Full {
+            return (frame.seen.cells().iter().copied().collect(), frame.seen.objects().iter().copied().collect());
+        }
+        std::thread::yield_now();
+    }
+}
+
+#[test]
+fn frames_do_not_wait_for_a_source_that_never_comes() {
+    let table = rooms(40);
+    let (source, gate) = slow(&table, None);
+    let mut walk = walk(&table, source, WalkOptions::default());
+    let (full, full_gate) = slow(&table, None);
+    full_gate.open();
+    let mut twin = Walkthrough::new(TableCells::new(Arc::clone(&table)), full, WalkOptions::default());
+    // The gate stays shut: if a frame waited, this would never end.
+    let mut n = 0;
+    for k in 0..1000 {
+        let view = looking_right(0.5 + 0.038 * f64::from(k));
+        let (cells, objects) = until_full(&mut twin, &view, Method::Exact);
+        let frame = walk.frame(&view, Method::Exact);
+        assert_eq!(frame.answer, Answer::Late);
+        assert!(cells.iter().all(|&c| frame.seen.has_cell(CellId(c))), "late, and less");
+        assert!(objects.iter().all(|&o| frame.seen.has_object(o)));
+        n += 1;
+    }
+    assert_eq!((n, walk.counters().late), (1000, 1000));
+    // Once it comes, the answer is the method's.
+    gate.open();
+    let view = looking_right(0.5);
+    assert_eq!(until_full(&mut walk, &view, Method::Exact), until_full(&mut twin, &view, Method::Exact));
+}
+
+#[test]
+fn what_is_ahead_is_there_in_time() {
+    let table = rooms(40);
+    let (source, gate) = slow(&table, None);
+    gate.open();
+    let options = WalkOptions { frames_ahead: 200, ..WalkOptions::default() };
+    let mut walk = walk(&table, source, options);
+    let mut late = Vec::new();
+    for k in 0..3000 {
+        let view = looking_right(0.5 + 0.01 * f64::from(k));
+        if walk.frame(&view, Method::IncidentPortals).answer == Answer::Late {
+            late.push(k);
+        }
+        // The rest of the frame takes its time: as long as what was asked for takes.
+        while !walk.is_idle() {
+            std::thread::yield_now();
+        }
+    }
+    // The first cell cannot be foreseen, and nothing else is late.
+    assert_eq!(late, [0]);
+    assert!(walk.prepared().0 >= 31, "{:?}", walk.prepared());
+}
+
+#[test]
+fn frames_are_repeated_and_doors_are_heard() {
+    let table = rooms(5);
+    let (source, gate) = slow(&table, None);
+    gate.open();
+    let mut walk = walk(&table, source, WalkOptions::default());
+    let view = looking_right(0.5);
+    let (open, _) = until_full(&mut walk, &view, Method::Exact);
+    assert_eq!(open, BTreeSet::from([0, 1, 2]));
+    let before = walk.counters().repeated;
+    walk.frame(&view, Method::Exact);
+    assert_eq!(walk.counters().repeated, before + 1);
+    // The door between rooms 1 and 2.
+    assert!(walk.close(1) && !walk.close(1));
+    assert_eq!(until_full(&mut walk, &view, Method::Exact).0, BTreeSet::from([0, 1]));
+    assert_eq!(until_full(&mut walk, &view, Method::CellToCell).0, open, "the table knows no doors");
+    assert!(walk.open(1));
+    assert_eq!(until_full(&mut walk, &view, Method::Exact).0, open);
+}
+
+#[test]
+fn budget_is_kept_while_walking() {
+    let table = rooms(60);
+    let (source, gate) = slow(&table, None);
+    gate.open();
+    let budget = 6000;
+    let mut walk = walk(&table, source, WalkOptions { budget, frames_ahead: 0, ..WalkOptions::default() });
+    let mut most = 0;
+    for k in 0..59 {
+        until_full(&mut walk, &looking_right(0.5 + f64::from(k)), Method::Exact);
+        most = most.max(walk.kept().0);
+    }
+    assert!(most <= budget && most > budget / 2, "{most}");
+    assert!(walk.prepared().1 > 40, "{:?}", walk.prepared());
+}
+
+#[test]
+fn outside_sees_everything() {
+    let table = rooms(4);
+    let (source, _gate) = slow(&table, None);
+    let mut walk = walk(&table, source, WalkOptions::default());
+    let view = View::planar([0.5, 7.0], [1.0, 0.0], 0.1).unwrap();
+    let frame = walk.frame(&view, Method::Exact);
+    assert_eq!(frame.answer, Answer::Outside);
+    assert_eq!((frame.seen.cells().len(), frame.seen.objects().len(), frame.at.len()), (4, 4, 0));
+}
+
+#[test]
+fn failures_are_told_and_frames_stay_right() {
+    let table = rooms(4);
+    let (source, gate) = slow(&table, Some(CellId(0)));
+    gate.open();
+    let mut walk = walk(&table, source, WalkOptions::default());
+    let error = loop {
+        let frame = walk.frame(&looking_right(0.5), Method::Exact);
+        assert_eq!(frame.answer, Answer::Late);
+        assert_eq!(frame.seen.cells().len(), 3);
+        if let Some(error) = walk.take_error() {
+            break error;
+        }
+    };
+    assert_eq!(error, (CellId(0), "cell 0 is broken".to_owned()));
+    // The next cell is right again, and the broken one is asked for each time.
+    until_full(&mut walk, &looking_right(1.5), Method::Exact);
+    while walk.take_error().is_none() {
+        walk.frame(&looking_right(0.5), Method::Exact);
+    }
+}
+
+/// A maker that panics: the frames go on without it.
+struct Panics;
+
+impl Prepare for Panics {
+    type Prepared = ();
+    type Error = ();
+
+    fn prepare(&mut self, _: CellId) -> Result<(), ()> {
+        panic!("a maker that fails on purpose")
+    }
+
+    fn n_bytes(_: &()) -> usize {
+        1
+    }
+}
+
+#[test]
+fn a_maker_that_panics_stops_nobody() {
+    let mut prefetcher = Prefetcher::new(Panics, 10);
+    while prefetcher.is_working() {
+        prefetcher.wish(&[CellId(1)]);
+        prefetcher.poll();
+    }
+    prefetcher.wish(&[CellId(2)]);
+    assert!(prefetcher.get(CellId(1)).is_none() && !prefetcher.has(CellId(2)));
+}
+
+#[test]
+fn wanderers_stay_inside() {
+    let table = rooms(12);
+    let cells = TableCells::new(Arc::clone(&table));
+    let walk = sightlines_walkthrough::wander(&cells, 5000, 0.05, 3).unwrap();
+    assert_eq!(walk.len(), 5000);
+    let mut visited = BTreeSet::new();
+    for stand in &walk {
+        let at = table.locate(&stand.eye[..2]);
+        assert!(!at.is_empty(), "{stand:?}");
+        visited.extend(at);
+        View::planar([stand.eye[0], stand.eye[1]], [stand.dir[0], stand.dir[1]], 1.0).unwrap();
+    }
+    assert_eq!(visited.len(), 12);
+    assert_eq!(walk, sightlines_walkthrough::wander(&cells, 5000, 0.05, 3).unwrap());
+    assert_ne!(walk, sightlines_walkthrough::wander(&cells, 5000, 0.05, 4).unwrap());
+    let alone = Arc::new(Table::new(TableParts::empty(2)).unwrap());
+    assert!(sightlines_walkthrough::wander(&TableCells::new(alone), 10, 0.05, 3).unwrap().is_empty());
+}
