@@ -4,7 +4,8 @@
 //! Owns: [`visible_zones`] (which cells, or groups of cells, see each other, by portal sequences),
 //! [`see_space`] (the same for boxes in space, and for objects, by what stands between them),
 //! [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
-//! [`StabTree`] (every stabbable portal sequence out of one cell), [`explain`](fn@explain),
+//! [`StabTree`] (every stabbable portal sequence out of one cell), [`stab_trees`] (those out of all cells, in one graph,
+//! up to a limit), [`explain`](fn@explain),
 //! [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none).
 //! Does not know: files, tables, how cells were cut. The search over sequences is generic over the
 //! [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
@@ -22,14 +23,17 @@ mod zones;
 
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
-    BlockedConvex, Blocking, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,
+    BlockedConvex, Blocking, ByPolygons, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,
     ConvexSearch, ConvexState, MOST_EXPLAINED, SeenThroughPortals, explain_convex,
 };
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
 pub use search::{Known, Progress, SearchOptions, SearchSummary, Seen, visible_zones};
 pub use space::{SeenInSpace, SpaceExplanation, explain_space, see_space};
-pub use tree::{StabNode, StabTree, TooLarge};
+pub use tree::{
+    ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of, portal_of,
+    stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,
+};
 pub use zones::Zones;
 
 use sightlines_cells::{CellGraph, Planar};

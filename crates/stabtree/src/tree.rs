@@ -1,4 +1,14 @@
-//! Stab trees: every stabbable portal sequence out of a cell.
+//! Stab trees: every stabbable portal sequence out of a cell; of one cell, or of all cells in one graph.
+
+mod follow;
+mod forest;
+mod grow;
+mod share;
+
+pub use follow::{ByStabber, Follower, gate_of, portal_of};
+pub use forest::{
+    StabTreesOptions, StabTreesSummary, stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,
+};
 
 use sightlines_cells::{CellGraph, CellId, Exit, PortalId, Space};
 use sightlines_sightline::Stabber;

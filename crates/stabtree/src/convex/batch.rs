@@ -6,19 +6,19 @@ use std::sync::Mutex;
 
 /// A pool of threads, or the thread of the caller.
 #[derive(Debug)]
-pub(super) struct Workers {
+pub(crate) struct Workers {
     pool: Option<rayon::ThreadPool>,
 }
 
 impl Workers {
     /// `threads` of them; 0 for one for each core. Where no threads can be made, the caller's does the work.
-    pub(super) fn new(threads: usize) -> Self {
+    pub(crate) fn new(threads: usize) -> Self {
         let pool = (threads != 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok());
         Self { pool: pool.flatten() }
     }
 
     /// `work` on each unit, in the order of units; `scratch` makes what a thread needs for it.
-    pub(super) fn map<S: Send, T: Send>(
+    pub(crate) fn map<S: Send, T: Send>(
         &self,
         units: Range<usize>,
         scratch: impl Fn() -> S + Sync + Send,

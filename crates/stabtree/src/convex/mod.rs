@@ -21,6 +21,7 @@ mod beams;
 mod bound;
 mod cut;
 mod explain;
+mod follow;
 mod gates;
 mod pairs;
 mod sampled;
@@ -31,10 +32,10 @@ mod wanted;
 pub use explain::{
     BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexGate, MOST_EXPLAINED, explain_convex,
 };
-
+pub use follow::ByPolygons;
 pub use state::{ConvexCounters, ConvexOptions, ConvexState, SeenThroughPortals};
 
-use batch::Workers;
+pub(crate) use batch::Workers;
 use beams::BeamTracer;
 use gates::Gates;
 use pairs::{SequenceTracer, Sight, cells_of};

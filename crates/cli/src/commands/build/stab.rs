@@ -1,0 +1,113 @@
+//! Stab trees that a table is to have, and what those of a table are.
+
+use crate::error::CliError;
+use crate::output::{bytes, percent, seconds};
+use crate::progress::Bar;
+use serde::Serialize;
+use sightlines::bake::{BakedStab, StabOptions, with_stab_trees};
+use sightlines::pvs::Table;
+use std::fmt;
+use std::path::Path;
+
+/// Adds stab trees to a table made from `path`, if they are wanted; `wanted` may say how many nodes a tree may have.
+pub(super) fn add(
+    path: &Path,
+    table: Table,
+    wanted: Option<Option<u32>>,
+    threads: usize,
+    show_progress: bool,
+) -> Result<(Table, Option<Added>), CliError> {
+    let Some(max_nodes) = wanted else { return Ok((table, None)) };
+    let bar = Bar::new("stab trees", show_progress);
+    let progress = |done, all| bar.set(done, all);
+    let max_nodes = max_nodes.map(|n| n as usize);
+    let baked = with_stab_trees(table, &StabOptions { max_nodes, threads, progress: Some(&progress) });
+    drop(bar);
+    let baked = baked.map_err(|source| CliError::Stab { path: path.to_owned(), source })?;
+    let added = Added::new(&baked);
+    Ok((baked.table, Some(added)))
+}
+
+/// What was added.
+#[derive(Debug, Serialize)]
+pub(super) struct Added {
+    #[serde(flatten)]
+    facts: StabFacts,
+    /// The most nodes that the tree of a cell was allowed, before equal ones are put together.
+    max_nodes: usize,
+    n_largest: u64,
+    /// Cells whose tree was cut.
+    n_cut_cells: u64,
+    /// Sequences at which a tree was cut.
+    n_open: u64,
+    /// Sequences that count as passed because it was not decided.
+    n_undecided: u64,
+    stab_seconds: f64,
+    #[serde(skip)]
+    cut_share: f64,
+}
+
+impl Added {
+    fn new(baked: &BakedStab) -> Self {
+        let did = &baked.trees;
+        Self {
+            facts: StabFacts::of(&baked.table).unwrap_or_default(),
+            max_nodes: baked.max_nodes,
+            n_largest: did.n_largest,
+            n_cut_cells: did.n_cut_cells,
+            n_open: did.n_open,
+            n_undecided: did.n_undecided,
+            stab_seconds: baked.time.as_secs_f64(),
+            cut_share: did.n_cut_cells as f64 / baked.table.n_cells().max(1) as f64,
+        }
+    }
+}
+
+impl fmt::Display for Added {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.facts)?;
+        if self.n_cut_cells > 0 {
+            let [cells, nodes] = [self.n_cut_cells, self.max_nodes as u64];
+            writeln!(f, "cut trees      {cells}, {} of all, at {nodes} nodes each", percent(self.cut_share))?;
+        }
+        let time = std::time::Duration::try_from_secs_f64(self.stab_seconds).unwrap_or_default();
+        writeln!(f, "stab time      {}", seconds(time))
+    }
+}
+
+/// What the stab trees of a table are.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub(crate) struct StabFacts {
+    /// Sequences of portals, of all cells.
+    n_sequences: u64,
+    /// Nodes, each for all sequences that go on alike.
+    n_stab_nodes: usize,
+    n_stab_edges: u64,
+    /// What the table would be smaller without.
+    n_stab_bytes: usize,
+}
+
+impl StabFacts {
+    /// Of a table that has stab trees. Writes the table to memory twice.
+    pub(crate) fn of(table: &Table) -> Option<Self> {
+        let trees = table.stab()?;
+        let mut parts = table.parts().clone();
+        parts.stab = None;
+        let without = Table::new(parts).map_or(0, |table| table.to_bytes().len());
+        Some(Self {
+            n_sequences: u64::try_from(trees.n_sequences()).unwrap_or(u64::MAX),
+            n_stab_nodes: trees.n_nodes(),
+            n_stab_edges: trees.n_edges(),
+            n_stab_bytes: table.to_bytes().len().saturating_sub(without),
+        })
+    }
+}
+
+impl fmt::Display for StabFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [nodes, edges] = [self.n_stab_nodes as u64, self.n_stab_edges];
+        let each = self.n_stab_bytes as f64 / self.n_sequences.max(1) as f64;
+        writeln!(f, "stab trees     {} sequences in {nodes} nodes with {edges} edges", self.n_sequences)?;
+        writeln!(f, "               {}, {each:.3} bytes a sequence", bytes(self.n_stab_bytes as u64))
+    }
+}

@@ -1,0 +1,261 @@
+//! The stab trees of all cells, in one graph.
+
+use super::follow::{ByStabber, Follower, gate_of};
+use super::grow::{Grown, grow};
+use super::share::Shared;
+use crate::convex::{ByPolygons, Workers};
+use crate::search::Progress;
+use sightlines_cells::{Axial, CellGraph, CellId, Convex, Planar, Space};
+use sightlines_geometry::{Adaptive, AxialDoor, Portal2};
+use sightlines_pvs::{BitMatrix, StabParts};
+use sightlines_sightline::{AxialStabber, Funnel, StabLimits};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+/// Cells whose trees are in memory at a time, for each that is being grown.
+const BATCH: usize = 64;
+/// Nodes and children of the whole graph, so that ids have 32 bits with a bit to spare. Trees beyond are left out.
+const MOST: usize = 1 << 31;
+
+/// How far trees are followed.
+#[derive(Clone, Copy)]
+pub struct StabTreesOptions<'a> {
+    /// The most nodes of one tree, unfolded, the root among them. Beyond, it is cut breadth first: the nearest
+    /// sequences stay, and what may go on is marked open. At least 1, which is taken for 0 too.
+    pub max_nodes: usize,
+    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    pub threads: usize,
+    /// Told how many trees of how many are done.
+    pub progress: Option<Progress<'a>>,
+}
+
+impl Default for StabTreesOptions<'_> {
+    fn default() -> Self {
+        Self { max_nodes: 16_384, threads: 0, progress: None }
+    }
+}
+
+impl std::fmt::Debug for StabTreesOptions<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut out = f.debug_struct("StabTreesOptions");
+        out.field("max_nodes", &self.max_nodes).field("threads", &self.threads).finish_non_exhaustive()
+    }
+}
+
+/// What the trees of all cells are, before equal ones are put together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct StabTreesSummary {
+    /// Sequences of at least one gate: nodes of all trees but their roots.
+    pub n_sequences: u64,
+    /// Of these, ones that others may follow which are not in the tree.
+    pub n_open: u64,
+    /// Cells whose tree was cut.
+    pub n_cut_cells: u64,
+    /// Nodes of the largest tree, the root among them.
+    pub n_largest: u64,
+    /// Sequences of convex portals that count as passed because it was not decided.
+    pub n_undecided: u64,
+}
+
+/// The graph as trees grow along it.
+pub(super) struct Ways<'a> {
+    rows: &'a BitMatrix,
+    /// The cell that each gate leads into, and the side of that cell.
+    heads: Vec<(CellId, u32)>,
+    /// The exits of each cell, cell by cell: side and gate.
+    exits: Vec<(u32, u32)>,
+    first_exit: Vec<u32>,
+}
+
+impl<'a> Ways<'a> {
+    fn new<C: Space>(graph: &CellGraph<C>, rows: &'a BitMatrix) -> Self {
+        let heads = |p: &sightlines_cells::Portal<C>| [(p.cells[1], p.sides[1]), (p.cells[0], p.sides[0])];
+        let first = |cell| graph.exit_range(cell).start as u32;
+        Self {
+            rows,
+            heads: graph.portals().iter().flat_map(heads).collect(),
+            exits: graph.all_exits().iter().map(|exit| (exit.side, gate_of(exit))).collect(),
+            first_exit: graph.cell_ids().map(first).chain([graph.all_exits().len() as u32]).collect(),
+        }
+    }
+
+    /// The cell that a gate leads into.
+    pub(super) fn head(&self, gate: u32) -> CellId {
+        self.heads[gate as usize].0
+    }
+
+    /// Gates that may follow: `met` are the cells on the way, at least one, `entry` the gate into the last of them.
+    ///
+    /// A line meets a convex cell once and does not leave it by the side it came in by; and from wherever it is it
+    /// sees all the cells that it meets, so each pair of them is in the rows. Neither loses a sequence that lines pass,
+    /// if rows lose no pair that sees each other.
+    pub(super) fn onward(&self, met: &[CellId], entry: Option<u32>) -> impl Iterator<Item = u32> {
+        let here = met[met.len() - 1].idx();
+        let side = entry.map(|gate| self.heads[gate as usize].1);
+        let exits = &self.exits[self.first_exit[here] as usize..self.first_exit[here + 1] as usize];
+        exits.iter().filter(move |exit| side != Some(exit.0)).map(|exit| exit.1).filter(move |&gate| {
+            let next = self.head(gate);
+            met.iter().all(|cell| *cell != next && self.rows.get(next.idx(), cell.idx()))
+        })
+    }
+}
+
+/// One tree with equal nodes put together.
+struct Folded {
+    shared: Shared,
+    roots: Vec<u32>,
+    root_open: bool,
+    counts: StabTreesSummary,
+}
+
+impl Folded {
+    fn new(tree: &Grown) -> Self {
+        let mut shared = Shared::default();
+        let mut ids = vec![0u32; tree.len()];
+        let mut children = Vec::new();
+        // A parent comes before its children.
+        for node in (1..tree.len()).rev() {
+            children.clear();
+            children.extend_from_slice(&ids[tree.children(node)]);
+            children.sort_unstable();
+            ids[node] = shared.id(tree.gates[node], tree.open[node], &children);
+        }
+        let mut roots = ids[tree.children(0)].to_vec();
+        roots.sort_unstable();
+        let n_open = tree.open[1..].iter().filter(|&&open| open).count() as u64;
+        let counts = StabTreesSummary {
+            n_sequences: tree.len() as u64 - 1,
+            n_open,
+            n_cut_cells: u64::from(n_open > 0 || tree.open[0]),
+            n_largest: tree.len() as u64,
+            n_undecided: tree.n_undecided,
+        };
+        Self { shared, roots, root_open: tree.open[0], counts }
+    }
+}
+
+impl Shared {
+    /// Adds the nodes of another graph and returns their ids here, in ascending order of the ids there.
+    fn absorb(&mut self, other: &Self) -> Vec<u32> {
+        let mut ids: Vec<u32> = Vec::with_capacity(other.len());
+        let mut children = Vec::new();
+        for node in 0..other.len() as u32 {
+            children.clear();
+            children.extend(other.children(node).iter().map(|&child| ids[child as usize]));
+            children.sort_unstable();
+            ids.push(self.id(other.gates[node as usize], other.open[node as usize], &children));
+        }
+        ids
+    }
+}
+
+/// The stab trees of all cells, in one graph in which equal trees are kept once.
+///
+/// * `rows`: cells by cells, symmetric: pairs that may see each other. Only sequences whose cells are all in each
+///   other's rows are followed; rows that hide no pair lose none, and the better they are, the less it takes.
+/// * `follower`: cloned for each thread.
+///
+/// Returns the graph with each node once, children and roots ascending; each way from a root of a cell is a sequence of
+/// gates, see [`gate_of`].
+///
+/// Conservative for every limit: a sequence that an open set of lines passes is in the graph, or begins with one
+/// that ends in an open node (or at an open root). Exact beyond that if the follower is: every sequence in the graph is
+/// passed, and open is only what goes on. It does not depend on the number of threads.
+///
+/// Cost: a push for each sequence and about as many again for those that come to nothing, and for taking the
+/// follower from one end of a tree to the other; memory is the graph, and a batch of trees.
+///
+/// # Panics
+/// If `rows` has another size.
+///
+/// # Source
+/// Teller and Séquin, SIGGRAPH 1991, section 4, for the trees; keeping equal ones once, and cutting them, are our own.
+pub fn stab_trees<C: Space, F: Follower>(
+    graph: &CellGraph<C>,
+    rows: &BitMatrix,
+    follower: &F,
+    options: &StabTreesOptions<'_>,
+) -> (StabParts, StabTreesSummary) {
+    let n = graph.n_cells();
+    assert_eq!((rows.n_rows(), rows.n_cols()), (n, n), "rows are cells by cells");
+    let ways = Ways::new(graph, rows);
+    let workers = Workers::new(options.threads);
+    let max_nodes = options.max_nodes.clamp(1, MOST);
+    let n_done = AtomicUsize::new(0);
+    let one = |follower: &mut F, cell: usize| {
+        let folded = Folded::new(&grow(&ways, CellId(cell as u32), follower, max_nodes));
+        let done = n_done.fetch_add(1, Relaxed) + 1;
+        if let Some(progress) = options.progress {
+            progress(done, n);
+        }
+        folded
+    };
+    let mut shared = Shared::default();
+    let mut forest = StabParts { first_root: vec![0], ..StabParts::default() };
+    let mut summary = StabTreesSummary::default();
+    for first in (0..n).step_by(BATCH) {
+        // In the order of cells, so that ids do not depend on who was done first.
+        for tree in workers.map(first..n.min(first + BATCH), || follower.clone(), one) {
+            let fits = shared.len() + tree.shared.len() <= MOST
+                && shared.children.len() + tree.shared.children.len() <= MOST
+                && forest.roots.len() + tree.roots.len() <= MOST;
+            if fits {
+                let ids = shared.absorb(&tree.shared);
+                let from = forest.roots.len();
+                forest.roots.extend(tree.roots.iter().map(|&root| ids[root as usize]));
+                forest.roots[from..].sort_unstable();
+                summary += tree.counts;
+            } else {
+                summary += StabTreesSummary { n_cut_cells: 1, n_largest: 1, ..StabTreesSummary::default() };
+            }
+            forest.root_open.push(tree.root_open || !fits);
+            forest.first_root.push(forest.roots.len() as u32);
+        }
+    }
+    forest.first_child = shared.first_child();
+    (forest.gates, forest.children, forest.open) = (shared.gates, shared.children, shared.open);
+    (forest, summary)
+}
+
+impl std::ops::AddAssign for StabTreesSummary {
+    fn add_assign(&mut self, other: Self) {
+        self.n_sequences += other.n_sequences;
+        self.n_open += other.n_open;
+        self.n_cut_cells += other.n_cut_cells;
+        self.n_largest = self.n_largest.max(other.n_largest);
+        self.n_undecided += other.n_undecided;
+    }
+}
+
+/// [`stab_trees`] of a planar graph: exact.
+pub fn stab_trees_planar(
+    graph: &CellGraph<Planar>,
+    rows: &BitMatrix,
+    options: &StabTreesOptions<'_>,
+) -> (StabParts, StabTreesSummary) {
+    let seen = |p: &Portal2, forward: bool| if forward { *p } else { p.reversed() };
+    match graph.small_grid() {
+        Some(grid) => stab_trees(graph, rows, &ByStabber::new(graph, Funnel::new(grid), seen), options),
+        None => stab_trees(graph, rows, &ByStabber::new(graph, Funnel::new(Adaptive), seen), options),
+    }
+}
+
+/// [`stab_trees`] of a graph of boxes: exact.
+pub fn stab_trees_axial(
+    graph: &CellGraph<Axial>,
+    rows: &BitMatrix,
+    options: &StabTreesOptions<'_>,
+) -> (StabParts, StabTreesSummary) {
+    let seen = |p: &AxialDoor, forward: bool| if forward { *p } else { p.reversed() };
+    stab_trees(graph, rows, &ByStabber::new(graph, AxialStabber::new(), seen), options)
+}
+
+/// [`stab_trees`] of a graph of convex cells. Sequences that are not decided within `limits` count as passed.
+pub fn stab_trees_convex(
+    graph: &CellGraph<Convex>,
+    rows: &BitMatrix,
+    limits: StabLimits,
+    options: &StabTreesOptions<'_>,
+) -> (StabParts, StabTreesSummary) {
+    stab_trees(graph, rows, &ByPolygons::new(graph, limits), options)
+}
