@@ -4,7 +4,7 @@ use crate::bytes::{Reader, f64_at, u32_at, u64_at};
 use crate::container::{Resident, Section};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, NONE};
-use sightlines_pvs::{CellId, Locator, LocatorNode, PlaneChild, PlaneNode, PlaneTree};
+use sightlines_pvs::{CellId, Locator, LocatorNode, PlaneChild, PlaneNode, PlaneTree, polygon_may_contain};
 use std::ops::Range;
 
 /// Bytes of a node of the locator.
@@ -89,7 +89,7 @@ impl Places {
             self.for_each_candidate(resident, p, |cell| {
                 let (min, max) = self.cell_box(resident, cell.idx());
                 let in_box = (0..3).all(|k| min[k] <= p[k] && p[k] <= max[k]);
-                if in_box && may_contain(self.polygon(resident, cell.idx()), [p[0], p[1]]) {
+                if in_box && polygon_may_contain(self.polygon(resident, cell.idx()), [p[0], p[1]]) {
                     out.push(cell);
                 }
             });
@@ -237,27 +237,4 @@ fn planes(section: Section<'_>, d: usize, n_cells: u32) -> Result<PlaneTree, Pac
         nodes.push(PlaneNode { normal, offset, children });
     }
     PlaneTree::new(nodes, slack).map_err(|error| section.place.fail(Kind::Table(error.into())))
-}
-
-/// Whether `p` may be in the closed convex polygon with counter-clockwise corners.
-///
-/// The same decision as the table's own, from the same bound, so that answers are the same: the rounding
-/// error of the determinant is below (3 + 16 u) u (|left| + |right|) with u = 2^-53 (Shewchuk 1997, bound A),
-/// and what underflows is less than the smallest normal number. Errs towards `true`.
-#[inline]
-fn may_contain(polygon: impl ExactSizeIterator<Item = [f64; 2]>, p: [f64; 2]) -> bool {
-    const RELATIVE: f64 = (3.0 + 8.0 * f64::EPSILON) * (0.5 * f64::EPSILON);
-    let certainly_right = |a: [f64; 2], b: [f64; 2]| {
-        let left = (a[0] - p[0]) * (b[1] - p[1]);
-        let right = (a[1] - p[1]) * (b[0] - p[0]);
-        left - right < -(RELATIVE * (left.abs() + right.abs()) + f64::MIN_POSITIVE)
-    };
-    let mut ends: Option<([f64; 2], [f64; 2])> = None;
-    for corner in polygon {
-        if ends.is_some_and(|(_, last)| certainly_right(last, corner)) {
-            return false;
-        }
-        ends = Some((ends.map_or(corner, |(first, _)| first), corner));
-    }
-    !ends.is_some_and(|(first, last)| certainly_right(last, first))
 }

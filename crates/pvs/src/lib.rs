@@ -30,6 +30,7 @@ pub use locator::{Locator, LocatorError, LocatorNode};
 pub use parts::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord, TableParts};
 pub use planes::{PlaneChild, PlaneError, PlaneNode, PlaneTree};
 pub use set::CellSet;
+pub use side::polygon_may_contain;
 pub use stab::{StabError, StabParts, StabTrees};
 pub use table::Table;
 

@@ -23,12 +23,19 @@ pub(crate) fn certainly_right(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
     left - right < -bound
 }
 
-/// Whether `p` may be in the closed convex polygon with counter-clockwise corners.
+/// Whether `p` may be in the closed convex polygon with these counter-clockwise corners; so it is if there are none.
 ///
 /// Errs towards `true`, near the lines through the sides only. O(corners).
 #[inline]
-pub(crate) fn may_contain(polygon: &[[f64; 2]], p: [f64; 2]) -> bool {
-    sides(polygon).all(|(a, b)| !certainly_right(a, b, p))
+pub fn polygon_may_contain(corners: impl IntoIterator<Item = [f64; 2]>, p: [f64; 2]) -> bool {
+    let mut ends: Option<([f64; 2], [f64; 2])> = None;
+    for corner in corners {
+        if ends.is_some_and(|(_, last)| certainly_right(last, corner, p)) {
+            return false;
+        }
+        ends = Some((ends.map_or(corner, |(first, _)| first), corner));
+    }
+    !ends.is_some_and(|(first, last)| certainly_right(last, first, p))
 }
 
 /// The first corner at which the polygon certainly is not convex and counter-clockwise, if any.

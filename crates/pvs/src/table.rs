@@ -253,6 +253,6 @@ impl Table {
 
     fn may_contain(&self, cell: &CellRecord, p: [f64; 3]) -> bool {
         let in_box = (0..3).all(|k| cell.min[k] <= p[k] && p[k] <= cell.max[k]);
-        in_box && side::may_contain(&cell.polygon, [p[0], p[1]])
+        in_box && side::polygon_may_contain(cell.polygon.iter().copied(), [p[0], p[1]])
     }
 }

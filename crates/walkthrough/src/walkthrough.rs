@@ -98,6 +98,8 @@ pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static>
     seen: Seen,
     images: Vec<Image>,
     at: Vec<CellId>,
+    /// Cells with mirrors that are looked at and not prepared.
+    missing: Vec<CellId>,
     /// Cells to come, the most urgent first.
     wishes: Vec<CellId>,
     found: Vec<CellId>,
@@ -127,6 +129,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
             seen: Seen::new(),
             images: Vec::new(),
             at: Vec::new(),
+            missing: Vec::new(),
             wishes: Vec::new(),
             found: Vec::new(),
             pending: Vec::new(),
@@ -165,6 +168,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         let (n_cells, n_objects) = (self.resident.n_cells(), self.resident.n_objects());
         self.seen.clear(n_cells, n_objects);
         self.images.clear();
+        self.missing.clear();
         self.resident.locate(view.eye(), &mut self.pending, &mut self.at);
         let mut answer = Answer::Full;
         for &cell in &self.at {
@@ -181,14 +185,23 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
             self.seen.add_cells((0..n_cells as u32).map(CellId));
             self.seen.add_objects(0..n_objects as u32);
         } else if self.options.bounces > 0 {
+            let (outlooks, missing) = (&mut self.outlooks, &mut self.missing);
+            let outlook = |cell| {
+                let there = outlooks.get(cell);
+                if there.is_none() {
+                    missing.push(cell);
+                }
+                there
+            };
+            let sizes = [n_cells, n_objects];
             self.images = follow_reflections(
                 &method,
                 &self.seen,
                 self.options.bounces,
                 &self.doors,
                 &mut self.scratch,
-                [n_cells, n_objects],
-                |cell| self.outlooks.get(cell),
+                sizes,
+                outlook,
             );
             if self.images.iter().any(|image| !image.complete) {
                 answer = Answer::Late;
@@ -204,13 +217,11 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         answer
     }
 
-    /// Asks for the outlooks of the viewer's cells, of cells with mirrors that he sees, and of the cells that are ahead.
+    /// Asks for the outlooks of the viewer's cells, of cells with mirrors that he looks into, and of the cells ahead.
     fn look_ahead(&mut self) {
         self.wishes.clear();
         self.wishes.extend_from_slice(&self.at);
-        if self.options.bounces > 0 {
-            self.wishes.extend(self.seen.reflections().iter().map(|r| r.cell));
-        }
+        self.wishes.extend_from_slice(&self.missing);
         let n = self.options.places_per_frame;
         // Places near by come in each frame, those farther ahead in turn.
         let turn = (self.counters.frames % 8) as f64 / 8.0;

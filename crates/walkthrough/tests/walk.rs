@@ -2,7 +2,9 @@
 
 use sightlines_eye_to_cell::{CellSource, Method, MirrorWay, StabStep, TableCells, View, Way};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableParts,
+};
 use sightlines_walkthrough::{Answer, Prefetcher, Prepare, WalkOptions, Walkthrough};
 use std::collections::BTreeSet;
 use std::sync::{Arc, Condvar, Mutex};
@@ -300,4 +302,33 @@ fn wanderers_stay_inside() {
     assert_ne!(walk, sightlines_walkthrough::wander(&cells, 5000, 0.05, 4).unwrap());
     let alone = Arc::new(Table::new(TableParts::empty(2)).unwrap());
     assert!(sightlines_walkthrough::wander(&TableCells::new(alone), 10, 0.05, 3).unwrap().is_empty());
+}
+
+/// One room with mirrors on its upper and lower wall.
+fn hall_of_mirrors() -> Arc<Table> {
+    let mut parts = Arc::unwrap_or_clone(rooms(2)).into_parts();
+    let mirror = |cell: u32, face: u32, left: [f64; 2], right: [f64; 2]| MirrorRecord {
+        cell: CellId(cell),
+        face,
+        points: vec![[left[0], left[1], 0.0], [right[0], right[1], 0.0]],
+    };
+    // Left end first, as who stands in the room sees them.
+    parts.mirrors = vec![mirror(0, 7, [0.0, 1.0], [1.0, 1.0]), mirror(1, 8, [2.0, 0.0], [1.0, 0.0])];
+    Arc::new(Table::new(parts).unwrap())
+}
+
+#[test]
+fn mirrors_in_mirrors_come_in_time() {
+    let table = hall_of_mirrors();
+    let (source, gate) = slow(&table, None);
+    let mut walk = walk(&table, source, WalkOptions { bounces: 2, ..WalkOptions::default() });
+    // Up and to the right: by the mirror of the first room, through the door, to the mirror of the second.
+    let view = View::planar([0.5, 0.5], [1.0, 1.0], 0.5).unwrap();
+    assert_eq!(walk.frame(&view, Method::Exact).answer, Answer::Late);
+    gate.open();
+    until_full(&mut walk, &view, Method::Exact);
+    let frame = walk.frame(&view, Method::Exact);
+    let words: Vec<_> = frame.images.iter().map(|image| (image.mirrors.clone(), image.complete)).collect();
+    assert_eq!(words, [(vec![7], true), (vec![7, 8], true)]);
+    assert_eq!(frame.images[0].cells, [CellId(0), CellId(1)]);
 }
