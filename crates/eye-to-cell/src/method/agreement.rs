@@ -1,4 +1,4 @@
-//! The two ways of the exact method have the same answer, in blocks of boxes with doors at random places.
+//! The two ways of the exact method have the same answer, in blocks of boxes or squares with doors at random places.
 
 use super::exact::by_sequences;
 use super::missing::list_missing;
@@ -67,9 +67,50 @@ fn block(doors: &[[u8; 4]]) -> Table {
     Table::new(parts).unwrap()
 }
 
+/// The same in the plane, with `side` squares along each side.
+fn plan(doors: &[[u8; 4]], side: usize) -> Table {
+    let mut cells = Vec::new();
+    let mut portals = Vec::new();
+    let mut chosen = doors.iter().cycle();
+    let id = |x: usize, y: usize| CellId((x + side * y) as u32);
+    for (y, x) in (0..side * side).map(|i| (i / side, i % side)) {
+        let (u, v) = (x as f64, y as f64);
+        let (min, max) = ([u, v, 0.0], [u + 1.0, v + 1.0, 0.0]);
+        cells.push(CellRecord { min, max, group: None, polygon: vec![] });
+        let mut range = || {
+            let &[a, b, ..] = chosen.next().unwrap();
+            let [low, high] = if a == b { [0, 8] } else { [a.min(b), a.max(b)] };
+            [f64::from(low) / 8.0, f64::from(high) / 8.0]
+        };
+        if x + 1 < side {
+            let [low, high] = range();
+            let points = vec![[u + 1.0, v + high, 0.0], [u + 1.0, v + low, 0.0]];
+            portals.push(PortalRecord { cells: [id(x, y), id(x + 1, y)], sides: [1, 0], points });
+        }
+        if y + 1 < side {
+            let [low, high] = range();
+            let points = vec![[u + low, v + 1.0, 0.0], [u + high, v + 1.0, 0.0]];
+            portals.push(PortalRecord { cells: [id(x, y), id(x, y + 1)], sides: [3, 2], points });
+        }
+    }
+    let n = cells.len();
+    let bounds: Vec<_> = cells.iter().map(|c| (c.min, c.max)).collect();
+    let mut rows = BitMatrix::new(n, n);
+    (0..n * n).for_each(|k| rows.set(k / n, k % n, true));
+    let parts = TableParts {
+        rows,
+        portals,
+        cell_objects: vec![vec![]; n],
+        locator: Locator::build(&bounds, 2),
+        cells,
+        ..TableParts::empty(2)
+    };
+    Table::new(parts).unwrap()
+}
+
 fn seen_by(outlook: &Outlook, view: &View, way: fn(&mut Query<'_>) -> bool) -> Vec<u32> {
     let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
-    seen.clear(N * N * N, 0);
+    seen.clear(1 << 10, 0);
     for part in &view.parts {
         let doors = Doors::all_open();
         let mut query = Query::new(outlook, view, part, &doors, &mut scratch, &mut seen);
@@ -81,13 +122,15 @@ fn seen_by(outlook: &Outlook, view: &View, way: fn(&mut Query<'_>) -> bool) -> V
 }
 
 fn compare(doors: &[[u8; 4]], eye: [f64; 3], dir: [f64; 3], fov: f64) -> Result<usize, TestCaseError> {
-    let table = block(doors);
-    let view = View::pinhole(eye, dir, [0.0, 0.0, 1.0], fov, 1.25).unwrap();
+    compare_in(&block(doors), &View::pinhole(eye, dir, [0.0, 0.0, 1.0], fov, 1.25).unwrap())
+}
+
+fn compare_in(table: &Table, view: &View) -> Result<usize, TestCaseError> {
     let mut n_seen = 0;
-    for root in table.locate(&eye) {
-        let outlook = Outlook::prepare(&TableCells::new(&table), root).unwrap_or_else(|never| match never {});
-        let sequences = seen_by(&outlook, &view, |query| by_sequences(query, u64::MAX));
-        let pieces = seen_by(&outlook, &view, sweep);
+    for root in table.locate(&view.eye()[..usize::from(table.dimension())]) {
+        let outlook = Outlook::prepare(&TableCells::new(table), root).unwrap_or_else(|never| match never {});
+        let sequences = seen_by(&outlook, view, |query| by_sequences(query, u64::MAX));
+        let pieces = seen_by(&outlook, view, sweep);
         prop_assert_eq!(&sequences, &pieces);
         n_seen += pieces.len();
     }
@@ -107,6 +150,24 @@ proptest! {
         prop_assume!(dir.iter().any(|x| x.abs() > 0.01));
         prop_assert!(compare(&doors, eye, dir, fov)? > 0);
     }
+
+    /// The same in the plane.
+    #[test]
+    fn sweep_and_sequences_agree_in_the_plane(
+        doors in prop::collection::vec(prop::array::uniform4(0u8..9), 1..30),
+        eye in prop::array::uniform2(0.03f64..5.97),
+        turn in 0.0f64..6.28,
+        fov in 0.01f64..6.28,
+    ) {
+        let view = View::planar(eye, [turn.cos(), turn.sin()], fov).unwrap();
+        prop_assert!(compare_in(&plan(&doors, 6), &view)? > 0);
+    }
+}
+
+#[test]
+fn open_squares_are_seen_whole() {
+    let view = View::all_round([0.3, 0.4, 0.0]).unwrap();
+    assert_eq!(compare_in(&plan(&[[0; 4]], 24), &view).unwrap(), 24 * 24);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::side::{MOST_SIDES, Reach, Side, Vector, minus};
 
 /// A convex polygon clipped by as many sides as there may be has one corner more for each.
-const MOST_CORNERS: usize = 2 * MOST_SIDES;
+pub(super) const MOST_CORNERS: usize = 2 * MOST_SIDES;
 
 /// The edge that begins at a corner of a clipped polygon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,19 +72,35 @@ impl Clipper {
     /// The corners are as the eye sees them, which is before the portal: in a plane left end, right end; in space
     /// counter-clockwise. The new cone errs to the outside, by the tolerance of its sides.
     pub(super) fn narrow(&mut self, eye: Eye, corners: &[Vector], sides: &[Side], out: &mut Vec<Side>) -> bool {
-        match (eye.planar, corners) {
-            (true, &[left, right]) => narrow_segment(minus(left, eye.at), minus(right, eye.at), sides, eye.reach, out),
-            _ if corners.len() > MOST_SIDES => {
-                out.extend_from_slice(sides);
-                true
-            }
-            _ => self.narrow_polygon(eye, corners, sides, out).is_some(),
+        if corners.len() > MOST_SIDES {
+            out.extend_from_slice(sides);
+            return true;
         }
+        self.narrow_part(eye, corners, sides, out).is_some()
     }
 
-    /// As [`Clipper::narrow`] in space, with at most [`MOST_SIDES`] corners; tells the corners of what is seen of the
-    /// portal as well. The new sides are those of its edges in turn; beyond [`MOST_SIDES`] they are left out.
-    pub(super) fn narrow_polygon(
+    /// As [`Clipper::narrow`] with at most [`MOST_SIDES`] corners; tells the corners of what is seen of the portal as
+    /// well. In a plane they are its left and its right end, as are the sides. In space the new sides are those of its edges
+    /// in turn; beyond [`MOST_SIDES`] they are left out.
+    pub(super) fn narrow_part(
+        &mut self,
+        eye: Eye,
+        corners: &[Vector],
+        sides: &[Side],
+        out: &mut Vec<Side>,
+    ) -> Option<&[Vector]> {
+        if let (true, &[left, right]) = (eye.planar, corners) {
+            let ends = narrow_segment(minus(left, eye.at), minus(right, eye.at), sides, eye.reach, out)?;
+            self.polygon.n = 0;
+            for end in ends {
+                self.polygon.push(end, Edge::Portal(0));
+            }
+            return Some(self.polygon.corners());
+        }
+        self.narrow_polygon(eye, corners, sides, out)
+    }
+
+    fn narrow_polygon(
         &mut self,
         eye: Eye,
         corners: &[Vector],
@@ -123,20 +139,27 @@ impl Clipper {
     }
 }
 
-fn narrow_segment(left: Vector, right: Vector, sides: &[Side], reach: Reach, out: &mut Vec<Side>) -> bool {
+/// Adds the left and the right side of the cone, and tells the left and the right end of what is seen.
+fn narrow_segment(
+    left: Vector,
+    right: Vector,
+    sides: &[Side],
+    reach: Reach,
+    out: &mut Vec<Side>,
+) -> Option<[Vector; 2]> {
     let mut ends = [(left, None), (right, None)];
     for side in sides {
         let values = ends.map(|(v, _)| side.value(v));
         match values.map(|value| side.lets_go(value)) {
             [false, false] => {}
-            [true, true] => return false,
+            [true, true] => return None,
             [true, false] => ends[0] = (between(side, ends[1].0, ends[0].0, values[1], values[0]), Some(*side)),
             [false, true] => ends[1] = (between(side, ends[0].0, ends[1].0, values[0], values[1]), Some(*side)),
         }
     }
     out.push(ends[0].1.unwrap_or_else(|| Side::right_of(left, reach)));
     out.push(ends[1].1.unwrap_or_else(|| Side::left_of(right, reach)));
-    true
+    Some(ends.map(|(end, _)| end))
 }
 
 /// The part of `polygon` that the side numbered `k` keeps; `false` if it has too many corners, which only rounding can make.

@@ -35,7 +35,14 @@ pub(crate) struct Frame {
 /// Keeps what a line from the eye leads to, through open portals, within the view; within rounding.
 pub(super) fn exact(query: &mut Query<'_>) {
     list_missing(query);
-    if !by_sequences(query, MOST_STEPS) && !sweep(query) {
+    let n_reflections = query.seen.reflections.len();
+    if by_sequences(query, MOST_STEPS) {
+        return;
+    }
+    // The next way finds all mirrors anew.
+    query.seen.reflections.truncate(n_reflections);
+    if !sweep(query) {
+        query.seen.reflections.truncate(n_reflections);
         reach::incident(query);
     }
 }

@@ -11,11 +11,12 @@
 //! what a corner may be off, and both are set aside for this ([`crate::side`]). Sides are taken over as they are, so nothing adds
 //! up however often it is done.
 
+use super::clip::MOST_CORNERS;
 use super::exact::keep_mirrors;
 use super::missing::meets;
 use super::query::Query;
 use crate::front::Facing;
-use crate::outlook::LocalWay;
+use crate::outlook::{LocalWay, Outlook};
 use crate::scratch::Scratch;
 use crate::side::{MOST_SIDES, Side, Vector, cross, dot, norm};
 use std::ops::Range;
@@ -46,6 +47,7 @@ struct Piece {
 /// The pieces of a view, and room to make them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Pieces {
+    planar: bool,
     pieces: Vec<Piece>,
     corners: Vec<Vector>,
     sides: Vec<Side>,
@@ -66,7 +68,14 @@ pub(crate) struct Pieces {
 type Part = (Vec<Vector>, Vec<Side>);
 
 impl Pieces {
-    fn clear(&mut self, n_cells: usize, n_ways: usize) {
+    fn clear(&mut self, outlook: &Outlook) {
+        let (n_cells, n_ways) = (outlook.cells.len(), outlook.ways.len());
+        self.planar = outlook.planar;
+        // As much as two parts put together may have; they change places, so both.
+        for part in [&mut self.whole, &mut self.spare] {
+            part.0.reserve(MOST_CORNERS.saturating_sub(part.0.len()));
+            part.1.reserve(MOST_CORNERS.saturating_sub(part.1.len()));
+        }
         self.pieces.clear();
         self.corners.clear();
         self.sides.clear();
@@ -106,7 +115,9 @@ impl Pieces {
     fn add(&mut self, cell: u32, way: u32, corners: &[Vector], sides: &[Side], same: f64) {
         let (mut whole, mut spare) = (std::mem::take(&mut self.whole), std::mem::take(&mut self.spare));
         whole.0.clear();
-        if corners.len() == sides.len() {
+        if self.planar {
+            whole.0.extend_from_slice(corners);
+        } else if corners.len() == sides.len() {
             let before = |i: usize| &sides[if i == 0 { sides.len() - 1 } else { i - 1 }];
             whole.0.extend((0..corners.len()).map(|i| sharpened(corners[i], before(i), &sides[i])));
         }
@@ -137,6 +148,9 @@ impl Pieces {
         if ps.len() != n || qs.len() != m || n + m > MOST_SIDES {
             return false;
         }
+        if self.planar {
+            return join_segments(p, ps, whole, joined, same);
+        }
         let Some((i, j)) = shared_edge(p, q, same) else { return false };
         let within = |sides: &[Side], but: usize, corners: &[Vector], own: &[Side]| {
             sides.iter().enumerate().all(|(k, side)| {
@@ -166,6 +180,28 @@ impl Pieces {
     }
 }
 
+/// Puts two parts of a segment together, if one begins where the other ends: the outer ends with their sides.
+fn join_segments(p: &[Vector], ps: &[Side], whole: &Part, joined: &mut Part, same: f64) -> bool {
+    let (&[p_left, p_right], &[q_left, q_right]) = (p, &whole.0[..]) else { return false };
+    let (&[ps_left, ps_right], &[qs_left, qs_right]) = (ps, &whole.1[..]) else { return false };
+    joined.0.clear();
+    joined.1.clear();
+    if close(&p_right, &q_left, same) {
+        joined.0.extend([p_left, q_right]);
+        joined.1.extend([ps_left, qs_right]);
+    } else if close(&q_right, &p_left, same) {
+        joined.0.extend([q_left, p_right]);
+        joined.1.extend([qs_left, ps_right]);
+    }
+    !joined.0.is_empty()
+}
+
+/// Whether two corners are the same but for rounding.
+#[inline]
+fn close(a: &Vector, b: &Vector, same: f64) -> bool {
+    (a[0] - b[0]).abs() <= same && (a[1] - b[1]).abs() <= same && (a[2] - b[2]).abs() <= same
+}
+
 /// The corner where two sides meet, from a corner that was clipped where their borders are drawn, which is a tolerance
 /// outside.
 ///
@@ -186,15 +222,12 @@ fn sharpened(corner: Vector, before: &Side, after: &Side) -> Vector {
 /// An edge of `p` and one of `q` that are the same the other way round, within `same`: the places where they begin.
 #[inline]
 fn shared_edge(p: &[Vector], q: &[Vector], same: f64) -> Option<(usize, usize)> {
-    let close = |a: &Vector, b: &Vector| {
-        (a[0] - b[0]).abs() <= same && (a[1] - b[1]).abs() <= same && (a[2] - b[2]).abs() <= same
-    };
     for (i, a) in p.iter().enumerate() {
         for (j, b) in q.iter().enumerate() {
             // The edge of q before its corner j ends there.
             let before = if j == 0 { q.len() - 1 } else { j - 1 };
             let after = if i + 1 == p.len() { 0 } else { i + 1 };
-            if close(a, b) && close(&p[after], &q[before]) {
+            if close(a, b, same) && close(&p[after], &q[before], same) {
                 return Some((i, before));
             }
         }
@@ -206,11 +239,8 @@ fn shared_edge(p: &[Vector], q: &[Vector], same: f64) -> Option<(usize, usize)> 
 /// or too many pieces. What was kept until then is right.
 pub(super) fn sweep(query: &mut Query<'_>) -> bool {
     let outlook = query.outlook;
-    if outlook.planar {
-        return false;
-    }
     let mut pieces = std::mem::take(&mut query.scratch.pieces);
-    pieces.clear(outlook.cells.len(), outlook.ways.len());
+    pieces.clear(outlook);
     let done = Sweep { query, pieces: &mut pieces }.run();
     query.scratch.pieces = pieces;
     done
@@ -306,7 +336,7 @@ impl Sweep<'_, '_> {
             Facing::Before if n_corners as usize <= MOST_SIDES => {
                 scratch.cone.clear();
                 let Scratch { clipper, cone: narrowed, missing, .. } = &mut **scratch;
-                if let Some(part) = clipper.narrow_polygon(eye, corners, cone, narrowed)
+                if let Some(part) = clipper.narrow_part(eye, corners, cone, narrowed)
                     && meets(missing, narrowed, outlook, view, seen)
                 {
                     self.pieces.add(to, index, part, narrowed, eye.reach.radius * SAME);
