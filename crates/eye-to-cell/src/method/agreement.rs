@@ -7,6 +7,7 @@ use super::sweep::sweep;
 use crate::{Doors, Outlook, Scratch, Seen, TableCells, View};
 use proptest::prelude::*;
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableParts};
+use std::f64::consts::TAU;
 
 /// Boxes along each side of the block.
 const N: usize = 4;
@@ -145,7 +146,7 @@ proptest! {
         doors in prop::collection::vec(prop::array::uniform4(0u8..9), 1..30),
         eye in prop::array::uniform3(0.03f64..3.97),
         dir in prop::array::uniform3(-1.0f64..1.0),
-        fov in 0.1f64..6.28,
+        fov in 0.1f64..TAU,
     ) {
         prop_assume!(dir.iter().any(|x| x.abs() > 0.01));
         prop_assert!(compare(&doors, eye, dir, fov)? > 0);
@@ -156,8 +157,8 @@ proptest! {
     fn sweep_and_sequences_agree_in_the_plane(
         doors in prop::collection::vec(prop::array::uniform4(0u8..9), 1..30),
         eye in prop::array::uniform2(0.03f64..5.97),
-        turn in 0.0f64..6.28,
-        fov in 0.01f64..6.28,
+        turn in 0.0f64..TAU,
+        fov in 0.01f64..TAU,
     ) {
         let view = View::planar(eye, [turn.cos(), turn.sin()], fov).unwrap();
         prop_assert!(compare_in(&plan(&doors, 6), &view)? > 0);
@@ -172,6 +173,6 @@ fn open_squares_are_seen_whole() {
 
 #[test]
 fn open_blocks_are_seen_whole() {
-    let n = compare(&[[0, 0, 0, 0]], [0.3, 0.4, 0.55], [1.0, 0.0, 0.0], std::f64::consts::TAU).unwrap();
+    let n = compare(&[[0, 0, 0, 0]], [0.3, 0.4, 0.55], [1.0, 0.0, 0.0], TAU).unwrap();
     assert_eq!(n, N * N * N);
 }
