@@ -1,27 +1,33 @@
 //! The offline pipeline: from a scene to its visibility table in one call.
 //!
 //! Owns: the choice of subdivision and predicate ([`bake_plan`]), the table made from a cell graph
-//! ([`table_of`]) and the way back ([`graph_of`], [`axial_graph_of`]), the REJECT lumps of a WAD ([`reject_wad`]),
+//! ([`table_of`]) and the way back ([`graph_of`], [`axial_graph_of`]), stab trees for a finished table ([`with_stab_trees`]),
+//! the REJECT lumps of a WAD ([`reject_wad`]),
 //! the visibility of Quake maps and how far a search of one came ([`quake`]).
 //! Does not know: paths, the command line, pictures.
 //! Invariants: the same scene and options give the same table, byte for byte, with any number of
 //! threads; every approximation on the way errs towards visible.
 
+mod mirrors;
 mod objects;
 mod plan;
 pub mod quake;
 pub mod reject;
 pub mod scene;
 mod sectors;
+mod stab;
 mod table;
 
 pub use plan::{BakeError, BakeOptions, BakeSummary, Baked, ParseSubdivideError, Subdivide, bake_plan};
-pub use quake::{BakedPrt, PrtBakeError, PrtOptions, SeenClusters, VisMap, bake_prt, convex_graph_of, vis_map};
+pub use quake::{
+    BakedMap, BakedPrt, PrtBakeError, PrtOptions, SeenClusters, VisMap, bake_map, bake_prt, convex_graph_of, vis_map,
+};
 pub use reject::{
     MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad,
 };
 pub use scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
+pub use stab::{BakedStab, StabBakeError, StabOptions, most_nodes, with_stab_trees};
 pub use table::{TableOptions, axial_graph_of, graph_of, table_of};
 
 #[cfg(doctest)]

@@ -1,8 +1,9 @@
 //! Baking a plan: subdivide, see, tabulate.
 
+use crate::mirrors;
 use crate::table::{TableOptions, table_of};
 use sightlines_cells::{CellGraph, Plan, PlanError, Planar};
-use sightlines_pvs::{Table, TableError};
+use sightlines_pvs::{Table, TableError, TableParts};
 use sightlines_stabtree::{Progress, SearchOptions, Zones, see_plan};
 use sightlines_triangulation::TriangulationError;
 use std::fmt;
@@ -132,6 +133,10 @@ pub struct BakeSummary {
     pub n_dropped_pieces: usize,
     /// Cells in regions whose lines disagree about the group.
     pub n_disputed_cells: usize,
+    /// Parts of mirrors on borders of cells.
+    pub n_mirror_parts: usize,
+    /// Mirrors of which a part is on no border of a cell, and does not reflect.
+    pub n_lost_mirrors: usize,
     /// Time to cut the plan.
     pub cut_time: Duration,
     /// Time to decide who sees whom.
@@ -165,7 +170,12 @@ pub fn bake_plan(plan: &Plan, options: &BakeOptions<'_>) -> Result<Baked, BakeEr
     if summary.subdivide == Subdivide::KdTree {
         info.push(("tau".to_owned(), options.tau.to_string()));
     }
-    let table = table_of(&graph, rows, TableOptions { objects: plan.objects(), info })?;
+    let mut table = table_of(&graph, rows, TableOptions { objects: plan.objects(), info })?;
+    if !plan.mirrors().is_empty() {
+        let mirrors = mirrors::of_plan(&graph, plan);
+        (summary.n_mirror_parts, summary.n_lost_mirrors) = (mirrors.parts.len(), mirrors.n_lost);
+        table = Table::new(TableParts { mirrors: mirrors.parts, ..table.into_parts() })?;
+    }
     Ok(Baked { table, summary })
 }
 

@@ -1,5 +1,6 @@
 //! Baking a scene in space: subdivide, see, tabulate.
 
+use crate::mirrors;
 use crate::plan::BakeError;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Portal, Scene};
 use sightlines_geometry::Aabb;
@@ -60,6 +61,12 @@ pub struct BakedScene {
     pub cut_time: Duration,
     /// Time to decide who sees what.
     pub see_time: Duration,
+    /// Parts of mirrors in cells.
+    pub n_mirror_parts: usize,
+    /// Rectangles of mirrors of which a part is in no cell on either side, and does not reflect.
+    pub n_lost_mirrors: usize,
+    /// Triangles of mirrors that are not perpendicular to an axis, and do not reflect.
+    pub n_other_mirror_triangles: usize,
     /// Rectangles that the walls between the cells were put together to.
     pub n_blockers: usize,
     /// Pairs of a cell and a cell or object that count as visible because deciding about them took too
@@ -111,14 +118,37 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
     let (n_objects_seen, counters) = (seen.objects.count_ones(), seen.counters);
     let (n_blockers, n_assumed) = (seen.n_blockers, seen.n_assumed);
     let info = info(options, &cut.summary);
-    let table = scene_table(&graph, seen, scene, &boxes, info)?;
+    let found = mirrors::of_scene(&graph, scene);
+    let n_mirror_parts = found.parts.len();
+    let (n_lost_mirrors, n_other_mirror_triangles) = (found.n_lost, found.n_other_triangles);
+    let mut parts = scene_parts(&graph, seen, scene, &boxes, info);
+    parts.mirrors = found.parts;
+    let table = Table::new(parts)?;
     let cut = cut.summary;
-    Ok(BakedScene { table, cut, n_visible_pairs, n_objects_seen, n_blockers, n_assumed, counters, cut_time, see_time })
+    Ok(BakedScene {
+        table,
+        cut,
+        n_visible_pairs,
+        n_objects_seen,
+        n_mirror_parts,
+        n_lost_mirrors,
+        n_other_mirror_triangles,
+        n_blockers,
+        n_assumed,
+        counters,
+        cut_time,
+        see_time,
+    })
 }
 
 /// The box around an object's triangles; empty, and so never seen, if it has none.
 fn drawn_box(object: &sightlines_cells::SceneObject) -> Aabb<3> {
     Aabb::around(object.corners().flatten())
+}
+
+/// The polygons that are drawn for an object; more than the table can say count as the most that it can.
+fn n_triangles(object: &sightlines_cells::SceneObject) -> u32 {
+    u32::try_from(object.triangles.len()).unwrap_or(u32::MAX)
 }
 
 /// The same graph with one portal for each pair of cells: the rectangle around the exact pieces.
@@ -153,13 +183,13 @@ fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, Stri
     ]
 }
 
-fn scene_table(
+fn scene_parts(
     graph: &CellGraph<Axial>,
     seen: SeenInSpace,
     scene: &Scene,
     boxes: &[Aabb<3>],
     info: Vec<(String, String)>,
-) -> Result<Table, BakeError> {
+) -> TableParts {
     let cell = |id: CellId| {
         let Aabb { min, max } = graph.cell(id).bounds;
         CellRecord { min, max, group: None, polygon: Vec::new() }
@@ -170,18 +200,18 @@ fn scene_table(
         let b = if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b };
         ObjectRecord { name: o.name.clone(), min: b.min, max: b.max }
     };
-    let table = Table::new(TableParts {
-        dimension: 3,
+    TableParts {
         portals: graph.portals().iter().map(portal_record).collect(),
         rows: seen.cells,
         objects: scene.objects().iter().zip(boxes).map(object).collect(),
+        object_polygons: scene.objects().iter().map(n_triangles).collect(),
         cell_objects: seen.touching,
         objects_seen: Some(seen.objects),
         locator: Locator::build(&bounds, 3),
         cells,
         info,
-    })?;
-    Ok(table)
+        ..TableParts::empty(3)
+    }
 }
 
 /// The corners counter-clockwise as seen from the first cell: the normal by the right-hand rule points

@@ -53,15 +53,14 @@ pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOption
     let mut info = options.info;
     info.sort();
     Table::new(TableParts {
-        dimension: 2,
         portals: graph.portals().iter().map(portal_record).collect(),
         rows,
         objects: options.objects.iter().map(record).collect(),
         cell_objects: cell_objects(graph.cells(), options.objects),
-        objects_seen: None,
         locator: Locator::build(&bounds, 2),
         cells,
         info,
+        ..TableParts::empty(2)
     })
 }
 

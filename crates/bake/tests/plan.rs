@@ -212,15 +212,11 @@ fn stripped_tables_have_no_graph() {
 fn tables_of_space_have_no_planar_graph() {
     let cell = CellRecord { min: [0.; 3], max: [1.; 3], group: None, polygon: vec![] };
     let parts = TableParts {
-        dimension: 3,
-        objects_seen: None,
         locator: Locator::build(&[(cell.min, cell.max)], 3),
         rows: BitMatrix::identity(1),
         cells: vec![cell],
-        portals: vec![],
-        objects: vec![],
         cell_objects: vec![vec![]],
-        info: vec![],
+        ..TableParts::empty(3)
     };
     assert_eq!(graph_of(&Table::new(parts).expect("a box in space")), None);
 }

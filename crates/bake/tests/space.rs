@@ -24,15 +24,12 @@ fn with(table: &Table, portals: Vec<PortalRecord>, rows: BitMatrix) -> Table {
     let cells: Vec<CellRecord> = table.cells().to_vec();
     let bounds: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|c| (c.min, c.max)).collect();
     Table::new(TableParts {
-        dimension: 3,
         portals,
         rows,
-        objects: Vec::new(),
         cell_objects: vec![Vec::new(); cells.len()],
-        objects_seen: None,
         locator: Locator::build(&bounds, 3),
         cells,
-        info: Vec::new(),
+        ..TableParts::empty(3)
     })
     .expect("the parts fit together")
 }

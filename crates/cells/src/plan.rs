@@ -44,6 +44,7 @@ pub struct PlanObject {
 pub struct Plan {
     lines: Vec<PlanLine>,
     objects: Vec<PlanObject>,
+    mirrors: Vec<LineId>,
     n_groups: u32,
 }
 
@@ -91,6 +92,12 @@ pub enum PlanError {
         /// Index of the line.
         line: usize,
     },
+    /// What is marked as a mirror is no line, or one that does not block sight.
+    #[error("line {line} cannot be a mirror: there is no such opaque line")]
+    Mirror {
+        /// Index of the line.
+        line: usize,
+    },
     /// More lines than ids.
     #[error("{0} lines are more than a plan can hold")]
     TooMany(usize),
@@ -126,7 +133,7 @@ impl Plan {
             }
         }
         let named = lines.iter().flat_map(|l| [l.left, l.right]).flatten().max();
-        Ok(Self { lines, objects, n_groups: named.map_or(0, |g| g + 1) })
+        Ok(Self { lines, objects, mirrors: Vec::new(), n_groups: named.map_or(0, |g| g + 1) })
     }
 
     /// Opaque walls only, without groups or objects.
@@ -135,6 +142,26 @@ impl Plan {
     /// As [`Plan::new`].
     pub fn from_walls(walls: impl IntoIterator<Item = (Point2, Point2)>) -> Result<Self, PlanError> {
         Self::new(walls.into_iter().map(|(a, b)| PlanLine::wall(a, b)).collect(), Vec::new())
+    }
+
+    /// The same plan, with these lines as mirrors, on both sides, and no others.
+    ///
+    /// # Errors
+    /// [`PlanError::Mirror`] for a line that does not exist or is not opaque.
+    pub fn with_mirrors(mut self, mut mirrors: Vec<LineId>) -> Result<Self, PlanError> {
+        mirrors.sort_unstable();
+        mirrors.dedup();
+        let is_wall = |id: &LineId| self.lines.get(id.0 as usize).is_some_and(|line| line.opaque);
+        if let Some(id) = mirrors.iter().find(|id| !is_wall(id)) {
+            return Err(PlanError::Mirror { line: id.0 as usize });
+        }
+        self.mirrors = mirrors;
+        Ok(self)
+    }
+
+    /// The lines that are mirrors, ascending.
+    pub fn mirrors(&self) -> &[LineId] {
+        &self.mirrors
     }
 
     /// The lines, in input order.
@@ -197,6 +224,19 @@ mod tests {
         let bounds = Aabb { min: [1., 0.], max: [0., 0.] };
         let bad = Plan::new(vec![], vec![PlanObject { name: String::new(), bounds }]).unwrap_err();
         assert_eq!(bad.to_string(), "object 0 has a lower corner above its upper one");
+    }
+
+    #[test]
+    fn mirrors_are_opaque_lines() {
+        let glass = PlanLine { opaque: false, ..line(0., 1., 1., 1.) };
+        let plan = Plan::new(vec![line(0., 0., 1., 0.), glass, line(0., 2., 1., 2.)], vec![]).unwrap();
+        assert!(plan.mirrors().is_empty());
+        let marked = plan.clone().with_mirrors([2, 0, 2].map(LineId).to_vec()).unwrap();
+        assert_eq!(marked.mirrors(), [LineId(0), LineId(2)]);
+        for bad in [1, 3] {
+            let error = plan.clone().with_mirrors(vec![LineId(bad)]).unwrap_err().to_string();
+            assert_eq!(error, format!("line {bad} cannot be a mirror: there is no such opaque line"));
+        }
     }
 
     #[test]

@@ -29,6 +29,7 @@ impl SceneObject {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     objects: Vec<SceneObject>,
+    mirrors: Vec<u32>,
 }
 
 /// Why objects do not make a scene.
@@ -56,6 +57,12 @@ pub enum SceneError {
         /// The corner that it names.
         vertex: u32,
     },
+    /// What is marked as a mirror is no object.
+    #[error("object {object} cannot be a mirror: there is no such object")]
+    Mirror {
+        /// Index of the object.
+        object: usize,
+    },
 }
 
 impl Scene {
@@ -77,7 +84,26 @@ impl Scene {
                 }
             }
         }
-        Ok(Self { objects })
+        Ok(Self { objects, mirrors: Vec::new() })
+    }
+
+    /// The same scene, with the faces of these objects as mirrors, and no others.
+    ///
+    /// # Errors
+    /// [`SceneError::Mirror`] for an object that does not exist.
+    pub fn with_mirrors(mut self, mut mirrors: Vec<u32>) -> Result<Self, SceneError> {
+        mirrors.sort_unstable();
+        mirrors.dedup();
+        if let Some(&object) = mirrors.iter().find(|&&object| object as usize >= self.objects.len()) {
+            return Err(SceneError::Mirror { object: object as usize });
+        }
+        self.mirrors = mirrors;
+        Ok(self)
+    }
+
+    /// The objects that are mirrors, ascending.
+    pub fn mirrors(&self) -> &[u32] {
+        &self.mirrors
     }
 
     /// The objects, by id.
@@ -115,5 +141,8 @@ mod tests {
         assert_eq!(error.to_string(), "object 1, vertex 1: coordinate inf is not a finite number");
         let bad = SceneObject { triangles: vec![[0, 1, 2], [0, 3, 1]], ..good };
         assert_eq!(Scene::new(vec![bad]).unwrap_err().to_string(), "object 0, triangle 1: there is no vertex 3");
+        assert_eq!(scene.clone().with_mirrors(vec![0, 0]).unwrap().mirrors(), [0]);
+        let error = scene.with_mirrors(vec![1]).unwrap_err().to_string();
+        assert_eq!(error, "object 1 cannot be a mirror: there is no such object");
     }
 }

@@ -536,6 +536,35 @@ fn what_was_written_is_read() {
 }
 
 #[test]
+fn mirrors_are_marked_and_written() {
+    let mut doc = small_doc();
+    let mesh = doc.triangle();
+    for node in [
+        json!({"name": "a-mirror", "mesh": mesh}),
+        json!({"name": "b", "mesh": mesh, "extras": {"sightlines": {"role": "mirror"}, "more": [1]}}),
+        json!({"name": "c-mirrors", "mesh": mesh, "extras": "mirror"}),
+        json!({"name": "d", "mesh": mesh, "extras": null}),
+    ] {
+        let node = doc.push("nodes", node);
+        doc.json["scenes"][0]["nodes"].as_array_mut().unwrap().push(json!(node));
+    }
+    let read = parse_glb(&doc.glb(), None).unwrap().scene;
+    let names = |scene: &Scene| -> Vec<String> {
+        scene.mirrors().iter().map(|&k| scene.objects()[k as usize].name.clone()).collect()
+    };
+    assert_eq!(names(&read), ["a-mirror", "b"]);
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\no hall\nf 1 2 3\no wall-mirror\nf 1 2 3\no mirror\nf 3 2 1\n";
+    let read = parse_obj(obj.as_bytes()).unwrap().scene;
+    assert_eq!(names(&read), ["wall-mirror"]);
+    let groups = parse_obj(obj.replace("\no ", "\ng ").as_bytes()).unwrap().scene;
+    assert_eq!(names(&groups), ["wall-mirror"]);
+    let marked = read.clone().with_mirrors(vec![1, 2]).unwrap();
+    let again = parse_glb(&write_glb(&marked).unwrap(), None).unwrap().scene;
+    assert_eq!(again, marked);
+    assert_ne!(again, read, "an impostor");
+}
+
+#[test]
 fn what_cannot_be_written_is_refused() {
     let one = |p: [f64; 3]| SceneObject { name: "x".into(), vertices: vec![p], triangles: vec![] };
     let error = write_glb(&scene(vec![one(O), one([0.0, 0.1, 0.0])])).unwrap_err();

@@ -21,15 +21,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         rows.set(b, a, true);
     }
     let table = Table::new(TableParts {
-        dimension: 2,
-        objects_seen: None,
         locator: Locator::build(&bounds, 2),
         rows,
         cells,
         portals: vec![door(0, 4.0, 0.5), door(1, 8.0, 1.5)],
-        objects: vec![],
         cell_objects: vec![vec![]; 3],
-        info: vec![],
+        ..TableParts::empty(2)
     })?;
     print!("{}", plan_svg(&table, &DrawOptions { view: View::Cell(CellId(1)), ..DrawOptions::default() })?);
     Ok(())

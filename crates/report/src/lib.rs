@@ -2,10 +2,10 @@
 //!
 //! Owns: the drawing of cells and of what is seen in them, as a plan ([`plan_svg`]), as a floor plan of a
 //! scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`], [`svg_to_png`]); the JSON export
-//! ([`export_json`]); the numbers that sum a table up ([`Summary`], [`ViewerShare`]).
+//! ([`export_json`]); the numbers that sum a table up ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]).
 //! Does not know: how a table was made, files, how the numbers are worded.
 //! Invariants: a table is only looked at, and what is shown is what it says; the same table and options
-//! give the same bytes on every machine; pictures have no text, so they need no fonts.
+//! give the same bytes on every machine; pictures of tables have no text, so they need no fonts.
 
 mod draw;
 mod export;
@@ -15,6 +15,7 @@ mod png;
 mod share;
 mod summary;
 mod theme;
+mod walk;
 
 pub use draw::{
     DrawError, DrawOptions, IsometricOptions, MAX_SIZE, MIN_SIZE, SliceOptions, Up, View, isometric_svg, plan_svg,
@@ -24,6 +25,7 @@ pub use export::{export_json, write_json};
 pub use png::{PngError, svg_to_png};
 pub use share::ViewerShare;
 pub use summary::Summary;
+pub use walk::{WalkBar, walk_svg};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -23,6 +23,19 @@ pub enum PrtBakeError {
     /// The state to begin with is none of these portals.
     #[error(transparent)]
     State(#[from] StateError),
+    /// A portal that lies on no plane of the map's tree that divides its clusters.
+    #[error(
+        "portal {portal} is {by} units away from every plane that divides clusters {} and {} of the map",
+        clusters[0], clusters[1]
+    )]
+    OffPlane {
+        /// The portal, as an index of those with area.
+        portal: usize,
+        /// Its clusters.
+        clusters: [u32; 2],
+        /// How far away its farthest corner is from the nearest such plane, in map units.
+        by: f64,
+    },
     /// The parts of the table do not fit together: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),

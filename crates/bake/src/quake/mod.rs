@@ -1,16 +1,19 @@
 //! Quake maps: from a portal file to who sees whom, and from there into the map or a table.
 //!
 //! The graph of clusters comes from the file ([`graph_of_prt`]); [`ConvexSearch`] finds out which clusters see
-//! which. [`vis_map`] puts the answer into the map, [`bake_prt`] into a table. Both take a search up again where
+//! which. [`vis_map`] puts the answer into the map, [`bake_prt`] into a table, [`bake_map`] into one that also knows
+//! where the clusters are and which faces they have, from the map. All take a search up again where
 //! an earlier one stopped ([`PrtOptions::from`]); [`state`] has the bytes in which that is kept.
 
 mod error;
 pub mod state;
 mod table;
+mod world;
 
 pub use error::PrtBakeError;
 pub use state::{StateError, StateKey, named_counters};
-pub use table::{SOURCE_KEY, SOURCE_PRT, convex_graph_of};
+pub use table::{SOURCE_KEY, SOURCE_MAP, SOURCE_PRT, convex_graph_of, is_of_clusters};
+pub use world::{BakedMap, WorldSummary, bake_map};
 
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::visibility::{check_portals, lump};
@@ -114,7 +117,7 @@ pub fn bake_prt(prt: &Prt, options: PrtOptions<'_>) -> Result<BakedPrt, PrtBakeE
     let graph = graph(prt)?;
     let fast = options.search.fast;
     let clusters = see(&graph, options)?;
-    let table = table::table_of_clusters(prt, &graph, clusters.seen.cells.clone(), fast)?;
+    let table = Table::new(table::parts_of_clusters(prt, &graph, clusters.seen.cells.clone(), fast))?;
     Ok(BakedPrt { table, clusters })
 }
 

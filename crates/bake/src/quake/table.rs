@@ -3,20 +3,24 @@
 use sightlines_cells::{CellGraph, CellId, Convex, Portal, Portal3};
 use sightlines_formats::quake::Prt;
 use sightlines_geometry::check_coordinate;
-use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableError, TableParts};
+use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableParts};
 
-/// Under this key a table says what it was made from, if that is a portal file.
+/// Under this key a table says what it was made from, if that is a portal file, or a map with one.
 pub const SOURCE_KEY: &str = "source";
 /// What a table of a portal file says under [`SOURCE_KEY`], followed by the dialect.
 pub const SOURCE_PRT: &str = "portal file";
+/// What a table of a map with its portal file says under [`SOURCE_KEY`], followed by the format and the dialect.
+pub const SOURCE_MAP: &str = "Quake map";
 
-/// The table of a graph of clusters.
-pub(super) fn table_of_clusters(
-    prt: &Prt,
-    graph: &CellGraph<Convex>,
-    rows: BitMatrix,
-    fast: bool,
-) -> Result<Table, TableError> {
+/// Whether the cells of a table are the clusters of a Quake map, from its portal file alone or from both. Where the
+/// cells are is known only in a table that has planes.
+pub fn is_of_clusters(table: &Table) -> bool {
+    let made_from = |source: &str| source.starts_with(SOURCE_PRT) || source.starts_with(SOURCE_MAP);
+    table.info_value(SOURCE_KEY).is_some_and(made_from)
+}
+
+/// What a table of a graph of clusters is made of, without where they are.
+pub(super) fn parts_of_clusters(prt: &Prt, graph: &CellGraph<Convex>, rows: BitMatrix, fast: bool) -> TableParts {
     let cell = |bounds: sightlines_geometry::Aabb<3>| {
         // A cell without portals is nowhere that is known.
         let (min, max) = if bounds.is_empty() { ([0.0; 3], [0.0; 3]) } else { (bounds.min, bounds.max) };
@@ -31,17 +35,15 @@ pub(super) fn table_of_clusters(
         pair(SOURCE_KEY, format!("{SOURCE_PRT} {}", prt.dialect())),
         pair("up", "z".to_owned()),
     ];
-    Table::new(TableParts {
-        dimension: 3,
+    TableParts {
         portals: graph.portals().iter().map(portal_record).collect(),
         rows,
-        objects: Vec::new(),
         cell_objects: vec![Vec::new(); cells.len()],
-        objects_seen: None,
         locator: Locator::build(&bounds, 3),
         cells,
         info,
-    })
+        ..TableParts::empty(3)
+    }
 }
 
 /// Tables have corners counter-clockwise as seen from the first cell, portals about the direction of crossing,
@@ -51,14 +53,13 @@ fn portal_record(portal: &Portal<Convex>) -> PortalRecord {
     PortalRecord { cells: portal.cells, sides: portal.sides, points }
 }
 
-/// The graph of clusters that a table of a portal file stores: the one that the table was made from, to the bit. `None`
-/// if the table was not made from a portal file, or its portals were stripped, or have coordinates that predicates do
+/// The graph of clusters that a table of a portal file, or of a map, stores: the one that the table was made from, to the
+/// bit. `None` if the table was made from something else ([`is_of_clusters`]), or its portals were stripped, or have coordinates that predicates do
 /// not bear or corners that go round nothing. That portals are convex and flat is believed, as bits of rows are.
 pub fn convex_graph_of(table: &Table) -> Option<CellGraph<Convex>> {
-    let is_prt = table.info_value(SOURCE_KEY).is_some_and(|source| source.starts_with(SOURCE_PRT));
     // Cells that see each other are joined by portals, so without any they were stripped.
     let joined = (0u32..).take(table.n_cells()).map(CellId).any(|cell| table.visible(cell).any(|other| other != cell));
-    if table.dimension() != 3 || !is_prt || (table.portals().is_empty() && joined) {
+    if table.dimension() != 3 || !is_of_clusters(table) || (table.portals().is_empty() && joined) {
         return None;
     }
     let portal = |p: &PortalRecord| {

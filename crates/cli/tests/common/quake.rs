@@ -37,6 +37,25 @@ pub(crate) fn small_maps() -> Vec<Map> {
     maps
 }
 
+/// A map of each format with a tree and faces: four leafs in a row, with windows between them that are squares of 16, and
+/// its portals. Leaf `k` is cluster `k`, but for Quake II, where they are clusters 2, 0, 1 and 0.
+pub(crate) fn row_of_leafs(format: BspFormat) -> Map {
+    let map = SmallBsp::with_world(format);
+    let cluster = |leaf: usize| match format {
+        BspFormat::Quake2 => u32::try_from(map.clusters[leaf]).expect("a cluster"),
+        _ => leaf as u32,
+    };
+    let n_clusters = if format == BspFormat::Quake2 { 3 } else { 4 };
+    let mut prt = Prt::new(n_clusters).expect("some rooms");
+    for leaf in 0..3 {
+        let x = 64.0 * (leaf + 1) as f64;
+        let points = [[x, 24.0, 24.0], [x, 40.0, 24.0], [x, 40.0, 40.0], [x, 24.0, 40.0]];
+        prt.push_portal([cluster(leaf), cluster(leaf + 1)], &points).expect("a window");
+    }
+    let name = format!("a row of leafs, {format:?}");
+    Map { name, format, bsp: map.file(true), prt: write_prt(&prt) }
+}
+
 /// Rooms in a row of rows, each a leaf of a Quake map, with a window in each wall between two at a place that
 /// differs from wall to wall.
 pub(crate) fn rooms(columns: u32, rows: u32) -> Map {

@@ -6,6 +6,7 @@
 //! | property of a feature | what it says |
 //! | --- | --- |
 //! | `"sight": "transparent"` or `"opaque": false` | its lines do not block sight |
+//! | `"mirror": true` | its lines are mirrors, which have to block sight |
 //! | `"left_group"`, `"right_group"` | groups on the two sides of its lines |
 //! | `"name"`, else `"id"` | what its points are called |
 //! | `"object": "box"` | its points are corners of one object, not an object each |

@@ -92,6 +92,7 @@ pub(super) struct Properties {
     pub(super) name: Option<String>,
     pub(super) id: Option<String>,
     pub(super) is_box: bool,
+    pub(super) is_mirror: bool,
 }
 
 impl Properties {
@@ -102,6 +103,8 @@ impl Properties {
             ("sight", value) => self.transparent |= is_transparent(&value)?,
             ("opaque", Scalar::Bool(opaque)) => self.transparent |= !opaque,
             ("opaque", _) => return Err(wrong("opaque", "true or false")),
+            ("mirror", Scalar::Bool(is_mirror)) => self.is_mirror = is_mirror,
+            ("mirror", _) => return Err(wrong("mirror", "true or false")),
             ("left_group", value) => self.left = Some(group("left_group", &value)?),
             ("right_group", value) => self.right = Some(group("right_group", &value)?),
             ("name", value) => self.name = value.into_name(),
@@ -127,7 +130,7 @@ fn group(property: &'static str, value: &Scalar) -> Result<u32, GeoJsonErrorKind
     fits.ok_or(GeoJsonErrorKind::Group { property, group })
 }
 
-fn wrong(property: &'static str, expected: &'static str) -> GeoJsonErrorKind {
+pub(super) fn wrong(property: &'static str, expected: &'static str) -> GeoJsonErrorKind {
     GeoJsonErrorKind::Property { property, expected }
 }
 

@@ -3,11 +3,11 @@
 use super::coordinates::Coordinates;
 use super::error::{GeoJsonError, GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
 use super::node::{Geometry, Level, Node};
-use super::properties::Properties;
+use super::properties::{Properties, wrong};
 use crate::{ReadError, ReadErrorKind};
 use serde::de::{DeserializeSeed, Error};
 use serde_json::error::Category;
-use sightlines_cells::{Plan, PlanLine, PlanObject};
+use sightlines_cells::{LineId, Plan, PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -56,6 +56,7 @@ pub fn read_plan(path: impl AsRef<Path>) -> Result<Plan, ReadError> {
 pub(super) struct Reader {
     lines: Vec<PlanLine>,
     objects: Vec<PlanObject>,
+    mirrors: Vec<LineId>,
     pub(super) place: GeoJsonPlace,
     failure: Option<GeoJsonErrorKind>,
     /// What to say if the next value is of another JSON type than it should be.
@@ -97,11 +98,15 @@ impl Reader {
     fn finish(self) -> Result<Plan, GeoJsonError> {
         let place = GeoJsonPlace::default();
         // Coordinates and lengths were checked on the way; only the number of lines is left.
-        Plan::new(self.lines, self.objects).map_err(|e| GeoJsonError { line: 1, column: 1, place, kind: e.into() })
+        let plan = Plan::new(self.lines, self.objects).and_then(|plan| plan.with_mirrors(self.mirrors));
+        plan.map_err(|e| GeoJsonError { line: 1, column: 1, place, kind: e.into() })
     }
 
     /// Adds the geometries of one feature to the plan.
     pub(super) fn add_feature(&mut self, geometries: &[Geometry], about: &Properties) -> Result<(), GeoJsonErrorKind> {
+        if about.is_mirror && about.transparent {
+            return Err(wrong("mirror", "false where lines do not block sight"));
+        }
         for geometry in geometries {
             self.place.geometry = geometry.index;
             match geometry.kind {
@@ -134,6 +139,7 @@ impl Reader {
         about: &Properties,
     ) -> Result<(), GeoJsonErrorKind> {
         let closed = matches!(kind, GeometryKind::Polygon | GeometryKind::MultiPolygon);
+        let first = self.lines.len();
         for (part, points) in coordinates.parts().enumerate() {
             let before = self.lines.len();
             let back = closed.then(|| (points[points.len() - 1], points[0]));
@@ -146,6 +152,10 @@ impl Reader {
                 self.place.part = Some(part);
                 return Err(GeoJsonErrorKind::NoExtent(kind));
             }
+        }
+        if about.is_mirror {
+            // More lines than ids are refused in the end.
+            self.mirrors.extend((first..self.lines.len()).filter_map(|line| u32::try_from(line).ok().map(LineId)));
         }
         Ok(())
     }

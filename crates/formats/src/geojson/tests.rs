@@ -1,6 +1,6 @@
 use super::*;
 use proptest::prelude::*;
-use sightlines_cells::{Plan, PlanLine, PlanObject};
+use sightlines_cells::{LineId, Plan, PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
 
 fn error(text: &str) -> String {
@@ -198,8 +198,13 @@ fn plans() -> impl Strategy<Value = Plan> {
         .prop_map(|(a, b, opaque, left, right)| PlanLine { a, b, opaque, left, right });
     let object = (any::<String>(), point(), point())
         .prop_map(|(name, a, b)| PlanObject { name, bounds: Aabb::around([a.to_array(), b.to_array()]) });
-    (prop::collection::vec(line, 0..8), prop::collection::vec(object, 0..4))
-        .prop_map(|(lines, objects)| Plan::new(lines, objects).unwrap())
+    (prop::collection::vec(line, 0..8), prop::collection::vec(object, 0..4), any::<u8>()).prop_map(
+        |(lines, objects, marks)| {
+            let walls = (0u32..).zip(&lines).filter(|(k, line)| line.opaque && marks >> k & 1 == 1);
+            let mirrors = walls.map(|(k, _)| LineId(k)).collect();
+            Plan::new(lines, objects).unwrap().with_mirrors(mirrors).unwrap()
+        },
+    )
 }
 
 proptest! {
@@ -224,6 +229,28 @@ proptest! {
             let expected = ::geojson::GeometryValue::new_line_string(ends);
             prop_assert_eq!(&feature.geometry.as_ref().unwrap().value, &expected);
         }
+    }
+}
+
+#[test]
+fn mirrors_are_marked() {
+    let feature = |properties: &str| {
+        format!(
+            r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"LineString","coordinates":[[0,0],[4,0],[4,4]]}}}}"#
+        )
+    };
+    let all = |features: &[&str]| {
+        let features: Vec<String> = features.iter().map(|f| feature(f)).collect();
+        parse_plan(format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(",")).as_bytes())
+    };
+    let plan = all(&["{}", r#"{"mirror":true}"#, r#"{"mirror":false}"#, r#"{"mirror":null}"#]).unwrap();
+    assert_eq!((plan.lines().len(), plan.mirrors()), (8, &[LineId(2), LineId(3)][..]));
+    for (bad, text) in [
+        (r#"{"mirror":1}"#, "property \"mirror\" is not true or false"),
+        (r#"{"mirror":true,"sight":"transparent"}"#, "property \"mirror\" is not false where lines do not block sight"),
+    ] {
+        let error = all(&["{}", bad]).unwrap_err();
+        assert!(error.kind.to_string().contains(text), "{error}");
     }
 }
 

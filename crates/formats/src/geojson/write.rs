@@ -1,6 +1,6 @@
 //! Writing: a feature per line and per object, one on each row of the text.
 
-use sightlines_cells::{Plan, PlanLine, PlanObject};
+use sightlines_cells::{LineId, Plan, PlanLine, PlanObject};
 use std::fmt::Write;
 
 /// A plan as a GeoJSON FeatureCollection, which [`super::parse_plan`] reads back as the same plan.
@@ -9,7 +9,9 @@ use std::fmt::Write;
 /// MultiPoints of two corners if they have extent. Numbers are the shortest decimals that mean them.
 /// Read back are only groups below [`super::MAX_GROUPS`].
 pub fn write_plan(plan: &Plan) -> String {
-    let features = plan.lines().iter().map(line_feature).chain(plan.objects().iter().map(object_feature));
+    let is_mirror = |id: LineId| plan.mirrors().binary_search(&id).is_ok();
+    let lines = (0u32..).map(LineId).zip(plan.lines()).map(|(id, line)| line_feature(line, is_mirror(id)));
+    let features = lines.chain(plan.objects().iter().map(object_feature));
     let mut text = String::from("{\"type\":\"FeatureCollection\",\"features\":[");
     for (index, feature) in features.enumerate() {
         text.push_str(if index == 0 { "\n" } else { ",\n" });
@@ -19,10 +21,13 @@ pub fn write_plan(plan: &Plan) -> String {
     text
 }
 
-fn line_feature(line: &PlanLine) -> String {
+fn line_feature(line: &PlanLine, is_mirror: bool) -> String {
     let mut properties = Vec::new();
     if !line.opaque {
         properties.push("\"sight\":\"transparent\"".to_owned());
+    }
+    if is_mirror {
+        properties.push("\"mirror\":true".to_owned());
     }
     for (name, group) in [("left_group", line.left), ("right_group", line.right)] {
         properties.extend(group.map(|group| format!("\"{name}\":{group}")));

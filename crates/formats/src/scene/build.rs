@@ -33,6 +33,7 @@ impl Compact {
 #[derive(Debug, Default)]
 pub(super) struct Builder {
     objects: Vec<SceneObject>,
+    mirrors: Vec<u32>,
     n_degenerate: usize,
 }
 
@@ -55,10 +56,15 @@ impl Builder {
         self.objects.push(SceneObject { name, vertices, triangles });
     }
 
+    /// Marks the object that was added last as a mirror.
+    pub(super) fn mark_mirror(&mut self) {
+        self.mirrors.extend(self.objects.len().checked_sub(1).and_then(|last| u32::try_from(last).ok()));
+    }
+
     /// The scene, if there is anything to see in it.
     pub(super) fn finish(self, format: SceneFormat) -> Result<SceneFile, SceneReadError> {
         let (n_objects, n_degenerate) = (self.objects.len(), self.n_degenerate);
-        let scene = Scene::new(self.objects)?;
+        let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let n_triangles = scene.n_triangles();
         if n_triangles == 0 {
             return Err(SceneReadError::NoTriangles { n_objects, n_degenerate });

@@ -6,7 +6,7 @@ use super::build::{Builder, Compact};
 use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
 use super::json::{Document, Mesh, Node, Primitive, TRIANGLES};
 use super::transform::Transform;
-use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
+use super::{MAX_ELEMENTS, MAX_OBJECTS, MIRROR_SUFFIX, SceneFile, SceneFormat};
 use crate::point::check_point;
 use std::path::Path;
 
@@ -94,6 +94,11 @@ impl Placed<'_> {
     fn name(&self, primitive: usize) -> String {
         let name = self.given_name().map_or_else(|| format!("node {}", self.index), str::to_owned);
         if primitive == 0 { name } else { format!("{name}#{primitive}") }
+    }
+
+    /// Whether the node says, by its extras or by its name, that it is a mirror.
+    fn is_mirror(&self) -> bool {
+        self.node.is_mirror || self.node.name.as_deref().is_some_and(|name| name.ends_with(MIRROR_SUFFIX))
     }
 
     fn fail(&self, primitive: usize, kind: PrimitiveErrorKind) -> SceneReadError {
@@ -201,6 +206,9 @@ fn build(document: &Document, buffers: &Buffers<'_>, placed: &[Placed<'_>]) -> R
             };
             let vertices = local.mesh.corners.iter().zip(&local.positions).map(world).collect::<Result<_, _>>()?;
             builder.add(at.name(k), vertices, local.mesh.triangles.iter().copied(), at.world.mirrors());
+            if at.is_mirror() {
+                builder.mark_mirror();
+            }
         }
     }
     Ok(builder)

@@ -52,6 +52,9 @@ pub(super) struct Node {
     pub(super) scale: Option<Box<[f64; 3]>>,
     pub(super) skin: Option<usize>,
     pub(super) weights: Option<Box<[f64]>>,
+    /// Whether its extras say so: `{"sightlines": {"role": "mirror"}}`.
+    #[serde(default, rename = "extras", deserialize_with = "super::role::is_mirror")]
+    pub(super) is_mirror: bool,
 }
 
 #[derive(Debug, Deserialize)]

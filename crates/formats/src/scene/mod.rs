@@ -5,6 +5,7 @@
 //! | objects | one per node and primitive of the default scene, parents before children | one per `o`, or per `g` where there is no `o` |
 //! | up, unit | Y, metres, as the format says | Y assumed, unknown |
 //! | numbers | single precision or quantised, placed by transforms in double precision | double precision |
+//! | mirrors | nodes with `"extras": {"sightlines": {"role": "mirror"}}`, or a name that ends in `-mirror` | objects with such a name |
 //! | left out | materials, animations, cameras | materials, normals, lines, curves |
 //!
 //! Objects keep their order, which gives them their ids, even those that are only points or lines and have
@@ -20,6 +21,7 @@ mod gltf;
 mod json;
 mod obj;
 mod polygon;
+mod role;
 mod transform;
 mod write;
 
@@ -40,6 +42,9 @@ use std::path::Path;
 pub const MAX_ELEMENTS: usize = 1 << 26;
 /// The most objects that a scene of glTF may have.
 pub const MAX_OBJECTS: usize = 1 << 22;
+
+/// How names of objects end that are mirrors.
+pub const MIRROR_SUFFIX: &str = "-mirror";
 
 /// A scene and what its file says about it.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use super::build::{Builder, Compact};
 use super::error::{ObjErrorKind, SceneReadError};
 use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
-use super::{MAX_ELEMENTS, SceneFile, SceneFormat};
+use super::{MAX_ELEMENTS, MIRROR_SUFFIX, SceneFile, SceneFormat};
 use crate::point::check_point;
 use sightlines_cells::Point3;
 use std::borrow::Cow;
@@ -34,6 +34,9 @@ pub fn parse_obj(bytes: &[u8]) -> Result<SceneFile, SceneReadError> {
             let mesh = obj.mesh(faces)?;
             let vertices = mesh.corners.iter().map(|&v| obj.positions[v]).collect();
             builder.add(group.name.clone(), vertices, mesh.triangles.iter().copied(), false);
+            if group.name.ends_with(MIRROR_SUFFIX) {
+                builder.mark_mirror();
+            }
         }
     }
     builder.finish(SceneFormat::Obj)

@@ -14,7 +14,8 @@ use sightlines_cells::{Scene, SceneObject};
 pub fn write_glb(scene: &Scene) -> Result<Vec<u8>, SceneWriteError> {
     let mut parts = Parts::default();
     for (k, object) in scene.objects().iter().enumerate() {
-        parts.add(k, object)?;
+        let is_mirror = u32::try_from(k).is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
+        parts.add(k, object, is_mirror)?;
     }
     parts.into_glb()
 }
@@ -33,6 +34,19 @@ struct Roots {
 struct Node<'a> {
     name: &'a str,
     mesh: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    extras: Option<Extras>,
+}
+
+/// What a reader of ours finds about a node.
+#[derive(Debug, Serialize)]
+struct Extras {
+    sightlines: Role,
+}
+
+#[derive(Debug, Serialize)]
+struct Role {
+    role: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -112,12 +126,13 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn add(&mut self, k: usize, object: &'a SceneObject) -> Result<(), SceneWriteError> {
+    fn add(&mut self, k: usize, object: &'a SceneObject, is_mirror: bool) -> Result<(), SceneWriteError> {
         let position = self.positions(k, object)?;
         let indices = (!object.triangles.is_empty()).then(|| self.indices(object));
         let mode = if indices.is_some() { 4 } else { 0 };
         self.meshes.push(Mesh { primitives: [Primitive { attributes: Attributes { position }, indices, mode }] });
-        self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1 });
+        let extras = is_mirror.then_some(Extras { sightlines: Role { role: "mirror" } });
+        self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1, extras });
         Ok(())
     }
 

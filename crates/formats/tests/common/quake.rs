@@ -1,7 +1,7 @@
 //! Small maps of the Quake family, put together without the code that they test, and what has to hold of
 //! whatever bytes are read as one.
 
-use sightlines_formats::quake::bsp::LeafRow;
+use sightlines_formats::quake::bsp::{BspChild, LeafRow};
 use sightlines_formats::quake::prt::{parse_prt, write_prt};
 use sightlines_formats::quake::visibility::{self, VisibilityLump};
 use sightlines_formats::quake::{Bsp, BspFormat, LeafClusters};
@@ -26,6 +26,10 @@ pub struct SmallBsp {
     pub visibility: Vec<u8>,
     /// Names and content of lumps behind the others.
     pub extra: Option<Vec<(&'static str, Vec<u8>)>>,
+    /// Whether there is a tree of leafs, and faces have corners: leaf `k` is the cube from `64 (k - 1)` to `64 k` in x,
+    /// the last of those that can be seen has something solid behind it, and the faces of a leaf are squares in the
+    /// middle of it across x.
+    pub world: bool,
 }
 
 impl SmallBsp {
@@ -38,13 +42,85 @@ impl SmallBsp {
             clusters: vec![2, 0, 1, 0, -1],
             visibility: Vec::new(),
             extra: None,
+            world: false,
         }
+    }
+
+    /// The same with a tree and corners.
+    pub fn with_world(format: BspFormat) -> Self {
+        Self { world: true, ..Self::new(format) }
+    }
+
+    fn is_wide(&self) -> bool {
+        matches!(self.format, BspFormat::Bsp2 | BspFormat::Bsp2Psb)
+    }
+
+    /// An index of a face, an edge or a vertex.
+    fn index(&self, n: usize) -> Vec<u8> {
+        if self.is_wide() { (n as u32).to_le_bytes().to_vec() } else { (n as u16).to_le_bytes().to_vec() }
+    }
+
+    /// The lump of a name, as `lump_names` has it.
+    pub fn lump(&self, name: &str) -> usize {
+        self.format.lump_names().iter().position(|n| *n == name).expect("a lump")
+    }
+
+    /// Puts the tree and the faces of the world in.
+    fn put_world(&self, lumps: &mut [Vec<u8>]) {
+        let int = |n: i32| n.to_le_bytes();
+        let floats = |p: &[f32]| -> Vec<u8> { p.iter().flat_map(|x| x.to_le_bytes()).collect() };
+        let n_nodes = self.n_visible;
+        let plane = |k: usize| [floats(&[1.0, 0.0, 0.0, 64.0 * (k + 1) as f32]), int(0).to_vec()].concat();
+        lumps[self.lump("planes")] = (0..n_nodes).flat_map(plane).collect();
+        let node = |k: usize| {
+            // What is further on, or solid behind the last; then the leaf.
+            let children = [if k + 1 < n_nodes { k as i32 + 1 } else { -1 }, -2 - k as i32];
+            let children: Vec<u8> = match self.format {
+                BspFormat::Bsp29 => children.iter().flat_map(|&c| (c as i16).to_le_bytes()).collect(),
+                _ => children.iter().flat_map(|&c| int(c)).collect(),
+            };
+            let bounds = if self.format == BspFormat::Bsp2 { 24 } else { 12 };
+            [int(k as i32).to_vec(), children, vec![0; bounds], self.index(0), self.index(0)].concat()
+        };
+        lumps[self.lump("nodes")] = (0..n_nodes).flat_map(node).collect();
+        let places: Vec<usize> =
+            self.leafs.iter().enumerate().flat_map(|(k, names)| names.iter().map(move |_| k)).collect();
+        let corner = |leaf: usize, y: f32, z: f32| floats(&[64.0 * leaf as f32 + 32.0, y, z]);
+        let square = |&leaf: &usize| {
+            [corner(leaf, 8.0, 8.0), corner(leaf, 24.0, 8.0), corner(leaf, 24.0, 24.0), corner(leaf, 8.0, 24.0)]
+                .concat()
+        };
+        lumps[self.lump("vertices")] = places.iter().flat_map(square).collect();
+        // Behind an edge that is not used, every second one is backwards.
+        let edge = |k: usize| {
+            let ends = [k, k / 4 * 4 + (k + 1) % 4];
+            let [a, b] = if k.is_multiple_of(2) { ends } else { [ends[1], ends[0]] };
+            [self.index(a), self.index(b)].concat()
+        };
+        let n_corners = 4 * places.len();
+        lumps[self.lump("edges")] =
+            [[self.index(0), self.index(0)].concat(), (0..n_corners).flat_map(edge).collect()].concat();
+        let listed = |k: usize| int(if k.is_multiple_of(2) { k as i32 + 1 } else { -1 - k as i32 });
+        lumps[self.lump("surfedges")] = (0..n_corners).flat_map(listed).collect();
+        let face = |k: usize| {
+            let head = [self.index(0), self.index(0), int(4 * k as i32).to_vec(), self.index(4), self.index(k)];
+            [head.concat(), vec![0; 8]].concat()
+        };
+        lumps[self.lump("faces")] = (0..places.len()).flat_map(face).collect();
+        let marks = if self.format == BspFormat::Quake2 { "leaffaces" } else { "marksurfaces" };
+        lumps[self.lump(marks)] = (0..places.len()).flat_map(|k| self.index(k)).collect();
+        let run = [int(0), int(places.len() as i32)].concat();
+        lumps[self.lump("models")] = match self.format {
+            BspFormat::Quake2 => [vec![0; 36], int(0).to_vec(), run].concat(),
+            _ => [vec![0; 52], int(self.n_visible as i32).to_vec(), run].concat(),
+        };
     }
 
     fn leaf(&self, leaf: usize, first: usize, count: usize) -> Vec<u8> {
         let wide = |n: usize| (n as u32).to_le_bytes().to_vec();
         let short = |n: usize| (n as u16).to_le_bytes().to_vec();
-        let bounds = [0, 0, 0, 64, 64, 64i16];
+        let west = if self.world { 64 * leaf.saturating_sub(1) as i16 } else { 0 };
+        let bounds = [west, 0, 0, west + 64, 64, 64i16];
         let shorts: Vec<u8> = bounds.iter().flat_map(|b| b.to_le_bytes()).collect();
         let floats: Vec<u8> = bounds.iter().flat_map(|b| f32::from(*b).to_le_bytes()).collect();
         let contents = if leaf == 0 { -2i32 } else { -1 }.to_le_bytes().to_vec();
@@ -96,6 +172,9 @@ impl SmallBsp {
             let mark = |k: usize| if wide { int(k).to_vec() } else { (k as u16).to_le_bytes().to_vec() };
             lumps[11] = (0..names.len()).flat_map(mark).collect();
             lumps[14] = [vec![0; 52], int(self.n_visible).to_vec(), vec![0; 8]].concat();
+        }
+        if self.world {
+            self.put_world(&mut lumps);
         }
         lumps
     }
@@ -153,6 +232,44 @@ pub fn small_bsps() -> Vec<Vec<u8>> {
         files.push(map.file(true));
     }
     files
+}
+
+/// A small map of each format with a tree and with corners.
+pub fn small_worlds() -> Vec<Vec<u8>> {
+    BspFormat::ALL.into_iter().map(|format| SmallBsp::with_world(format).file(true)).collect()
+}
+
+/// Reads the tree and the faces of a world; whether it could. What a fuzz target does.
+pub fn check_world(bytes: &[u8]) -> bool {
+    let Ok(bsp) = Bsp::parse(bytes.to_vec()) else { return false };
+    let (tree, faces, lists) = (bsp.world_tree(), bsp.world_faces(), bsp.leaf_faces());
+    if let Ok(tree) = &tree {
+        let n_nodes = tree.nodes().len();
+        let mut n_parents = vec![0; n_nodes];
+        for (at, node) in tree.nodes().iter().enumerate() {
+            for child in node.children {
+                match child {
+                    BspChild::Node(k) => n_parents[k as usize] += usize::from(k as usize > at),
+                    BspChild::Leaf(leaf) => assert!((leaf as usize) < bsp.leafs().len()),
+                }
+            }
+        }
+        assert!(n_parents.iter().skip(1).all(|&n| n == 1), "every node has a parent before it");
+        assert_eq!(tree.root() == BspChild::Node(0), n_nodes > 0);
+    }
+    if let Ok(faces) = &faces {
+        let n_corners: usize = (0..faces.n_faces()).map(|k| faces.corners(k).len()).sum();
+        assert!(n_corners <= bytes.len() && faces.range().len() == faces.n_faces());
+    }
+    if let Ok(lists) = &lists {
+        assert_eq!(lists.n_leafs(), bsp.n_visible_leafs());
+        let n_listed: usize = (0..lists.n_leafs()).map(|leaf| lists.of(leaf).len()).sum();
+        assert!(n_listed <= 2 * bytes.len());
+    }
+    for error in [tree.as_ref().err(), faces.as_ref().err(), lists.as_ref().err()].into_iter().flatten() {
+        assert!(error.to_string().starts_with("lump "), "{error}");
+    }
+    tree.is_ok() && faces.is_ok() && lists.is_ok()
 }
 
 /// Where `after` differs from `before` in more than visibility and what goes with it, if it does.

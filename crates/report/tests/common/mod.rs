@@ -34,15 +34,13 @@ pub(crate) fn rooms(leak: bool) -> Table {
     }
     let bounds: Vec<_> = cells.iter().map(|cell| (cell.min, cell.max)).collect();
     Table::new(TableParts {
-        dimension: 2,
-        objects_seen: None,
         locator: Locator::build(&bounds, 2),
         rows,
         cells,
         portals: vec![door],
         objects: vec![desk, safe],
         cell_objects: vec![vec![0], vec![], vec![1]],
-        info: vec![],
+        ..TableParts::empty(2)
     })
     .expect("a sound table")
 }
@@ -50,15 +48,11 @@ pub(crate) fn rooms(leak: bool) -> Table {
 /// A table without cells.
 pub(crate) fn nothing() -> Table {
     Table::new(TableParts {
-        dimension: 2,
-        objects_seen: None,
         locator: Locator::build(&[], 2),
         rows: BitMatrix::identity(0),
         cells: vec![],
-        portals: vec![],
-        objects: vec![],
         cell_objects: vec![],
-        info: vec![],
+        ..TableParts::empty(2)
     })
     .expect("an empty table is sound")
 }

@@ -34,7 +34,6 @@ pub(crate) fn house() -> Table {
     objects_seen.set(2, 1, true);
     let bounds: Vec<_> = cells.iter().map(|cell| (cell.min, cell.max)).collect();
     Table::new(TableParts {
-        dimension: 3,
         objects_seen: Some(objects_seen),
         locator: Locator::build(&bounds, 3),
         rows,
@@ -42,7 +41,7 @@ pub(crate) fn house() -> Table {
         portals: vec![door],
         objects: vec![object("lamp", [1.0, 2.5, 0.2]), object("cat", [5.0, 3.0, 1.0])],
         cell_objects: vec![vec![0], vec![], vec![1]],
-        info: vec![],
+        ..TableParts::empty(3)
     })
     .expect("a sound table")
 }

@@ -1,10 +1,12 @@
-//! `build`: from a plan, a scene in space or a portal file to its table.
+//! `build`: from a plan, a scene in space, a portal file or a Quake map to its table.
 
 pub(crate) mod facts;
 mod options;
 pub(crate) mod plan;
 mod portals;
+mod quake;
 pub(crate) mod space;
+pub(crate) mod stab;
 
 pub(crate) use options::{BakeArgs, refuse};
 
@@ -12,12 +14,14 @@ use crate::Answer;
 use crate::error::CliError;
 use crate::input::{self, Input};
 use crate::output;
+use serde::Serialize;
+use std::fmt;
 use std::path::PathBuf;
 
 /// Arguments of `build`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct BuildArgs {
-    /// A WAD, a floor plan as GeoJSON, a scene in space as GLB, glTF or OBJ, or a portal file of a Quake map
+    /// A WAD, a floor plan as GeoJSON, a scene in space as GLB, glTF or OBJ, a Quake map, or its portal file alone
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// The table to write
@@ -26,8 +30,16 @@ pub(crate) struct BuildArgs {
     /// Which map of the WAD; not needed if there is only one
     #[arg(long, value_name = "NAME")]
     map: Option<String>,
+    /// Quake maps only: the portal file, as the compiler wrote it; beside the map if not given
+    #[arg(long, value_name = "MAP.prt")]
+    prt: Option<PathBuf>,
     #[command(flatten)]
     bake: BakeArgs,
+    /// Keep stab trees in the table: for each cell the sequences of portals out of it that a sightline passes. A tree
+    /// has at most N nodes and is cut beyond, which shows more and hides nothing; without N 65536 for plans, 16384
+    /// for scenes in space, 4096 for Quake maps and portal files
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, value_parser = clap::value_parser!(u32).range(1..))]
+    stab_trees: Option<Option<u32>>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -36,23 +48,61 @@ pub(crate) struct BuildArgs {
 pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
     let BuildArgs { input: path, output: out, bake, .. } = args;
     output::refuse_same(path, out)?;
-    match input::read(path, args.map.as_deref())? {
+    let input = input::read(path, args.map.as_deref())?;
+    if !matches!(input, Input::Map(_)) {
+        refuse(path, &[("--prt", args.prt.is_some())], "Quake maps", "none")?;
+    }
+    let stab_of = |table| stab::add(path, table, args.stab_trees, bake.threads, show_progress);
+    match input {
         Input::Plan(file) => {
-            let baked = plan::bake(path, &file, bake, show_progress)?;
+            let mut baked = plan::bake(path, &file, bake, show_progress)?;
+            let stab;
+            (baked.table, stab) = stab_of(baked.table)?;
             output::save(out, &baked.table.to_bytes())?;
-            output::print(args.json, &plan::Outcome::new(out, file.map, &baked))?;
+            output::print(args.json, &With { outcome: plan::Outcome::new(out, file.map, &baked), stab })?;
         }
         Input::Scene(file) => {
-            let baked = space::bake(path, &file, bake, show_progress)?;
+            let mut baked = space::bake(path, &file, bake, show_progress)?;
+            let stab;
+            (baked.table, stab) = stab_of(baked.table)?;
             output::save(out, &baked.table.to_bytes())?;
-            output::print(args.json, &space::Outcome::new(out, &file, bake, &baked))?;
+            output::print(args.json, &With { outcome: space::Outcome::new(out, &file, bake, &baked), stab })?;
         }
         Input::Portals(prt) => {
-            let baked = portals::bake(path, &prt, bake, show_progress)?;
+            let mut baked = portals::bake(path, &prt, bake, show_progress)?;
+            let stab;
+            (baked.table, stab) = stab_of(baked.table)?;
             let bytes = baked.table.to_bytes();
             output::save(out, &bytes)?;
-            output::print(args.json, &portals::Outcome::new(out, &prt, bake, &baked, bytes.len()).verbose(verbose))?;
+            let outcome = portals::Outcome::new(out, &prt, bake, &baked, bytes.len()).verbose(verbose);
+            output::print(args.json, &With { outcome, stab })?;
+        }
+        Input::Map(bsp) => {
+            let portals = quake::Portals::read(path, args.prt.as_deref(), out)?;
+            let mut baked = quake::bake(path, &bsp, &portals, bake, show_progress)?;
+            let stab;
+            (baked.table, stab) = stab_of(baked.table)?;
+            let bytes = baked.table.to_bytes();
+            output::save(out, &bytes)?;
+            let outcome = quake::Outcome::new(out, &bsp, &portals, bake, &baked, bytes.len()).verbose(verbose);
+            output::print(args.json, &With { outcome, stab })?;
         }
     }
     Ok(Answer::Yes)
+}
+
+/// What was built, and the stab trees with it.
+#[derive(Debug, Serialize)]
+struct With<T> {
+    #[serde(flatten)]
+    outcome: T,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stab: Option<stab::Added>,
+}
+
+impl<T: fmt::Display> fmt::Display for With<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.outcome)?;
+        self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))
+    }
 }

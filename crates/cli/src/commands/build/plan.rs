@@ -39,6 +39,7 @@ fn warn(path: &Path, summary: &BakeSummary) {
         }
     };
     say(summary.n_ignored_walls, "wall", "do not block sight: the k-d tree does not follow them");
+    say(summary.n_lost_mirrors, "mirror", "do not reflect everywhere: a part is on no border of a cell");
     say(summary.n_dropped_pieces, "piece", "of walls do not block sight: rounding could have closed a gap beside them");
     if summary.n_rounded_crossings > 0 {
         let n = count(summary.n_rounded_crossings as u64, "crossing");

@@ -35,8 +35,20 @@ pub(crate) fn bake(
     drop(bar);
     let failed = |source| CliError::Bake { path: path.to_owned(), map: None, source };
     let baked = baked.map_err(failed)?;
+    warn(path, &baked);
     let table = informed(baked.table, &file.info).map_err(|error| failed(error.into()))?;
     Ok(BakedScene { table, ..baked })
+}
+
+/// Says on standard error which mirrors do not reflect.
+fn warn(path: &Path, baked: &BakedScene) {
+    let say = |n: usize, noun: &str, what: &str| {
+        if n > 0 {
+            tracing::warn!("{}: {} of mirrors {what}", path.display(), count(n as u64, noun));
+        }
+    };
+    say(baked.n_other_mirror_triangles, "triangle", "do not reflect: they are not perpendicular to an axis");
+    say(baked.n_lost_mirrors, "rectangle", "do not reflect everywhere: a part is in no cell");
 }
 
 /// The table with what the file says about its scene.

@@ -1,5 +1,6 @@
 //! What can be wrong with a map, and where.
 
+use super::tree::MAX_TREE_DEPTH;
 use std::fmt;
 
 /// A lump in an error message, shown as `lump 10 (leafs)`.
@@ -132,6 +133,86 @@ pub enum BspError {
         leaf: usize,
         /// The face.
         face: u32,
+    },
+    /// There is no model 0, which is the world.
+    #[error("{lump}: there is no model 0")]
+    NoModel {
+        /// The lump of models.
+        lump: BspLumpId,
+    },
+    /// A record names one of another lump that is not there.
+    #[error("{lump}: record {record} names record {found} of {of}, which has {n}")]
+    Reference {
+        /// The lump.
+        lump: BspLumpId,
+        /// The record, as an index of the lump.
+        record: usize,
+        /// What it names.
+        found: i64,
+        /// The lump that should have it.
+        of: BspLumpId,
+        /// Records of that lump.
+        n: usize,
+    },
+    /// A plane without a direction or a place.
+    #[error("{lump}: plane {plane} has no normal of unit length, or no finite distance")]
+    NotAPlane {
+        /// The lump of planes.
+        lump: BspLumpId,
+        /// The plane.
+        plane: usize,
+    },
+    /// Two ways from the root of the world's tree lead to one node.
+    #[error("{lump}: node {node} is reached twice, so this is no tree")]
+    NodeTwice {
+        /// The lump of nodes.
+        lump: BspLumpId,
+        /// The node.
+        node: usize,
+    },
+    /// A tree deeper than is followed.
+    #[error("{lump}: node {node} is {MAX_TREE_DEPTH} steps below the root, more than are followed")]
+    TreeDepth {
+        /// The lump of nodes.
+        lump: BspLumpId,
+        /// The node.
+        node: usize,
+    },
+    /// A corner of faces is nowhere.
+    #[error("{lump}: vertex {vertex} has a coordinate that is not a finite number")]
+    Vertex {
+        /// The lump of vertices.
+        lump: BspLumpId,
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A run of records that a record names is not in its lump.
+    #[error("{lump}: record {record} names {count} records from {first} on of {of}, which has {n}")]
+    Run {
+        /// The lump.
+        lump: BspLumpId,
+        /// The record, as an index of the lump.
+        record: usize,
+        /// The first record that it names.
+        first: i64,
+        /// How many it names.
+        count: i64,
+        /// The lump that should have them.
+        of: BspLumpId,
+        /// Records of that lump.
+        n: usize,
+    },
+    /// Runs that share a list so much that they are longer than any file.
+    #[error("{lump}: its records name {n_named} records of {of}, which has {n}: they share more than is read")]
+    SharedRuns {
+        /// The lump.
+        lump: BspLumpId,
+        /// Sum of the lengths of the runs.
+        n_named: u64,
+        /// The lump that has them.
+        of: BspLumpId,
+        /// Records of that lump.
+        n: usize,
     },
     /// Places of rows for another number of leafs than can be seen.
     #[error("the rows are for {found} leafs, the map has {n_leafs} that can be seen")]

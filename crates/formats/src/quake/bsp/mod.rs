@@ -1,22 +1,27 @@
-//! Maps: their leafs and their visibility lump. Everything else is carried along as bytes.
+//! Maps: their leafs and their visibility lump, and on demand the tree and the faces of their world
+//! ([`Bsp::world_tree`], [`Bsp::world_faces`]). Everything else is carried along as bytes.
 //!
 //! All numbers are little-endian. A header, and in it a directory of lumps (i32 place, i32 length):
 //!
-//! | begins with | lumps | leaf | face |
-//! | --- | --- | --- | --- |
-//! | i32 29 (Quake) | 15 | 28 bytes, 16-bit bounds and indices | 20 bytes |
-//! | `BSP2` | 15 | 44 bytes, bounds as floats, 32-bit indices | 28 bytes |
-//! | `2PSB` | 15 | 32 bytes, 16-bit bounds, 32-bit indices | 28 bytes |
-//! | `IBSP`, i32 38 (Quake II) | 19 | 28 bytes, names its cluster | not read |
+//! | begins with | lumps | leaf | face | node |
+//! | --- | --- | --- | --- | --- |
+//! | i32 29 (Quake) | 15 | 28 bytes, 16-bit bounds and indices | 20 bytes | 24 bytes, 16-bit children |
+//! | `BSP2` | 15 | 44 bytes, bounds as floats, 32-bit indices | 28 bytes | 44 bytes |
+//! | `2PSB` | 15 | 32 bytes, 16-bit bounds, 32-bit indices | 28 bytes | 32 bytes |
+//! | `IBSP`, i32 38 (Quake II) | 19 | 28 bytes, names its cluster | 20 bytes | 28 bytes |
 
 mod error;
 mod faces;
 mod leaf;
 mod rewrite;
+mod surfaces;
+mod tree;
 
 pub use error::{BspError, BspLumpId};
 pub use faces::AmbientKind;
 pub use leaf::{BspLeaf, LeafRow};
+pub use surfaces::{LeafFaces, WorldFaces};
+pub use tree::{BspChild, BspNode, BspTree, MAX_TREE_DEPTH};
 
 use std::ops::Range;
 

@@ -1,0 +1,138 @@
+//! From a Quake map with its portal file to the table of its clusters, which knows where they are.
+
+use super::BakeArgs;
+use crate::commands::vis::{Clusters, format_name};
+use crate::error::CliError;
+use crate::output::{self, bytes, count};
+use crate::progress::ShareBar;
+use serde::Serialize;
+use sightlines::bake::quake::{BakedMap, WorldSummary, bake_map};
+use sightlines::bake::{PrtBakeError, PrtOptions};
+use sightlines::formats::Prt;
+use sightlines::formats::quake::{Bsp, VisibilityError, read_prt};
+use sightlines::stabtree::{ConvexOptions, ConvexSearch};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// The portals of a map.
+#[derive(Debug)]
+pub(crate) struct Portals {
+    path: PathBuf,
+    prt: Prt,
+}
+
+impl Portals {
+    /// Reads the portal file that was named, or the one beside the map.
+    pub(crate) fn read(map: &Path, named: Option<&Path>, out: &Path) -> Result<Self, CliError> {
+        let path = named.map_or_else(|| map.with_extension("prt"), Path::to_owned);
+        if named.is_none() && !path.exists() {
+            return Err(CliError::MapWithoutPortals(map.to_owned()));
+        }
+        output::refuse_same(&path, out)?;
+        let prt = read_prt(&path)?;
+        Ok(Self { path, prt })
+    }
+}
+
+/// Builds the table of a map that came from `path`.
+pub(crate) fn bake(
+    path: &Path,
+    bsp: &Bsp,
+    portals: &Portals,
+    args: &BakeArgs,
+    show_progress: bool,
+) -> Result<BakedMap, CliError> {
+    args.check_for_portals(path)?;
+    let mut bar = ShareBar::new("which clusters see which", show_progress);
+    let mut watch = |search: &ConvexSearch| bar.set(search.share_done());
+    let search = ConvexOptions { fast: args.fast, threads: args.threads };
+    let baked = bake_map(bsp, &portals.prt, PrtOptions { search, from: None, watch: Some(&mut watch) });
+    baked.map_err(|source| match source {
+        PrtBakeError::Bsp(_) => CliError::BakePrt { path: path.to_owned(), source },
+        PrtBakeError::Visibility(
+            source @ (VisibilityError::Leafs { .. }
+            | VisibilityError::Clusters { .. }
+            | VisibilityError::OtherMap { .. }),
+        ) => CliError::OtherMap { prt: portals.path.clone(), bsp: path.to_owned(), source: Box::new(source) },
+        source => CliError::BakePrt { path: portals.path.clone(), source },
+    })
+}
+
+/// What was built.
+#[derive(Debug, Serialize)]
+pub(crate) struct Outcome {
+    out: String,
+    format: &'static str,
+    portal_format: &'static str,
+    fast: bool,
+    #[serde(flatten)]
+    clusters: Clusters,
+    /// Faces of the world, which are the objects of the table.
+    n_faces: usize,
+    /// Faces that no leaf lists, which engines never draw.
+    n_unlisted_faces: usize,
+    /// Pairs of a cluster and a face that one of its leafs lists.
+    n_listed: usize,
+    /// Pairs of a cluster and a face that reaches into it without being listed there.
+    n_reaching: usize,
+    /// Planes between clusters, or between them and what is solid.
+    n_planes: usize,
+    /// How near to a plane a viewer counts to both sides, in map units.
+    slack: f64,
+    n_bytes: usize,
+    #[serde(skip)]
+    verbose: bool,
+}
+
+impl Outcome {
+    pub(crate) fn new(
+        out: &Path,
+        bsp: &Bsp,
+        portals: &Portals,
+        args: &BakeArgs,
+        baked: &BakedMap,
+        n_bytes: usize,
+    ) -> Self {
+        let WorldSummary { n_faces, n_unlisted_faces, n_listed, n_reaching, n_planes, slack, .. } = baked.world;
+        Self {
+            out: out.display().to_string(),
+            format: format_name(bsp.format()),
+            portal_format: portals.prt.dialect().magic(),
+            fast: args.fast,
+            clusters: Clusters::new(&baked.clusters),
+            n_faces,
+            n_unlisted_faces,
+            n_listed,
+            n_reaching,
+            n_planes,
+            slack,
+            n_bytes,
+            verbose: false,
+        }
+    }
+
+    /// Lists pairs that are undecided.
+    pub(crate) fn verbose(mut self, verbose: bool) -> Self {
+        self.verbose = verbose;
+        self
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
+        let how = if self.fast { "the first, coarse bound only" } else { "exact stabbing of convex portals" };
+        writeln!(f, "method         {how}, of a {} map with its {} file", self.format, self.portal_format)?;
+        write!(f, "{}", self.clusters)?;
+        if self.verbose {
+            write!(f, "{}", self.clusters.undecided_pairs())?;
+        }
+        let never = match self.n_unlisted_faces {
+            0 => String::new(),
+            n => format!(", {n} of them never drawn"),
+        };
+        writeln!(f, "objects        {} of the world{never}", count(self.n_faces as u64, "face"))?;
+        writeln!(f, "planes         {}, known to {:.1e} units", self.n_planes, self.slack)?;
+        writeln!(f, "time           {} to find out who sees whom", self.clusters.time())
+    }
+}
