@@ -7,7 +7,7 @@
 
 use clap::Parser;
 use sightlines::bake::quake::bake_map;
-use sightlines::bake::{PrtOptions, SceneBakeOptions, bake_scene};
+use sightlines::bake::{PrtOptions, SceneBakeOptions, StabOptions, bake_scene, with_stab_trees};
 use sightlines::eye_to_cell::{
     CellSource, Doors, EyeToCell, Method, MirrorWay, Outlook, Scratch, Seen, StabStep, TableCells, View, Way,
 };
@@ -42,6 +42,9 @@ struct Args {
     /// Width of the view, in degrees.
     #[arg(long, default_value_t = 75.0)]
     fov: f64,
+    /// Measures again with stab trees of at most so many nodes a cell; 0 for what `build --stab-trees` takes.
+    #[arg(long, value_name = "N")]
+    stab_trees: Option<usize>,
     /// Checks the answers in a small tower.
     #[arg(long)]
     test: bool,
@@ -76,12 +79,24 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let table = bake_scene(&scene, &SceneBakeOptions { cut, ..SceneBakeOptions::default() })?.table;
     println!("tower of {} floors, {} triangles", options.floors, scene.n_triangles());
     let stands = measure(&table, [0.0, 1.0, 0.0], n_frames, args.fov)?;
+    measure_with_trees(&table, [0.0, 1.0, 0.0], n_frames, args)?;
     slow_source(&table, &stands[..n_frames.min(1000)], args.fov)?;
     let map = args.map.clone().or_else(|| Some(data_folder("SIGHTLINES_DATA")?.join("quake/e1m1.bsp"))).filter(|_| !args.test);
     if let Some(path) = map {
         println!("{}", path.display());
-        measure(&table_of_map(&path)?, [0.0, 0.0, 1.0], n_frames, args.fov)?;
+        let table = table_of_map(&path)?;
+        measure(&table, [0.0, 0.0, 1.0], n_frames, args.fov)?;
+        measure_with_trees(&table, [0.0, 0.0, 1.0], n_frames, args)?;
     }
+    Ok(())
+}
+
+fn measure_with_trees(table: &Table, up: [f64; 3], n_frames: usize, args: &Args) -> Result<(), Box<dyn Error>> {
+    let Some(most) = args.stab_trees else { return Ok(()) };
+    let options = StabOptions { max_nodes: Some(most).filter(|&most| most > 0), ..StabOptions::default() };
+    let baked = with_stab_trees(table.clone(), &options)?;
+    println!("with stab trees of at most {} nodes, made in {:.1} s", baked.max_nodes, baked.time.as_secs_f64());
+    measure(&baked.table, up, n_frames, args.fov)?;
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use super::exact::by_sequences;
 use super::missing::list_missing;
 use super::query::Query;
-use super::sweep::sweep;
+use super::sweep::{sweep, sweep_within};
 use crate::{Doors, Outlook, Scratch, Seen, TableCells, View};
 use proptest::prelude::*;
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableParts};
@@ -163,6 +163,30 @@ proptest! {
         let view = View::planar(eye, [turn.cos(), turn.sin()], fov).unwrap();
         prop_assert!(compare_in(&plan(&doors, 6), &view)? > 0);
     }
+}
+
+/// Whatever the limit on pieces: who says that all was found has found all.
+#[test]
+fn limits_are_told() {
+    let table = plan(&[[0, 0, 0, 0], [2, 6, 1, 5], [0, 0, 0, 0], [3, 8, 0, 4]], 5);
+    let view = View::all_round([2.3, 2.6, 0.0]).unwrap();
+    let root = table.locate(&[2.3, 2.6])[0];
+    let outlook = Outlook::prepare(&TableCells::new(&table), root).unwrap_or_else(|never| match never {});
+    let all = seen_by(&outlook, &view, |query| by_sequences(query, u64::MAX));
+    let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
+    let mut n_done = 0;
+    for most in 0..100 {
+        seen.clear(1 << 10, 0);
+        let doors = Doors::all_open();
+        let mut query = Query::new(&outlook, &view, &view.parts[0], &doors, &mut scratch, &mut seen);
+        list_missing(&mut query);
+        let done = sweep_within(&mut query, most);
+        seen.sort();
+        assert!(seen.cells().iter().all(|cell| all.contains(cell)));
+        assert!(!done || seen.cells() == all, "{most}");
+        n_done += usize::from(done);
+    }
+    assert!((10..95).contains(&n_done), "{n_done}");
 }
 
 #[test]

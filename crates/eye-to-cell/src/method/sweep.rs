@@ -238,10 +238,15 @@ fn shared_edge(p: &[Vector], q: &[Vector], same: f64) -> Option<(usize, usize)> 
 /// Keeps what a line from the eye leads to among the wanted cells; `false` if there is no order from front to back,
 /// or too many pieces. What was kept until then is right.
 pub(super) fn sweep(query: &mut Query<'_>) -> bool {
+    sweep_within(query, MOST_PIECES)
+}
+
+/// The same with another limit on the number of pieces: more than that are never passed on from a cell.
+pub(super) fn sweep_within(query: &mut Query<'_>, most: usize) -> bool {
     let outlook = query.outlook;
     let mut pieces = std::mem::take(&mut query.scratch.pieces);
     pieces.clear(outlook);
-    let done = Sweep { query, pieces: &mut pieces }.run();
+    let done = Sweep { query, pieces: &mut pieces, most }.run();
     query.scratch.pieces = pieces;
     done
 }
@@ -249,6 +254,8 @@ pub(super) fn sweep(query: &mut Query<'_>) -> bool {
 struct Sweep<'q, 'a> {
     query: &'q mut Query<'a>,
     pieces: &'q mut Pieces,
+    /// The most pieces.
+    most: usize,
 }
 
 impl Sweep<'_, '_> {
@@ -273,10 +280,10 @@ impl Sweep<'_, '_> {
         ready.extend(all.iter().copied().filter(|&cell| self.pieces.to_come[cell as usize] == 0));
         let mut n_done = 0;
         while let Some(cell) = ready.pop() {
-            n_done += 1;
-            if self.pieces.pieces.len() > MOST_PIECES {
+            if self.pieces.pieces.len() > self.most {
                 break;
             }
+            n_done += 1;
             self.visit(cell);
             for way in outlook.ways_of(cell) {
                 if self.leads_on(way) {
