@@ -37,7 +37,7 @@ const SHARE: f64 = 1.0 / (1u64 << 44) as f64;
 pub(crate) type Vector = [f64; 3];
 
 /// A half-space through the eye.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Side {
     normal: Vector,
     tolerance: f64,

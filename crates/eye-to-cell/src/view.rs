@@ -12,14 +12,18 @@ pub struct View {
     pub(crate) eye: Vector,
     /// Bound on the error of each coordinate of the eye; 0 but for eyes seen in mirrors.
     pub(crate) slack: f64,
-    pub(crate) parts: Vec<ViewPart>,
+    /// One convex cone, or two.
+    parts: [ViewPart; 2],
+    n_parts: usize,
 }
 
-/// A convex cone: the directions within all sides.
+/// A convex cone: the directions within all sides. Takes no memory of its own but for what a mirror frames.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ViewPart {
-    /// At most [`MOST_SIDES`].
-    pub(crate) sides: Vec<Side>,
+    few: [Side; 4],
+    n_few: usize,
+    /// The other sides of a cone that came out of a mirror; at most [`MOST_SIDES`].
+    more: Vec<Side>,
 }
 
 /// Why numbers are no view.
@@ -47,7 +51,7 @@ impl View {
     /// [`ViewError::Eye`].
     pub fn all_round(eye: [f64; 3]) -> Result<Self, ViewError> {
         match eye.iter().all(|x| x.is_finite()) {
-            true => Ok(Self { eye, slack: 0.0, parts: vec![ViewPart::default()] }),
+            true => Ok(Self { eye, slack: 0.0, parts: Default::default(), n_parts: 1 }),
             false => Err(ViewError::Eye),
         }
     }
@@ -88,7 +92,7 @@ impl View {
             let (sin, cos) = (0.5 * fov).sin_cos();
             for up_or_down in [1.0, -1.0] {
                 let normal = std::array::from_fn(|k| sin * forward[k] + up_or_down * aspect * cos * up[k]);
-                view.parts[0].sides.push(Side::given(unit(normal)?));
+                view.parts[0].add(Side::given(unit(normal)?));
             }
         }
         Ok(view)
@@ -113,8 +117,9 @@ impl View {
             midway(self.eye[k], eye[k], point[k])
         };
         let rounding = if exact { 0.0 } else { size * 2.0 * f64::EPSILON * 4.0 };
-        let sides = cone.iter().take(MOST_SIDES).map(|side| side.mirrored(across)).collect();
-        Self { eye, slack: self.slack + rounding, parts: vec![ViewPart { sides }] }
+        let mut part = ViewPart::default();
+        cone.iter().take(MOST_SIDES).for_each(|side| part.add(side.mirrored(across)));
+        Self { eye, slack: self.slack + rounding, parts: [part, ViewPart::default()], n_parts: 1 }
     }
 
     /// Keeps the directions whose angle to `forward`, towards `right` or away from it, is at most `fov / 2`.
@@ -122,17 +127,20 @@ impl View {
         let (sin, cos) = (0.5 * fov).sin_cos();
         // At the angle a to the right of forward its value is sin(fov / 2 - a).
         let end = |right: f64, v: Vector| Side::given(std::array::from_fn(|k| sin * forward[k] - right * cos * v[k]));
-        let half = |right_or_left: f64, v: Vector| {
-            let towards = Side::given(v.map(|x| right_or_left * x));
-            ViewPart { sides: vec![towards, end(right_or_left, v)] }
-        };
-        self.parts = if fov < PI {
-            vec![ViewPart { sides: vec![end(1.0, right), end(-1.0, right)] }]
-        } else if fov < TAU {
-            vec![half(1.0, right), half(-1.0, right)]
-        } else {
-            vec![ViewPart::default()]
-        };
+        let half = |right_or_left: f64, v: Vector| [Side::given(v.map(|x| right_or_left * x)), end(right_or_left, v)];
+        let parts =
+            if fov < PI { [[end(1.0, right), end(-1.0, right)]; 2] } else { [half(1.0, right), half(-1.0, right)] };
+        if fov < TAU {
+            self.n_parts = if fov < PI { 1 } else { 2 };
+            for (part, sides) in self.parts.iter_mut().zip(parts).take(self.n_parts) {
+                sides.into_iter().for_each(|side| part.add(side));
+            }
+        }
+    }
+
+    /// The convex cones that the view is made of.
+    pub(crate) fn parts(&self) -> &[ViewPart] {
+        &self.parts[..self.n_parts]
     }
 
     /// What rounding does to vectors that are at most `radius` long.
@@ -142,9 +150,18 @@ impl View {
 }
 
 impl ViewPart {
+    fn add(&mut self, side: Side) {
+        if self.n_few < self.few.len() {
+            self.few[self.n_few] = side;
+            self.n_few += 1;
+        } else {
+            self.more.push(side);
+        }
+    }
+
     /// The sides, ready to be asked about vectors within reach.
     pub(crate) fn sides(&self, reach: Reach) -> impl Iterator<Item = Side> + '_ {
-        self.sides.iter().take(MOST_SIDES).map(move |side| side.within(reach))
+        self.few[..self.n_few].iter().chain(&self.more).map(move |side| side.within(reach))
     }
 }
 
@@ -193,7 +210,7 @@ mod tests {
 
     fn contains(view: &View, v: Vector) -> bool {
         let reach = view.reach(10.0);
-        view.parts.iter().any(|part| part.sides(reach).all(|side| !side.lets_go(side.value(v))))
+        view.parts().iter().any(|part| part.sides(reach).all(|side| !side.lets_go(side.value(v))))
     }
 
     fn at(degrees: f64) -> Vector {

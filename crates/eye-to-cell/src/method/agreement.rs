@@ -112,7 +112,7 @@ fn plan(doors: &[[u8; 4]], side: usize) -> Table {
 fn seen_by(outlook: &Outlook, view: &View, way: fn(&mut Query<'_>) -> bool) -> Vec<u32> {
     let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
     seen.clear(1 << 10, 0);
-    for part in &view.parts {
+    for part in view.parts() {
         let doors = Doors::all_open();
         let mut query = Query::new(outlook, view, part, &doors, &mut scratch, &mut seen);
         list_missing(&mut query);
@@ -178,7 +178,7 @@ fn limits_are_told() {
     for most in 0..100 {
         seen.clear(1 << 10, 0);
         let doors = Doors::all_open();
-        let mut query = Query::new(&outlook, &view, &view.parts[0], &doors, &mut scratch, &mut seen);
+        let mut query = Query::new(&outlook, &view, &view.parts()[0], &doors, &mut scratch, &mut seen);
         list_missing(&mut query);
         let done = sweep_within(&mut query, most);
         seen.sort();

@@ -79,7 +79,7 @@ impl EyeToCell for Method {
         if *self == Self::CellToCell {
             return query::all(outlook, view, seen);
         }
-        for part in &view.parts {
+        for part in view.parts() {
             let mut query = Query::new(outlook, view, part, doors, scratch, seen);
             match self {
                 Self::CellToCell | Self::DisjointCell => reach::disjoint(&mut query),
