@@ -4,6 +4,7 @@
 pub mod bits;
 pub mod chart;
 pub mod child;
+pub mod codings;
 pub mod path;
 pub mod quake;
 pub mod raster;

@@ -42,15 +42,12 @@ mod tests {
         let object = |at: f64| ObjectRecord { name: String::new(), min: [at; 3], max: [at; 3] };
         let cells = vec![cell(0.0, 1.0), cell(1.0, 3.0)];
         let table = Table::new(TableParts {
-            dimension: 3,
             locator: Locator::build(&[(cells[0].min, cells[0].max), (cells[1].min, cells[1].max)], 3),
             cells,
-            portals: Vec::new(),
             rows: BitMatrix::identity(2),
             objects: vec![object(0.5), object(0.5)],
             cell_objects: vec![vec![0, 1], vec![]],
-            objects_seen: None,
-            info: Vec::new(),
+            ..TableParts::empty(3)
         });
         let table = table.unwrap();
         assert_eq!(share_of(&[3, 1], [1]), 0.25);

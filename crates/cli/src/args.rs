@@ -1,8 +1,18 @@
 //! The arguments common to all commands.
 
 use crate::commands::{
-    build::BuildArgs, demo::DemoArgs, draw::DrawArgs, explain::ExplainArgs, export::ExportArgs, generate::GenerateArgs,
-    info::InfoArgs, query::QueryArgs, reject::RejectArgs, vis::VisArgs,
+    build::BuildArgs,
+    demo::DemoArgs,
+    draw::DrawArgs,
+    explain::ExplainArgs,
+    export::ExportArgs,
+    generate::GenerateArgs,
+    info::InfoArgs,
+    pack::{PackArgs, UnpackArgs},
+    query::QueryArgs,
+    reject::RejectArgs,
+    vis::VisArgs,
+    walk::WalkArgs,
 };
 use clap::{Parser, Subcommand};
 
@@ -32,8 +42,14 @@ pub(crate) enum Command {
     Reject(RejectArgs),
     /// Write the visibility of a map of Quake or Quake II, and leave all else as it is
     Vis(VisArgs),
-    /// Say which cells and objects may be seen from a point
+    /// Say which cells and objects may be seen from a point, or from there in a direction
     Query(QueryArgs),
+    /// Follow a viewer through a scene, and measure what each method to find what he sees leaves to draw, and costs
+    Walk(WalkArgs),
+    /// Make a table small, for programs that read it piece by piece
+    Pack(PackArgs),
+    /// Make a packed table a plain one again
+    Unpack(UnpackArgs),
     /// Write a table as JSON
     Export(ExportArgs),
     /// Show the line of sight between two cells of a plan, or say why there is none

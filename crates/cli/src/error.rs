@@ -1,10 +1,13 @@
 //! What can go wrong, as one line for the user.
 
+use crate::commands::walk::{Found, PathError};
 use sightlines::bake::quake::StateError;
-use sightlines::bake::{BakeError, PrtBakeError, RejectError};
+use sightlines::bake::{BakeError, PrtBakeError, RejectError, StabBakeError};
+use sightlines::eye_to_cell::{Method, ViewError};
 use sightlines::formats::quake::VisibilityError;
 use sightlines::formats::scene::SceneWriteError;
 use sightlines::formats::{ReadError, WriteError};
+use sightlines::packed::{PackError, PackedError};
 use sightlines::pvs::DecodeError;
 use sightlines::report::{DrawError, PngError};
 use sightlines::scenes::SceneError;
@@ -23,6 +26,12 @@ pub(crate) enum CliError {
     /// A file is no sound table.
     #[error("{}: {source}", path.display())]
     Table { path: PathBuf, source: DecodeError },
+    /// A file is no sound packed table.
+    #[error("{}: {source}", path.display())]
+    Packed { path: PathBuf, source: PackedError },
+    /// A table cannot be packed.
+    #[error("{}: {source}", path.display())]
+    Pack { path: PathBuf, source: PackError },
     /// A file is none of the kinds that the command takes.
     #[error("{}: neither {expected}", path.display())]
     Kind { path: PathBuf, expected: &'static str },
@@ -50,11 +59,14 @@ pub(crate) enum CliError {
     /// A portal file, or the map that it is of, cannot be baked.
     #[error("{}: {source}", path.display())]
     BakePrt { path: PathBuf, source: PrtBakeError },
+    /// A table cannot have stab trees.
+    #[error("{}: {source}", path.display())]
+    Stab { path: PathBuf, source: StabBakeError },
     /// A portal file of another map.
     #[error("{}: does not go with {}: {source}", prt.display(), bsp.display())]
-    OtherMap { prt: PathBuf, bsp: PathBuf, source: VisibilityError },
-    /// A Quake map where its portals are needed.
-    #[error("{}: a Quake map does not have its portals: build its portal file (.prt), or use vis", .0.display())]
+    OtherMap { prt: PathBuf, bsp: PathBuf, source: Box<VisibilityError> },
+    /// A Quake map where its portals are needed, without a portal file beside it.
+    #[error("{}: a Quake map does not have its portals, and there is no .prt beside it: name one with --prt", .0.display())]
     MapWithoutPortals(PathBuf),
     /// A table that does not know where its cells are.
     #[error("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())]
@@ -80,6 +92,24 @@ pub(crate) enum CliError {
     /// A cell that the table does not have.
     #[error("{}: there is no cell {cell}: the table has {n_cells} cells", path.display())]
     NoSuchCell { path: PathBuf, cell: u32, n_cells: usize },
+    /// A portal that the table does not have.
+    #[error("{}: there is no portal {portal}: the table has {n_portals} portals", path.display())]
+    NoSuchPortal { path: PathBuf, portal: u32, n_portals: usize },
+    /// A direction, or what else says how a viewer looks, that is none.
+    #[error("{option}: {source}")]
+    View { option: &'static str, source: ViewError },
+    /// An angle of view, and nothing that says where it is looked.
+    #[error("--fov, --aspect and --up need --dir: without it the viewer looks all round")]
+    LensWithoutDirection,
+    /// A path that cannot be walked.
+    #[error("{}: {source}", path.display())]
+    Path { path: PathBuf, source: PathError },
+    /// A table in which nobody can walk.
+    #[error("{}: no cell has a portal, so there is nowhere to go; name a path with --path", .0.display())]
+    NoWay(PathBuf),
+    /// A method found something that a coarser one did not find: our own fault.
+    #[error("{}: frame {frame}: {finer} finds {what}, which {coarser} does not; this is a defect of the program", path.display())]
+    Nesting { path: PathBuf, frame: usize, finer: Method, coarser: Method, what: Found },
     /// A point with the wrong number of coordinates.
     #[error("{}: the table has {dimension} dimensions, but the point has {found} coordinates", path.display())]
     Dimension { path: PathBuf, dimension: u8, found: usize },

@@ -2,13 +2,14 @@
 
 use crate::error::CliError;
 use sightlines::bake::graph_of;
-use sightlines::bake::quake::{SOURCE_KEY, SOURCE_PRT};
+use sightlines::bake::quake::is_of_clusters;
 use sightlines::cells::{CellGraph, Plan, Planar};
 use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
 use sightlines::formats::quake::prt::PrtDialect;
-use sightlines::formats::quake::{BspFormat, Prt, read_prt};
+use sightlines::formats::quake::{Bsp, BspFormat, Prt, read_bsp, read_prt};
 use sightlines::formats::scene::read_scene;
 use sightlines::formats::{ReadError, SceneFile, Wad, geojson};
+use sightlines::packed;
 use sightlines::pvs::{Table, format};
 use std::fs::File;
 use std::io::Read;
@@ -19,6 +20,8 @@ use std::path::Path;
 pub(crate) enum Kind {
     Wad,
     Table,
+    /// A packed table.
+    Packed,
     Json,
     /// A scene in space: GLB, glTF or OBJ.
     Scene,
@@ -39,6 +42,7 @@ pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>, CliError> {
         (Some(Kind::Json) | None, Some("gltf" | "glb" | "obj")) => Some(Kind::Scene),
         (None, Some("wad")) => Some(Kind::Wad),
         (None, Some("pvs")) => Some(Kind::Table),
+        (None, Some("pvz")) => Some(Kind::Packed),
         (None, Some("json" | "geojson")) => Some(Kind::Json),
         (None, Some("prt")) => Some(Kind::Prt),
         (None, Some("bsp")) => Some(Kind::Bsp),
@@ -52,6 +56,8 @@ fn kind_of_bytes(start: &[u8]) -> Option<Kind> {
         Some(Kind::Wad)
     } else if start.starts_with(&format::MAGIC) {
         Some(Kind::Table)
+    } else if start.starts_with(&packed::format::MAGIC) {
+        Some(Kind::Packed)
     } else if start.starts_with(b"glTF") {
         Some(Kind::Scene)
     } else if PrtDialect::ALL.iter().any(|dialect| start.starts_with(dialect.magic().as_bytes())) {
@@ -78,14 +84,19 @@ pub(crate) fn table(path: &Path) -> Result<Table, CliError> {
     Table::from_bytes(&bytes).map_err(|source| CliError::Table { path: path.to_owned(), source })
 }
 
-/// Whether a table is of a portal file: its cells have portals, but nobody knows where they are.
+/// Whether a table is of a portal file, with its map or without: its cells are joined by convex portals, and nobody knows
+/// their volumes.
 pub(crate) fn is_of_portals(table: &Table) -> bool {
-    table.info_value(SOURCE_KEY).is_some_and(|source| source.starts_with(SOURCE_PRT))
+    is_of_clusters(table)
 }
 
 /// Refuses a table that does not know where its cells are; `what` says what cannot be done for that.
 pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static str) -> Result<(), CliError> {
-    if is_of_portals(table) { Err(CliError::NoPlaces { path: path.to_owned(), what }) } else { Ok(()) }
+    if is_of_portals(table) && table.planes().is_none() {
+        Err(CliError::NoPlaces { path: path.to_owned(), what })
+    } else {
+        Ok(())
+    }
 }
 
 /// The cell graph that a table holds.
@@ -100,8 +111,10 @@ pub(crate) enum Input {
     Plan(PlanFile),
     /// A scene in space.
     Scene(SceneFile),
-    /// The clusters of a Quake map.
+    /// The clusters of a Quake map, without the map.
     Portals(Prt),
+    /// A Quake map, without its portals.
+    Map(Bsp),
 }
 
 /// A plan, and the map that it is of.
@@ -112,18 +125,20 @@ pub(crate) struct PlanFile {
 }
 
 /// What `build` takes, as errors say it.
-const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a portal file";
+const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
 
-/// Reads what is to be built: a map of a WAD, a GeoJSON file, a scene in space, or a portal file.
+/// Reads what is to be built: a map of a WAD, a GeoJSON file, a scene in space, a portal file, or a Quake map.
 pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, CliError> {
     match (kind_of(path)?, map) {
         (Some(Kind::Wad), map) => Ok(Input::Plan(doom(path, map)?)),
-        (Some(Kind::Json | Kind::Scene | Kind::Prt), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
+        (Some(Kind::Json | Kind::Scene | Kind::Prt | Kind::Bsp), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
         (Some(Kind::Json), None) => Ok(Input::Plan(plan(path)?)),
         (Some(Kind::Scene), None) => Ok(Input::Scene(read_scene(path)?)),
         (Some(Kind::Prt), None) => Ok(Input::Portals(read_prt(path)?)),
-        (Some(Kind::Bsp), _) => Err(CliError::MapWithoutPortals(path.to_owned())),
-        (Some(Kind::Table) | None, _) => Err(CliError::Kind { path: path.to_owned(), expected: BUILDABLE }),
+        (Some(Kind::Bsp), None) => Ok(Input::Map(read_bsp(path)?)),
+        (Some(Kind::Table | Kind::Packed) | None, _) => {
+            Err(CliError::Kind { path: path.to_owned(), expected: BUILDABLE })
+        }
     }
 }
 

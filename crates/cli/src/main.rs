@@ -14,6 +14,8 @@ mod output;
 mod place;
 mod progress;
 mod region;
+mod tables;
+mod view;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -54,6 +56,9 @@ fn run(arguments: &Arguments) -> Result<Answer, CliError> {
         Command::Reject(args) => commands::reject::run(args, show_progress),
         Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0),
         Command::Query(args) => commands::query::run(args),
+        Command::Walk(args) => commands::walk::run(args, show_progress),
+        Command::Pack(args) => commands::pack::pack(args),
+        Command::Unpack(args) => commands::pack::unpack(args),
         Command::Export(args) => commands::export::run(args),
         Command::Explain(args) => commands::explain::run(args),
         Command::Draw(args) => commands::draw::run(args),

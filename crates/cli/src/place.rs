@@ -46,7 +46,12 @@ impl std::fmt::Display for Point {
 impl Point {
     /// The coordinates, if they are as many as the table has dimensions.
     pub(crate) fn of(&self, table: &Table, path: &Path) -> Result<&[f64], CliError> {
-        let (dimension, found) = (table.dimension(), self.0.len());
+        self.coordinates(table.dimension(), path)
+    }
+
+    /// The coordinates, if they are as many as `dimension`.
+    pub(crate) fn coordinates(&self, dimension: u8, path: &Path) -> Result<&[f64], CliError> {
+        let found = self.0.len();
         if usize::from(dimension) == found {
             Ok(&self.0)
         } else {

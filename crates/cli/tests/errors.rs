@@ -15,6 +15,9 @@ fn missing_files_are_named() {
         &["reject", "no.wad", "-o", "out.wad"],
         &["vis", "no.bsp"],
         &["query", "no.pvs", "--eye", "0,0"],
+        &["walk", "no.pvs", "--random", "5"],
+        &["pack", "no.pvs", "-o", "out.pvz"],
+        &["unpack", "no.pvz", "-o", "out.pvs"],
         &["export", "no.pvs"],
         &["explain", "no.pvs", "0", "1"],
         &["draw", "no.pvs", "-o", "out.svg"],
@@ -36,10 +39,13 @@ fn files_of_the_wrong_kind_are_named() {
     folder.write("empty.wad", "");
     folder.write("maps.wad", wad(&["MAP01"]));
     let build = |input: &str| folder.refused(&["build", input, "-o", "out.pvs"]);
-    assert_eq!(build("noise"), "noise: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a portal file");
+    assert_eq!(
+        build("noise"),
+        "noise: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
+    );
     assert_eq!(
         build("office.pvs"),
-        "office.pvs: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a portal file"
+        "office.pvs: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
     );
     assert!(build("noise.wad").starts_with("noise.wad: "));
     assert!(build("empty.wad").starts_with("empty.wad: "));
@@ -252,6 +258,8 @@ fn outputs_are_all_or_nothing() {
         &["build", "office.geojson", "-o", "no/out.pvs"][..],
         &["reject", "maps.wad", "-o", "no/out.wad"],
         &["export", "office.pvs", "-o", "no/out.json"],
+        &["pack", "office.pvs", "-o", "no/out.pvz"],
+        &["walk", "office.pvs", "--random", "5", "-o", "no/out.svg"],
         &["draw", "office.pvs", "-o", "no/out.svg"],
         &["explain", "office.pvs", "0", "1", "--draw", "no/out.png"],
         &["demo", "--out", "office.pvs/folder"],

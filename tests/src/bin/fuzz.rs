@@ -20,6 +20,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
+use sightlines_packed::{PackOptions, Packed, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
 use std::panic::catch_unwind;
 use std::process::ExitCode;
@@ -36,7 +37,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 12] = [
+const TARGETS: [Target; 13] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
@@ -45,8 +46,9 @@ const TARGETS: [Target; 12] = [
     Target { name: "bake", seeds: plans, check: check_bake },
     Target { name: "scene", seeds: buildings, check: check_building },
     Target { name: "pvs", seeds: tables, check: check_pvs },
+    Target { name: "packed", seeds: packed_tables, check: check_packed },
     Target { name: "prt", seeds: prts, check: check_prt },
-    Target { name: "bsp", seeds: quake_files::small_bsps, check: quake_files::check_bsp },
+    Target { name: "bsp", seeds: maps, check: check_map },
     Target { name: "vis-state", seeds: vis_states, check: check_vis_state },
     Target { name: "garbage", seeds: garbage, check: check_anything },
 ];
@@ -144,6 +146,12 @@ fn buildings() -> Vec<Vec<u8>> {
 fn tables() -> Vec<Vec<u8>> {
     let bake = |plan| bake_plan(&plan, &BakeOptions::default()).map(|b| b.table.to_bytes());
     scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1)).flat_map(bake).collect()
+}
+
+fn packed_tables() -> Vec<Vec<u8>> {
+    let table = |bytes: Vec<u8>| Table::from_bytes(&bytes).expect("a table");
+    let pack = |table: Table| pack(&table, &PackOptions::default()).expect("a small table");
+    tables().into_iter().map(table).map(pack).collect()
 }
 
 fn prts() -> Vec<Vec<u8>> {
@@ -254,6 +262,53 @@ fn check_pvs(bytes: &[u8]) -> bool {
     true
 }
 
+/// A packed table answers or refuses, as it is and with right checksums; one that passes all checks is packed again.
+fn check_packed(bytes: &[u8]) -> bool {
+    let mut patched = bytes.to_vec();
+    fix_checksums(&mut patched);
+    [bytes.to_vec(), patched].into_iter().any(|bytes| {
+        let Ok(packed) = Packed::open(bytes, 1 << 12) else { return false };
+        let (mut cells, mut numbers) = (Vec::new(), Vec::new());
+        for cell in (0..packed.n_cells().min(50) as u32).map(CellId) {
+            let (min, _) = packed.cell_box(cell).expect("boxes are resident");
+            packed.locate(&min[..usize::from(packed.dimension())], &mut cells).expect("so is the locator");
+            packed.coarse(cell, &mut cells).expect("and the coarse table");
+            let _ = packed.exits(cell, &mut |_, _, to, _| assert!(to.idx() < packed.n_cells()));
+            let _ = packed.objects_seen(cell, &mut numbers);
+            if packed.visible(cell, &mut cells).is_ok() {
+                assert!(cells.iter().all(|cell| cell.idx() < packed.n_cells()));
+            }
+        }
+        assert!(packed.bytes_in_use() <= 1 << 12);
+        if packed.verify().is_err() {
+            return false;
+        }
+        let table = packed.to_table().expect("it was verified");
+        let again = pack(&table, &PackOptions::default()).expect("a small table");
+        assert_eq!(Packed::open(again, 0).and_then(|packed| packed.to_table()).expect("it was packed"), table);
+        true
+    })
+}
+
+/// Makes the checksums of sections and header right again, as far as they can be found.
+fn fix_checksums(bytes: &mut [u8]) {
+    let number = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
+    let n = number(bytes, 12).unwrap_or(0).min(bytes.len() / 24);
+    for at in (0..n).map(|i| 24 + 24 * i) {
+        let place = number(bytes, at + 8).zip(number(bytes, at + 16));
+        let Some(section) = place.and_then(|(begin, n)| bytes.get(begin..begin.checked_add(n)?)) else { continue };
+        let crc = crc32fast::hash(section);
+        if let Some(field) = bytes.get_mut(at + 20..at + 24) {
+            field.copy_from_slice(&crc.to_le_bytes());
+        }
+    }
+    let end = 24 + 24 * n;
+    if end + 4 <= bytes.len() {
+        let crc = crc32fast::hash(&bytes[..end]);
+        bytes[end..end + 4].copy_from_slice(&crc.to_le_bytes());
+    }
+}
+
 /// Portals are read or refused, and what is read is seen through: the table is written and read again.
 fn check_prt(bytes: &[u8]) -> bool {
     if !quake_files::check_prt(bytes) {
@@ -287,9 +342,22 @@ fn check_vis_state(bytes: &[u8]) -> bool {
     true
 }
 
+fn maps() -> Vec<Vec<u8>> {
+    [quake_files::small_bsps(), quake_files::small_worlds()].concat()
+}
+
+fn check_map(bytes: &[u8]) -> bool {
+    quake_files::check_bsp(bytes) | quake_files::check_world(bytes)
+}
+
 fn check_anything(bytes: &[u8]) -> bool {
-    let text = check_prt(bytes) | quake_files::check_bsp(bytes) | check_vis_state(bytes);
-    text | check_reject(bytes) | check_bake(bytes) | check_pvs(bytes) | check_glb(bytes) | check_obj(bytes)
+    let text = check_prt(bytes) | check_map(bytes) | check_vis_state(bytes);
+    text | check_reject(bytes)
+        | check_bake(bytes)
+        | check_pvs(bytes)
+        | check_packed(bytes)
+        | check_glb(bytes)
+        | check_obj(bytes)
 }
 
 struct Settings {

@@ -2,6 +2,7 @@
 
 #![expect(dead_code, reason = "each test file uses a part of this")]
 
+pub(crate) mod looks;
 pub(crate) mod quake;
 
 use sightlines::formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine};

@@ -72,9 +72,17 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
     }
     let table = input::table(&args.table)?;
     if input::is_of_portals(&table) {
-        args.refuse_meaningless(Of::Portals, "the table of a portal file")?;
+        let is_placed = table.planes().is_some();
+        let found = if is_placed { "the table of a Quake map" } else { "the table of a portal file" };
+        args.refuse_meaningless(Of::Portals, found)?;
         let graph = convex_graph_of(&table).ok_or_else(|| CliError::Stripped(args.table.clone()))?;
-        return args.asked(&graph).answer(|a, b| Some(table.sees(a, b)));
+        let listed = |a, b| Some(table.sees(a, b));
+        if !is_placed {
+            return args.asked(&graph).answer(listed);
+        }
+        let Some((a, b)) = args.pair(&table)? else { return Ok(Answer::No) };
+        let [from, to] = [a, b].map(|cell| Place::Cell(cell.0));
+        return Asked { places: [&from, &to], ..args.asked(&graph) }.answer(listed);
     }
     let is_plan = table.dimension() == 2;
     if is_plan {
@@ -82,15 +90,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
     } else {
         args.refuse_meaningless(Of::Space, "the table of a scene in space")?;
     }
-    let from = args.from.cells(&table, &args.table)?;
-    let to = args.to.cells(&table, &args.table)?;
-    for (place, cells) in [(&args.from, &from), (&args.to, &to)] {
-        if cells.is_empty() {
-            output::print(args.json, &Outside::new(place))?;
-            return Ok(Answer::No);
-        }
-    }
-    let pair = choose(&table, &from, &to);
+    let Some(pair) = args.pair(&table)? else { return Ok(Answer::No) };
     if is_plan { in_plan(args, &table, pair) } else { in_space(args, &table, pair) }
 }
 
@@ -107,6 +107,19 @@ impl ExplainArgs {
             Some((_, option, _, meant)) => Err(CliError::Option { path: self.table.clone(), option, meant, found }),
             None => Ok(()),
         }
+    }
+
+    /// The cells that are asked about; none, which is said, if a point is outside every cell.
+    fn pair(&self, table: &Table) -> Result<Option<(CellId, CellId)>, CliError> {
+        let from = self.from.cells(table, &self.table)?;
+        let to = self.to.cells(table, &self.table)?;
+        for (place, cells) in [(&self.from, &from), (&self.to, &to)] {
+            if cells.is_empty() {
+                output::print(self.json, &Outside::new(place))?;
+                return Ok(None);
+            }
+        }
+        Ok(Some(choose(table, &from, &to)))
     }
 
     fn asked<'a>(&'a self, graph: &'a CellGraph<Convex>) -> Asked<'a> {

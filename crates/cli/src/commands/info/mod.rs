@@ -1,5 +1,6 @@
 //! `info`: what a file holds.
 
+mod packed;
 mod plan;
 mod quake;
 mod scene;
@@ -7,6 +8,7 @@ mod wad;
 
 use crate::Answer;
 use crate::commands::build::facts::Facts;
+use crate::commands::build::stab::StabFacts;
 use crate::error::CliError;
 use crate::input::{self, Kind};
 use crate::output::{self, bytes};
@@ -19,7 +21,8 @@ use std::path::{Path, PathBuf};
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
-    /// A table, a WAD, a GeoJSON plan, a scene in space as GLB, glTF or OBJ, a Quake map or its portal file
+    /// A table, plain or packed, a WAD, a GeoJSON plan, a scene in space as GLB, glTF or OBJ, a Quake map or its portal
+    /// file
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Print the result as JSON
@@ -31,6 +34,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer, CliError> {
     let path = &args.file;
     match input::kind_of(path)? {
         Some(Kind::Table) => output::print(args.json, &TableInfo::new(path, &input::table(path)?))?,
+        Some(Kind::Packed) => output::print(args.json, &packed::PackedInfo::read(path)?)?,
         Some(Kind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
         Some(Kind::Json) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
         Some(Kind::Scene) => output::print(args.json, &scene::SceneInfo::read(path)?)?,
@@ -51,6 +55,9 @@ struct TableInfo {
     kind: &'static str,
     #[serde(flatten)]
     summary: Summary,
+    /// If the table has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stab: Option<StabFacts>,
     /// How the table says it was made.
     #[serde(serialize_with = "as_map")]
     info: Vec<(String, String)>,
@@ -68,7 +75,7 @@ impl TableInfo {
             // The boxes are around portals, not around cells: nothing is known of volumes. Null in JSON.
             (summary.mean_floor_share, summary.floor) = (f64::NAN, f64::NAN);
         }
-        Self { file, kind: "table", summary, info: table.info().to_vec() }
+        Self { file, kind: "table", summary, stab: StabFacts::of(table), info: table.info().to_vec() }
     }
 }
 
@@ -77,6 +84,7 @@ impl fmt::Display for TableInfo {
         let dimension = self.summary.dimension;
         writeln!(f, "{}: visibility table in {dimension}D, {}", self.file, bytes(self.summary.n_bytes as u64))?;
         write!(f, "{}", Facts(&self.summary))?;
+        self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
     }
 }

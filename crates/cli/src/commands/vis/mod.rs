@@ -69,7 +69,8 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
     check_folder(out)?;
     let bsp = read_bsp(&args.map)?;
     let (prt, text) = read_portals(&prt_path)?;
-    let other_map = |source| CliError::OtherMap { prt: prt_path.clone(), bsp: args.map.clone(), source };
+    let other_map =
+        |source| CliError::OtherMap { prt: prt_path.clone(), bsp: args.map.clone(), source: Box::new(source) };
     check_portals(&bsp, &prt).map_err(other_map)?;
 
     let key = StateKey::new(&text, args.fast);

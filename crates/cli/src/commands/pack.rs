@@ -1,0 +1,133 @@
+//! `pack` and `unpack`: tables as small files for programs that read them piece by piece, and back.
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::output::{self, bytes, count, percent};
+use crate::{input, tables};
+use serde::Serialize;
+use sightlines::packed::{PackOptions, Packed, pack_report};
+use sightlines::pvs::Table;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Bytes of blocks that are kept while a table is unpacked: each is asked for many times in a row.
+const CACHE: usize = 64 << 20;
+
+/// Arguments of `pack`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct PackArgs {
+    /// The table
+    #[arg(value_name = "FILE.pvs")]
+    table: PathBuf,
+    /// The packed table to write
+    #[arg(short, long, value_name = "OUT.pvz")]
+    output: PathBuf,
+    /// The most bytes that the file may have: cells are merged in what they see until it fits, so that more is visible,
+    /// and nothing less. Without it nothing is lost
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    max_bytes: Option<u64>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Arguments of `unpack`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct UnpackArgs {
+    /// The packed table
+    #[arg(value_name = "FILE.pvz")]
+    packed: PathBuf,
+    /// The table to write
+    #[arg(short, long, value_name = "OUT.pvs")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn pack(args: &PackArgs) -> Result<Answer, CliError> {
+    output::refuse_same(&args.table, &args.output)?;
+    let table = input::table(&args.table)?;
+    let (packed, report) = pack_report(&table, &PackOptions { max_bytes: args.max_bytes })
+        .map_err(|source| CliError::Pack { path: args.table.clone(), source })?;
+    let n_visible = table.parts().rows.count_ones();
+    let n_packed_bytes = packed.len() as u64;
+    let mut outcome = Outcome {
+        out: args.output.display().to_string(),
+        n_plain_bytes: table.to_bytes().len() as u64,
+        n_packed_bytes,
+        n_row_bytes: report.row_bytes,
+        n_cells: table.n_cells(),
+        n_rows: report.n_classes,
+        n_merges: report.n_merges,
+        over_estimation: 1.0,
+    };
+    if report.n_merges > 0 {
+        let fail = |source| CliError::Packed { path: args.output.clone(), source };
+        let back: Table = Packed::open(packed.clone(), CACHE).and_then(|p| p.to_table()).map_err(fail)?;
+        outcome.over_estimation = back.parts().rows.count_ones() as f64 / n_visible.max(1) as f64;
+    }
+    output::save(&args.output, &packed)?;
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer, CliError> {
+    output::refuse_same(&args.packed, &args.output)?;
+    let packed = tables::packed(&args.packed, CACHE)?;
+    let table = packed.to_table().map_err(|source| CliError::Packed { path: args.packed.clone(), source })?;
+    let plain = table.to_bytes();
+    output::save(&args.output, &plain)?;
+    let out = args.output.display().to_string();
+    output::print(args.json, &Unpacked { out, n_plain_bytes: plain.len() as u64, n_cells: table.n_cells() })?;
+    Ok(Answer::Yes)
+}
+
+/// What was packed.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    out: String,
+    n_plain_bytes: u64,
+    n_packed_bytes: u64,
+    /// Bytes that say what is seen; merging makes these fewer.
+    n_row_bytes: u64,
+    n_cells: usize,
+    /// Rows that differ.
+    n_rows: usize,
+    /// Rows that did not differ before.
+    n_merges: usize,
+    /// Pairs of cells that are visible now, for each that was.
+    over_estimation: f64,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [packed, plain] = [self.n_packed_bytes, self.n_plain_bytes];
+        let share = percent(packed as f64 / plain.max(1) as f64);
+        writeln!(f, "wrote {}, {}, {share} of {}", self.out, bytes(packed), bytes(plain))?;
+        let rows = count(self.n_rows as u64, "different row");
+        writeln!(f, "visibility     {}, {rows} of {}", bytes(self.n_row_bytes), count(self.n_cells as u64, "cell"))?;
+        match self.n_merges {
+            0 => writeln!(f, "lost           nothing"),
+            n => {
+                let n = count(n as u64, "merge");
+                writeln!(f, "lost           {n}: {:.3} times as many visible pairs", self.over_estimation)
+            }
+        }
+    }
+}
+
+/// What was unpacked.
+#[derive(Debug, Serialize)]
+struct Unpacked {
+    out: String,
+    n_plain_bytes: u64,
+    n_cells: usize,
+}
+
+impl fmt::Display for Unpacked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let cells = count(self.n_cells as u64, "cell");
+        writeln!(f, "wrote {}, {}, the table of {cells}", self.out, bytes(self.n_plain_bytes))
+    }
+}

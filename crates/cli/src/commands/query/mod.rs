@@ -1,0 +1,156 @@
+//! `query`: what may be seen from a point.
+
+mod sight;
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::output::{self, count};
+use crate::place::Point;
+use crate::tables::{self, Cells, Opened};
+use crate::view::lifted;
+use serde::Serialize;
+use sight::SightArgs;
+use sightlines::pvs::CellId;
+use sightlines::walkthrough::Resident;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Bytes of blocks of a packed table that a query keeps.
+const CACHE: usize = 64 << 20;
+
+/// Arguments of `query`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct QueryArgs {
+    /// The table, plain or packed
+    #[arg(value_name = "FILE")]
+    table: PathBuf,
+    /// Where the viewer is, in scene units; exit code 1 if that is outside every cell, where everything may be seen
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    eye: Point,
+    #[command(flatten)]
+    sight: SightArgs,
+    /// Print the result as JSON; `cell` is null outside every cell
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &QueryArgs) -> Result<Answer, CliError> {
+    match tables::open(&args.table, CACHE)? {
+        Opened::Plain(cells) => ask(&cells, args),
+        Opened::Packed(cells) => ask(&cells, args),
+    }
+}
+
+fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer, CliError> {
+    let path = &args.table;
+    cells.refuse_without_places(path)?;
+    let eye = args.eye.coordinates(cells.n_dimensions(), path)?;
+    let mut at = Vec::new();
+    Resident::locate(cells, lifted(eye), &mut Vec::new(), &mut at);
+    if args.sight.is_given() {
+        output::print(args.json, &sight::look(cells, path, eye, &at, &args.sight)?)?;
+    } else {
+        output::print(args.json, &rows(cells, eye, &at).map_err(|error| C::fail(path, error))?)?;
+    }
+    Ok(if at.is_empty() { Answer::No } else { Answer::Yes })
+}
+
+/// What the table says of the cells at a point, wherever in them that is.
+fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found, C::Error> {
+    let (mut visible, mut objects) = (BTreeSet::new(), BTreeSet::new());
+    let (mut some_cells, mut some_objects) = (Vec::new(), Vec::new());
+    for &cell in at {
+        cells.visible(cell, &mut some_cells)?;
+        cells.objects_seen(cell, &mut some_objects)?;
+        visible.extend(some_cells.iter().map(|cell| cell.0));
+        objects.extend(some_objects.iter().copied());
+    }
+    Ok(Found {
+        place: Place::new(eye, at),
+        visible: visible.into_iter().collect(),
+        objects: named(cells, objects)?,
+        all: cells.counts(),
+    })
+}
+
+/// Objects with their names.
+fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = u32>) -> Result<Vec<Object>, C::Error> {
+    objects.into_iter().map(|id| Ok(Object { id, name: cells.object_name(id)? })).collect()
+}
+
+/// Where the viewer is.
+#[derive(Debug, Serialize)]
+struct Place {
+    eye: Vec<f64>,
+    /// The first of `cells`.
+    cell: Option<u32>,
+    /// All cells that contain the point: several on a border.
+    cells: Vec<u32>,
+}
+
+impl Place {
+    fn new(eye: &[f64], at: &[CellId]) -> Self {
+        let cells: Vec<u32> = at.iter().map(|cell| cell.0).collect();
+        Self { eye: eye.to_vec(), cell: cells.first().copied(), cells }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let eye: Vec<String> = self.eye.iter().map(f64::to_string).collect();
+        let eye = eye.join(", ");
+        match self.cells[..] {
+            [] => write!(f, "the point ({eye}) is outside every cell"),
+            [cell] => write!(f, "the point ({eye}) is in cell {cell}"),
+            _ => write!(f, "the point ({eye}) is on the border of cells {}", ids(&self.cells)),
+        }
+    }
+}
+
+fn ids(ids: &[u32]) -> String {
+    ids.iter().map(u32::to_string).collect::<Vec<_>>().join(" ")
+}
+
+#[derive(Debug, Serialize)]
+struct Object {
+    id: u32,
+    name: String,
+}
+
+/// What was found at a point.
+#[derive(Debug, Serialize)]
+struct Found {
+    #[serde(flatten)]
+    place: Place,
+    visible: Vec<u32>,
+    objects: Vec<Object>,
+    /// Number of cells and of objects of the table.
+    #[serde(skip)]
+    all: [usize; 2],
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.place)?;
+        if self.place.cells.is_empty() {
+            return Ok(());
+        }
+        write_seen(f, &self.visible, &self.objects, self.all)
+    }
+}
+
+/// The lines that list cells and objects.
+fn write_seen(
+    f: &mut fmt::Formatter<'_>,
+    visible: &[u32],
+    objects: &[Object],
+    [n_cells, n_objects]: [usize; 2],
+) -> fmt::Result {
+    writeln!(f, "sees {} of {}: {}", visible.len(), count(n_cells as u64, "cell"), ids(visible))?;
+    if n_objects > 0 {
+        let end = if objects.is_empty() { "" } else { ":" };
+        writeln!(f, "sees {} of {}{end}", objects.len(), count(n_objects as u64, "object"))?;
+    }
+    objects.iter().try_for_each(|object| writeln!(f, "  {:>5} {}", object.id, object.name))
+}

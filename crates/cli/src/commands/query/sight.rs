@@ -1,0 +1,235 @@
+//! What is seen from a point by a method: in a direction, with doors closed, in mirrors.
+
+use super::{Object, Place, ids, named, write_seen};
+use crate::error::CliError;
+use crate::output::count;
+use crate::place::Point;
+use crate::tables::Cells;
+use crate::view::{LensArgs, Methods, lifted};
+use serde::Serialize;
+use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, View, follow_reflections};
+use sightlines::pvs::CellId;
+use sightlines::walkthrough::Stand;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+/// A query is timed so many times, and the median is told.
+const RUNS: usize = 9;
+
+/// How the viewer looks.
+#[derive(Debug, clap::Args)]
+pub(super) struct SightArgs {
+    /// Where the viewer looks; all round if not given
+    #[arg(long, value_name = "DX,DY[,DZ]", allow_hyphen_values = true)]
+    dir: Option<Point>,
+    #[command(flatten)]
+    lens: LensArgs,
+    /// How to find what is seen: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each no more
+    /// than the one before), or all of them. exact if any option says how the viewer looks; without one, what
+    /// the viewer's cell sees
+    #[arg(long, value_name = "NAME")]
+    method: Option<Methods>,
+    /// Portals that are closed
+    #[arg(long, value_name = "P,P,...", value_delimiter = ',')]
+    closed: Vec<u32>,
+    /// Also list what is seen in mirrors, up to so many one after the other
+    #[arg(long, value_name = "N", value_parser = crate::view::bounces)]
+    bounces: Option<usize>,
+}
+
+impl SightArgs {
+    /// Whether anything says how the viewer looks.
+    pub(super) fn is_given(&self) -> bool {
+        let Self { dir, lens, method, closed, bounces } = self;
+        dir.is_some() || lens.is_given() || method.is_some() || !closed.is_empty() || bounces.is_some()
+    }
+
+    /// The view of an eye.
+    fn view<C: Cells>(&self, cells: &C, path: &Path, eye: &[f64]) -> Result<(View, Option<f64>), CliError> {
+        let lens = self.lens.lens(cells, path)?;
+        let Some(dir) = &self.dir else {
+            let view = View::all_round(lifted(eye)).map_err(|source| CliError::View { option: "--eye", source })?;
+            return if self.lens.is_given() { Err(CliError::LensWithoutDirection) } else { Ok((view, None)) };
+        };
+        let dir = lifted(dir.coordinates(cells.n_dimensions(), path)?);
+        let view = lens.view(Stand { eye: lifted(eye), dir });
+        Ok((view.map_err(|source| CliError::View { option: "--dir", source })?, Some(lens.fov)))
+    }
+
+    fn doors(&self, n_portals: usize, path: &Path) -> Result<Doors, CliError> {
+        let mut doors = Doors::all_open();
+        for &portal in &self.closed {
+            if portal as usize >= n_portals {
+                return Err(CliError::NoSuchPortal { path: path.to_owned(), portal, n_portals });
+            }
+            doors.close(portal);
+        }
+        Ok(doors)
+    }
+}
+
+/// Answers by the methods that are asked for.
+pub(super) fn look<C: Cells>(
+    cells: &C,
+    path: &Path,
+    eye: &[f64],
+    at: &[CellId],
+    args: &SightArgs,
+) -> Result<Sight, CliError> {
+    let (view, fov) = args.view(cells, path, eye)?;
+    let doors = args.doors(cells.n_portals(), path)?;
+    let all = args.method == Some(Methods::All);
+    let viewer = Viewer { cells, at, view, doors, bounces: args.bounces.unwrap_or(0), outlooks: Outlooks::default() };
+    let methods = args.method.unwrap_or(Methods::One(Method::Exact)).list();
+    let answers = methods.into_iter().map(|method| viewer.answer(method));
+    let mut answers = answers.collect::<Result<Vec<_>, _>>().map_err(|error| C::fail(path, error))?;
+    let one = if all { None } else { answers.pop() };
+    let dir = args.dir.as_ref().and_then(|dir| dir.coordinates(cells.n_dimensions(), path).ok()).map(<[f64]>::to_vec);
+    let outside = at.is_empty();
+    Ok(Sight { place: Place::new(eye, at), outside, dir, fov, one, methods: answers, all: cells.counts() })
+}
+
+/// Outlooks that were prepared already.
+type Outlooks = RefCell<BTreeMap<CellId, Rc<Outlook>>>;
+
+struct Viewer<'a, C> {
+    cells: &'a C,
+    at: &'a [CellId],
+    view: View,
+    doors: Doors,
+    bounces: usize,
+    outlooks: Outlooks,
+}
+
+impl<C: Cells> Viewer<'_, C> {
+    fn outlook(&self, cell: CellId) -> Result<Rc<Outlook>, C::Error> {
+        if let Some(outlook) = self.outlooks.borrow().get(&cell) {
+            return Ok(Rc::clone(outlook));
+        }
+        let outlook = Rc::new(Outlook::prepare(self.cells, cell)?);
+        self.outlooks.borrow_mut().insert(cell, Rc::clone(&outlook));
+        Ok(outlook)
+    }
+
+    fn answer(&self, method: Method) -> Result<Answered, C::Error> {
+        let [n_cells, n_objects] = self.cells.counts();
+        let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
+        let roots = self.at.iter().map(|&cell| self.outlook(cell)).collect::<Result<Vec<_>, _>>()?;
+        let mut times: Vec<Duration> = Vec::new();
+        for _ in 0..=RUNS {
+            let start = Instant::now();
+            seen.clear(n_cells, n_objects);
+            for root in &roots {
+                method.look(root, &self.view, &self.doors, &mut scratch, &mut seen);
+            }
+            times.push(start.elapsed());
+        }
+        // The first run had nothing warm.
+        times.remove(0);
+        times.sort_unstable();
+        if roots.is_empty() {
+            seen.add_cells((0..n_cells as u32).map(CellId));
+            seen.add_objects(0..n_objects as u32);
+        }
+        seen.sort();
+        let mut failed = None;
+        let outlook = |cell| self.outlook(cell).map_err(|error| failed = Some(error)).ok();
+        let counts = [n_cells, n_objects];
+        let images = follow_reflections(&method, &seen, self.bounces, &self.doors, &mut scratch, counts, outlook);
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        let images = images.into_iter().map(|image| ImageSeen {
+            mirrors: image.mirrors,
+            cells: image.cells.iter().map(|cell| cell.0).collect(),
+            objects: image.objects,
+            complete: image.complete,
+        });
+        Ok(Answered {
+            method: method.name(),
+            visible: seen.cells().to_vec(),
+            objects: named(self.cells, seen.objects().iter().copied())?,
+            images: images.collect(),
+            microseconds: times[RUNS / 2].as_secs_f64() * 1e6,
+        })
+    }
+}
+
+/// What a viewer sees.
+#[derive(Debug, Serialize)]
+pub(super) struct Sight {
+    #[serde(flatten)]
+    place: Place,
+    /// Outside of every cell everything may be seen.
+    outside: bool,
+    /// Null for all round.
+    dir: Option<Vec<f64>>,
+    /// In degrees.
+    fov: Option<f64>,
+    /// The answer, if one method was asked for.
+    #[serde(flatten)]
+    one: Option<Answered>,
+    /// The answers, if all methods were.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    methods: Vec<Answered>,
+    /// Number of cells and of objects of the table.
+    #[serde(skip)]
+    all: [usize; 2],
+}
+
+/// What a method finds.
+#[derive(Debug, Serialize)]
+struct Answered {
+    method: &'static str,
+    visible: Vec<u32>,
+    objects: Vec<Object>,
+    images: Vec<ImageSeen>,
+    /// Of a query with everything at hand and warm: the median of some.
+    microseconds: f64,
+}
+
+/// What is seen by way of mirrors.
+#[derive(Debug, Serialize)]
+struct ImageSeen {
+    /// The mirrors, in the order in which a line from the eye meets them.
+    mirrors: Vec<u32>,
+    cells: Vec<u32>,
+    objects: Vec<u32>,
+    complete: bool,
+}
+
+impl fmt::Display for ImageSeen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [cells, objects] =
+            [(&self.cells, "cell"), (&self.objects, "object")].map(|(l, s)| count(l.len() as u64, s));
+        let rest = if self.complete { "" } else { ", and perhaps more" };
+        write!(f, "in mirror {}: {cells} and {objects}{rest}", ids(&self.mirrors))
+    }
+}
+
+impl fmt::Display for Sight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [n_cells, n_objects] = self.all;
+        if self.outside {
+            let all = [count(n_cells as u64, "cell"), count(n_objects as u64, "object")];
+            return writeln!(f, "{}, and sees everything: {} and {}", self.place, all[0], all[1]);
+        }
+        writeln!(f, "{}", self.place)?;
+        for answer in &self.methods {
+            let Answered { method, visible, objects, images, microseconds } = answer;
+            let [cells, objects] = [visible.len(), objects.len()];
+            writeln!(f, "{method:<20} {cells:>7} cells {objects:>7} objects {microseconds:>10.2} µs")?;
+            images.iter().try_for_each(|image| writeln!(f, "  {image}"))?;
+        }
+        if let Some(answer) = &self.one {
+            writeln!(f, "by {} in {:.2} µs", answer.method, answer.microseconds)?;
+            write_seen(f, &answer.visible, &answer.objects, self.all)?;
+            answer.images.iter().try_for_each(|image| writeln!(f, "{image}"))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,146 @@
+//! `walk`: what each method leaves to draw along a walk, and what it costs.
+
+mod measure;
+mod nesting;
+mod outcome;
+mod path;
+
+pub(crate) use nesting::Found;
+pub(crate) use path::PathError;
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::output;
+use crate::progress::Bar;
+use crate::tables::{self, Cells, Opened};
+use crate::view::{LensArgs, Methods};
+use measure::Walk;
+use outcome::Outcome;
+use sightlines::eye_to_cell::{CellSource, Method, View};
+use sightlines::report::walk_svg;
+use sightlines::walkthrough::{Stand, WalkOptions, wander};
+use std::path::{Path, PathBuf};
+
+/// Arguments of `walk`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct WalkArgs {
+    /// The table, plain or packed; of a packed one, blocks are read when they are needed
+    #[arg(value_name = "FILE")]
+    table: PathBuf,
+    /// The walk as JSON: {"frames": [{"eye": [x, y, z], "dir": [x, y, z]}, ...]}; two numbers each in a plane
+    #[arg(long, value_name = "FILE.json", required_unless_present = "random", conflicts_with = "random")]
+    path: Option<PathBuf>,
+    /// A walk of so many frames without a goal, from cell to cell, that now and then begins anew elsewhere
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    random: Option<u32>,
+    /// Another seed gives another random walk
+    #[arg(long, value_name = "S", default_value_t = 1, conflicts_with = "path")]
+    seed: u64,
+    /// The way from frame to frame of a random walk, in scene units; a 400th of the scene's diagonal if not given
+    #[arg(long, value_name = "UNITS", value_parser = step, allow_hyphen_values = true, conflicts_with = "path")]
+    step: Option<f64>,
+    #[command(flatten)]
+    lens: LensArgs,
+    /// How to find what is seen: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each no
+    /// more than the one before), or all; cell-to-cell is always there to compare with
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    method: Methods,
+    /// The most bytes that may be kept of what is prepared ahead; of a packed table, as many again of its blocks
+    #[arg(long, value_name = "BYTES", default_value_t = WalkOptions::default().budget)]
+    budget: usize,
+    /// Also follow lines into mirrors, up to so many one after the other
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::view::bounces)]
+    bounces: usize,
+    /// Frames a second in the pass that does not wait for what is prepared ahead; as many as possible if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    fps: Option<u32>,
+    /// A chart to write
+    #[arg(short, long, value_name = "CHART.svg")]
+    output: Option<PathBuf>,
+    /// The numbers to write, a line for each method
+    #[arg(long, value_name = "OUT.csv")]
+    csv: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+fn step(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("not a number above 0".to_owned()),
+    }
+}
+
+pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer, CliError> {
+    for out in [&args.output, &args.csv].into_iter().flatten() {
+        output::refuse_same(&args.table, out)?;
+    }
+    match tables::open(&args.table, args.budget)? {
+        Opened::Plain(cells) => walk(&cells, args, show_progress),
+        Opened::Packed(cells) => walk(&cells, args, show_progress),
+    }
+}
+
+fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Answer, CliError> {
+    let file = &args.table;
+    cells.refuse_without_places(file)?;
+    let lens = args.lens.lens(cells, file)?;
+    let fail = |error| C::fail(file, error);
+    let (stands, step) = match (&args.path, args.random) {
+        (Some(path), _) => (path::read(path, cells.n_dimensions())?, None),
+        (None, n) => {
+            let step = args.step.map_or_else(|| usual_step(cells), Ok).map_err(fail)?;
+            let stands = wander(cells, n.unwrap_or(0) as usize, step, args.seed).map_err(fail)?;
+            (stands, Some(step))
+        }
+    };
+    if stands.is_empty() {
+        return Err(CliError::NoWay(file.clone()));
+    }
+    let view = |(k, stand): (usize, &Stand)| {
+        lens.view(*stand).map_err(|error| refused(args.path.as_deref().unwrap_or(file), k, error))
+    };
+    let views: Vec<View> = stands.iter().enumerate().map(view).collect::<Result<_, _>>()?;
+    let methods = match args.method {
+        Methods::One(method) if method != Method::CellToCell => vec![Method::CellToCell, method],
+        methods => methods.list(),
+    };
+    let n_objects = CellSource::n_objects(cells) as u32;
+    let polygons = (0..n_objects).map(|o| cells.polygons_of(o)).collect::<Result<Vec<_>, _>>().map_err(fail)?;
+    let options = WalkOptions { budget: args.budget, bounces: args.bounces, ..WalkOptions::default() };
+    let bar = Bar::new("frames", show_progress);
+    let walk = Walk { cells, file, views: &views, polygons: &polygons, options, fps: args.fps };
+    let measured = walk.measure(&methods, &|done, all| bar.set(done, all))?;
+    drop(bar);
+    let outcome = Outcome::new(args, lens.fov, step, cells, &polygons, &measured);
+    if let Some(out) = &args.output {
+        output::save(out, walk_svg(&outcome.title(), &outcome.bars()).as_bytes())?;
+    }
+    if let Some(out) = &args.csv {
+        output::save(out, outcome.csv().as_bytes())?;
+    }
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// A view that is none, in a frame.
+fn refused(path: &Path, frame: usize, source: sightlines::eye_to_cell::ViewError) -> CliError {
+    CliError::Path { path: path.to_owned(), source: PathError::View { frame, source } }
+}
+
+/// A 400th of the diagonal of the box around all cells.
+fn usual_step<C: Cells>(cells: &C) -> Result<f64, C::Error> {
+    let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for cell in (0..CellSource::n_cells(cells) as u32).map(sightlines::pvs::CellId) {
+        let bounds = cells.cell_box(cell)?;
+        for k in 0..3 {
+            if bounds.min[k] <= bounds.max[k] {
+                (min[k], max[k]) = (min[k].min(bounds.min[k]), max[k].max(bounds.max[k]));
+            }
+        }
+    }
+    let diagonal = (0..3).map(|k| (max[k] - min[k]).powi(2)).sum::<f64>().sqrt();
+    // Without cells there is no walk, whatever the step.
+    Ok(if diagonal.is_finite() && diagonal > 0.0 { diagonal / 400.0 } else { 1.0 })
+}

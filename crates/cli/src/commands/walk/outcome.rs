@@ -1,0 +1,221 @@
+//! What was measured, as text, CSV and bars of a chart.
+
+use super::WalkArgs;
+use super::measure::{Measured, MethodSums};
+use crate::output::{bytes, count};
+use crate::tables::Cells;
+use serde::Serialize;
+use sightlines::eye_to_cell::EyeToCell;
+use sightlines::report::WalkBar;
+use std::fmt;
+use std::fmt::Write;
+use std::time::Duration;
+
+/// The result of a walk. Averages are over the frames that every method answered in full.
+#[derive(Debug, Serialize)]
+pub(super) struct Outcome {
+    file: String,
+    n_cells: usize,
+    n_objects: usize,
+    n_polygons: u64,
+    /// In degrees.
+    fov: f64,
+    /// In scene units; null for a walk from a file.
+    step: Option<f64>,
+    n_frames: usize,
+    /// Frames that count.
+    n_full: usize,
+    /// Frames with the eye outside of every cell, where everything is drawn.
+    n_outside: usize,
+    /// Frames for which the budget was too small.
+    n_starved: usize,
+    budget: usize,
+    /// The most bytes of prepared outlooks that were kept at once.
+    most_bytes_kept: usize,
+    n_prepared: u64,
+    n_dropped: u64,
+    /// Of a packed table: bytes that stay in memory, and bytes of its blocks that are kept at the end.
+    packed_bytes: Option<[usize; 2]>,
+    methods: Vec<MethodLine>,
+}
+
+/// What a method leaves to draw, and costs, on average.
+#[derive(Debug, Serialize)]
+struct MethodLine {
+    method: &'static str,
+    cells: Kept,
+    objects: Kept,
+    /// Of the objects; an object counts as one where the table does not know.
+    polygons: Kept,
+    /// Images in mirrors, and polygons of the objects in them, which come on top.
+    images: f64,
+    image_polygons: f64,
+    mean_us: f64,
+    median_us: f64,
+    p99_us: f64,
+    /// Frames of a walk without waiting that came before everything was prepared.
+    n_late: u64,
+}
+
+/// How much is kept in a frame.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Kept {
+    mean: f64,
+    /// Of what the cell-to-cell set has: the quotient of the averages.
+    share_of_cell_to_cell: f64,
+    share_of_all: f64,
+}
+
+/// A quotient; nothing of nothing is nothing.
+fn share(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
+fn micros(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e6
+}
+
+/// The time that `q` of all frames, ascending, do not exceed.
+fn quantile(times: &[Duration], q: f64) -> f64 {
+    let last = times.len().saturating_sub(1);
+    times.get((q * last as f64).ceil() as usize).map_or(0.0, |&time| micros(time))
+}
+
+impl Outcome {
+    pub(super) fn new(
+        args: &WalkArgs,
+        fov: f64,
+        step: Option<f64>,
+        cells: &impl Cells,
+        polygons: &[u32],
+        measured: &Measured,
+    ) -> Self {
+        let [n_cells, n_objects] = cells.counts();
+        let n_polygons = polygons.iter().map(|&n| u64::from(n)).sum();
+        let Measured { methods, n_full, n_outside, n_starved, most_bytes, n_prepared, n_dropped } = measured;
+        let mean = |sum: u64| share(sum as f64, *n_full as f64);
+        let kept = |sums: &MethodSums, of: fn(&MethodSums) -> u64, all: u64| Kept {
+            mean: mean(of(sums)),
+            share_of_cell_to_cell: share(of(sums) as f64, of(&methods[0]) as f64),
+            share_of_all: share(mean(of(sums)), all as f64),
+        };
+        let line = |sums: &MethodSums| MethodLine {
+            method: sums.method.name(),
+            cells: kept(sums, |s| s.cells, n_cells as u64),
+            objects: kept(sums, |s| s.objects, n_objects as u64),
+            polygons: kept(sums, |s| s.polygons, n_polygons),
+            images: mean(sums.images),
+            image_polygons: mean(sums.image_polygons),
+            mean_us: share(micros(sums.times.iter().sum()), *n_full as f64),
+            median_us: quantile(&sums.times, 0.5),
+            p99_us: quantile(&sums.times, 0.99),
+            n_late: sums.n_late,
+        };
+        Self {
+            file: args.table.display().to_string(),
+            n_cells,
+            n_objects,
+            n_polygons,
+            fov,
+            step,
+            n_frames: n_full + n_outside + n_starved,
+            n_full: *n_full,
+            n_outside: *n_outside,
+            n_starved: *n_starved,
+            budget: args.budget,
+            most_bytes_kept: *most_bytes,
+            n_prepared: *n_prepared,
+            n_dropped: *n_dropped,
+            packed_bytes: cells.bytes_in_memory().map(|(resident, blocks)| [resident, blocks]),
+            methods: methods.iter().map(line).collect(),
+        }
+    }
+
+    /// The title of the chart.
+    pub(super) fn title(&self) -> String {
+        format!("{}: {}, {} degrees", self.file, count(self.n_full as u64, "frame"), self.fov)
+    }
+
+    /// The bars of the chart.
+    pub(super) fn bars(&self) -> Vec<WalkBar<'_>> {
+        let bar = |line: &'_ MethodLine| WalkBar {
+            name: line.method,
+            shares: [&line.cells, &line.objects, &line.polygons].map(|kept| kept.share_of_all),
+            median_us: line.median_us,
+            p99_us: line.p99_us,
+        };
+        self.methods.iter().map(bar).collect()
+    }
+
+    /// A line for each method, behind one with names.
+    pub(super) fn csv(&self) -> String {
+        let mut out = String::from(
+            "file,fov,frames,method,cells,cells_of_cell_to_cell,cells_of_all,objects,objects_of_cell_to_cell,\
+             objects_of_all,polygons,polygons_of_cell_to_cell,polygons_of_all,images,image_polygons,mean_us,median_us,\
+             p99_us,late\n",
+        );
+        let file = self.file.replace('"', "\"\"");
+        for line in &self.methods {
+            let _ = write!(out, "\"{file}\",{},{},{}", self.fov, self.n_full, line.method);
+            for kept in [&line.cells, &line.objects, &line.polygons] {
+                let Kept { mean, share_of_cell_to_cell, share_of_all } = kept;
+                let _ = write!(out, ",{mean:.2},{share_of_cell_to_cell:.6},{share_of_all:.6}");
+            }
+            let MethodLine { images, image_polygons, mean_us, median_us, p99_us, n_late, .. } = line;
+            let _ = writeln!(out, ",{images:.3},{image_polygons:.1},{mean_us:.3},{median_us:.3},{p99_us:.3},{n_late}");
+        }
+        out
+    }
+}
+
+/// A number kept and its shares, in a column.
+struct Column(Kept);
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Kept { mean, share_of_cell_to_cell, share_of_all } = self.0;
+        let digits = if share_of_all < 0.01 { 3 } else { 1 };
+        write!(f, "{mean:>9.1} {:>6.1} {:>6.*}", 100.0 * share_of_cell_to_cell, digits, 100.0 * share_of_all)
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let all = [(self.n_cells, "cell"), (self.n_objects, "object")].map(|(n, noun)| count(n as u64, noun));
+        let [frames, polygons] = [count(self.n_frames as u64, "frame"), count(self.n_polygons, "polygon")];
+        writeln!(f, "{}: {}, {}, {polygons}", self.file, all[0], all[1])?;
+        let step = self.step.map_or(String::new(), |step| format!(", a step of {step:.3} units"));
+        writeln!(f, "{frames}, {} degrees{step}", self.fov)?;
+        if self.n_outside > 0 {
+            writeln!(f, "outside        {}, not counted below", count(self.n_outside as u64, "frame"))?;
+        }
+        if self.n_starved > 0 {
+            let n = count(self.n_starved as u64, "frame");
+            writeln!(f, "too large      {n} that need more than the budget, not counted below")?;
+        }
+        let [cells, objects, polygons, time] = ["cells", "objects", "polygons", "µs: mean, median, 99 %"];
+        writeln!(f, "\n{:<20} {cells:>23} {objects:>23} {polygons:>23} {time:>27} {:>6}", "left to draw", "late")?;
+        for line in &self.methods {
+            let MethodLine { method, mean_us, median_us, p99_us, n_late, .. } = line;
+            let [cells, objects, polygons] = [line.cells, line.objects, line.polygons].map(Column);
+            writeln!(
+                f,
+                "{method:<20} {cells} {objects} {polygons} {mean_us:>9.2} {median_us:>8.2} {p99_us:>8.2} {n_late:>6}"
+            )?;
+            if line.images > 0.0 {
+                writeln!(f, "  in mirrors: {:.2} images, {:.1} polygons", line.images, line.image_polygons)?;
+            }
+        }
+        let [most, budget] = [self.most_bytes_kept, self.budget].map(|n| bytes(n as u64));
+        writeln!(
+            f,
+            "\nkept           at most {most} of {budget}; {} outlooks made, {} dropped",
+            self.n_prepared, self.n_dropped
+        )?;
+        if let Some([resident, blocks]) = self.packed_bytes.map(|list| list.map(|n| bytes(n as u64))) {
+            writeln!(f, "packed table   {resident} in memory, {blocks} of blocks kept")?;
+        }
+        writeln!(f, "left to draw   on average; of it, % of the first line; of all, %")?;
+        writeln!(f, "late           frames of a walk without waiting that came too early, and showed more")
+    }
+}

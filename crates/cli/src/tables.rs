@@ -1,0 +1,134 @@
+//! Tables of both kinds, plain and packed, as the commands ask them that follow a viewer.
+
+use crate::error::CliError;
+use crate::input::{self, Kind};
+use sightlines::bake::quake::{SOURCE_KEY, SOURCE_MAP, SOURCE_PRT};
+use sightlines::eye_to_cell::{CellSource, TableCells};
+use sightlines::packed::{Packed, PackedError};
+use sightlines::pvs::Table;
+use sightlines::walkthrough::{PackedCells, Resident};
+use std::convert::Infallible;
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A table that was opened, told apart by its first bytes.
+#[derive(Debug)]
+pub(crate) enum Opened {
+    Plain(TableCells<Arc<Table>>),
+    Packed(PackedCells<File>),
+}
+
+/// Opens a table. Of a packed one, at most `cache_bytes` of unpacked blocks are kept.
+pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened, CliError> {
+    if input::kind_of(path)? == Some(Kind::Packed) {
+        return Ok(Opened::Packed(PackedCells::new(packed(path, cache_bytes)?)));
+    }
+    Ok(Opened::Plain(TableCells::new(Arc::new(input::table(path)?))))
+}
+
+/// Opens a packed table.
+pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>, CliError> {
+    let file = File::open(path).map_err(|source| CliError::Open { path: path.to_owned(), source })?;
+    Packed::open(file, cache_bytes).map_err(|source| CliError::Packed { path: path.to_owned(), source })
+}
+
+/// A table of either kind. Clones share it.
+pub(crate) trait Cells: CellSource<Error: Send + 'static> + Resident + Clone + Send + 'static {
+    /// What went wrong, with the file's name.
+    fn fail(path: &Path, error: Self::Error) -> CliError;
+
+    /// The value of a key that the table's maker left.
+    fn info_value(&self, key: &str) -> Option<&str>;
+
+    /// Whether planes say where the cells are.
+    fn has_planes(&self) -> bool;
+
+    fn n_portals(&self) -> usize;
+
+    fn object_name(&self, object: u32) -> Result<String, Self::Error>;
+
+    fn polygons_of(&self, object: u32) -> Result<u32, Self::Error>;
+
+    /// Bytes that stay in memory, and bytes of blocks that are kept now; `None` for a table that is in memory as a whole.
+    fn bytes_in_memory(&self) -> Option<(usize, usize)>;
+
+    /// Refuses a table that does not know where its cells are.
+    fn refuse_without_places(&self, path: &Path) -> Result<(), CliError> {
+        let of_portals = |source: &str| source.starts_with(SOURCE_PRT) || source.starts_with(SOURCE_MAP);
+        if self.info_value(SOURCE_KEY).is_some_and(of_portals) && !self.has_planes() {
+            return Err(CliError::NoPlaces { path: path.to_owned(), what: "no cell can be found at a point" });
+        }
+        Ok(())
+    }
+
+    /// 2 or 3.
+    fn n_dimensions(&self) -> u8 {
+        CellSource::dimension(self)
+    }
+
+    /// Numbers of cells and of objects.
+    fn counts(&self) -> [usize; 2] {
+        [CellSource::n_cells(self), CellSource::n_objects(self)]
+    }
+}
+
+impl Cells for TableCells<Arc<Table>> {
+    fn fail(_: &Path, error: Infallible) -> CliError {
+        match error {}
+    }
+
+    fn info_value(&self, key: &str) -> Option<&str> {
+        self.table().info_value(key)
+    }
+
+    fn has_planes(&self) -> bool {
+        self.table().planes().is_some()
+    }
+
+    fn n_portals(&self) -> usize {
+        self.table().portals().len()
+    }
+
+    fn object_name(&self, object: u32) -> Result<String, Infallible> {
+        Ok(self.table().objects()[object as usize].name.clone())
+    }
+
+    fn polygons_of(&self, object: u32) -> Result<u32, Infallible> {
+        Ok(self.table().polygons_of(object))
+    }
+
+    fn bytes_in_memory(&self) -> Option<(usize, usize)> {
+        None
+    }
+}
+
+impl Cells for PackedCells<File> {
+    fn fail(path: &Path, source: PackedError) -> CliError {
+        CliError::Packed { path: path.to_owned(), source }
+    }
+
+    fn info_value(&self, key: &str) -> Option<&str> {
+        self.packed().info().iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
+    }
+
+    fn has_planes(&self) -> bool {
+        self.packed().planes().is_some()
+    }
+
+    fn n_portals(&self) -> usize {
+        self.packed().n_portals()
+    }
+
+    fn object_name(&self, object: u32) -> Result<String, PackedError> {
+        self.packed().object_name(object)
+    }
+
+    fn polygons_of(&self, object: u32) -> Result<u32, PackedError> {
+        self.packed().object_polygons(object)
+    }
+
+    fn bytes_in_memory(&self) -> Option<(usize, usize)> {
+        Some((self.packed().resident_bytes(), self.packed().bytes_in_use()))
+    }
+}
