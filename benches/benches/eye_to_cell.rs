@@ -81,7 +81,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let stands = measure(&table, [0.0, 1.0, 0.0], n_frames, args.fov)?;
     measure_with_trees(&table, [0.0, 1.0, 0.0], n_frames, args)?;
     slow_source(&table, &stands[..n_frames.min(1000)], args.fov)?;
-    let map = args.map.clone().or_else(|| Some(data_folder("SIGHTLINES_DATA")?.join("quake/e1m1.bsp"))).filter(|_| !args.test);
+    let map = args
+        .map
+        .clone()
+        .or_else(|| Some(data_folder("SIGHTLINES_DATA")?.join("quake/e1m1.bsp")))
+        .filter(|_| !args.test);
     if let Some(path) = map {
         println!("{}", path.display());
         let table = table_of_map(&path)?;
@@ -195,7 +199,8 @@ fn report(table: &Table, measured: &mut [Measured]) {
             at(m, 0, 0.99),
         );
     }
-    for (method, q, bar) in [(Method::DisjointCell, 0.5, 5.0), (Method::Exact, 0.5, 50.0), (Method::Exact, 0.99, 500.0)] {
+    for (method, q, bar) in [(Method::DisjointCell, 0.5, 5.0), (Method::Exact, 0.5, 50.0), (Method::Exact, 0.99, 500.0)]
+    {
         let Some(m) = measured.iter().find(|m| m.method == method) else { continue };
         let us = quantile(m.times.iter().map(|t| t.0[1]).collect(), q);
         let kept = if us <= bar { "kept" } else { "NOT KEPT" };

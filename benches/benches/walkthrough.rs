@@ -23,12 +23,19 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// The ways in which each frame is drawn.
-const WAYS: [&str; N_WAYS] =
-    ["all", "table", "all, by view", "table, by view", "disjoint cell", "connected component", "incident portals", "exact"];
+const WAYS: [&str; N_WAYS] = [
+    "all",
+    "table",
+    "all, by view",
+    "table, by view",
+    "disjoint cell",
+    "connected component",
+    "incident portals",
+    "exact",
+];
 const N_WAYS: usize = 8;
 /// The methods of the ways behind the fourth; these leave out by box what is outside the view as well.
-const METHODS: [Method; 4] =
-    [Method::DisjointCell, Method::ConnectedComponent, Method::IncidentPortals, Method::Exact];
+const METHODS: [Method; 4] = [Method::DisjointCell, Method::ConnectedComponent, Method::IncidentPortals, Method::Exact];
 
 /// A walkthrough with and without the table.
 #[derive(Debug, Clone, Parser)]
