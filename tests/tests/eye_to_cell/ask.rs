@@ -1,0 +1,99 @@
+//! Asking all methods, and comparing their answers.
+
+use sightlines::eye_to_cell::{
+    Doors, EyeToCell, Image, Method, Outlook, Scratch, Seen, TableCells, View, follow_reflections,
+};
+use sightlines::pvs::{CellId, Table};
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+
+/// Cells and objects, by id.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Answer {
+    pub(crate) cells: BTreeSet<u32>,
+    pub(crate) objects: BTreeSet<u32>,
+}
+
+/// What the methods say, in the order of [`Method::ALL`].
+pub(crate) type Answers = [Answer; 5];
+
+/// A table that is asked again and again.
+pub(crate) struct Asker<'t> {
+    cells: TableCells<&'t Table>,
+    outlooks: BTreeMap<CellId, Rc<Outlook>>,
+    scratch: Scratch,
+}
+
+impl<'t> Asker<'t> {
+    pub(crate) fn new(table: &'t Table) -> Self {
+        Self { cells: TableCells::new(table), outlooks: BTreeMap::new(), scratch: Scratch::new() }
+    }
+
+    /// What a method says of a viewer in the cells `roots`, as it says it: cells, objects, what is seen in mirrors.
+    pub(crate) fn ask(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> Seen {
+        let mut seen = Seen::new();
+        seen.clear(self.cells.table().n_cells(), self.cells.table().objects().len());
+        for &root in roots {
+            let outlook = outlook(&self.cells, &mut self.outlooks, root);
+            method.look(&outlook, view, doors, &mut self.scratch, &mut seen);
+        }
+        seen
+    }
+
+    /// What all methods say, mirrors left out.
+    pub(crate) fn all(&mut self, roots: &[CellId], view: &View, doors: &Doors) -> Answers {
+        Method::ALL.map(|method| answer(&self.ask(roots, view, doors, method)))
+    }
+
+    /// What a method says of a viewer and of mirrors, of three in a row at most.
+    pub(crate) fn images(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> Vec<Image> {
+        let first = self.ask(roots, view, doors, method);
+        let sizes = [self.cells.table().n_cells(), self.cells.table().objects().len()];
+        let Self { cells, outlooks, scratch } = self;
+        follow_reflections(&method, &first, 3, doors, scratch, sizes, |cell| Some(outlook(cells, outlooks, cell)))
+    }
+}
+
+fn outlook(cells: &TableCells<&Table>, known: &mut BTreeMap<CellId, Rc<Outlook>>, root: CellId) -> Rc<Outlook> {
+    let prepare = || Rc::new(Outlook::prepare(cells, root).unwrap_or_else(|never| match never {}));
+    known.entry(root).or_insert_with(prepare).clone()
+}
+
+/// What was seen, mirrors left out.
+pub(crate) fn answer(seen: &Seen) -> Answer {
+    Answer { cells: seen.cells().iter().copied().collect(), objects: seen.objects().iter().copied().collect() }
+}
+
+/// What is wrong with the nesting of the answers, if anything is.
+pub(crate) fn not_nested(answers: &Answers) -> Option<String> {
+    let wrong = |k: &usize| {
+        let [wide, narrow] = [&answers[k - 1], &answers[*k]];
+        !narrow.cells.is_subset(&wide.cells) || !narrow.objects.is_subset(&wide.objects)
+    };
+    (1..answers.len()).find(wrong).map(|k| format!("{} is not within {}", Method::ALL[k], Method::ALL[k - 1]))
+}
+
+/// The first method that misses something that is seen, and what.
+pub(crate) fn missed(answers: &Answers, seen: &Answer) -> Option<String> {
+    Method::ALL.iter().zip(answers).find_map(|(method, answer)| {
+        let cell = seen.cells.difference(&answer.cells).next();
+        let object = seen.objects.difference(&answer.objects).next();
+        let cell = cell.map(|cell| format!("{method} misses cell {cell}"));
+        cell.or_else(|| object.map(|object| format!("{method} misses object {object}")))
+    })
+}
+
+/// Cells by the mirrors, one after the other, that show them.
+pub(crate) type Shown = BTreeMap<Vec<u32>, BTreeSet<u32>>;
+
+/// The first mirrors and cell that rays reach and the images do not show. Where the images of a row of mirrors are not
+/// complete, anything may be seen in it and in all rows that begin with it.
+pub(crate) fn missed_in_mirrors(images: &[Image], reached: &Shown) -> Option<String> {
+    let image = |mirrors: &[u32]| images.iter().find(|image| image.mirrors == mirrors);
+    reached.iter().filter(|(mirrors, _)| !mirrors.is_empty()).find_map(|(mirrors, cells)| {
+        let open = (1..=mirrors.len()).any(|n| image(&mirrors[..n]).is_some_and(|image| !image.complete));
+        let shown = |cell: &u32| image(mirrors).is_some_and(|image| image.cells.contains(&CellId(*cell)));
+        let missed = cells.iter().find(|cell| !open && !shown(cell));
+        missed.map(|cell| format!("mirrors {mirrors:?} do not show cell {cell}"))
+    })
+}
