@@ -8,21 +8,20 @@
 use clap::Parser;
 use sightlines::bake::quake::bake_map;
 use sightlines::bake::{PrtOptions, SceneBakeOptions, StabOptions, bake_scene, with_stab_trees};
-use sightlines::eye_to_cell::{
-    CellSource, Doors, EyeToCell, Method, MirrorWay, Outlook, Scratch, Seen, StabStep, TableCells, View, Way,
-};
+use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View};
 use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
+use sightlines::packed::{PackOptions, Packed, Source, pack};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{TowerOptions, tower};
-use sightlines::walkthrough::{Answer, Stand, WalkOptions, Walkthrough, wander};
+use sightlines::walkthrough::{Answer, PackedCells, Stand, WalkOptions, Walkthrough, wander};
 use sightlines_tests::data_folder;
 use std::convert::Infallible;
 use std::error::Error;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Eye-to-cell queries.
@@ -214,58 +213,28 @@ fn quantile(mut times: Vec<Duration>, q: f64) -> f64 {
     times.get((times.len().saturating_sub(1) as f64 * q) as usize).map_or(0.0, |t| t.as_secs_f64() * 1e6)
 }
 
-/// A source that takes its time.
-struct Slow(TableCells<Arc<Table>>, Duration);
+/// A file that takes its time for each block.
+struct Slow(Vec<u8>, Duration);
 
-impl CellSource for Slow {
-    type Error = Infallible;
+impl Source for Slow {
+    fn len(&self) -> io::Result<u64> {
+        Source::len(&self.0)
+    }
 
-    fn dimension(&self) -> u8 {
-        CellSource::dimension(&self.0)
-    }
-    fn n_cells(&self) -> usize {
-        CellSource::n_cells(&self.0)
-    }
-    fn n_objects(&self) -> usize {
-        CellSource::n_objects(&self.0)
-    }
-    fn cell_box(&self, cell: CellId) -> Result<Aabb<3>, Infallible> {
-        self.0.cell_box(cell)
-    }
-    fn visible(&self, cell: CellId, out: &mut Vec<CellId>) -> Result<(), Infallible> {
+    fn read_at(&self, offset: u64, buf: &mut [u8]) -> io::Result<()> {
         std::thread::sleep(self.1);
-        self.0.visible(cell, out)
-    }
-    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), Infallible> {
-        self.0.ways(cell, show)
-    }
-    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Infallible> {
-        self.0.objects_of(cell, out)
-    }
-    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Infallible> {
-        self.0.objects_seen(cell, out)
-    }
-    fn object_box(&self, object: u32) -> Result<Aabb<3>, Infallible> {
-        self.0.object_box(object)
-    }
-    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), Infallible> {
-        self.0.mirrors(cell, show)
-    }
-    fn stab_roots(&self, cell: CellId, out: &mut Vec<u32>) -> Result<Option<bool>, Infallible> {
-        self.0.stab_roots(cell, out)
-    }
-    fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabStep, Infallible> {
-        self.0.stab_node(node, children)
+        self.0.read_at(offset, buf)
     }
 }
 
-/// Walks with a source that takes 20 ms for each cell, at full speed and at 60 frames a second.
+/// Walks with a packed table in a file that takes 20 ms for each block, and keeps hardly any: at full speed, and with time between the
+/// frames.
 fn slow_source(table: &Table, stands: &[Stand], fov: f64) -> Result<(), Box<dyn Error>> {
-    let table = Arc::new(table.clone());
-    let at_hand = TableCells::new(Arc::clone(&table));
+    let bytes = pack(table, &PackOptions::default())?;
     for pause in [Duration::ZERO, Duration::from_millis(2)] {
-        let slow = Slow(at_hand.clone(), Duration::from_millis(20));
-        let mut walk = Walkthrough::new(at_hand.clone(), slow, WalkOptions::default());
+        let packed = Packed::open(Slow(bytes.clone(), Duration::from_millis(20)), 1 << 16)?;
+        let cells = PackedCells::new(packed);
+        let mut walk = Walkthrough::new(cells.clone(), cells, WalkOptions::default());
         let mut times = Vec::new();
         let mut late = 0;
         for stand in stands {
@@ -276,11 +245,12 @@ fn slow_source(table: &Table, stands: &[Stand], fov: f64) -> Result<(), Box<dyn 
             std::thread::sleep(pause);
         }
         println!(
-            "a source that takes 20 ms a cell, {} ms between frames: frames take {:.1} us in the median, {:.1} us at p99, {:.1} us at most; {:.1} % were late",
+            "a file that takes 20 ms a block, {} ms between frames: frames take {:.1} us in the median, {:.1} us at p99, \
+             {:.1} us at most; {:.1} % were late",
             pause.as_millis(),
             quantile(times.clone(), 0.5),
             quantile(times.clone(), 0.99),
-            quantile(times, 1.0),
+            quantile(times.clone(), 1.0),
             100.0 * late as f64 / stands.len().max(1) as f64
         );
     }

@@ -91,10 +91,6 @@ impl<S: Source> CellSource for PackedCells<S> {
 }
 
 impl<S: Source> Resident for PackedCells<S> {
-    fn dimension(&self) -> u8 {
-        self.0.dimension()
-    }
-
     fn n_cells(&self) -> usize {
         self.0.n_cells()
     }

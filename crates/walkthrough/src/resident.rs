@@ -7,9 +7,6 @@ use std::sync::Arc;
 
 /// The part of a table that a frame may ask without waiting: no disk, no lock that another thread may hold for long.
 pub trait Resident {
-    /// 2 or 3.
-    fn dimension(&self) -> u8;
-
     /// Number of cells.
     fn n_cells(&self) -> usize;
 
@@ -28,10 +25,6 @@ pub trait Resident {
 }
 
 impl<T: Borrow<Table>> Resident for TableCells<T> {
-    fn dimension(&self) -> u8 {
-        self.table().dimension()
-    }
-
     fn n_cells(&self) -> usize {
         self.table().n_cells()
     }
@@ -56,10 +49,6 @@ impl<T: Borrow<Table>> Resident for TableCells<T> {
 }
 
 impl<R: Resident + ?Sized> Resident for Arc<R> {
-    fn dimension(&self) -> u8 {
-        (**self).dimension()
-    }
-
     fn n_cells(&self) -> usize {
         (**self).n_cells()
     }
