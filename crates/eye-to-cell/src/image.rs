@@ -26,7 +26,8 @@ pub struct Image {
     pub cells: Vec<CellId>,
     /// The objects, ascending.
     pub objects: Vec<u32>,
-    /// Whether that is all. If not, an outlook was missing or there were too many views, and anything may be seen.
+    /// Whether that is all. If not, an outlook was missing or there were too many views: anything may be seen by way of
+    /// these mirrors, and of any others after them, which are not listed then.
     pub complete: bool,
 }
 

@@ -16,9 +16,9 @@
 //!   Polygons are always the input's, clipped afresh by at most [`MOST_SIDES`] = 24 sides, so that a point of the true
 //!   clipped polygon is never farther than 24 × 8 u R from the computed one. At such a point a normal's value
 //!   changes by at most 192 u A. The new corner lies where the value is -tolerance but for 22 u A.
-//! - Together below 256 u A. A piece that is put together from others may reach beyond a side by half of the
-//!   tolerance ([`Side::nearly_keeps`] and the error of the corners that it is asked about), and half must be enough for the
-//!   rest. The tolerance is 512 u A = 2^-44 A, and the smallest normal number for underflow.
+//! - Together below 256 u A. A piece that is put together from others may reach beyond a side by a quarter of the
+//!   tolerance ([`Side::nearly_keeps`]), and by the error of the corners that it is asked about, below 181 u A. The tolerance
+//!   is 1024 u A = 2^-43 A, of which these take 256 + 256 + 181, and the smallest normal number for underflow.
 //!
 //! If the eye itself is known only to within `slack` in each coordinate (seen in a mirror), the value changes by
 //! at most slack |E|₁ (|v|₁ + R) more, for which 4 slack |E|₁ R is added (|v|₁ is at most R).
@@ -31,8 +31,8 @@ use sightlines_geometry::Aabb;
 /// shows more.
 pub(crate) const MOST_SIDES: usize = 24;
 
-/// The tolerance as a share of its measure: 2^-44.
-const SHARE: f64 = 1.0 / (1u64 << 44) as f64;
+/// The tolerance as a share of its measure: 2^-43.
+const SHARE: f64 = 1.0 / (1u64 << 43) as f64;
 
 pub(crate) type Vector = [f64; 3];
 
@@ -104,6 +104,11 @@ impl Side {
     /// Where inside is; of any length.
     pub(crate) fn normal(&self) -> Vector {
         self.normal
+    }
+
+    /// What the error of the normal is a share of: its magnitude, or more, if it is a difference of larger numbers.
+    pub(crate) fn size(&self) -> f64 {
+        self.size
     }
 
     /// How far inside; meant to be compared with [`Side::lets_go`] only.

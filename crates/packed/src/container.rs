@@ -225,6 +225,21 @@ impl Index {
         if needed == found { Ok(*store) } else { Err(PackedError::new(Some(id), at, Kind::Value { value: found })) }
     }
 
+    /// As [`Index::need`], of a store of records: each block must have room for the four bytes with which a record's place is
+    /// told, so that who takes memory for each record takes no more than the blocks would. O(blocks).
+    pub(crate) fn need_records(&self, id: SectionId, n_records: u32) -> Result<StoreIndex, PackedError> {
+        let store = self.need(id, n_records)?;
+        for block in 0..store.n_blocks {
+            let entry = &self.entries[store.first + block];
+            let needed = 4 * store.n_in_block(block) as u64;
+            if u64::from(entry.raw) < needed {
+                let found = u64::from(entry.raw);
+                return Err(PackedError::new(Some(id), entry.offset, Kind::Size { needed, found }));
+            }
+        }
+        Ok(store)
+    }
+
     /// Reads and unpacks a block. Takes at most twice [`MAX_BLOCK`], whatever the file says.
     pub(crate) fn unpack(&self, source: &impl Source, id: SectionId, number: usize) -> Result<Vec<u8>, PackedError> {
         let Entry { offset, len, raw, crc } = self.entries[number];

@@ -183,7 +183,8 @@ impl<S: Source> Packed<S> {
     /// Opens a file: reads and checks the resident part. At most `cache_bytes` of unpacked blocks will be
     /// kept; with 0 every question reads its blocks anew.
     ///
-    /// Memory is in proportion to the resident part, whatever it claims. What is in blocks is checked when
+    /// Memory is in proportion to the resident part, whatever it claims; numbers of objects and the like are bounded by
+    /// what the blocks hold when they are unpacked. What is in blocks is checked when
     /// it is read; [`Packed::verify`] checks all. O(resident part).
     ///
     /// # Errors
@@ -213,10 +214,10 @@ impl<S: Source> Packed<S> {
             mirrors: mirrors(&resident, &head)?,
             rows,
             seen,
-            cells: index.need(format::CELLS, n_cells)?,
-            portals: index.need(format::PORTALS, head.n_portals)?,
-            objects: index.need(format::OBJECTS, n_objects)?,
-            nodes: head.n_nodes.map(|n| index.need(format::STAB, n)).transpose()?,
+            cells: index.need_records(format::CELLS, n_cells)?,
+            portals: index.need_records(format::PORTALS, head.n_portals)?,
+            objects: index.need_records(format::OBJECTS, n_objects)?,
+            nodes: head.n_nodes.map(|n| index.need_records(format::STAB, n)).transpose()?,
             places,
             cache,
             head,

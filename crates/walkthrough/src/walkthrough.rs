@@ -33,7 +33,8 @@ impl Default for WalkOptions {
 pub enum Answer {
     /// It is what the method says.
     Full,
-    /// Something was not prepared yet: it is more than the method says, and never less.
+    /// Something was not prepared yet: the cells and objects are more than the method says, and never less. What is
+    /// seen in mirrors is not all told.
     Late,
     /// The eye is outside every cell: everything.
     Outside,
@@ -48,7 +49,8 @@ pub struct Frame<'a> {
     pub at: &'a [CellId],
     /// Whether that is the method's answer.
     pub answer: Answer,
-    /// What is seen in mirrors, if [`WalkOptions::bounces`] asks for it.
+    /// What is seen in mirrors, if [`WalkOptions::bounces`] asks for it. All of it with [`Answer::Full`] only: otherwise anything
+    /// may be seen in any mirror, listed or not.
     pub images: &'a [Image],
 }
 

@@ -205,13 +205,14 @@ fn close(a: &Vector, b: &Vector, same: f64) -> bool {
 /// The corner where two sides meet, from a corner that was clipped where their borders are drawn, which is a tolerance
 /// outside.
 ///
-/// It is on the ray along both sides. Their normals have to be at an angle whose sine is at least 1/16: then the cross product
-/// is off by no more than 16 × 8 u of its size, which moves the value of any side there by no more than 128 u of the side's
-/// size, a quarter of its tolerance. Otherwise the corner stays as it is, which contains what is seen.
+/// It is on the ray along both sides, their cross product. Each normal is off by 5 u of its size (|v|₁ |E|₁, which may be much
+/// more than its length, if the eye is nearly in line with the edge), so the product is off by 13 u of both sizes
+/// multiplied. If it is at least an eighth of that itself, then its direction is off by no more than 13 × 8 × √3 u, below 181 u,
+/// and with it the value of any side at the corner, as a share of the side's measure. Otherwise the corner stays as it is, which
+/// contains what is seen.
 fn sharpened(corner: Vector, before: &Side, after: &Side) -> Vector {
-    let (a, b) = (before.normal(), after.normal());
-    let ray = cross(a, b);
-    if norm(ray) * 16.0 < norm(a) * norm(b) {
+    let ray = cross(before.normal(), after.normal());
+    if norm(ray) * 8.0 < before.size() * after.size() {
         return corner;
     }
     let scale = dot(ray, corner) / dot(ray, ray);

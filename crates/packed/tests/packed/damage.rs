@@ -90,21 +90,51 @@ fn n_block_bytes(bytes: &[u8]) -> usize {
     bytes.len() - (offset + length)
 }
 
+/// Makes the checksums of sections and header right again.
+fn seal(bytes: &mut [u8]) {
+    let all = sections(bytes);
+    for (i, &(offset, length)) in all.iter().enumerate() {
+        let crc = crc32(&bytes[offset..offset + length]);
+        bytes[24 + 24 * i + 20..24 + 24 * i + 24].copy_from_slice(&crc.to_le_bytes());
+    }
+    let end = 24 + 24 * all.len();
+    let crc = crc32(&bytes[..end]);
+    bytes[end..end + 4].copy_from_slice(&crc.to_le_bytes());
+}
+
+/// A file that claims four thousand million objects, in a block that is as small as it was: a run-time would take memory for each.
+#[test]
+fn numbers_of_objects_are_held_against_blocks() {
+    let bytes = pack(&table(SMALL[0]), &PackOptions::default()).unwrap();
+    let named = |id: &[u8]| (0..).find(|i| &bytes[24 + 24 * i..24 + 24 * i + 4] == id).map(|i| sections(&bytes)[i].0);
+    let (head, blocks) = (named(b"HEAD").unwrap(), named(b"BLKS").unwrap());
+    let objects = (blocks..).find(|&at| &bytes[at..at + 4] == b"OBJS").unwrap();
+    let n = Packed::open(bytes.clone(), 0).unwrap().n_objects();
+    for (claimed, right) in [(n, true), (1000 * n, false), (u32::MAX as usize, false)] {
+        let mut lie = bytes.clone();
+        let number = (claimed as u32).to_le_bytes();
+        // The number of records, and as many in a block, so that there is one block.
+        for at in [head + 8, objects + 4, objects + 8] {
+            lie[at..at + 4].copy_from_slice(&number);
+        }
+        // Without own rows of objects, whose length would give it away.
+        lie[head + 20] &= !2;
+        seal(&mut lie);
+        assert_eq!(Packed::open(lie, 0).is_ok(), right, "{claimed} objects");
+    }
+}
+
 /// What a patient vandal would write: resident bytes changed, and the checksums made right again.
 #[test]
 fn lies_with_right_checksums_are_refused_or_answered() {
     let (mut n_opened, mut n_refused) = (0, 0);
     for recipe in SMALL {
         let bytes = pack(&table(recipe), &PackOptions::default()).unwrap();
-        for (i, (offset, length)) in sections(&bytes).into_iter().enumerate() {
+        for (offset, length) in sections(&bytes) {
             for (at, value) in (offset..offset + length).flat_map(|at| [1u8, 0xFF].map(|value| (at, value))) {
                 let mut changed = bytes.clone();
                 changed[at] = value;
-                let crc = crc32(&changed[offset..offset + length]);
-                changed[24 + 24 * i + 20..24 + 24 * i + 24].copy_from_slice(&crc.to_le_bytes());
-                let end = 24 + 24 * sections(&bytes).len();
-                let crc = crc32(&changed[..end]);
-                changed[end..end + 4].copy_from_slice(&crc.to_le_bytes());
+                seal(&mut changed);
                 match Packed::open(changed, 1 << 12) {
                     Err(_) => n_refused += 1,
                     Ok(packed) => {
