@@ -1,7 +1,7 @@
 //! On which side of a portal's plane the eye is.
 
 use crate::side::{Vector, cross, dot, minus, norm};
-use sightlines_geometry::{Point2, orient2d};
+use sightlines_geometry::{Point2, orient2d, orient3d};
 
 /// What a sum of a few products may be off by, as a share of their sizes: 32 times the unit roundoff, 2^-53.
 const SMALL: f64 = 1.0 / (1u64 << 48) as f64;
@@ -84,7 +84,7 @@ impl Front {
     /// Where `eye`, whose coordinates are off by at most `slack`, is. Exact in the plane and for portals along
     /// an axis if `slack` is 0.
     ///
-    /// An uneven portal counts as flat: who is in its plane, within its unevenness, but not near the portal, cannot
+    /// An uneven portal counts as flat: who is between the planes of its triangles, but not near the portal, cannot
     /// look through it, as who is in the plane of a flat one cannot.
     #[inline]
     pub(crate) fn facing(&self, corners: &[Vector], eye: Vector, slack: f64) -> Facing {
@@ -116,12 +116,28 @@ impl Front {
                     Facing::Behind
                 } else if slack > 0.0 || near(corners, eye, margin) {
                     Facing::Level
+                } else if before_all_triangles(corners, eye) {
+                    Facing::Before
                 } else {
                     Facing::Behind
                 }
             }
         }
     }
+}
+
+/// Whether the eye is before each triangle of a fan from the first corner; exact. For a flat portal: before it.
+fn before_all_triangles(corners: &[Vector], eye: Vector) -> bool {
+    let Some((&first, rest)) = corners.split_first() else { return false };
+    // Crossed away from the eye, so as the eye sees them the corners are counter-clockwise. Triangles without area say
+    // nothing.
+    let mut signs = rest.windows(2).map(|pair| orient3d(first, pair[0], pair[1], eye));
+    let (mut n_before, mut others) = (0, false);
+    signs.by_ref().for_each(|sign| {
+        n_before += usize::from(sign > 0.0);
+        others |= sign < 0.0;
+    });
+    n_before > 0 && !others
 }
 
 /// Whether `eye` is in the box around the corners, or outside by at most `margin`.
@@ -185,6 +201,27 @@ mod tests {
         );
         assert_eq!(plane.facing(&tilted, [2.0, 0.0, 5.0], 0.0), Facing::Behind);
         assert_eq!(plane.facing(&tilted, [2.0, 0.0, 5.0], 1e-9), Facing::Level);
+    }
+
+    /// A thin triangle's normal cannot be told well from rounded products; exact signs can.
+    #[test]
+    fn slivers_are_faced_exactly() {
+        for (w, h) in [(1e-4, 4e-5), (1e-3, 4e-6), (1e-2, 4e-7), (1.0, 4e-9)] {
+            let corners = [[0.0, 0.0, 0.0], [0.0, 0.0, 1000.0], [w, -w, 500.0]];
+            let front = Front::of(&corners, false);
+            let (near, far) = ([4.0 - h / 2.0, -4.0 - h / 2.0, 500.0], [4.0 + h / 2.0, -4.0 + h / 2.0, 500.0]);
+            let faces = [near, far].map(|eye| front.facing(&corners, eye, 0.0));
+            assert!(faces.contains(&Facing::Before) && faces.contains(&Facing::Behind), "{faces:?}");
+            // On the plane.
+            assert_eq!(front.facing(&corners, [4.0, -4.0, 500.0], 0.0), Facing::Behind);
+            let turned = [corners[1], corners[0], corners[2]];
+            let back = Front::of(&turned, false);
+            assert_eq!([far, near].map(|eye| back.facing(&turned, eye, 0.0)), faces);
+        }
+    }
+
+    #[test]
+    fn sides_of_nonsense_are_not_told() {
         assert_eq!(Front::of(&[[f64::NAN; 3]; 3], false).facing(&[], [0.0; 3], 1e-9), Facing::Level);
         assert_eq!(Front::of(&[], false).facing(&[], [0.0; 3], 1e-9), Facing::Level);
     }

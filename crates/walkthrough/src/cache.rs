@@ -13,13 +13,23 @@ pub(crate) struct Cache<T> {
     things: BTreeMap<CellId, (Arc<T>, usize, u64)>,
     /// The cells by when they were used last. No two have the same time.
     by_use: BTreeMap<u64, CellId>,
+    /// Cells that stay whatever the budget says.
+    pinned: Vec<CellId>,
     now: u64,
     n_dropped: u64,
 }
 
 impl<T> Cache<T> {
     pub(crate) fn new(budget: usize) -> Self {
-        Self { budget, n_bytes: 0, things: BTreeMap::new(), by_use: BTreeMap::new(), now: 0, n_dropped: 0 }
+        Self {
+            budget,
+            n_bytes: 0,
+            things: BTreeMap::new(),
+            by_use: BTreeMap::new(),
+            pinned: Vec::new(),
+            now: 0,
+            n_dropped: 0,
+        }
     }
 
     /// What was prepared for a cell, which counts as used now. O(log n).
@@ -37,16 +47,23 @@ impl<T> Cache<T> {
         self.things.contains_key(&cell)
     }
 
+    /// From now on these cells stay whatever the budget says, and no others.
+    pub(crate) fn pin(&mut self, cells: &[CellId]) {
+        self.pinned.clear();
+        self.pinned.extend_from_slice(cells);
+    }
+
     /// Adds what was prepared for a cell, which counts as used now. Others are dropped until the budget is kept or only
-    /// this one is left.
+    /// this one and pinned ones are left.
     pub(crate) fn add(&mut self, cell: CellId, thing: T, n_bytes: usize) {
         self.remove(cell);
         self.now += 1;
         self.things.insert(cell, (Arc::new(thing), n_bytes, self.now));
         self.by_use.insert(self.now, cell);
         self.n_bytes += n_bytes;
-        while self.n_bytes > self.budget && self.things.len() > 1 {
-            let Some(&oldest) = self.by_use.values().next() else { break };
+        while self.n_bytes > self.budget {
+            let mut loose = self.by_use.values().filter(|other| **other != cell && !self.pinned.contains(other));
+            let Some(&oldest) = loose.next() else { break };
             self.remove(oldest);
             self.n_dropped += 1;
         }
@@ -96,6 +113,19 @@ mod tests {
                 prop_assert_eq!(cache.by_use.len(), cache.len());
             }
         }
+    }
+
+    #[test]
+    fn pinned_ones_stay() {
+        let mut cache = Cache::new(10);
+        cache.pin(&[CellId(0), CellId(1)]);
+        for cell in [0, 1, 2, 3] {
+            cache.add(CellId(cell), (), 10);
+        }
+        assert!(cache.has(CellId(0)) && cache.has(CellId(1)) && !cache.has(CellId(2)) && cache.has(CellId(3)));
+        cache.pin(&[]);
+        cache.add(CellId(4), (), 10);
+        assert_eq!(cache.len(), 1);
     }
 
     #[test]

@@ -47,7 +47,8 @@ pub struct Prefetcher<P: Prepare> {
 }
 
 impl<P: Prepare> Prefetcher<P> {
-    /// Starts the thread. `budget` bounds the bytes of what is kept; one thing is kept even if it is larger.
+    /// Starts the thread. `budget` bounds the bytes of what is kept, besides the last thing
+    /// made and what is pinned.
     ///
     /// The thread ends when this is dropped, after what it is about to make.
     pub fn new(maker: P, budget: usize) -> Self {
@@ -98,6 +99,12 @@ impl<P: Prepare> Prefetcher<P> {
     /// Whether a cell's is there.
     pub fn has(&self, cell: CellId) -> bool {
         self.cache.has(cell)
+    }
+
+    /// From now on what was made for these cells stays whatever the budget says: those that are needed at the same time must not
+    /// drop each other.
+    pub fn pin(&mut self, cells: &[CellId]) {
+        self.cache.pin(cells);
     }
 
     /// Says which cells will be needed, the most urgent first. Those that are not there are made in this order; what

@@ -12,7 +12,8 @@ use std::fmt;
 /// How to follow a viewer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WalkOptions {
-    /// Bytes of prepared outlooks to keep at most; one is kept even if it is larger.
+    /// Bytes of prepared outlooks to keep at most. Those of the cells that the eye is in, and of cells with mirrors that it looks
+    /// into, are kept whatever they take, and the last one made.
     pub budget: usize,
     /// How many frames ahead to prepare for, if the viewer goes on as he does.
     pub frames_ahead: u32,
@@ -100,8 +101,8 @@ pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static>
     seen: Seen,
     images: Vec<Image>,
     at: Vec<CellId>,
-    /// Cells with mirrors that are looked at and not prepared.
-    missing: Vec<CellId>,
+    /// Cells with mirrors that are looked into.
+    mirrored: Vec<CellId>,
     /// Cells to come, the most urgent first.
     wishes: Vec<CellId>,
     found: Vec<CellId>,
@@ -131,7 +132,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
             seen: Seen::new(),
             images: Vec::new(),
             at: Vec::new(),
-            missing: Vec::new(),
+            mirrored: Vec::new(),
             wishes: Vec::new(),
             found: Vec::new(),
             pending: Vec::new(),
@@ -170,7 +171,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         let (n_cells, n_objects) = (self.resident.n_cells(), self.resident.n_objects());
         self.seen.clear(n_cells, n_objects);
         self.images.clear();
-        self.missing.clear();
+        self.mirrored.clear();
         self.resident.locate(view.eye(), &mut self.pending, &mut self.at);
         let mut answer = Answer::Full;
         for &cell in &self.at {
@@ -187,13 +188,12 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
             self.seen.add_cells((0..n_cells as u32).map(CellId));
             self.seen.add_objects(0..n_objects as u32);
         } else if self.options.bounces > 0 {
-            let (outlooks, missing) = (&mut self.outlooks, &mut self.missing);
+            let (outlooks, mirrored) = (&mut self.outlooks, &mut self.mirrored);
             let outlook = |cell| {
-                let there = outlooks.get(cell);
-                if there.is_none() {
-                    missing.push(cell);
+                if !mirrored.contains(&cell) {
+                    mirrored.push(cell);
                 }
-                there
+                outlooks.get(cell)
             };
             let sizes = [n_cells, n_objects];
             self.images = follow_reflections(
@@ -223,7 +223,8 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
     fn look_ahead(&mut self) {
         self.wishes.clear();
         self.wishes.extend_from_slice(&self.at);
-        self.wishes.extend_from_slice(&self.missing);
+        self.wishes.extend_from_slice(&self.mirrored);
+        self.outlooks.pin(&self.wishes);
         let n = self.options.places_per_frame;
         // Places near by come in each frame, those farther ahead in turn.
         let turn = (self.counters.frames % 8) as f64 / 8.0;

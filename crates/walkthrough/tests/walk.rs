@@ -332,3 +332,13 @@ fn mirrors_in_mirrors_come_in_time() {
     assert_eq!(words, [(vec![7], true), (vec![7, 8], true)]);
     assert_eq!(frame.images[0].cells, [CellId(0), CellId(1)]);
 }
+
+#[test]
+fn cells_on_a_border_do_not_drop_each_other() {
+    let table = rooms(6);
+    let (source, gate) = slow(&table, None);
+    gate.open();
+    let mut walk = walk(&table, source, WalkOptions { budget: 1, ..WalkOptions::default() });
+    let (cells, _) = until_full(&mut walk, &looking_right(3.0), Method::CellToCell);
+    assert_eq!(cells, BTreeSet::from([0, 1, 2, 3, 4, 5]));
+}
