@@ -15,7 +15,7 @@ use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The most views in mirrors that are followed for one frame; mirrors that face each other show many.
-const MOST_VIEWS: usize = 4096;
+const MOST_VIEWS: usize = 1024;
 
 /// What is seen by way of one mirror after another.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
