@@ -119,7 +119,8 @@ impl SmallBsp {
     fn leaf(&self, leaf: usize, first: usize, count: usize) -> Vec<u8> {
         let wide = |n: usize| (n as u32).to_le_bytes().to_vec();
         let short = |n: usize| (n as u16).to_le_bytes().to_vec();
-        let west = if self.world { 64 * leaf.saturating_sub(1) as i16 } else { 0 };
+        // Farther than bounds of 16 bits reach, leafs are all at the same place.
+        let west = if self.world { (64 * leaf.saturating_sub(1)).min(32_000) as i16 } else { 0 };
         let bounds = [west, 0, 0, west + 64, 64, 64i16];
         let shorts: Vec<u8> = bounds.iter().flat_map(|b| b.to_le_bytes()).collect();
         let floats: Vec<u8> = bounds.iter().flat_map(|b| f32::from(*b).to_le_bytes()).collect();
