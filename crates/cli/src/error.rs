@@ -29,6 +29,9 @@ pub(crate) enum CliError {
     /// A file is no sound packed table.
     #[error("{}: {source}", path.display())]
     Packed { path: PathBuf, source: PackedError },
+    /// A packed table where a plain one is needed.
+    #[error("{}: the table is packed; `sightlines unpack` makes it a plain one, which this command takes", path.display())]
+    IsPacked { path: PathBuf },
     /// A table cannot be packed.
     #[error("{}: {source}", path.display())]
     Pack { path: PathBuf, source: PackError },

@@ -78,6 +78,9 @@ pub(crate) fn table(path: &Path) -> Result<Table, CliError> {
     let mut file = File::open(path).map_err(open)?;
     // What is no table is refused before the rest of a large file is read.
     file.by_ref().take(format::MAGIC.len() as u64).read_to_end(&mut bytes).map_err(open)?;
+    if bytes == packed::format::MAGIC {
+        return Err(CliError::IsPacked { path: path.to_owned() });
+    }
     if bytes == format::MAGIC {
         file.read_to_end(&mut bytes).map_err(open)?;
     }

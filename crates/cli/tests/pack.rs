@@ -33,6 +33,11 @@ fn tables_are_packed_and_come_back() {
         let n_sections = parts.iter().filter(|part| part["resident"] == true).count();
         assert_eq!(sum(true) + sum(false) + 24 + 24 * n_sections as u64 + 4, packed.len() as u64);
         assert!(folder.run(&["info", "small.pvz"]).expect(0).out.contains(": packed visibility table in "));
+        // Who needs the plain one says so.
+        for command in [&["export", "small.pvz"][..], &["pack", "small.pvz", "-o", "twice.pvz"]] {
+            let told = folder.run(command).expect(2);
+            assert!(told.err.contains("small.pvz: the table is packed; `sightlines unpack` makes it"), "{}", told.err);
+        }
         // It answers as the table does, but for the time.
         let eye = middle(&table, table.n_cells() / 2);
         for more in [&[][..], &views[0], &["--method", "all"]] {

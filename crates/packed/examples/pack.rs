@@ -1,6 +1,6 @@
 //! Packs a table, opens what was written, and follows a viewer through it.
 //!
-//! `pack IN.pvs OUT.pvp [MAX_BYTES]`; without arguments it packs a row of rooms and keeps it in memory.
+//! `pack IN.pvs OUT.pvz [MAX_BYTES]`; without arguments it packs a row of rooms and keeps it in memory.
 
 use sightlines_packed::{PackOptions, Packed, Source, pack_report};
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, Table, TableParts};

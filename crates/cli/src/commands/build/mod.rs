@@ -37,7 +37,8 @@ pub(crate) struct BuildArgs {
     bake: BakeArgs,
     /// Keep stab trees in the table: for each cell the sequences of portals out of it that a sightline passes. A tree
     /// has at most N nodes and is cut beyond, which shows more and hides nothing; without N 65536 for plans, 16384
-    /// for scenes in space, 4096 for Quake maps and portal files
+    /// for scenes in space, 4096 for Quake maps and portal files. May take much longer than the table and make it several
+    /// times as large; without trees the exact method finds the same cells
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, value_parser = clap::value_parser!(u32).range(1..))]
     stab_trees: Option<Option<u32>>,
     /// Print the result as JSON

@@ -216,6 +216,9 @@ impl fmt::Display for Outcome {
             writeln!(f, "packed table   {resident} in memory, {blocks} of blocks kept")?;
         }
         writeln!(f, "left to draw   on average; of it, % of the first line; of all, %")?;
-        writeln!(f, "late           frames of a walk without waiting that came too early, and showed more")
+        writeln!(
+            f,
+            "late           frames of a walk without waiting (paced by --fps) that came too early, and showed more"
+        )
     }
 }
