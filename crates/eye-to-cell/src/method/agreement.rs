@@ -53,19 +53,7 @@ fn block(doors: &[[u8; 4]]) -> Table {
             }
         }
     }
-    let n = cells.len();
-    let bounds: Vec<_> = cells.iter().map(|c| (c.min, c.max)).collect();
-    let mut rows = BitMatrix::new(n, n);
-    (0..n * n).for_each(|k| rows.set(k / n, k % n, true));
-    let parts = TableParts {
-        rows,
-        portals,
-        cell_objects: vec![vec![]; n],
-        locator: Locator::build(&bounds, 3),
-        cells,
-        ..TableParts::empty(3)
-    };
-    Table::new(parts).unwrap()
+    all_see_all(3, cells, portals)
 }
 
 /// The same in the plane, with `side` squares along each side.
@@ -94,6 +82,11 @@ fn plan(doors: &[[u8; 4]], side: usize) -> Table {
             portals.push(PortalRecord { cells: [id(x, y), id(x, y + 1)], sides: [3, 2], points });
         }
     }
+    all_see_all(2, cells, portals)
+}
+
+/// A table whose rows hide nothing.
+fn all_see_all(dimension: u8, cells: Vec<CellRecord>, portals: Vec<PortalRecord>) -> Table {
     let n = cells.len();
     let bounds: Vec<_> = cells.iter().map(|c| (c.min, c.max)).collect();
     let mut rows = BitMatrix::new(n, n);
@@ -102,9 +95,9 @@ fn plan(doors: &[[u8; 4]], side: usize) -> Table {
         rows,
         portals,
         cell_objects: vec![vec![]; n],
-        locator: Locator::build(&bounds, 2),
+        locator: Locator::build(&bounds, dimension),
         cells,
-        ..TableParts::empty(2)
+        ..TableParts::empty(dimension)
     };
     Table::new(parts).unwrap()
 }
