@@ -1,7 +1,7 @@
 //! What a table need not have: mirrors, numbers of polygons, planes and stab trees in files.
 
 use crate::common::assert_well_formed;
-use crate::common::file::{File, Part};
+use crate::common::file::{File, Part, assert_damage_is_noticed};
 use crate::common::full::{any_full_parts, villa, wedges};
 use crate::common::rooms;
 use proptest::prelude::*;
@@ -27,12 +27,7 @@ proptest! {
 
     #[test]
     fn extras_damage_is_an_error(parts in any_full_parts(), at in any::<prop::sample::Index>(), flip in 1u8..=255) {
-        let bytes = Table::new(parts).unwrap().to_bytes();
-        let at = at.index(bytes.len());
-        prop_assert!(Table::from_bytes(&bytes[..at]).is_err(), "cut to {} bytes", at);
-        let mut changed = bytes;
-        changed[at] ^= flip;
-        prop_assert!(Table::from_bytes(&changed).is_err(), "byte {} changed", at);
+        assert_damage_is_noticed(&Table::new(parts).unwrap(), at, flip);
     }
 
     /// Bytes changed, removed or added in the new sections, with right checksums: no panic, and what is a

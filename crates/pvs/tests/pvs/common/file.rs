@@ -2,6 +2,9 @@
 //!
 //! Written from the description of the format, apart from the code that is tested.
 
+use proptest::prelude::*;
+use sightlines_pvs::Table;
+
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Part {
     pub(crate) id: [u8; 4],
@@ -70,4 +73,14 @@ pub(crate) fn fix_header(bytes: &mut [u8]) {
         let crc = crc32fast::hash(&bytes[..end]);
         bytes[end..end + 4].copy_from_slice(&crc.to_le_bytes());
     }
+}
+
+/// Panics unless the table's bytes are refused when they end at a place, and with the byte there changed.
+pub(crate) fn assert_damage_is_noticed(table: &Table, at: prop::sample::Index, flip: u8) {
+    let bytes = table.to_bytes();
+    let at = at.index(bytes.len());
+    assert!(Table::from_bytes(&bytes[..at]).is_err(), "cut to {at} bytes");
+    let mut changed = bytes;
+    changed[at] ^= flip;
+    assert!(Table::from_bytes(&changed).is_err(), "byte {at} changed");
 }
