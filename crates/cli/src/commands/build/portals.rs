@@ -15,11 +15,32 @@ use std::path::Path;
 /// Builds the table of the clusters of a portal file that came from `path`.
 pub(crate) fn bake(path: &Path, prt: &Prt, args: &BakeArgs, show_progress: bool) -> Result<BakedPrt, CliError> {
     args.check_for_portals(path)?;
+    let baked = with_progress(args, show_progress, |options| bake_prt(prt, options));
+    baked.map_err(|source| CliError::BakePrt { path: path.to_owned(), source })
+}
+
+/// Runs a search with the options of the command, and shows how far it is.
+pub(super) fn with_progress<T>(args: &BakeArgs, show_progress: bool, run: impl FnOnce(PrtOptions<'_>) -> T) -> T {
     let mut bar = ShareBar::new("which clusters see which", show_progress);
     let mut watch = |search: &ConvexSearch| bar.set(search.share_done());
     let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    let baked = bake_prt(prt, PrtOptions { search, from: None, watch: Some(&mut watch) });
-    baked.map_err(|source| CliError::BakePrt { path: path.to_owned(), source })
+    run(PrtOptions { search, from: None, watch: Some(&mut watch) })
+}
+
+/// Tells how it was found out which clusters of what see which, and what came out of it.
+pub(super) fn write_method(
+    f: &mut fmt::Formatter<'_>,
+    fast: bool,
+    of: fmt::Arguments<'_>,
+    clusters: &Clusters,
+    verbose: bool,
+) -> fmt::Result {
+    let how = if fast { "the first, coarse bound only" } else { "exact stabbing of convex portals" };
+    write!(f, "method         {how}, of {of}\n{clusters}")?;
+    if verbose {
+        write!(f, "{}", clusters.undecided_pairs())?;
+    }
+    Ok(())
 }
 
 /// What was built.
@@ -57,12 +78,7 @@ impl Outcome {
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
-        let how = if self.fast { "the first, coarse bound only" } else { "exact stabbing of convex portals" };
-        writeln!(f, "method         {how}, of a {} file", self.portal_format)?;
-        write!(f, "{}", self.clusters)?;
-        if self.verbose {
-            write!(f, "{}", self.clusters.undecided_pairs())?;
-        }
+        write_method(f, self.fast, format_args!("a {} file", self.portal_format), &self.clusters, self.verbose)?;
         writeln!(f, "time           {} to find out who sees whom", self.clusters.time())
     }
 }

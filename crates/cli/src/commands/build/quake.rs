@@ -1,16 +1,15 @@
 //! From a Quake map with its portal file to the table of its clusters, which knows where they are.
 
 use super::BakeArgs;
+use super::portals::{with_progress, write_method};
 use crate::commands::vis::{Clusters, format_name};
 use crate::error::CliError;
 use crate::output::{self, bytes, count};
-use crate::progress::ShareBar;
 use serde::Serialize;
+use sightlines::bake::PrtBakeError;
 use sightlines::bake::quake::{BakedMap, WorldSummary, bake_map};
-use sightlines::bake::{PrtBakeError, PrtOptions};
 use sightlines::formats::Prt;
 use sightlines::formats::quake::{Bsp, VisibilityError, read_prt};
-use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -43,10 +42,7 @@ pub(crate) fn bake(
     show_progress: bool,
 ) -> Result<BakedMap, CliError> {
     args.check_for_portals(path)?;
-    let mut bar = ShareBar::new("which clusters see which", show_progress);
-    let mut watch = |search: &ConvexSearch| bar.set(search.share_done());
-    let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    let baked = bake_map(bsp, &portals.prt, PrtOptions { search, from: None, watch: Some(&mut watch) });
+    let baked = with_progress(args, show_progress, |options| bake_map(bsp, &portals.prt, options));
     baked.map_err(|source| match source {
         PrtBakeError::Bsp(_) => CliError::BakePrt { path: path.to_owned(), source },
         PrtBakeError::Visibility(
@@ -121,12 +117,8 @@ impl Outcome {
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
-        let how = if self.fast { "the first, coarse bound only" } else { "exact stabbing of convex portals" };
-        writeln!(f, "method         {how}, of a {} map with its {} file", self.format, self.portal_format)?;
-        write!(f, "{}", self.clusters)?;
-        if self.verbose {
-            write!(f, "{}", self.clusters.undecided_pairs())?;
-        }
+        let of = format_args!("a {} map with its {} file", self.format, self.portal_format);
+        write_method(f, self.fast, of, &self.clusters, self.verbose)?;
         let never = match self.n_unlisted_faces {
             0 => String::new(),
             n => format!(", {n} of them never drawn"),
