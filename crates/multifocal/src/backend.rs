@@ -1,0 +1,67 @@
+//! The contract of those who fill buffers.
+
+use crate::{Buffer, Job, Measure};
+use std::fmt;
+
+/// Why a backend did not do a job.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BackendError {
+    /// It has no form of this measure.
+    #[error("{backend} cannot measure {}", .measure.name())]
+    Unsupported {
+        /// Its name.
+        backend: &'static str,
+        /// What it was asked for.
+        measure: Measure,
+    },
+    /// The device has no room for the job.
+    #[error("{backend} is out of memory: {needed} bytes are needed, {offered} are offered")]
+    OutOfMemory {
+        /// Its name.
+        backend: &'static str,
+        /// Bytes of the largest buffer of the job.
+        needed: u64,
+        /// What the device has.
+        offered: u64,
+    },
+    /// The device is gone; every later job fails too.
+    #[error("the device of {backend} is lost: {reason}")]
+    Lost {
+        /// Its name.
+        backend: &'static str,
+        /// What the driver says.
+        reason: String,
+    },
+    /// The driver refused something that should have worked.
+    #[error("the device of {backend} failed: {reason}")]
+    Device {
+        /// Its name.
+        backend: &'static str,
+        /// What the driver says.
+        reason: String,
+    },
+}
+
+/// Fills the multifocal buffers of a job, one for each plane.
+///
+/// What every implementation promises, checked by the crate's `conformance` module:
+/// 1. sound: a stored value never exceeds the exact one at any point of its texel;
+/// 2. tight: where one occluder blocks the whole bundle with room to spare, the texel is blocked, and its value is
+///    within the stated slack;
+/// 3. complete: every texel of every plane is written, whatever was in the buffer before;
+/// 4. repeatable: same job, same bits.
+pub trait MultifocalBackend: fmt::Debug + Send {
+    /// Stable lower-case name for test titles and charts, such as `"cpu-reference"`.
+    fn name(&self) -> &'static str;
+
+    /// Whether it has a form of `measure`.
+    fn supports(&self, measure: Measure) -> bool;
+
+    /// Fills `out`, one buffer for each plane of the job; resizes it to fit. After an error its content is
+    /// unspecified.
+    ///
+    /// # Errors
+    /// [`BackendError`]
+    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError>;
+}

@@ -1,0 +1,128 @@
+//! What a backend is asked to do.
+
+use crate::plane::power_of_two_at_most;
+use crate::{Measure, Occluder, Plane, PlaneError, Volume};
+
+/// Why a job cannot be done by anyone.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JobError {
+    /// No plane at all.
+    #[error("a job needs at least one plane")]
+    NoPlane,
+    /// A plane that is not in front of the volume.
+    #[error("plane {idx}: {error}")]
+    Plane {
+        /// Which.
+        idx: usize,
+        /// What is wrong.
+        error: PlaneError,
+    },
+    /// Planes of one job look the same way, each farther away than the one before.
+    #[error("plane {0} does not look the same way as the one before, or is no farther away")]
+    Order(usize),
+    /// Re-projection carries heights; distances cannot be carried from plane to plane.
+    #[error("planes are re-projected for heights only, not for {}", .0.name())]
+    Reproject(Measure),
+}
+
+/// One whole job: the buffers of one or several planes in one direction, for one volume.
+#[derive(Debug, Clone)]
+pub struct Job<'a> {
+    volume: Volume,
+    planes: Vec<Plane>,
+    occluders: &'a [Occluder],
+    measure: Measure,
+    reproject: bool,
+    unit: f64,
+}
+
+/// Values stay below 2 to the power of this.
+pub const VALUE_BITS: u32 = 28;
+
+impl<'a> Job<'a> {
+    /// Checks a job.
+    ///
+    /// * `planes`: looking the same way, from the nearest to the farthest
+    /// * `reproject`: whether what is known on a plane is carried over to the next one: a texel is blocked also
+    ///   where all lines from it to the volume cross blocked texels of the plane before
+    ///
+    /// # Errors
+    /// [`JobError`]
+    pub fn new(
+        volume: Volume,
+        planes: Vec<Plane>,
+        occluders: &'a [Occluder],
+        measure: Measure,
+        reproject: bool,
+    ) -> Result<Self, JobError> {
+        if planes.is_empty() {
+            return Err(JobError::NoPlane);
+        }
+        if reproject && planes.len() > 1 && !measure.is_height() {
+            return Err(JobError::Reproject(measure));
+        }
+        for (idx, plane) in planes.iter().enumerate() {
+            plane.check_in_front_of(&volume).map_err(|error| JobError::Plane { idx, error })?;
+        }
+        let farther = |[a, b]: &[Plane; 2]| {
+            let same = a.axis() == b.axis() && a.positive() == b.positive();
+            same && if a.positive() { a.at() < b.at() } else { a.at() > b.at() }
+        };
+        if let Some(i) = planes.array_windows().position(|pair| !farther(pair)) {
+            return Err(JobError::Order(i + 1));
+        }
+        let unit = unit(&volume, &planes, measure);
+        Ok(Self { volume, planes, occluders, measure, reproject, unit })
+    }
+
+    /// Where the eyes are.
+    pub const fn volume(&self) -> &Volume {
+        &self.volume
+    }
+
+    /// The planes, nearest first.
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    /// What hides.
+    pub const fn occluders(&self) -> &'a [Occluder] {
+        self.occluders
+    }
+
+    /// What the values mean.
+    pub const fn measure(&self) -> Measure {
+        self.measure
+    }
+
+    /// Whether planes are carried over to the next ones.
+    pub const fn reproject(&self) -> bool {
+        self.reproject
+    }
+
+    /// Scene units in one unit of the values: a power of two, the same for all planes of a job.
+    pub const fn unit(&self) -> f64 {
+        self.unit
+    }
+}
+
+/// A power of two of which all values of a job are less than 2^[`VALUE_BITS`] - 2.
+fn unit(volume: &Volume, planes: &[Plane], measure: Measure) -> f64 {
+    let largest = planes.iter().map(|plane| reach(volume, plane, measure)).fold(0.0, f64::max);
+    power_of_two_at_most(largest) * 4.0 / f64::from(1u32 << VALUE_BITS)
+}
+
+/// More than any value that an occluder between the volume and the plane can have.
+fn reach(volume: &Volume, plane: &Plane, measure: Measure) -> f64 {
+    let (b, axis) = (volume.bounds(), plane.axis());
+    let height = plane.height(b.min).max(plane.height(b.max));
+    debug_assert!(axis < 3, "planes are checked");
+    if measure.is_height() {
+        return height;
+    }
+    let (low, high) = (plane.origin(), plane.end());
+    let across = plane.across();
+    let aside = |k: usize| (b.max[across[k]] - low[k]).max(high[k] - b.min[across[k]]);
+    height + aside(0).max(0.0) + aside(1).max(0.0)
+}

@@ -1,0 +1,33 @@
+//! What is hidden from a whole volume of viewpoints: multifocal buffers.
+//!
+//! A multifocal buffer lies on a plane behind a scene. For each of its texels it says how far in front of it
+//! everything is surely blocked, whatever eye of the volume looks there; what lies behind that is hidden from the
+//! whole volume.
+//!
+//! Owns: the view volume ([`Volume`]), the planes with their texels ([`Plane`]), what hides ([`Occluder`]), what is
+//! compared ([`Measure`]), buffers ([`Buffer`]) and the jobs that fill them ([`Job`]), the contract of those who do
+//! ([`MultifocalBackend`]), and that of all methods that answer for a volume ([`FromRegion`], [`Umbra`]).
+//! Does not know: how buffers are filled, threads, devices, cells, files.
+//! Invariants: everything errs towards visible; conditions are decided by exact predicates, or by integers that were
+//! rounded towards visible; nothing compares with an epsilon.
+//!
+//! Source: Marsden, "Visibility Determination Using a Multifocal z-Buffer", 2002, with the corrections that
+//! make it conservative, given where they matter.
+
+pub mod backend;
+pub mod buffer;
+pub mod job;
+pub mod measure;
+pub mod occluder;
+pub mod plane;
+pub mod region;
+pub mod volume;
+
+pub use backend::{BackendError, MultifocalBackend};
+pub use buffer::Buffer;
+pub use job::{Job, JobError, VALUE_BITS};
+pub use measure::Measure;
+pub use occluder::{Occluder, OccluderError};
+pub use plane::{MAX_TEXELS, Plane, PlaneError};
+pub use region::{FromRegion, Guarantee, Umbra};
+pub use volume::{Volume, VolumeError};

@@ -1,0 +1,106 @@
+//! What hides: patches.
+
+use sightlines_geometry::{CoordinateError, Point3, check_coordinate, orient3d};
+
+/// Why something is no occluder.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OccluderError {
+    /// An outline of fewer than three corners, or no facet.
+    #[error("an occluder needs an outline of at least 3 corners and at least one facet")]
+    TooFew,
+    /// A facet without area.
+    #[error("facet {0} of an occluder has no area")]
+    Flat(usize),
+    /// A coordinate that predicates cannot take.
+    #[error("an occluder's {0}")]
+    Coordinate(#[from] CoordinateError),
+}
+
+/// A piece of surface without holes: triangles put together, and the closed loop of edges around them.
+///
+/// It need be neither flat nor convex; but it hides something from a volume of eyes only on those lines that pass
+/// all edges of the outline on the same side, and cross the planes of all facets. So what is nearly flat, with an
+/// outline that is nearly convex, hides most of what is behind it, and nothing that is not.
+///
+/// # Why this is sound
+/// Let a segment from an eye `v` to a point `p` pass every edge of the outline on the same side. Seen along
+/// the line the outline then goes round it in one direction all the way, so it winds around it at least once,
+/// and a surface with that outline is crossed by the line. If `v` is strictly in front of the planes of all facets
+/// and `p` is behind or on them, whatever facet is crossed is crossed between the two. The conditions are
+/// affine in `v` and in `p`, so they hold for a box of eyes and a rectangle of points if they hold for the
+/// corners. What matters is that the outline bounds the facets; so only one who has the surface can make an
+/// occluder, and the constructors here take triangles, or convex flat polygons.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Occluder {
+    outline: Vec<Point3>,
+    facets: Vec<[Point3; 3]>,
+}
+
+impl Occluder {
+    /// A triangle.
+    ///
+    /// # Errors
+    /// [`OccluderError::Flat`], [`OccluderError::Coordinate`]
+    pub fn triangle(corners: [Point3; 3]) -> Result<Self, OccluderError> {
+        Self::patch(corners.to_vec(), vec![corners])
+    }
+
+    /// A surface made of triangles, by its outline and one triangle for each different plane that its
+    /// triangles lie in.
+    ///
+    /// * `outline`: at least 3 corners, the boundary of the surface, once around, counter-clockwise as seen from the
+    ///   side that the facets' right-hand normals `(b - a) × (c - a)` point to
+    /// * `facets`: of each triangle of the surface, its plane: three corners, turning like the triangle
+    ///
+    /// That the one bounds the other is the caller's promise; it is not checked.
+    ///
+    /// # Errors
+    /// [`OccluderError`]
+    pub fn patch(outline: Vec<Point3>, facets: Vec<[Point3; 3]>) -> Result<Self, OccluderError> {
+        if outline.len() < 3 || facets.is_empty() {
+            return Err(OccluderError::TooFew);
+        }
+        for p in outline.iter().chain(facets.iter().flatten()) {
+            for &x in p {
+                check_coordinate(x)?;
+            }
+        }
+        match facets.iter().position(|&[a, b, c]| is_flat(a, b, c)) {
+            Some(i) => Err(OccluderError::Flat(i)),
+            None => Ok(Self { outline, facets }),
+        }
+    }
+
+    /// The outline.
+    pub fn outline(&self) -> &[Point3] {
+        &self.outline
+    }
+
+    /// A triangle in each plane.
+    pub fn facets(&self) -> &[[Point3; 3]] {
+        &self.facets
+    }
+
+    /// Whether all of `eyes` are strictly in front of all facets (`Some(true)`), or strictly behind all
+    /// (`Some(false)`). An occluder that says `None` hides nothing from them. Exact.
+    pub fn side_of(&self, eyes: &[Point3]) -> Option<bool> {
+        let mut sides = self.facets.iter().flat_map(|&[a, b, c]| eyes.iter().map(move |&v| orient3d(a, b, c, v)));
+        let first = sides.next()?;
+        if first > 0.0 {
+            sides.all(|s| s > 0.0).then_some(true)
+        } else if first < 0.0 {
+            sides.all(|s| s < 0.0).then_some(false)
+        } else {
+            None
+        }
+    }
+}
+
+/// Whether three points lie on a line. Exact.
+fn is_flat(a: Point3, b: Point3, c: Point3) -> bool {
+    (0..3).all(|k| {
+        let of = |p: Point3| robust::Coord { x: p[k], y: p[(k + 1) % 3] };
+        robust::orient2d(of(a), of(b), of(c)) == 0.0
+    })
+}

@@ -1,0 +1,42 @@
+//! The contract of those who say what is hidden from a volume, by whatever method.
+
+use crate::{BackendError, Volume};
+use sightlines_geometry::Aabb;
+use std::fmt;
+
+/// On which side a method errs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Guarantee {
+    /// What it calls hidden is hidden, for every scene.
+    Conservative,
+    /// What it calls hidden is hidden if the scene is as the text says, such as `"closed surfaces only"`.
+    ConservativeIf(&'static str),
+}
+
+/// A from-region method, made ready for a scene.
+pub trait FromRegion: fmt::Debug {
+    /// Stable lower-case name for test titles and charts.
+    fn name(&self) -> String;
+
+    /// On which side it errs.
+    fn guarantee(&self) -> Guarantee;
+
+    /// Works out whatever is needed to ask about one volume.
+    ///
+    /// # Errors
+    /// [`BackendError`], if a backend is used and nothing could take over.
+    fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError>;
+}
+
+/// What is hidden from one volume.
+pub trait Umbra {
+    /// Whether all of `target`, a closed box, is certainly hidden from all of the volume: every segment from
+    /// an eye to a point of it meets an occluder before that point. A box that meets the volume never is.
+    fn hides(&mut self, target: &Aabb<3>) -> bool;
+
+    /// Whether all of a polygon, or of the convex hull of points, is certainly hidden. Asks about the box around it
+    /// if a method knows nothing better.
+    fn hides_points(&mut self, points: &[sightlines_geometry::Point3]) -> bool {
+        self.hides(&Aabb::around(points.iter().copied()))
+    }
+}
