@@ -1,6 +1,6 @@
 //! What hides: patches.
 
-use sightlines_geometry::{CoordinateError, Point3, check_coordinate, orient3d};
+use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate, orient3d};
 
 /// Why something is no occluder.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -29,12 +29,13 @@ pub enum OccluderError {
 /// and a surface with that outline is crossed by the line. If `v` is strictly in front of the planes of all facets
 /// and `p` is behind or on them, whatever facet is crossed is crossed between the two. The conditions are
 /// affine in `v` and in `p`, so they hold for a box of eyes and a rectangle of points if they hold for the
-/// corners. What matters is that the outline bounds the facets; so only one who has the surface can make an
-/// occluder, and the constructors here take triangles, or convex flat polygons.
+/// corners. (Lines that lie in one plane with the whole outline wind around nothing; they are no open set.)
+/// What matters is that the outline bounds the triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Occluder {
     outline: Vec<Point3>,
     facets: Vec<[Point3; 3]>,
+    bounds: Aabb<3>,
 }
 
 impl Occluder {
@@ -43,33 +44,42 @@ impl Occluder {
     /// # Errors
     /// [`OccluderError::Flat`], [`OccluderError::Coordinate`]
     pub fn triangle(corners: [Point3; 3]) -> Result<Self, OccluderError> {
-        Self::patch(corners.to_vec(), vec![corners])
+        Self::patch(corners.to_vec(), &[corners])
     }
 
-    /// A surface made of triangles, by its outline and one triangle for each different plane that its
-    /// triangles lie in.
+    /// A surface made of triangles, and its outline.
     ///
     /// * `outline`: at least 3 corners, the boundary of the surface, once around, counter-clockwise as seen from the
-    ///   side that the facets' right-hand normals `(b - a) × (c - a)` point to
-    /// * `facets`: of each triangle of the surface, its plane: three corners, turning like the triangle
+    ///   side that the triangles' right-hand normals `(b - a) × (c - a)` point to; corners of the boundary that lie
+    ///   exactly on the straight line between their neighbours may be left out
+    /// * `triangles`: all triangles of the surface
     ///
-    /// That the one bounds the other is the caller's promise; it is not checked.
+    /// That the one bounds the others is the caller's promise; it is not checked. Keeps one triangle for each
+    /// different plane. O(triangles · planes).
     ///
     /// # Errors
     /// [`OccluderError`]
-    pub fn patch(outline: Vec<Point3>, facets: Vec<[Point3; 3]>) -> Result<Self, OccluderError> {
-        if outline.len() < 3 || facets.is_empty() {
+    pub fn patch(outline: Vec<Point3>, triangles: &[[Point3; 3]]) -> Result<Self, OccluderError> {
+        if outline.len() < 3 || triangles.is_empty() {
             return Err(OccluderError::TooFew);
         }
-        for p in outline.iter().chain(facets.iter().flatten()) {
+        for p in outline.iter().chain(triangles.iter().flatten()) {
             for &x in p {
                 check_coordinate(x)?;
             }
         }
-        match facets.iter().position(|&[a, b, c]| is_flat(a, b, c)) {
-            Some(i) => Err(OccluderError::Flat(i)),
-            None => Ok(Self { outline, facets }),
+        let mut facets: Vec<[Point3; 3]> = Vec::new();
+        for (idx, &triangle) in triangles.iter().enumerate() {
+            let [a, b, c] = triangle;
+            if is_flat(a, b, c) {
+                return Err(OccluderError::Flat(idx));
+            }
+            if !facets.iter().any(|&facet| is_same_plane(facet, triangle)) {
+                facets.push(triangle);
+            }
         }
+        let bounds = Aabb::around(outline.iter().chain(triangles.iter().flatten()).copied());
+        Ok(Self { outline, facets, bounds })
     }
 
     /// The outline.
@@ -77,9 +87,19 @@ impl Occluder {
         &self.outline
     }
 
-    /// A triangle in each plane.
+    /// One triangle in each different plane of the surface.
     pub fn facets(&self) -> &[[Point3; 3]] {
         &self.facets
+    }
+
+    /// Whether all of it lies in one plane.
+    pub const fn is_flat(&self) -> bool {
+        self.facets.len() == 1
+    }
+
+    /// The box around all of it.
+    pub const fn bounds(&self) -> &Aabb<3> {
+        &self.bounds
     }
 
     /// Whether all of `eyes` are strictly in front of all facets (`Some(true)`), or strictly behind all
@@ -95,6 +115,22 @@ impl Occluder {
             None
         }
     }
+}
+
+/// Whether two triangles lie in one plane, and turn the same way. Exact.
+fn is_same_plane([a, b, c]: [Point3; 3], other: [Point3; 3]) -> bool {
+    if other.iter().any(|&p| orient3d(a, b, c, p) != 0.0) {
+        return false;
+    }
+    // In one plane they turn the same way if they do so in a projection that shows the first one's area.
+    let turn = |[a, b, c]: [Point3; 3], k: usize| {
+        let of = |p: Point3| robust::Coord { x: p[k], y: p[(k + 1) % 3] };
+        robust::orient2d(of(a), of(b), of(c))
+    };
+    (0..3)
+        .map(|k| (turn([a, b, c], k), turn(other, k)))
+        .find(|t| t.0 != 0.0)
+        .is_some_and(|t| (t.0 > 0.0) == (t.1 > 0.0))
 }
 
 /// Whether three points lie on a line. Exact.
