@@ -65,11 +65,11 @@ impl<'a> Job<'a> {
         for (idx, plane) in planes.iter().enumerate() {
             plane.check_in_front_of(&volume).map_err(|error| JobError::Plane { idx, error })?;
         }
-        let farther = |[a, b]: &[Plane; 2]| {
+        let farther = |(a, b): (&Plane, &Plane)| {
             let same = a.axis() == b.axis() && a.positive() == b.positive();
             same && if a.positive() { a.at() < b.at() } else { a.at() > b.at() }
         };
-        if let Some(i) = planes.array_windows().position(|pair| !farther(pair)) {
+        if let Some(i) = planes.iter().zip(&planes[1..]).position(|pair| !farther(pair)) {
             return Err(JobError::Order(i + 1));
         }
         let unit = unit(&volume, &planes, measure);

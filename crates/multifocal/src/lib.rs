@@ -16,6 +16,9 @@
 
 pub mod backend;
 pub mod buffer;
+pub mod carry;
+pub mod footprint;
+pub mod form;
 pub mod job;
 pub mod measure;
 pub mod occluder;
@@ -25,6 +28,9 @@ pub mod volume;
 
 pub use backend::{BackendError, MultifocalBackend};
 pub use buffer::Buffer;
+pub use carry::Carry;
+pub use footprint::Footprint;
+pub use form::{Form, Forms};
 pub use job::{Job, JobError, VALUE_BITS};
 pub use measure::Measure;
 pub use occluder::{Occluder, OccluderError};

@@ -1,0 +1,105 @@
+//! Which affine functions bound an umbra, and the rectangle of texels around it.
+
+use super::affine::{Around, Edge, Window, orientation};
+use crate::Occluder;
+use sightlines_geometry::{Point3, orient3d};
+
+/// A plane through three points that bounds an umbra: `sign * orient3d(a, b, c, p) >= 0` for what is hidden.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Side {
+    points: [Point3; 3],
+    sign: f64,
+}
+
+impl Side {
+    fn at(&self, p: Point3) -> Around {
+        let [a, b, c] = self.points;
+        let f = orientation(a, b, c, p);
+        Around { about: self.sign * f.about, ..f }
+    }
+
+    fn at_corners(&self, window: &Window<'_>, bounds: [i32; 4]) -> [Around; 4] {
+        Window::places(bounds).map(|place| self.at(window.point(place)))
+    }
+}
+
+/// Finds the planes that bound the umbra of `occluder` for eyes in the box with `corners`: for each facet its own,
+/// and for each edge of the outline the one through the corner of the box from which it hides least there. False if
+/// it hides nothing. Exact.
+///
+/// Around an edge, the planes through the corners of the box all contain it. Let its facet's plane have the box in
+/// front, and measure angles around the edge from the direction into the facet: eyes have angles from 0 to π, and what
+/// lies behind the facet from -π to 0. A line from an eye at α to a point at β passes inside if α - β is at most π. So
+/// the eye with the largest angle decides for all points behind the facet, and it is the one that has no other
+/// corner outside of its plane: a comparison by exact predicates.
+pub(crate) fn sides(occluder: &Occluder, corners: &[Point3; 8], out: &mut Vec<Side>) -> bool {
+    out.clear();
+    // From in front the outline goes round counter-clockwise, and what passes inside is below the planes.
+    let sign = match occluder.side_of(corners) {
+        Some(true) => -1.0,
+        Some(false) => 1.0,
+        None => return false,
+    };
+    out.extend(occluder.facets().iter().map(|&points| Side { points, sign }));
+    let outline = occluder.outline();
+    for (i, &p) in outline.iter().enumerate() {
+        let q = outline[(i + 1) % outline.len()];
+        let outside = |v: Point3, other: Point3| sign * orient3d(v, p, q, other) < 0.0;
+        let first = corners[0];
+        let farthest = corners[1..].iter().fold(first, |v, &other| if outside(v, other) { other } else { v });
+        out.push(Side { points: [farthest, p, q], sign });
+    }
+    true
+}
+
+/// The texels around the umbra, widened to whole ones; None if it is empty. May lose texels to rounding, never
+/// gain: what is within the bounds still has to pass all edges.
+pub(crate) fn bounds(sides: &[Side], window: &Window<'_>) -> Option<[i32; 4]> {
+    let all = window.all();
+    let (w, h) = (f64::from(all[2]), f64::from(all[3]));
+    let mut polygon = vec![[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]];
+    let mut clipped = Vec::new();
+    for side in sides {
+        let at = side.at_corners(window, all).map(|f| f.about);
+        let (dx, dy) = ((at[1] - at[0]) / w, (at[2] - at[0]) / h);
+        clip(&polygon, |[x, y]| at[0] + dx * x + dy * y, &mut clipped);
+        std::mem::swap(&mut polygon, &mut clipped);
+        if polygon.len() < 3 {
+            return None;
+        }
+    }
+    let extent =
+        |k: usize| polygon.iter().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), p| (l.min(p[k]), h.max(p[k])));
+    let ((x0, x1), (y0, y1)) = (extent(0), extent(1));
+    let whole = |low: f64, high: f64, n: i32| ((low.floor() as i32).clamp(0, n), (high.ceil() as i32).clamp(0, n));
+    let ((x0, x1), (y0, y1)) = (whole(x0, x1, all[2]), whole(y0, y1, all[3]));
+    (x0 < x1 && y0 < y1).then_some([x0, y0, x1, y1])
+}
+
+/// The part of a convex polygon where `f` is not negative, in plain doubles.
+fn clip(polygon: &[[f64; 2]], f: impl Fn([f64; 2]) -> f64, out: &mut Vec<[f64; 2]>) {
+    out.clear();
+    for (i, &a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let (fa, fb) = (f(a), f(b));
+        if fa >= 0.0 {
+            out.push(a);
+        }
+        if (fa >= 0.0) != (fb >= 0.0) {
+            let t = fa / (fa - fb);
+            out.push([a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]);
+        }
+    }
+}
+
+/// Appends the integer forms of all sides. False if nothing passes them.
+pub(crate) fn push_edges(sides: &[Side], window: &Window<'_>, bounds: [i32; 4], out: &mut Vec<[i32; 3]>) -> bool {
+    for side in sides {
+        match window.edge(bounds, side.at_corners(window, bounds)) {
+            Edge::Superfluous => {}
+            Edge::Nowhere => return false,
+            Edge::Integers(edge) => out.push(edge),
+        }
+    }
+    true
+}
