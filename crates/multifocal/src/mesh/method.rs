@@ -1,0 +1,61 @@
+//! Sheets as a method of their own.
+
+use super::{Asker, Sheets};
+use crate::{BackendError, FromRegion, Guarantee, Umbra, Volume};
+use sightlines_geometry::{Aabb, Point3};
+
+/// Hidden is what one sheet of the mesh separates from the volume.
+#[derive(Debug)]
+pub struct SheetMethod {
+    sheets: Sheets,
+    limit: usize,
+}
+
+impl SheetMethod {
+    /// How many sides of triangles are walked over for one target, unless said otherwise.
+    pub const DEFAULT_LIMIT: usize = 4096;
+
+    /// For a scene of triangles, with [`Self::DEFAULT_LIMIT`]. O(n log² n).
+    pub fn new(triangles: &[[Point3; 3]]) -> Self {
+        Self { sheets: Sheets::new(triangles), limit: Self::DEFAULT_LIMIT }
+    }
+
+    /// With another limit.
+    #[must_use]
+    pub fn with_limit(mut self, limit: usize) -> Self {
+        self.limit = limit;
+        self
+    }
+
+    /// The sheets.
+    pub fn sheets(&self) -> &Sheets {
+        &self.sheets
+    }
+}
+
+impl FromRegion for SheetMethod {
+    fn name(&self) -> String {
+        "sheets".to_owned()
+    }
+
+    fn guarantee(&self) -> Guarantee {
+        Guarantee::Conservative
+    }
+
+    fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError> {
+        Ok(Box::new(SheetUmbra { asker: self.sheets.asker(), volume: *volume.bounds(), limit: self.limit }))
+    }
+}
+
+#[derive(Debug)]
+struct SheetUmbra<'a> {
+    asker: Asker<'a>,
+    volume: Aabb<3>,
+    limit: usize,
+}
+
+impl Umbra for SheetUmbra<'_> {
+    fn hides(&mut self, target: &Aabb<3>) -> bool {
+        self.asker.hides(&self.volume, target, self.limit)
+    }
+}

@@ -1,0 +1,399 @@
+//! Surfaces that separate two boxes, by parity.
+//!
+//! Let `F` be any set of triangles, and its *rim* the edges at which an odd number of them end. For a box `V` of eyes, a
+//! box `E` and the convex hull `K` of both, let
+//! 1. no triangle of `F` meet the relative interior of `V`, nor any point of `E`,
+//! 2. no edge of the rim meet the relative interior of `K`,
+//! 3. one segment from the relative interior of `V` to that of `E` cross `F` an odd number of times, nowhere at an edge.
+//!
+//! Then every segment from a point of `V` to a point of `E` meets `F` before its end.
+//!
+//! # Why
+//! Segments between the relative interiors can be moved into each other, as these are convex; on the way all
+//! stay in the relative interior of `K`, as a point between relative interior points of two convex sets is in
+//! the relative interior of their hull. So they never pass the rim (2), their ends never pass `F` (1), and how often they cross
+//! `F` stays odd or even: it is the intersection number modulo 2 of a path and a chain, each of which ends where the other is not.
+//! So all of them meet `F` (3). A segment from or to a border is a limit of such segments, and meets `F` as `F` is closed; not at
+//! its end in `E` (1), so before. At its other end it may: an eye that touches a wall sees nothing through it.
+//!
+//! `F` is free. Here it is found by walking over the surface that the eyes see, from each triangle that a segment hits first,
+//! around edges where these are open or shared by many, to the next triangle on the same side; what is walked over on both
+//! sides is left out. Nothing depends on that: the three conditions are checked afterwards.
+//!
+//! Source: parity as for the ShieldTester of Navazo, Rossignac, Jou and Shariff, Computer Graphics Forum 22(3), 2003; the walk
+//! on sides and the treatment of borders were chosen here.
+
+use super::shaft::{Shaft, avoids};
+use super::vector::{basis, dot, sub, unit};
+use super::weld::Mesh;
+use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d};
+
+/// A mesh, ready to be asked what it separates. Can be shared by threads.
+#[derive(Debug)]
+pub struct Sheets {
+    mesh: Mesh,
+    boxes: Vec<Aabb<3>>,
+    tree: BoxTree<3>,
+    /// The triangles of each edge in their order around it, as the mesh lists them.
+    around: Vec<u32>,
+    around_starts: Vec<u32>,
+}
+
+impl Sheets {
+    /// Welds the triangles. O(n log² n).
+    pub fn new(triangles: &[[Point3; 3]]) -> Self {
+        Self::of(Mesh::weld(triangles))
+    }
+
+    /// Of a mesh. O(n log² n).
+    pub fn of(mesh: Mesh) -> Self {
+        let n = mesh.triangles().len() as u32;
+        let boxes: Vec<Aabb<3>> = (0..n).map(|t| Aabb::around(mesh.corners(t))).collect();
+        let tree = BoxTree::build(&boxes, 4);
+        let (mut around, mut around_starts) = (Vec::with_capacity(mesh.edges().len() * 2), vec![0]);
+        for edge in 0..mesh.edges().len() as u32 {
+            let start = around.len();
+            around.extend_from_slice(mesh.triangles_at(edge));
+            if around.len() > start + 2 {
+                sort_around(&mesh, edge, &mut around[start..]);
+            }
+            around_starts.push(around.len() as u32);
+        }
+        Self { mesh, boxes, tree, around, around_starts }
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// What many questions are asked with: its memory is used again.
+    pub fn asker(&self) -> Asker<'_> {
+        let n = self.mesh.triangles().len();
+        Asker {
+            sheets: self,
+            epoch: 0,
+            walked: vec![0; 2 * n],
+            codes: vec![(0, 0); self.mesh.vertices().len()],
+            odd: vec![0; self.mesh.edges().len()],
+            queue: Vec::new(),
+            chain: Vec::new(),
+        }
+    }
+
+    /// One question; see [`Asker::hides`]. O(n) besides, so ask many of one [`Asker`].
+    pub fn hides(&self, v: &Aabb<3>, e: &Aabb<3>, limit: usize) -> bool {
+        self.asker().hides(v, e, limit)
+    }
+
+    fn around(&self, edge: u32) -> &[u32] {
+        let [start, end] = [edge, edge + 1].map(|e| self.around_starts[e as usize] as usize);
+        &self.around[start..end]
+    }
+
+    /// Whether the triangle's loop runs along the edge from its lower end to its upper one.
+    fn is_forward(&self, triangle: u32, at: usize) -> bool {
+        let ring = self.mesh.outline(triangle);
+        ring[at] < ring[(at + 1) % ring.len()]
+    }
+
+    /// The side of a triangle that is next on the same side, around an edge: in a turn around the edge, what is next to
+    /// the upper side of a triangle is the lower side of the next one.
+    fn next_side(&self, side: Side, at: usize) -> Side {
+        let edge = self.mesh.outline_edges(side.triangle)[at];
+        let up = side.front == self.is_forward(side.triangle, at);
+        let around = self.around(edge);
+        let n = around.len();
+        let i = around.iter().position(|&t| t == side.triangle).expect("an edge of a triangle lists it");
+        let triangle = around[if up { (i + 1) % n } else { (i + n - 1) % n }];
+        let there = self.mesh.outline_edges(triangle).iter().position(|&e| e == edge);
+        let there = there.expect("a triangle of an edge has it");
+        Side { triangle, front: self.is_forward(triangle, there) != up }
+    }
+}
+
+/// One of the two sides of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Side {
+    triangle: u32,
+    /// The side that the right-hand normal points to.
+    front: bool,
+}
+
+impl Side {
+    fn index(self) -> usize {
+        2 * self.triangle as usize + usize::from(self.front)
+    }
+
+    fn other(self) -> Self {
+        Self { front: !self.front, ..self }
+    }
+}
+
+/// Sorts triangles by their angle around an edge, upwards for who looks against the edge. Any order would do; the right one
+/// makes walks follow what is seen.
+fn sort_around(mesh: &Mesh, edge: u32, triangles: &mut [u32]) {
+    let [a, b] = mesh.edges()[edge as usize].map(|v| mesh.vertices()[v as usize]);
+    let [u, v] = basis(unit(sub(b, a)));
+    let angle = |t: u32| {
+        // The corner farthest from the edge stands for the triangle.
+        let off = |p: Point3| [dot(sub(p, a), u), dot(sub(p, a), v)];
+        let far = mesh.corners(t).map(off).into_iter();
+        let [x, y] = far.max_by(|p, q| (p[0] * p[0] + p[1] * p[1]).total_cmp(&(q[0] * q[0] + q[1] * q[1])))?;
+        // Grows with the angle, from 0 to 4.
+        let s = x.abs() + y.abs();
+        Some(match (x >= 0.0, y >= 0.0) {
+            (true, true) => y / s,
+            (false, true) => 1.0 - x / s,
+            (false, false) => 2.0 - y / s,
+            (true, false) => 3.0 + x / s,
+        })
+    };
+    triangles.sort_by(|&s, &t| {
+        let [x, y] = [s, t].map(|t| angle(t).unwrap_or(0.0));
+        x.total_cmp(&y).then(s.cmp(&t))
+    });
+}
+
+/// Asks a mesh about pairs of boxes, one after the other.
+#[derive(Debug)]
+pub struct Asker<'a> {
+    sheets: &'a Sheets,
+    /// Marks of earlier questions and walks have lower numbers.
+    epoch: u32,
+    /// When each side was walked over.
+    walked: Vec<u32>,
+    /// For which question the code of each vertex was worked out, and the code.
+    codes: Vec<(u32, u32)>,
+    /// How many triangles of the chain end at each edge.
+    odd: Vec<u32>,
+    queue: Vec<Side>,
+    chain: Vec<u32>,
+}
+
+/// A question.
+struct Pair<'a> {
+    v: &'a Aabb<3>,
+    e: &'a Aabb<3>,
+    shaft: Shaft,
+    /// The first mark of this question.
+    since: u32,
+}
+
+/// Places in boxes, as parts of their extents, that segments are tried between; not round, so that few edges are
+/// met. The first pair starts the walks.
+const ENDS: [[[f64; 3]; 2]; 4] = [
+    [[0.4871, 0.5273, 0.5137], [0.5231, 0.4813, 0.4919]],
+    [[0.0813, 0.9127, 0.8871], [0.9241, 0.8951, 0.0917]],
+    [[0.9087, 0.0891, 0.9203], [0.0781, 0.1133, 0.9067]],
+    [[0.3461, 0.6173, 0.2831], [0.6607, 0.3319, 0.7129]],
+];
+
+impl Asker<'_> {
+    /// Whether every segment from a point of `v` to a point of `e` certainly meets the mesh before its end. Errs towards
+    /// no.
+    ///
+    /// * `v`: where eyes are; what touches its border may hide
+    /// * `e`: what is hidden or not; what touches it hides nothing
+    /// * `limit`: how many sides of triangles to walk over, in all
+    ///
+    /// Cost: a few lines through the tree where they pass freely, else the walk.
+    pub fn hides(&mut self, v: &Aabb<3>, e: &Aabb<3>, limit: usize) -> bool {
+        let usable = |b: &Aabb<3>| !b.is_empty() && b.min.iter().chain(&b.max).all(|&x| check_coordinate(x).is_ok());
+        if !usable(v) || !usable(e) || (0..3).all(|k| v.min[k] <= e.max[k] && e.min[k] <= v.max[k]) {
+            return false;
+        }
+        let mut segments = Vec::with_capacity(ENDS.len());
+        for [s, t] in ENDS {
+            let (Some(a), Some(b)) = (inner_point(v, s), inner_point(e, t)) else { return false };
+            segments.push([a, b]);
+        }
+        let mut starts: Vec<(f64, u32)> = Vec::new();
+        self.sheets.hits(segments[0], |t, at| starts.push((at, t)));
+        let blocked = |s: &[Point3; 2]| {
+            let mut any = false;
+            self.sheets.hits(*s, |_, _| any = true);
+            any
+        };
+        // A line that passes freely: the answer is no, whatever walks would find.
+        if starts.is_empty() || !segments[1..].iter().all(blocked) {
+            return false;
+        }
+        starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.next_epoch(2 * starts.len() as u32 + 2);
+        let pair = Pair { v, e, shaft: Shaft::new(v, e), since: self.epoch };
+        let mut left = limit;
+        for &(_, triangle) in &starts {
+            let [a, b, c] = self.sheets.mesh.corners(triangle);
+            let front = orient3d(a, b, c, segments[0][0]) > 0.0;
+            for front in [front, !front] {
+                let start = Side { triangle, front };
+                if self.walked[start.index()] >= pair.since {
+                    continue;
+                }
+                self.epoch += 1;
+                if self.walk(&pair, start, &mut left) && segments.iter().any(|s| self.certifies(&pair, s)) {
+                    return true;
+                }
+                if left == 0 {
+                    return false;
+                }
+            }
+        }
+        false
+    }
+
+    /// Makes room for `n` marks that no question has used.
+    fn next_epoch(&mut self, n: u32) {
+        if self.epoch > u32::MAX - n - 2 {
+            self.walked.fill(0);
+            self.codes.fill((0, 0));
+            self.epoch = 0;
+        }
+        self.epoch += 1;
+    }
+
+    /// Walks over the surface from a side on, within the hull; whether that came to an end. The chain is then what was walked over
+    /// on one side only.
+    fn walk(&mut self, pair: &Pair<'_>, start: Side, left: &mut usize) -> bool {
+        let sheets = self.sheets;
+        self.queue.clear();
+        self.queue.push(start);
+        self.walked[start.index()] = self.epoch;
+        let mut n = 0;
+        while let Some(&side) = self.queue.get(n) {
+            n += 1;
+            if *left == 0 || !self.may_hide(pair, side.triangle) {
+                return false;
+            }
+            *left -= 1;
+            for at in 0..sheets.mesh.outline_edges(side.triangle).len() {
+                if self.misses(pair, sheets.mesh.outline_edges(side.triangle)[at]) {
+                    continue;
+                }
+                let next = sheets.next_side(side, at);
+                if next == start.other() {
+                    return false;
+                }
+                if self.walked[next.index()] != self.epoch {
+                    self.walked[next.index()] = self.epoch;
+                    self.queue.push(next);
+                }
+            }
+        }
+        self.chain.clear();
+        let once = |s: &&Side| self.walked[s.other().index()] != self.epoch;
+        self.chain.extend(self.queue.iter().filter(once).map(|s| s.triangle));
+        true
+    }
+
+    /// Condition 1.
+    fn may_hide(&self, pair: &Pair<'_>, triangle: u32) -> bool {
+        let corners = self.sheets.mesh.corners(triangle);
+        avoids(&corners, pair.e, false) && avoids(&corners, pair.v, true)
+    }
+
+    /// Whether an edge certainly misses the relative interior of the hull.
+    fn misses(&mut self, pair: &Pair<'_>, edge: u32) -> bool {
+        let ends = self.sheets.mesh.edges()[edge as usize];
+        let [a, b] = ends.map(|v| self.sheets.mesh.vertices()[v as usize]);
+        let [s, t] = ends.map(|v| {
+            let (since, code) = self.codes[v as usize];
+            if since == pair.since {
+                return code;
+            }
+            let code = pair.shaft.code(self.sheets.mesh.vertices()[v as usize]);
+            self.codes[v as usize] = (pair.since, code);
+            code
+        });
+        s & t != 0 || pair.shaft.certainly_misses(a, b)
+    }
+
+    /// Whether the chain satisfies the three conditions, the third with this segment.
+    fn certifies(&mut self, pair: &Pair<'_>, segment: &[Point3; 2]) -> bool {
+        let mesh = &self.sheets.mesh;
+        let chain = std::mem::take(&mut self.chain);
+        let edges = || chain.iter().flat_map(|&t| mesh.outline_edges(t).iter().copied());
+        edges().for_each(|e| self.odd[e as usize] += 1);
+        let closed = edges().all(|e| self.odd[e as usize] % 2 == 0 || self.misses(pair, e));
+        edges().for_each(|e| self.odd[e as usize] = 0);
+        let mut n_crossings = Some(0u32);
+        for &t in &chain {
+            let crosses = crosses(&self.sheets.boxes[t as usize], mesh.corners(t), segment);
+            n_crossings = n_crossings.zip(crosses).map(|(n, c)| n + u32::from(c));
+        }
+        let free = chain.iter().all(|&t| self.may_hide(pair, t));
+        self.chain = chain;
+        closed && free && n_crossings.is_some_and(|n| n % 2 == 1)
+    }
+}
+
+/// A point of the relative interior; none if no double lies between two ends.
+fn inner_point(b: &Aabb<3>, at: [f64; 3]) -> Option<Point3> {
+    let p: Point3 = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) * at[k]);
+    let inside = |k: usize| b.min[k] < p[k] && p[k] < b.max[k] || b.min[k] == b.max[k] && p[k] == b.min[k];
+    ((0..3).all(inside) && p.iter().all(|&x| check_coordinate(x).is_ok())).then_some(p)
+}
+
+/// Whether a segment crosses a triangle in its interior, from one side to the other; none if it touches an edge, ends on
+/// its plane or lies in it. Exact.
+fn crosses(bounds: &Aabb<3>, [a, b, c]: [Point3; 3], &[p, q]: &[Point3; 2]) -> Option<bool> {
+    if (0..3).any(|k| p[k].max(q[k]) < bounds.min[k] || p[k].min(q[k]) > bounds.max[k]) {
+        return Some(false);
+    }
+    let sides = [orient3d(a, b, p, q), orient3d(b, c, p, q), orient3d(c, a, p, q)];
+    let [any_positive, any_negative] = [sides.iter().any(|&s| s > 0.0), sides.iter().any(|&s| s < 0.0)];
+    if any_positive && any_negative {
+        return Some(false);
+    }
+    let ends = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
+    if sides.contains(&0.0) || ends.contains(&0.0) {
+        return None;
+    }
+    Some((ends[0] > 0.0) != (ends[1] > 0.0))
+}
+
+impl Sheets {
+    /// Triangles that a segment meets, with the part of it before; as doubles have it. Only where walks begin depends on this.
+    fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64)) {
+        let d = sub(q, p);
+        let inverse = d.map(|x| 1.0 / x);
+        let enter = |b: &Aabb<3>| {
+            let (mut first, mut last) = (0.0f64, 1.0f64);
+            for k in 0..3 {
+                if d[k] == 0.0 {
+                    if p[k] < b.min[k] || p[k] > b.max[k] {
+                        return false;
+                    }
+                    continue;
+                }
+                let [s, t] = [b.min[k], b.max[k]].map(|x| (x - p[k]) * inverse[k]);
+                first = first.max(s.min(t));
+                last = last.min(s.max(t));
+            }
+            first <= last + 1e-12
+        };
+        self.tree.visit(enter, |t| {
+            if enter(&self.boxes[t as usize])
+                && let Some(at) = meet(self.mesh.corners(t), p, d)
+            {
+                each(t, at);
+            }
+        });
+    }
+}
+
+/// Where on the segment from `p` along `d` a triangle is met.
+///
+/// Source: Möller and Trumbore, Journal of Graphics Tools 2(1), 1997.
+fn meet([a, b, c]: [Point3; 3], p: Point3, d: Point3) -> Option<f64> {
+    use super::vector::cross;
+    let (u, v) = (sub(b, a), sub(c, a));
+    let h = cross(d, v);
+    let det = dot(u, h);
+    let s = sub(p, a);
+    let q = cross(s, u);
+    let [x, y, t] = [dot(s, h), dot(d, q), dot(v, q)].map(|n| n / det);
+    const SLACK: f64 = 1e-9;
+    (x >= -SLACK && y >= -SLACK && x + y <= 1.0 + SLACK && (0.0..=1.0).contains(&t)).then_some(t)
+}
