@@ -31,7 +31,7 @@ pub enum JobError {
 pub struct Job<'a> {
     volume: Volume,
     planes: Vec<Plane>,
-    occluders: &'a [Occluder],
+    occluders: Vec<&'a Occluder>,
     measure: Measure,
     reproject: bool,
     unit: f64,
@@ -52,7 +52,7 @@ impl<'a> Job<'a> {
     pub fn new(
         volume: Volume,
         planes: Vec<Plane>,
-        occluders: &'a [Occluder],
+        occluders: impl IntoIterator<Item = &'a Occluder>,
         measure: Measure,
         reproject: bool,
     ) -> Result<Self, JobError> {
@@ -73,6 +73,7 @@ impl<'a> Job<'a> {
             return Err(JobError::Order(i + 1));
         }
         let unit = unit(&volume, &planes, measure);
+        let occluders = occluders.into_iter().collect();
         Ok(Self { volume, planes, occluders, measure, reproject, unit })
     }
 
@@ -87,8 +88,8 @@ impl<'a> Job<'a> {
     }
 
     /// What hides.
-    pub const fn occluders(&self) -> &'a [Occluder] {
-        self.occluders
+    pub fn occluders(&self) -> &[&'a Occluder] {
+        &self.occluders
     }
 
     /// What the values mean.

@@ -1,16 +1,18 @@
 //! The multifocal z-buffer as a method that says what is hidden from a volume.
 
+use crate::mesh::Chooser;
 use crate::{
-    BackendError, Buffer, FromRegion, Guarantee, Layout, MultifocalBackend, Occluder, Surround, Surrounded, Umbra,
-    Volume,
+    BackendError, Buffer, FromRegion, Guarantee, Layout, MultifocalBackend, Occluder, Plane, Surround, Surrounded,
+    Umbra, Volume,
 };
 use sightlines_geometry::{Aabb, Point3};
+use std::sync::Arc;
 
 /// Buffers all around a volume, filled by a backend.
 #[derive(Debug)]
 pub struct Multifocal<B> {
     backend: B,
-    occluders: Vec<Occluder>,
+    occluders: Arc<Chosen>,
     scene: Aabb<3>,
     layout: Layout,
     buffers: [Vec<Buffer>; 6],
@@ -20,7 +22,7 @@ pub struct Multifocal<B> {
 impl<B: MultifocalBackend> Multifocal<B> {
     /// * `occluders`: what hides
     /// * `scene`: the box of everything that is asked about
-    pub fn new(backend: B, occluders: Vec<Occluder>, scene: Aabb<3>, layout: Layout) -> Self {
+    pub fn new(backend: B, occluders: Arc<Chosen>, scene: Aabb<3>, layout: Layout) -> Self {
         Self { backend, occluders, scene, layout, buffers: Default::default(), surround: None }
     }
 }
@@ -41,7 +43,11 @@ impl<B: MultifocalBackend> FromRegion for Multifocal<B> {
         let surround = &*self.surround.insert(surround);
         let mut units = [1.0; 6];
         for (side, unit) in units.iter_mut().enumerate() {
-            let Ok(job) = surround.job(side, &self.occluders) else { return Ok(Box::new(Nothing)) };
+            let planes = &surround.directions()[side].planes;
+            let farthest = planes.last().expect("there is a plane on each side");
+            let Ok(job) = surround.job(side, self.occluders.choose(volume, farthest)) else {
+                return Ok(Box::new(Nothing));
+            };
             *unit = job.unit();
             self.backend.render(&job, &mut self.buffers[side])?;
         }
@@ -56,6 +62,31 @@ impl Umbra for Surrounded<'_> {
 
     fn hides_points(&mut self, points: &[Point3]) -> bool {
         Surrounded::hides_points(self, points)
+    }
+}
+
+/// Occluders of which for each volume and side some are chosen: those that seem to hide most. Any choice is sound.
+#[derive(Debug)]
+pub struct Chosen {
+    occluders: Vec<Occluder>,
+    chooser: Chooser,
+    most: usize,
+}
+
+impl Chosen {
+    /// At most `most` occluders are drawn on each side of a volume.
+    pub fn new(occluders: Vec<Occluder>, most: usize) -> Self {
+        Self { chooser: Chooser::new(&occluders), occluders, most }
+    }
+
+    /// All of them.
+    pub fn occluders(&self) -> &[Occluder] {
+        &self.occluders
+    }
+
+    fn choose(&self, volume: &Volume, plane: &Plane) -> impl Iterator<Item = &Occluder> {
+        let chosen = self.chooser.select(volume, plane, self.most);
+        chosen.into_iter().map(|i| &self.occluders[i as usize])
     }
 }
 

@@ -85,7 +85,7 @@ impl Surround {
     ///
     /// # Errors
     /// [`JobError`], if the measure cannot be carried over.
-    pub fn job<'a>(&self, side: usize, occluders: &'a [Occluder]) -> Result<Job<'a>, JobError> {
+    pub fn job<'a>(&self, side: usize, occluders: impl IntoIterator<Item = &'a Occluder>) -> Result<Job<'a>, JobError> {
         Job::new(self.volume, self.directions[side].planes.clone(), occluders, self.measure, self.reproject)
     }
 }

@@ -7,7 +7,7 @@ mod carry;
 mod fill;
 
 use rayon::prelude::*;
-use sightlines_multifocal::{BackendError, Buffer, Carry, Forms, Job, Measure, MultifocalBackend};
+use sightlines_multifocal::{BackendError, Buffer, Carry, Forms, Job, Measure, MultifocalBackend, Outlines};
 
 /// Rows that one thread draws at a time: as many as stay in the nearest cache.
 const ROWS: usize = 16;
@@ -15,6 +15,7 @@ const ROWS: usize = 16;
 /// Fills buffers by spans of rows, in the threads of the pool that it is called in.
 #[derive(Debug, Clone, Default)]
 pub struct Fast {
+    outlines: Outlines,
     forms: Forms,
     lines: carry::Scratch,
 }
@@ -40,6 +41,7 @@ impl MultifocalBackend for Fast {
         if !self.supports(job.measure()) {
             return Err(BackendError::Unsupported { backend: self.name(), measure: job.measure() });
         }
+        self.outlines.refill(job);
         out.resize_with(job.planes().len(), Buffer::default);
         for (k, plane) in job.planes().iter().enumerate() {
             let (before, rest) = out.split_at_mut(k);
@@ -49,7 +51,7 @@ impl MultifocalBackend for Fast {
                 carry::carry(&Carry::of(job, k), before, buffer, &mut self.lines);
             }
             self.forms.clear();
-            self.forms.extend(job, k);
+            self.forms.extend(job, &self.outlines, k);
             draw(&self.forms, buffer);
         }
         Ok(())

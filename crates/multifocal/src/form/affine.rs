@@ -36,25 +36,6 @@ impl Around {
     }
 }
 
-/// `orient3d(a, b, c, d)` as a number.
-///
-/// The error bound is that of Shewchuk's first stage, (7 + 56 ε) ε times the permanent with ε = 2^-53, rounded up
-/// to 8 ε; it holds without underflow, which checked coordinates exclude.
-pub(super) fn orientation(a: Point3, b: Point3, c: Point3, d: Point3) -> Around {
-    let difference = |p: Point3| [p[0] - d[0], p[1] - d[1], p[2] - d[2]];
-    let (a, b, c) = (difference(a), difference(b), difference(c));
-    let minor = |i: usize, j: usize| (b[i] * c[j], b[j] * c[i]);
-    let (mut about, mut permanent) = (0.0, 0.0);
-    for (k, a) in a.into_iter().enumerate() {
-        let (plus, minus) = minor((k + 1) % 3, (k + 2) % 3);
-        about += a * (plus - minus);
-        permanent += a.abs() * (plus.abs() + minus.abs());
-    }
-    // Right-handed: positive if d lies where the normal points to, so the determinant of the differences to it is
-    // turned over.
-    Around { about: -about, error: permanent * (8.0 * f64::EPSILON / 2.0) }
-}
-
 impl<'a> Window<'a> {
     pub(super) fn new(plane: &'a Plane) -> Self {
         let [w, h] = plane.texels();

@@ -18,6 +18,8 @@ mod value;
 
 use crate::{Job, Measure, Occluder, Plane, Volume};
 use affine::Window;
+use sightlines_geometry::Point3;
+use std::ops::Range;
 
 /// Where an occluder hides everything, and from which value on.
 ///
@@ -61,18 +63,20 @@ impl Forms {
     /// If the job has no plane `plane`.
     pub fn of(job: &Job<'_>, plane: usize) -> Self {
         let mut forms = Self::default();
-        forms.extend(job, plane);
+        forms.extend(job, &Outlines::of(job), plane);
         forms
     }
 
     /// Appends the forms of all occluders of a job on one of its planes, as [`Self::of`].
     ///
+    /// * `outlines`: those of the same job
+    ///
     /// # Panics
     /// If the job has no plane `plane`.
-    pub fn extend(&mut self, job: &Job<'_>, plane: usize) {
-        let mut maker = Maker::new(job.volume(), &job.planes()[plane], job.measure(), job.unit());
-        for occluder in job.occluders() {
-            maker.add(occluder, self);
+    pub fn extend(&mut self, job: &Job<'_>, outlines: &Outlines, plane: usize) {
+        let maker = Maker::new(job.volume(), &job.planes()[plane], job.measure(), job.unit());
+        for of in &outlines.of_occluders {
+            maker.add(job.occluders()[of.occluder], of.n_facets, &outlines.sides[of.sides.clone()], self);
         }
     }
 
@@ -94,34 +98,73 @@ impl Forms {
     }
 }
 
+/// The planes in space that bound the umbrae of the occluders of a job: the same for all of its planes.
+#[derive(Debug, Clone, Default)]
+pub struct Outlines {
+    of_occluders: Vec<Outline>,
+    sides: Vec<edges::Side>,
+}
+
+/// Those of an occluder that can hide something.
+#[derive(Debug, Clone)]
+struct Outline {
+    occluder: usize,
+    /// The first sides are those of its facets.
+    n_facets: usize,
+    sides: Range<usize>,
+}
+
+impl Outlines {
+    /// Those of all occluders of a job. O(corners).
+    pub fn of(job: &Job<'_>) -> Self {
+        let mut outlines = Self::default();
+        outlines.refill(job);
+        outlines
+    }
+
+    /// Replaces them by those of another job, but keeps their memory.
+    pub fn refill(&mut self, job: &Job<'_>) {
+        self.of_occluders.clear();
+        self.sides.clear();
+        let corners = job.volume().corners();
+        for (occluder, o) in job.occluders().iter().enumerate() {
+            let first = self.sides.len();
+            if edges::sides(o, &corners, &mut self.sides) {
+                let sides = first..self.sides.len();
+                self.of_occluders.push(Outline { occluder, n_facets: o.facets().len(), sides });
+            }
+        }
+    }
+}
+
 /// What all occluders on a plane share.
 struct Maker<'a> {
     window: Window<'a>,
-    corners: [sightlines_geometry::Point3; 8],
+    corners: [Point3; 8],
     measure: Measure,
     unit: f64,
-    /// The functions of the occluder at hand.
-    sides: Vec<edges::Side>,
 }
 
 impl<'a> Maker<'a> {
     fn new(volume: &Volume, plane: &'a Plane, measure: Measure, unit: f64) -> Self {
-        Self { window: Window::new(plane), corners: volume.corners(), measure, unit, sides: Vec::new() }
+        Self { window: Window::new(plane), corners: volume.corners(), measure, unit }
     }
 
-    fn add(&mut self, occluder: &Occluder, out: &mut Forms) {
-        if !edges::sides(occluder, &self.corners, &mut self.sides) {
-            return;
-        }
-        let Some(bounds) = edges::bounds(&self.sides, &self.window) else { return };
+    fn add(&self, occluder: &Occluder, n_facets: usize, sides: &[edges::Side], out: &mut Forms) {
+        let Some(bounds) = edges::bounds(sides, &self.window) else { return };
         let (first_edge, first_slope) = (out.edges.len(), out.slopes.len());
-        if !edges::push_edges(&self.sides, &self.window, bounds, &mut out.edges) {
+        if !edges::push_edges(sides, &self.window, bounds, &mut out.edges) {
             out.edges.truncate(first_edge);
             return;
         }
+        let facets = &sides[..n_facets];
         let floor = match self.measure {
-            Measure::VertexHeight | Measure::SectionHeight => value::heights(self, occluder, bounds, &mut out.slopes),
-            Measure::Euclid | Measure::ClippedEuclid => value::distances(self, occluder, bounds, &mut out.slopes),
+            Measure::VertexHeight | Measure::SectionHeight => {
+                value::heights(self, occluder, facets, bounds, &mut out.slopes)
+            }
+            Measure::Euclid | Measure::ClippedEuclid => {
+                value::distances(self, occluder, facets, bounds, &mut out.slopes)
+            }
         };
         out.forms.push(Form {
             bounds,

@@ -1,7 +1,8 @@
 //! Values in integers: constants and affine functions below the exact ones.
 
 use super::Maker;
-use super::affine::{Around, Window, orientation};
+use super::affine::{Around, Window};
+use super::edges::Side;
 use crate::{Measure, Occluder};
 use sightlines_geometry::Point3;
 
@@ -13,12 +14,18 @@ const DOWN: f64 = 1.0 - 64.0 * f64::EPSILON;
 ///
 /// A hit lies in front of the plane or on it, so a height is at least 0; of a flat occluder it is also at least that of
 /// its lowest corner.
-pub(super) fn heights(maker: &Maker<'_>, occluder: &Occluder, bounds: [i32; 4], slopes: &mut Vec<[i32; 3]>) -> u32 {
+pub(super) fn heights(
+    maker: &Maker<'_>,
+    occluder: &Occluder,
+    facets: &[Side],
+    bounds: [i32; 4],
+    slopes: &mut Vec<[i32; 3]>,
+) -> u32 {
     let [lowest, highest] = extent(maker, occluder);
     // No section of a flat occluder in one height is higher than its corners.
     let level = lowest == highest || maker.measure == Measure::VertexHeight && occluder.is_flat();
     if !level {
-        slopes.extend(section(maker, occluder, bounds));
+        slopes.extend(section(maker, facets, bounds));
     }
     encode(lowest.next_down() / maker.unit)
 }
@@ -41,23 +48,22 @@ fn encode(units: f64) -> u32 {
 /// in front of it, both in the same unit. The line between meets the facet's plane at height `H a / (a + b)`, which is
 /// a concave function of `a`; so is the least for all eyes. Between the least and the largest `a` it lies above its chord,
 /// which is affine in the place. The least over the facets is bounded at the corners.
-fn section(maker: &Maker<'_>, occluder: &Occluder, bounds: [i32; 4]) -> Option<[i32; 3]> {
+fn section(maker: &Maker<'_>, facets: &[Side], bounds: [i32; 4]) -> Option<[i32; 3]> {
     let window = &maker.window;
     let places = Window::places(bounds).map(|place| window.point(place));
-    let sign = if occluder.side_of(&maker.corners)? { 1.0 } else { -1.0 };
     let mut low = [f64::INFINITY; 4];
-    for &[a, b, c] in occluder.facets() {
-        let distance = |p: Point3, sign: f64| {
-            let f = orientation(a, b, c, p);
-            Around { about: sign * f.about, ..f }
+    for facet in facets {
+        let behind = places.map(|p| facet.at(p));
+        let in_front = |eye: Point3| {
+            let f = facet.at(eye);
+            Around { about: -f.about, ..f }
         };
-        let behind = places.map(|p| distance(p, -sign));
         let least = behind.iter().fold(f64::INFINITY, |least, f| least.min(f.low())).max(0.0);
         let most = behind.iter().fold(0.0, |most: f64, f| most.max(f.high()));
         let height = |behind: f64| {
             let of = |v: &Point3| {
                 let up = window.plane.height(*v).next_down();
-                up * behind / (behind + distance(*v, sign).high()) * DOWN
+                up * behind / (behind + in_front(*v).high()) * DOWN
             };
             maker.corners.iter().map(of).fold(f64::INFINITY, f64::min)
         };
@@ -85,9 +91,15 @@ fn section(maker: &Maker<'_>, occluder: &Occluder, bounds: [i32; 4]) -> Option<[
 /// For any direction `n` of length 1, a point `p` is at least `n · p - max over corners of n · corner` from the hull of the
 /// corners: an affine function below the distance. Directions towards the nearest corner-wise point from several places
 /// give several of them. Distances to bent occluders are bounded by heights, which are never more.
-pub(super) fn distances(maker: &Maker<'_>, occluder: &Occluder, bounds: [i32; 4], slopes: &mut Vec<[i32; 3]>) -> u32 {
+pub(super) fn distances(
+    maker: &Maker<'_>,
+    occluder: &Occluder,
+    facets: &[Side],
+    bounds: [i32; 4],
+    slopes: &mut Vec<[i32; 3]>,
+) -> u32 {
     if !occluder.is_flat() {
-        return heights(maker, occluder, bounds, slopes);
+        return heights(maker, occluder, facets, bounds, slopes);
     }
     let window = &maker.window;
     let [x0, y0, x1, y1] = bounds;

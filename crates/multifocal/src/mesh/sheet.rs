@@ -77,6 +77,7 @@ impl Sheets {
             codes: vec![(0, 0); self.mesh.vertices().len()],
             odd: vec![0; self.mesh.edges().len()],
             queue: Vec::new(),
+            forked: false,
             chain: Vec::new(),
         }
     }
@@ -168,6 +169,8 @@ pub struct Asker<'a> {
     /// How many triangles of the chain end at each edge.
     odd: Vec<u32>,
     queue: Vec<Side>,
+    /// Whether the walk came by an edge that has not two triangles.
+    forked: bool,
     chain: Vec<u32>,
 }
 
@@ -232,11 +235,16 @@ impl Asker<'_> {
                     continue;
                 }
                 self.epoch += 1;
+                self.forked = false;
                 if self.walk(&pair, start, &mut left) && segments.iter().any(|s| self.certifies(&pair, s)) {
                     return true;
                 }
                 if left == 0 {
                     return false;
+                }
+                // Where every edge has two triangles both sides have the same way.
+                if !self.forked {
+                    break;
                 }
             }
         }
@@ -272,7 +280,9 @@ impl Asker<'_> {
                     continue;
                 }
                 let next = sheets.next_side(side, at);
+                self.forked |= sheets.around(sheets.mesh.outline_edges(side.triangle)[at]).len() != 2;
                 if next == start.other() {
+                    self.walked[next.index()] = self.epoch;
                     return false;
                 }
                 if self.walked[next.index()] != self.epoch {

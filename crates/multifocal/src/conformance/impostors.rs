@@ -1,0 +1,202 @@
+//! Backends with one fault each. The suite refuses every one of them, or it proves nothing.
+
+use super::Clause;
+use crate::{BackendError, Buffer, Job, Measure, MultifocalBackend, Plane, Volume};
+use sightlines_geometry::{Aabb, Point3};
+
+/// What an [`Impostor`] does wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fault {
+    /// Values of blocked texels are one unit too much. (Who errs by a unit himself hides it.)
+    OneUnitNearer,
+    /// One texel beside a blocked one counts as blocked, too.
+    OneTexelMore,
+    /// One row of each buffer is left empty.
+    MissedRow,
+    /// What was in a buffer before stays, where it is larger.
+    ForgetsToReset,
+    /// Every other job has a texel less.
+    NotRepeatable,
+    /// Nothing is ever blocked: as sound as can be.
+    NothingBlocked,
+    /// Values of blocked texels are all 1: blocked from the plane on, no more. Sound as well.
+    NoValues,
+    /// A texel counts as blocked if each corner of the volume has some occluder that blocks it. Wrong, because
+    /// between two occluders eyes inside the volume may look through.
+    UnionOfCorners,
+    /// What nothing blocks has the value of what is blocked at height 0.
+    ZeroForNothing,
+    /// Planes are not carried over.
+    NothingCarried,
+    /// Planes are carried over as if all lines to a texel went from the middle of the volume to the middle of the texel.
+    NoErosion,
+    /// Does nothing for a measure that it says it supports.
+    Idle,
+}
+
+impl Fault {
+    /// All of them.
+    pub const ALL: [Self; 12] = [
+        Self::OneUnitNearer,
+        Self::OneTexelMore,
+        Self::MissedRow,
+        Self::ForgetsToReset,
+        Self::NotRepeatable,
+        Self::NothingBlocked,
+        Self::NoValues,
+        Self::UnionOfCorners,
+        Self::ZeroForNothing,
+        Self::NothingCarried,
+        Self::NoErosion,
+        Self::Idle,
+    ];
+
+    /// The promise that it breaks.
+    pub const fn clause(self) -> Clause {
+        match self {
+            Self::OneUnitNearer
+            | Self::OneTexelMore
+            | Self::UnionOfCorners
+            | Self::ZeroForNothing
+            | Self::NoErosion => Clause::Sound,
+            Self::MissedRow | Self::NothingBlocked | Self::NoValues | Self::NothingCarried => Clause::Tight,
+            Self::ForgetsToReset => Clause::Complete,
+            Self::NotRepeatable => Clause::Repeatable,
+            Self::Idle => Clause::Complete,
+        }
+    }
+}
+
+/// A backend made worse.
+#[derive(Debug)]
+pub struct Impostor<B> {
+    inner: B,
+    fault: Fault,
+    n_jobs: usize,
+}
+
+impl<B: MultifocalBackend> Impostor<B> {
+    /// `inner`, with a fault.
+    pub const fn new(inner: B, fault: Fault) -> Self {
+        Self { inner, fault, n_jobs: 0 }
+    }
+
+    fn corners(&mut self, job: &Job<'_>, out: &mut [Buffer]) -> Result<(), BackendError> {
+        let mut least: Option<Vec<Vec<u32>>> = None;
+        for corner in job.volume().corners() {
+            let part = with(job, point(corner), job.reproject());
+            let mut buffers = Vec::new();
+            self.inner.render(&part, &mut buffers)?;
+            // Units are powers of two.
+            let per_unit = part.unit() / job.unit();
+            let rescaled = |&v: &u32| if v == 0 { 0 } else { (f64::from(v - 1) * per_unit) as u32 + 1 };
+            let values: Vec<Vec<u32>> = buffers.iter().map(|b| b.values().iter().map(rescaled).collect()).collect();
+            least = Some(match least {
+                None => values,
+                Some(least) => least.into_iter().zip(values).map(|(a, b)| min(&a, &b)).collect(),
+            });
+        }
+        for (buffer, least) in out.iter_mut().zip(least.iter().flatten()) {
+            buffer.values_mut().iter_mut().zip(least).for_each(|(value, &least)| *value = (*value).max(least));
+        }
+        Ok(())
+    }
+}
+
+fn min(a: &[u32], b: &[u32]) -> Vec<u32> {
+    a.iter().zip(b).map(|(&a, &b)| a.min(b)).collect()
+}
+
+fn point(p: Point3) -> Volume {
+    Volume::new(Aabb { min: p, max: p }).expect("a corner of a volume is a volume")
+}
+
+fn with<'a>(job: &Job<'a>, volume: Volume, reproject: bool) -> Job<'a> {
+    Job::new(volume, job.planes().to_vec(), job.occluders().iter().copied(), job.measure(), reproject)
+        .expect("a part of the volume makes a job, too")
+}
+
+impl<B: MultifocalBackend> MultifocalBackend for Impostor<B> {
+    fn name(&self) -> &'static str {
+        "impostor"
+    }
+
+    fn supports(&self, measure: Measure) -> bool {
+        self.inner.supports(measure)
+    }
+
+    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+        self.n_jobs += 1;
+        let before = out.clone();
+        match self.fault {
+            Fault::Idle => return Ok(()),
+            Fault::NothingCarried => return self.inner.render(&with(job, *job.volume(), false), out),
+            _ => self.inner.render(job, out)?,
+        }
+        if self.fault == Fault::UnionOfCorners {
+            return self.corners(job, out);
+        }
+        if self.fault == Fault::NoErosion && job.reproject() {
+            for idx in 1..out.len() {
+                let (known, stored) = out.split_at_mut(idx);
+                carry_middles(job, [&job.planes()[idx - 1], &job.planes()[idx]], &known[idx - 1], &mut stored[0]);
+            }
+        }
+        let is_odd = self.n_jobs % 2 == 1;
+        out.iter_mut().enumerate().for_each(|(i, buffer)| spoil(self.fault, is_odd, before.get(i), buffer));
+        Ok(())
+    }
+}
+
+/// Faults that are seen in a buffer alone.
+fn spoil(fault: Fault, is_odd: bool, before: Option<&Buffer>, buffer: &mut Buffer) {
+    let [width, height] = buffer.texels().map(|n| n as usize);
+    let first_blocked = buffer.values().iter().position(|&v| v > 0);
+    let values = buffer.values_mut();
+    match fault {
+        Fault::OneUnitNearer => values.iter_mut().filter(|v| **v > 0).for_each(|v| *v += 1),
+        Fault::NoValues => values.iter_mut().for_each(|v| *v = (*v).min(1)),
+        Fault::NothingBlocked => values.fill(0),
+        Fault::ZeroForNothing => values.iter_mut().for_each(|v| *v = (*v).max(1)),
+        Fault::MissedRow => values[height / 2 * width..][..width].fill(0),
+        Fault::OneTexelMore => {
+            // The first blocked texel has none before it, if it is not the very first.
+            if let Some(i) = first_blocked.and_then(|i| i.checked_sub(1)) {
+                values[i] = 1;
+            }
+        }
+        Fault::NotRepeatable => {
+            if let Some(i) = first_blocked.filter(|_| is_odd) {
+                values[i] = 0;
+            }
+        }
+        Fault::ForgetsToReset => {
+            if let Some(before) = before.filter(|b| b.values().len() == values.len()) {
+                values.iter_mut().zip(before.values()).for_each(|(v, &old)| *v = (*v).max(old));
+            }
+        }
+        Fault::UnionOfCorners | Fault::NothingCarried | Fault::NoErosion | Fault::Idle => {}
+    }
+}
+
+fn carry_middles(job: &Job<'_>, [nearer, plane]: [&Plane; 2], known: &Buffer, stored: &mut Buffer) {
+    let b = job.volume().bounds();
+    let eye: Point3 = [0, 1, 2].map(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
+    let between = plane.height(nearer.corner(0, 0));
+    let part = between / plane.height(eye);
+    let rise = (between / job.unit()).floor() as u32;
+    let width = plane.texels()[0] as usize;
+    for (i, stored) in stored.values_mut().iter_mut().enumerate() {
+        let texel = [i % width, i / width];
+        let crossed = [0, 1].map(|k| {
+            let p = plane.origin()[k] + plane.step()[k] * (texel[k] as f64 + 0.5);
+            let x = p + (eye[plane.across()[k]] - p) * part;
+            ((x - nearer.origin()[k]) / nearer.step()[k]).floor()
+        });
+        let is_within = (0..2).all(|k| (0.0..f64::from(nearer.texels()[k])).contains(&crossed[k]));
+        let value = if is_within { known.get(crossed[0] as u32, crossed[1] as u32) } else { 0 };
+        if value > 0 {
+            *stored = (*stored).max(value + rise);
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Triangles put together to occluders.
+
+use super::flat::convex_polygons;
+use super::grow::Grower;
+use super::vector::{length, vector_area};
+use super::weld::Mesh;
+use crate::Occluder;
+use sightlines_geometry::Point3;
+
+/// How patches are made. Whatever is chosen, what comes out hides nothing that is visible.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PatchOptions {
+    /// The most patches: the largest ones are kept.
+    pub limit: usize,
+    /// The least area, in square scene units.
+    pub min_area: f64,
+    /// The least cosine between the normals of a triangle that joins and of its patch.
+    pub least_cosine: f64,
+    /// The most corners of an outline.
+    pub max_corners: usize,
+    /// The most planes.
+    pub max_facets: usize,
+    /// The most triangles of a patch that grows over edges.
+    pub max_triangles: usize,
+    /// After how many triangles that did not make a patch better it ends.
+    pub patience: usize,
+    /// The sine of a turn to the right that still counts as none when the next triangle is chosen.
+    pub notch: f64,
+}
+
+impl Default for PatchOptions {
+    /// No limit of number and size; nearly flat patches of up to 32 corners.
+    fn default() -> Self {
+        Self {
+            limit: usize::MAX,
+            min_area: 0.0,
+            least_cosine: 0.98,
+            max_corners: 32,
+            max_facets: 32,
+            max_triangles: 512,
+            patience: 8,
+            notch: 1e-3,
+        }
+    }
+}
+
+/// As few and as large occluders as a heuristic finds in a soup of triangles; they may overlap. Sorted by the area of their
+/// outlines, largest first.
+///
+/// Every triangle of at least `min_area` is in some patch, as far as one can be: on planes perpendicular to an axis convex
+/// polygons inside all that is coplanar, elsewhere what grows over edges. Neighbours may be turned differently; triangles
+/// that no predicate can take, and those without area, are left out.
+///
+/// The same triangles in the same order give the same patches. O(n log n), times what `patience` and
+/// `max_corners` ask for.
+pub fn patches(triangles: &[[Point3; 3]], options: &PatchOptions) -> Vec<Occluder> {
+    patches_of(&Mesh::weld(triangles), options)
+}
+
+/// The patches of a mesh; see [`patches`].
+fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
+    let found = convex_polygons(mesh, options);
+    let mut occluders = found.occluders;
+    let n = mesh.triangles().len();
+    let mut is_covered = vec![false; n];
+    found.covered.iter().for_each(|&t| is_covered[t as usize] = true);
+    let mut grower = Grower::new(mesh, options);
+    let mut seeds: Vec<(f64, u32)> = (0..n as u32).map(|t| (grower.twice_area(t), t)).collect();
+    seeds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    // Beyond this many looks at neighbours the small ones that are left stay as they are.
+    let most_work = 100 * n as u64 + (1 << 16);
+    for (_, seed) in seeds {
+        if is_covered[seed as usize] {
+            continue;
+        }
+        if grower.work > most_work {
+            occluders.extend(Occluder::triangle(mesh.corners(seed)));
+            continue;
+        }
+        let patch = grower.grow(seed);
+        patch.triangles.iter().for_each(|&(t, _)| is_covered[t as usize] = true);
+        occluders.extend(grower.occluder(&patch));
+    }
+    let area = |o: &Occluder| length(vector_area(o.outline()));
+    let mut sorted: Vec<(f64, Occluder)> = occluders.into_iter().map(|o| (area(&o), o)).collect();
+    sorted.retain(|o| o.0 >= options.min_area);
+    // Stable, so equal areas stay in the order in which they were found.
+    sorted.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sorted.truncate(options.limit);
+    sorted.into_iter().map(|o| o.1).collect()
+}

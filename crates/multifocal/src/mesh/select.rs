@@ -1,0 +1,121 @@
+//! Which occluders are worth drawing.
+
+use super::vector::{add, basis, cross, dot, length, scaled, sub, unit, vector_area};
+use crate::{Occluder, Plane, Volume};
+use sightlines_geometry::Point3;
+use std::cmp::Ordering;
+
+/// What an occluder is, roughly.
+#[derive(Debug, Clone, Copy)]
+struct Sketch {
+    middle: Point3,
+    /// Area, along the normal.
+    area: Point3,
+    /// Directions of length 1 in its plane, and how far it reaches along each, in all.
+    axes: [Point3; 2],
+    widths: [f64; 2],
+}
+
+/// Sketches of many occluders, to choose from for many volumes.
+#[derive(Debug, Clone)]
+pub struct Chooser {
+    sketches: Vec<Sketch>,
+}
+
+impl Chooser {
+    /// Looks at each once. O(corners).
+    pub fn new(occluders: &[Occluder]) -> Self {
+        Self { sketches: occluders.iter().map(|o| Sketch::of(o.outline())).collect() }
+    }
+
+    /// The up to `n` occluders that hide most space in front of `plane` from all of `volume`, best first. Estimated, as
+    /// any choice is sound: the space behind an occluder, up to the plane, that grows with the distance where the
+    /// occluder is wider than the volume and shrinks to nothing where it is narrower. Those that are not between the
+    /// two, or that eyes see from both sides, are left out.
+    ///
+    /// O(number of occluders).
+    pub fn select(&self, volume: &Volume, plane: &Plane, n: usize) -> Vec<u32> {
+        let hidden = |(i, s): (u32, &Sketch)| Some((s.hidden_space(volume, plane)?, i)).filter(|h| h.0 > 0.0);
+        let mut ranked: Vec<(f64, u32)> = (0..).zip(&self.sketches).filter_map(hidden).collect();
+        let better = |a: &(f64, u32), b: &(f64, u32)| -> Ordering { b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)) };
+        if n < ranked.len() {
+            ranked.select_nth_unstable_by(n, better);
+            ranked.truncate(n);
+        }
+        ranked.sort_unstable_by(better);
+        ranked.into_iter().map(|r| r.1).collect()
+    }
+}
+
+/// Like [`Chooser::select`], for a single question.
+pub fn select(volume: &Volume, plane: &Plane, occluders: &[Occluder], n: usize) -> Vec<u32> {
+    Chooser::new(occluders).select(volume, plane, n)
+}
+
+impl Sketch {
+    fn of(outline: &[Point3]) -> Self {
+        let area = vector_area(outline);
+        let middle = scaled(outline.iter().fold([0.0; 3], |s, &p| add(s, p)), 1.0 / outline.len() as f64);
+        // Along the longest edge, as rectangles have it.
+        let next = |i: usize| sub(outline[(i + 1) % outline.len()], outline[i]);
+        let longest = (0..outline.len()).map(next).reduce(|a, b| if length(b) > length(a) { b } else { a });
+        let normal = unit(area);
+        let along = unit(longest.unwrap_or(basis(normal)[0]));
+        let axes = [along, cross(normal, along)];
+        let widths = axes.map(|a| {
+            let ends = outline.iter().map(|&p| dot(a, p));
+            let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            high - low
+        });
+        Self { middle, area, axes, widths }
+    }
+
+    /// Space behind it, up to the plane, that is hidden from the volume; none if the volume is not on one side of it.
+    fn hidden_space(&self, volume: &Volume, plane: &Plane) -> Option<f64> {
+        let b = volume.bounds();
+        let eye: Point3 = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
+        // How far the volume reaches along a direction, both ways together.
+        let reach = |a: Point3| (0..3).map(|k| (b.max[k] - b.min[k]) * a[k].abs()).sum::<f64>();
+        let way = sub(self.middle, eye);
+        let facing = dot(unit(self.area), way).abs();
+        if facing <= reach(unit(self.area)) / 2.0 {
+            return None;
+        }
+        // Along the view axis: from the eye to it, and from it to the plane.
+        let (in_front, behind) = (plane.height(eye) - plane.height(self.middle), plane.height(self.middle));
+        if in_front <= 0.0 || behind <= 0.0 {
+            return None;
+        }
+        let shift = behind / in_front;
+        // Seen from one eye the shadow grows with the distance; eyes that are apart take from it on both sides.
+        let view = unit(way);
+        let growth: [f64; 2] = std::array::from_fn(|i| {
+            let across = sub(self.axes[i], scaled(view, dot(self.axes[i], view)));
+            let (width, spread) = (self.widths[i] * length(across), reach(unit(across)));
+            if width > 0.0 { 1.0 - spread / width } else { f64::NEG_INFINITY }
+        });
+        // Up to where it is empty, as a part of the way from the eye to it.
+        let last = growth.iter().filter(|g| **g < 0.0).map(|g| -1.0 / g).fold(shift, f64::min);
+        if last <= 0.0 {
+            return None;
+        }
+        let [g, h] = growth;
+        let space = last + (g + h) * last * last / 2.0 + g * h * last * last * last / 3.0;
+        let seen = dot(self.area, view).abs();
+        Some(space * seen * length(way) * self.share_of_window(eye, last, plane))
+    }
+
+    /// Which part of the shadow's end falls into the plane's window, by the middle and the widths of the shadow.
+    fn share_of_window(&self, eye: Point3, last: f64, plane: &Plane) -> f64 {
+        let end = add(self.middle, scaled(sub(self.middle, eye), last));
+        let (low, high) = (plane.origin(), plane.end());
+        let mut share = 1.0;
+        for (i, axis) in plane.across().into_iter().enumerate() {
+            let widths = (0..2).map(|k| self.widths[k] * self.axes[k][axis].abs());
+            let half = widths.sum::<f64>() * (1.0 + last) / 2.0;
+            let inside = (end[axis] + half).min(high[i]) - (end[axis] - half).max(low[i]);
+            share *= if half > 0.0 { (inside / (2.0 * half)).clamp(0.0, 1.0) } else { 1.0 };
+        }
+        share
+    }
+}
