@@ -14,6 +14,7 @@
 //! Source: Marsden, "Visibility Determination Using a Multifocal z-Buffer", 2002, with the corrections that
 //! make it conservative, given where they matter.
 
+pub mod adaptive;
 pub mod backend;
 pub mod buffer;
 pub mod carry;
@@ -30,7 +31,9 @@ pub mod plane;
 pub mod region;
 pub mod surround;
 pub mod volume;
+pub mod witness;
 
+pub use adaptive::{Effort, Split};
 pub use backend::{BackendError, MultifocalBackend};
 pub use buffer::Buffer;
 pub use carry::Carry;
@@ -45,3 +48,4 @@ pub use plane::{MAX_TEXELS, Plane, PlaneError};
 pub use region::{FromRegion, Guarantee, Umbra};
 pub use surround::{Layout, Surround, Surrounded};
 pub use volume::{Volume, VolumeError};
+pub use witness::Witness;

@@ -33,6 +33,18 @@ pub struct Asked {
     pub triangles: u64,
 }
 
+impl std::ops::Add for Asked {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            groups: self.groups + other.groups,
+            boxes: self.boxes + other.boxes,
+            triangles: self.triangles + other.triangles,
+        }
+    }
+}
+
 impl Occludees {
     /// Objects by their triangles. An object without triangles is hidden from everywhere. O(n log² n).
     pub fn new(objects: Vec<Vec<[Point3; 3]>>) -> Self {

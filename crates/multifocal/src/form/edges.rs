@@ -35,8 +35,8 @@ impl Side {
     /// twice as well.
     pub(crate) fn at(&self, p: Point3) -> Around {
         let (mut about, mut error) = (0.0, 0.0);
-        for k in 0..3 {
-            let difference = p[k] - self.point[k];
+        for (k, x) in p.into_iter().enumerate() {
+            let difference = x - self.point[k];
             about += self.normal[k] * difference;
             error += difference.abs() * (self.error[k] + self.normal[k].abs() * (5.0 * f64::EPSILON));
         }

@@ -1,0 +1,98 @@
+//! Volumes cut into smaller ones where the answer is worth it.
+//!
+//! What is hidden from both halves of a volume is hidden from it, and much more is hidden from a half. The price is
+//! two more answers of the method; it is paid only where much is still in doubt: neither hidden nor seen by a ray.
+
+use crate::{Asked, BackendError, FromRegion, Occludees, Volume, Witness};
+
+/// When to cut a volume.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Split {
+    /// How often a volume is cut in two at most; 0 never.
+    pub depth: u32,
+    /// A volume is cut if the triangles of objects in doubt are at least this share of all.
+    pub worth: f64,
+    /// Rays from each volume, to know what is in doubt.
+    pub n_rays: u32,
+}
+
+impl Default for Split {
+    fn default() -> Self {
+        Self { depth: 3, worth: 0.01, n_rays: 4096 }
+    }
+}
+
+/// What was done for a volume.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Volumes that the method was asked about.
+    pub n_volumes: u64,
+    /// Questions about boxes and triangles.
+    pub asked: Asked,
+}
+
+/// Finds the objects that may be visible from a volume: clears `visible` for those that the method proves hidden,
+/// from the whole volume or from all of its parts; objects that are not visible at the start are not asked about.
+///
+/// # Errors
+/// [`BackendError`], from the method.
+///
+/// # Panics
+/// If `visible` is shorter than the objects.
+pub fn see(
+    method: &mut dyn FromRegion,
+    occludees: &Occludees,
+    witness: &Witness,
+    volume: &Volume,
+    split: &Split,
+    visible: &mut [bool],
+) -> Result<Effort, BackendError> {
+    let mut effort = Effort::default();
+    let mut seen = vec![false; occludees.len()];
+    see_part(&mut Search { method, occludees, witness, split, effort: &mut effort }, volume, 0, &mut seen, visible)?;
+    Ok(effort)
+}
+
+struct Search<'a> {
+    method: &'a mut dyn FromRegion,
+    occludees: &'a Occludees,
+    witness: &'a Witness,
+    split: &'a Split,
+    effort: &'a mut Effort,
+}
+
+/// `seen`: what rays were seen to hit, from this volume or a part of one that it belongs to; grows.
+fn see_part(
+    search: &mut Search<'_>,
+    volume: &Volume,
+    depth: u32,
+    seen: &mut [bool],
+    visible: &mut [bool],
+) -> Result<(), BackendError> {
+    let asked: Vec<bool> = visible.iter().zip(&*seen).map(|(visible, seen)| *visible && !seen).collect();
+    if !asked.contains(&true) {
+        return Ok(());
+    }
+    search.effort.n_volumes += 1;
+    let mut umbra = search.method.umbra(volume)?;
+    let did = search.occludees.see(&mut *umbra, &asked, visible);
+    drop(umbra);
+    search.effort.asked = search.effort.asked + did;
+    let Some(halves) = volume.halves().filter(|_| depth < search.split.depth) else { return Ok(()) };
+    search.witness.see(volume, search.split.n_rays, seen);
+    let all: usize = (0..search.occludees.len()).map(|o| search.occludees.triangles(o).len()).sum();
+    let doubt = (0..search.occludees.len()).filter(|&o| asked[o] && visible[o] && !seen[o]);
+    let doubt: usize = doubt.map(|o| search.occludees.triangles(o).len()).sum();
+    if doubt == 0 || (doubt as f64) < search.split.worth * all as f64 {
+        return Ok(());
+    }
+    let start: Vec<bool> = visible.to_vec();
+    visible.iter_mut().zip(&*seen).for_each(|(visible, seen)| *visible &= seen);
+    for half in &halves {
+        // What the other half sees need not be asked about again.
+        let mut of_half: Vec<bool> = start.iter().zip(&*visible).map(|(start, known)| *start && !known).collect();
+        see_part(search, half, depth + 1, seen, &mut of_half)?;
+        visible.iter_mut().zip(of_half).for_each(|(visible, of_half)| *visible |= of_half);
+    }
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! What rays from a volume are seen to hit: a quick lower bound of what is visible.
+//!
+//! Decides nothing but where work is worth while: what a ray hits need not be asked about again when a volume is cut into
+//! smaller ones. Rays are traced in plain doubles.
+
+use crate::Volume;
+use sightlines_geometry::{Aabb, BoxTree, Point3};
+
+/// Triangles of objects, to be hit by rays.
+#[derive(Debug, Clone)]
+pub struct Witness {
+    triangles: Vec<[Point3; 3]>,
+    object: Vec<u32>,
+    tree: BoxTree<3>,
+    scene: Aabb<3>,
+}
+
+impl Witness {
+    /// * `objects`: for each object its triangles
+    pub fn new<'a>(objects: impl IntoIterator<Item = &'a [[Point3; 3]]>) -> Self {
+        let (mut triangles, mut object) = (Vec::new(), Vec::new());
+        for (id, of) in (0..).zip(objects) {
+            triangles.extend_from_slice(of);
+            object.resize(triangles.len(), id);
+        }
+        let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
+        let tree = BoxTree::build(&boxes, 4);
+        let scene = tree.nodes()[0].bounds;
+        Self { triangles, object, tree, scene }
+    }
+
+    /// Marks the objects that some of `n_rays` rays from points of a volume hit first. Half of the rays go in any
+    /// direction, half towards the points of the box around the scene. The same for the same volume.
+    pub fn see(&self, volume: &Volume, n_rays: u32, seen: &mut [bool]) {
+        if self.triangles.is_empty() {
+            return;
+        }
+        let mut random = Random(volume.bounds().min[0].to_bits() ^ volume.bounds().max[1].to_bits().rotate_left(17));
+        for i in 0..n_rays {
+            let origin = random.point(volume.bounds());
+            let direction = if i % 2 == 0 {
+                random.point(&Aabb { min: [-1.0; 3], max: [1.0; 3] })
+            } else {
+                let to = random.point(&self.scene);
+                std::array::from_fn(|k| to[k] - origin[k])
+            };
+            if let Some(object) = self.first_hit(origin, direction) {
+                seen[object as usize] = true;
+            }
+        }
+    }
+
+    /// The object that a ray hits first.
+    pub fn first_hit(&self, origin: Point3, direction: Point3) -> Option<u32> {
+        let inverse = direction.map(|d| 1.0 / d);
+        let mut best = (f64::INFINITY, None);
+        let mut pending = vec![0];
+        while let Some(n) = pending.pop() {
+            let node = &self.tree.nodes()[n as usize];
+            if enters(&node.bounds, origin, inverse) >= best.0 {
+                continue;
+            }
+            if node.is_leaf() {
+                for &i in &self.tree.order()[node.start as usize..node.end as usize] {
+                    let t = hit(&self.triangles[i as usize], origin, direction);
+                    if t < best.0 {
+                        best = (t, Some(self.object[i as usize]));
+                    }
+                }
+                continue;
+            }
+            let [a, b] = self.tree.children(n);
+            let [ta, tb] = [a, b].map(|c| enters(&self.tree.nodes()[c as usize].bounds, origin, inverse));
+            // The nearer one is looked at first.
+            pending.extend(if ta < tb { [b, a] } else { [a, b] });
+        }
+        best.1
+    }
+}
+
+/// Where a ray enters a box; infinity if it does not.
+fn enters(b: &Aabb<3>, origin: Point3, inverse: Point3) -> f64 {
+    let (mut from, mut to) = (0.0f64, f64::INFINITY);
+    for k in 0..3 {
+        let (a, b) = ((b.min[k] - origin[k]) * inverse[k], (b.max[k] - origin[k]) * inverse[k]);
+        from = from.max(a.min(b));
+        to = to.min(a.max(b));
+    }
+    if from <= to { from } else { f64::INFINITY }
+}
+
+/// Where a ray meets a triangle; infinity if it does not.
+fn hit([a, b, c]: &[Point3; 3], origin: Point3, direction: Point3) -> f64 {
+    let sub = |a: &Point3, b: &Point3| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let cross =
+        |a: Point3, b: Point3| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let dot = |a: Point3, b: Point3| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (u, v, to) = (sub(b, a), sub(c, a), sub(&origin, a));
+    let p = cross(direction, v);
+    let det = dot(u, p);
+    let s = dot(to, p) / det;
+    let q = cross(to, u);
+    let t = dot(direction, q) / det;
+    let at = dot(v, q) / det;
+    if s >= 0.0 && t >= 0.0 && s + t <= 1.0 && at > 0.0 { at } else { f64::INFINITY }
+}
+
+/// A small generator (splitmix64), the same everywhere.
+struct Random(u64);
+
+impl Random {
+    /// From 0 to before 1.
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn point(&mut self, b: &Aabb<3>) -> Point3 {
+        std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) * self.unit())
+    }
+}
