@@ -1,9 +1,9 @@
 //! The Freedoom WADs, real input for the tests: found, or fetched from Debian.
 
-use crate::step::{self, Failure, root};
+use crate::debian::{self, in_file};
+use crate::step::{Failure, root};
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::{env, fmt, fs, io};
+use std::{env, fmt, fs};
 
 /// The environment variable that names the folder with the WADs.
 pub(crate) const VARIABLE: &str = "SIGHTLINES_FREEDOOM";
@@ -18,7 +18,7 @@ pub(crate) enum Missing {
     /// The named folder lacks one of them.
     Wad { folder: PathBuf, wad: &'static str },
     /// This is no Debian, and they were not named.
-    NoDebian,
+    Elsewhere,
     /// The package to be had has another version.
     Version { package: &'static str },
 }
@@ -27,7 +27,7 @@ impl fmt::Display for Missing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Wad { folder, wad } => write!(f, "there is no {wad} in {}", folder.display()),
-            Self::NoDebian => write!(
+            Self::Elsewhere => write!(
                 f,
                 "fetching Freedoom needs Debian's apt-get and dpkg; elsewhere, put {} of Freedoom {VERSION} into a \
                  folder and name it in {VARIABLE}",
@@ -60,7 +60,10 @@ pub(crate) fn find_or_fetch() -> Result<PathBuf, Failure> {
     }
     let folder = own_folder();
     if lacking(&folder).is_some() {
-        fetch(&folder)?;
+        fetch(&folder).map_err(|failure| match failure {
+            Failure::NoDebian => Failure::Freedoom(Missing::Elsewhere),
+            other => other,
+        })?;
     }
     complete(folder)
 }
@@ -76,10 +79,10 @@ fn complete(folder: PathBuf) -> Result<PathBuf, Failure> {
 fn fetch(folder: &Path) -> Result<(), Failure> {
     let work = folder.join("packages");
     in_file(&work, fs::create_dir_all(&work))?;
-    download(&work)?;
+    debian::download(&work, &PACKAGES)?;
     for package in PACKAGES {
         let deb = downloaded(&work, package)?;
-        run_quietly(Command::new("dpkg").arg("-x").arg(deb).arg(&work))?;
+        debian::unpack(&deb, &work)?;
     }
     for wad in WADS {
         let (from, to) = (work.join("usr/share/games/doom").join(wad), folder.join(wad));
@@ -88,48 +91,12 @@ fn fetch(folder: &Path) -> Result<(), Failure> {
     in_file(&work, fs::remove_dir_all(&work))
 }
 
-fn in_file<T>(path: &Path, result: io::Result<T>) -> Result<T, Failure> {
-    result.map_err(|error| Failure::File { path: path.to_path_buf(), error })
-}
-
-/// Lets apt-get download the packages; where its lists know none, with fresh lists of our own.
-fn download(work: &Path) -> Result<(), Failure> {
-    let apt_get = |options: &[String], words: &[&str]| {
-        run_quietly(Command::new("apt-get").current_dir(work).args(["-q", "-y"]).args(options).args(words))
-    };
-    let words = ["download", PACKAGES[0], PACKAGES[1]];
-    match apt_get(&[], &words) {
-        Err(Failure::Status { .. }) => {
-            let (lists, cache) = (work.join("lists"), work.join("cache"));
-            for folder in [lists.join("partial"), cache.join("archives/partial")] {
-                in_file(&folder, fs::create_dir_all(&folder))?;
-            }
-            let options = [("State::Lists", lists), ("Cache", cache)]
-                .map(|(name, path)| format!("-oDir::{name}={}", path.display()));
-            apt_get(&options, &["update"])?;
-            apt_get(&options, &words)
-        }
-        other => other,
-    }
-}
-
-/// Runs a command with its output on standard error: ours is the folder alone.
-fn run_quietly(command: &mut Command) -> Result<(), Failure> {
-    step::run(command.stdout(io::stderr())).map_err(|failure| match failure {
-        Failure::Start { error, .. } if error.kind() == io::ErrorKind::NotFound => Failure::Freedoom(Missing::NoDebian),
-        other => other,
-    })
-}
-
 /// The downloaded file of a package, such as `freedm_0.12.1-2_all.deb`.
 fn downloaded(work: &Path, package: &'static str) -> Result<PathBuf, Failure> {
-    for entry in in_file(work, fs::read_dir(work))? {
-        let path = in_file(work, entry)?.path();
-        if path.file_name().is_some_and(|name| is_package(&name.to_string_lossy(), package)) {
-            return Ok(path);
-        }
-    }
-    Err(Failure::Freedoom(Missing::Version { package }))
+    let found = debian::files(work)?
+        .into_iter()
+        .find(|path| path.file_name().is_some_and(|name| is_package(&name.to_string_lossy(), package)));
+    found.ok_or(Failure::Freedoom(Missing::Version { package }))
 }
 
 fn is_package(file_name: &str, package: &str) -> bool {

@@ -1,5 +1,6 @@
 //! What a change has to pass, in order.
 
+use crate::gpu::Wish;
 use crate::step::{self, Failure, cargo, root};
 use crate::{tally, tidy};
 use std::fs;
@@ -29,13 +30,14 @@ pub(crate) fn alone() -> Result<(), Failure> {
     step::run(cargo().args(["check", "-p", "sightlines"]))
 }
 
-/// Names of the published packages below `crates/`, sorted.
+/// Names of the published packages below `crates/`, and of that of the shaders, sorted.
 fn published() -> Result<Vec<String>, Failure> {
     let folder = root().join("crates");
     let failure = |error| Failure::File { path: folder.clone(), error };
     let mut names = Vec::new();
-    for entry in fs::read_dir(&folder).map_err(failure)? {
-        let path = entry.map_err(failure)?.path().join("Cargo.toml");
+    let entries = fs::read_dir(&folder).map_err(failure)?.map(|entry| entry.map(|e| e.path()));
+    for package in entries.chain([Ok(root().join("shaders"))]) {
+        let path = package.map_err(failure)?.join("Cargo.toml");
         let manifest = fs::read_to_string(&path).map_err(|error| Failure::File { path, error })?;
         names.extend(published_name(&manifest).map(str::to_owned));
     }
@@ -61,7 +63,9 @@ fn demo() -> Result<(), Failure> {
 }
 
 /// Everything, up to the first failure; the tests last, so that their summary is the last line.
-pub(crate) fn ci() -> Result<(), Failure> {
+///
+/// * `gpu`: which device the tests on one are run on
+pub(crate) fn ci(gpu: Wish) -> Result<(), Failure> {
     type Step = (&'static str, fn() -> Result<(), Failure>);
     let steps: [Step; 5] =
         [("tidy", tidy::tidy), ("docs", docs), ("alone", alone), ("demo", demo), ("benches", benches_once)];
@@ -69,7 +73,7 @@ pub(crate) fn ci() -> Result<(), Failure> {
     for (name, step) in steps {
         timed(name, &mut times, step)?;
     }
-    let tally = timed("test", &mut times, tally::test)?;
+    let tally = timed("test", &mut times, || tally::test(gpu))?;
     for (name, time) in times {
         println!("{name:>8} {:6.1} s", time.as_secs_f64());
     }
@@ -97,7 +101,10 @@ mod tests {
     #[test]
     fn published_crates_are_told_by_their_manifests() {
         let names = published().expect("manifests are readable");
-        assert!(names.iter().any(|n| n == "sightlines") && names.len() >= 13, "{names:?}");
+        assert!(
+            ["sightlines", "sightlines-shaders"].iter().all(|n| names.iter().any(|m| m == n)) && names.len() >= 13,
+            "{names:?}"
+        );
         assert!(!names.iter().any(|n| n == "sightlines-testkit"));
         assert_eq!(published_name("[package]\nname = \"a\"\npublish = false\n"), None);
         assert_eq!(published_name("[package]\nname = \"a\"\n"), Some("a"));

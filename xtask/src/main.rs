@@ -3,8 +3,10 @@
 //! Owns: how tests, benches, documentation and checks are called, and in which order. Depends on
 //! nothing of the workspace, so that it builds in seconds and also where the workspace does not.
 
+mod debian;
 mod freedoom;
 mod gate;
+mod gpu;
 mod step;
 mod tally;
 mod tidy;
@@ -24,7 +26,11 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Task {
     /// Runs every test: units, properties, integration, documentation.
-    Test,
+    Test {
+        /// Which GPU the tests that need one run on.
+        #[arg(long, value_enum, default_value_t)]
+        gpu: gpu::Wish,
+    },
     /// Throws random and mutated input at readers and algorithms.
     Fuzz {
         /// What to fuzz; everything in turn if it is not given.
@@ -52,7 +58,17 @@ enum Task {
     /// Checks that each published crate compiles on its own.
     Alone,
     /// Runs everything that a change has to pass, and ends with the tests.
-    Ci,
+    Ci {
+        /// Which GPU the tests that need one run on.
+        #[arg(long, value_enum, default_value_t)]
+        gpu: gpu::Wish,
+    },
+    /// Finds a GPU, or fetches one in software, and prints the environment that programs find it by.
+    Gpu {
+        /// Which one.
+        #[arg(default_value_t, value_enum)]
+        gpu: gpu::Wish,
+    },
     /// Finds or fetches the Freedoom WADs and prints their folder.
     Freedoom,
 }
@@ -70,7 +86,7 @@ fn main() -> ExitCode {
 
 fn run(task: Task) -> Result<(), Failure> {
     match task {
-        Task::Test => tally::test()?.conclude(),
+        Task::Test { gpu } => tally::test(gpu)?.conclude(),
         Task::Fuzz { target, seconds, seed, list } => fuzz(target, seconds, seed, list),
         Task::Bench { filter } => {
             let filter = filter.iter().flat_map(|f| ["--", f]);
@@ -79,7 +95,13 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Docs => gate::docs(),
         Task::Tidy => tidy::tidy(),
         Task::Alone => gate::alone(),
-        Task::Ci => gate::ci(),
+        Task::Ci { gpu } => gate::ci(gpu),
+        Task::Gpu { gpu } => {
+            for (name, value) in gpu::environment(gpu)? {
+                println!("export {name}={}", value.to_string_lossy());
+            }
+            Ok(())
+        }
         Task::Freedoom => freedoom::find_or_fetch().map(|folder| println!("{}", folder.display())),
     }
 }
@@ -110,5 +132,11 @@ mod tests {
             panic!("fuzz is a task");
         };
         assert_eq!((seconds, target.as_deref(), list), (Some(5), Some("wad"), false));
+        let gpu = |words: &[&str]| match Cli::parse_from(words).task {
+            Task::Test { gpu } | Task::Ci { gpu } => gpu,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(gpu(&["xtask", "test"]), gpu::Wish::Auto);
+        assert_eq!(gpu(&["xtask", "ci", "--gpu", "require"]), gpu::Wish::Require);
     }
 }

@@ -1,7 +1,7 @@
 //! Running other programs, and what can go wrong with them.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus};
+use std::process::{Command, ExitStatus, Stdio};
 use std::{fmt, io};
 
 /// Why a task failed.
@@ -17,8 +17,12 @@ pub(crate) enum Failure {
     Found { what: &'static str, n: usize },
     /// The tests failed, and their summary is to be the last line.
     Tests,
+    /// Packages are wanted, and this is no Debian.
+    NoDebian,
     /// The Freedoom WADs are not to be had.
     Freedoom(crate::freedoom::Missing),
+    /// No GPU is to be had, not even one in software.
+    Gpu(crate::gpu::Missing),
 }
 
 impl fmt::Display for Failure {
@@ -29,7 +33,9 @@ impl fmt::Display for Failure {
             Self::File { path, error } => write!(f, "{}: {error}", path.display()),
             Self::Found { what, n } => write!(f, "{n} {what}"),
             Self::Tests => f.write_str("tests failed"),
+            Self::NoDebian => f.write_str("there are no apt-get and dpkg here"),
             Self::Freedoom(missing) => missing.fmt(f),
+            Self::Gpu(missing) => missing.fmt(f),
         }
     }
 }
@@ -63,6 +69,17 @@ pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
     announce(command);
     let status = command.status().map_err(|error| start_failure(command, error))?;
     if status.success() { Ok(()) } else { Err(Failure::Status { command: typed(command), status }) }
+}
+
+/// Runs a command to its end, and returns what it writes to its standard output.
+pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
+    announce(command);
+    let output = command.stderr(Stdio::inherit()).output().map_err(|error| start_failure(command, error))?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(Failure::Status { command: typed(command), status: output.status })
+    }
 }
 
 pub(crate) fn start_failure(command: &Command, error: io::Error) -> Failure {

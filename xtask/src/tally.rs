@@ -1,6 +1,7 @@
 //! Running all tests and adding up what they say.
 
 use crate::freedoom;
+use crate::gpu::{self, Wish};
 use crate::step::{Failure, announce, cargo, start_failure};
 use std::fmt;
 use std::io::{BufRead, BufReader, Write};
@@ -14,7 +15,12 @@ pub(crate) struct Tally {
     ignored: usize,
     /// Test programs that came to an end.
     programs: usize,
+    /// Tests that passed without having looked at anything, for want of a GPU.
+    without_gpu: usize,
 }
+
+/// What a test says on a line of its own if it needs a GPU and there is none.
+const WITHOUT_GPU: &str = "GPU test not run: ";
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -26,6 +32,7 @@ impl Tally {
     /// Adds a line of output, if it is a result such as
     /// `test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s`.
     fn add(&mut self, line: &str) {
+        self.without_gpu += usize::from(line.starts_with(WITHOUT_GPU));
         // A program without a line break at the end of its output puts its result behind it.
         let Some((_, result)) = line.split_once("test result: ") else { return };
         let number = |what: &str| {
@@ -61,14 +68,23 @@ impl Tally {
         if self.ignored > 0 {
             println!("{} ignored, which counts as a failure", self.ignored);
         }
+        if self.without_gpu > 0 {
+            println!("{} GPU tests did not run, and count as passed; see --gpu", self.without_gpu);
+        }
         println!("{self}");
         if self.is_good() { Ok(()) } else { Err(Failure::Tests) }
     }
 }
 
 /// Runs `cargo test --workspace`, shows its output, and adds up the results.
-pub(crate) fn test() -> Result<Tally, Failure> {
+///
+/// * `gpu`: which device the tests on one are run on
+pub(crate) fn test(gpu: Wish) -> Result<Tally, Failure> {
     let mut command = cargo();
+    for (name, value) in gpu::environment(gpu)? {
+        eprintln!("{name}={}", value.to_string_lossy());
+        command.env(name, value);
+    }
     command.args(["test", "--workspace", "--no-fail-fast"]).stdout(Stdio::piped());
     if let Some(folder) = freedoom::at_hand() {
         eprintln!("{}={}", freedoom::VARIABLE, folder.display());
@@ -108,8 +124,9 @@ mod tests {
             "test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s",
             "noisetest result: FAILED. 10 passed; 2 failed; 1 ignored; 0 measured; 0 filtered out; finished in 0.01s",
             "test result: who knows",
+            "GPU test not run: forms of any size: SIGHTLINES_GPU=off",
         ]);
-        assert_eq!(sum, Tally { passed: 13, failed: 2, ignored: 1, programs: 2 });
+        assert_eq!(sum, Tally { passed: 13, failed: 2, ignored: 1, programs: 2, without_gpu: 1 });
         assert_eq!(sum.to_string(), "13 passed, 2 failed");
         assert!(!sum.is_good());
     }

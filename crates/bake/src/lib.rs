@@ -12,6 +12,7 @@ mod mirrors;
 mod objects;
 mod plan;
 pub mod quake;
+pub mod region;
 pub mod reject;
 pub mod scene;
 mod sectors;
@@ -22,6 +23,7 @@ pub use plan::{BakeError, BakeOptions, BakeSummary, Baked, ParseSubdivideError, 
 pub use quake::{
     BakedMap, BakedPrt, PrtBakeError, PrtOptions, SeenClusters, VisMap, bake_map, bake_prt, convex_graph_of, vis_map,
 };
+pub use region::{BakedRegions, CellsFrom, MakeMethod, RegionBakeError, RegionBakeOptions, bake_regions};
 pub use reject::{
     MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad,
 };

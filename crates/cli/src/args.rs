@@ -8,6 +8,7 @@ use crate::commands::{
     export::ExportArgs,
     generate::GenerateArgs,
     info::InfoArgs,
+    multifocal::MultifocalArgs,
     pack::{PackArgs, UnpackArgs},
     query::QueryArgs,
     reject::RejectArgs,
@@ -56,6 +57,8 @@ pub(crate) enum Command {
     Explain(ExplainArgs),
     /// Draw a table and what is seen from somewhere, as SVG or PNG: plans, floor plans, isometric views
     Draw(DrawArgs),
+    /// Draw what is surely blocked from a volume of eyes on a plane behind a scene in space, and what is nearest to it
+    Multifocal(MultifocalArgs),
     /// Sum up a table, a WAD, a GeoJSON plan, a scene in space, a Quake map or a portal file
     Info(InfoArgs),
     /// Write a generated scene of any size

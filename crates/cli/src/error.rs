@@ -2,11 +2,13 @@
 
 use crate::commands::walk::{Found, PathError};
 use sightlines::bake::quake::StateError;
-use sightlines::bake::{BakeError, PrtBakeError, RejectError, StabBakeError};
+use sightlines::bake::region::GridError;
+use sightlines::bake::{BakeError, PrtBakeError, RegionBakeError, RejectError, StabBakeError};
 use sightlines::eye_to_cell::{Method, ViewError};
 use sightlines::formats::quake::VisibilityError;
 use sightlines::formats::scene::SceneWriteError;
 use sightlines::formats::{ReadError, WriteError};
+use sightlines::multifocal::{BackendError, JobError, PlaneError, VolumeError};
 use sightlines::packed::{PackError, PackedError};
 use sightlines::pvs::DecodeError;
 use sightlines::report::{DrawError, PngError};
@@ -59,6 +61,12 @@ pub(crate) enum CliError {
     /// A plan or a scene cannot be baked.
     #[error("{}: {}{source}", path.display(), map.as_ref().map_or(String::new(), |name| format!("map {name}: ")))]
     Bake { path: PathBuf, map: Option<String>, source: BakeError },
+    /// A scene cannot be baked by what is hidden from its cells.
+    #[error("{}: {source}", path.display())]
+    BakeRegion { path: PathBuf, source: RegionBakeError },
+    /// There is no such grid of cells.
+    #[error("{}: {source}", path.display())]
+    Grid { path: PathBuf, source: GridError },
     /// A portal file, or the map that it is of, cannot be baked.
     #[error("{}: {source}", path.display())]
     BakePrt { path: PathBuf, source: PrtBakeError },
@@ -138,6 +146,32 @@ pub(crate) enum CliError {
     /// A picture whose name does not say which kind it is.
     #[error("{}: the name of a picture ends in .svg or .png", .0.display())]
     PictureKind(PathBuf),
+    /// A picture that is always PNG, and is not called so.
+    #[error("{}: the picture is written as PNG; give a name that ends in .png", .0.display())]
+    NotPng(PathBuf),
+    /// Two pictures for one file.
+    #[error("{}: two pictures would be written to this file", .0.display())]
+    TwoPictures(PathBuf),
+    /// A scene in which nothing can hide anything.
+    #[error("{}: there are no triangles in the scene", .0.display())]
+    NoTriangles(PathBuf),
+    /// A box that is no volume of viewpoints.
+    #[error("--volume: {0}")]
+    Volume(#[from] VolumeError),
+    /// A plane on which no buffer can be.
+    #[error("--plane {plane}: {source}")]
+    Plane { plane: String, source: PlaneError },
+    /// A plane with eyes on both sides, or on it.
+    #[error(
+        "--plane {plane}: the plane goes through the view volume, which reaches from {axis}={low} to {axis}={high}"
+    )]
+    PlaneInVolume { plane: String, axis: &'static str, low: f64, high: f64 },
+    /// A plane and a volume that do not go together.
+    #[error("--plane {plane}: {source}")]
+    Job { plane: String, source: JobError },
+    /// Nobody could fill the buffer.
+    #[error("{}: {source}", path.display())]
+    Backend { path: PathBuf, source: BackendError },
     /// An output file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),

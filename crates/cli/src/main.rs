@@ -62,6 +62,7 @@ fn run(arguments: &Arguments) -> Result<Answer, CliError> {
         Command::Export(args) => commands::export::run(args),
         Command::Explain(args) => commands::explain::run(args),
         Command::Draw(args) => commands::draw::run(args),
+        Command::Multifocal(args) => commands::multifocal::run(args),
         Command::Info(args) => commands::info::run(args),
         Command::Generate(args) => commands::generate::run(args),
         Command::Demo(args) => commands::demo::run(args, show_progress),

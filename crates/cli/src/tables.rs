@@ -5,7 +5,7 @@ use crate::input::{self, Kind};
 use sightlines::bake::quake::{SOURCE_KEY, SOURCE_MAP, SOURCE_PRT};
 use sightlines::eye_to_cell::{CellSource, TableCells};
 use sightlines::packed::{Packed, PackedError};
-use sightlines::pvs::Table;
+use sightlines::pvs::{CellId, Table};
 use sightlines::walkthrough::{PackedCells, Resident};
 use std::convert::Infallible;
 use std::fs::File;
@@ -47,6 +47,9 @@ pub(crate) trait Cells: CellSource<Error: Send + 'static> + Resident + Clone + S
     fn n_portals(&self) -> usize;
 
     fn object_name(&self, object: u32) -> Result<String, Self::Error>;
+
+    /// `None` if the cells of the table have no names.
+    fn cell_name(&self, cell: CellId) -> Result<Option<String>, Self::Error>;
 
     fn polygons_of(&self, object: u32) -> Result<u32, Self::Error>;
 
@@ -94,6 +97,10 @@ impl Cells for TableCells<Arc<Table>> {
         Ok(self.table().objects()[object as usize].name.clone())
     }
 
+    fn cell_name(&self, cell: CellId) -> Result<Option<String>, Infallible> {
+        Ok(self.table().cell_name(cell).map(str::to_owned))
+    }
+
     fn polygons_of(&self, object: u32) -> Result<u32, Infallible> {
         Ok(self.table().polygons_of(object))
     }
@@ -122,6 +129,10 @@ impl Cells for PackedCells<File> {
 
     fn object_name(&self, object: u32) -> Result<String, PackedError> {
         self.packed().object_name(object)
+    }
+
+    fn cell_name(&self, cell: CellId) -> Result<Option<String>, PackedError> {
+        self.packed().cell_name(cell)
     }
 
     fn polygons_of(&self, object: u32) -> Result<u32, PackedError> {

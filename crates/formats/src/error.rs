@@ -1,7 +1,7 @@
 //! Errors of reading a file: its path, and what is wrong inside.
 
 use crate::quake::{BspError, PrtError};
-use crate::{DoomError, GeoJsonError, SceneReadError, WadError};
+use crate::{DoomError, GeoJsonError, SceneReadError, ViewCellsError, WadError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -42,6 +42,9 @@ pub enum ReadErrorKind {
     /// It is not a scene in space.
     #[error(transparent)]
     Scene(Box<SceneReadError>),
+    /// It has no view cells.
+    #[error(transparent)]
+    ViewCells(Box<ViewCellsError>),
     /// It is not a sound portal file of a Quake map.
     #[error(transparent)]
     Prt(#[from] PrtError),
@@ -53,6 +56,12 @@ pub enum ReadErrorKind {
 impl From<SceneReadError> for ReadErrorKind {
     fn from(error: SceneReadError) -> Self {
         Self::Scene(Box::new(error))
+    }
+}
+
+impl From<ViewCellsError> for ReadErrorKind {
+    fn from(error: ViewCellsError) -> Self {
+        Self::ViewCells(Box::new(error))
     }
 }
 

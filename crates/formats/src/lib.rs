@@ -1,8 +1,8 @@
 //! Readers and writers of the files that scenes come from: Doom WADs, GeoJSON floor plans,
-//! glTF and OBJ scenes in space, maps of the Quake family with their portals.
+//! glTF and OBJ scenes in space, boxes where viewers can be, maps of the Quake family with their portals.
 //!
 //! Owns: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
-//! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]), maps of the Quake family and their visibility
+//! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]), view cells ([`view_cells`]), maps of the Quake family and their visibility
 //! ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), and errors that name the file
 //! and the place in it ([`ReadError`]).
 //! Does not know: how a plan is cut into cells, what a sightline is, how a REJECT table is computed.
@@ -19,6 +19,7 @@ mod point;
 pub mod quake;
 pub mod reject;
 pub mod scene;
+pub mod view_cells;
 pub mod wad;
 
 pub use doom::{DoomError, DoomMap, MapLumps};
@@ -28,6 +29,7 @@ pub use geojson::GeoJsonError;
 pub use quake::{Bsp, Prt};
 pub use reject::RejectTable;
 pub use scene::{SceneFile, SceneInfo, SceneReadError};
+pub use view_cells::{ViewCell, ViewCells, ViewCellsError};
 pub use wad::{LumpName, Wad, WadBuilder, WadError};
 
 #[cfg(doctest)]

@@ -1,10 +1,11 @@
-//! Real files: Freedoom's maps and floor plans of buildings.
+//! Real files: Freedoom's maps, floor plans of buildings, view cells of scenes.
 
 mod common;
 
 use common::{data_folder, difference_besides_reject, files};
 use sightlines_formats::doom::{MapLump, list_maps};
 use sightlines_formats::geojson::{parse_plan, read_plan, write_plan};
+use sightlines_formats::view_cells::read_view_cells;
 use sightlines_formats::{DoomMap, RejectTable, Wad};
 use std::path::Path;
 
@@ -95,6 +96,36 @@ fn floor_plans_are_read_and_written_again() {
         assert_eq!(parse_plan(text.as_bytes()).unwrap(), plan);
         assert_eq!(parse_plan(write_plan(&plan).as_bytes()).unwrap(), plan);
     }
+}
+
+/// The view cells of every scene: as many as the text has ids, and all where it says, in the unit of the scene.
+#[test]
+fn view_cells_are_read() {
+    let Some(data) = data_folder("SIGHTLINES_DATA", "view_cells_are_read") else { return };
+    let (mut n_files, mut n_cells) = (0, 0);
+    for scene in std::fs::read_dir(data.join("scenes")).unwrap().map(|entry| entry.unwrap().path()) {
+        if !scene.is_dir() {
+            continue;
+        }
+        for path in files(&scene, "json") {
+            if !path.file_name().unwrap().to_str().unwrap().starts_with("cells_") {
+                continue;
+            }
+            let found = read_view_cells(&path).unwrap_or_else(|e| panic!("{e}"));
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert_eq!(found.cells.len(), text.matches("\"id\"").count(), "{}", path.display());
+            let whole: serde_json::Value = serde_json::from_str(&text).unwrap();
+            for (cell, value) in found.cells.iter().zip(whole["cells"].as_array().unwrap()) {
+                let corner = |member: &str| [0, 1, 2].map(|k| value[member][k].as_f64().unwrap());
+                assert_eq!((cell.bounds.min, cell.bounds.max), (corner("min"), corner("max")), "{}", path.display());
+                assert!(value["id"] == cell.id.as_str() && !cell.bounds.is_empty());
+            }
+            eprintln!("{}: {} view cells", path.display(), found.cells.len());
+            (n_files, n_cells) = (n_files + 1, n_cells + found.cells.len());
+        }
+    }
+    assert!(n_files > 0 && n_cells > n_files, "{n_files} files with {n_cells} view cells");
+    eprintln!("{n_files} files with {n_cells} view cells");
 }
 
 /// `SIGHTLINES_FREEDOOM` names a folder with `freedoom1.wad`, `freedoom2.wad` and `freedm.wad` of 0.12.1.

@@ -31,6 +31,14 @@ pub struct Effort {
     pub asked: Asked,
 }
 
+impl std::ops::Add for Effort {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { n_volumes: self.n_volumes + other.n_volumes, asked: self.asked + other.asked }
+    }
+}
+
 /// Finds the objects that may be visible from a volume: clears `visible` for those that the method proves hidden,
 /// from the whole volume or from all of its parts; objects that are not visible at the start are not asked about.
 ///
@@ -69,6 +77,7 @@ fn see_part(
     seen: &mut [bool],
     visible: &mut [bool],
 ) -> Result<(), BackendError> {
+    search.witness.see(volume, search.split.n_rays, seen);
     let asked: Vec<bool> = visible.iter().zip(&*seen).map(|(visible, seen)| *visible && !seen).collect();
     if !asked.contains(&true) {
         return Ok(());
@@ -79,10 +88,9 @@ fn see_part(
     drop(umbra);
     search.effort.asked = search.effort.asked + did;
     let Some(halves) = volume.halves().filter(|_| depth < search.split.depth) else { return Ok(()) };
-    search.witness.see(volume, search.split.n_rays, seen);
-    let all: usize = (0..search.occludees.len()).map(|o| search.occludees.triangles(o).len()).sum();
-    let doubt = (0..search.occludees.len()).filter(|&o| asked[o] && visible[o] && !seen[o]);
-    let doubt: usize = doubt.map(|o| search.occludees.triangles(o).len()).sum();
+    let n_triangles = |o: usize| search.occludees.triangles(o).len();
+    let all: usize = (0..search.occludees.len()).map(n_triangles).sum();
+    let doubt: usize = (0..search.occludees.len()).filter(|&o| asked[o] && visible[o]).map(n_triangles).sum();
     if doubt == 0 || (doubt as f64) < search.split.worth * all as f64 {
         return Ok(());
     }

@@ -30,6 +30,7 @@ pub mod occluder;
 pub mod plane;
 pub mod region;
 pub mod surround;
+pub mod together;
 pub mod volume;
 pub mod witness;
 
@@ -47,5 +48,6 @@ pub use occluder::{Occluder, OccluderError};
 pub use plane::{MAX_TEXELS, Plane, PlaneError};
 pub use region::{FromRegion, Guarantee, Umbra};
 pub use surround::{Layout, Surround, Surrounded};
+pub use together::Together;
 pub use volume::{Volume, VolumeError};
 pub use witness::Witness;

@@ -216,6 +216,11 @@ impl Index {
         self.stores.iter().map(move |(id, store)| (*id, bytes(store).map(|entry| u64::from(entry.len)).sum()))
     }
 
+    /// Whether there is a store.
+    pub(crate) fn has(&self, id: SectionId) -> bool {
+        self.stores.iter().any(|(known, _)| *known == id)
+    }
+
     /// A store that has as many records as it must have.
     pub(crate) fn need(&self, id: SectionId, n_records: u32) -> Result<StoreIndex, PackedError> {
         let missing = || PackedError::new(Some(id), 0, Kind::Missing);

@@ -43,6 +43,7 @@
 //! | `PORT` | portal | varint both cells, both sides, number of points; points (d each) |
 //! | `OBJS` | object | min (d), max (d); varint polygons (0 if not known); name to the end |
 //! | `STAB`, optional | node | varint gate; number of children, twice, + 1 if the tree is cut there; differences less one from the node down to its last child, and on to its first |
+//! | `CNAM`, optional | cell | its name in UTF-8; without the store (new in 1.1) cells have no names |
 //!
 //! Blocks of all stores but `ROWS` and `SEEN` begin with the ends of their records (`u32`, counted from
 //! the end of this list). Ascending lists have their length and differences less one, as varints.
@@ -53,8 +54,9 @@ use sightlines_pvs::SectionId;
 pub const MAGIC: [u8; 8] = *b"\x89PVP\r\n\x1a\n";
 /// Major version that this crate writes, and the largest that it reads.
 pub const MAJOR: u16 = 1;
-/// Largest minor version that this crate writes.
-pub const MINOR: u16 = 0;
+/// Largest minor version that this crate writes. It writes the least that has all that is in a table, so that files
+/// without what is new stay as they were.
+pub const MINOR: u16 = 1;
 /// Bytes that a block may have when it is unpacked: a file cannot ask for more memory at once.
 pub const MAX_BLOCK: u32 = 1 << 24;
 /// Bytes that rows of bits may take in [`crate::Packed::to_table`]: few bytes of a file can tell of many.
@@ -95,6 +97,7 @@ pub(crate) const CELLS: SectionId = SectionId(*b"CELL");
 pub(crate) const PORTALS: SectionId = SectionId(*b"PORT");
 pub(crate) const OBJECTS: SectionId = SectionId(*b"OBJS");
 pub(crate) const STAB: SectionId = SectionId(*b"STAB");
+pub(crate) const CELL_NAMES: SectionId = SectionId(*b"CNAM");
 
 /// Bytes before the section table.
 pub(crate) const FIXED: usize = 24;

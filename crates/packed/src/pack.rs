@@ -207,6 +207,9 @@ impl Frame {
         if let Some(stab) = &parts.stab {
             stores.push(Store::of_records(format::STAB, &write::nodes(stab))?);
         }
+        if !parts.cell_names.is_empty() {
+            stores.push(Store::of_records(format::CELL_NAMES, &write::cell_names(parts))?);
+        }
         Ok(Self { sections, stores })
     }
 
@@ -253,7 +256,8 @@ impl Frame {
         let mut out = Writer(Vec::with_capacity(total as usize));
         out.0.extend(MAGIC);
         out.0.extend(MAJOR.to_le_bytes());
-        out.0.extend(MINOR.to_le_bytes());
+        let minor = if table.has_cell_names() { MINOR } else { 0 };
+        out.0.extend(minor.to_le_bytes());
         out.u32(ordered.len() as u32);
         out.u64(total);
         let mut at = (FIXED + ENTRY * ordered.len() + 4) as u64;

@@ -31,6 +31,7 @@ pub struct Packed<S: Source> {
     pub(crate) portals: StoreIndex,
     pub(crate) objects: StoreIndex,
     pub(crate) nodes: Option<StoreIndex>,
+    pub(crate) names: Option<StoreIndex>,
     cache: Cache,
 }
 
@@ -218,6 +219,10 @@ impl<S: Source> Packed<S> {
             portals: index.need_records(format::PORTALS, head.n_portals)?,
             objects: index.need_records(format::OBJECTS, n_objects)?,
             nodes: head.n_nodes.map(|n| index.need_records(format::STAB, n)).transpose()?,
+            names: index
+                .has(format::CELL_NAMES)
+                .then(|| index.need_records(format::CELL_NAMES, n_cells))
+                .transpose()?,
             places,
             cache,
             head,

@@ -129,6 +129,25 @@ impl<S: Source> Packed<S> {
         })
     }
 
+    /// What users call a cell; `None` if the cells of the table have no names.
+    ///
+    /// # Errors
+    /// If there is no such cell, its block cannot be read, or the name is not UTF-8.
+    pub fn cell_name(&self, cell: CellId) -> Result<Option<String>, PackedError> {
+        self.check_cell(cell)?;
+        let Some(store) = self.names else { return Ok(None) };
+        self.with_record((format::CELL_NAMES, store), cell.0, |mut r| {
+            let name = r.take(r.left())?;
+            let name = std::str::from_utf8(name).map_err(|_| r.fail(Kind::Text))?;
+            Ok(Some(name.to_owned()))
+        })
+    }
+
+    /// Whether [`Packed::cell_name`] has names to tell. Reads nothing.
+    pub fn has_cell_names(&self) -> bool {
+        self.names.is_some()
+    }
+
     /// Reads the exits of a cell: portal, whether it leads forward, to-cell.
     fn for_each_exit(
         &self,

@@ -41,6 +41,7 @@ impl<S: Source> Packed<S> {
             let mut objects = Vec::new();
             self.objects_of(cell, &mut objects)?;
             parts.cell_objects.push(objects);
+            parts.cell_names.extend(self.cell_name(cell)?);
         }
         for portal in 0..self.head.n_portals {
             parts.portals.push(self.portal(portal)?);

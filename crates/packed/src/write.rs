@@ -201,6 +201,11 @@ pub(crate) fn objects(parts: &TableParts) -> Vec<Vec<u8>> {
     parts.objects.iter().enumerate().map(record).collect()
 }
 
+/// The records of `CNAM`.
+pub(crate) fn cell_names(parts: &TableParts) -> Vec<Vec<u8>> {
+    parts.cell_names.iter().map(|name| name.as_bytes().to_vec()).collect()
+}
+
 /// The records of `STAB`.
 pub(crate) fn nodes(stab: &StabTrees) -> Vec<Vec<u8>> {
     let record = |node: u32| {

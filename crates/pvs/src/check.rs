@@ -186,6 +186,14 @@ pub enum TableError {
         /// Number of objects.
         n_objects: usize,
     },
+    /// Names of cells, but not one for each cell.
+    #[error("{n} names of cells do not fit {n_cells} cells")]
+    CellNames {
+        /// Number of names.
+        n: usize,
+        /// Number of cells.
+        n_cells: usize,
+    },
     /// A mirror in a cell that does not exist.
     #[error("mirror {mirror} is in cell {cell}, which does not exist")]
     MirrorCell {
@@ -228,6 +236,9 @@ impl TableParts {
         self.check_counts()?;
         let mut cells = (0u32..).map(CellId).zip(&self.cells);
         cells.try_for_each(|(id, cell)| self.check_cell(id, cell))?;
+        if !self.cell_names.is_empty() && self.cell_names.len() != self.cells.len() {
+            return Err(TableError::CellNames { n: self.cell_names.len(), n_cells: self.cells.len() });
+        }
         self.portals.iter().enumerate().try_for_each(|(i, portal)| self.check_portal(i, portal))?;
         self.check_rows()?;
         self.check_objects()?;
@@ -256,7 +267,7 @@ impl TableParts {
         if let Some(&(item, n)) = counts.iter().find(|(_, n)| u32::try_from(*n).is_err()) {
             return Err(TableError::TooMany { item, n });
         }
-        let names = self.objects.iter().map(|object| &object.name);
+        let names = self.objects.iter().map(|object| &object.name).chain(&self.cell_names);
         let mut texts = names.chain(self.info.iter().flat_map(|(k, v)| [k, v])).map(String::len);
         match texts.find(|&n| u32::try_from(n).is_err()) {
             Some(n) => Err(TableError::TooLong(n)),

@@ -75,6 +75,8 @@ pub struct TableParts {
     pub object_polygons: Vec<u32>,
     /// The parts of mirrors; may be empty.
     pub mirrors: Vec<MirrorRecord>,
+    /// What users call each cell, in the order of `cells`; need not differ. Empty: cells have no names.
+    pub cell_names: Vec<String>,
     /// Finds the cells at a point; complete for the cells' boxes.
     pub locator: Locator,
     /// In space: says which cells a point is in, instead of the cells' boxes. `None`: the boxes do.
@@ -98,6 +100,7 @@ impl TableParts {
             objects_seen: None,
             object_polygons: Vec::new(),
             mirrors: Vec::new(),
+            cell_names: Vec::new(),
             locator: Locator::default(),
             planes: None,
             stab: None,

@@ -36,7 +36,7 @@ impl Table {
     /// by cell or by position.
     ///
     /// The cells become their boxes, so a point may be found in more cells than before, and never in
-    /// fewer. Rows, objects, mirrors, planes and ids stay.
+    /// fewer. Rows, objects, mirrors, planes, ids and names stay.
     #[must_use]
     pub fn strip_geometry(&self) -> Self {
         let mut parts = self.parts.clone();
@@ -84,6 +84,21 @@ impl Table {
         let n_objects = self.parts.objects.len();
         assert!((object as usize) < n_objects, "object {object} of {n_objects}");
         self.parts.object_polygons.get(object as usize).copied().unwrap_or(1)
+    }
+
+    /// What users call a cell; `None` if the cells of the table have no names. O(1).
+    ///
+    /// # Panics
+    /// If the table has no such cell.
+    pub fn cell_name(&self, cell: CellId) -> Option<&str> {
+        let n_cells = self.n_cells();
+        assert!(cell.idx() < n_cells, "cell {cell} of {n_cells}");
+        self.parts.cell_names.get(cell.idx()).map(String::as_str)
+    }
+
+    /// Whether [`Table::cell_name`] has names to tell.
+    pub fn has_cell_names(&self) -> bool {
+        !self.parts.cell_names.is_empty()
     }
 
     /// The parts of mirrors, in the order in which they were given.

@@ -29,7 +29,8 @@ pub fn export_json(table: &Table) -> String {
 /// ```
 ///
 /// Ids are dense from 0 and equal to the place in their list. Points have `dimension` coordinates, in
-/// scene units, in the shortest form that reads back as the same number. `polygon`: the corners of a
+/// scene units, in the shortest form that reads back as the same number. If the cells of the table have names, each
+/// cell has another key behind `id`, `"name"`, as objects have; else none has it. `polygon`: the corners of a
 /// planar cell, counter-clockwise (the corners of its box if it has no others); empty in space.
 /// `group`: a sector or the like, or null. `points`: the left end, then the right end, as seen from the
 /// first of the two cells; a polygon in space. `visible`: for each cell the ids that it may see,
@@ -77,6 +78,8 @@ impl<'a> Export<'a> {
 #[derive(Serialize)]
 struct Cell<'a> {
     id: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<&'a str>,
     min: &'a [f64],
     max: &'a [f64],
     polygon: Vec<[f64; 2]>,
@@ -102,7 +105,8 @@ fn cells<S: Serializer>(table: &Table, out: S) -> Result<S::Ok, S::Error> {
     let d = usize::from(table.dimension());
     out.collect_seq(table.cells().iter().enumerate().map(|(id, cell): (usize, &CellRecord)| {
         let polygon = if d == 2 { corners(cell).iter().map(|p| [p.x, p.y]).collect() } else { Vec::new() };
-        Cell { id, min: &cell.min[..d], max: &cell.max[..d], polygon, group: cell.group }
+        let name = table.cell_name(CellId(id as u32));
+        Cell { id, name, min: &cell.min[..d], max: &cell.max[..d], polygon, group: cell.group }
     }))
 }
 

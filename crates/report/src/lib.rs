@@ -2,7 +2,8 @@
 //!
 //! Owns: the drawing of cells and of what is seen in them, as a plan ([`plan_svg`]), as a floor plan of a
 //! scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`], [`svg_to_png`]); the JSON export
-//! ([`export_json`]); the numbers that sum a table up ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]).
+//! ([`export_json`]); the numbers that sum a table up ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]);
+//! pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]).
 //! Does not know: how a table was made, files, how the numbers are worded.
 //! Invariants: a table is only looked at, and what is shown is what it says; the same table and options
 //! give the same bytes on every machine; pictures of tables have no text, so they need no fonts.
@@ -10,6 +11,7 @@
 mod draw;
 mod export;
 mod frame;
+mod multifocal;
 mod outline;
 mod png;
 mod share;
@@ -22,6 +24,7 @@ pub use draw::{
     slice_svg,
 };
 pub use export::{export_json, write_json};
+pub use multifocal::{OPEN, buffer_png, distance_png, voronoi_png};
 pub use png::{PngError, svg_to_png};
 pub use share::ViewerShare;
 pub use summary::Summary;

@@ -12,6 +12,8 @@ pub struct Summary {
     pub dimension: u8,
     /// Number of cells.
     pub n_cells: usize,
+    /// Whether the cells have names.
+    pub has_cell_names: bool,
     /// Number of portals.
     pub n_portals: usize,
     /// Number of objects.
@@ -50,6 +52,7 @@ impl Summary {
         Self {
             dimension: table.dimension(),
             n_cells,
+            has_cell_names: table.has_cell_names(),
             n_portals: table.portals().len(),
             n_objects: table.objects().len(),
             n_groups: groups.len(),

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{nothing, rooms};
+use sightlines_pvs::Table;
 use sightlines_report::{Summary, export_json, write_json};
 
 #[test]
@@ -22,6 +23,27 @@ fn the_export_has_the_keys_of_the_contract_in_their_order() {
     let mut bytes = Vec::new();
     write_json(&rooms(false), &mut bytes).unwrap();
     assert_eq!(bytes, expected.as_bytes());
+}
+
+/// Names stand behind the ids, and change nothing else.
+#[test]
+fn names_of_cells_are_exported_where_there_are_any() {
+    let bare = rooms(false);
+    let mut parts = bare.clone().into_parts();
+    parts.cell_names = ["Küche", "", "a \"b\""].map(str::to_owned).to_vec();
+    let named = Table::new(parts).unwrap();
+    let text = export_json(&named);
+    assert!(text.contains(r#"{"id":0,"name":"Küche","min":[-3.0,0.0]"#), "{text}");
+    assert!(
+        text.contains(r#"{"id":1,"name":"","min":"#) && text.contains(r#"{"id":2,"name":"a \"b\"","min":"#),
+        "{text}"
+    );
+    let without = [r#""name":"Küche","#, r#""name":"","#, r#""name":"a \"b\"","#];
+    let without = without.into_iter().fold(text, |text, name| text.replacen(name, "", 1));
+    assert_eq!(without, export_json(&bare));
+    let [named, bare] = [named, bare].map(|table| Summary::of(&table));
+    assert!(named.has_cell_names && !bare.has_cell_names);
+    assert!(named.n_bytes > bare.n_bytes);
 }
 
 #[test]

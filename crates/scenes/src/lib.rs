@@ -1,6 +1,6 @@
 //! Deterministic generators of scenes: offices, mazes, pillared halls, Doom-like maps, the degenerate
-//! families that a subdivision has to survive, and in space furnished office towers and worlds of convex
-//! cells, cut as the compilers of maps cut them.
+//! families that a subdivision has to survive, and in space furnished office towers, cities of boxes, rectangles that
+//! hide boxes, and worlds of convex cells, cut as the compilers of maps cut them.
 //!
 //! Owns: the generators, their options, their source of chance.
 //! Does not know: sightlines, files; cells only where a scene is made of them.
@@ -10,12 +10,14 @@
 
 #[cfg(test)]
 mod check;
+pub mod city;
 pub mod degenerate;
 pub mod doom_like;
 pub mod error;
 pub mod hall;
 mod layout;
 pub mod maze;
+pub mod occlusion;
 pub mod office;
 mod rng;
 mod spanning;
@@ -23,10 +25,12 @@ mod stroke;
 pub mod tower;
 pub mod world;
 
+pub use city::{CityOptions, city, city_crossings};
 pub use doom_like::{DoomLike, DoomLikeLine, doom_like};
 pub use error::SceneError;
 pub use hall::{pillared_hall, turned_pillared_hall};
 pub use maze::maze;
+pub use occlusion::{Occlusion, OcclusionOptions, occlusion};
 pub use office::{OfficeOptions, office};
 pub use tower::{TowerOptions, TowerRoom, tower, tower_rooms};
 pub use world::{BspWorldOptions, QuakeLikeOptions, World, bsp_world, quake_like};

@@ -16,10 +16,18 @@ pub use sightlines_cells as cells;
 pub use sightlines_eye_to_cell as eye_to_cell;
 #[cfg(feature = "formats")]
 pub use sightlines_formats as formats;
+#[cfg(feature = "from-region")]
+pub use sightlines_from_region as from_region;
 #[cfg(feature = "geometry")]
 pub use sightlines_geometry as geometry;
 #[cfg(feature = "kdtree")]
 pub use sightlines_kdtree as kdtree;
+#[cfg(feature = "multifocal")]
+pub use sightlines_multifocal as multifocal;
+#[cfg(feature = "multifocal-cpu")]
+pub use sightlines_multifocal_cpu as multifocal_cpu;
+#[cfg(feature = "multifocal-gpu")]
+pub use sightlines_multifocal_gpu as multifocal_gpu;
 #[cfg(feature = "packed")]
 pub use sightlines_packed as packed;
 #[cfg(feature = "pvs")]

@@ -2,7 +2,7 @@
 //!
 //! Owns: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
 //! [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`], [`eye_fan`]), what a
-//! point among boxes sees ([`directions_among_boxes`]), sampled lower bounds, what is known of worlds of convex
+//! point among boxes sees ([`directions_among_boxes`]), sampled lower bounds (from a volume: [`hidden_by_sampling`]), what is known of worlds of convex
 //! cells ([`convex`]), and strategies that draw from small grids.
 //! Does not know: how the real code works; an oracle that shares a method with it proves nothing.
 //! Invariants: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
@@ -16,6 +16,7 @@ pub mod corridor;
 mod exact;
 pub mod eye;
 pub mod eye_boxes;
+pub mod from_region;
 pub mod mutate;
 pub mod plans;
 mod ray_witness;
@@ -33,6 +34,7 @@ pub use axial::{
 pub use corridor::{PortalPair, any_portals, as_portals, corridor, kd_corridor, strip_corridor};
 pub use eye::{EyeFan, EyeSector, EyeTouch, eye_fan};
 pub use eye_boxes::{BoxHit, directions_among_boxes, first_box, range_in_box};
+pub use from_region::{Glimpse, Glimpses, hidden_by_sampling};
 pub use plans::{axial_plan, convex_polygon, small_grid_plan};
 pub use rays::{Hit, RayScene};
 pub use sampled::{Chord, chord_is_clear, clear_chords, sampled_sector_visibility};

@@ -101,6 +101,23 @@ impl RayScene {
         let rank = |h: &&Hit| (has_front(h.object), !h.front_facing, h.object, h.triangle);
         hits.iter().min_by_key(rank).copied()
     }
+
+    /// Whether the segment between two points meets a triangle, whichever side of it, up to the distance behind
+    /// its end that counts as the same. A segment along a triangle's plane does not meet it, and one without length
+    /// meets nothing.
+    pub fn is_blocked(&self, from: Point3, to: Point3) -> bool {
+        let direction = sub(to, from);
+        let Some(shear) = Shear::new(direction) else { return false };
+        let limit = 1.0 + self.slack / length(direction);
+        let mut blocked = false;
+        self.bvh.visit(&Ray::new(from, direction), limit, |i| {
+            let hit = shear.meet(from, &self.triangles[i as usize].corners);
+            blocked |= hit.is_some_and(|(t, _)| t <= limit);
+            // Nothing is nearer than that, so nothing more is visited.
+            if blocked { f64::NEG_INFINITY } else { limit }
+        });
+        blocked
+    }
 }
 
 /// A ray's direction, as the shear and the order of axes that turn it into the third axis.

@@ -14,8 +14,10 @@ use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine,
 use sightlines::formats::geojson::{parse_plan, write_plan};
 use sightlines::formats::quake::{graph_of_prt, prt::parse_prt};
 use sightlines::formats::scene::{SceneFile, parse_glb, parse_obj, write_glb};
+use sightlines::formats::view_cells::parse_view_cells;
 use sightlines::formats::wad::WadKind;
 use sightlines::formats::{LumpName, Wad, WadBuilder};
+use sightlines::geometry::check_coordinate;
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{self, TowerOptions, tower};
@@ -37,12 +39,13 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 13] = [
+const TARGETS: [Target; 14] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
     Target { name: "glb", seeds: glbs, check: check_glb },
     Target { name: "obj", seeds: objs, check: check_obj },
+    Target { name: "view-cells", seeds: view_cells, check: check_view_cells },
     Target { name: "bake", seeds: plans, check: check_bake },
     Target { name: "scene", seeds: buildings, check: check_building },
     Target { name: "pvs", seeds: tables, check: check_pvs },
@@ -116,6 +119,14 @@ fn glbs() -> Vec<Vec<u8>> {
 
 fn objs() -> Vec<Vec<u8>> {
     vec![OBJ.into()]
+}
+
+/// Two view cells, one of them flat, with members that mean nothing.
+fn view_cells() -> Vec<Vec<u8>> {
+    let small = r#"{"up":"y","cells":[{"id":"a","min":[0.5,-2e0,-0.0],"max":[6.25,2.5,12],"fill":1.0},
+{"max":[1,2,3],"min":[-15,2,0],"note":{"id":7,"min":[]},"id":"K\u00fcche"}]}"#;
+    assert!(parse_view_cells(small.as_bytes()).is_ok());
+    vec![small.into()]
 }
 
 /// A scene as OBJ text, in which a broken digit moves a wall.
@@ -219,6 +230,26 @@ fn check_glb(bytes: &[u8]) -> bool {
 
 fn check_obj(bytes: &[u8]) -> bool {
     parse_obj(bytes).is_ok_and(|file| check_scene(&file))
+}
+
+fn check_view_cells(bytes: &[u8]) -> bool {
+    let found = match parse_view_cells(bytes) {
+        Ok(found) => found,
+        Err(error) => {
+            assert!(error.line > 0 || bytes.is_empty(), "{error}");
+            return false;
+        }
+    };
+    assert!(!found.cells.is_empty());
+    let mut ids: Vec<&str> = found.cells.iter().map(|cell| cell.id.as_str()).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    assert!(ids.len() == found.cells.len() && !ids[0].is_empty());
+    for cell in &found.cells {
+        let corners = cell.bounds.min.into_iter().chain(cell.bounds.max);
+        assert!(!cell.bounds.is_empty() && corners.into_iter().all(|x| check_coordinate(x).is_ok()));
+    }
+    true
 }
 
 fn check_bake(bytes: &[u8]) -> bool {
@@ -358,6 +389,7 @@ fn check_anything(bytes: &[u8]) -> bool {
         | check_packed(bytes)
         | check_glb(bytes)
         | check_obj(bytes)
+        | check_view_cells(bytes)
 }
 
 struct Settings {

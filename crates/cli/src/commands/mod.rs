@@ -7,6 +7,7 @@ pub(crate) mod explain;
 pub(crate) mod export;
 pub(crate) mod generate;
 pub(crate) mod info;
+pub(crate) mod multifocal;
 pub(crate) mod pack;
 pub(crate) mod query;
 pub(crate) mod reject;

@@ -71,7 +71,7 @@ pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, measure: Measure, roun
         return Err(Violation::NotRepeatable { place: scene.place(measure, plane, texel), first, second });
     }
     // Every other pair of scenes, so that both happen with planes carried over and without.
-    let reused = render(pair.backend, scene, &job, used(&job, round / 2 % 2 == 0))?;
+    let reused = render(pair.backend, scene, &job, used(&job, (round / 2).is_multiple_of(2)))?;
     if let Some((plane, texel, [fresh, got])) = first([&got, &reused], |a, b| a != b) {
         return Err(Violation::Incomplete { place: scene.place(measure, plane, texel), got, fresh });
     }

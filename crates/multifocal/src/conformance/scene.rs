@@ -8,6 +8,7 @@ use sightlines_geometry::{Aabb, Point3};
 /// Kinds of scenes.
 pub(super) const FAMILIES: [Family; 17] = [
     Family { name: "triangles", draw: |r| several(r, shapes::triangle) },
+    Family { name: "sweep", draw: sweep },
     Family { name: "uneven", draw: |r| several(r, shapes::uneven) },
     Family { name: "parallel", draw: |r| several(r, shapes::parallel) },
     Family { name: "tilted", draw: |r| several(r, shapes::tilted) },
@@ -23,7 +24,6 @@ pub(super) const FAMILIES: [Family; 17] = [
     Family { name: "touching", draw: touching },
     Family { name: "slit", draw: slit },
     Family { name: "elsewhere", draw: elsewhere },
-    Family { name: "sweep", draw: sweep },
 ];
 
 /// A kind of scenes.
@@ -42,6 +42,10 @@ struct Sketch {
     planes: Vec<f64>,
     offset: Point3,
     scale: f64,
+    /// Any, if not given.
+    grid: Option<Grid>,
+    /// Whether planes are always carried over, else in every other scene.
+    sweeps: bool,
 }
 
 /// A scene: what a job needs, but for the measure.
@@ -62,9 +66,10 @@ impl Scene {
         let mut random = Random::new(name.wrapping_add(u64::from(round) << 32));
         let sketch = (family.draw)(&mut random);
         let frame = Frame::draw(&mut random, &sketch);
-        let grid = Grid::draw(&mut random, round);
+        let grid = sketch.grid.unwrap_or_else(|| Grid::draw(&mut random, round));
         let volume = Volume::new(frame.place_box(&sketch.eyes)).expect("eyes are in a box");
         let planes = sketch.planes.iter().map(|&z| frame.plane(z, grid)).collect();
+        let reproject = sketch.sweeps || round.is_multiple_of(2);
         let occluders = sketch.shapes.into_iter().filter_map(|mut shape| {
             if random.coin() {
                 shape = shape.turned();
@@ -74,10 +79,10 @@ impl Scene {
             Occluder::patch(shape.outline, &shape.triangles).ok()
         });
         let occluders = occluders.collect();
-        Self { family: family.name, seed, round, volume, planes, occluders, reproject: round.is_multiple_of(2) }
+        Self { family: family.name, seed, round, volume, planes, occluders, reproject }
     }
 
-    /// All of it; planes are carried over in every other scene, if the measure allows.
+    /// All of it; planes are carried over only if the measure allows.
     pub(super) fn job(&self, measure: Measure) -> Job<'_> {
         let reproject = self.reproject && measure.is_height();
         Job::new(self.volume, self.planes.clone(), &self.occluders, measure, reproject).expect("scenes make jobs")
@@ -122,7 +127,7 @@ impl Frame {
 }
 
 /// Texels of all planes: of sizes that double for grids that are exact.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 struct Grid {
     texels: [u32; 2],
     step: [f64; 2],
@@ -151,7 +156,7 @@ fn sketch(random: &mut Random, shapes: Vec<Shape>) -> Sketch {
         planes.push(planes[k - 1] + random.pick(&[0.125, 1.0, 4.0, 5.5]));
     }
     let scale = random.pick(&[1.0, 1.0, 1.0 / 1024.0, 4096.0]);
-    Sketch { shapes, eyes: eyes(random), planes, offset: [0.0; 3], scale }
+    Sketch { shapes, eyes: eyes(random), planes, offset: [0.0; 3], scale, grid: None, sweeps: false }
 }
 
 fn several(random: &mut Random, shape: fn(&mut Random) -> Shape) -> Sketch {
@@ -260,14 +265,21 @@ fn elsewhere(random: &mut Random) -> Sketch {
 }
 
 /// Several planes, and walls that overlap: together they block what none blocks alone.
+///
+/// Let the walls overlap by `o`, eyes be `2 a` wide, texels `w`, and let a line to a plane cross a wall at a part `t` of its
+/// way. By one wall or the other all texels are blocked if `o >= 2 a t + w (1 - t)`, which holds for the first plane (`t` at
+/// most 1 / 7.5); in between, some are blocked by none if `o < 2 a t`, which holds for the last (`t` at least 5.5 / 13.5).
 fn sweep(random: &mut Random) -> Sketch {
-    let z = random.eighth(6, 7);
     let x = random.eighth(-1, 1);
-    let left = Shape::rectangle([-20.0, -20.0], [x + 1.5, 20.0], z, [0.0; 2]);
-    let right = Shape::rectangle([x - 1.5, -20.0], [20.0, 20.0], z + random.pick(&[0.5, 0.25]), [0.0; 2]);
+    let left = Shape::rectangle([-20.0, -20.0], [x + 0.375, 20.0], 7.0, [0.0; 2]);
+    let right = Shape::rectangle([x - 0.375, -20.0], [20.0, 20.0], random.pick(&[7.25, 7.5]), [0.0; 2]);
     let mut shapes = vec![left, right];
-    shapes.extend((0..random.below(3)).map(|_| shapes::triangle(random)));
+    shapes.extend((0..random.below(2)).map(|_| shapes::triangle(random)));
     let mut scene = sketch(random, shapes);
+    scene.eyes = Aabb { min: [-1.0, -0.5, -0.5], max: [1.0, 0.5, 0.5] };
     scene.planes = vec![8.0, 8.0 + random.pick(&[0.25, 1.0]), 13.0];
+    let texels = [12 + random.below(6), 4 + random.below(4)];
+    scene.grid = Some(Grid { texels, step: [0.5, random.pick(&[0.5, 0.75])] });
+    scene.sweeps = true;
     scene
 }

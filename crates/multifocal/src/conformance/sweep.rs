@@ -1,13 +1,16 @@
 //! Planes that are carried over to the next ones.
 
 use super::Violation;
-use super::check::Pair;
+use super::check::{Pair, render};
 use super::scene::Scene;
 use crate::{Buffer, Job, Plane};
 
 /// Clause 2 for what is carried: a backend is held to its own buffers. Where all that a texel's lines cross on the plane
 /// before is blocked there, the texel is, too.
 pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, job: &Job<'_>, got: &[Buffer]) -> Result<(), Violation> {
+    let apart = Job::new(*job.volume(), job.planes().to_vec(), &scene.occluders, job.measure(), false)
+        .expect("planes that are carried over can be left apart");
+    let alone = render(pair.reference, scene, &apart, Vec::new())?;
     for (idx, (planes, buffers)) in job.planes().windows(2).zip(got.windows(2)).enumerate() {
         let ([nearer, plane], [known, stored]) = (planes, buffers) else { continue };
         // Both are exact for the suite's planes.
@@ -27,6 +30,7 @@ pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, job: &Job<'_>, got: &[
                 return Err(Violation::Loose { place: scene.place(job.measure(), idx + 1, [x, y]), got, wanted });
             }
             pair.report.carried += 1;
+            pair.report.fused += usize::from(alone[idx + 1].values()[i] == 0);
         }
     }
     Ok(())

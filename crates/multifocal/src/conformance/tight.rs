@@ -58,16 +58,19 @@ fn only(buffers: Vec<Buffer>) -> [Buffer; 1] {
     buffers.try_into().expect("a job with one plane has one buffer")
 }
 
-/// Which texels are blocked also when they are grown by the slack on all sides.
+/// Which texels are blocked also when they are grown by the slack on all sides, and towards the viewers.
 ///
-/// The umbra of one occluder is convex. So it contains the grown texel if it contains the texel moved by the slack in
-/// each of the four diagonal directions; and a window that is moved has all texels moved.
+/// The points of space that one occluder hides are a convex set. So it contains the grown texel if it contains the
+/// texel moved by the slack in each of the four diagonal directions, on the plane and on one as much nearer; and a
+/// window that is moved has all texels moved.
 fn spare(pair: &mut Pair<'_>, scene: &Scene, one: &[Occluder]) -> Result<Vec<bool>, Violation> {
     let plane = scene.planes[0];
     let [w, h] = plane.texels();
     let mut spare = vec![true; w as usize * h as usize];
     let e = pair.slack.edge;
-    let moves: &[[f64; 2]] = if e > 0.0 { &[[-e, -e], [e, -e], [-e, e], [e, e]] } else { &[[0.0; 2]] };
+    let diagonals = [[-e, -e], [e, -e], [-e, e], [e, e]];
+    let all = diagonals.map(|[x, y]| [[x, y, 0.0], [x, y, e]]);
+    let moves = if e > 0.0 { all.as_flattened() } else { &[[0.0; 3]] };
     for &by in moves {
         let Some(plane) = moved(&plane, by) else { return Ok(Vec::new()) };
         let job = job(scene, plane, one, Measure::VertexHeight);
@@ -77,13 +80,16 @@ fn spare(pair: &mut Pair<'_>, scene: &Scene, one: &[Occluder]) -> Result<Vec<boo
     Ok(spare)
 }
 
-/// The plane with its window moved by so many texels. None if its grid would not be the same.
-fn moved(plane: &Plane, by: [f64; 2]) -> Option<Plane> {
+/// The plane with its window moved by so many texels, and towards the viewers by so many of their longer sides. None if
+/// its grid would not be the same.
+fn moved(plane: &Plane, by: [f64; 3]) -> Option<Plane> {
     let ([u, v], [a, b]) = (plane.origin(), plane.step());
     let low = [u + by[0] * a, v + by[1] * b];
     let [w, h] = plane.texels().map(f64::from);
     let high = [low[0] + w * a, low[1] + h * b];
-    let moved = Plane::new(plane.axis(), plane.positive(), plane.at(), low, high, plane.texels()).ok()?;
+    let nearer = by[2] * a.max(b);
+    let at = if plane.positive() { plane.at() - nearer } else { plane.at() + nearer };
+    let moved = Plane::new(plane.axis(), plane.positive(), at, low, high, plane.texels()).ok()?;
     (moved.origin() == low && moved.step() == plane.step()).then_some(moved)
 }
 

@@ -22,8 +22,8 @@ pub(super) fn heights(
     slopes: &mut Vec<[i32; 3]>,
 ) -> u32 {
     let [lowest, highest] = extent(maker, occluder);
-    // No section of a flat occluder in one height is higher than its corners.
-    let level = lowest == highest || maker.measure == Measure::VertexHeight && occluder.is_flat();
+    // No section of an occluder in one height is higher than its corners.
+    let level = lowest == highest || maker.measure == Measure::VertexHeight;
     if !level {
         slopes.extend(section(maker, facets, bounds));
     }

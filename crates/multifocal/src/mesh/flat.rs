@@ -48,7 +48,7 @@ const METRICS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 16.0], [16.0, 1.0]];
 pub(super) fn convex_polygons(mesh: &Mesh, options: &PatchOptions) -> Found {
     let mut found = Found::default();
     // Looks at borders; many more than this are not worth their time.
-    let mut work = 400 * mesh.triangles().len() as u64 + (1 << 22);
+    let mut work = 100 * mesh.triangles().len() as u64 + (1 << 22);
     for piece in pieces(mesh) {
         piece.polygons(mesh, options, &mut found, &mut work);
     }
@@ -137,6 +137,7 @@ impl Piece {
         seeds.sort_by(|&s, &t| area(t).total_cmp(&area(s)).then(s.cmp(&t)));
         let mut covered = BTreeSet::new();
         let mut known = BTreeSet::new();
+        let whole = self.triangles.iter().map(|&t| area(t)).sum::<f64>();
         for &seed in &seeds {
             if covered.contains(&seed) {
                 continue;
@@ -150,10 +151,18 @@ impl Piece {
                 {
                     polygons.push(polygon);
                 }
+                // A convex piece has no other shapes to find.
+                if polygons.first().is_some_and(|p| twice_area(p) >= whole * (1.0 - 1e-9)) {
+                    break;
+                }
             }
             let largest = polygons.iter().map(|p| twice_area(p)).fold(area(seed), f64::max);
             // Strips of another shape are worth having if they are not much smaller.
-            polygons.retain(|p| 2.0 * twice_area(p) >= largest && twice_area(p) >= 2.0 * options.min_area);
+            polygons.retain(|p| {
+                2.0 * twice_area(p) >= largest
+                    && twice_area(p) >= 2.0 * options.min_area
+                    && p.len() <= options.max_corners
+            });
             for polygon in polygons {
                 let inside = |t: &u32| is_inside(&polygon, centre(mesh.corners(*t).map(|p| flat(self.axis, p))));
                 covered.extend(self.triangles.iter().copied().filter(inside));
@@ -223,7 +232,7 @@ impl Piece {
             q
         };
         let outline: Vec<Point3> = polygon.iter().map(lifted).collect();
-        let fan: Vec<[Point3; 3]> = outline[1..].array_windows().map(|&[p, q]| [outline[0], p, q]).collect();
+        let fan: Vec<[Point3; 3]> = outline[1..].windows(2).map(|w| [outline[0], w[0], w[1]]).collect();
         Occluder::patch(outline, &fan).ok()
     }
 }

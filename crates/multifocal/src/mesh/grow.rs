@@ -9,8 +9,8 @@
 //! then goes back to the best.
 
 use super::PatchOptions;
-use super::polygon::kernel_area;
-use super::vector::{add, basis, collinear, cross, dot, length, normal, sub};
+use super::polygon::{is_inside, kernel_area};
+use super::vector::{add, basis, collinear, cross, dot, length, normal, sub, unit, vector_area};
 use super::weld::Mesh;
 use crate::Occluder;
 use sightlines_geometry::{Point2, Point3, orient3d};
@@ -20,6 +20,7 @@ use sightlines_geometry::{Point2, Point3, orient3d};
 pub(super) struct Grower<'a> {
     mesh: &'a Mesh,
     options: &'a PatchOptions,
+    /// Twice the area of each triangle.
     normals: Vec<Point3>,
     epoch: u32,
     /// When each triangle joined, or was refused for good.
@@ -49,6 +50,9 @@ pub(super) struct Patch {
     worth: f64,
 }
 
+/// The most vertices around a patch, also those that make no corner.
+const MAX_LOOP: usize = 128;
+
 /// A triangle that could join.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
@@ -58,8 +62,8 @@ struct Candidate {
     there: usize,
     /// Whether it has to be turned over.
     turned: bool,
-    /// Whether the outline has no new notch; then the area, else minus the depth of the notches.
-    rank: (bool, f64),
+    /// Best what fills notches, by how much; then what makes none, by its area; then what makes the least.
+    rank: (u8, f64),
 }
 
 impl<'a> Grower<'a> {
@@ -94,14 +98,15 @@ impl<'a> Grower<'a> {
         self.start(seed);
         let mut best = self.state(self.twice_area(seed) / 2.0);
         let mut since = 0;
-        while since < self.options.patience && self.triangles.len() < self.options.max_triangles {
+        // A row along one side takes up to two triangles for each vertex on it.
+        while since < self.options.patience + best.outline.len() && self.triangles.len() < self.options.max_triangles {
             let Some(next) = self.best_candidate() else { break };
             if !self.join(next) {
                 self.joined[next.triangle as usize] = self.epoch;
                 continue;
             }
             let worth = self.worth();
-            if worth > best.worth * (1.0 + 1e-9) {
+            if worth > best.worth * (1.0 + 1e-9) && self.n_corners() <= self.options.max_corners {
                 best = self.state(worth);
                 since = 0;
             } else {
@@ -126,6 +131,16 @@ impl<'a> Grower<'a> {
 
     fn state(&self, worth: f64) -> Patch {
         Patch { triangles: self.triangles.clone(), outline: self.outline.clone(), worth }
+    }
+
+    /// How many corners an occluder would have.
+    fn n_corners(&self) -> usize {
+        let n = self.outline.len();
+        if n <= self.options.max_corners {
+            return n;
+        }
+        let at = |i: usize| self.at(self.outline[i % n]);
+        (0..n).filter(|&i| !is_between(at(i + n - 1), at(i), at(i + 1))).count()
     }
 
     fn at(&self, v: u32) -> Point3 {
@@ -176,25 +191,30 @@ impl<'a> Grower<'a> {
         let turned = ring[there] == self.outline[at];
         let own = self.normals[triangle as usize].map(|x| if turned { -x } else { x });
         let cosine = dot(own, self.normal);
-        if cosine < self.options.least_cosine * length(own) * length(self.normal) {
+        if cosine < self.options.least_cosine * (dot(own, own) * dot(self.normal, self.normal)).sqrt() {
             return None;
         }
         let [p, q] = [at, (at + 1) % n].map(|i| self.at(self.outline[i]));
         let [before, after] = [(at + n - 1) % n, (at + 2) % n].map(|i| self.at(self.outline[i]));
         let third = self.mesh.triangles()[triangle as usize].into_iter().map(|v| self.at(v));
         let third = third.max_by(|a, b| {
-            let off = |c: Point3| length(cross(sub(c, p), sub(q, p)));
-            off(*a).total_cmp(&off(*b))
+            let off = |c: Point3| cross(sub(c, p), sub(q, p));
+            let [a, b] = [off(*a), off(*b)];
+            dot(a, a).total_cmp(&dot(b, b))
         })?;
-        // Sines of the turns at both ends, to the right if negative.
-        let turn = |a: Point3, b: Point3, c: Point3| {
+        // How far both ends turn to the right, as sines, now and with the triangle.
+        let notch = |a: Point3, b: Point3, c: Point3| {
             let (d, e) = (sub(b, a), sub(c, b));
-            dot(cross(d, e), self.normal) / (length(d) * length(e) * length(self.normal))
+            let sine = -dot(cross(d, e), self.normal) / (dot(d, d) * dot(e, e) * dot(self.normal, self.normal)).sqrt();
+            if sine > self.options.notch { sine } else { 0.0 }
         };
-        let notch = |s: f64| if s.is_finite() { (-s).max(0.0) } else { 0.0 };
-        let notches = notch(turn(before, p, third)) + notch(turn(third, q, after));
-        let smooth = notches < self.options.notch;
-        let rank = (smooth, if smooth { length(own) } else { -notches });
+        let then = notch(before, p, third) + notch(third, q, after);
+        let gain = notch(before, p, q) + notch(p, q, after) - then;
+        let rank = match (gain > 0.0, then == 0.0) {
+            (true, _) => (2, gain),
+            (false, true) => (1, dot(own, own)),
+            (false, false) => (0, gain),
+        };
         Some(Candidate { triangle, at, there, turned, rank })
     }
 
@@ -227,14 +247,14 @@ impl<'a> Grower<'a> {
         let fresh: Vec<usize> = (1..m - n_shared).map(|k| (there + back + 1 + k) % m).collect();
         if n_shared >= n
             || fresh.iter().any(|&k| self.on_outline[ring[k] as usize] == self.epoch)
-            || n + m - 2 * n_shared > self.options.max_corners
+            || n + m - 2 * n_shared > MAX_LOOP
         {
             return false;
         }
-        if !self.add_facet(c, self.edges[c.at]) {
+        let start = (c.at + n - back) % n;
+        if !self.add_facet(c, (0..n_shared).map(|k| self.edges[(start + k) % n]).collect()) {
             return false;
         }
-        let start = (c.at + n - back) % n;
         // Turned so that the shared chain is at the front.
         self.outline.rotate_left(start);
         self.edges.rotate_left(start);
@@ -258,11 +278,11 @@ impl<'a> Grower<'a> {
         true
     }
 
-    /// Notes the plane of a triangle that joins across an edge; false if there are too many.
-    fn add_facet(&mut self, c: Candidate, edge: u32) -> bool {
-        let is_neighbour = |t: &&u32| **t != c.triangle && self.joined[**t as usize] == self.epoch;
+    /// Notes the plane of a triangle that joins across some edges; false if there are too many.
+    fn add_facet(&mut self, c: Candidate, edges: Vec<u32>) -> bool {
+        let is_neighbour = |t: &u32| *t != c.triangle && self.joined[*t as usize] == self.epoch;
         let own = self.mesh.corners(c.triangle);
-        for &t in self.mesh.triangles_at(edge).iter().filter(is_neighbour) {
+        for t in edges.into_iter().flat_map(|e| self.mesh.triangles_at(e)).copied().filter(is_neighbour) {
             // Refused triangles are marked as well, but their planes are from an earlier patch.
             let facet = self.facet_of[t as usize];
             if self.facets.get(facet as usize).is_some_and(|&f| coplanar(self.mesh.corners(f), own)) {
@@ -276,6 +296,20 @@ impl<'a> Grower<'a> {
         self.facet_of[c.triangle as usize] = self.facets.len() as u32;
         self.facets.push(c.triangle);
         true
+    }
+
+    /// The triangles of a patch that need no other: those whose middle is in the kernel.
+    pub(super) fn covered(&self, patch: &Patch) -> Vec<u32> {
+        let corner = |&i: &u32| self.mesh.vertices()[i as usize];
+        let outline: Vec<Point3> = patch.outline.iter().map(corner).collect();
+        let [u, v] = basis(unit(vector_area(&outline)));
+        let flat = |p: Point3| Point2::new(dot(sub(p, outline[0]), u), dot(sub(p, outline[0]), v));
+        let ring: Vec<Point2> = outline.iter().map(|&p| flat(p)).collect();
+        let covers = |&(t, _): &(u32, bool)| {
+            let [a, b, c] = self.mesh.corners(t).map(flat);
+            is_inside(&ring, (a + b + c) / 3.0).then_some(t)
+        };
+        patch.triangles.iter().filter_map(covers).collect()
     }
 
     /// The occluder that a patch is, without corners within straight lines.
@@ -297,14 +331,13 @@ fn coplanar([a, b, c]: [Point3; 3], other: [Point3; 3]) -> bool {
 
 /// Without the corners that lie exactly between their neighbours.
 fn straightened(outline: &[Point3]) -> Vec<Point3> {
-    let between = |a: Point3, p: Point3, b: Point3| {
-        let within = |k: usize| a[k].min(b[k]) <= p[k] && p[k] <= a[k].max(b[k]);
-        (0..3).all(within) && collinear(a, p, b)
-    };
     let n = outline.len();
     // What lies between its neighbours lies between those that are left, too.
-    (0..n)
-        .filter(|&i| !between(outline[(i + n - 1) % n], outline[i], outline[(i + 1) % n]))
-        .map(|i| outline[i])
-        .collect()
+    let kept = |&i: &usize| !is_between(outline[(i + n - 1) % n], outline[i], outline[(i + 1) % n]);
+    (0..n).filter(kept).map(|i| outline[i]).collect()
+}
+
+/// Whether `p` lies on the segment from `a` to `b`. Exact.
+fn is_between(a: Point3, p: Point3, b: Point3) -> bool {
+    (0..3).all(|k| a[k].min(b[k]) <= p[k] && p[k] <= a[k].max(b[k])) && collinear(a, p, b)
 }

@@ -3,11 +3,12 @@
 use super::{Asker, Sheets};
 use crate::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_geometry::{Aabb, Point3};
+use std::sync::Arc;
 
 /// Hidden is what one sheet of the mesh separates from the volume.
 #[derive(Debug)]
 pub struct SheetMethod {
-    sheets: Sheets,
+    sheets: Arc<Sheets>,
     limit: usize,
 }
 
@@ -17,7 +18,12 @@ impl SheetMethod {
 
     /// For a scene of triangles, with [`Self::DEFAULT_LIMIT`]. O(n log² n).
     pub fn new(triangles: &[[Point3; 3]]) -> Self {
-        Self { sheets: Sheets::new(triangles), limit: Self::DEFAULT_LIMIT }
+        Self::shared(Arc::new(Sheets::new(triangles)))
+    }
+
+    /// For sheets that others use as well, with [`Self::DEFAULT_LIMIT`].
+    pub const fn shared(sheets: Arc<Sheets>) -> Self {
+        Self { sheets, limit: Self::DEFAULT_LIMIT }
     }
 
     /// With another limit.

@@ -13,6 +13,7 @@ mod grow;
 mod method;
 mod patch;
 mod polygon;
+mod probe;
 mod select;
 mod shaft;
 mod sheet;

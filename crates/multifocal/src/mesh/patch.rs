@@ -24,7 +24,7 @@ pub struct PatchOptions {
     pub max_triangles: usize,
     /// After how many triangles that did not make a patch better it ends.
     pub patience: usize,
-    /// The sine of a turn to the right that still counts as none when the next triangle is chosen.
+    /// The sine of a turn to the right that still counts as none when the next triangle is chosen; not negative.
     pub notch: f64,
 }
 
@@ -78,8 +78,12 @@ fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
             continue;
         }
         let patch = grower.grow(seed);
-        patch.triangles.iter().for_each(|&(t, _)| is_covered[t as usize] = true);
+        grower.covered(&patch).into_iter().for_each(|t| is_covered[t as usize] = true);
         occluders.extend(grower.occluder(&patch));
+        // What it grew from may have come to lie in a notch.
+        if !is_covered[seed as usize] {
+            occluders.extend(Occluder::triangle(mesh.corners(seed)));
+        }
     }
     let area = |o: &Occluder| length(vector_area(o.outline()));
     let mut sorted: Vec<(f64, Occluder)> = occluders.into_iter().map(|o| (area(&o), o)).collect();

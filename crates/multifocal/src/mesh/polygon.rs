@@ -5,7 +5,7 @@ use sightlines_geometry::{Point2, orient2d};
 /// Twice the area, positive for counter-clockwise loops.
 pub(super) fn twice_area(polygon: &[Point2]) -> f64 {
     let Some(&o) = polygon.first() else { return 0.0 };
-    polygon.array_windows().map(|&[p, q]| (p - o).perp_dot(q - o)).sum()
+    polygon.windows(2).map(|w| (w[0] - o).perp_dot(w[1] - o)).sum()
 }
 
 /// Replaces `polygon`, convex, by what is of it to the left of the line from `p` to `q`, roughly. Coordinates on
@@ -74,7 +74,7 @@ pub(super) fn stays_out(polygon: &[Point2], a: Point2, b: Point2) -> bool {
     sides().all(|s| s >= 0.0) || sides().all(|s| s <= 0.0) || (0..n).any(beyond)
 }
 
-/// Whether a point is in the interior of a strictly convex polygon. Exact.
+/// Whether a point is strictly to the left of all edges: in the interior, for a strictly convex polygon. Exact.
 pub(super) fn is_inside(polygon: &[Point2], p: Point2) -> bool {
     (0..polygon.len()).all(|i| orient2d(polygon[i], polygon[(i + 1) % polygon.len()], p) > 0.0)
 }

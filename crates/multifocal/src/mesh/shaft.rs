@@ -50,8 +50,8 @@ impl Shaft {
     /// Half-spaces whose border contains all of `K` would say nothing about that: of those only the outside counts.
     pub(super) fn code(&self, a: Point3) -> u32 {
         let mut code = 0;
-        for k in 0..3 {
-            let (low, high, x) = (self.bounds.min[k], self.bounds.max[k], a[k]);
+        for (k, x) in a.into_iter().enumerate() {
+            let (low, high) = (self.bounds.min[k], self.bounds.max[k]);
             let is_flat = low == high;
             code |= u32::from(x < low || (x == low && !is_flat)) << (2 * k);
             code |= u32::from(x > high || (x == high && !is_flat)) << (2 * k + 1);
@@ -132,12 +132,15 @@ impl Tilt {
 /// * `touching`: whether it may touch the border of the box, so long as it does not meet its relative
 ///   interior
 pub(super) fn avoids(t: &[Point3; 3], b: &Aabb<3>, touching: bool) -> bool {
-    for k in 0..3 {
-        let [low, high] = [f64::min, f64::max].map(|f| f(f(t[0][k], t[1][k]), t[2][k]));
+    let around = Aabb::around(*t);
+    let apart = |k: usize| {
         let weakly = touching && b.min[k] < b.max[k];
-        if low > b.max[k] || high < b.min[k] || weakly && (low == b.max[k] || high == b.min[k]) {
-            return true;
-        }
+        around.min[k] > b.max[k]
+            || around.max[k] < b.min[k]
+            || weakly && (around.min[k] == b.max[k] || around.max[k] == b.min[k])
+    };
+    if (0..3).any(apart) {
+        return true;
     }
     let corners = crate::volume::corners(b);
     let [p, q, r] = *t;

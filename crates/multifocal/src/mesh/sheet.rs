@@ -23,6 +23,7 @@
 //! Source: parity as for the ShieldTester of Navazo, Rossignac, Jou and Shariff, Computer Graphics Forum 22(3), 2003; the walk
 //! on sides and the treatment of borders were chosen here.
 
+use super::probe::{N_SEGMENTS, crosses, meet, segment};
 use super::shaft::{Shaft, avoids};
 use super::vector::{basis, dot, sub, unit};
 use super::weld::Mesh;
@@ -183,15 +184,6 @@ struct Pair<'a> {
     since: u32,
 }
 
-/// Places in boxes, as parts of their extents, that segments are tried between; not round, so that few edges are
-/// met. The first pair starts the walks.
-const ENDS: [[[f64; 3]; 2]; 4] = [
-    [[0.4871, 0.5273, 0.5137], [0.5231, 0.4813, 0.4919]],
-    [[0.0813, 0.9127, 0.8871], [0.9241, 0.8951, 0.0917]],
-    [[0.9087, 0.0891, 0.9203], [0.0781, 0.1133, 0.9067]],
-    [[0.3461, 0.6173, 0.2831], [0.6607, 0.3319, 0.7129]],
-];
-
 impl Asker<'_> {
     /// Whether every segment from a point of `v` to a point of `e` certainly meets the mesh before its end. Errs towards
     /// no.
@@ -206,22 +198,19 @@ impl Asker<'_> {
         if !usable(v) || !usable(e) || (0..3).all(|k| v.min[k] <= e.max[k] && e.min[k] <= v.max[k]) {
             return false;
         }
-        let mut segments = Vec::with_capacity(ENDS.len());
-        for [s, t] in ENDS {
-            let (Some(a), Some(b)) = (inner_point(v, s), inner_point(e, t)) else { return false };
-            segments.push([a, b]);
+        let mut segments = [[[0.0; 3]; 2]; N_SEGMENTS as usize];
+        for (i, s) in (0..).zip(&mut segments) {
+            let Some(inner) = segment(v, e, i) else { return false };
+            *s = inner;
         }
-        let mut starts: Vec<(f64, u32)> = Vec::new();
-        self.sheets.hits(segments[0], |t, at| starts.push((at, t)));
-        let blocked = |s: &[Point3; 2]| {
-            let mut any = false;
-            self.sheets.hits(*s, |_, _| any = true);
-            any
-        };
-        // A line that passes freely: the answer is no, whatever walks would find.
-        if starts.is_empty() || !segments[1..].iter().all(blocked) {
+        if !segments.iter().all(|&s| self.sheets.blocks(s)) {
             return false;
         }
+        let mut starts: Vec<(f64, u32)> = Vec::new();
+        self.sheets.hits(segments[0], |t, at| {
+            starts.push((at, t));
+            true
+        });
         starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.next_epoch(2 * starts.len() as u32 + 2);
         let pair = Pair { v, e, shaft: Shaft::new(v, e), since: self.epoch };
@@ -236,7 +225,7 @@ impl Asker<'_> {
                 }
                 self.epoch += 1;
                 self.forked = false;
-                if self.walk(&pair, start, &mut left) && segments.iter().any(|s| self.certifies(&pair, s)) {
+                if self.walk(&pair, start, &mut left) && segments[..4].iter().any(|s| self.certifies(&pair, s)) {
                     return true;
                 }
                 if left == 0 {
@@ -325,7 +314,7 @@ impl Asker<'_> {
         let chain = std::mem::take(&mut self.chain);
         let edges = || chain.iter().flat_map(|&t| mesh.outline_edges(t).iter().copied());
         edges().for_each(|e| self.odd[e as usize] += 1);
-        let closed = edges().all(|e| self.odd[e as usize] % 2 == 0 || self.misses(pair, e));
+        let closed = edges().all(|e| self.odd[e as usize].is_multiple_of(2) || self.misses(pair, e));
         edges().for_each(|e| self.odd[e as usize] = 0);
         let mut n_crossings = Some(0u32);
         for &t in &chain {
@@ -338,34 +327,19 @@ impl Asker<'_> {
     }
 }
 
-/// A point of the relative interior; none if no double lies between two ends.
-fn inner_point(b: &Aabb<3>, at: [f64; 3]) -> Option<Point3> {
-    let p: Point3 = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) * at[k]);
-    let inside = |k: usize| b.min[k] < p[k] && p[k] < b.max[k] || b.min[k] == b.max[k] && p[k] == b.min[k];
-    ((0..3).all(inside) && p.iter().all(|&x| check_coordinate(x).is_ok())).then_some(p)
-}
-
-/// Whether a segment crosses a triangle in its interior, from one side to the other; none if it touches an edge, ends on
-/// its plane or lies in it. Exact.
-fn crosses(bounds: &Aabb<3>, [a, b, c]: [Point3; 3], &[p, q]: &[Point3; 2]) -> Option<bool> {
-    if (0..3).any(|k| p[k].max(q[k]) < bounds.min[k] || p[k].min(q[k]) > bounds.max[k]) {
-        return Some(false);
-    }
-    let sides = [orient3d(a, b, p, q), orient3d(b, c, p, q), orient3d(c, a, p, q)];
-    let [any_positive, any_negative] = [sides.iter().any(|&s| s > 0.0), sides.iter().any(|&s| s < 0.0)];
-    if any_positive && any_negative {
-        return Some(false);
-    }
-    let ends = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
-    if sides.contains(&0.0) || ends.contains(&0.0) {
-        return None;
-    }
-    Some((ends[0] > 0.0) != (ends[1] > 0.0))
-}
-
 impl Sheets {
-    /// Triangles that a segment meets, with the part of it before; as doubles have it. Only where walks begin depends on this.
-    fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64)) {
+    /// Whether a segment meets a triangle, as doubles have it. Only used where a mistake leads to the answer no, or to a walk.
+    fn blocks(&self, segment: [Point3; 2]) -> bool {
+        let mut any = false;
+        self.hits(segment, |_, _| {
+            any = true;
+            false
+        });
+        any
+    }
+
+    /// Triangles that a segment meets, with the part of it before, while `each` asks for more; as doubles have it.
+    fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64) -> bool) {
         let d = sub(q, p);
         let inverse = d.map(|x| 1.0 / x);
         let enter = |b: &Aabb<3>| {
@@ -383,27 +357,14 @@ impl Sheets {
             }
             first <= last + 1e-12
         };
-        self.tree.visit(enter, |t| {
-            if enter(&self.boxes[t as usize])
+        let more = std::cell::Cell::new(true);
+        let wanted = |b: &Aabb<3>| more.get() && enter(b);
+        self.tree.visit(wanted, |t| {
+            if wanted(&self.boxes[t as usize])
                 && let Some(at) = meet(self.mesh.corners(t), p, d)
             {
-                each(t, at);
+                more.set(each(t, at));
             }
         });
     }
-}
-
-/// Where on the segment from `p` along `d` a triangle is met.
-///
-/// Source: Möller and Trumbore, Journal of Graphics Tools 2(1), 1997.
-fn meet([a, b, c]: [Point3; 3], p: Point3, d: Point3) -> Option<f64> {
-    use super::vector::cross;
-    let (u, v) = (sub(b, a), sub(c, a));
-    let h = cross(d, v);
-    let det = dot(u, h);
-    let s = sub(p, a);
-    let q = cross(s, u);
-    let [x, y, t] = [dot(s, h), dot(d, q), dot(v, q)].map(|n| n / det);
-    const SLACK: f64 = 1e-9;
-    (x >= -SLACK && y >= -SLACK && x + y <= 1.0 + SLACK && (0.0..=1.0).contains(&t)).then_some(t)
 }

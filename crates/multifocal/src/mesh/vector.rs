@@ -40,7 +40,7 @@ pub(super) fn normal([a, b, c]: [Point3; 3]) -> Point3 {
 /// Area of a loop along its right-hand normal.
 pub(super) fn vector_area(outline: &[Point3]) -> Point3 {
     let Some(&o) = outline.first() else { return [0.0; 3] };
-    let twice = outline.array_windows().fold([0.0; 3], |sum, &[p, q]| add(sum, cross(sub(p, o), sub(q, o))));
+    let twice = outline.windows(2).fold([0.0; 3], |sum, w| add(sum, cross(sub(w[0], o), sub(w[1], o))));
     scaled(twice, 0.5)
 }
 

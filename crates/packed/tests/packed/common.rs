@@ -6,7 +6,8 @@ use sightlines_pvs::{
     StabParts, StabTrees, Table, TableParts,
 };
 
-/// What a table is made from: dimension, columns, rows, seed, and which optional parts it has.
+/// What a table is made from: dimension, columns, rows, seed (cells have names if it is odd), and which optional
+/// parts it has.
 pub(crate) type Recipe = (u8, u32, u32, u64, u8);
 
 pub(crate) fn recipes() -> impl Strategy<Value = Recipe> {
@@ -72,6 +73,10 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
     }
     if has(7) {
         out.info = [("a", "b"), ("key", ""), ("ä", "value")].map(|(k, v)| (k.to_owned(), v.to_owned())).to_vec();
+    }
+    if seed % 2 == 1 {
+        // Some are alike, some empty, some no ASCII.
+        out.cell_names = (0..n).map(|i| ["", "room", "Küche", "room0_Living Room"][i % 4].repeat(1 + i % 3)).collect();
     }
     Table::new(out).expect("a table")
 }

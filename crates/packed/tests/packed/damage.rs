@@ -16,6 +16,7 @@ pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
         count(packed.exits(cell, &mut |_, _, _, _| {}));
         count(packed.stab_roots(cell, &mut numbers).map(drop));
         count(packed.group(cell).map(drop));
+        count(packed.cell_name(cell).map(drop));
         count(packed.cell_polygon(cell, &mut Vec::new()));
         let (min, _) = packed.cell_box(cell).expect("boxes are resident");
         count(packed.locate(&min[..usize::from(packed.dimension())], &mut cells));

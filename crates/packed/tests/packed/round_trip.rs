@@ -30,6 +30,7 @@ pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
         let mut polygon = Vec::new();
         packed.cell_polygon(cell, &mut polygon).unwrap();
         assert_eq!((&polygon, packed.group(cell).unwrap()), (&record.polygon, record.group));
+        assert_eq!(packed.cell_name(cell).unwrap().as_deref(), table.cell_name(cell));
         let mut exits = Vec::new();
         packed
             .exits(cell, &mut |portal, forward, to, points| exits.push((portal, forward, to, points.to_vec())))
@@ -76,6 +77,36 @@ proptest! {
     }
 }
 
+/// Names are a store of their own: without them a file is of version 1.0, and the rest of it is what it was.
+#[test]
+fn names_come_and_go_alone() {
+    let named = table((3, 6, 5, 7, 0xFF));
+    let mut parts = named.clone().into_parts();
+    parts.cell_names.clear();
+    let bare = Table::new(parts).unwrap();
+    let [with, without] = [&named, &bare].map(|table| pack(table, &PackOptions::default()).unwrap());
+    assert_eq!([&with, &without].map(|bytes| u16::from_le_bytes([bytes[10], bytes[11]])), [1, 0]);
+    let [with, without] = [with, without].map(|bytes| Packed::open(bytes, 1 << 16).unwrap());
+    assert!(with.has_cell_names() && !without.has_cell_names());
+    assert_eq!((without.cell_name(CellId(3)).unwrap(), without.to_table().unwrap()), (None, bare));
+    assert_eq!(with.cell_name(CellId(2)).unwrap().as_deref(), Some("KücheKücheKüche"));
+    // Every part but the names and the index of blocks is as long as before; names are not kept in memory.
+    let index = sightlines_pvs::SectionId(*b"BLKS");
+    let rest = |packed: &Packed<Vec<u8>>| {
+        packed.part_sizes().into_iter().filter(|part| part.id.0 != *b"CNAM" && part.id != index).collect::<Vec<_>>()
+    };
+    assert_eq!(rest(&with), rest(&without));
+    let names: Vec<_> = with.part_sizes().into_iter().filter(|part| part.id.0 == *b"CNAM").collect();
+    assert!(matches!(names[..], [part] if part.bytes > 0 && !part.resident));
+    // Merged cells keep their names, each its own: ids stay.
+    let (_, report) = pack_report(&named, &PackOptions::default()).unwrap();
+    let max_bytes = Some(report.bytes - report.row_bytes / 4);
+    let (bytes, report) = pack_report(&named, &PackOptions { max_bytes }).unwrap();
+    assert!(report.n_merges > 0);
+    let merged = Packed::open(bytes, 0).unwrap().to_table().unwrap();
+    assert_eq!(merged.parts().cell_names, named.parts().cell_names);
+}
+
 /// A comparison can fail: a table with one pair less is another one.
 #[test]
 fn impostor_a_table_without_a_pair_is_told_apart() {
@@ -101,6 +132,7 @@ fn what_is_not_there_is_an_error_that_says_so() {
         packed.object_box(packed.n_objects() as u32).unwrap_err(),
         packed.portal(u32::MAX).unwrap_err(),
         packed.locate(&[1.0], &mut cells).unwrap_err(),
+        packed.cell_name(CellId(8)).unwrap_err(),
         packed.stab_node(u32::MAX, &mut numbers).unwrap_err(),
     ];
     assert!(cells.is_empty() && numbers.is_empty());
@@ -109,7 +141,8 @@ fn what_is_not_there_is_an_error_that_says_so() {
     assert_eq!(texts[1], format!("there is no object {0}, only {0}", packed.n_objects()));
     assert_eq!(texts[2], "there is no portal 4294967295, only 10");
     assert_eq!(texts[3], "a point of this table has 2 coordinates, not 1");
-    assert!(texts[4].starts_with("there is no node 4294967295, only "));
+    assert_eq!(texts[4], "there is no cell 8, only 8");
+    assert!(texts[5].starts_with("there is no node 4294967295, only "));
     let error = Packed::open(b"\x89PVS\r\n\x1a\n".to_vec(), 0).unwrap_err();
     assert!(matches!(error.kind, PackedErrorKind::Magic));
     assert_eq!(error.to_string(), "byte 0: this is no packed visibility table");

@@ -4,8 +4,8 @@ use super::container::{self, Section};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::Reader;
 use super::{
-    CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN,
-    STAB, SectionId, n_row_words, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS,
+    ROWS, SEEN, STAB, SectionId, n_row_words, planes, stab,
 };
 use crate::locator::Node;
 use crate::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, MirrorRecord, ObjectRecord, PortalRecord};
@@ -32,6 +32,8 @@ impl Table {
         let mirrors = sections.find(MIRRORS).map_or(Ok(Vec::new()), |s| read(s, |r| mirrors(r, d)))?;
         let polygons_of = |s| read(s, |r: &mut Reader<'_>| r.u32s(objects.len() as u64));
         let object_polygons = sections.find(OBJECT_POLYGONS).map_or(Ok(Vec::new()), polygons_of)?;
+        let names_of = |s| read(s, |r: &mut Reader<'_>| cell_names(r, cells.len()));
+        let cell_names = sections.find(CELL_NAMES).map_or(Ok(Vec::new()), names_of)?;
         // Stab trees are told by the portals of cells, so these must be there.
         if let (Some(_), Some(error)) = (sections.find(STAB), unknown_cell(&portals, cells.len())) {
             return Err(sections.blame(error));
@@ -40,6 +42,7 @@ impl Table {
         let parts = TableParts {
             mirrors,
             object_polygons,
+            cell_names,
             planes: sections.find(PLANES).map(planes::parse).transpose()?,
             stab,
             dimension,
@@ -106,6 +109,7 @@ fn section_of(error: &TableError) -> SectionId {
         TableError::CellObjects { .. } | TableError::ObjectOrder(_) | TableError::UnknownObject { .. } => CELL_OBJECTS,
         TableError::SeenShape { .. } | TableError::SeenTail(_) | TableError::Unseen { .. } => SEEN,
         TableError::ObjectPolygons { .. } => OBJECT_POLYGONS,
+        TableError::CellNames { .. } => CELL_NAMES,
         TableError::MirrorCell { .. } | TableError::MirrorPoints { .. } => MIRRORS,
         TableError::Planes(_) => PLANES,
         TableError::Stab(_) => STAB,
@@ -260,6 +264,12 @@ fn objects(r: &mut Reader<'_>, d: usize) -> Result<Vec<ObjectRecord>, DecodeErro
 
 fn cell_objects(r: &mut Reader<'_>, n: usize) -> Result<Vec<Vec<u32>>, DecodeError> {
     lengths(r, n, 4)?.into_iter().map(|n| r.u32s(u64::from(n))).collect()
+}
+
+fn cell_names(r: &mut Reader<'_>, n: usize) -> Result<Vec<String>, DecodeError> {
+    // Each takes four bytes at least, so that memory is taken for no more names than there can be.
+    r.expect(n as u64, 4)?;
+    (0..n).map(|_| r.text()).collect()
 }
 
 fn info(r: &mut Reader<'_>) -> Result<Vec<(String, String)>, DecodeError> {

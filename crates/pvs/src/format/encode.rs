@@ -2,8 +2,8 @@
 
 use super::container::{self, Payload};
 use super::{
-    CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN,
-    STAB, SectionId, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS,
+    ROWS, SEEN, STAB, SectionId, planes, stab,
 };
 use crate::locator::Node;
 use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectRecord, PortalRecord, Table, TableParts};
@@ -40,6 +40,9 @@ impl Table {
         }
         if let Some(trees) = &parts.stab {
             sections.push(section(STAB, |out| stab::write(out, trees, &parts.portals)));
+        }
+        if !parts.cell_names.is_empty() {
+            sections.push(section(CELL_NAMES, |out| parts.cell_names.iter().for_each(|name| out.text(name))));
         }
         sections.push(section(INFO, |out| info(out, &parts.info)));
         container::write(&sections)

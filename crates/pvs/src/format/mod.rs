@@ -36,13 +36,15 @@
 //! | `OPOL`, optional | for each object its number of polygons (`u32`) |
 //! | `PLNS`, optional, only in space | slack (`f64`), number of nodes; for each: normal (3), offset, two children (`u32`): 0 for nothing, the number of a node, or 2^31 plus a cell |
 //! | `STAB`, optional | the stab trees, see below |
+//! | `CNAM`, optional | for each cell its name, as number of bytes and UTF-8 |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
 //! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are
 //! their boxes, a missing `PORT` that there are no portals, a missing `SEEN` (new in 1.1) that a cell sees
 //! the objects that touch any cell that it sees. Of what is new in 1.2, a missing `MIRR` means that there are
 //! no mirrors, a missing `OPOL` that the numbers of polygons are not known, a missing `PLNS` that the cells'
-//! outlines say where a point is, a missing `STAB` that the stab trees are not known.
+//! outlines say where a point is, a missing `STAB` that the stab trees are not known. A missing `CNAM` (new in 1.3)
+//! means that the cells have no names.
 //!
 //! # Stab trees
 //!
@@ -90,7 +92,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the least that has all the sections of a
 /// table, so that files without the new ones stay as they were.
-pub const MINOR: u16 = 2;
+pub const MINOR: u16 = 3;
 
 const CELLS: SectionId = SectionId(*b"CELL");
 const POLYGONS: SectionId = SectionId(*b"POLY");
@@ -104,10 +106,11 @@ const MIRRORS: SectionId = SectionId(*b"MIRR");
 const OBJECT_POLYGONS: SectionId = SectionId(*b"OPOL");
 const PLANES: SectionId = SectionId(*b"PLNS");
 const STAB: SectionId = SectionId(*b"STAB");
+const CELL_NAMES: SectionId = SectionId(*b"CNAM");
 const INFO: SectionId = SectionId(*b"INFO");
 
 /// The sections of this version, whether they are optional, and the minor version that brought them.
-const KNOWN: [(SectionId, bool, u16); 13] = [
+const KNOWN: [(SectionId, bool, u16); 14] = [
     (CELLS, false, 0),
     (POLYGONS, true, 0),
     (PORTALS, true, 0),
@@ -119,7 +122,8 @@ const KNOWN: [(SectionId, bool, u16); 13] = [
     (MIRRORS, true, 2),
     (OBJECT_POLYGONS, true, 2),
     (PLANES, true, 2),
-    (STAB, true, MINOR),
+    (STAB, true, 2),
+    (CELL_NAMES, true, MINOR),
     (INFO, false, 0),
 ];
 

@@ -1,8 +1,8 @@
-//! What a table need not have: mirrors, numbers of polygons, planes and stab trees in files.
+//! What a table need not have: mirrors, numbers of polygons, planes, stab trees and names of cells in files.
 
 use crate::common::assert_well_formed;
 use crate::common::file::{File, Part, assert_damage_is_noticed};
-use crate::common::full::{any_full_parts, villa, wedges};
+use crate::common::full::{any_full_parts, named_villa, villa, wedges};
 use crate::common::rooms;
 use proptest::prelude::*;
 use sightlines_pvs::{CellId, DecodeErrorKind as Kind, Item, MirrorRecord, Table, TableError, TableParts};
@@ -18,11 +18,13 @@ proptest! {
         let bare = table.strip_geometry();
         prop_assert_eq!((bare.mirrors(), bare.planes()), (table.mirrors(), table.planes()));
         prop_assert!(bare.stab().is_none());
+        prop_assert_eq!(&bare.parts().cell_names, &table.parts().cell_names);
         prop_assert_eq!(Table::from_bytes(&bare.to_bytes()).unwrap(), bare);
         // The least version that has all that is there.
         let parts = table.parts();
         let new = parts.stab.is_some() || parts.planes.is_some() || !parts.mirrors.is_empty() || !parts.object_polygons.is_empty();
-        prop_assert_eq!(bytes[10], if new { 2 } else { 0 });
+        let minor = if table.has_cell_names() { 3 } else if new { 2 } else { 0 };
+        prop_assert_eq!(bytes[10], minor);
     }
 
     #[test]
@@ -62,11 +64,11 @@ proptest! {
 }
 
 fn is_new(part: &Part) -> bool {
-    [b"MIRR", b"OPOL", b"PLNS", b"STAB"].contains(&&part.id)
+    [b"MIRR", b"OPOL", b"PLNS", b"STAB", b"CNAM"].contains(&&part.id)
 }
 
-fn full() -> [Table; 2] {
-    [villa(), wedges()].map(|parts| Table::new(parts).unwrap())
+fn full() -> [Table; 3] {
+    [villa(), wedges(), named_villa()].map(|parts| Table::new(parts).unwrap())
 }
 
 /// Every strict prefix, and every byte changed into every other value.
@@ -144,20 +146,20 @@ fn extras_may_go() {
         }
         // A reader that does not know the new sections has the table without them.
         let old = |parts: TableParts| {
-            let (mirrors, object_polygons) = (vec![], vec![]);
-            Table::new(TableParts { mirrors, object_polygons, planes: None, stab: None, ..parts }).unwrap()
+            let (mirrors, object_polygons, cell_names) = (vec![], vec![], vec![]);
+            Table::new(TableParts { mirrors, object_polygons, cell_names, planes: None, stab: None, ..parts }).unwrap()
         };
         let mut renamed = file.clone();
         renamed.parts.iter_mut().filter(|part| is_new(part)).for_each(|part| part.id[0] = b'x');
         assert_eq!(Table::from_bytes(&renamed.write()), Ok(old(table.into_parts())));
     }
-    assert_eq!(n_gone, 5 + 4);
+    assert_eq!(n_gone, 5 + 4 + 6);
 }
 
-/// The files of version 1.2 must be read as long as there is a reader.
+/// The files of versions 1.2 and 1.3 must be read as long as there is a reader.
 #[test]
-fn golden_v1_2_is_read_and_written() {
-    for (name, table) in ["v1_2.pvs", "v1_2_space.pvs"].into_iter().zip(full()) {
+fn golden_v1_2_and_v1_3_are_read_and_written() {
+    for ((name, minor), table) in [("v1_2.pvs", 2), ("v1_2_space.pvs", 2), ("v1_3.pvs", 3)].into_iter().zip(full()) {
         let path = format!("{}/tests/golden/{name}", env!("CARGO_MANIFEST_DIR"));
         let bytes = table.to_bytes();
         if std::env::var_os("BLESS").is_some_and(|v| v == "1") {
@@ -165,19 +167,50 @@ fn golden_v1_2_is_read_and_written() {
         }
         let golden = std::fs::read(&path).unwrap_or_else(|e| panic!("{path}: {e}; write it with BLESS=1"));
         assert_eq!(Table::from_bytes(&golden), Ok(table));
-        assert!(golden == bytes, "the bytes of version 1.2 have changed: {name}");
-        assert_eq!(bytes[10], 2, "the minor version");
+        assert!(golden == bytes, "the bytes of version 1.{minor} have changed: {name}");
+        assert_eq!(bytes[10], minor, "the minor version");
     }
 }
 
 #[test]
 fn extras_answer() {
-    let [villa, wedges] = full();
+    let [villa, wedges, named] = full();
     assert_eq!((villa.polygons_of(0), villa.polygons_of(1)), (12, 0));
     assert_eq!(Table::new(rooms()).unwrap().polygons_of(1), 1, "not known");
     assert_eq!((villa.mirrors().len(), villa.mirrors()[1].face), (2, u32::MAX));
     assert_eq!(wedges.mirrors()[0].points.len(), 3);
     assert!(villa.planes().is_none() && wedges.planes().is_some_and(|planes| planes.slack() == 0.5));
+    let names: Vec<&str> = (0..5).map(|i| named.cell_name(CellId(i)).unwrap()).collect();
+    assert_eq!((names, named.has_cell_names()), (vec!["room0_Living Room", "hall", "", "Küche", "hall"], true));
+    assert_eq!((villa.cell_name(CellId(4)), villa.has_cell_names()), (None, false));
+    assert_eq!(named.strip_geometry().cell_name(CellId(3)), Some("Küche"), "a stripped table keeps names");
+}
+
+/// Names change nothing else: without their section the file of a named table is that of the same table without.
+#[test]
+fn names_are_a_section_of_their_own() {
+    let [villa, _, named] = full();
+    let mut file = File::parse(&named.to_bytes());
+    file.parts.retain(|part| part.id != *b"CNAM");
+    file.minor = 2;
+    assert_eq!(file.write(), villa.to_bytes());
+    // The impostor: another name is another file.
+    let mut parts = named.clone().into_parts();
+    parts.cell_names[1].push('!');
+    assert_ne!(Table::new(parts).unwrap().to_bytes(), named.to_bytes());
+}
+
+#[test]
+#[should_panic(expected = "cell 5 of 5")]
+fn an_unknown_cell_has_no_name() {
+    Table::new(named_villa()).unwrap().cell_name(CellId(5));
+}
+
+/// Not even in a table that has no names at all.
+#[test]
+#[should_panic(expected = "cell 5 of 5")]
+fn an_unknown_cell_is_not_one_without_a_name() {
+    Table::new(rooms()).unwrap().cell_name(CellId(5));
 }
 
 #[test]
@@ -198,6 +231,11 @@ fn defects_of_extras_are_refused() {
     let (error, text) = refused(villa(), &|p| p.object_polygons.truncate(1));
     assert_eq!(error, TableError::ObjectPolygons { n: 1, n_objects: 2 });
     assert_eq!(text, "1 numbers of polygons do not fit 2 objects");
+    for n in [1, 4, 6] {
+        let (error, text) = refused(villa(), &|p| p.cell_names = vec!["room".to_owned(); n]);
+        assert_eq!(error, TableError::CellNames { n, n_cells: 5 });
+        assert_eq!(text, format!("{n} names of cells do not fit 5 cells"));
+    }
     let (error, text) = refused(villa(), &|p| p.mirrors[1].cell = CellId(5));
     assert_eq!(error, TableError::MirrorCell { mirror: 1, cell: CellId(5) });
     assert_eq!(text, "mirror 1 is in cell 5, which does not exist");
@@ -213,9 +251,9 @@ fn defects_of_extras_are_refused() {
     assert_eq!(refused(villa(), &upright).0, TableError::OffPlane { item: Item::Mirror, index: 0 });
 }
 
-/// Writes over, or replaces, a section of the villa and returns the error, which must name the section.
+/// Writes over, or replaces, a section of the villa with names and returns the error, which must name the section.
 fn forge(id: &[u8; 4], change: impl Fn(&mut Vec<u8>)) -> Kind {
-    let mut file = File::parse(&Table::new(villa()).unwrap().to_bytes());
+    let mut file = File::parse(&Table::new(named_villa()).unwrap().to_bytes());
     change(&mut file.part(id).bytes);
     let error = Table::from_bytes(&file.write()).unwrap_err();
     assert_eq!(error.section.unwrap().0, *id);
@@ -232,6 +270,12 @@ fn forged_extras_are_refused() {
     assert_eq!(forge(b"MIRR", |b| b[4] = 9), Kind::Table(cell));
     assert!(matches!(forge(b"OPOL", |b| b.truncate(4)), Kind::Cut { .. }));
     assert!(matches!(forge(b"OPOL", |b| b.extend([0; 4])), Kind::Surplus { .. }));
+    // Names: a length that promises too much, a text that is none, one name too few and one too many.
+    assert!(matches!(forge(b"CNAM", |b| b[..4].copy_from_slice(&huge)), Kind::Cut { .. }));
+    assert_eq!(forge(b"CNAM", |b| b[4] = 0xff), Kind::Text);
+    assert!(matches!(forge(b"CNAM", |b| b.truncate(b.len() - 8)), Kind::Cut { .. }));
+    assert!(matches!(forge(b"CNAM", |b| b.extend([0; 4])), Kind::Surplus { left: 4 }));
+    assert!(matches!(forge(b"CNAM", |b| b.truncate(19)), Kind::Cut { need: 20, left: 19 }));
     // A number that is longer than it need be, one that does not fit, one that does not end.
     let replaced = |bytes: &'static [u8]| move |b: &mut Vec<u8>| *b = bytes.to_vec();
     assert_eq!(forge(b"STAB", replaced(&[0x80, 0])), Kind::Number);

@@ -12,7 +12,8 @@ impl fmt::Display for Facts<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let s = self.0;
         let groups = if s.n_groups > 0 { format!(", in {}", count(s.n_groups as u64, "group")) } else { String::new() };
-        writeln!(f, "cells          {}{groups}", s.n_cells)?;
+        let names = if s.has_cell_names { ", with names" } else { "" };
+        writeln!(f, "cells          {}{groups}{names}", s.n_cells)?;
         writeln!(f, "portals        {}", s.n_portals)?;
         if s.n_objects > 0 {
             writeln!(f, "objects        {}", s.n_objects)?;

@@ -5,8 +5,10 @@ mod options;
 pub(crate) mod plan;
 mod portals;
 mod quake;
+mod region;
 pub(crate) mod space;
 pub(crate) mod stab;
+mod view_cells;
 
 pub(crate) use options::{BakeArgs, refuse};
 
@@ -35,6 +37,8 @@ pub(crate) struct BuildArgs {
     prt: Option<PathBuf>,
     #[command(flatten)]
     bake: BakeArgs,
+    #[command(flatten)]
+    region: region::RegionArgs,
     /// Keep stab trees in the table: for each cell the sequences of portals out of it that a sightline passes. A tree
     /// has at most N nodes and is cut beyond, which shows more and hides nothing; without N 65536 for plans, 16384
     /// for scenes in space, 4096 for Quake maps and portal files. May take much longer than the table and make it several
@@ -47,11 +51,14 @@ pub(crate) struct BuildArgs {
 }
 
 pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
-    let BuildArgs { input: path, output: out, bake, .. } = args;
+    let BuildArgs { input: path, output: out, bake, region, .. } = args;
     output::refuse_same(path, out)?;
     let input = input::read(path, args.map.as_deref())?;
     if !matches!(input, Input::Map(_)) {
         refuse(path, &[("--prt", args.prt.is_some())], "Quake maps", "none")?;
+    }
+    if !matches!(input, Input::Scene(_)) {
+        refuse(path, &region.of_space(), "scenes in space", "none")?;
     }
     let stab_of = |table| stab::add(path, table, args.stab_trees, bake.threads, show_progress);
     match input {
@@ -61,6 +68,27 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
             (baked.table, stab) = stab_of(baked.table)?;
             output::save(out, &baked.table.to_bytes())?;
             output::print(args.json, &With { outcome: plan::Outcome::new(out, file.map, &baked), stab })?;
+        }
+        Input::Scene(file) if region.is_given() => {
+            if region.has_boxes() {
+                refuse(
+                    path,
+                    &[("--stab-trees", args.stab_trees.is_some())],
+                    "cells with portals",
+                    "to have boxes as cells",
+                )?;
+            }
+            let mut baked = region::bake(path, &file, bake, region, show_progress)?;
+            let stab = match args.stab_trees {
+                Some(_) => {
+                    let (table, stab) = stab_of(baked.table)?;
+                    baked.table = table;
+                    stab
+                }
+                None => None,
+            };
+            output::save(out, &baked.table.to_bytes())?;
+            output::print(args.json, &With { outcome: region::Outcome::new(out, &file, region, &baked), stab })?;
         }
         Input::Scene(file) => {
             let mut baked = space::bake(path, &file, bake, show_progress)?;

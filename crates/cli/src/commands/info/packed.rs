@@ -16,6 +16,7 @@ pub(super) struct PackedInfo {
     dimension: u8,
     n_bytes: u64,
     n_cells: usize,
+    has_cell_names: bool,
     n_portals: usize,
     n_objects: usize,
     /// Null without stab trees.
@@ -40,7 +41,7 @@ struct Part {
 }
 
 /// What the parts are.
-const PARTS: [(&str, &str); 18] = [
+const PARTS: [(&str, &str); 19] = [
     ("HEAD", "numbers"),
     ("BOXS", "boxes of cells"),
     ("POLY", "corners of cells"),
@@ -59,6 +60,7 @@ const PARTS: [(&str, &str); 18] = [
     ("PORT", "portals"),
     ("OBJS", "objects"),
     ("STAB", "stab trees"),
+    ("CNAM", "names of cells"),
 ];
 
 impl PackedInfo {
@@ -76,6 +78,7 @@ impl PackedInfo {
             dimension: packed.dimension(),
             n_bytes: std::fs::metadata(path).map_err(open)?.len(),
             n_cells: packed.n_cells(),
+            has_cell_names: packed.has_cell_names(),
             n_portals: packed.n_portals(),
             n_objects: packed.n_objects(),
             n_stab_nodes: packed.n_stab_nodes(),
@@ -90,9 +93,10 @@ impl PackedInfo {
 impl fmt::Display for PackedInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: packed visibility table in {}D, {}", self.file, self.dimension, bytes(self.n_bytes))?;
+        let names = if self.has_cell_names { ", with names" } else { "" };
         writeln!(
             f,
-            "cells          {}\nportals        {}\nobjects        {}",
+            "cells          {}{names}\nportals        {}\nobjects        {}",
             self.n_cells, self.n_portals, self.n_objects
         )?;
         if let Some(nodes) = self.n_stab_nodes {

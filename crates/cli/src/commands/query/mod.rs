@@ -67,7 +67,7 @@ fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found, C::Err
         objects.extend(some_objects.iter().copied());
     }
     Ok(Found {
-        place: Place::new(eye, at),
+        place: Place::new(cells, eye, at)?,
         visible: visible.into_iter().collect(),
         objects: named(cells, objects)?,
         all: cells.counts(),
@@ -87,12 +87,27 @@ struct Place {
     cell: Option<u32>,
     /// All cells that contain the point: several on a border.
     cells: Vec<u32>,
+    /// What they are called; empty and left out if the cells of the table have no names.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    cell_names: Vec<String>,
 }
 
 impl Place {
-    fn new(eye: &[f64], at: &[CellId]) -> Self {
+    fn new<C: Cells>(table: &C, eye: &[f64], at: &[CellId]) -> Result<Self, C::Error> {
         let cells: Vec<u32> = at.iter().map(|cell| cell.0).collect();
-        Self { eye: eye.to_vec(), cell: cells.first().copied(), cells }
+        // Either all cells of a table have names or none has.
+        let names: Option<Vec<String>> = at.iter().map(|&cell| table.cell_name(cell)).collect::<Result<_, _>>()?;
+        Ok(Self { eye: eye.to_vec(), cell: cells.first().copied(), cells, cell_names: names.unwrap_or_default() })
+    }
+
+    /// The cells by their numbers, each with its name if it has one.
+    fn named_cells(&self) -> String {
+        let cell = |(k, id): (usize, &u32)| match self.cell_names.get(k) {
+            // As a Rust string: a name may hold anything, and the place should stay one line.
+            Some(name) => format!("{id} ({name:?})"),
+            None => id.to_string(),
+        };
+        self.cells.iter().enumerate().map(cell).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -102,8 +117,8 @@ impl fmt::Display for Place {
         let eye = eye.join(", ");
         match self.cells[..] {
             [] => write!(f, "the point ({eye}) is outside every cell"),
-            [cell] => write!(f, "the point ({eye}) is in cell {cell}"),
-            _ => write!(f, "the point ({eye}) is on the border of cells {}", ids(&self.cells)),
+            [_] => write!(f, "the point ({eye}) is in cell {}", self.named_cells()),
+            _ => write!(f, "the point ({eye}) is on the border of cells {}", self.named_cells()),
         }
     }
 }

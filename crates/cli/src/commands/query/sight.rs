@@ -90,7 +90,8 @@ pub(super) fn look<C: Cells>(
     let one = if all { None } else { answers.pop() };
     let dir = args.dir.as_ref().and_then(|dir| dir.coordinates(cells.n_dimensions(), path).ok()).map(<[f64]>::to_vec);
     let outside = at.is_empty();
-    Ok(Sight { place: Place::new(eye, at), outside, dir, fov, one, methods: answers, all: cells.counts() })
+    let place = Place::new(cells, eye, at).map_err(|error| C::fail(path, error))?;
+    Ok(Sight { place, outside, dir, fov, one, methods: answers, all: cells.counts() })
 }
 
 /// Outlooks that were prepared already.

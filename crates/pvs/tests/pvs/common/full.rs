@@ -36,6 +36,12 @@ pub(crate) fn villa() -> TableParts {
     }
 }
 
+/// The villa with names of its cells: two that are alike, an empty one, one that is no ASCII.
+pub(crate) fn named_villa() -> TableParts {
+    let names = ["room0_Living Room", "hall", "", "Küche", "hall"];
+    TableParts { cell_names: names.map(str::to_owned).to_vec(), ..villa() }
+}
+
 /// Two wedges of a box in space, divided by the plane x = y with a slack of a half, nothing below z = 0,
 /// a mirror on the floor, and a portal that is open on all trees.
 pub(crate) fn wedges() -> TableParts {
@@ -140,7 +146,9 @@ pub(crate) fn any_full_parts() -> impl Strategy<Value = TableParts> {
     let planes = prop::option::of((plane_choices(), 0u8..3));
     let stab = prop::option::of((choices(0..40), choices(1..8)));
     let polygons = prop::option::of(any::<[u32; 4]>());
-    (any_parts(), mirrors, planes, stab, polygons).prop_map(|(mut parts, mirrors, planes, stab, polygons)| {
+    let names = prop::option::of(prop::collection::vec(".{0,4}", 1..4));
+    let parts = (any_parts(), mirrors, planes, stab, polygons, names);
+    parts.prop_map(|(mut parts, mirrors, planes, stab, polygons, names)| {
         let n_cells = parts.cells.len();
         let flat = parts.dimension == 2;
         if n_cells > 0 {
@@ -161,6 +169,9 @@ pub(crate) fn any_full_parts() -> impl Strategy<Value = TableParts> {
         }
         if let Some(polygons) = polygons {
             parts.object_polygons = polygons[..parts.objects.len()].to_vec();
+        }
+        if let Some(names) = names {
+            parts.cell_names = names.into_iter().cycle().take(n_cells).collect();
         }
         parts
     })

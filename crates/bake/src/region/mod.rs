@@ -1,0 +1,264 @@
+//! Baking a scene by what is hidden from whole volumes: view cells as volumes, objects as occludees.
+//!
+//! A from-region method ([`FromRegion`]) says for each cell which objects are hidden from all of it, and which other
+//! cells. The sightlines of [`bake_scene`] say the same in another way; what either calls hidden is hidden, so the two
+//! can be put together.
+
+mod boxes;
+mod see;
+
+pub use boxes::{GridError, grid};
+
+use crate::mirrors;
+use crate::plan::BakeError;
+use crate::scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene, portal_record};
+use sightlines_cells::Scene;
+use sightlines_formats::ViewCells;
+use sightlines_geometry::{Aabb, Point3};
+use sightlines_kdtree::{PortalForm, SceneOptions, SceneSubdivision, subdivide_scene};
+use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Split, Volume, VolumeError, Witness};
+use sightlines_pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, Table, TableError, TableParts};
+use sightlines_stabtree::Progress;
+use std::fmt;
+use std::time::{Duration, Instant};
+
+/// The cells of the table.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CellsFrom {
+    /// Those of the k-d tree, with their portals.
+    KdTree,
+    /// These boxes, without portals; they may overlap, and leave gaps.
+    Boxes(ViewCells),
+}
+
+/// Makes a from-region method, for one thread.
+pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
+
+/// How to bake.
+#[derive(Clone, Copy)]
+pub struct RegionBakeOptions<'a> {
+    /// The cells.
+    pub cells: &'a CellsFrom,
+    /// What says what is hidden; none leaves it to sightlines.
+    pub method: Option<MakeMethod<'a>>,
+    /// Whether sightlines say it as well; then without a method, they do alone.
+    pub sightlines: bool,
+    /// When cells are cut into smaller volumes.
+    pub split: Split,
+    /// How to cut the scene, for cells of the k-d tree and for sightlines.
+    pub cut: SceneOptions,
+    /// Which portals sightlines go through.
+    pub portals: PortalMode,
+    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    pub threads: usize,
+    /// Told how many cells of how many are done.
+    pub progress: Option<Progress<'a>>,
+}
+
+impl fmt::Debug for RegionBakeOptions<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("RegionBakeOptions")
+            .field("cells", self.cells)
+            .field("sightlines", &self.sightlines)
+            .field("split", &self.split)
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Why a scene was not baked.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RegionBakeError {
+    /// The scene could not be cut, or seen through by sightlines.
+    #[error(transparent)]
+    Scene(#[from] BakeError),
+    /// A cell is no volume.
+    #[error("view cell {cell}: {error}")]
+    Cell {
+        /// Which, from 0.
+        cell: usize,
+        /// What is wrong.
+        error: VolumeError,
+    },
+    /// The method failed.
+    #[error(transparent)]
+    Backend(#[from] BackendError),
+}
+
+impl From<TableError> for RegionBakeError {
+    fn from(error: TableError) -> Self {
+        Self::Scene(error.into())
+    }
+}
+
+/// A table, and how it came about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakedRegions {
+    /// The table.
+    pub table: Table,
+    /// What sightlines did, if they were asked; its table is that of the k-d tree's cells.
+    pub sightlines: Option<BakedScene>,
+    /// Name of the method, if one was asked.
+    pub method: Option<String>,
+    /// What it did.
+    pub effort: Effort,
+    /// Unordered pairs of different cells that may see each other.
+    pub n_visible_pairs: u64,
+    /// Pairs of a cell and an object that it may see.
+    pub n_objects_seen: u64,
+    /// Time for everything.
+    pub time: Duration,
+}
+
+/// What is known before a method is asked.
+struct Start {
+    cells: Vec<Aabb<3>>,
+    /// Which cells may see each other: symmetric, with ones on the diagonal.
+    rows: BitMatrix,
+    objects: BitMatrix,
+}
+
+/// Decides which cells see which objects and each other, and makes the table.
+///
+/// An eye may be anywhere in a closed cell. Objects are hidden if all of their triangles are; those whose box touches a cell
+/// are visible from it. Errs towards visible only, as far as the method does.
+///
+/// # Errors
+/// [`RegionBakeError`]
+pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, RegionBakeError> {
+    let start = Instant::now();
+    let triangles: Vec<Vec<[Point3; 3]>> = scene.objects().iter().map(|o| o.corners().collect()).collect();
+    let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(t.iter().flatten().copied())).collect();
+    let by_sightlines = options.sightlines || options.method.is_none();
+    let baked = if by_sightlines { Some(by_portals(scene, options)?) } else { None };
+    let (mut parts, known) = match (options.cells, &baked) {
+        (CellsFrom::KdTree, Some(baked)) => {
+            let parts = baked.table.parts().clone();
+            let cells = parts.cells.iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
+            let objects = parts.objects_seen.clone().expect("scenes in space say what objects are seen");
+            let rows = parts.rows.clone();
+            (parts, Start { cells, rows, objects })
+        }
+        (CellsFrom::KdTree, None) => {
+            let cut = subdivide_scene(scene, &SceneOptions { portals: PortalForm::Exact, ..options.cut })
+                .map_err(BakeError::from)?;
+            kd_parts(scene, &cut, boxes.len())
+        }
+        (CellsFrom::Boxes(cells), baked) => box_parts(cells, baked.as_ref(), boxes.len()),
+    };
+    let volumes = volumes(&known.cells)?;
+    let touching = see::touching(&known.cells, &boxes);
+    let (rows, objects, effort, method) = match options.method {
+        Some(make) => {
+            let method = make().name();
+            let witness = Witness::new(triangles.iter().map(|t| &t[..]));
+            let occludees = Occludees::new(triangles);
+            let scene = see::Scene { occludees: &occludees, witness: &witness, volumes: &volumes };
+            let seen = see::see(&scene, make, options, known.rows, known.objects)?;
+            (seen.rows, seen.objects, seen.effort, Some(method))
+        }
+        None => (known.rows, known.objects, Effort::default(), None),
+    };
+    let mut objects = objects;
+    see::add(&mut objects, &touching);
+    let n = rows.n_rows() as u64;
+    let (n_visible_pairs, n_objects_seen) = ((rows.count_ones() - n) / 2, objects.count_ones());
+    parts.rows = rows;
+    parts.cell_objects = touching;
+    parts.objects_seen = Some(objects);
+    if parts.objects.is_empty() {
+        parts.objects = scene.objects().iter().zip(&boxes).map(|(o, b)| record(&o.name, b)).collect();
+        parts.object_polygons =
+            scene.objects().iter().map(|o| u32::try_from(o.triangles.len()).unwrap_or(u32::MAX)).collect();
+    }
+    let text = method.clone().unwrap_or_default();
+    let by = if by_sightlines && method.is_some() {
+        "sightlines+"
+    } else if by_sightlines {
+        "sightlines"
+    } else {
+        ""
+    };
+    parts.info.push(("method".to_owned(), format!("{by}{text}")));
+    parts.info.sort();
+    let table = Table::new(parts)?;
+    let time = start.elapsed();
+    Ok(BakedRegions { table, sightlines: baked, method, effort, n_visible_pairs, n_objects_seen, time })
+}
+
+/// The table of the k-d tree's cells. For boxes that may lie anywhere, with the insides of solid things, out to the
+/// farthest box.
+fn by_portals(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedScene, BakeError> {
+    let mut cut = options.cut;
+    if let CellsFrom::Boxes(boxes) = options.cells {
+        cut.keep_solid = true;
+        let corners = boxes.cells.iter().flat_map(|b| [b.bounds.min, b.bounds.max]);
+        let all = Aabb::around(corners.chain([scene.bounds().min, scene.bounds().max]));
+        cut.view_region = Some(all);
+    }
+    bake_scene(
+        scene,
+        &SceneBakeOptions { cut, portals: options.portals, threads: options.threads, progress: options.progress },
+    )
+}
+
+fn volumes(cells: &[Aabb<3>]) -> Result<Vec<Volume>, RegionBakeError> {
+    let volume = |(cell, b): (usize, &Aabb<3>)| Volume::new(*b).map_err(|error| RegionBakeError::Cell { cell, error });
+    cells.iter().enumerate().map(volume).collect()
+}
+
+fn record(name: &str, b: &Aabb<3>) -> ObjectRecord {
+    let b = if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b };
+    ObjectRecord { name: name.to_owned(), min: b.min, max: b.max }
+}
+
+/// A matrix of ones.
+fn ones(n_rows: usize, n_cols: usize) -> BitMatrix {
+    let mut all = BitMatrix::new(n_rows, n_cols);
+    (0..n_rows).for_each(|row| (0..n_cols).for_each(|col| all.set(row, col, true)));
+    all
+}
+
+/// The cells of a k-d tree, of which everything may see everything.
+fn kd_parts(scene: &Scene, cut: &SceneSubdivision, n_objects: usize) -> (TableParts, Start) {
+    let cells: Vec<Aabb<3>> = cut.graph.cell_ids().map(|id| cut.graph.cell(id).bounds).collect();
+    let bounds: Vec<_> = cells.iter().map(|b| (b.min, b.max)).collect();
+    let info = vec![
+        ("detail-below".to_owned(), cut.summary.detail_below.to_string()),
+        ("subdivide".to_owned(), "kd".to_owned()),
+    ];
+    let parts = TableParts {
+        cells: cells.iter().map(cell_record).collect(),
+        portals: cut.graph.portals().iter().map(portal_record).collect(),
+        locator: Locator::build(&bounds, 3),
+        mirrors: mirrors::of_scene(&cut.graph, scene).parts,
+        info,
+        ..TableParts::empty(3)
+    };
+    let n = cells.len();
+    (parts, Start { cells, rows: ones(n, n), objects: ones(n, n_objects) })
+}
+
+fn cell_record(b: &Aabb<3>) -> CellRecord {
+    CellRecord { min: b.min, max: b.max, group: None, polygon: Vec::new() }
+}
+
+/// Boxes from elsewhere. With a table of the k-d tree's cells, each sees what the cells that it touches see.
+fn box_parts(boxes: &ViewCells, baked: Option<&BakedScene>, n_objects: usize) -> (TableParts, Start) {
+    let cells: Vec<Aabb<3>> = boxes.cells.iter().map(|b| b.bounds).collect();
+    let bounds: Vec<_> = cells.iter().map(|b| (b.min, b.max)).collect();
+    let parts = TableParts {
+        cells: cells.iter().map(cell_record).collect(),
+        cell_names: boxes.cells.iter().map(|b| b.id.clone()).collect(),
+        locator: Locator::build(&bounds, 3),
+        info: vec![("subdivide".to_owned(), "boxes".to_owned())],
+        ..TableParts::empty(3)
+    };
+    let n = cells.len();
+    let (rows, objects) = match baked {
+        Some(baked) => boxes::seen_by_touched(&cells, &baked.table, n_objects),
+        None => (ones(n, n), ones(n, n_objects)),
+    };
+    (parts, Start { cells, rows, objects })
+}

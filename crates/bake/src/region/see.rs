@@ -1,0 +1,112 @@
+//! Who sees whom, cell by cell.
+
+use super::{MakeMethod, RegionBakeOptions};
+use rayon::prelude::*;
+use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Volume, Witness, adaptive};
+use sightlines_pvs::BitMatrix;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What all cells are asked about.
+pub(super) struct Scene<'a> {
+    pub(super) occludees: &'a Occludees,
+    pub(super) witness: &'a Witness,
+    pub(super) volumes: &'a [Volume],
+}
+
+/// What is left visible.
+pub(super) struct Seen {
+    pub(super) rows: BitMatrix,
+    pub(super) objects: BitMatrix,
+    pub(super) effort: Effort,
+}
+
+/// What one cell is left with.
+struct Row {
+    cells: Vec<bool>,
+    objects: Vec<bool>,
+    effort: Effort,
+}
+
+/// Asks the method for all cells about what is still visible in `rows` and `objects`.
+pub(super) fn see(
+    scene: &Scene<'_>,
+    make: MakeMethod<'_>,
+    options: &RegionBakeOptions<'_>,
+    mut rows: BitMatrix,
+    mut objects: BitMatrix,
+) -> Result<Seen, BackendError> {
+    let n = scene.volumes.len();
+    let done = AtomicUsize::new(0);
+    let one = |method: &mut Box<dyn FromRegion + Send>, cell: usize| {
+        let row = see_from(scene, &mut **method, options, cell, &rows, &objects);
+        if let Some(progress) = options.progress {
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, n);
+        }
+        row
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
+    let found: Vec<Row> =
+        pool.install(|| (0..n).into_par_iter().map_init(make, one).collect::<Result<_, BackendError>>())?;
+    let mut effort = Effort::default();
+    for (a, row) in found.iter().enumerate() {
+        effort = effort + row.effort;
+        for (b, visible) in row.cells.iter().enumerate() {
+            // Sight is symmetric: either of the two may have found that there is none.
+            if !visible && a != b {
+                rows.set(a, b, false);
+                rows.set(b, a, false);
+            }
+        }
+        row.objects.iter().enumerate().filter(|(_, visible)| !**visible).for_each(|(o, _)| objects.set(a, o, false));
+    }
+    Ok(Seen { rows, objects, effort })
+}
+
+fn see_from(
+    scene: &Scene<'_>,
+    method: &mut dyn FromRegion,
+    options: &RegionBakeOptions<'_>,
+    cell: usize,
+    rows: &BitMatrix,
+    objects: &BitMatrix,
+) -> Result<Row, BackendError> {
+    let volume = &scene.volumes[cell];
+    let mut of_objects: Vec<bool> = (0..scene.occludees.len()).map(|o| objects.get(cell, o)).collect();
+    let effort = adaptive::see(method, scene.occludees, scene.witness, volume, &options.split, &mut of_objects)?;
+    let mut of_cells: Vec<bool> = (0..scene.volumes.len()).map(|c| rows.get(cell, c)).collect();
+    let mut umbra = method.umbra(volume)?;
+    for (other, visible) in of_cells.iter_mut().enumerate() {
+        *visible = *visible && !umbra.hides(scene.volumes[other].bounds());
+    }
+    Ok(Row { cells: of_cells, objects: of_objects, effort })
+}
+
+/// For each cell the objects whose boxes meet it, ascending; touching counts.
+pub(super) fn touching(cells: &[Aabb<3>], objects: &[Aabb<3>]) -> Vec<Vec<u32>> {
+    let meet = |a: &Aabb<3>, b: &Aabb<3>| (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k]);
+    // Nothing is around an object without triangles.
+    let (ids, boxes): (Vec<u32>, Vec<Aabb<3>>) = (0..).zip(objects).filter(|(_, b)| !b.is_empty()).unzip();
+    let tree = BoxTree::build(&boxes, 8);
+    let touched = |cell: &Aabb<3>| {
+        let mut found = Vec::new();
+        tree.visit(
+            |b| meet(b, cell),
+            |i| {
+                if meet(&boxes[i as usize], cell) {
+                    found.push(ids[i as usize]);
+                }
+            },
+        );
+        found.sort_unstable();
+        found
+    };
+    cells.par_iter().map(touched).collect()
+}
+
+/// Sets the bits of `lists`.
+pub(super) fn add(matrix: &mut BitMatrix, lists: &[Vec<u32>]) {
+    for (row, list) in lists.iter().enumerate() {
+        list.iter().for_each(|&col| matrix.set(row, col as usize, true));
+    }
+}

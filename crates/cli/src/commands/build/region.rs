@@ -1,0 +1,353 @@
+//! From a scene in space to its table by what is hidden from whole cells.
+
+use super::BakeArgs;
+use super::facts::Facts;
+use super::space::{Stated, informed};
+use super::view_cells::ViewCellsArgs;
+use crate::error::CliError;
+use crate::output::{bytes, count, percent, seconds};
+use crate::progress::Bar;
+use serde::Serialize;
+use sightlines::bake::region::grid;
+use sightlines::bake::{BakedRegions, CellsFrom, RegionBakeOptions, bake_regions};
+use sightlines::formats::SceneFile;
+use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
+use sightlines::geometry::Point3;
+use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
+use sightlines::multifocal::{
+    BackendError, Buffer, Chosen, FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, Split, Together,
+};
+use sightlines::multifocal_cpu::{Fast, Reference};
+use sightlines::multifocal_gpu::{Gpu, GpuBackend, Way, WithFallback};
+use sightlines::report::{Summary, ViewerShare};
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What is asked who sees whom, for scenes in space.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct RegionArgs {
+    /// Scenes in space only: sightlines through the portals between cells, which is the default; multifocal: what is
+    /// hidden from all of a cell by any surfaces, axis-aligned or not; both, which hides what either does; shafts or
+    /// voxels, older methods to compare with
+    #[arg(long, value_name = "HOW")]
+    method: Option<Method>,
+    #[command(flatten)]
+    cells: ViewCellsArgs,
+    /// Scenes in space only: a grid of boxes as cells, in the view region or else the scene's box
+    #[arg(long, value_name = "NX,NY,NZ", value_parser = counts, conflicts_with = "cells")]
+    grid: Option<[u32; 3]>,
+    /// multifocal: what buffers compare
+    #[arg(long, value_name = "WHAT", default_value = "height")]
+    measure: MeasureArg,
+    /// multifocal: planes on each side of a cell; 0 for none
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=256))]
+    planes: u32,
+    /// multifocal: texels along the longer side of a plane
+    #[arg(long, value_name = "N", default_value_t = 96, value_parser = clap::value_parser!(u32).range(1..=8192))]
+    texels: u32,
+    /// multifocal: the most surfaces that are drawn on each side of a cell; those that seem to hide most
+    #[arg(long, value_name = "N", default_value_t = 500)]
+    occluders: u32,
+    /// multifocal: do not carry over to a plane what is known on the one before
+    #[arg(long)]
+    no_carry: bool,
+    /// multifocal: how many sides of triangles are looked at to find a surface between a cell and an object; 0 for none
+    #[arg(long, value_name = "N", default_value_t = SheetMethod::DEFAULT_LIMIT as u32)]
+    sheets: u32,
+    /// multifocal: how often a cell is cut in two where much is in doubt
+    #[arg(long, value_name = "N", default_value_t = Split::default().depth, value_parser = clap::value_parser!(u32).range(0..=12))]
+    split: u32,
+    /// multifocal: who draws the buffers
+    #[arg(long, value_name = "WHO", default_value = "cpu")]
+    backend: Backend,
+}
+
+/// Who says what is hidden.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Method {
+    Sightlines,
+    Multifocal,
+    Both,
+    /// One flat piece that cuts the whole shaft between a cell and an object
+    Shafts,
+    /// Voxels inside of closed surfaces, extended to blockers
+    Voxels,
+}
+
+/// What is compared, as an argument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum MeasureArg {
+    Euclid,
+    Clipped,
+    VertexHeight,
+    Height,
+}
+
+/// Who draws, as an argument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Backend {
+    /// In whole numbers, in threads
+    Cpu,
+    /// In exact arithmetic, very slow
+    Reference,
+    /// As cpu, bit for bit, on a graphics card; the CPU takes over where there is none
+    Gpu,
+}
+
+fn counts(text: &str) -> Result<[u32; 3], String> {
+    let parts: Vec<u32> = text.split(',').map(|n| n.trim().parse().unwrap_or(0)).collect();
+    match <[u32; 3]>::try_from(parts) {
+        Ok(n) if n.iter().all(|&n| n > 0) => Ok(n),
+        _ => Err("not three numbers from 1 on, with commas between".to_owned()),
+    }
+}
+
+impl RegionArgs {
+    /// Whether anything but sightlines through a k-d tree is asked for.
+    pub(super) fn is_given(&self) -> bool {
+        self.method.is_some_and(|m| m != Method::Sightlines) || self.has_boxes()
+    }
+
+    /// Whether cells are boxes from elsewhere.
+    pub(super) fn has_boxes(&self) -> bool {
+        self.cells.is_given() || self.grid.is_some()
+    }
+
+    /// Options that mean something for scenes in space only.
+    pub(super) fn of_space(&self) -> [(&'static str, bool); 3] {
+        [("--method", self.method.is_some()), ("--cells", self.cells.is_given()), ("--grid", self.grid.is_some())]
+    }
+
+    fn layout(&self) -> Layout {
+        let measure = match self.measure {
+            MeasureArg::Euclid => Measure::Euclid,
+            MeasureArg::Clipped => Measure::ClippedEuclid,
+            MeasureArg::VertexHeight => Measure::VertexHeight,
+            MeasureArg::Height => Measure::SectionHeight,
+        };
+        let reproject = !self.no_carry && measure.is_height();
+        Layout { n_levels: self.planes, texels: self.texels, measure, reproject, ..Layout::default() }
+    }
+}
+
+/// Builds the table of a scene that came from `path`.
+pub(super) fn bake(
+    path: &Path,
+    file: &SceneFile,
+    args: &BakeArgs,
+    region: &RegionArgs,
+    show_progress: bool,
+) -> Result<BakedRegions, CliError> {
+    args.check_for_space(path)?;
+    let failed = |source| CliError::BakeRegion { path: path.to_owned(), source };
+    let cut = args.cut();
+    let cells = match (region.cells.read()?, region.grid) {
+        (Some(cells), _) => CellsFrom::Boxes(cells),
+        (None, Some(n)) => {
+            let around = cut.view_region.unwrap_or_else(|| file.scene.bounds());
+            let cells = grid(&around, n).map_err(|source| CliError::Grid { path: path.to_owned(), source })?;
+            CellsFrom::Boxes(cells)
+        }
+        (None, None) => CellsFrom::KdTree,
+    };
+    let method = region.method.unwrap_or(Method::Sightlines);
+    let maker = match method {
+        Method::Sightlines => None,
+        Method::Multifocal | Method::Both => Some(Maker::Buffers(Buffers::new(file, region))),
+        Method::Shafts => Some(Maker::Shafts(ViewShafts::new(patches(&triangles(file), &PatchOptions::default())))),
+        Method::Voxels => {
+            let voxels = Voxels::new(&file.scene, VoxelOptions::default());
+            Some(Maker::Voxels(Box::new(voxels.expect("the number of voxels is within limits"))))
+        }
+    };
+    let make = || maker.as_ref().expect("only called if there is one").make();
+    let bar = Bar::new("who sees whom", show_progress);
+    let progress = |done, all| bar.set(done, all);
+    let options = RegionBakeOptions {
+        cells: &cells,
+        method: maker.is_some().then_some(&make),
+        sightlines: matches!(method, Method::Sightlines | Method::Both),
+        split: Split { depth: region.split, ..Split::default() },
+        cut,
+        portals: args.portal_mode(),
+        threads: args.threads,
+        progress: Some(&progress),
+    };
+    let baked = bake_regions(&file.scene, &options);
+    drop(bar);
+    let baked = baked.map_err(failed)?;
+    let table = informed(baked.table, &file.info).map_err(|error| failed(error.into()))?;
+    Ok(BakedRegions { table, ..baked })
+}
+
+/// The triangles of all objects.
+fn triangles(file: &SceneFile) -> Vec<[Point3; 3]> {
+    file.scene.objects().iter().flat_map(|o| o.corners()).collect()
+}
+
+/// What the methods of all threads are made from.
+enum Maker {
+    Buffers(Buffers),
+    Shafts(ViewShafts),
+    Voxels(Box<Voxels>),
+}
+
+impl Maker {
+    fn make(&self) -> Box<dyn FromRegion + Send> {
+        match self {
+            Self::Buffers(buffers) => buffers.make(),
+            Self::Shafts(shafts) => Box::new(shafts.clone()),
+            Self::Voxels(voxels) => voxels.clone(),
+        }
+    }
+}
+
+/// What multifocal methods share.
+struct Buffers {
+    chosen: Arc<Chosen>,
+    sheets: Option<(Arc<Sheets>, usize)>,
+    scene: sightlines::geometry::Aabb<3>,
+    layout: Layout,
+    backend: Backend,
+    gpu: Option<Gpu>,
+}
+
+impl Buffers {
+    fn new(file: &SceneFile, region: &RegionArgs) -> Self {
+        let triangles = triangles(file);
+        let layout = region.layout();
+        let patches = if region.planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
+        let sheets = (region.sheets > 0).then(|| (Arc::new(Sheets::new(&triangles)), region.sheets as usize));
+        let gpu = if region.backend == Backend::Gpu { open() } else { None };
+        Self {
+            chosen: Arc::new(Chosen::new(patches, region.occluders as usize)),
+            sheets,
+            scene: file.scene.bounds(),
+            layout,
+            backend: region.backend,
+            gpu,
+        }
+    }
+
+    fn make(&self) -> Box<dyn FromRegion + Send> {
+        let mut methods: Vec<Box<dyn FromRegion + Send>> = Vec::new();
+        if self.layout.n_levels > 0 {
+            methods.push(match (self.backend, &self.gpu) {
+                (Backend::Reference, _) => self.buffers(Reference),
+                (Backend::Gpu, Some(gpu)) => {
+                    let gpu = GpuBackend::new(gpu.clone(), Way::Compute);
+                    self.buffers(Telling(WithFallback::new(gpu, WithFallback::new(Fast::new(), Reference))))
+                }
+                _ => self.buffers(WithFallback::new(Fast::new(), Reference)),
+            });
+        }
+        if let Some((sheets, limit)) = &self.sheets {
+            methods.push(Box::new(SheetMethod::shared(Arc::clone(sheets)).with_limit(*limit)));
+        }
+        Box::new(Together::new(methods))
+    }
+
+    fn buffers(&self, backend: impl MultifocalBackend + 'static) -> Box<dyn FromRegion + Send> {
+        Box::new(Multifocal::new(backend, Arc::clone(&self.chosen), self.scene, self.layout))
+    }
+}
+
+/// The graphics card, if there is one.
+fn open() -> Option<Gpu> {
+    match Gpu::open() {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            tracing::warn!("{error}; the CPU takes over");
+            None
+        }
+    }
+}
+
+/// A backend with one that takes over, which says so.
+#[derive(Debug)]
+struct Telling<A, B>(WithFallback<A, B>);
+
+impl<A: MultifocalBackend, B: MultifocalBackend> MultifocalBackend for Telling<A, B> {
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+
+    fn supports(&self, measure: Measure) -> bool {
+        self.0.supports(measure)
+    }
+
+    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+        let before = self.0.took_over().cloned();
+        let done = self.0.render(job, out);
+        if let Some(error) = self.0.took_over().filter(|error| before.as_ref() != Some(error)) {
+            tracing::warn!("{error}; the CPU takes over");
+        }
+        done
+    }
+}
+
+/// What was built.
+#[derive(Debug, Serialize)]
+pub(super) struct Outcome {
+    out: String,
+    #[serde(flatten)]
+    stated: Stated,
+    /// `kd` or `boxes`.
+    subdivide: &'static str,
+    /// What said who sees whom.
+    method: String,
+    n_triangles: usize,
+    #[serde(flatten)]
+    pub(super) table: Summary,
+    /// What a viewer sees on average, each place of the same weight.
+    viewer: ViewerShare,
+    /// Pairs of a cell and an object that it may see.
+    n_objects_seen: u64,
+    /// Volumes that were asked about: cells, and parts of cells.
+    n_volumes: u64,
+    /// Questions whether a box, or a triangle, is hidden.
+    n_asked: u64,
+    seconds: f64,
+}
+
+impl Outcome {
+    pub(super) fn new(out: &Path, file: &SceneFile, region: &RegionArgs, baked: &BakedRegions) -> Self {
+        let triangles: Vec<u64> = file.scene.objects().iter().map(|o| o.triangles.len() as u64).collect();
+        let asked = &baked.effort.asked;
+        Self {
+            out: out.display().to_string(),
+            stated: Stated::new(&file.info),
+            subdivide: if region.has_boxes() { "boxes" } else { "kd" },
+            method: baked.table.info_value("method").unwrap_or_default().to_owned(),
+            n_triangles: file.info.n_triangles,
+            table: Summary::of(&baked.table),
+            viewer: ViewerShare::of(&baked.table, &triangles),
+            n_objects_seen: baked.n_objects_seen,
+            n_volumes: baked.effort.n_volumes,
+            n_asked: asked.groups + asked.boxes + asked.triangles,
+            seconds: baked.time.as_secs_f64(),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.table.n_bytes as u64))?;
+        writeln!(f, "scene          {}", self.stated)?;
+        let cells = if self.subdivide == "kd" { "the cells of a k-d tree" } else { "boxes as cells" };
+        writeln!(f, "method         {}, {cells}", self.method)?;
+        writeln!(f, "triangles      {}", self.n_triangles)?;
+        write!(f, "{}", Facts(&self.table))?;
+        let [polygons, objects, cells] = [self.viewer.polygons, self.viewer.objects, self.viewer.cells].map(percent);
+        writeln!(
+            f,
+            "a viewer has   {polygons} of the polygons on average, {objects} of the objects, {cells} of the cells"
+        )?;
+        writeln!(f, "objects        {} of cells and objects may be seen", count(self.n_objects_seen, "pair"))?;
+        if self.n_volumes > 0 {
+            writeln!(f, "effort         {}, {} questions", count(self.n_volumes, "volume"), self.n_asked)?;
+        }
+        writeln!(f, "time           {}", seconds(std::time::Duration::from_secs_f64(self.seconds)))
+    }
+}

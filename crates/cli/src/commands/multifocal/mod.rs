@@ -1,0 +1,190 @@
+//! `multifocal`: the multifocal buffer of a scene on one plane as a picture, and the fields beside it.
+
+mod backend;
+mod outcome;
+mod target;
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::input::{self, Kind};
+use crate::output;
+use crate::region::Region;
+use outcome::{FieldInfo, Outcome};
+use sightlines::formats::scene::read_scene;
+use sightlines::geometry::Point3;
+use sightlines::multifocal::mesh::{PatchOptions, patches};
+use sightlines::multifocal::{Buffer, Job, Measure, Occluder, Plane, Volume};
+use sightlines::multifocal_cpu::fields::{Features, Field};
+use sightlines::report::{PngError, buffer_png, distance_png, voronoi_png};
+use std::path::{Path, PathBuf};
+use target::{PlaneArg, Texels};
+
+/// Arguments of `multifocal`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "The picture of the buffer has one pixel for each texel: blue where nothing is known to block; else \
+                        grey, from black, where only what lies behind the plane is hidden, to white, for the largest \
+                        height or distance in the picture, which is printed. So a texel that is blocked at height 0 is \
+                        not one that is not blocked. In the map of nearest features vertices have dark colours, edges \
+                        bright ones and faces pale ones. Of the two axes across the plane, the one that follows its \
+                        axis (of x, y, z, x, y) points to the right, and the next one up."
+)]
+pub(crate) struct MultifocalArgs {
+    /// The scene: GLB, glTF or OBJ
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Where eyes may be: a box, its lower corner, then its upper one
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    volume: Region,
+    /// The plane behind the scene that eyes look at, such as z=20, and a window on it along the two axes that follow
+    /// (for y these are z and x); the shadow of the scene's box if not given, or its sides where it is beside the volume
+    #[arg(long, value_name = "AXIS=AT[:U0,V0,U1,V1]", allow_hyphen_values = true)]
+    plane: PlaneArg,
+    /// Texels along the longer side of the window, about as many along the other as make them square; or along both
+    #[arg(long, value_name = "N|WxH", default_value = "256")]
+    texels: Texels,
+    /// What values are: distances to the texel, with or without what no eye sees there; heights above the plane, of
+    /// corners or of what eyes see
+    #[arg(long, value_enum, default_value_t = MeasureArg::Height)]
+    measure: MeasureArg,
+    /// Who fills the buffer. What cannot be done by one is done by the next: gpu, cpu, reference (slow)
+    #[arg(long, value_enum, default_value_t = backend::Kind::Cpu)]
+    backend: backend::Kind,
+    /// Let each triangle hide by itself, as in the slides, instead of putting neighbours together that hide more
+    #[arg(long)]
+    triangles: bool,
+    /// The picture of the buffer to write
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+    /// Also write a map of the features (vertices, edges, faces) that are nearest to the texels
+    #[arg(long, value_name = "OUT.png")]
+    voronoi: Option<PathBuf>,
+    /// Also write the distances of the texels to what is nearest: black for 0, white for the largest
+    #[arg(long, value_name = "OUT.png")]
+    distance: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// A measure as an argument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum MeasureArg {
+    Euclid,
+    Clipped,
+    VertexHeight,
+    Height,
+}
+
+impl MeasureArg {
+    const fn measure(self) -> Measure {
+        match self {
+            Self::Euclid => Measure::Euclid,
+            Self::Clipped => Measure::ClippedEuclid,
+            Self::VertexHeight => Measure::VertexHeight,
+            Self::Height => Measure::SectionHeight,
+        }
+    }
+}
+
+pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, CliError> {
+    check_outputs(args)?;
+    if input::kind_of(&args.scene)? != Some(Kind::Scene) {
+        return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
+    }
+    let scene = read_scene(&args.scene)?.scene;
+    let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|object| object.corners()).collect();
+    if triangles.is_empty() {
+        return Err(CliError::NoTriangles(args.scene.clone()));
+    }
+    let volume = Volume::new(args.volume.0)?;
+    let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
+    let occluders = occluders(&triangles, args.triangles);
+    let job = Job::new(volume, vec![plane], &occluders, args.measure.measure(), false)
+        .map_err(|source| CliError::Job { plane: args.plane.to_string(), source })?;
+    let (by, buffer) =
+        backend::fill(args.backend, &job).map_err(|source| CliError::Backend { path: args.scene.clone(), source })?;
+    let fields = (args.voronoi.is_some() || args.distance.is_some()).then(|| {
+        let features = Features::new(triangles.iter().copied());
+        let field = Field::new(&features, &plane);
+        (features, field)
+    });
+    let outcome = Outcome {
+        scene: args.scene.display().to_string(),
+        n_triangles: triangles.len(),
+        n_occluders: occluders.len(),
+        volume: args.volume.0,
+        plane,
+        measure: job.measure().name(),
+        backend: by,
+        unit: job.unit(),
+        n_blocked: buffer.n_blocked(),
+        white: white(&buffer),
+        fields: fields.as_ref().map(|(features, field)| FieldInfo::new(features, field)),
+        files: outputs(args).map(|path| path.display().to_string()).collect(),
+    };
+    write(args, &plane, &buffer, fields.as_ref())?;
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// The pictures to write.
+fn outputs(args: &MultifocalArgs) -> impl Iterator<Item = &PathBuf> {
+    [Some(&args.output), args.voronoi.as_ref(), args.distance.as_ref()].into_iter().flatten()
+}
+
+/// Refuses names of pictures that are no PNG, that name the same file twice, or the scene.
+fn check_outputs(args: &MultifocalArgs) -> Result<(), CliError> {
+    for (i, path) in outputs(args).enumerate() {
+        if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+            return Err(CliError::NotPng(path.clone()));
+        }
+        if outputs(args).take(i).any(|other| other == path) {
+            return Err(CliError::TwoPictures(path.clone()));
+        }
+        output::refuse_same(&args.scene, path)?;
+    }
+    Ok(())
+}
+
+/// What hides: patches, or each triangle that has an area.
+fn occluders(triangles: &[[Point3; 3]], each: bool) -> Vec<Occluder> {
+    if each {
+        triangles.iter().filter_map(|&corners| Occluder::triangle(corners).ok()).collect()
+    } else {
+        patches(triangles, &PatchOptions::default())
+    }
+}
+
+/// The largest height or distance in a buffer, in units of the job; 0 if nothing blocks.
+fn white(buffer: &Buffer) -> u32 {
+    buffer.values().iter().copied().max().unwrap_or(0).saturating_sub(1)
+}
+
+/// Draws all pictures, then writes them.
+fn write(
+    args: &MultifocalArgs,
+    plane: &Plane,
+    buffer: &Buffer,
+    fields: Option<&(Features, Field)>,
+) -> Result<(), CliError> {
+    let texels = plane.texels();
+    let mut pictures: Vec<(&Path, Result<Vec<u8>, PngError>)> =
+        vec![(&args.output, buffer_png(texels, buffer.values(), white(buffer)))];
+    if let Some((features, field)) = fields {
+        if let Some(path) = &args.voronoi {
+            let ids: Vec<Option<u32>> = field.nearest().iter().map(|n| n.map(|n| n.feature)).collect();
+            pictures.push((path, voronoi_png(texels, &ids, features.first_edge(), features.first_face())));
+        }
+        if let Some(path) = &args.distance {
+            let distances: Vec<f64> = field.nearest().iter().map(|n| n.map_or(0.0, |n| n.distance)).collect();
+            pictures.push((path, distance_png(texels, &distances, field.farthest())));
+        }
+    }
+    let drawn = |(path, png): (&'_ Path, Result<Vec<u8>, PngError>)| match png {
+        Ok(png) => Ok((path.to_owned(), png)),
+        Err(source) => Err(CliError::Png { path: path.to_owned(), source }),
+    };
+    let drawn: Vec<(PathBuf, Vec<u8>)> = pictures.into_iter().map(drawn).collect::<Result<_, _>>()?;
+    drawn.iter().try_for_each(|(path, png)| output::save(path, png))
+}

@@ -1,0 +1,37 @@
+//! View cells: boxes in space where a viewer can be, each with a name, given instead of cut.
+//!
+//! ```json
+//! {"cells":[{"id":"kitchen","min":[0.5,0.1,10.4],"max":[6.1,2.5,12.6]}]}
+//! ```
+//!
+//! Corners are x, y and z in the units and axes of the scene that the cells are for. Every cell needs an id of its
+//! own, at least one character long. Boxes may touch, overlap, leave gaps and be flat. Members that are not shown
+//! here mean nothing, in the whole as in a cell. There is at least one cell.
+
+mod error;
+mod read;
+
+pub use error::{ViewCellPlace, ViewCellsError, ViewCellsErrorKind};
+pub use read::{parse_view_cells, read_view_cells};
+
+use sightlines_geometry::Aabb;
+
+/// View cells as a file has them, checked: at least one, ids not empty and all different, corners that
+/// [`check_coordinate`](sightlines_geometry::check_coordinate) accepts, no lower corner above the upper one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViewCells {
+    /// The cells, in the order of the file.
+    pub cells: Vec<ViewCell>,
+}
+
+/// A box where a viewer can be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViewCell {
+    /// What users call it.
+    pub id: String,
+    /// Where it is, in scene units.
+    pub bounds: Aabb<3>,
+}
+
+#[cfg(test)]
+mod tests;

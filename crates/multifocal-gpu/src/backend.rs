@@ -1,0 +1,154 @@
+//! The backend, in three ways.
+
+use crate::context::Gpu;
+use crate::draw::{self, Input};
+use crate::{OpenError, PlaneForms, Ticket, Values};
+use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend};
+
+/// How buffers are filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Way {
+    /// By a compute shader, in integers: the canonical one.
+    #[default]
+    Compute,
+    /// By the hardware's rasteriser and depth test, which keeps the larger value; each fragment asks the same integers,
+    /// so the bits are the same.
+    Raster,
+    /// By a compute shader in 32-bit floats with margins, to see what floats cost. Knows
+    /// [`Measure::VertexHeight`] alone; what it blocks is blocked, but it misses more, and what it misses depends on the
+    /// device.
+    Float,
+}
+
+impl Way {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Compute, Self::Raster, Self::Float];
+
+    /// Name of the backend that goes this way.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Compute => "gpu",
+            Self::Raster => "gpu-raster",
+            Self::Float => "gpu-float",
+        }
+    }
+}
+
+/// A backend on a GPU. Clones share the device; each may be used from another thread.
+#[derive(Debug, Clone)]
+pub struct GpuBackend {
+    gpu: Gpu,
+    way: Way,
+}
+
+impl GpuBackend {
+    /// Opens a device, see [`Gpu::open`].
+    ///
+    /// # Errors
+    /// [`OpenError`]
+    pub fn open(way: Way) -> Result<Self, OpenError> {
+        Ok(Self::new(Gpu::open()?, way))
+    }
+
+    /// A backend on the device and the queue of a host, see [`Gpu::from_device`].
+    ///
+    /// # Errors
+    /// [`OpenError`]
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, way: Way) -> Result<Self, OpenError> {
+        Ok(Self::new(Gpu::from_device(device, queue)?, way))
+    }
+
+    /// A backend on a device that is open already.
+    pub const fn new(gpu: Gpu, way: Way) -> Self {
+        Self { gpu, way }
+    }
+
+    /// The device.
+    pub const fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// How it fills buffers.
+    pub const fn way(&self) -> Way {
+        self.way
+    }
+
+    /// Gives the device a job and returns at once; any number of jobs may be in flight.
+    ///
+    /// The occluders are turned into integers on the caller's thread, O(planes · occluders · corners); with
+    /// [`Self::submit_forms`] that can be done elsewhere.
+    ///
+    /// # Errors
+    /// [`BackendError`], for what can be told at once
+    pub fn submit(&self, job: &Job<'_>) -> Result<Ticket, BackendError> {
+        let values = self.keep(job)?;
+        self.gpu.fetch(self.way.name(), &values)
+    }
+
+    /// As [`Self::submit`], for planes that are integers already.
+    ///
+    /// # Errors
+    /// [`BackendError`]; [`Way::Float`] has no use for integers
+    pub fn submit_forms(&self, planes: &[PlaneForms]) -> Result<Ticket, BackendError> {
+        let values = self.keep_forms(planes)?;
+        self.gpu.fetch(self.way.name(), &values)
+    }
+
+    /// Gives the device a job whose result stays there. Whatever is submitted to the device's queue later finds it
+    /// done.
+    ///
+    /// # Errors
+    /// [`BackendError`], for what can be told at once
+    pub fn keep(&self, job: &Job<'_>) -> Result<Values, BackendError> {
+        if !self.supports(job.measure()) {
+            return Err(BackendError::Unsupported { backend: self.way.name(), measure: job.measure() });
+        }
+        match self.way {
+            Way::Float => draw::draw(&self.gpu, self.way, &Input::Floats(job)),
+            _ => self.keep_forms(&PlaneForms::of(job)),
+        }
+    }
+
+    /// As [`Self::keep`], for planes that are integers already.
+    ///
+    /// # Errors
+    /// [`BackendError`]; [`Way::Float`] has no use for integers
+    pub fn keep_forms(&self, planes: &[PlaneForms]) -> Result<Values, BackendError> {
+        if self.way == Way::Float {
+            return Err(BackendError::Unsupported { backend: self.way.name(), measure: Measure::default() });
+        }
+        draw::draw(&self.gpu, self.way, &Input::Forms(planes))
+    }
+
+    /// The buffers of a job, one for each plane, if it is done; asked again it gives them again. Never waits.
+    pub fn poll(&self, ticket: &Ticket) -> Option<Result<Vec<Buffer>, BackendError>> {
+        self.gpu.poll_ticket(ticket)
+    }
+
+    /// The buffers of a job. Waits for them.
+    ///
+    /// # Errors
+    /// [`BackendError`]
+    pub fn wait(&self, ticket: &Ticket) -> Result<Vec<Buffer>, BackendError> {
+        self.gpu.wait_for(ticket)
+    }
+}
+
+impl MultifocalBackend for GpuBackend {
+    fn name(&self) -> &'static str {
+        self.way.name()
+    }
+
+    fn supports(&self, measure: Measure) -> bool {
+        match self.way {
+            Way::Float => measure == Measure::VertexHeight,
+            _ => measure != Measure::ClippedEuclid,
+        }
+    }
+
+    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+        let ticket = self.submit(job)?;
+        *out = self.wait(&ticket)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,135 @@
+//! Cities: boxes along straight streets, of many triangles.
+//!
+//! The setting of from-region visibility: nearly all of a city is hidden from a place in a street, mostly by the
+//! next few houses. Every wall is a grid of bays and storeys, so there are many triangles in few planes.
+
+use crate::error::{SceneError, check_range};
+use crate::rng::Rng;
+use sightlines_cells::{Scene, SceneObject};
+use sightlines_geometry::Aabb;
+use std::collections::BTreeMap;
+
+/// What city to generate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CityOptions {
+    /// Every choice follows from it.
+    pub seed: u64,
+    /// Blocks along x, from 1 to 64.
+    pub blocks_x: u32,
+    /// Blocks along z, from 1 to 64.
+    pub blocks_z: u32,
+    /// Cuts of a bay of 4 metres and of a storey along each side, from 1 to 8.
+    pub detail: u32,
+}
+
+impl Default for CityOptions {
+    /// 6 by 6 blocks of 4 houses, about 60,000 triangles.
+    fn default() -> Self {
+        Self { seed: 1, blocks_x: 6, blocks_z: 6, detail: 1 }
+    }
+}
+
+/// Side of a bay and height of a storey, in metres.
+const BAY: i32 = 4;
+/// Bays along a side of a lot: a house stands on it, or on a part of it.
+const LOT: i32 = 5;
+/// Bays from one block to the next: two lots and a street of 12 m.
+const PITCH: i32 = 2 * LOT + 3;
+/// Height of eyes, in metres, below and above: who walks, and who sits on a bus.
+const EYES: [f64; 2] = [1.25, 2.25];
+
+/// A city in metres, y up: the first block has a corner at x = z = 0, the ground is at height 0.
+///
+/// Objects are closed boxes that face outwards and do not overlap: `ground`, and houses such as
+/// `block_2_0/house_3`. Every block has four lots with a house each, which may stand back from the street; houses
+/// that do not, touch. Coordinates are multiples of 1/2 if `detail` is 1, 2, 4 or 8, else they are rounded.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`]
+pub fn city(options: CityOptions) -> Result<Scene, SceneError> {
+    let [n_x, n_z, detail] = checked(&options)?;
+    let mut rng = Rng::new(options.seed, 12);
+    let wide = |n: i32| n * PITCH + 3;
+    // The ground is not cut into bays: nobody looks at it from below.
+    let mut objects = vec![cuboid("ground".to_owned(), [-3, -1, -3], [wide(n_x), 1, wide(n_z)], [1; 3])];
+    for (bz, bx) in (0..n_z).flat_map(|z| (0..n_x).map(move |x| (z, x))) {
+        for lot in 0..4 {
+            let (dx, dz) = (lot % 2, lot / 2);
+            // Back from the street by a bay, or not; towards the middle of the block.
+            let back = |rng: &mut Rng| i32::from(rng.one_in(4));
+            let (off_x, off_z) = (back(&mut rng), back(&mut rng));
+            let storeys = rng.between(2, 6) + if rng.one_in(6) { rng.between(4, 10) } else { 0 };
+            let min = [bx * PITCH + dx * LOT + (1 - dx) * off_x, 0, bz * PITCH + dz * LOT + (1 - dz) * off_z];
+            let size = [LOT - off_x, storeys, LOT - off_z];
+            let name = format!("block_{bx}_{bz}/house_{lot}");
+            objects.push(cuboid(name, min, size, size.map(|n| n * detail)));
+        }
+    }
+    Ok(Scene::new(objects).expect("corners of bays make a scene"))
+}
+
+/// Where streets of the city that [`city`] makes from the same options cross: a cube of a metre in the middle of
+/// each, at the height of eyes, none on the outer streets; along x first.
+///
+/// # Errors
+/// As [`city`].
+pub fn city_crossings(options: CityOptions) -> Result<Vec<Aabb<3>>, SceneError> {
+    let [n_x, n_z, _] = checked(&options)?;
+    // The middle of the street before a block.
+    let street = |i: i32| f64::from((2 * i * PITCH - 3) * BAY) / 2.0;
+    let at = |x: i32, z: i32| Aabb {
+        min: [street(x) - 0.5, EYES[0], street(z) - 0.5],
+        max: [street(x) + 0.5, EYES[1], street(z) + 0.5],
+    };
+    Ok((1..n_z).flat_map(|z| (1..n_x).map(move |x| at(x, z))).collect())
+}
+
+fn checked(options: &CityOptions) -> Result<[i32; 3], SceneError> {
+    let x = check_range("blocks_x", options.blocks_x, 1, 64)?;
+    let z = check_range("blocks_z", options.blocks_z, 1, 64)?;
+    let detail = check_range("detail", options.detail, 1, 8)?;
+    Ok([x, z, detail].map(|n| i32::try_from(n).expect("a small number")))
+}
+
+/// A closed box whose sides are grids of `n` quadrilaterals along each axis; `min` and `size` in bays.
+fn cuboid(name: String, min: [i32; 3], size: [i32; 3], n: [i32; 3]) -> SceneObject {
+    let mut mesh = Grid { min, size, n, ids: BTreeMap::new(), vertices: Vec::new() };
+    let mut triangles = Vec::new();
+    for axis in 0..3 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for (j, i, upper) in (0..n[v]).flat_map(|j| (0..n[u]).flat_map(move |i| [(j, i, false), (j, i, true)])) {
+            let mut at = |di: i32, dj: i32| {
+                let mut place = [0; 3];
+                (place[axis], place[u], place[v]) = (if upper { n[axis] } else { 0 }, i + di, j + dj);
+                mesh.id(place)
+            };
+            let [a, b, c, d] = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
+            // Counter-clockwise from outside: u, v, axis are right-handed.
+            triangles.extend(if upper { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
+        }
+    }
+    SceneObject { name, vertices: mesh.vertices, triangles }
+}
+
+/// The corners of a box's grid that were asked for.
+struct Grid {
+    min: [i32; 3],
+    size: [i32; 3],
+    n: [i32; 3],
+    ids: BTreeMap<[i32; 3], u32>,
+    vertices: Vec<[f64; 3]>,
+}
+
+impl Grid {
+    fn id(&mut self, place: [i32; 3]) -> u32 {
+        let Self { min, size, n, vertices, .. } = self;
+        *self.ids.entry(place).or_insert_with(|| {
+            let at = |k: usize| f64::from(BAY * (min[k] * n[k] + size[k] * place[k])) / f64::from(n[k]);
+            vertices.push([at(0), at(1), at(2)]);
+            u32::try_from(vertices.len() - 1).expect("a house has few corners")
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,8 @@
+//! What is hidden from a volume: methods against rays, on generated scenes and real ones.
+
+mod benchmark;
+mod common;
+mod pieces;
+mod random;
+mod real;
+mod tables;
