@@ -176,7 +176,7 @@ pub const DIRECT: Shader = Shader {
         include_str!("../wgsl/forms.wgsl"),
         include_str!("../wgsl/direct.wgsl")
     ),
-    entry_points: &[("direct", [32, 8, 1])],
+    entry_points: &[("direct", [TILE, 2, 1])],
     bindings: &[Access::Uniform, Access::Read, Access::Read, Access::Read, Access::Write],
     layouts: &[Plane::LAYOUT, Form::LAYOUT],
     constants: &[("TILE", TILE as i64), ("ROUND", ROUND as i64)],

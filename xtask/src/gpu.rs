@@ -208,7 +208,7 @@ fn probe() -> Result<PathBuf, Failure> {
     let mut command = cargo();
     command.args(["build", "--workspace", "--example", "probe", "--message-format", "json-render-diagnostics"]);
     let output = step::output(&mut command)?;
-    let found = output.lines().rev().find_map(|line| executable(line));
+    let found = output.lines().rev().find_map(executable);
     found.map(PathBuf::from).ok_or(Failure::Found { what: "programs that look for a GPU", n: 0 })
 }
 

@@ -152,9 +152,6 @@ pub(crate) enum CliError {
     /// Two pictures for one file.
     #[error("{}: two pictures would be written to this file", .0.display())]
     TwoPictures(PathBuf),
-    /// A scene in which nothing can hide anything.
-    #[error("{}: there are no triangles in the scene", .0.display())]
-    NoTriangles(PathBuf),
     /// A box that is no volume of viewpoints.
     #[error("--volume: {0}")]
     Volume(#[from] VolumeError),

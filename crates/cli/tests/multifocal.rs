@@ -12,7 +12,7 @@ const ONE: &str = "v -3 -2 5\nv 3 -2 4\nv 0 3 6\nf 1 2 3\n";
 /// A square of two triangles that share a diagonal, facing the volume.
 const SQUARE: &str = "v -2 -2 5\nv 2 -2 5\nv 2 2 5\nv -2 2 5\nf 1 2 3\nf 1 3 4\n";
 /// Two triangles one behind the other.
-const TWO: &str = "v -3 -2 4\nv 1 -2 4\nv -1 2 4\nv -1 -2 8\nv 5 -3 7\nv 2 4 8\nf 1 2 3\nf 4 5 6\n";
+const TWO: &str = "v -3 -2 6\nv 1 -2 6\nv -1 2 6\nv -1 -2 8\nv 5 -3 7\nv 2 4 8\nf 1 2 3\nf 4 5 6\n";
 
 const VOLUME: [&str; 4] = ["--volume", "-0.25,-0.25,-0.25,0.25,0.25,0.25", "--texels", "64"];
 const PLANE: [&str; 2] = ["--plane", "z=10:-8,-8,8,8"];
@@ -195,9 +195,12 @@ fn results_are_printed() {
     assert!(lines[4].starts_with("nearest        of 4 corners, 5 edges, 2 faces; at most "), "{}", lines[4]);
     assert_eq!(lines[5..], ["wrote          d.png, f.png"]);
     assert_eq!(folder.names(), ["d.png", "f.png", "one.obj", "square.obj", "two.obj"]);
-    // The same bytes again, with one thread or several; texels are about square.
-    let info = draw(&folder, "one.obj", &["--texels", "16x3"]);
-    assert_eq!((info["texels"].to_string(), info["n_texels"].as_u64()), ("[16,3]".into(), Some(48)));
+    // Texels are square unless both numbers are given.
+    for (texels, expected) in [("16", "[16,8]"), ("16x3", "[16,3]")] {
+        let plane = [&VOLUME[..2], &["--plane", "z=10:-8,-4,8,4", "--texels", texels, "--json"]].concat();
+        let info = folder.run(&[&["multifocal", "one.obj", "-o", "d.png"][..], &plane].concat()).expect(0).json();
+        assert_eq!(info["texels"].to_string(), expected);
+    }
 }
 
 #[test]
@@ -222,7 +225,7 @@ fn bad_input_is_refused_in_one_line() {
         refused("one.obj", "z=9:1,1,1,2", &out),
         "--plane z=9: the window from [1.0, 1.0] to [1.0, 2.0] is empty, or too small to be divided into texels"
     );
-    assert_eq!(refused("points.obj", "z=9", &out), "points.obj: there are no triangles in the scene");
+    assert_eq!(refused("points.obj", "z=9", &out), "points.obj: no triangles (0 objects, 0 triangles without area)");
     assert_eq!(refused("plan.geojson", "z=9", &out), "plan.geojson: neither a GLB nor a glTF nor an OBJ scene");
     assert_eq!(
         refused("one.obj", "z=9", &["-o", "depth.svg"]),

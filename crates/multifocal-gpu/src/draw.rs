@@ -124,7 +124,7 @@ pub(crate) fn draw(gpu: &Gpu, way: Way, input: &Input<'_, '_>) -> Result<Values,
             for bytes in [&packed.forms, &packed.edges, &packed.slopes] {
                 gpu.check_size(name, bytes.len() as u64, true)?;
             }
-            let corners = if way == Way::Raster { corners(planes) } else { Vec::new() };
+            let corners = if way == Way::Raster { corners(planes, &packed) } else { Vec::new() };
             for bytes in &corners {
                 gpu.check_size(name, bytes.len() as u64, false)?;
             }
@@ -154,17 +154,16 @@ pub(crate) fn draw(gpu: &Gpu, way: Way, input: &Input<'_, '_>) -> Result<Values,
 }
 
 /// Triangles of each plane.
-fn corners(planes: &[PlaneForms]) -> Vec<Vec<u8>> {
-    let mut first = 0;
-    let of = |plane: &PlaneForms| {
+fn corners(planes: &[PlaneForms], packed: &Packed) -> Vec<Vec<u8>> {
+    let of = |(plane, i): (&PlaneForms, usize)| {
         let mut bytes = Vec::new();
-        for (form, i) in plane.forms.forms.iter().zip(first..) {
-            outline::put_triangles(&plane.forms, form, i, plane.texels, &mut bytes);
+        for (&form, place) in packed.orders[i].iter().zip(packed.planes[i].first_form..) {
+            let form = &plane.forms.forms[form as usize];
+            outline::put_triangles(&plane.forms, form, place, plane.texels, &mut bytes);
         }
-        first += plane.forms.forms.len() as u32;
         bytes
     };
-    planes.iter().map(of).collect()
+    planes.iter().zip(0..).map(of).collect()
 }
 
 /// The lists of a job on the device.

@@ -36,6 +36,8 @@ pub(crate) struct Packed {
     pub(crate) edges: Vec<u8>,
     pub(crate) slopes: Vec<u8>,
     pub(crate) planes: Vec<records::Plane>,
+    /// The forms of each plane in the order that they were packed in: by their largest values, the largest first.
+    pub(crate) orders: Vec<Vec<u32>>,
 }
 
 /// Bytes of a line's coefficients.
@@ -60,7 +62,11 @@ impl Packed {
         let (first_edge, first_slope) = (self.edges.len() / LINE_BYTES, self.slopes.len() / LINE_BYTES);
         let forms = &plane.forms;
         self.forms.reserve(form_bytes * forms.forms.len());
-        for form in &forms.forms {
+        let most_of = |(form, i): (&Form, u32)| (most(form, forms.slopes_of(form)), i);
+        let mut order: Vec<_> = forms.forms.iter().zip(0..).map(most_of).collect();
+        order.sort_unstable_by(|a, b| b.cmp(a));
+        for &(most, i) in &order {
+            let form = &forms.forms[i as usize];
             let record = records::Form {
                 bounds: form.bounds,
                 first_edge: form.first_edge + first_edge as u32,
@@ -68,11 +74,12 @@ impl Packed {
                 first_slope: form.first_slope + first_slope as u32,
                 n_slopes: form.n_slopes,
                 least: form.floor,
-                most: most(form, forms.slopes_of(form)),
+                most,
                 ..Default::default()
             };
             record.put(&mut self.forms);
         }
+        self.orders.push(order.into_iter().map(|(_, i)| i).collect());
         put_lines(&forms.edges, &mut self.edges);
         put_lines(&forms.slopes, &mut self.slopes);
         let [width, height] = plane.texels;

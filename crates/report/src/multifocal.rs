@@ -10,7 +10,7 @@ use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 pub const OPEN: [u8; 3] = [24, 48, 160];
 
 /// A multifocal buffer as an RGB picture: [`OPEN`] where nothing is known to block, else grey, from black for what is
-/// blocked at the plane itself to white for `white`, a value that is reached nowhere or at the highest.
+/// blocked at the plane itself to white for `white`, a value that none exceeds.
 ///
 /// * `texels`: how many along the two axes of the window
 /// * `values`: row by row, 0 where nothing blocks, else 1 more than the height or distance in units

@@ -48,9 +48,18 @@ const METRICS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 16.0], [16.0, 1.0]];
 pub(super) fn convex_polygons(mesh: &Mesh, options: &PatchOptions) -> Found {
     let mut found = Found::default();
     // Looks at borders; many more than this are not worth their time.
-    let mut work = 100 * mesh.triangles().len() as u64 + (1 << 22);
-    for piece in pieces(mesh) {
-        piece.polygons(mesh, options, &mut found, &mut work);
+    let mut work = 32 * mesh.triangles().len() as u64 + (1 << 23);
+    // The largest first, as long as there is time.
+    let mut pieces: Vec<(f64, Piece)> = pieces(mesh).into_iter().map(|p| (p.twice_area(mesh), p)).collect();
+    pieces.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (twice_area, piece) in pieces {
+        if twice_area >= 2.0 * options.min_area {
+            // No more than a share for one, so that a floor with a thousand holes does not take it all.
+            let share = work.min(64 * piece.triangles.len() as u64 + (1 << 16));
+            let mut left = share;
+            piece.polygons(mesh, options, &mut found, &mut left);
+            work -= share - left;
+        }
     }
     found
 }
@@ -131,13 +140,18 @@ fn flat(axis: usize, p: Point3) -> Point2 {
 }
 
 impl Piece {
+    /// Twice the areas of all its triangles.
+    fn twice_area(&self, mesh: &Mesh) -> f64 {
+        self.triangles.iter().map(|&t| normal(mesh.corners(t))[self.axis].abs()).sum()
+    }
+
     fn polygons(&self, mesh: &Mesh, options: &PatchOptions, found: &mut Found, work: &mut u64) {
         let area = |t: u32| normal(mesh.corners(t))[self.axis].abs();
         let mut seeds = self.triangles.clone();
         seeds.sort_by(|&s, &t| area(t).total_cmp(&area(s)).then(s.cmp(&t)));
         let mut covered = BTreeSet::new();
         let mut known = BTreeSet::new();
-        let whole = self.triangles.iter().map(|&t| area(t)).sum::<f64>();
+        let whole = self.twice_area(mesh);
         for &seed in &seeds {
             if covered.contains(&seed) {
                 continue;

@@ -14,7 +14,7 @@ pub struct SheetMethod {
 
 impl SheetMethod {
     /// How many sides of triangles are walked over for one target, unless said otherwise.
-    pub const DEFAULT_LIMIT: usize = 4096;
+    pub const DEFAULT_LIMIT: usize = 1024;
 
     /// For a scene of triangles, with [`Self::DEFAULT_LIMIT`]. O(n log² n).
     pub fn new(triangles: &[[Point3; 3]]) -> Self {

@@ -94,9 +94,6 @@ pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, CliError> {
     }
     let scene = read_scene(&args.scene)?.scene;
     let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|object| object.corners()).collect();
-    if triangles.is_empty() {
-        return Err(CliError::NoTriangles(args.scene.clone()));
-    }
     let volume = Volume::new(args.volume.0)?;
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
     let occluders = occluders(&triangles, args.triangles);

@@ -83,7 +83,8 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let triangles = count(self.n_triangles as u64, "triangle");
         writeln!(f, "{}: {triangles}, {}", self.scene, count(self.n_occluders as u64, "occluder"))?;
-        let ([u0, v0], [u1, v1], [w, h]) = (self.plane.origin(), self.plane.end(), self.plane.texels());
+        let ([u0, v0], [u1, v1]) = (self.plane.origin().map(short), self.plane.end().map(short));
+        let [w, h] = self.plane.texels();
         let axis = ["x", "y", "z"][self.plane.axis()];
         writeln!(
             f,
@@ -92,12 +93,19 @@ impl fmt::Display for Outcome {
         )?;
         let share = self.n_blocked as f64 / self.n_texels() as f64;
         writeln!(f, "blocked        {} of {} texels, {}", self.n_blocked, self.n_texels(), percent(share))?;
-        writeln!(f, "white          {} units ({}, by {})", self.white(), self.measure, self.backend)?;
+        writeln!(f, "white          {} units ({}, by {})", short(self.white()), self.measure, self.backend)?;
         if let Some(FieldInfo { n_vertices, n_edges, n_faces, farthest }) = &self.fields {
             let [corners, edges, faces] =
                 [count(*n_vertices, "corner"), count(*n_edges, "edge"), count(*n_faces, "face")];
-            writeln!(f, "nearest        of {corners}, {edges}, {faces}; at most {farthest} units away")?;
+            writeln!(f, "nearest        of {corners}, {edges}, {faces}; at most {} units away", short(*farthest))?;
         }
         writeln!(f, "wrote          {}", self.files.join(", "))
     }
+}
+
+/// A number for the eye: to a millionth of a unit.
+fn short(x: f64) -> f64 {
+    let millionths = x * 1e6;
+    // Beyond that there are no millionths.
+    if millionths.abs() < 1e15 { millionths.round() / 1e6 } else { x }
 }

@@ -1,0 +1,193 @@
+//! What multifocal buffers find of what is hidden: rectangles and boxes, against rays.
+//!
+//! For each measure and number of planes, size of the volume and tilt of the rectangles: how many of the boxes that
+//! no ray reaches are found, and how long one volume takes. Ends with 1 if a box that a ray reaches is called hidden.
+
+use clap::Parser;
+use sightlines::geometry::Aabb;
+use sightlines::multifocal::{Chosen, FromRegion, Layout, Measure, Multifocal, Occluder, Volume};
+use sightlines::multifocal_cpu::{Fast, Reference};
+use sightlines::scenes::{Occlusion, OcclusionOptions, occlusion};
+use sightlines_testkit::{Glimpses, hidden_by_sampling};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Over-estimation and soundness of multifocal buffers.
+#[derive(Debug, Clone, Parser)]
+struct Args {
+    /// Runs only if this bench's name contains it.
+    filter: Option<String>,
+    /// Half sizes of the volume.
+    #[arg(long, value_delimiter = ',', default_values_t = [0.25, 0.5])]
+    halves: Vec<f64>,
+    /// Tilts of the rectangles, in hundredths.
+    #[arg(long, value_delimiter = ',', default_values_t = [0, 30, 60])]
+    tilts: Vec<u32>,
+    /// Seeds of the benchmark; shares are over all of them.
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2, 3])]
+    seeds: Vec<u64>,
+    /// Numbers of planes on each side.
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 4, 17])]
+    planes: Vec<u32>,
+    /// Texels along the longer side of each plane.
+    #[arg(long, default_value_t = Layout::default().texels)]
+    texels: u32,
+    /// Rays of each benchmark.
+    #[arg(long, default_value_t = 1_000_000)]
+    rays: u64,
+    /// Checks the answers on small benchmarks.
+    #[arg(long)]
+    test: bool,
+    /// Given by cargo.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+/// A benchmark, and what rays saw of it.
+struct Case {
+    made: Occlusion,
+    volume: Aabb<3>,
+    seen: Glimpses,
+}
+
+/// What one way finds in several benchmarks.
+#[derive(Debug, Clone, Copy, Default)]
+struct Found {
+    n_hidden: usize,
+    /// No ray reaches them.
+    n_unseen: usize,
+    /// Called hidden, and reached by a ray.
+    n_wrong: usize,
+    time: Duration,
+}
+
+impl Found {
+    fn share(&self) -> f64 {
+        self.n_hidden as f64 / self.n_unseen.max(1) as f64
+    }
+}
+
+/// The ways to ask: every measure on its own planes, and heights carried from plane to plane.
+fn layouts(args: &Args) -> Vec<Layout> {
+    let mut layouts = Vec::new();
+    for &n_levels in &args.planes {
+        let layout =
+            |measure, reproject| Layout { n_levels, texels: args.texels, measure, reproject, ..Layout::default() };
+        layouts.extend(Measure::ALL.map(|measure| layout(measure, false)));
+        if n_levels > 1 {
+            layouts.extend(Measure::ALL.into_iter().filter(|m| m.is_height()).map(|measure| layout(measure, true)));
+        }
+    }
+    layouts
+}
+
+/// All benchmarks of one tilt and size, with what rays see.
+fn cases(args: &Args, tilt: u32, half: f64) -> Vec<Case> {
+    let case = |&seed: &u64| {
+        let made =
+            occlusion(OcclusionOptions { seed, tilt, ..OcclusionOptions::default() }).expect("tilts are checked");
+        let volume = Occlusion::volume(half);
+        let seen = hidden_by_sampling(&made.scene, &volume, &made.occludees, args.rays, seed);
+        Case { made, volume, seen }
+    };
+    args.seeds.iter().map(case).collect()
+}
+
+/// Each rectangle is an occluder.
+fn occluders(made: &Occlusion) -> Vec<Occluder> {
+    let halves = |r: [_; 4]| [[r[0], r[1], r[2]], [r[0], r[2], r[3]]];
+    let whole = |r: [_; 4]| Occluder::patch(r.to_vec(), &halves(r)).expect("rectangles have areas");
+    made.rectangles().map(whole).collect()
+}
+
+/// Asks about all boxes of a case.
+fn ask(case: &Case, layout: Layout, found: &mut Found) {
+    let occluders = Arc::new(Chosen::new(occluders(&case.made), usize::MAX));
+    let scene = case.made.occludees.iter().fold(case.made.scene.bounds(), |all, b| all.with(b.min).with(b.max));
+    // The fast backend has no form of one measure.
+    let mut method: Box<dyn FromRegion> = match layout.measure {
+        Measure::ClippedEuclid => Box::new(Multifocal::new(Reference, occluders, scene, layout)),
+        _ => Box::new(Multifocal::new(Fast::new(), occluders, scene, layout)),
+    };
+    let volume = Volume::new(case.volume).expect("cubes are volumes");
+    let start = Instant::now();
+    let mut umbra = method.umbra(&volume).expect("the CPU does not fail");
+    let hidden: Vec<usize> = (0..case.made.occludees.len()).filter(|&i| umbra.hides(&case.made.occludees[i])).collect();
+    found.time += start.elapsed();
+    found.n_wrong += case.seen.refuted(hidden.iter().copied()).len();
+    found.n_hidden += hidden.len();
+    found.n_unseen += case.seen.unseen().count();
+}
+
+/// Whether a layout can be afforded: the measure of the reference is for one plane, and few texels.
+fn is_affordable(layout: &Layout) -> bool {
+    layout.measure != Measure::ClippedEuclid || layout.n_levels == 1 && layout.texels <= 32
+}
+
+/// Prints the table; how many boxes were wrongly called hidden.
+fn table(args: &Args) -> usize {
+    println!("| half | tilt | boxes hidden | measure | planes | carried | found | ms a volume |");
+    println!("| ---: | ---: | ---: | --- | ---: | --- | ---: | ---: |");
+    let mut n_wrong = 0;
+    for (&half, &tilt) in args.halves.iter().flat_map(|half| args.tilts.iter().map(move |tilt| (half, tilt))) {
+        let cases = cases(args, tilt, half);
+        for layout in layouts(args).into_iter().filter(is_affordable) {
+            let mut found = Found::default();
+            cases.iter().for_each(|case| ask(case, layout, &mut found));
+            let n: usize = cases.iter().map(|case| case.made.occludees.len()).sum();
+            println!(
+                "| {half} | {:.2} | {:.1} % | {} | {} | {} | {:.1} % | {:.2} |",
+                f64::from(tilt) / 100.0,
+                100.0 * found.n_unseen as f64 / n as f64,
+                layout.measure.name(),
+                layout.n_levels,
+                if layout.reproject { "yes" } else { "no" },
+                100.0 * found.share(),
+                found.time.as_secs_f64() * 1e3 / cases.len() as f64,
+            );
+            n_wrong += found.n_wrong;
+        }
+    }
+    n_wrong
+}
+
+/// Checks on small benchmarks that nothing that is seen is called hidden, and that more planes find more.
+fn check(args: &Args) {
+    let args = Args { seeds: vec![1], rays: 100_000, ..args.clone() };
+    let cases = cases(&args, 30, 0.25);
+    let find = |n_levels, measure, reproject| {
+        let mut found = Found::default();
+        let layout = Layout { n_levels, texels: 64, measure, reproject, ..Layout::default() };
+        cases.iter().for_each(|case| ask(case, layout, &mut found));
+        assert_eq!(found.n_wrong, 0, "{measure:?}: what is seen is called hidden");
+        found
+    };
+    let one = find(1, Measure::SectionHeight, false);
+    let carried = find(17, Measure::SectionHeight, true);
+    let distances = find(1, Measure::Euclid, false);
+    assert!(one.n_unseen > 100 && one.n_hidden > 10 && distances.n_hidden > 0, "{one:?} {distances:?}");
+    assert!(carried.share() > one.share() && carried.share() > 0.5, "{one:?} {carried:?}");
+    // The impostor: who calls everything hidden is found out.
+    let all = 0..cases[0].made.occludees.len();
+    assert!(cases[0].seen.refuted(all).len() > 100);
+    println!("multifocal: checked");
+}
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    if args.filter.as_ref().is_some_and(|filter| !"multifocal".contains(filter.as_str())) {
+        return ExitCode::SUCCESS;
+    }
+    if args.test {
+        check(&args);
+        return ExitCode::SUCCESS;
+    }
+    match table(&args) {
+        0 => ExitCode::SUCCESS,
+        n => {
+            eprintln!("{n} boxes that rays reach are called hidden");
+            ExitCode::FAILURE
+        }
+    }
+}
