@@ -2,7 +2,7 @@
 
 use sightlines_multifocal::conformance::impostors::{Fault, Impostor};
 use sightlines_multifocal::conformance::{Clause, Effort, Slack, Violation, run};
-use sightlines_multifocal_cpu::Reference;
+use sightlines_multifocal_cpu::{Fast, Reference};
 
 #[test]
 fn reference_keeps_the_contract_without_slack() {
@@ -46,4 +46,22 @@ fn impostor_a_suite_that_looks_at_nothing_is_an_error() {
     assert_eq!(violation, Violation::NothingRan { what: "scenes" });
     assert_eq!(violation.clause(), Clause::Counted);
     assert_eq!(violation.to_string(), "the suite proves nothing: no scenes");
+}
+
+#[test]
+fn fast_keeps_the_contract_of_the_integer_form() {
+    let report =
+        run(&mut Fast::new(), &mut Reference, &Effort::quick(Slack::INTEGER)).unwrap_or_else(|v| panic!("{v}"));
+    println!("{report:?}");
+    assert!(report.tight > 1000 && report.found * 100 > report.blocked * 95, "{report:?}");
+}
+
+#[test]
+fn fast_impostors_are_refused_for_their_faults() {
+    // A value of the integer form lies below the exact one as a rule, so one unit more is still sound.
+    for fault in Fault::ALL.into_iter().filter(|&fault| fault != Fault::OneUnitNearer) {
+        let violation = run(&mut Impostor::new(Fast::new(), fault), &mut Reference, &Effort::quick(Slack::INTEGER));
+        let violation = violation.expect_err(&format!("{fault:?} passes"));
+        assert_eq!(violation.clause(), fault.clause(), "{fault:?}: {violation}");
+    }
 }

@@ -17,8 +17,9 @@ pub struct Split {
 }
 
 impl Default for Split {
+    /// Volumes are left whole; if they are to be cut, then for a fiftieth of the triangles.
     fn default() -> Self {
-        Self { depth: 3, worth: 0.01, n_rays: 4096 }
+        Self { depth: 0, worth: 0.02, n_rays: 16_384 }
     }
 }
 
@@ -77,7 +78,7 @@ fn see_part(
     seen: &mut [bool],
     visible: &mut [bool],
 ) -> Result<(), BackendError> {
-    search.witness.see(volume, search.split.n_rays, seen);
+    search.witness.see(volume, search.split.n_rays, visible, seen);
     let asked: Vec<bool> = visible.iter().zip(&*seen).map(|(visible, seen)| *visible && !seen).collect();
     if !asked.contains(&true) {
         return Ok(());

@@ -29,7 +29,7 @@ pub struct Layout {
 
 impl Default for Layout {
     fn default() -> Self {
-        Self { n_levels: 17, texels: 128, growth: 1.5, spread: 1.25, measure: Measure::default(), reproject: true }
+        Self { n_levels: 9, texels: 128, growth: 1.5, spread: 1.25, measure: Measure::default(), reproject: true }
     }
 }
 

@@ -6,47 +6,72 @@
 use crate::Volume;
 use sightlines_geometry::{Aabb, BoxTree, Point3};
 
+/// The most rays towards one object: what so many do not reach is hidden, or hardly visible.
+const MOST_FOR_ONE: u32 = 64;
+
 /// Triangles of objects, to be hit by rays.
 #[derive(Debug, Clone)]
 pub struct Witness {
     triangles: Vec<[Point3; 3]>,
     object: Vec<u32>,
+    /// For each object where its triangles begin, and where the last one's end.
+    first: Vec<usize>,
     tree: BoxTree<3>,
-    scene: Aabb<3>,
 }
 
 impl Witness {
     /// * `objects`: for each object its triangles
     pub fn new<'a>(objects: impl IntoIterator<Item = &'a [[Point3; 3]]>) -> Self {
-        let (mut triangles, mut object) = (Vec::new(), Vec::new());
+        let (mut triangles, mut object, mut first) = (Vec::new(), Vec::new(), vec![0]);
         for (id, of) in (0..).zip(objects) {
             triangles.extend_from_slice(of);
             object.resize(triangles.len(), id);
+            first.push(triangles.len());
         }
         let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
         let tree = BoxTree::build(&boxes, 4);
-        let scene = tree.nodes()[0].bounds;
-        Self { triangles, object, tree, scene }
+        Self { triangles, object, first, tree }
     }
 
-    /// Marks the objects that some of `n_rays` rays from points of a volume hit first. Half of the rays go in any
-    /// direction, half towards the points of the box around the scene. The same for the same volume.
-    pub fn see(&self, volume: &Volume, n_rays: u32, seen: &mut [bool]) {
+    /// Marks objects that rays from points of a volume hit first. A quarter of `n_rays` go in any direction; the others are
+    /// shared by the objects of `wanted` that were not hit until then, towards points of their triangles. The same for the
+    /// same volume.
+    ///
+    /// # Panics
+    /// If the lists are shorter than the objects.
+    pub fn see(&self, volume: &Volume, n_rays: u32, wanted: &[bool], seen: &mut [bool]) {
         if self.triangles.is_empty() {
             return;
         }
-        let mut random = Random(volume.bounds().min[0].to_bits() ^ volume.bounds().max[1].to_bits().rotate_left(17));
-        for i in 0..n_rays {
-            let origin = random.point(volume.bounds());
-            let direction = if i % 2 == 0 {
-                random.point(&Aabb { min: [-1.0; 3], max: [1.0; 3] })
-            } else {
-                let to = random.point(&self.scene);
-                std::array::from_fn(|k| to[k] - origin[k])
-            };
-            if let Some(object) = self.first_hit(origin, direction) {
-                seen[object as usize] = true;
+        let b = volume.bounds();
+        let mut random =
+            Random(b.min[0].to_bits() ^ b.max[1].to_bits().rotate_left(17) ^ b.min[2].to_bits().rotate_left(41));
+        let all = Aabb { min: [-1.0; 3], max: [1.0; 3] };
+        for _ in 0..n_rays / 4 {
+            let origin = random.point(b);
+            self.mark(origin, random.point(&all), seen);
+        }
+        let objects: Vec<usize> = (0..self.first.len() - 1).filter(|&o| wanted[o] && !seen[o]).collect();
+        let share = (n_rays - n_rays / 4) / (objects.len() as u32).max(1);
+        for o in objects {
+            let triangles = &self.triangles[self.first[o]..self.first[o + 1]];
+            for _ in 0..share.min(MOST_FOR_ONE) {
+                if seen[o] || triangles.is_empty() {
+                    break;
+                }
+                let origin = random.point(b);
+                let [p, q, r] = triangles[((random.unit() * triangles.len() as f64) as usize).min(triangles.len() - 1)];
+                let (u, v) = (random.unit(), random.unit());
+                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                let way = std::array::from_fn(|k| p[k] + u * (q[k] - p[k]) + v * (r[k] - p[k]) - origin[k]);
+                self.mark(origin, way, seen);
             }
+        }
+    }
+
+    fn mark(&self, origin: Point3, direction: Point3, seen: &mut [bool]) {
+        if let Some(object) = self.first_hit(origin, direction) {
+            seen[object as usize] = true;
         }
     }
 

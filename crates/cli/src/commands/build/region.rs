@@ -41,10 +41,10 @@ pub(crate) struct RegionArgs {
     #[arg(long, value_name = "WHAT", default_value = "height")]
     measure: MeasureArg,
     /// multifocal: planes on each side of a cell; 0 for none
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=256))]
+    #[arg(long, value_name = "N", default_value_t = Layout::default().n_levels, value_parser = clap::value_parser!(u32).range(0..=256))]
     planes: u32,
     /// multifocal: texels along the longer side of a plane
-    #[arg(long, value_name = "N", default_value_t = 96, value_parser = clap::value_parser!(u32).range(1..=8192))]
+    #[arg(long, value_name = "N", default_value_t = Layout::default().texels, value_parser = clap::value_parser!(u32).range(1..=8192))]
     texels: u32,
     /// multifocal: the most surfaces that are drawn on each side of a cell; those that seem to hide most
     #[arg(long, value_name = "N", default_value_t = 500)]
