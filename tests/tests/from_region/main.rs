@@ -4,5 +4,4 @@ mod benchmark;
 mod common;
 mod pieces;
 mod random;
-mod real;
 mod tables;

@@ -141,7 +141,10 @@ fn splitting_finds_more() {
     let (parts, many) = visible(3);
     assert_eq!(one, 1);
     assert!(many > 3, "{many} volumes");
-    assert!(whole.iter().zip(&parts).all(|(whole, part)| *whole || !part), "what is hidden from the whole is from parts");
+    assert!(
+        whole.iter().zip(&parts).all(|(whole, part)| *whole || !part),
+        "what is hidden from the whole is from parts"
+    );
     let count = |v: &[bool]| v.iter().filter(|v| !**v).count();
     assert!(count(&parts) > count(&whole), "{} and {}", count(&parts), count(&whole));
 }
