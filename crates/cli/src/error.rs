@@ -64,6 +64,9 @@ pub(crate) enum CliError {
     /// A scene cannot be baked by what is hidden from its cells.
     #[error("{}: {source}", path.display())]
     BakeRegion { path: PathBuf, source: RegionBakeError },
+    /// Buffers too large to be kept.
+    #[error("{}: {planes} planes on each side with {texels} texels along a side take up to {bytes} bytes for each thread; {most} are allowed", path.display())]
+    Buffers { path: PathBuf, planes: u32, texels: u32, bytes: u64, most: u64 },
     /// There is no such grid of cells.
     #[error("{}: {source}", path.display())]
     Grid { path: PathBuf, source: GridError },

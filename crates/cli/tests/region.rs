@@ -63,6 +63,7 @@ fn options_that_mean_nothing_are_refused() {
     refused(&["build", "scene.glb", "--grid", "2,2,2", "--stab-trees"], "--stab-trees is for cells with portals");
     refused(&["build", "office.geojson", "--method", "multifocal"], "--method is for scenes in space");
     refused(&["build", "scene.glb", "--method", "multifocal", "--texels", "0"], "0 is not in 1..=8192");
+    refused(&["build", "scene.glb", "--method", "multifocal", "--texels", "8192"], "bytes for each thread");
 }
 
 /// What rays were seen to hit first is never called hidden, whichever method is asked.

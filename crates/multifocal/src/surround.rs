@@ -16,7 +16,8 @@ pub struct Layout {
     pub n_levels: u32,
     /// Texels along the longer side of each plane, 1 to [`MAX_TEXELS`](crate::MAX_TEXELS).
     pub texels: u32,
-    /// Distances of the boxes grow as the number to the power of this: 1 is evenly spaced.
+    /// Distances of the boxes grow as the number to the power of this: 1 is evenly spaced. Positive; without that there
+    /// is nothing to know.
     pub growth: f64,
     /// How much wider than the sides of its box a plane is, at least 1: a target whose lines all meet one plane
     /// is proven hidden by it alone.
@@ -38,8 +39,8 @@ impl Default for Layout {
 pub struct Direction {
     /// Nearest first.
     pub planes: Vec<Plane>,
-    /// For each level its plane. Levels share a plane where the scene ends.
-    pub level: Vec<usize>,
+    /// For each level its plane; none if it rounds to that of the level before, or is out of order.
+    pub level: Vec<Option<usize>>,
     /// For each level the side of its box, along the plane's axes across.
     faces: Vec<[[f64; 2]; 2]>,
 }
@@ -129,10 +130,11 @@ fn direction(
         let plane = Plane::new(axis, positive, at, min, max, [share(0), share(1)])?;
         plane.check_in_front_of(volume)?;
         let farther = |last: &Plane| if positive { last.at() < at } else { last.at() > at };
-        if planes.last().is_none_or(farther) {
+        let is_farther = planes.last().is_none_or(farther);
+        if is_farther {
             planes.push(plane);
         }
-        level.push(planes.len() - 1);
+        level.push(is_farther.then(|| planes.len() - 1));
         faces.push(across.map(|a| [b.min[a], b.max[a]]));
     }
     Ok(Direction { planes, level, faces })
@@ -220,10 +222,11 @@ impl<'a> Surrounded<'a> {
     fn box_hides(&self, level: usize, target: &Aabb<3>) -> bool {
         (0..6).all(|side| {
             let direction = &self.surround.directions[side];
-            let k = direction.level[level];
+            let Some(k) = direction.level[level] else { return false };
             let (plane, buffer) = (&direction.planes[k], &self.buffers[side][k]);
             match exits(&self.surround.volume, plane, &direction.faces[level], target) {
                 Exits::None => true,
+                Exits::Unknown => false,
                 Exits::Texels([x0, y0, x1, y1]) => {
                     // Of what the lines through this side meet, nothing is higher than the highest eye.
                     let heights = [plane.height(target.min), plane.height(target.max)];
@@ -236,9 +239,12 @@ impl<'a> Surrounded<'a> {
 }
 
 /// Where lines from a volume towards a target leave a box through one of its sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Exits {
     /// Nowhere.
     None,
+    /// Also beside the plane's window.
+    Unknown,
     /// In texels from `(x0, y0)` to before `(x1, y1)`.
     Texels([u32; 4]),
 }
@@ -289,6 +295,9 @@ fn exits(volume: &Volume, plane: &Plane, face: &[[f64; 2]; 2], target: &Aabb<3>)
         }
         let n = plane.texels()[k];
         let (origin, step) = (plane.origin()[k], plane.step()[k]);
+        if !(origin <= low && high <= plane.end()[k]) {
+            return Exits::Unknown;
+        }
         let error = (low.abs() + high.abs() + origin.abs()) * (4.0 * f64::EPSILON);
         let first = (((low - origin - error) / step).next_down().floor().max(0.0) as u32).min(n - 1);
         let end = (((high - origin + error) / step).next_up().ceil().max(0.0) as u32).clamp(first + 1, n);
@@ -296,4 +305,40 @@ fn exits(volume: &Volume, plane: &Plane, face: &[[f64; 2]; 2], target: &Aabb<3>)
     }
     let [[x0, x1], [y0, y1]] = texels;
     Exits::Texels([x0, y0, x1, y1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines that leave a side of the box beside the window of its plane are not known to be blocked.
+    #[test]
+    fn exits_beside_the_window_are_unknown() {
+        let volume = Volume::new(Aabb { min: [-1.0; 3], max: [1.0; 3] }).unwrap();
+        let target = Aabb { min: [20.0, 6.0, 0.0], max: [20.0, 7.0, 1.0] };
+        let plane = |window: f64| Plane::new(0, true, 10.0, [-window; 2], [window; 2], [4, 4]).unwrap();
+        let face = [[-9.0, 9.0]; 2];
+        assert!(matches!(exits(&volume, &plane(9.0), &face, &target), Exits::Texels(_)));
+        assert_eq!(exits(&volume, &plane(3.0), &face, &target), Exits::Unknown);
+        assert_eq!(exits(&volume, &plane(9.0), &[[-9.0, 2.0]; 2], &target), Exits::None);
+    }
+
+    /// A box so far away that levels round to one place has no level of its own.
+    #[test]
+    fn levels_that_round_to_one_place_are_left_out() {
+        let far = (1u64 << 53) as f64;
+        let volume = Volume::new(Aabb { min: [far - 8_388_672.0, -1.0, -1.0], max: [far, 1.0, 1.0] }).unwrap();
+        let wide = 4_194_304.0;
+        let scene = Aabb { min: [far - 8_388_672.0, -wide, -wide], max: [far + 40.0, wide, wide] };
+        let layout = Layout { n_levels: 400, texels: 1, growth: 1.5, ..Layout::default() };
+        let surround = Surround::new(&volume, &scene, &layout).unwrap();
+        let up = &surround.directions()[1];
+        assert!(up.level.contains(&None) && up.level.iter().flatten().count() == up.planes.len());
+        for growth in [-1.0, f64::NAN, f64::INFINITY, 0.0] {
+            // Whatever comes out, planes are in order.
+            if let Ok(surround) = Surround::new(&volume, &scene, &Layout { growth, ..layout }) {
+                assert!((0..6).all(|side| surround.job(side, []).is_ok()), "{growth}");
+            }
+        }
+    }
 }

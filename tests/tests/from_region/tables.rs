@@ -41,8 +41,11 @@ fn bake(scene: &Scene, cells: &CellsFrom, by: By, split: u32, threads: usize) ->
     bake_regions(scene, &options).expect("the scene can be baked")
 }
 
+/// Pairs of ids.
+type Pairs = Vec<(u32, u32)>;
+
 /// Pairs of a cell and an object, and of cells, that the table calls visible.
-fn visible(table: &Table) -> (Vec<(u32, u32)>, Vec<(u32, u32)>) {
+fn visible(table: &Table) -> (Pairs, Pairs) {
     let ids = 0..table.n_cells() as u32;
     let objects = ids.clone().flat_map(|c| table.visible_objects(CellId(c)).into_iter().map(move |o| (c, o)));
     let cells =

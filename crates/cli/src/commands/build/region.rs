@@ -63,6 +63,9 @@ pub(crate) struct RegionArgs {
     backend: Backend,
 }
 
+/// The most bytes of the buffers around one cell.
+const MOST_BYTES: u64 = 1 << 31;
+
 /// Who says what is hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Method {
@@ -119,6 +122,16 @@ impl RegionArgs {
         [("--method", self.method.is_some()), ("--cells", self.cells.is_given()), ("--grid", self.grid.is_some())]
     }
 
+    /// Refuses buffers that would not fit into the memory of most machines.
+    fn check_memory(&self, path: &Path) -> Result<(), CliError> {
+        let bytes = 6 * u64::from(self.planes) * u64::from(self.texels).pow(2) * size_of::<u32>() as u64;
+        if bytes <= MOST_BYTES {
+            return Ok(());
+        }
+        let (planes, texels) = (self.planes, self.texels);
+        Err(CliError::Buffers { path: path.to_owned(), planes, texels, bytes, most: MOST_BYTES })
+    }
+
     fn layout(&self) -> Layout {
         let measure = match self.measure {
             MeasureArg::Euclid => Measure::Euclid,
@@ -140,6 +153,7 @@ pub(super) fn bake(
     show_progress: bool,
 ) -> Result<BakedRegions, CliError> {
     args.check_for_space(path)?;
+    region.check_memory(path)?;
     let failed = |source| CliError::BakeRegion { path: path.to_owned(), source };
     let cut = args.cut();
     let cells = match (region.cells.read()?, region.grid) {
