@@ -5,7 +5,9 @@
 
 use clap::Parser;
 use sightlines::geometry::Aabb;
-use sightlines::multifocal::{Chosen, FromRegion, Layout, Measure, Multifocal, Occluder, Volume};
+use sightlines::multifocal::{
+    Chosen, FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, Occluder, Plane, Volume,
+};
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines::scenes::{Occlusion, OcclusionOptions, occlusion};
 use sightlines_testkit::{Glimpses, hidden_by_sampling};
@@ -174,6 +176,37 @@ fn check(args: &Args) {
     println!("multifocal: checked");
 }
 
+/// Times to fill one buffer on one thread: umbrae and heights of many rectangles.
+fn fill(args: &Args) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be started");
+    println!("\n| occluders | texels | measure | ms on one thread | blocked |");
+    println!("| ---: | ---: | --- | ---: | ---: |");
+    let sizes = if args.test { vec![(50, 64)] } else { vec![(1000, 512), (10_000, 1024)] };
+    for (n, texels) in sizes {
+        let options = OcclusionOptions { occluders: n, tilt: 60, ..OcclusionOptions::default() };
+        let made = occlusion(options).expect("numbers are in range");
+        let occluders = occluders(&made);
+        let volume = Volume::new(Occlusion::volume(0.25)).expect("cubes are volumes");
+        let plane = Plane::new(2, true, Occlusion::FAR, [-9.0; 2], [9.0; 2], [texels; 2]).expect("a good window");
+        for measure in [Measure::Euclid, Measure::VertexHeight, Measure::SectionHeight] {
+            let job = Job::new(volume, vec![plane], &occluders, measure, false).expect("a good job");
+            let (mut fast, mut out) = (Fast::new(), Vec::new());
+            let mut once = || {
+                let start = Instant::now();
+                pool.install(|| fast.render(&job, &mut out)).expect("the CPU does not fail");
+                start.elapsed()
+            };
+            let rounds = if args.test { 1 } else { 7 };
+            let mut times: Vec<Duration> = (0..rounds).map(|_| once()).collect();
+            times.sort_unstable();
+            let blocked = out[0].n_blocked() as f64 / f64::from(texels * texels);
+            assert!(blocked > 0.05 && blocked <= 1.0, "{blocked} of the texels are blocked");
+            let ms = times[times.len() / 2].as_secs_f64() * 1e3;
+            println!("| {n} | {texels} x {texels} | {} | {ms:.2} | {:.1} % |", measure.name(), 100.0 * blocked);
+        }
+    }
+}
+
 fn main() -> ExitCode {
     let args = Args::parse();
     if args.filter.as_ref().is_some_and(|filter| !"multifocal".contains(filter.as_str())) {
@@ -181,8 +214,11 @@ fn main() -> ExitCode {
     }
     if args.test {
         check(&args);
+        fill(&args);
         return ExitCode::SUCCESS;
     }
+    fill(&args);
+    println!();
     match table(&args) {
         0 => ExitCode::SUCCESS,
         n => {

@@ -1,0 +1,239 @@
+//! From-region methods on scenes: what each calls visible, for each object that rays reach, and what it costs.
+//!
+//! Real scenes are those of the folder that `SIGHTLINES_DATA` names; a generated city and a tower come first. Ends with 1 if an
+//! object that a ray reaches is called hidden.
+
+use clap::Parser;
+use sightlines::cells::Scene;
+use sightlines::formats::scene::read_scene;
+use sightlines::formats::view_cells::read_view_cells;
+use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
+use sightlines::geometry::{Aabb, Point3};
+use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
+use sightlines::multifocal::{
+    Chosen, FromRegion, Layout, Measure, Multifocal, Occludees, Split, Together, Volume, Witness, adaptive,
+};
+use sightlines::multifocal_cpu::Fast;
+use sightlines::scenes::city::{CityOptions, city, city_crossings};
+use sightlines::scenes::{TowerOptions, tower, tower_rooms};
+use sightlines_testkit::RayScene;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Over-estimation of from-region methods on scenes.
+#[derive(Debug, Clone, Parser)]
+struct Args {
+    /// Runs only if this bench's name contains it.
+    filter: Option<String>,
+    /// Real scenes, and for each the file of its cells.
+    #[arg(long, value_delimiter = ',', default_values_t = [
+        "delft:cells_street", "sponza:cells_walk", "pandora:cells_walk", "whale_large:cells_walk", "duplex:cells_rooms", "office_a:cells_rooms",
+    ].map(str::to_owned))]
+    scenes: Vec<String>,
+    /// Cells of each scene.
+    #[arg(long, default_value_t = 16)]
+    cells: usize,
+    /// Rays of each cell.
+    #[arg(long, default_value_t = 200_000)]
+    rays: u64,
+    /// Numbers of planes on each side.
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 4, 9, 17])]
+    planes: Vec<u32>,
+    /// Checks the answers on a small city.
+    #[arg(long)]
+    test: bool,
+    /// Given by cargo.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+/// A scene, and where it is looked from.
+struct Case {
+    name: String,
+    scene: Scene,
+    cells: Vec<Aabb<3>>,
+}
+
+/// What one method says about a scene.
+#[derive(Debug, Clone, Copy, Default)]
+struct Found {
+    reported: usize,
+    /// Reached by a ray, and called hidden.
+    wrong: usize,
+    make: Duration,
+    ask: Duration,
+}
+
+/// At most `n` of them, evenly chosen.
+fn some(cells: Vec<Aabb<3>>, n: usize) -> Vec<Aabb<3>> {
+    let step = cells.len().div_ceil(n.max(1)).max(1);
+    cells.into_iter().step_by(step).collect()
+}
+
+fn generated(args: &Args) -> Vec<Case> {
+    let blocks = if args.test { 3 } else { 6 };
+    let options = CityOptions { blocks_x: blocks, blocks_z: blocks, ..CityOptions::default() };
+    let streets = city_crossings(options).expect("in range");
+    let mut cases = vec![Case { name: "city".to_owned(), scene: city(options).expect("in range"), cells: streets }];
+    if !args.test {
+        let options = TowerOptions { floors: 2, ..TowerOptions::default() };
+        let rooms = tower_rooms(options).expect("in range").into_iter().map(|room| room.bounds).collect();
+        cases.push(Case { name: "tower:2".to_owned(), scene: tower(options).expect("in range"), cells: rooms });
+    }
+    cases.iter_mut().for_each(|case| case.cells = some(std::mem::take(&mut case.cells), args.cells));
+    cases
+}
+
+fn real(args: &Args) -> Vec<Case> {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
+        eprintln!("!! SIGHTLINES_DATA is not set: real scenes are left out");
+        return Vec::new();
+    };
+    let case = |named: &String| {
+        let (name, cells) = named.split_once(':').expect("a scene and its cells, with a colon between");
+        let folder = Path::new(&data).join("scenes").join(name);
+        let scene = read_scene(folder.join(format!("{name}.glb"))).expect("the scene can be read").scene;
+        let cells = read_view_cells(folder.join(format!("{cells}.json"))).expect("the cells can be read").cells;
+        let cells = some(cells.into_iter().map(|c| c.bounds).collect(), args.cells);
+        Case { name: name.to_owned(), scene, cells }
+    };
+    args.scenes.iter().map(case).collect()
+}
+
+/// Makes a method for a scene.
+type Make = Box<dyn Fn(&Case) -> Box<dyn FromRegion>>;
+
+/// A method's name, how it is made, and how often cells are cut.
+struct Way {
+    name: String,
+    make: Make,
+    depth: u32,
+}
+
+fn triangles(case: &Case) -> Vec<[Point3; 3]> {
+    case.scene.objects().iter().flat_map(|o| o.corners()).collect()
+}
+
+fn buffers(case: &Case, layout: Layout) -> Multifocal<Fast> {
+    let ends = case.cells.iter().flat_map(|b| [b.min, b.max]);
+    let around = Aabb::around(ends.chain([case.scene.bounds().min, case.scene.bounds().max]));
+    let chosen = Arc::new(Chosen::new(patches(&triangles(case), &PatchOptions::default()), 500));
+    Multifocal::new(Fast::new(), chosen, around, layout)
+}
+
+fn shipped(case: &Case) -> Box<dyn FromRegion> {
+    let sheets = SheetMethod::shared(Arc::new(Sheets::new(&triangles(case))));
+    Box::new(Together::new(vec![Box::new(buffers(case, Layout::default())), Box::new(sheets)]))
+}
+
+fn ways(args: &Args) -> Vec<Way> {
+    let mut ways = Vec::new();
+    let mut add = |name: String, depth: u32, make: Make| {
+        ways.push(Way { name, make, depth });
+    };
+    for &n_levels in &args.planes {
+        for measure in [Measure::Euclid, Measure::VertexHeight, Measure::SectionHeight] {
+            for reproject in [false, true] {
+                if reproject && (n_levels == 1 || measure != Measure::SectionHeight) {
+                    continue;
+                }
+                let layout = Layout { n_levels, measure, reproject, ..Layout::default() };
+                let carried = if reproject { ", carried" } else { "" };
+                let name = format!("{}, {n_levels} planes{carried}", measure.name());
+                add(name, 0, Box::new(move |case| Box::new(buffers(case, layout))));
+            }
+        }
+    }
+    add("sheets".to_owned(), 0, Box::new(|case| Box::new(SheetMethod::new(&triangles(case)))));
+    add("default: height, carried, and sheets".to_owned(), 0, Box::new(shipped));
+    add("the same, cells cut up to 2 times".to_owned(), 2, Box::new(shipped));
+    let cut = |case: &Case| ViewShafts::new(patches(&triangles(case), &PatchOptions::default()));
+    add("shafts".to_owned(), 0, Box::new(move |case| Box::new(cut(case))));
+    let voxels = |case: &Case| Voxels::new(&case.scene, VoxelOptions::default()).expect("few voxels");
+    add("voxels, closed".to_owned(), 0, Box::new(move |case| Box::new(voxels(case))));
+    ways
+}
+
+/// Asks one method about all cells of a scene.
+fn ask(case: &Case, seen: &[Vec<bool>], way: &Way) -> Found {
+    let mut found = Found::default();
+    let start = Instant::now();
+    let mut method = (way.make)(case);
+    found.make = start.elapsed();
+    let objects: Vec<Vec<[Point3; 3]>> = case.scene.objects().iter().map(|o| o.corners().collect()).collect();
+    let witness = Witness::new(objects.iter().map(|o| &o[..]));
+    let occludees = Occludees::new(objects);
+    for (cell, seen) in case.cells.iter().zip(seen) {
+        let volume = Volume::new(*cell).expect("cells are boxes");
+        let mut visible = vec![true; occludees.len()];
+        let split = Split { depth: way.depth, ..Split::default() };
+        let start = Instant::now();
+        adaptive::see(&mut *method, &occludees, &witness, &volume, &split, &mut visible)
+            .expect("the CPU does not fail");
+        found.ask += start.elapsed();
+        found.reported += visible.iter().filter(|v| **v).count();
+        found.wrong += visible.iter().zip(seen).filter(|(visible, seen)| **seen && !**visible).count();
+    }
+    found
+}
+
+/// Prints the table; how many objects were wrongly called hidden.
+fn table(args: &Args, cases: &[Case]) -> usize {
+    println!(
+        "| scene | triangles | cells | objects | seen | method | reported | reported / seen | s to prepare | ms a cell |"
+    );
+    println!("| --- | ---: | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: |");
+    let mut n_wrong = 0;
+    for case in cases {
+        let rays = RayScene::new(&case.scene);
+        let seen_from = |cell: &Aabb<3>| {
+            let mut seen = vec![false; case.scene.objects().len()];
+            rays.witness_objects(*cell, 9, args.rays).into_iter().for_each(|o| seen[o as usize] = true);
+            seen
+        };
+        let seen: Vec<Vec<bool>> = case.cells.iter().map(seen_from).collect();
+        let n_seen = seen.iter().flatten().filter(|s| **s).count();
+        let n_pairs = case.cells.len() * case.scene.objects().len();
+        for way in ways(args) {
+            let found = ask(case, &seen, &way);
+            n_wrong += found.wrong;
+            println!(
+                "| {} | {} | {} | {} | {:.1} % | {} | {:.1} % | {:.2} | {:.2} | {:.0} |",
+                case.name,
+                case.scene.n_triangles(),
+                case.cells.len(),
+                case.scene.objects().len(),
+                100.0 * n_seen as f64 / n_pairs as f64,
+                way.name,
+                100.0 * found.reported as f64 / n_pairs as f64,
+                found.reported as f64 / n_seen as f64,
+                found.make.as_secs_f64(),
+                found.ask.as_secs_f64() * 1e3 / case.cells.len() as f64,
+            );
+        }
+    }
+    n_wrong
+}
+
+fn main() -> ExitCode {
+    let mut args = Args::parse();
+    if args.filter.as_ref().is_some_and(|filter| !"from_region".contains(filter.as_str())) {
+        return ExitCode::SUCCESS;
+    }
+    if args.test {
+        args = Args { cells: 2, rays: 5000, planes: vec![1], ..args };
+    }
+    let mut cases = generated(&args);
+    if !args.test {
+        cases.extend(real(&args));
+    }
+    match table(&args, &cases) {
+        0 => ExitCode::SUCCESS,
+        n => {
+            eprintln!("{n} objects that rays reach are called hidden");
+            ExitCode::FAILURE
+        }
+    }
+}
