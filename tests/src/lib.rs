@@ -2,6 +2,7 @@
 
 pub mod quake_bytes;
 pub mod scenes;
+pub mod volumes;
 pub mod world_files;
 
 pub use scenes::{CellWitness, scene_folders, scene_witness};

@@ -24,6 +24,7 @@ use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
 use sightlines_packed::{PackOptions, Packed, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
+use sightlines_tests::volumes::SmallWorld;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -39,7 +40,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 14] = [
+const TARGETS: [Target; 15] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
@@ -48,6 +49,7 @@ const TARGETS: [Target; 14] = [
     Target { name: "view-cells", seeds: view_cells, check: check_view_cells },
     Target { name: "bake", seeds: plans, check: check_bake },
     Target { name: "scene", seeds: buildings, check: check_building },
+    Target { name: "volumes", seeds: small_worlds, check: check_volumes },
     Target { name: "pvs", seeds: tables, check: check_pvs },
     Target { name: "packed", seeds: packed_tables, check: check_packed },
     Target { name: "prt", seeds: prts, check: check_prt },
@@ -55,6 +57,19 @@ const TARGETS: [Target; 14] = [
     Target { name: "vis-state", seeds: vis_states, check: check_vis_state },
     Target { name: "garbage", seeds: garbage, check: check_anything },
 ];
+
+/// Bytes that stand for small worlds of triangles.
+fn small_worlds() -> Vec<Vec<u8>> {
+    let mut random = SplitMix(7);
+    (0..8).map(|_| (0..140).map(|_| random.next() as u8).collect()).collect()
+}
+
+fn check_volumes(bytes: &[u8]) -> bool {
+    let Some(world) = SmallWorld::from_bytes(bytes) else { return false };
+    world.check_backends();
+    world.check_hidden(4000);
+    true
+}
 
 fn source(hexen: bool) -> DoomMapSource {
     let line = |v1, v2, right, left: Option<u16>| {
