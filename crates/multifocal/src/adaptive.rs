@@ -3,7 +3,7 @@
 //! What is hidden from both halves of a volume is hidden from it, and much more is hidden from a half. The price is
 //! two more answers of the method; it is paid only where much is still in doubt: neither hidden nor seen by a ray.
 
-use crate::{Asked, BackendError, FromRegion, Occludees, Volume, Witness};
+use crate::{Asked, BackendError, FromRegion, Occludees, Umbra, Volume, Witness};
 
 /// When to cut a volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +43,8 @@ impl std::ops::Add for Effort {
 /// Finds the objects that may be visible from a volume: clears `visible` for those that the method proves hidden,
 /// from the whole volume or from all of its parts; objects that are not visible at the start are not asked about.
 ///
+/// * `also`: asked once about the whole volume, for whatever else is of interest
+///
 /// # Errors
 /// [`BackendError`], from the method.
 ///
@@ -55,53 +57,66 @@ pub fn see(
     volume: &Volume,
     split: &Split,
     visible: &mut [bool],
+    also: &mut dyn FnMut(&mut dyn Umbra),
 ) -> Result<Effort, BackendError> {
-    let mut effort = Effort::default();
+    let mut effort = Effort { n_volumes: 1, ..Effort::default() };
     let mut seen = vec![false; occludees.len()];
-    see_part(&mut Search { method, occludees, witness, split, effort: &mut effort }, volume, 0, &mut seen, visible)?;
+    witness.see(volume, split.n_rays, visible, &mut seen);
+    let mut umbra = method.umbra(volume)?;
+    also(&mut *umbra);
+    let mut search = Search { occludees, witness, split, effort: &mut effort };
+    search.ask(&mut *umbra, &seen, visible);
+    drop(umbra);
+    search.see_parts(method, volume, 0, &mut seen, visible)?;
     Ok(effort)
 }
 
 struct Search<'a> {
-    method: &'a mut dyn FromRegion,
     occludees: &'a Occludees,
     witness: &'a Witness,
     split: &'a Split,
     effort: &'a mut Effort,
 }
 
-/// `seen`: what rays were seen to hit, from this volume or a part of one that it belongs to; grows.
-fn see_part(
-    search: &mut Search<'_>,
-    volume: &Volume,
-    depth: u32,
-    seen: &mut [bool],
-    visible: &mut [bool],
-) -> Result<(), BackendError> {
-    search.witness.see(volume, search.split.n_rays, visible, seen);
-    let asked: Vec<bool> = visible.iter().zip(&*seen).map(|(visible, seen)| *visible && !seen).collect();
-    if !asked.contains(&true) {
-        return Ok(());
+impl Search<'_> {
+    /// Clears what an umbra hides, of what no ray hit.
+    fn ask(&mut self, umbra: &mut dyn Umbra, seen: &[bool], visible: &mut [bool]) {
+        let asked: Vec<bool> = visible.iter().zip(seen).map(|(visible, seen)| *visible && !seen).collect();
+        let did = self.occludees.see(umbra, &asked, visible);
+        self.effort.asked = self.effort.asked + did;
     }
-    search.effort.n_volumes += 1;
-    let mut umbra = search.method.umbra(volume)?;
-    let did = search.occludees.see(&mut *umbra, &asked, visible);
-    drop(umbra);
-    search.effort.asked = search.effort.asked + did;
-    let Some(halves) = volume.halves().filter(|_| depth < search.split.depth) else { return Ok(()) };
-    let n_triangles = |o: usize| search.occludees.triangles(o).len();
-    let all: usize = (0..search.occludees.len()).map(n_triangles).sum();
-    let doubt: usize = (0..search.occludees.len()).filter(|&o| asked[o] && visible[o]).map(n_triangles).sum();
-    if doubt == 0 || (doubt as f64) < search.split.worth * all as f64 {
-        return Ok(());
+
+    /// Asks about the halves of a volume that has been asked about, if it is worth it.
+    ///
+    /// `seen`: what rays were seen to hit, from this volume or a part of one that it belongs to; grows.
+    fn see_parts(
+        &mut self,
+        method: &mut dyn FromRegion,
+        volume: &Volume,
+        depth: u32,
+        seen: &mut [bool],
+        visible: &mut [bool],
+    ) -> Result<(), BackendError> {
+        let Some(halves) = volume.halves().filter(|_| depth < self.split.depth) else { return Ok(()) };
+        let n_triangles = |o: usize| self.occludees.triangles(o).len();
+        let all: usize = (0..self.occludees.len()).map(n_triangles).sum();
+        let doubt: usize = (0..self.occludees.len()).filter(|&o| visible[o] && !seen[o]).map(n_triangles).sum();
+        if doubt == 0 || (doubt as f64) < self.split.worth * all as f64 {
+            return Ok(());
+        }
+        let start: Vec<bool> = visible.to_vec();
+        visible.iter_mut().zip(&*seen).for_each(|(visible, seen)| *visible &= seen);
+        for half in &halves {
+            // What the other half sees need not be asked about again.
+            let mut of_half: Vec<bool> = start.iter().zip(&*visible).map(|(start, known)| *start && !known).collect();
+            self.witness.see(half, self.split.n_rays, &of_half, seen);
+            self.effort.n_volumes += 1;
+            let mut umbra = method.umbra(half)?;
+            self.ask(&mut *umbra, seen, &mut of_half);
+            drop(umbra);
+            self.see_parts(method, half, depth + 1, seen, &mut of_half)?;
+            visible.iter_mut().zip(of_half).for_each(|(visible, of_half)| *visible |= of_half);
+        }
+        Ok(())
     }
-    let start: Vec<bool> = visible.to_vec();
-    visible.iter_mut().zip(&*seen).for_each(|(visible, seen)| *visible &= seen);
-    for half in &halves {
-        // What the other half sees need not be asked about again.
-        let mut of_half: Vec<bool> = start.iter().zip(&*visible).map(|(start, known)| *start && !known).collect();
-        see_part(search, half, depth + 1, seen, &mut of_half)?;
-        visible.iter_mut().zip(of_half).for_each(|(visible, of_half)| *visible |= of_half);
-    }
-    Ok(())
 }

@@ -69,6 +69,18 @@ impl Witness {
         }
     }
 
+    /// Whether one of `n_rays` segments from points of a volume to points of a box meets nothing on its way. The same for
+    /// the same volume and box.
+    pub fn sees(&self, volume: &Volume, target: &Aabb<3>, n_rays: u32) -> bool {
+        let b = volume.bounds();
+        let mut random = Random(b.min[0].to_bits() ^ target.max[1].to_bits().rotate_left(17) ^ target.min[2].to_bits());
+        (0..n_rays).any(|_| {
+            let (origin, to) = (random.point(b), random.point(target));
+            let way = std::array::from_fn(|k| to[k] - origin[k]);
+            self.first_hit_before(origin, way, 1.0).is_none()
+        })
+    }
+
     fn mark(&self, origin: Point3, direction: Point3, seen: &mut [bool]) {
         if let Some(object) = self.first_hit(origin, direction) {
             seen[object as usize] = true;
@@ -77,8 +89,13 @@ impl Witness {
 
     /// The object that a ray hits first.
     pub fn first_hit(&self, origin: Point3, direction: Point3) -> Option<u32> {
+        self.first_hit_before(origin, direction, f64::INFINITY)
+    }
+
+    /// The object that a ray hits first, before `end` times its direction.
+    fn first_hit_before(&self, origin: Point3, direction: Point3, end: f64) -> Option<u32> {
         let inverse = direction.map(|d| 1.0 / d);
-        let mut best = (f64::INFINITY, None);
+        let mut best = (end, None);
         let mut pending = vec![0];
         while let Some(n) = pending.pop() {
             let node = &self.tree.nodes()[n as usize];

@@ -134,7 +134,8 @@ fn splitting_finds_more() {
         let mut method = crate::common::buffers(&all, around, Layout::default());
         let mut visible = vec![true; occludees.len()];
         let split = Split { depth, worth: 0.0, n_rays: 0 };
-        let effort = adaptive::see(&mut method, &occludees, &witness, &volume, &split, &mut visible).unwrap();
+        let effort =
+            adaptive::see(&mut method, &occludees, &witness, &volume, &split, &mut visible, &mut |_| ()).unwrap();
         (visible, effort.n_volumes)
     };
     let (whole, one) = visible(0);

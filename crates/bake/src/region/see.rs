@@ -3,9 +3,12 @@
 use super::{MakeMethod, RegionBakeOptions};
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Volume, Witness, adaptive};
+use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Umbra, Volume, Witness, adaptive};
 use sightlines_pvs::BitMatrix;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Rays to a cell before the method is asked: most pairs of cells that see each other do so in many ways.
+const RAYS_TO_A_CELL: u32 = 24;
 
 /// What all cells are asked about.
 pub(super) struct Scene<'a> {
@@ -73,12 +76,15 @@ fn see_from(
 ) -> Result<Row, BackendError> {
     let volume = &scene.volumes[cell];
     let mut of_objects: Vec<bool> = (0..scene.occludees.len()).map(|o| objects.get(cell, o)).collect();
-    let effort = adaptive::see(method, scene.occludees, scene.witness, volume, &options.split, &mut of_objects)?;
     let mut of_cells: Vec<bool> = (0..scene.volumes.len()).map(|c| rows.get(cell, c)).collect();
-    let mut umbra = method.umbra(volume)?;
-    for (other, visible) in of_cells.iter_mut().enumerate() {
-        *visible = *visible && !umbra.hides(scene.volumes[other].bounds());
-    }
+    let mut see_cells = |umbra: &mut dyn Umbra| {
+        for (other, visible) in of_cells.iter_mut().enumerate().filter(|(_, visible)| **visible) {
+            let target = scene.volumes[other].bounds();
+            *visible = scene.witness.sees(volume, target, RAYS_TO_A_CELL) || !umbra.hides(target);
+        }
+    };
+    let (occludees, witness, split) = (scene.occludees, scene.witness, &options.split);
+    let effort = adaptive::see(method, occludees, witness, volume, split, &mut of_objects, &mut see_cells)?;
     Ok(Row { cells: of_cells, objects: of_objects, effort })
 }
 
