@@ -170,7 +170,7 @@ fn ask(case: &Case, seen: &[Vec<bool>], way: &Way) -> Found {
         let mut visible = vec![true; occludees.len()];
         let split = Split { depth: way.depth, ..Split::default() };
         let start = Instant::now();
-        adaptive::see(&mut *method, &occludees, &witness, &volume, &split, &mut visible)
+        adaptive::see(&mut *method, &occludees, &witness, &volume, &split, &mut visible, &mut |_| ())
             .expect("the CPU does not fail");
         found.ask += start.elapsed();
         found.reported += visible.iter().filter(|v| **v).count();
