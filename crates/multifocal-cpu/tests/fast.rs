@@ -85,12 +85,15 @@ proptest! {
 /// The twin: what is compared above is not all empty.
 #[test]
 fn plain_loops_find_blocked_texels_and_carry_some() {
-    let occluders = [
-        Occluder::triangle([[-9., -9., 2.], [9., -9., 2.], [0., 0.2, 2.]]).unwrap(),
-        Occluder::triangle([[-9., 9., 3.], [9., 9., 3.], [0., -0.2, 3.]]).unwrap(),
-    ];
+    // Two walls that overlap as seen from every eye, but none of which covers all lines to a far texel in the middle.
+    let wall = |low: f64, high: f64, z: f64| {
+        let corners = [[-9., low, z], [9., low, z], [9., high, z], [-9., high, z]];
+        let [a, b, c, d] = corners;
+        Occluder::patch(corners.to_vec(), &[[a, b, c], [a, c, d]]).unwrap()
+    };
+    let occluders = [wall(-9.0, 0.2, 2.0), wall(-0.2, 9.0, 3.0)];
     let volume = Volume::new(Aabb { min: [-0.25; 3], max: [0.25; 3] }).unwrap();
-    let planes = [4.0, 8.0].map(|at| Plane::new(2, true, at, [-3.0; 2], [3.0; 2], [40, 40]).unwrap());
+    let planes = [3.2, 16.0].map(|at| Plane::new(2, true, at, [-3.0; 2], [3.0; 2], [40, 40]).unwrap());
     let count = |carry| {
         let job = Job::new(volume, planes.to_vec(), &occluders, Measure::SectionHeight, carry).unwrap();
         plain(&job).iter().map(Buffer::n_blocked).collect::<Vec<_>>()
