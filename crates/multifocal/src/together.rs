@@ -3,7 +3,8 @@
 use crate::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
-/// What any of several methods calls hidden is hidden. They are asked in order, so the quick one comes first.
+/// What any of several methods calls hidden is hidden. They are asked in order, so the quick one comes first. About single
+/// polygons only the first is asked: by then most that is hidden is known to be, from boxes.
 #[derive(Debug)]
 pub struct Together(Vec<Box<dyn FromRegion + Send>>);
 
@@ -38,6 +39,6 @@ impl Umbra for AnyUmbra<'_> {
     }
 
     fn hides_points(&mut self, points: &[Point3]) -> bool {
-        self.0.iter_mut().any(|umbra| umbra.hides_points(points))
+        self.0.first_mut().is_some_and(|umbra| umbra.hides_points(points))
     }
 }

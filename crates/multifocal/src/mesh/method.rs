@@ -64,10 +64,4 @@ impl Umbra for SheetUmbra<'_> {
     fn hides(&mut self, target: &Aabb<3>) -> bool {
         self.asker.hides(&self.volume, target, self.limit)
     }
-
-    /// Nothing more is asked about the last few triangles of an object: by then most that is hidden is known to be, and
-    /// a question costs as much as one about a box.
-    fn hides_points(&mut self, _: &[Point3]) -> bool {
-        false
-    }
 }
