@@ -9,6 +9,7 @@ mod args;
 mod commands;
 mod error;
 mod input;
+mod measure;
 mod memory;
 mod output;
 mod place;

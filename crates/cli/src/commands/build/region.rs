@@ -5,6 +5,7 @@ use super::facts::Facts;
 use super::space::{Stated, informed};
 use super::view_cells::ViewCellsArgs;
 use crate::error::CliError;
+use crate::measure::MeasureArg;
 use crate::output::{bytes, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
@@ -78,15 +79,6 @@ enum Method {
     Voxels,
 }
 
-/// What is compared, as an argument.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum MeasureArg {
-    Euclid,
-    Clipped,
-    VertexHeight,
-    Height,
-}
-
 /// Who draws, as an argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Backend {
@@ -133,12 +125,7 @@ impl RegionArgs {
     }
 
     fn layout(&self) -> Layout {
-        let measure = match self.measure {
-            MeasureArg::Euclid => Measure::Euclid,
-            MeasureArg::Clipped => Measure::ClippedEuclid,
-            MeasureArg::VertexHeight => Measure::VertexHeight,
-            MeasureArg::Height => Measure::SectionHeight,
-        };
+        let measure = self.measure.measure();
         let reproject = !self.no_carry && measure.is_height();
         Layout { n_levels: self.planes, texels: self.texels, measure, reproject, ..Layout::default() }
     }

@@ -7,13 +7,14 @@ mod target;
 use crate::Answer;
 use crate::error::CliError;
 use crate::input::{self, Kind};
+use crate::measure::MeasureArg;
 use crate::output;
 use crate::region::Region;
 use outcome::{FieldInfo, Outcome};
 use sightlines::formats::scene::read_scene;
 use sightlines::geometry::Point3;
 use sightlines::multifocal::mesh::{PatchOptions, patches};
-use sightlines::multifocal::{Buffer, Job, Measure, Occluder, Plane, Volume};
+use sightlines::multifocal::{Buffer, Job, Occluder, Plane, Volume};
 use sightlines::multifocal_cpu::fields::{Features, Field};
 use sightlines::report::{PngError, buffer_png, distance_png, voronoi_png};
 use std::path::{Path, PathBuf};
@@ -65,26 +66,6 @@ pub(crate) struct MultifocalArgs {
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
-}
-
-/// A measure as an argument.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum MeasureArg {
-    Euclid,
-    Clipped,
-    VertexHeight,
-    Height,
-}
-
-impl MeasureArg {
-    const fn measure(self) -> Measure {
-        match self {
-            Self::Euclid => Measure::Euclid,
-            Self::Clipped => Measure::ClippedEuclid,
-            Self::VertexHeight => Measure::VertexHeight,
-            Self::Height => Measure::SectionHeight,
-        }
-    }
 }
 
 pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, CliError> {
