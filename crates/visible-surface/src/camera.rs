@@ -1,0 +1,229 @@
+//! An eye and its picture.
+
+use crate::exact::{self, Dyadic3};
+use crate::vector::{cross, cross_size, dot, dot_size, minus};
+use sightlines_geometry::{Point3, check_coordinate};
+
+/// Unit of rounding of doubles, 2^-53.
+pub(crate) const U: f64 = f64::EPSILON / 2.0;
+/// The largest number of pixels along a side.
+pub const MAX_SIDE: u32 = 16_384;
+
+/// An eye and the rays through the centres of its pixels. Pixels count to the right and down from the upper left corner.
+///
+/// The ray through the centre of pixel (x, y) is, without any rounding, `eye + t * (corner + (x + 1/2) * across + (y + 1/2) * down)`
+/// with `t > 0`, which is the *depth*: the distance along the axis of view if `corner` lies in the plane at distance 1. This is what
+/// the exact methods of this crate mean by a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    eye: Point3,
+    corner: Point3,
+    across: Point3,
+    down: Point3,
+    size: [u32; 2],
+    near: f64,
+    far: f64,
+}
+
+/// Why there is no such camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CameraError {
+    /// A coordinate is no number or too large.
+    #[error("the eye is nowhere: its coordinates are not finite, or out of range")]
+    Eye,
+    /// There is no direction to look in, or none that is up.
+    #[error("the eye looks nowhere: what it looks at is where it is, or straight up or down, or not finite")]
+    Direction,
+    /// The angle of view.
+    #[error("the angle of view is not between 0 and 180 degrees")]
+    Angle,
+    /// The number of pixels.
+    #[error("a picture has from 1 to 16384 pixels along each side")]
+    Size,
+    /// The range of depths.
+    #[error("the nearest depth is not at least 0 and less than the farthest")]
+    Depth,
+}
+
+impl Camera {
+    /// An eye that looks at a point.
+    ///
+    /// * `up`: what is up in the picture, as a direction in the scene
+    /// * `angle`: from the lower to the upper edge of the picture, in degrees
+    /// * `size`: pixels to the right and down, square ones
+    ///
+    /// # Errors
+    /// [`CameraError`]
+    pub fn look_at(eye: Point3, at: Point3, up: Point3, angle: f64, size: [u32; 2]) -> Result<Self, CameraError> {
+        if !(angle > 0.0 && angle < 180.0) {
+            return Err(CameraError::Angle);
+        }
+        let ahead = unit(minus(at, eye)).ok_or(CameraError::Direction)?;
+        let up = unit(up).ok_or(CameraError::Direction)?;
+        let right = cross(ahead, up);
+        // Of two unit vectors that are nearly parallel only noise is left.
+        if dot(right, right) < 1e-24 {
+            return Err(CameraError::Direction);
+        }
+        let right = unit(right).ok_or(CameraError::Direction)?;
+        let up = cross(right, ahead);
+        let pixel = 2.0 * (angle.to_radians() / 2.0).tan() / f64::from(size[1].max(1));
+        let half = size.map(|n| f64::from(n) / 2.0 * pixel);
+        let corner = [0, 1, 2].map(|k| ahead[k] - half[0] * right[k] + half[1] * up[k]);
+        Self::new(eye, corner, right.map(|x| x * pixel), up.map(|x| -x * pixel), size)
+    }
+
+    /// An eye with any rays: see the type.
+    ///
+    /// # Errors
+    /// [`CameraError`]; of the rays if they do not span space, or have a coordinate that is neither 0 nor from 2^-100 to 2^100.
+    pub fn new(
+        eye: Point3,
+        corner: Point3,
+        across: Point3,
+        down: Point3,
+        size: [u32; 2],
+    ) -> Result<Self, CameraError> {
+        let mut eye = eye;
+        for x in &mut eye {
+            *x = check_coordinate(*x).map_err(|_| CameraError::Eye)?;
+        }
+        if size.iter().any(|n| !(1..=MAX_SIDE).contains(n)) {
+            return Err(CameraError::Size);
+        }
+        // A component too small to compute with is as good as none.
+        let [corner, across, down] = [corner, across, down].map(|v| v.map(|x| if x.abs() < TINY { 0.0 } else { x }));
+        if [corner, across, down].iter().flatten().any(|x| !x.is_finite() || x.abs() > 1.0 / TINY) {
+            return Err(CameraError::Direction);
+        }
+        let camera = Self { eye, corner, across, down, size, near: 0.0, far: f64::INFINITY };
+        let det = dot(camera.across, cross(camera.down, camera.corner));
+        let size = dot_size(camera.across, cross_size(camera.down, camera.corner));
+        if !(det.abs() > 64.0 * U * size) {
+            return Err(CameraError::Direction);
+        }
+        Ok(camera)
+    }
+
+    /// The same eye, which sees depths from `near` to `far` only; `far` may be infinite.
+    ///
+    /// # Errors
+    /// [`CameraError::Depth`]
+    pub fn with_depths(mut self, near: f64, far: f64) -> Result<Self, CameraError> {
+        let fits = |x: f64| x == 0.0 || x == f64::INFINITY || check_coordinate(x).is_ok();
+        if !(near >= 0.0 && near < far && fits(near) && fits(far)) {
+            return Err(CameraError::Depth);
+        }
+        (self.near, self.far) = (near, far);
+        Ok(self)
+    }
+
+    /// Where the eye is.
+    pub fn eye(&self) -> Point3 {
+        self.eye
+    }
+
+    /// Pixels to the right and down.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The least depth that is seen, and the greatest.
+    pub fn depths(&self) -> [f64; 2] {
+        [self.near, self.far]
+    }
+
+    /// What rays are made of: corner, across, down.
+    pub fn rays(&self) -> [Point3; 3] {
+        [self.corner, self.across, self.down]
+    }
+
+    /// The direction of the ray through a place in the picture, in pixels from its upper left corner; rounded.
+    #[inline]
+    pub fn ray(&self, x: f64, y: f64) -> Point3 {
+        [0, 1, 2].map(|k| self.corner[k] + x * self.across[k] + y * self.down[k])
+    }
+
+    /// The direction of the ray through the centre of a pixel, without rounding.
+    pub(crate) fn exact_ray(&self, x: u32, y: u32) -> Dyadic3 {
+        let [x, y] = [x, y].map(|n| exact::Dyadic::new(f64::from(n) + 0.5));
+        let [c, a, d] = self.rays().map(exact::point);
+        [0, 1, 2].map(|k| &(&c[k] + &(&a[k] * &x)) + &(&d[k] * &y))
+    }
+
+    /// Where a point is in the picture. See [`Place`].
+    pub fn place(&self, p: Point3) -> Place {
+        let way = minus(p, self.eye);
+        let of = |a: Point3, b: Point3| {
+            // Four roundings in the normal and the difference, three in the product, one for each of the other factors.
+            let n = cross(a, b);
+            (dot(n, way), 16.0 * U * dot_size(cross_size(a, b), way) + TINY_ERROR)
+        };
+        let [c, a, d] = self.rays();
+        let all = [of(d, c), of(c, a), of(a, d)];
+        let (det, det_error) = (dot(a, cross(d, c)), 16.0 * U * dot_size(a, cross_size(d, c)));
+        let sign = det.signum();
+        Place {
+            scaled: all.map(|(v, _)| v * sign),
+            error: all.map(|(_, e)| e),
+            volume: det.abs(),
+            volume_error: det_error,
+        }
+    }
+}
+
+/// Below this, components of rays count as 0: 2^-100.
+const TINY: f64 = f64::from_bits((1023 - 100) << 52);
+/// More than what underflow can add to a product of differences of coordinates and of rays.
+pub(crate) const TINY_ERROR: f64 = 1e-290;
+
+/// A point as the camera sees it, with bounds of rounding: x and y in pixels are `scaled[0] / scaled[2]` and
+/// `scaled[1] / scaled[2]`, the depth is `scaled[2] / volume`; negative depths are behind the eye.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Pixels to the right and down, times depth, and depth; all times `volume`.
+    pub scaled: [f64; 3],
+    /// How much each may be off.
+    pub error: [f64; 3],
+    /// Positive.
+    pub volume: f64,
+    /// How much it may be off.
+    pub volume_error: f64,
+}
+
+impl Place {
+    /// Bounds of the depth.
+    pub fn depth(&self) -> [f64; 2] {
+        let (low, high) = (self.scaled[2] - self.error[2], self.scaled[2] + self.error[2]);
+        let (small, large) = (self.volume - self.volume_error, self.volume + self.volume_error);
+        // One rounding of each operation is covered by going out by some more.
+        let down = |x: f64| x - x.abs() * 8.0 * U - TINY_ERROR;
+        let up = |x: f64| x + x.abs() * 8.0 * U + TINY_ERROR;
+        [down(if low > 0.0 { low / large } else { low / small }), up(if high > 0.0 { high / small } else { high / large })]
+    }
+
+    /// Bounds of the place in pixels, to the right or down; everything if the point may be behind the eye.
+    pub fn pixels(&self, axis: usize) -> [f64; 2] {
+        let (low, high) = (self.scaled[2] - self.error[2], self.scaled[2] + self.error[2]);
+        // Half the bound again for the rounding of these very lines.
+        if !(low > 0.5 * self.error[2] && high < f64::INFINITY) {
+            return [f64::NEG_INFINITY, f64::INFINITY];
+        }
+        let (a, b) = (self.scaled[axis] - self.error[axis], self.scaled[axis] + self.error[axis]);
+        let down = |x: f64| x - x.abs() * 8.0 * U - TINY_ERROR;
+        let up = |x: f64| x + x.abs() * 8.0 * U + TINY_ERROR;
+        let bounds = [down(if a > 0.0 { a / high } else { a / low }), up(if b > 0.0 { b / low } else { b / high })];
+        if bounds.iter().any(|x| x.is_nan()) { [f64::NEG_INFINITY, f64::INFINITY] } else { bounds }
+    }
+}
+
+fn unit(v: Point3) -> Option<Point3> {
+    let largest = v.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    if !(largest > 0.0 && largest.is_finite()) {
+        return None;
+    }
+    let v = v.map(|x| x / largest);
+    let length = dot(v, v).sqrt();
+    Some(v.map(|x| x / length))
+}

@@ -1,0 +1,104 @@
+//! Between which pixels and depths a fragment lies.
+
+use super::{Fragment, corner};
+use crate::camera::{Camera, Place, U};
+use crate::faces::Faces;
+use crate::rows::Window;
+
+/// Bounds of what a camera sees of something, rounded outwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extents {
+    /// From the left and from the top, in pixels; everything if a corner may be behind the eye.
+    pub pixels: [[f64; 2]; 2],
+    /// The least depth and the greatest.
+    pub depth: [f64; 2],
+}
+
+impl Extents {
+    const NONE: Self =
+        Self { pixels: [[f64::INFINITY, f64::NEG_INFINITY]; 2], depth: [f64::INFINITY, f64::NEG_INFINITY] };
+
+    /// Around places.
+    pub(crate) fn around(places: impl IntoIterator<Item = Place>) -> Self {
+        places.into_iter().fold(Self::NONE, |all, place| {
+            let grown = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+            Self {
+                pixels: [0, 1].map(|k| grown(all.pixels[k], place.pixels(k))),
+                depth: grown(all.depth, place.depth()),
+            }
+        })
+    }
+
+    /// Pixels whose centres may be covered; none if all of it is outside of the depths that the camera sees.
+    pub(crate) fn window(&self, camera: &Camera) -> Window {
+        let [near, far] = camera.depths();
+        if self.depth[1] < near || self.depth[0] > far || self.depth[1] < 0.0 {
+            return Window { min: [0; 2], max: [0; 2] };
+        }
+        Window::around(camera, self.pixels)
+    }
+
+    /// Whether two are surely apart: to the right, down or in depth.
+    pub fn is_apart(&self, other: &Self) -> bool {
+        let apart = |a: [f64; 2], b: [f64; 2]| a[1] < b[0] || b[1] < a[0];
+        apart(self.pixels[0], other.pixels[0])
+            || apart(self.pixels[1], other.pixels[1])
+            || apart(self.depth, other.depth)
+    }
+}
+
+impl Fragment {
+    /// Between which pixels and depths it lies: bounds, rounded outwards, of its corners.
+    pub fn extents(&self, camera: &Camera, faces: &Faces) -> Extents {
+        let corners = faces.of(self.face).map(|p| camera.place(p));
+        let whole = Extents::around(corners);
+        if self.is_whole() {
+            return whole;
+        }
+        let edges = self.edges();
+        let before = |k: usize| &edges[(k + edges.len() - 1) % edges.len()];
+        let mut own = Extents::NONE;
+        for (k, edge) in edges.iter().enumerate() {
+            match mean(&corners, corner(before(k), edge)) {
+                Some(place) => {
+                    let at = Extents::around([place]);
+                    let grown = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+                    own = Extents {
+                        pixels: [0, 1].map(|k| grown(own.pixels[k], at.pixels[k])),
+                        depth: grown(own.depth, at.depth),
+                    };
+                }
+                None => return whole,
+            }
+        }
+        // Both hold.
+        let both = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
+        Extents {
+            pixels: [0, 1].map(|k| both(own.pixels[k], whole.pixels[k])),
+            depth: both(own.depth, whole.depth),
+        }
+    }
+}
+
+/// The place of a point given by its barycentric coordinates; none if they are too rough to say.
+fn mean(corners: &[Place; 3], (weight, error): ([f64; 3], [f64; 3])) -> Option<Place> {
+    let sum: f64 = weight.iter().sum();
+    let off: f64 = error.iter().sum::<f64>() + 4.0 * U * weight.iter().map(|w| w.abs()).sum::<f64>();
+    if !(sum > 2.0 * off && sum.is_finite()) {
+        return None;
+    }
+    let mut place = Place { scaled: [0.0; 3], error: [0.0; 3], ..corners[0] };
+    for axis in 0..3 {
+        let (mut value, mut bound) = (0.0, 0.0);
+        for (c, (w, e)) in corners.iter().zip(weight.iter().zip(&error)) {
+            value += w * c.scaled[axis];
+            let size = w.abs() + e;
+            bound += size * c.error[axis] + e * c.scaled[axis].abs() + 8.0 * U * size * c.scaled[axis].abs();
+        }
+        (place.scaled[axis], place.error[axis]) = (value, bound * (1.0 + 64.0 * U));
+    }
+    // The depth is divided by the sum of the weights as well.
+    place.volume_error = (place.volume_error * (sum + off) + place.volume * (off + 4.0 * U * sum)) * (1.0 + 64.0 * U);
+    place.volume *= sum;
+    Some(place)
+}

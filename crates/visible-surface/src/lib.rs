@@ -1,0 +1,30 @@
+//! What one eye sees: every classical method, side by side, with exact decisions.
+//!
+//! Owns: faces and cameras; back-face and view-volume culling; the painter, Newell, Schumacker and BSP methods, which order faces and split them
+//! where they must; the z-buffer and the ray caster; the comparison of their pictures.
+//! Does not know: tables of what is visible (who has one says which faces may be drawn), files, colours.
+//! Invariants: which pixels a face covers, which of two faces is nearer at a pixel, and on which side of a plane a fragment lies
+//! are signs of polynomials in input coordinates, computed exactly; so all exact methods show the same face in every pixel, but for
+//! those whose centre lies exactly on the line in which two faces pass through each other. Same input, same picture.
+
+pub mod camera;
+pub mod chosen;
+pub mod counters;
+mod exact;
+pub mod faces;
+pub mod fragment;
+pub mod image;
+pub mod method;
+pub mod plane;
+mod rows;
+mod side;
+mod vector;
+
+pub use camera::{Camera, CameraError};
+pub use chosen::Chosen;
+pub use counters::Counters;
+pub use faces::{Faces, FacesError, NOTHING};
+pub use fragment::{Extents, Fragment, Relation};
+pub use image::Image;
+pub use method::{Seen, Shot, VisibleSurface};
+pub use plane::Plane;
