@@ -12,6 +12,7 @@ use crate::commands::{
     pack::{PackArgs, UnpackArgs},
     query::QueryArgs,
     reject::RejectArgs,
+    render::RenderArgs,
     vis::VisArgs,
     walk::WalkArgs,
 };
@@ -59,6 +60,9 @@ pub(crate) enum Command {
     Draw(DrawArgs),
     /// Draw what is surely blocked from a volume of eyes on a plane behind a scene in space, and what is nearest to it
     Multifocal(MultifocalArgs),
+    /// Draw what one eye sees of a scene in space by one of the methods of visible-surface determination, or by all, side by
+    /// side, with what differs
+    Render(RenderArgs),
     /// Sum up a table, a WAD, a GeoJSON plan, a scene in space, a Quake map or a portal file
     Info(InfoArgs),
     /// Write a generated scene of any size

@@ -1,5 +1,6 @@
 //! What can go wrong, as one line for the user.
 
+use crate::commands::render::RenderError;
 use crate::commands::walk::{Found, PathError};
 use sightlines::bake::quake::StateError;
 use sightlines::bake::region::GridError;
@@ -172,6 +173,9 @@ pub(crate) enum CliError {
     /// Nobody could fill the buffer.
     #[error("{}: {source}", path.display())]
     Backend { path: PathBuf, source: BackendError },
+    /// What one eye sees cannot be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
     /// An output file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),

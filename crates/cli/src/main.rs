@@ -64,6 +64,7 @@ fn run(arguments: &Arguments) -> Result<Answer, CliError> {
         Command::Explain(args) => commands::explain::run(args),
         Command::Draw(args) => commands::draw::run(args),
         Command::Multifocal(args) => commands::multifocal::run(args),
+        Command::Render(args) => commands::render::run(args, show_progress),
         Command::Info(args) => commands::info::run(args),
         Command::Generate(args) => commands::generate::run(args),
         Command::Demo(args) => commands::demo::run(args, show_progress),

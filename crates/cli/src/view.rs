@@ -4,6 +4,7 @@ use crate::commands::build::refuse;
 use crate::error::CliError;
 use crate::tables::Cells;
 use sightlines::eye_to_cell::{Method, UnknownMethod, View, ViewError};
+use sightlines::formats::scene::Axis;
 use sightlines::geometry::check_coordinate;
 use sightlines::walkthrough::Stand;
 use std::path::Path;
@@ -108,7 +109,18 @@ pub(crate) fn lifted(coordinates: &[f64]) -> [f64; 3] {
 
 /// What is up in a picture: the name of an axis, or a vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Up([f64; 3]);
+pub(crate) struct Up(pub(crate) [f64; 3]);
+
+impl Up {
+    /// An axis.
+    pub(crate) const fn axis(axis: Axis) -> Self {
+        match axis {
+            Axis::X => Self([1.0, 0.0, 0.0]),
+            Axis::Y => Self([0.0, 1.0, 0.0]),
+            Axis::Z => Self([0.0, 0.0, 1.0]),
+        }
+    }
+}
 
 impl FromStr for Up {
     type Err = String;

@@ -4,7 +4,8 @@
 //! picture.
 
 use crate::PngError;
-use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use crate::png::encode_pixels;
+use image::ExtendedColorType;
 
 /// The colour of texels that nothing is known to block: no grey, so that it is not mistaken for a value.
 pub const OPEN: [u8; 3] = [24, 48, 160];
@@ -104,13 +105,10 @@ fn encode<T, const N: usize>(
     pixel: impl Fn(&T) -> [u8; N],
 ) -> Result<Vec<u8>, PngError> {
     assert_eq!(items.len(), width as usize * height as usize, "one item for each texel");
-    if items.is_empty() {
-        return Err(PngError::Size { width, height });
-    }
-    let pixels: Vec<u8> = items.chunks_exact(width as usize).rev().flatten().flat_map(pixel).collect();
-    let mut png = Vec::new();
-    let encoded = PngEncoder::new(&mut png).write_image(&pixels, width, height, kind);
-    encoded.map(|()| png).map_err(|error| PngError::Encode(error.into()))
+    // Without texels there are no rows, and the encoder says so.
+    let rows = items.chunks_exact((width as usize).max(1)).rev();
+    let pixels: Vec<u8> = rows.flatten().flat_map(pixel).collect();
+    encode_pixels([width, height], &pixels, kind)
 }
 
 #[cfg(test)]

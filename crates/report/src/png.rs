@@ -1,5 +1,6 @@
-//! SVG to PNG.
+//! SVG and pixels to PNG.
 
+use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use resvg::{tiny_skia, usvg};
 
 /// Why a picture could not be rendered.
@@ -35,6 +36,20 @@ pub fn svg_to_png(svg: &str) -> Result<Vec<u8>, PngError> {
     let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(PngError::Size { width, height })?;
     resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels.as_mut());
     pixels.encode_png().map_err(|e| PngError::Encode(e.into()))
+}
+
+/// Encodes pixels, row by row from the upper left corner.
+pub(crate) fn encode_pixels(
+    [width, height]: [u32; 2],
+    pixels: &[u8],
+    kind: ExtendedColorType,
+) -> Result<Vec<u8>, PngError> {
+    if pixels.is_empty() {
+        return Err(PngError::Size { width, height });
+    }
+    let mut png = Vec::new();
+    let encoded = PngEncoder::new(&mut png).write_image(pixels, width, height, kind);
+    encoded.map(|()| png).map_err(|error| PngError::Encode(error.into()))
 }
 
 #[cfg(test)]

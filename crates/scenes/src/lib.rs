@@ -22,6 +22,7 @@ pub mod office;
 mod rng;
 mod spanning;
 mod stroke;
+pub mod surfaces;
 pub mod tower;
 pub mod world;
 
@@ -32,6 +33,9 @@ pub use hall::{pillared_hall, turned_pillared_hall};
 pub use maze::maze;
 pub use occlusion::{Occlusion, OcclusionOptions, occlusion};
 pub use office::{OfficeOptions, office};
+pub use surfaces::{
+    DepthPairsOptions, SurfaceOptions, coplanar, cycles, depth_pairs, interleaved, lattice, slivers, soup, split_worst,
+};
 pub use tower::{TowerOptions, TowerRoom, tower, tower_rooms};
 pub use world::{BspWorldOptions, QuakeLikeOptions, World, bsp_world, quake_like};
 

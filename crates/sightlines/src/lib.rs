@@ -42,6 +42,8 @@ pub use sightlines_sightline as sightline;
 pub use sightlines_stabtree as stabtree;
 #[cfg(feature = "triangulation")]
 pub use sightlines_triangulation as triangulation;
+#[cfg(feature = "visible-surface")]
+pub use sightlines_visible_surface as visible_surface;
 #[cfg(feature = "walkthrough")]
 pub use sightlines_walkthrough as walkthrough;
 

@@ -1,6 +1,5 @@
 //! An eye and its picture.
 
-use crate::exact::{self, Dyadic3};
 use crate::vector::{cross, cross_size, dot, dot_size, minus};
 use sightlines_geometry::{Point3, check_coordinate};
 
@@ -23,6 +22,11 @@ pub struct Camera {
     size: [u32; 2],
     near: f64,
     far: f64,
+    /// Normals that give a point's x, y and depth, and what their rounding is measured by.
+    normals: [Point3; 3],
+    normal_sizes: [Point3; 3],
+    volume: f64,
+    volume_error: f64,
 }
 
 /// Why there is no such camera.
@@ -97,13 +101,26 @@ impl Camera {
         if [corner, across, down].iter().flatten().any(|x| !x.is_finite() || x.abs() > 1.0 / TINY) {
             return Err(CameraError::Direction);
         }
-        let camera = Self { eye, corner, across, down, size, near: 0.0, far: f64::INFINITY };
-        let det = dot(camera.across, cross(camera.down, camera.corner));
-        let size = dot_size(camera.across, cross_size(camera.down, camera.corner));
-        if !(det.abs() > 64.0 * U * size) {
+        let pairs = [(down, corner), (corner, across), (across, down)];
+        let volume = dot(across, cross(down, corner));
+        let volume_error = 16.0 * U * dot_size(across, cross_size(down, corner));
+        if !(volume.abs() > 4.0 * volume_error) {
             return Err(CameraError::Direction);
         }
-        Ok(camera)
+        let sign = volume.signum();
+        Ok(Self {
+            eye,
+            corner,
+            across,
+            down,
+            size,
+            near: 0.0,
+            far: f64::INFINITY,
+            normals: pairs.map(|(a, b)| cross(a, b).map(|x| sign * x)),
+            normal_sizes: pairs.map(|(a, b)| cross_size(a, b)),
+            volume: volume.abs(),
+            volume_error,
+        })
     }
 
     /// The same eye, which sees depths from `near` to `far` only; `far` may be infinite.
@@ -145,30 +162,21 @@ impl Camera {
         [0, 1, 2].map(|k| self.corner[k] + x * self.across[k] + y * self.down[k])
     }
 
-    /// The direction of the ray through the centre of a pixel, without rounding.
-    pub(crate) fn exact_ray(&self, x: u32, y: u32) -> Dyadic3 {
-        let [x, y] = [x, y].map(|n| exact::Dyadic::new(f64::from(n) + 0.5));
-        let [c, a, d] = self.rays().map(exact::point);
-        [0, 1, 2].map(|k| &(&c[k] + &(&a[k] * &x)) + &(&d[k] * &y))
+    /// The sum of the magnitudes that [`Self::ray`] adds, for the lower right corner of the picture: what rounding in rays is measured by.
+    pub(crate) fn reach(&self) -> Point3 {
+        let [width, height] = self.size.map(f64::from);
+        [0, 1, 2].map(|k| self.corner[k].abs() + width * self.across[k].abs() + height * self.down[k].abs())
     }
 
     /// Where a point is in the picture. See [`Place`].
     pub fn place(&self, p: Point3) -> Place {
         let way = minus(p, self.eye);
-        let of = |a: Point3, b: Point3| {
-            // Four roundings in the normal and the difference, three in the product, one for each of the other factors.
-            let n = cross(a, b);
-            (dot(n, way), 16.0 * U * dot_size(cross_size(a, b), way) + TINY_ERROR)
-        };
-        let [c, a, d] = self.rays();
-        let all = [of(d, c), of(c, a), of(a, d)];
-        let (det, det_error) = (dot(a, cross(d, c)), 16.0 * U * dot_size(a, cross_size(d, c)));
-        let sign = det.signum();
         Place {
-            scaled: all.map(|(v, _)| v * sign),
-            error: all.map(|(_, e)| e),
-            volume: det.abs(),
-            volume_error: det_error,
+            scaled: self.normals.map(|n| dot(n, way)),
+            // A difference; a product and a difference in the normal; a product and two sums: six roundings.
+            error: self.normal_sizes.map(|n| 16.0 * U * dot_size(n, way) + TINY_ERROR),
+            volume: self.volume,
+            volume_error: self.volume_error,
         }
     }
 }
@@ -226,4 +234,87 @@ fn unit(v: Point3) -> Option<Point3> {
     let v = v.map(|x| x / largest);
     let length = dot(v, v).sqrt();
     Some(v.map(|x| x / length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_rational::BigRational;
+    use num_traits::{Signed, Zero};
+    use proptest::prelude::*;
+
+    fn rational(x: f64) -> BigRational {
+        BigRational::from_float(x).expect("finite")
+    }
+
+    fn det([a, b, c]: [[BigRational; 3]; 3]) -> BigRational {
+        let minor = |i: usize, j: usize| b[i].clone() * &c[j] - b[j].clone() * &c[i];
+        a[0].clone() * minor(1, 2) + a[1].clone() * minor(2, 0) + a[2].clone() * minor(0, 1)
+    }
+
+    /// Points near and far, and on each other.
+    fn point() -> impl Strategy<Value = Point3> {
+        let one = (-8i32..9, prop::sample::select(vec![-20i32, -3, 0, 0, 1, 30])).prop_map(|(x, e)| f64::from(x) * 0.3 * 2f64.powi(e));
+        [one.clone(), one.clone(), one]
+    }
+
+    proptest! {
+        /// Invariant: the bounds of a place hold the true place.
+        #[test]
+        fn bounds_hold(eye in point(), at in point(), p in point(), angle in 5u32..175) {
+            let Ok(camera) = Camera::look_at(eye, at, [0.1, 1.0, 0.2], f64::from(angle), [64, 48]) else { return Ok(()) };
+            let way = [0, 1, 2].map(|k| rational(p[k]) - rational(eye[k]));
+            let [c, a, d] = camera.rays().map(|v| v.map(rational));
+            let whole = det([a.clone(), d.clone(), c.clone()]);
+            let [x, y, t] = [[&way, &d, &c], [&a, &way, &c], [&a, &d, &way]].map(|m| det(m.map(Clone::clone)) / &whole);
+            let place = camera.place(p);
+            let holds = |[low, high]: [f64; 2], x: &BigRational| {
+                (low == f64::NEG_INFINITY || rational(low) <= *x) && (high == f64::INFINITY || rational(high) >= *x)
+            };
+            prop_assert!(holds(place.depth(), &t), "{:?} {}", place.depth(), t);
+            if t.is_positive() {
+                prop_assert!(holds(place.pixels(0), &(&x / &t)), "x");
+                prop_assert!(holds(place.pixels(1), &(&y / &t)), "y");
+            } else {
+                prop_assert_eq!(place.pixels(0), [f64::NEG_INFINITY, f64::INFINITY]);
+            }
+            // And they are no wider than some roundings, where the point is not next to the eye's plane.
+            let [low, high] = place.depth();
+            let size = way.iter().map(|w| w.abs()).fold(BigRational::zero(), |a, b| a + b);
+            prop_assert!(rational(high) - rational(low) <= size * rational(1e-13) + rational(1e-280));
+        }
+    }
+
+    #[test]
+    fn pixels_count_from_the_upper_left_corner() {
+        let camera = Camera::look_at([0.; 3], [0., 0., -1.], [0., 1., 0.], 90.0, [200, 100]).unwrap();
+        let place = camera.place([-2.0, 1.0, -1.0]);
+        let middle = |b: [f64; 2]| (b[0] + b[1]) / 2.0;
+        assert!(middle(place.pixels(0)).abs() < 1e-9 && middle(place.pixels(1)).abs() < 1e-9);
+        assert!((middle(place.depth()) - 1.0).abs() < 1e-12);
+        let place = camera.place([1.0, -1.0, -2.0]);
+        assert!((middle(place.pixels(0)) - 125.0).abs() < 1e-9 && (middle(place.pixels(1)) - 75.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_no_camera_is_refused() {
+        let look = |eye, at, up, angle, size| Camera::look_at(eye, at, up, angle, size).map(|_| ());
+        let (o, z, y) = ([0.; 3], [0., 0., -1.], [0., 1., 0.]);
+        assert_eq!(look(o, o, y, 60., [4; 2]), Err(CameraError::Direction));
+        assert_eq!(look(o, y, y, 60., [4; 2]), Err(CameraError::Direction));
+        assert_eq!(look(o, [0., f64::NAN, 0.], y, 60., [4; 2]), Err(CameraError::Direction));
+        assert_eq!(look(o, [0., f64::INFINITY, 0.], y, 60., [4; 2]), Err(CameraError::Direction));
+        assert_eq!(look([f64::NAN; 3], z, y, 60., [4; 2]), Err(CameraError::Direction));
+        assert_eq!(look([1e300, 0., 0.], z, y, 60., [4; 2]), Err(CameraError::Eye));
+        assert_eq!(look(o, z, y, 180., [4; 2]), Err(CameraError::Angle));
+        assert_eq!(look(o, z, y, f64::NAN, [4; 2]), Err(CameraError::Angle));
+        assert_eq!(look(o, z, y, 60., [0, 4]), Err(CameraError::Size));
+        assert_eq!(look(o, z, y, 60., [4, MAX_SIDE + 1]), Err(CameraError::Size));
+        assert_eq!(look(o, z, y, 1e-40, [4; 2]), Err(CameraError::Direction));
+        let camera = Camera::look_at(o, z, y, 60., [4; 2]).unwrap();
+        for [near, far] in [[-1., 1.], [1., 1.], [f64::NAN, 1.], [0., f64::NAN], [1., 0.5]] {
+            assert_eq!(camera.with_depths(near, far), Err(CameraError::Depth));
+        }
+        assert!(camera.with_depths(0.5, f64::INFINITY).is_ok());
+    }
 }

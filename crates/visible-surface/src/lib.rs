@@ -7,24 +7,39 @@
 //! are signs of polynomials in input coordinates, computed exactly; so all exact methods show the same face in every pixel, but for
 //! those whose centre lies exactly on the line in which two faces pass through each other. Same input, same picture.
 
+pub mod bsp;
 pub mod camera;
 pub mod chosen;
+pub mod compare;
 pub mod counters;
 mod exact;
 pub mod faces;
 pub mod fragment;
 pub mod image;
 pub mod method;
+mod nearness;
 pub mod plane;
+pub mod raycast;
 mod rows;
+pub mod schumacker;
 mod side;
 mod vector;
+pub mod zbuffer;
 
+pub use bsp::{Bsp, BspOptions, BspStats, Heuristic};
 pub use camera::{Camera, CameraError};
 pub use chosen::Chosen;
+pub use compare::{Comparison, compare};
 pub use counters::Counters;
 pub use faces::{Faces, FacesError, NOTHING};
 pub use fragment::{Extents, Fragment, Relation};
 pub use image::Image;
 pub use method::{Seen, Shot, VisibleSurface};
 pub use plane::Plane;
+pub use raycast::RayCaster;
+pub use schumacker::{Schumacker, SchumackerOptions, SchumackerStats};
+pub use zbuffer::{DepthFormat, ZBuffer};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -11,5 +11,6 @@ pub(crate) mod multifocal;
 pub(crate) mod pack;
 pub(crate) mod query;
 pub(crate) mod reject;
+pub(crate) mod render;
 pub(crate) mod vis;
 pub(crate) mod walk;

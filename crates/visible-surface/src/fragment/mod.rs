@@ -203,3 +203,6 @@ fn corner(f: &Edge, g: &Edge) -> ([f64; 3], [f64; 3]) {
     }
     out
 }
+
+#[cfg(test)]
+mod tests;

@@ -83,9 +83,8 @@ impl Side {
     #[inline]
     fn new(camera: &Camera, normal: Point3, size: Point3, source: Source, flip: bool) -> Self {
         let [corner, across, down] = camera.rays();
-        let [width, height] = camera.size().map(f64::from);
         let (mut a, mut b, mut c) = (dot(normal, across), dot(normal, down), dot(normal, corner));
-        let reach = dot_size(size, across) * width + dot_size(size, down) * height + dot_size(size, corner);
+        let reach = dot_size(size, camera.reach());
         if flip {
             (a, b, c) = (-a, -b, -c);
         }
@@ -186,3 +185,6 @@ fn depth_value(camera: &Camera, faces: &Faces, plane: &Plane) -> (f64, f64) {
 pub(crate) fn eye_sign(camera: &Camera, faces: &Faces, plane: &Plane) -> i32 {
     -plane.side(faces, camera.eye())
 }
+
+#[cfg(test)]
+mod tests;
