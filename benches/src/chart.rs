@@ -5,7 +5,7 @@ use std::fmt::Write;
 const PANEL: [f64; 2] = [360.0, 300.0];
 /// Left, top, right and bottom of the lines in a panel.
 const FRAME: [f64; 4] = [62.0, 40.0, 340.0, 250.0];
-const COLOURS: [&str; 4] = ["#1f6fb4", "#e07a1f", "#3a9150", "#8a5cd6"];
+const COLOURS: [&str; 6] = ["#1f6fb4", "#e07a1f", "#3a9150", "#8a5cd6", "#c2385a", "#6b7480"];
 
 /// A line of a chart.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Panel {
     pub title: String,
     /// What is to the right.
     pub x_name: String,
-    /// Its lines, at most four.
+    /// Its lines, at most six.
     pub series: Vec<Series>,
 }
 

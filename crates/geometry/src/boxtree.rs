@@ -55,20 +55,60 @@ fn union<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
     Aabb { min: std::array::from_fn(|k| a.min[k].min(b.min[k])), max: std::array::from_fn(|k| a.max[k].max(b.max[k])) }
 }
 
+/// What building needs: the boxes sorted along each axis once, and kept so within each node.
+#[derive(Debug)]
+struct Work<const D: usize> {
+    sorted: [Vec<u32>; D],
+    costs: Vec<f64>,
+    is_first: Vec<bool>,
+    second: Vec<u32>,
+}
+
+impl<const D: usize> Work<D> {
+    /// Brings those that `order` has from `start` to before `middle` before the others, along each axis, and changes no order else.
+    fn part(&mut self, order: &[u32], start: usize, middle: usize, end: usize) {
+        order[start..end].iter().enumerate().for_each(|(k, &i)| self.is_first[i as usize] = start + k < middle);
+        for sorted in &mut self.sorted {
+            self.second.clear();
+            let mut to = start;
+            for k in start..end {
+                let i = sorted[k];
+                if self.is_first[i as usize] {
+                    sorted[to] = i;
+                    to += 1;
+                } else {
+                    self.second.push(i);
+                }
+            }
+            sorted[to..end].copy_from_slice(&self.second);
+        }
+    }
+}
+
 impl<const D: usize> BoxTree<D> {
-    /// Builds the tree of `boxes`, with at most `per_leaf` boxes in a leaf. O(n log² n).
+    /// Builds the tree of `boxes`, with at most `per_leaf` boxes in a leaf. O(n log n).
     ///
     /// # Panics
     /// If `per_leaf` is 0.
     pub fn build(boxes: &[Aabb<D>], per_leaf: usize) -> Self {
         assert!(per_leaf > 0, "a leaf holds something");
-        let mut tree = Self { nodes: Vec::new(), order: (0..boxes.len() as u32).collect() };
-        let mut costs = vec![0.0; boxes.len()];
-        tree.split(boxes, per_leaf, 0, boxes.len(), &mut costs);
+        let n = boxes.len();
+        let sorted = std::array::from_fn(|axis| {
+            let mut ids: Vec<u32> = (0..n as u32).collect();
+            let key = |i: u32| (boxes[i as usize].min[axis] + boxes[i as usize].max[axis], boxes[i as usize].min[axis], i);
+            ids.sort_unstable_by(|&a, &b| {
+                let (a, b) = (key(a), key(b));
+                a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
+            });
+            ids
+        });
+        let mut work = Work { sorted, costs: vec![0.0; n], is_first: vec![false; n], second: Vec::with_capacity(n) };
+        let mut tree = Self { nodes: Vec::new(), order: (0..n as u32).collect() };
+        tree.split(boxes, per_leaf, 0, n, &mut work);
         tree
     }
 
-    fn split(&mut self, boxes: &[Aabb<D>], per_leaf: usize, start: usize, end: usize, costs: &mut [f64]) {
+    fn split(&mut self, boxes: &[Aabb<D>], per_leaf: usize, start: usize, end: usize, work: &mut Work<D>) {
         let of = |i: u32| boxes[i as usize];
         let bounds = self.order[start..end].iter().fold(Aabb::EMPTY, |all, &i| union(&all, &of(i)));
         let node = self.nodes.len();
@@ -76,27 +116,20 @@ impl<const D: usize> BoxTree<D> {
         if end - start <= per_leaf {
             return;
         }
-        let key = |i: u32, axis: usize| (of(i).min[axis] + of(i).max[axis], of(i).min[axis], i);
-        let by = |axis: usize| {
-            move |&a: &u32, &b: &u32| {
-                let (a, b) = (key(a, axis), key(b, axis));
-                a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
-            }
-        };
         // The smaller half has at least a sixteenth, so the depth is at most logarithmic.
         let (middle, least) = (start + (end - start) / 2, ((end - start) / 16).max(1));
         let mut best = (f64::INFINITY, usize::MAX, 0, middle);
         for axis in 0..D {
-            self.order[start..end].sort_unstable_by(by(axis));
+            let sorted = &work.sorted[axis][start..end];
             let mut all = Aabb::EMPTY;
-            for (n, (cost, &i)) in (1u32..).zip(costs[start..end].iter_mut().zip(&self.order[start..end])) {
+            for (n, (cost, &i)) in (1u32..).zip(work.costs[start..end].iter_mut().zip(sorted)) {
                 all = union(&all, &of(i));
                 *cost = surface(&all) * f64::from(n);
             }
             let mut all = Aabb::EMPTY;
             for k in (start + 1..end).rev() {
-                all = union(&all, &of(self.order[k]));
-                let cost = costs[k - 1] + surface(&all) * (end - k) as f64;
+                all = union(&all, &of(work.sorted[axis][k]));
+                let cost = work.costs[k - 1] + surface(&all) * (end - k) as f64;
                 let off = k.abs_diff(middle);
                 if k >= start + least && k + least <= end && (cost, off) < (best.0, best.1) {
                     best = (cost, off, axis, k);
@@ -104,10 +137,11 @@ impl<const D: usize> BoxTree<D> {
             }
         }
         let (_, _, axis, middle) = best;
-        self.order[start..end].sort_unstable_by(by(axis));
-        self.split(boxes, per_leaf, start, middle, costs);
+        self.order[start..end].copy_from_slice(&work.sorted[axis][start..end]);
+        work.part(&self.order, start, middle, end);
+        self.split(boxes, per_leaf, start, middle, work);
         self.nodes[node].second = self.nodes.len() as u32;
-        self.split(boxes, per_leaf, middle, end, costs);
+        self.split(boxes, per_leaf, middle, end, work);
         self.nodes[node].past = self.nodes.len() as u32;
     }
 

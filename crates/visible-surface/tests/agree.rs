@@ -70,6 +70,41 @@ fn exact_methods_show_what_is_seen() {
     assert!(ties.get() * 10 < covered.get(), "{} of {}", ties.get(), covered.get());
 }
 
+/// Coordinates of any size that is accepted, from 2^-140 to 2^200, and eyes among them.
+fn extreme() -> impl Strategy<Value = Point3> {
+    let power = prop::sample::select(vec![-137i32, -60, -20, 0, 0, 0, 20, 60, 197]);
+    let one = (-4i32..=4, power).prop_map(|(x, power)| f64::from(x) * 2f64.powi(power));
+    [one.clone(), one.clone(), one]
+}
+
+/// Invariant: huge and tiny coordinates, alone and mixed, change nothing of this, and nothing panics, whatever the method.
+#[test]
+fn coordinates_of_any_size_are_drawn() {
+    let covered = Cell::new(0);
+    let mut runner = proptest::test_runner::TestRunner::default();
+    let mixed = || prop_oneof![3 => point(4), 2 => extreme()];
+    let faces = prop::collection::vec([mixed(), mixed(), mixed()], 1..6);
+    let eyes = prop_oneof![3 => point(4), 1 => extreme()];
+    let run = runner.run(&(faces, eyes, camera()), |(corners, eye, camera)| {
+        let [corner, across, down] = camera.rays();
+        let camera = Camera::new(eye, corner, across, down, [5, 7]).expect("an eye of any size");
+        let faces = Faces::new(corners).expect("accepted coordinates");
+        let chosen = Chosen::all(&faces);
+        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+        let truth = oracle::look(&faces, &camera, &chosen);
+        for method in exact_methods(&faces) {
+            prop_assert_eq!(truth.wrong(&method.picture(&shot).0), vec![], "{}", method.name());
+        }
+        for format in DepthFormat::ALL {
+            ZBuffer::new(format).picture(&shot);
+        }
+        covered.set(covered.get() + truth.n_covered());
+        Ok(())
+    });
+    assert_eq!(run, Ok(()));
+    assert!(covered.get() > 100, "only {} pixels", covered.get());
+}
+
 /// The impostor: a picture with one pixel changed is found out, by the comparison and by the oracle.
 #[test]
 fn a_wrong_pixel_is_found() {

@@ -1,0 +1,162 @@
+//! Methods of visible-surface determination side by side: wrong pixels and time against the number of faces, each method's bad
+//! cases, what precision of depth is worth, and what a table saves a BSP tree.
+//!
+//! Measuring and drawing are two steps: `--csv` keeps what was measured, `--draw` makes charts of such a file, always the
+//! same ones. The reference is the ray caster; what must hold of exact methods is checked with every picture.
+
+mod families;
+mod measured;
+mod precision;
+mod table;
+
+use clap::Parser;
+use families::Family;
+use measured::{Limits, Row};
+use sightlines_benches::chart::{Panel, Series, svg};
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Visible surfaces for one viewpoint.
+#[derive(Debug, Clone, Parser)]
+struct Args {
+    /// Runs only if this bench's name contains it.
+    filter: Option<String>,
+    /// Families of scenes, of: soup, cycles, lattice, split_worst, coplanar, slivers, interleaved, real.
+    #[arg(long, value_delimiter = ',', default_values_t = Family::ALL.map(|f| f.name().to_owned()))]
+    families: Vec<String>,
+    /// Numbers of faces; families that grow with the square stop at 10^4.
+    #[arg(long, value_delimiter = ',', default_values_t = [100, 1_000, 10_000, 100_000])]
+    sizes: Vec<u32>,
+    /// Pixels to the right and down.
+    #[arg(long, value_delimiter = ',', num_args = 1, default_values_t = [640, 480])]
+    picture: Vec<u32>,
+    /// A method is not asked for more if that is expected to take so many seconds.
+    #[arg(long, default_value_t = 120.0)]
+    limit: f64,
+    /// Leaves out depth precision and tables.
+    #[arg(long)]
+    only_families: bool,
+    /// Writes what was measured.
+    #[arg(long)]
+    csv: Option<PathBuf>,
+    /// Measures nothing, and draws what this file says was measured.
+    #[arg(long, value_name = "CSV", requires = "svg")]
+    draw: Option<PathBuf>,
+    /// The chart to write.
+    #[arg(long)]
+    svg: Option<PathBuf>,
+    /// Checks the answers on small scenes.
+    #[arg(long)]
+    test: bool,
+    /// Given by cargo.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> ExitCode {
+    let mut args = Args::parse();
+    if args.filter.as_ref().is_some_and(|f| !"visible_surface".contains(f.as_str())) {
+        return ExitCode::SUCCESS;
+    }
+    if args.test {
+        (args.sizes, args.picture) = (vec![30, 100], vec![96, 64]);
+        args.families.retain(|f| f != Family::Real.name());
+    }
+    match run(&args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(args: &Args) -> Result<(), Box<dyn Error>> {
+    let rows = match &args.draw {
+        Some(file) => measured::read(&std::fs::read_to_string(file)?)?,
+        None => measure(args)?,
+    };
+    if args.test {
+        check(&rows)?;
+    }
+    if let Some(path) = &args.svg {
+        std::fs::write(path, chart(&rows))?;
+    }
+    if args.draw.is_none() {
+        measured::print(&rows);
+        if !args.only_families {
+            precision::print(size(args)?);
+            table::print(args.test, size(args)?)?;
+        }
+    }
+    Ok(())
+}
+
+fn size(args: &Args) -> Result<[u32; 2], Box<dyn Error>> {
+    <[u32; 2]>::try_from(&args.picture[..]).map_err(|_| "--picture takes two numbers".into())
+}
+
+fn measure(args: &Args) -> Result<Vec<Row>, Box<dyn Error>> {
+    let mut rows = Vec::new();
+    for name in &args.families {
+        let family = Family::named(name).ok_or_else(|| format!("there is no family {name}"))?;
+        let mut limits = Limits::new(args.limit);
+        for scene in family.scenes(&args.sizes) {
+            rows.extend(measured::all(family, &scene, size(args)?, &mut limits));
+            if let Some(path) = &args.csv {
+                std::fs::write(path, measured::write(&rows))?;
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Time of each method on the soup, wrong pixels of those that err, and what each bad case does to its method.
+fn chart(rows: &[Row]) -> String {
+    let of = |family: &str, method: &str, y: &dyn Fn(&Row) -> f64| {
+        let rows = rows.iter().filter(|r| r.family == family && r.method == method);
+        let points = rows.map(|r| [r.faces as f64, y(r)]).collect();
+        Series { name: method.to_owned(), points }
+    };
+    let panel = |title: &str, series: Vec<Series>| Panel { title: title.into(), x_name: "faces".into(), series };
+    let ms = |r: &Row| r.draw * 1e3;
+    let panels = [
+        panel(
+            "soup: ms to draw",
+            ["painter", "newell", "bsp", "schumacker", "zbuffer", "raycast"].map(|m| of("soup", m, &ms)).to_vec(),
+        ),
+        panel(
+            "soup: ms to prepare",
+            ["bsp", "schumacker", "raycast"].map(|m| of("soup", m, &|r| r.prepare * 1e3)).to_vec(),
+        ),
+        panel("cycles: wrong pixels", ["painter", "newell"].map(|m| of("cycles", m, &|r| r.wrong as f64)).to_vec()),
+        panel(
+            "pieces for each face",
+            [("lattice", "newell"), ("lattice", "bsp"), ("split_worst", "bsp"), ("soup", "newell"), ("soup", "bsp")]
+                .map(|(family, method)| Series {
+                    name: format!("{family}, {method}"),
+                    ..of(family, method, &|r| r.pieces as f64 / r.faces as f64)
+                })
+                .to_vec(),
+        ),
+    ];
+    svg("Visible surfaces", &panels)
+}
+
+/// What must hold of small scenes, whatever the machine.
+fn check(rows: &[Row]) -> Result<(), Box<dyn Error>> {
+    assert!(rows.len() > 50, "only {} pictures", rows.len());
+    for row in rows.iter().filter(|r| r.is_exact) {
+        assert_eq!(row.wrong, 0, "{} of {} on {} faces", row.method, row.family, row.faces);
+    }
+    let wrong = |family: &str, method: &str| -> u64 {
+        rows.iter().filter(|r| r.family == family && r.method == method).map(|r| r.wrong).sum()
+    };
+    assert!(wrong("cycles", "painter") > 0 && wrong("interleaved", "painter") > 0, "painter errs where it must");
+    let text = measured::write(rows);
+    assert_eq!(measured::read(&text)?, rows, "what was measured is read back");
+    assert_eq!(chart(&measured::read(&text)?), chart(rows), "the same numbers make the same chart");
+    assert!(measured::read(&text.replacen("painter,", "", 1)).is_err());
+    Ok(())
+}
