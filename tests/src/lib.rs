@@ -2,6 +2,7 @@
 
 pub mod quake_bytes;
 pub mod scenes;
+pub mod surfaces;
 pub mod volumes;
 pub mod world_files;
 

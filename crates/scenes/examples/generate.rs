@@ -2,8 +2,9 @@
 
 use sightlines_cells::Plan;
 use sightlines_scenes::{
-    BspWorldOptions, OfficeOptions, QuakeLikeOptions, SceneError, TowerOptions, World, bsp_world, degenerate,
-    doom_like, maze, office, pillared_hall, quake_like, tower, turned_pillared_hall, world,
+    BspWorldOptions, DepthPairsOptions, OfficeOptions, QuakeLikeOptions, SceneError, SurfaceOptions, TowerOptions, World,
+    bsp_world, coplanar, cycles, degenerate, depth_pairs, doom_like, interleaved, lattice, maze, office, pillared_hall,
+    quake_like, slivers, soup, split_worst, tower, turned_pillared_hall, world,
 };
 
 fn main() -> Result<(), SceneError> {
@@ -35,5 +36,11 @@ fn main() -> Result<(), SceneError> {
     for (name, world) in world::world_families() {
         show(name, &world);
     }
+    let some = SurfaceOptions::default();
+    for scene in [soup(some)?, coplanar(some)?, slivers(some)?, cycles(999)?, interleaved(1000)?, lattice(1000)?] {
+        println!("{}: {} objects, {} triangles", scene.objects()[0].name, scene.objects().len(), scene.n_triangles());
+    }
+    let (worst, pairs) = (split_worst(1000)?, depth_pairs(DepthPairsOptions::default())?);
+    println!("worst case for splits: {} triangles; pairs of faces: {}", worst.n_triangles(), pairs.objects().len() / 2);
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Deterministic generators of scenes: offices, mazes, pillared halls, Doom-like maps, the degenerate
 //! families that a subdivision has to survive, and in space furnished office towers, cities of boxes, rectangles that
-//! hide boxes, and worlds of convex cells, cut as the compilers of maps cut them.
+//! hide boxes, worlds of convex cells, cut as the compilers of maps cut them, and triangles that are hard to draw in
+//! order.
 //!
 //! Owns: the generators, their options, their source of chance.
 //! Does not know: sightlines, files; cells only where a scene is made of them.

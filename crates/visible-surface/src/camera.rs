@@ -104,7 +104,8 @@ impl Camera {
         let pairs = [(down, corner), (corner, across), (across, down)];
         let volume = dot(across, cross(down, corner));
         let volume_error = 16.0 * U * dot_size(across, cross_size(down, corner));
-        if !(volume.abs() > 4.0 * volume_error) {
+        // Numbers of at most 2^100: nothing overflows.
+        if volume.abs() <= 4.0 * volume_error {
             return Err(CameraError::Direction);
         }
         let sign = volume.signum();
@@ -208,7 +209,9 @@ impl Place {
         // One rounding of each operation is covered by going out by some more.
         let down = |x: f64| x - x.abs() * 8.0 * U - TINY_ERROR;
         let up = |x: f64| x + x.abs() * 8.0 * U + TINY_ERROR;
-        [down(if low > 0.0 { low / large } else { low / small }), up(if high > 0.0 { high / small } else { high / large })]
+        let bounds =
+            [down(if low > 0.0 { low / large } else { low / small }), up(if high > 0.0 { high / small } else { high / large })];
+        if bounds.iter().any(|x| x.is_nan()) { [f64::NEG_INFINITY, f64::INFINITY] } else { bounds }
     }
 
     /// Bounds of the place in pixels, to the right or down; everything if the point may be behind the eye.

@@ -20,9 +20,12 @@ impl Dyadic {
     pub(crate) fn new(x: f64) -> Self {
         debug_assert!(x.is_finite(), "only numbers that are checked are computed with");
         let (mantissa, exponent, sign) = x.integer_decode();
-        let zeros = if mantissa == 0 { 0 } else { mantissa.trailing_zeros() };
+        if mantissa == 0 {
+            return Self { mantissa: BigInt::ZERO, exponent: 0 };
+        }
+        let zeros = mantissa.trailing_zeros();
         let mantissa = BigInt::from(mantissa >> zeros) * sign;
-        Self { mantissa, exponent: if zeros == 0 { i32::from(exponent) } else { i32::from(exponent) + zeros as i32 } }
+        Self { mantissa, exponent: i32::from(exponent) + zeros as i32 }
     }
 
     /// -1, 0 or 1.
@@ -47,8 +50,13 @@ impl Dyadic {
 
     /// Both mantissas for the smaller exponent, and that exponent.
     fn aligned(a: &Self, b: &Self) -> (BigInt, BigInt, i32) {
-        let exponent = a.exponent.min(b.exponent);
-        let shifted = |x: &Self| &x.mantissa << (x.exponent - exponent) as u32;
+        // The exponent of a zero says nothing, and would only make the other number long.
+        let exponent = match (a.sign(), b.sign()) {
+            (0, _) => b.exponent,
+            (_, 0) => a.exponent,
+            _ => a.exponent.min(b.exponent),
+        };
+        let shifted = |x: &Self| if x.sign() == 0 { BigInt::ZERO } else { &x.mantissa << (x.exponent - exponent) as u32 };
         (shifted(a), shifted(b), exponent)
     }
 }

@@ -7,17 +7,22 @@
 //! are signs of polynomials in input coordinates, computed exactly; so all exact methods show the same face in every pixel, but for
 //! those whose centre lies exactly on the line in which two faces pass through each other. Same input, same picture.
 
+pub mod any_order;
 pub mod bsp;
 pub mod camera;
 pub mod chosen;
 pub mod compare;
 pub mod counters;
+pub mod cull;
 mod exact;
 pub mod faces;
 pub mod fragment;
+pub mod hierarchical;
 pub mod image;
 pub mod method;
 mod nearness;
+pub mod newell;
+pub mod painter;
 pub mod plane;
 pub mod raycast;
 mod rows;
@@ -26,6 +31,7 @@ mod side;
 mod vector;
 pub mod zbuffer;
 
+pub use any_order::{AnyOrder, is_convex};
 pub use bsp::{Bsp, BspOptions, BspStats, Heuristic};
 pub use camera::{Camera, CameraError};
 pub use chosen::Chosen;
@@ -35,6 +41,8 @@ pub use faces::{Faces, FacesError, NOTHING};
 pub use fragment::{Extents, Fragment, Relation};
 pub use image::Image;
 pub use method::{Seen, Shot, VisibleSurface};
+pub use newell::Newell;
+pub use painter::Painter;
 pub use plane::Plane;
 pub use raycast::RayCaster;
 pub use schumacker::{Schumacker, SchumackerOptions, SchumackerStats};

@@ -31,7 +31,7 @@ impl Nearness {
         let value_error = 16.0 * U * dot_size(size, way);
         let reach = dot_size(size, camera.reach());
         let least = value.abs() - value_error;
-        if !(least > 0.0) {
+        if least <= 0.0 {
             return Self { a: 0.0, b: 0.0, c: 0.0, error: f64::INFINITY };
         }
         let largest = reach / least;
@@ -52,10 +52,13 @@ impl Nearness {
     }
 }
 
+/// The line in which the planes of two faces meet, and the product of the eye's signs to them; none if they are one plane.
+type Meeting = Option<(Side, i32)>;
+
 /// Two faces that doubles cannot tell apart, remembered: the next pixel mostly asks about the same two.
 #[derive(Debug, Default)]
 pub(crate) struct Duel {
-    last: Option<([u32; 2], Option<(Side, i32)>)>,
+    last: Option<([u32; 2], Meeting)>,
     /// How often it was asked.
     pub(crate) asked: u64,
 }

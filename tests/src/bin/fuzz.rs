@@ -24,6 +24,7 @@ use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
 use sightlines_packed::{PackOptions, Packed, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
+use sightlines_tests::surfaces::SmallShot;
 use sightlines_tests::volumes::SmallWorld;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
@@ -40,7 +41,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 15] = [
+const TARGETS: [Target; 16] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
@@ -50,6 +51,7 @@ const TARGETS: [Target; 15] = [
     Target { name: "bake", seeds: plans, check: check_bake },
     Target { name: "scene", seeds: buildings, check: check_building },
     Target { name: "volumes", seeds: small_worlds, check: check_volumes },
+    Target { name: "surfaces", seeds: small_worlds, check: check_surfaces },
     Target { name: "pvs", seeds: tables, check: check_pvs },
     Target { name: "packed", seeds: packed_tables, check: check_packed },
     Target { name: "prt", seeds: prts, check: check_prt },
@@ -69,6 +71,13 @@ fn check_volumes(bytes: &[u8]) -> bool {
     world.check_backends();
     world.check_hidden(4000);
     true
+}
+
+fn check_surfaces(bytes: &[u8]) -> bool {
+    SmallShot::from_bytes(bytes).is_some_and(|shot| {
+        shot.check();
+        true
+    })
 }
 
 fn source(hexen: bool) -> DoomMapSource {

@@ -19,6 +19,7 @@ use crate::plane::{Approx, Plane};
 use crate::rows::spans;
 use crate::side::Side;
 use sightlines_geometry::orient3d;
+use std::sync::Arc;
 
 pub use extents::Extents;
 pub use split::Relation;
@@ -27,13 +28,13 @@ pub use split::Relation;
 #[derive(Debug, Clone)]
 pub struct Fragment {
     face: u32,
-    /// In the order in which the face's corners go round; none for the whole face.
-    edges: Option<Box<[Edge]>>,
+    /// In the order in which the face's corners go round; none for the whole face. Shared, as trees send the same fragments again and again.
+    edges: Option<Arc<[Edge]>>,
 }
 
 /// What an edge lies on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum On {
+pub(crate) enum On {
     /// The edge of the face opposite to a corner.
     Face(u8),
     /// A plane that cut the face.
@@ -42,10 +43,10 @@ enum On {
 
 /// An edge: where a linear function of barycentric coordinates is 0; it is positive inside.
 #[derive(Debug, Clone, Copy)]
-struct Edge {
-    on: On,
+pub(crate) struct Edge {
+    pub(crate) on: On,
     /// 1 or -1: the side of the plane that is inside.
-    sign: i8,
+    pub(crate) sign: i8,
     /// Coefficients: values at the corners of the face, times the sign.
     form: [f64; 3],
     /// How much each may be off.
@@ -99,7 +100,7 @@ impl Fragment {
         self.edges().len()
     }
 
-    fn edges(&self) -> &[Edge] {
+    pub(crate) fn edges(&self) -> &[Edge] {
         self.edges.as_deref().unwrap_or(&WHOLE)
     }
 

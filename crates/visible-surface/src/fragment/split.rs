@@ -77,7 +77,7 @@ impl Fragment {
         });
         let mut out: Vec<Edge> = (0..n).map(|i| (first + i) % n).take_while(|&k| stays(k)).map(|k| edges[k]).collect();
         out.push(Edge::new(faces, self.face, *plane, side));
-        Self { face: self.face, edges: Some(out.into_boxed_slice()) }
+        Self { face: self.face, edges: Some(out.into()) }
     }
 
     /// Whether an edge of it lies on a plane that cut it.

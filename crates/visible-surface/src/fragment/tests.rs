@@ -1,6 +1,6 @@
 use super::*;
 use num_rational::BigRational;
-use num_traits::{Signed, Zero};
+use num_traits::Signed;
 use proptest::prelude::*;
 use sightlines_geometry::Point3;
 

@@ -178,7 +178,7 @@ impl Cast<'_> {
             let error = 24.0 * U * dot_size(cross_size(p, q), ray.size);
             positive |= value > error;
             negative |= value < -error;
-            doubt |= !(value.abs() > error);
+            doubt |= value.abs() <= error;
         }
         if positive && negative {
             return false;

@@ -166,7 +166,7 @@ fn at(a: &Dyadic, b: &Dyadic, c: &Dyadic, x: u32, y: u32) -> Dyadic {
 }
 
 /// `n · (p - eye)` for points p of a plane, and what its rounding is measured by: the negative of the plane's function at the eye.
-fn depth_value(camera: &Camera, faces: &Faces, plane: &Plane) -> (f64, f64) {
+pub(crate) fn depth_value(camera: &Camera, faces: &Faces, plane: &Plane) -> (f64, f64) {
     match *plane {
         Plane::Axis(k, at) => {
             let v = at - camera.eye()[usize::from(k)];

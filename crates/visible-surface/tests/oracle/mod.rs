@@ -10,22 +10,22 @@ use sightlines_visible_surface::{Camera, Chosen, Faces, Image, NOTHING};
 
 /// What is seen, and where that is a matter of rules.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Truth {
+pub(crate) struct Truth {
     /// Pixels to the right and down.
-    pub size: [u32; 2],
+    pub(crate) size: [u32; 2],
     /// For each pixel, row by row, the face that is seen.
-    pub faces: Vec<Option<u32>>,
+    pub(crate) faces: Vec<Option<u32>>,
     /// Whether the ray meets the edge of a face, or a face just where the depths that are seen begin or end. `faces` holds there too, by the
     /// rule of left and upper edges.
-    pub on_edge: Vec<bool>,
+    pub(crate) on_edge: Vec<bool>,
     /// Whether the nearest faces at the pixel are at one depth without lying in one plane there: the ray meets the line in which they
     /// pass through each other, or an edge that they share. Only there `faces` need not be what a method shows.
-    pub crossing: Vec<bool>,
+    pub(crate) crossing: Vec<bool>,
 }
 
 impl Truth {
     /// The pixels in which a picture is wrong: x, y, what is seen, what the picture shows.
-    pub fn wrong(&self, image: &Image) -> Vec<([u32; 2], Option<u32>, Option<u32>)> {
+    pub(crate) fn wrong(&self, image: &Image) -> Vec<([u32; 2], Option<u32>, Option<u32>)> {
         assert_eq!(self.size, image.size(), "only pictures of one size are compared");
         let shown = image.faces().iter().map(|&f| (f != NOTHING).then_some(f));
         let all = (0u32..).zip(self.faces.iter().zip(shown)).zip(&self.crossing);
@@ -34,30 +34,30 @@ impl Truth {
     }
 
     /// How many pixels are left out of comparisons.
-    pub fn n_in_doubt(&self) -> usize {
+    pub(crate) fn n_in_doubt(&self) -> usize {
         self.crossing.iter().filter(|d| **d).count()
     }
 
     /// How many pixels show a face.
-    pub fn n_covered(&self) -> usize {
+    pub(crate) fn n_covered(&self) -> usize {
         self.faces.iter().flatten().count()
     }
 }
 
 /// For each pixel, row by row, the face that is seen. See [`look`] for where that is in doubt.
-pub fn picture(faces: &Faces, camera: &Camera, chosen: &Chosen) -> Vec<Option<u32>> {
+pub(crate) fn picture(faces: &Faces, camera: &Camera, chosen: &Chosen) -> Vec<Option<u32>> {
     look(faces, camera, chosen).faces
 }
 
 /// What is seen of some faces. Cost: pixels times faces.
-pub fn look(faces: &Faces, camera: &Camera, chosen: &Chosen) -> Truth {
+pub(crate) fn look(faces: &Faces, camera: &Camera, chosen: &Chosen) -> Truth {
     let size = camera.size();
     let n = size[0] as usize * size[1] as usize;
     let scale = Scale::of(faces, camera);
     let all: Vec<Face> = chosen.iter().filter_map(|f| Face::new(faces, camera, &scale, f)).collect();
     let mut truth = Truth { size, faces: vec![None; n], on_edge: vec![false; n], crossing: vec![false; n] };
     for (i, (x, y)) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).enumerate() {
-        let mut nearest: Vec<Hit> = Vec::new();
+        let mut nearest: Vec<Hit<'_>> = Vec::new();
         for face in &all {
             let Some(hit) = face.meets(x, y, &mut truth.on_edge[i]) else { continue };
             // v / nd against v' / nd', all positive.
@@ -139,8 +139,7 @@ impl Face {
         let turned = |line: Line| if sign == Sign::Minus { line.flipped() } else { line };
         let edges = [(a, b), (b, c), (c, a)].map(|(p, q)| turned(Line::new(&cross(p, q), &rays)));
         let towards = turned(Line::new(&normal, &rays));
-        let (normal, value) =
-            if sign == Sign::Minus { (normal.map(|x| -x), -value) } else { (normal, value) };
+        let (normal, value) = if sign == Sign::Minus { (normal.map(|x| -x), -value) } else { (normal, value) };
         // The depth, value / towards, is at least `near` where value - near * towards >= 0.
         let depth = |depth: f64| {
             let depth = scale.depth(depth);
@@ -193,7 +192,8 @@ struct Scale {
 
 impl Scale {
     fn of(faces: &Faces, camera: &Camera) -> Self {
-        let least = |all: &mut dyn Iterator<Item = f64>| all.filter(|x| *x != 0.0).map(|x| parts(x).1).min().unwrap_or(0);
+        let least =
+            |all: &mut dyn Iterator<Item = f64>| all.filter(|x| *x != 0.0).map(|x| parts(x).1).min().unwrap_or(0);
         let eye = camera.eye();
         let mut positions = faces.corners().iter().flatten().flatten().chain(&eye).copied();
         let rays = camera.rays();

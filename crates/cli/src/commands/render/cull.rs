@@ -1,0 +1,149 @@
+//! What is left out before anything is drawn.
+
+use super::RenderError;
+use crate::error::CliError;
+use crate::tables::{self, Cells, Opened};
+use sightlines::cells::Scene;
+use sightlines::geometry::{Aabb, Point3};
+use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
+use sightlines::visible_surface::{Camera, Chosen, DepthFormat, Faces, Shot, VisibleSurface, ZBuffer, cull};
+use sightlines::walkthrough::Resident;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Bytes of blocks of a packed table that are kept.
+const CACHE: usize = 64 << 20;
+
+/// A way to leave faces out, as an argument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Cull {
+    /// Faces that are seen from behind
+    Backface,
+    /// What is outside the picture, by boxes of objects and then by faces
+    Frustum,
+    /// What is not seen from the cell that the eye is in, by the table of --table
+    Pvs,
+    /// What is behind all that a z-buffer shows of the rest, by its pyramid of depths
+    HierarchicalZ,
+}
+
+impl Cull {
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Backface => "backface",
+            Self::Frustum => "frustum",
+            Self::Pvs => "pvs",
+            Self::HierarchicalZ => "hierarchical-z",
+        }
+    }
+}
+
+/// What one way left out of what those before it had left.
+#[derive(Debug)]
+pub(super) struct Gone {
+    pub(super) by: Cull,
+    pub(super) n: u64,
+    pub(super) time: Duration,
+}
+
+/// Leaves faces out of `chosen`, by each way in turn. `seen` has, for each object of the scene, whether the table has it as seen;
+/// nothing goes by a table if it is `None`.
+pub(super) fn leave_out(
+    ways: &[Cull],
+    faces: &Faces,
+    camera: &Camera,
+    seen: Option<&[bool]>,
+    chosen: &mut Chosen,
+) -> Vec<Gone> {
+    let each = |&by: &Cull| {
+        let start = Instant::now();
+        let n = match by {
+            Cull::Backface => cull::backface(faces, camera, chosen),
+            Cull::Frustum => cull::frustum(faces, camera, chosen),
+            Cull::Pvs => seen.map_or(0, |seen| cull::objects(faces, chosen, |object| seen[object as usize])),
+            Cull::HierarchicalZ => {
+                let (image, _) = ZBuffer::new(DepthFormat::Exact).picture(&Shot { faces, camera, chosen });
+                hierarchical::cull(faces, chosen, &DepthPyramid::sampled(faces, camera, &image))
+            }
+        };
+        Gone { by, n, time: start.elapsed() }
+    };
+    ways.iter().map(each).collect()
+}
+
+/// Which objects of a scene a table has as seen from a point; `None`, and a warning, if that is outside every cell, where
+/// everything may be seen.
+pub(super) fn seen_by_table(
+    table: &Path,
+    path: &Path,
+    scene: &Scene,
+    eye: Point3,
+) -> Result<Option<Vec<bool>>, CliError> {
+    match tables::open(table, CACHE)? {
+        Opened::Plain(cells) => ask(&cells, table, path, scene, eye),
+        Opened::Packed(cells) => ask(&cells, table, path, scene, eye),
+    }
+}
+
+fn ask<C: Cells>(
+    cells: &C,
+    table: &Path,
+    path: &Path,
+    scene: &Scene,
+    eye: Point3,
+) -> Result<Option<Vec<bool>>, CliError> {
+    cells.refuse_without_places(table)?;
+    let fail = |error| C::fail(table, error);
+    if let Some(unlike) = unlike(cells, scene).map_err(fail)? {
+        return Err(RenderError::OtherScene { table: table.to_owned(), scene: path.to_owned(), unlike }.into());
+    }
+    let mut at = Vec::new();
+    Resident::locate(cells, eye, &mut Vec::new(), &mut at);
+    if at.is_empty() {
+        tracing::warn!("{}: the eye is outside every cell, where everything may be seen", table.display());
+        return Ok(None);
+    }
+    let mut seen = vec![false; scene.objects().len()];
+    let mut objects = Vec::new();
+    for cell in at {
+        cells.objects_seen(cell, &mut objects).map_err(fail)?;
+        objects.iter().for_each(|&object| seen[object as usize] = true);
+    }
+    Ok(Some(seen))
+}
+
+/// What a table and a scene do not have in common.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum Unlike {
+    #[error("the table is of a plan")]
+    Plane,
+    #[error("the table has {table} objects, the scene {scene}")]
+    Count { table: usize, scene: usize },
+    #[error("object {object} is called {table:?} in the table and {scene:?} in the scene")]
+    Name { object: u32, table: String, scene: String },
+    #[error("object {object}, {name:?}, is not where the table has it")]
+    Box { object: u32, name: String },
+}
+
+/// Why a table is not of a scene, as far as objects tell.
+fn unlike<C: Cells>(cells: &C, scene: &Scene) -> Result<Option<Unlike>, C::Error> {
+    if cells.n_dimensions() != 3 {
+        return Ok(Some(Unlike::Plane));
+    }
+    let [_, n] = cells.counts();
+    if n != scene.objects().len() {
+        return Ok(Some(Unlike::Count { table: n, scene: scene.objects().len() }));
+    }
+    for (id, object) in (0..).zip(scene.objects()) {
+        let name = cells.object_name(id)?;
+        if name != object.name {
+            return Ok(Some(Unlike::Name { object: id, table: name, scene: object.name.clone() }));
+        }
+        let bounds = Aabb::around(object.corners().flatten());
+        let known = cells.object_box(id)?;
+        if (0..3).any(|k| bounds.min[k] < known.min[k] || bounds.max[k] > known.max[k]) {
+            return Ok(Some(Unlike::Box { object: id, name }));
+        }
+    }
+    Ok(None)
+}

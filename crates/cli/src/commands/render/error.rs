@@ -1,0 +1,37 @@
+//! What can go wrong beyond files.
+
+use super::cull::Unlike;
+use sightlines::visible_surface::{CameraError, FacesError};
+use std::path::PathBuf;
+
+/// Why nothing is drawn.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum RenderError {
+    /// An eye that sees nothing.
+    #[error("{option}: {source}")]
+    Camera { option: &'static str, source: CameraError },
+    /// A scene that is too large.
+    #[error("{}: {source}", path.display())]
+    Faces { path: PathBuf, source: FacesError },
+    /// Several methods, and one picture.
+    #[error("--method: several methods are drawn with --compare only; name one")]
+    ManyMethods,
+    /// A depth format, and no z-buffer.
+    #[error("--depth: this is what a z-buffer keeps, and none is drawn: add --method zbuffer")]
+    NoBuffer,
+    /// A table that nobody asks.
+    #[error("--table: nothing is asked of the table: add --cull pvs")]
+    NoCulling,
+    /// A table that would be asked, and is not named.
+    #[error("--cull pvs: this needs a table of the scene: name it with --table")]
+    NoTable,
+    /// A table of something else.
+    #[error("{}: does not go with {}: {unlike}", table.display(), scene.display())]
+    OtherScene { table: PathBuf, scene: PathBuf, unlike: Unlike },
+    /// A sheet that is too large.
+    #[error(
+        "--size: {n} pictures of {} by {} pixels make a sheet of more than {most} pixels; name fewer methods, or a smaller size",
+        size[0], size[1]
+    )]
+    Sheet { n: usize, size: [u32; 2], most: u64 },
+}

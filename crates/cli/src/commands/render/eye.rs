@@ -1,0 +1,88 @@
+//! The eye and its picture as arguments.
+
+use super::RenderError;
+use crate::view::Up;
+use sightlines::geometry::{Point3, check_coordinate};
+use sightlines::visible_surface::{Camera, CameraError};
+
+/// Where the eye is, where it looks, and through what.
+#[derive(Debug, clap::Args)]
+pub(super) struct EyeArgs {
+    /// Where the eye is, in scene units
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(super) eye: Point3,
+    /// A point that is in the middle of the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(super) look_at: Point3,
+    /// What is up in the picture, an axis or a vector, if not the axis that the scene names (y if it names none)
+    #[arg(long, value_name = "AXIS|X,Y,Z", allow_hyphen_values = true)]
+    up: Option<Up>,
+    /// The angle of view in degrees, from the lower to the upper edge of the picture
+    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, allow_hyphen_values = true)]
+    pub(super) fov: f64,
+    /// Pixels to the right and down
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "640x480")]
+    size: [u32; 2],
+    /// The least depth that is seen, along the axis of view, in scene units
+    #[arg(long, value_name = "DEPTH", default_value_t = 0.0, allow_hyphen_values = true)]
+    near: f64,
+    /// The greatest depth that is seen; inf for no end
+    #[arg(long, value_name = "DEPTH", default_value_t = f64::INFINITY, allow_hyphen_values = true)]
+    far: f64,
+}
+
+impl EyeArgs {
+    /// What is up in the picture, where the scene says `named`.
+    pub(super) fn up(&self, named: Up) -> Point3 {
+        self.up.unwrap_or(named).0
+    }
+
+    /// The camera.
+    pub(super) fn camera(&self, up: Point3) -> Result<Camera, RenderError> {
+        let camera = Camera::look_at(self.eye, self.look_at, up, self.fov, self.size);
+        camera.and_then(|camera| camera.with_depths(self.near, self.far)).map_err(|source| {
+            let option = match source {
+                CameraError::Eye => "--eye",
+                CameraError::Direction => "--look-at",
+                CameraError::Angle => "--fov",
+                CameraError::Size => "--size",
+                // The one that is left.
+                _ => "--near, --far",
+            };
+            RenderError::Camera { option, source }
+        })
+    }
+}
+
+fn point(text: &str) -> Result<Point3, String> {
+    let number = |part: &str| -> Result<f64, String> {
+        let x: f64 = part.trim().parse().map_err(|_| format!("'{}' is not a number", part.trim()))?;
+        check_coordinate(x).map_err(|error| error.to_string())
+    };
+    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    numbers.try_into().map_err(|_| "a point in space is three comma-separated numbers, such as 9,1.7,-5".to_owned())
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || "a size is two whole numbers, such as 640x480".to_owned();
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let number = |part: &str| part.trim().parse::<u32>().map_err(|_| wrong());
+    Ok([number(width)?, number(height)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_and_sizes_are_parsed() {
+        assert_eq!(point("1, -2.5,3e2"), Ok([1.0, -2.5, 300.0]));
+        for bad in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,NaN", "inf,0,0", "1e300,0,0"] {
+            assert!(point(bad).is_err(), "{bad}");
+        }
+        assert_eq!([size("640x480"), size("1 X 2")], [Ok([640, 480]), Ok([1, 2])]);
+        for bad in ["", "640", "x", "1x", "1x2x3", "-1x2", "1.5x2", "4294967296x1"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+}

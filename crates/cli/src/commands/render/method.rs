@@ -1,0 +1,146 @@
+//! The methods as arguments, made ready and timed.
+
+use sightlines::visible_surface::{
+    Bsp, BspOptions, Counters, DepthFormat, Faces, Image, Newell, Painter, RayCaster, Schumacker, SchumackerOptions,
+    Shot, VisibleSurface, ZBuffer,
+};
+use std::time::{Duration, Instant};
+
+/// A method as an argument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Kind {
+    /// Faces sorted by the depth of their middles, which is wrong where that order is
+    Painter,
+    /// Newell, Newell and Sancha: faces sorted by depth, tested against each other, and split where they go round
+    Newell,
+    /// Clusters of faces that planes part, and in each an order of its own
+    Schumacker,
+    /// A binary space partition, drawn from the farthest to the nearest
+    Bsp,
+    /// The same from the nearest to the farthest
+    BspFront,
+    /// Each face is drawn, and pixels keep what is nearest
+    Zbuffer,
+    /// A ray through each pixel: what the others are compared with
+    Raycast,
+}
+
+/// What a z-buffer keeps, as an argument. The last three reach from the least depth that is seen to the greatest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Depth {
+    /// Doubles, and a decision without rounding where they are too near to each other
+    Exact,
+    /// Doubles
+    Double,
+    /// Floats, 0 for what is at --near (at 1/64 if that is 0), 1 at --far
+    F32,
+    /// Floats, 1 for what is near, 0 at --far
+    F32Reversed,
+    /// Whole numbers of 24 bits, 0 for what is near
+    U24,
+}
+
+impl Depth {
+    const fn format(self) -> DepthFormat {
+        match self {
+            Self::Exact => DepthFormat::Exact,
+            Self::Double => DepthFormat::Double,
+            Self::F32 => DepthFormat::F32,
+            Self::F32Reversed => DepthFormat::F32Reversed,
+            Self::U24 => DepthFormat::U24,
+        }
+    }
+}
+
+/// A method that is ready to draw.
+#[derive(Debug)]
+pub(super) struct Ready {
+    name: &'static str,
+    method: Box<dyn VisibleSurface>,
+    prepared: Prepared,
+}
+
+/// What it took to make a method ready for all pictures of a scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Prepared {
+    pub(super) time: Duration,
+    /// Splits of faces and their pieces.
+    pub(super) splits: u64,
+}
+
+/// What a method drew.
+#[derive(Debug)]
+pub(super) struct Drawn {
+    pub(super) method: &'static str,
+    pub(super) image: Image,
+    pub(super) counters: Counters,
+    pub(super) prepared: Prepared,
+    pub(super) time: Duration,
+}
+
+impl Ready {
+    /// Makes a method ready.
+    pub(super) fn new(kind: Kind, depth: DepthFormat, faces: &Faces) -> Self {
+        let start = Instant::now();
+        let tree = || {
+            let tree = Bsp::build(faces, &BspOptions::default());
+            let splits = tree.stats().splits;
+            (tree, splits)
+        };
+        let (method, splits): (Box<dyn VisibleSurface>, u64) = match kind {
+            Kind::Painter => (Box::new(Painter), 0),
+            Kind::Newell => (Box::new(Newell), 0),
+            Kind::Schumacker => {
+                let clusters = Schumacker::build(faces, &SchumackerOptions::default());
+                let splits = clusters.stats().splits;
+                (Box::new(clusters), splits)
+            }
+            Kind::Bsp => {
+                let (tree, splits) = tree();
+                (Box::new(tree), splits)
+            }
+            Kind::BspFront => {
+                let (tree, splits) = tree();
+                (Box::new(tree.front_to_back()), splits)
+            }
+            Kind::Zbuffer => (Box::new(ZBuffer::new(depth)), 0),
+            Kind::Raycast => (Box::new(RayCaster::build(faces)), 0),
+        };
+        let prepared = Prepared { time: start.elapsed(), splits };
+        let name = match kind {
+            // One tree has one name, whichever way it is walked.
+            Kind::BspFront => "bsp-front",
+            _ => method.name(),
+        };
+        Self { name, method, prepared }
+    }
+
+    /// Draws a picture.
+    pub(super) fn draw(&self, shot: &Shot<'_>) -> Drawn {
+        let start = Instant::now();
+        let (image, counters) = self.method.picture(shot);
+        Drawn { method: self.name, image, counters, prepared: self.prepared, time: start.elapsed() }
+    }
+}
+
+/// The methods that are compared, each with what a z-buffer keeps: those of `kinds` and the ray caster, or all if there are
+/// none; z-buffers of all formats unless one is named.
+pub(super) fn compared(kinds: &[Kind], depth: Option<Depth>) -> Vec<(Kind, DepthFormat)> {
+    let kinds = if kinds.is_empty() { <Kind as clap::ValueEnum>::value_variants() } else { kinds };
+    let mut all = Vec::new();
+    for &kind in kinds {
+        match (kind, depth) {
+            (Kind::Zbuffer, None) => all.extend(DepthFormat::ALL.map(|format| (kind, format))),
+            _ => all.push((kind, format_of(depth))),
+        }
+    }
+    if !kinds.contains(&Kind::Raycast) {
+        all.push((Kind::Raycast, DepthFormat::Exact));
+    }
+    all
+}
+
+/// The format that is meant.
+pub(super) fn format_of(depth: Option<Depth>) -> DepthFormat {
+    depth.map_or(DepthFormat::Exact, Depth::format)
+}

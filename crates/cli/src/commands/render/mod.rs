@@ -1,0 +1,186 @@
+//! `render`: what one eye sees of a scene, drawn by one method, or by all side by side.
+
+mod cull;
+mod error;
+mod eye;
+mod method;
+mod outcome;
+
+pub(crate) use error::RenderError;
+
+use crate::Answer;
+use crate::error::CliError;
+use crate::input::{self, Kind as FileKind};
+use crate::output;
+use crate::progress::Bar;
+use crate::view::Up;
+use cull::{Cull, leave_out, seen_by_table};
+use eye::EyeArgs;
+use method::{Depth, Drawn, Kind, Ready, compared, format_of};
+use outcome::{Outcome, Row};
+use sightlines::formats::scene::read_scene;
+use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
+use sightlines::visible_surface::{Camera, Chosen, Comparison, DepthFormat, Faces, NOTHING, Shot, compare};
+use std::path::PathBuf;
+
+/// The most pixels of a sheet: 400 MB of colours.
+const MOST_PIXELS: u64 = 1 << 27;
+
+/// Arguments of `render`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Each face has a colour of its own, so that pictures can be compared pixel by pixel; what is dark is \
+                  nothing. All methods but the painter's and rounded z-buffers are exact: a pixel shows the face that the \
+                  ray through its centre meets first, without rounding, and of faces at one depth the one that comes first in \
+                  the scene. With --compare there is a picture for each method in the sheet, with its number, as in \
+                  the table that is printed, above it: faces are darkened, and pixels that are not as the ray caster's, from which nothing but back faces \
+                  was left out, are magenta, but for those in doubt: there the ray meets both faces at one depth."
+)]
+pub(crate) struct RenderArgs {
+    /// The scene: GLB, glTF or OBJ
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    #[command(flatten)]
+    eye: EyeArgs,
+    /// How to find what is seen; several, separated by commas, with --compare
+    #[arg(long, value_name = "NAME[,NAME...]", value_enum, value_delimiter = ',', required_unless_present = "compare")]
+    method: Vec<Kind>,
+    /// Draw by all methods, or those of --method and the ray caster, in one sheet, and count the pixels that are not as the ray caster's
+    #[arg(long)]
+    compare: bool,
+    /// What the z-buffer keeps; exact if not given, with --compare all
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    depth: Option<Depth>,
+    /// What to leave out before anything is drawn, in this order; separated by commas
+    #[arg(long, value_name = "WAY[,WAY...]", value_enum, value_delimiter = ',')]
+    cull: Vec<Cull>,
+    /// For --cull pvs: a table of the scene, plain or packed
+    #[arg(long, value_name = "FILE.pvs")]
+    table: Option<PathBuf>,
+    /// Colour objects instead of faces
+    #[arg(long)]
+    by_object: bool,
+    /// The picture to write
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, CliError> {
+    check(args)?;
+    if input::kind_of(&args.scene)? != Some(FileKind::Scene) {
+        return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
+    }
+    let file = read_scene(&args.scene)?;
+    let faces =
+        Faces::of_scene(&file.scene).map_err(|source| RenderError::Faces { path: args.scene.clone(), source })?;
+    let up = args.eye.up(Up::axis(file.info.up));
+    let camera = args.eye.camera(up)?;
+    let methods = methods(args, &camera)?;
+    let seen = match &args.table {
+        Some(table) => seen_by_table(table, &args.scene, &file.scene, camera.eye())?,
+        None => None,
+    };
+    let mut chosen = Chosen::all(&faces);
+    let culled = leave_out(&args.cull, &faces, &camera, seen.as_deref(), &mut chosen);
+    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let bar = Bar::new("pictures", show_progress);
+    let (rows, png) = if args.compare {
+        side_by_side(args, &shot, &methods, &bar)
+    } else {
+        let (kind, depth) = methods[0];
+        let drawn = Ready::new(kind, depth, &faces).draw(&shot);
+        let png = faces_png(camera.size(), &shown(args, &faces, drawn.image.faces()));
+        (vec![Row::new(&drawn, None)], png)
+    };
+    drop(bar);
+    let png = png.map_err(|source| CliError::Png { path: args.output.clone(), source })?;
+    let outcome = Outcome {
+        scene: args.scene.display().to_string(),
+        n_objects: file.scene.objects().len(),
+        n_faces: faces.len(),
+        n_drawn: chosen.len(),
+        eye: args.eye.eye,
+        look_at: args.eye.look_at,
+        up,
+        fov: args.eye.fov,
+        size: camera.size(),
+        depths: camera.depths(),
+        culled,
+        compared: args.compare,
+        pictures: rows,
+        file: args.output.display().to_string(),
+    };
+    output::save(&args.output, &png)?;
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// Refuses options that do not go together, and outputs that would replace what is read.
+fn check(args: &RenderArgs) -> Result<(), CliError> {
+    if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        return Err(CliError::NotPng(args.output.clone()));
+    }
+    for path in std::iter::once(&args.scene).chain(&args.table) {
+        output::refuse_same(path, &args.output)?;
+    }
+    let has_buffer = args.method.contains(&Kind::Zbuffer) || args.method.is_empty();
+    match (args.cull.contains(&Cull::Pvs), &args.table) {
+        (true, None) => Err(RenderError::NoTable.into()),
+        (false, Some(_)) => Err(RenderError::NoCulling.into()),
+        _ if args.method.len() > 1 && !args.compare => Err(RenderError::ManyMethods.into()),
+        _ if args.depth.is_some() && !has_buffer => Err(RenderError::NoBuffer.into()),
+        _ => Ok(()),
+    }
+}
+
+/// The methods that are drawn. With `--compare` the ray caster is one of them, and their sheet is not too large.
+fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)>, RenderError> {
+    if !args.compare {
+        return Ok(args.method.iter().map(|&kind| (kind, format_of(args.depth))).collect());
+    }
+    let methods = compared(&args.method, args.depth);
+    let (n, size) = (methods.len(), camera.size());
+    match sheet_size(size, n) {
+        Some([w, h]) if u64::from(w) * u64::from(h) <= MOST_PIXELS => Ok(methods),
+        _ => Err(RenderError::Sheet { n, size, most: MOST_PIXELS }),
+    }
+}
+
+/// Draws by several methods, and compares with what the ray caster sees where nothing but back faces was left out.
+fn side_by_side(
+    args: &RenderArgs,
+    shot: &Shot<'_>,
+    methods: &[(Kind, DepthFormat)],
+    bar: &Bar,
+) -> (Vec<Row>, Result<Vec<u8>, PngError>) {
+    let Shot { faces, camera, .. } = *shot;
+    let caster = Ready::new(Kind::Raycast, DepthFormat::Exact, faces);
+    let mut whole = Chosen::all(faces);
+    let facing: Vec<Cull> = args.cull.iter().copied().filter(|way| *way == Cull::Backface).collect();
+    leave_out(&facing, faces, camera, None, &mut whole);
+    let reference = caster.draw(&Shot { chosen: &whole, ..*shot }).image;
+    let mut all: Vec<(Vec<u32>, Comparison)> = Vec::new();
+    let mut rows = Vec::new();
+    for (k, &(kind, depth)) in methods.iter().enumerate() {
+        bar.set(k, methods.len());
+        let drawn: Drawn = match kind {
+            Kind::Raycast => caster.draw(shot),
+            _ => Ready::new(kind, depth, faces).draw(shot),
+        };
+        let comparison = compare(shot, &reference, &drawn.image);
+        rows.push(Row::new(&drawn, Some(&comparison)));
+        all.push((shown(args, faces, drawn.image.faces()), comparison));
+    }
+    let pictures: Vec<SheetPicture<'_>> =
+        all.iter().map(|(faces, comparison)| SheetPicture { faces, marked: &comparison.wrong }).collect();
+    (rows, sheet_png(camera.size(), &pictures))
+}
+
+/// What pixels are coloured by.
+fn shown(args: &RenderArgs, faces: &Faces, seen: &[u32]) -> Vec<u32> {
+    let shown = |&face: &u32| if args.by_object && face != NOTHING { faces.object(face) } else { face };
+    seen.iter().map(shown).collect()
+}

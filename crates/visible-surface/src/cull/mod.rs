@@ -1,0 +1,34 @@
+//! Culling: which faces need not be drawn, whatever draws them.
+//!
+//! Each function takes faces away from a [`Chosen`] and says how many. What it takes away covers no pixel ([`frustum`]), shows only its back
+//! ([`backface`]), or belongs to objects that someone who knows says cannot be seen ([`objects`]). What hides behind other faces is the
+//! subject of [`hierarchical`](crate::hierarchical).
+
+mod backface;
+mod frustum;
+pub mod transform;
+mod view;
+
+pub use backface::{Facing, backface, backface_region, corners_of, facing};
+pub use frustum::{Cover, Frustum, frustum};
+pub(crate) use view::{View, is_usable};
+
+use crate::chosen::Chosen;
+use crate::faces::Faces;
+use sightlines_geometry::Aabb;
+
+/// Keeps the faces of those objects for which `keep` says so: for whoever has a table of what is potentially visible. How many went.
+pub fn objects(faces: &Faces, chosen: &mut Chosen, keep: impl Fn(u32) -> bool) -> u64 {
+    chosen.retain(|face| keep(faces.object(face)))
+}
+
+/// For each object the smallest box around those of its faces that are chosen; [`Aabb::EMPTY`] where none is.
+pub fn object_boxes(faces: &Faces, chosen: &Chosen) -> Vec<Aabb<3>> {
+    let n = faces.ids().map(|f| faces.object(f) as usize + 1).max().unwrap_or(0);
+    let mut boxes = vec![Aabb::EMPTY; n];
+    for face in chosen.iter() {
+        let own = &mut boxes[faces.object(face) as usize];
+        *own = faces.of(face).iter().fold(*own, |all, &p| all.with(p));
+    }
+    boxes
+}
