@@ -2,9 +2,9 @@
 
 use sightlines_cells::Plan;
 use sightlines_scenes::{
-    BspWorldOptions, DepthPairsOptions, OfficeOptions, QuakeLikeOptions, SceneError, SurfaceOptions, TowerOptions, World,
-    bsp_world, coplanar, cycles, degenerate, depth_pairs, doom_like, interleaved, lattice, maze, office, pillared_hall,
-    quake_like, slivers, soup, split_worst, tower, turned_pillared_hall, world,
+    BspWorldOptions, DepthPairsOptions, OfficeOptions, QuakeLikeOptions, SceneError, SurfaceOptions, TowerOptions,
+    World, bsp_world, coplanar, cycles, degenerate, depth_pairs, doom_like, interleaved, lattice, maze, office,
+    pillared_hall, quake_like, slivers, soup, split_worst, tower, turned_pillared_hall, world,
 };
 
 fn main() -> Result<(), SceneError> {

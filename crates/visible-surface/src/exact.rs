@@ -56,7 +56,8 @@ impl Dyadic {
             (_, 0) => a.exponent,
             _ => a.exponent.min(b.exponent),
         };
-        let shifted = |x: &Self| if x.sign() == 0 { BigInt::ZERO } else { &x.mantissa << (x.exponent - exponent) as u32 };
+        let shifted =
+            |x: &Self| if x.sign() == 0 { BigInt::ZERO } else { &x.mantissa << (x.exponent - exponent) as u32 };
         (shifted(a), shifted(b), exponent)
     }
 }

@@ -1,7 +1,8 @@
 //! View-volume culling: what lies outside of what the camera sees.
 //!
-//! The view volume is what rays of the picture meet between the nearest and the farthest depth. Its sides are planes through the eye and the
-//! picture's edges. Products are taken in doubles with derived bounds, and only what is surely outside is called so.
+//! The view volume is what rays of the picture meet between the nearest and the farthest depth. Its sides are planes
+//! through the eye and the picture's edges. Products are taken in doubles with derived bounds, and only what is surely
+//! outside is called so.
 
 use super::{View, object_boxes};
 use crate::camera::{Camera, TINY_ERROR, U};
@@ -34,9 +35,9 @@ struct Side {
 
 /// What a camera sees, as a convex volume: the sides of the picture, the least depth and the greatest.
 ///
-/// Answers may say [`Cover::Across`] of something that is outside near an edge of the volume: each side is asked for itself, and the
-/// smallest box around the volume besides. No answer is wrong the other way. What has coordinates that no scene may have, or none, is
-/// [`Cover::Across`]; what is empty is outside.
+/// Answers may say [`Cover::Across`] of something that is outside near an edge of the volume: each side is asked for
+/// itself, and the smallest box around the volume besides. No answer is wrong the other way. What has coordinates that no
+/// scene may have, or none, is [`Cover::Across`]; what is empty is outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frustum {
     eye: Point3,
@@ -161,9 +162,7 @@ impl Frustum {
             if greatest < side.at[0] {
                 return Cover::Outside;
             }
-            if !(least > side.at[1]) {
-                cover = Cover::Across;
-            }
+            cover = if least > side.at[1] { cover } else { Cover::Across };
         }
         cover
     }
@@ -200,8 +199,8 @@ fn finite(x: f64) -> f64 {
     if x.is_finite() { x } else { 0.0 }
 }
 
-/// Takes away the faces that are surely outside of the view volume, first by the boxes of objects and then one by one; how many went.
-/// No face goes that covers a pixel.
+/// Takes away the faces that are surely outside of the view volume, first by the boxes of objects and then one by one;
+/// how many went. No face goes that covers a pixel.
 pub fn frustum(faces: &Faces, camera: &Camera, chosen: &mut Chosen) -> u64 {
     let volume = Frustum::of(camera);
     let cover: Vec<Cover> = object_boxes(faces, chosen).iter().map(|b| volume.of_box(b)).collect();

@@ -73,10 +73,7 @@ impl Fragment {
         }
         // Both hold.
         let both = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
-        Extents {
-            pixels: [0, 1].map(|k| both(own.pixels[k], whole.pixels[k])),
-            depth: both(own.depth, whole.depth),
-        }
+        Extents { pixels: [0, 1].map(|k| both(own.pixels[k], whole.pixels[k])), depth: both(own.depth, whole.depth) }
     }
 }
 
@@ -95,7 +92,7 @@ fn mean(corners: &[Place; 3], (weight, error): ([f64; 3], [f64; 3])) -> Option<P
             let size = w.abs() + e;
             bound += size * c.error[axis] + e * c.scaled[axis].abs() + 8.0 * U * size * c.scaled[axis].abs();
         }
-        (place.scaled[axis], place.error[axis]) = (value, bound * (1.0 + 64.0 * U));
+        (place.scaled[axis], place.error[axis]) = (value, bound * (1.0 + 64.0 * U) + f64::MIN_POSITIVE);
     }
     // The depth is divided by the sum of the weights as well.
     place.volume_error = (place.volume_error * (sum + off) + place.volume * (off + 4.0 * U * sum)) * (1.0 + 64.0 * U);

@@ -47,7 +47,7 @@ pub(crate) struct Edge {
     pub(crate) on: On,
     /// 1 or -1: the side of the plane that is inside.
     pub(crate) sign: i8,
-    /// Coefficients: values at the corners of the face, times the sign.
+    /// Coefficients: values at the corners of the face, times the sign and a positive number.
     form: [f64; 3],
     /// How much each may be off.
     error: [f64; 3],
@@ -63,8 +63,12 @@ static WHOLE: [Edge; 3] = [whole(2, [0., 0., 1.]), whole(0, [1., 0., 0.]), whole
 impl Edge {
     fn new(faces: &Faces, face: u32, plane: Plane, sign: i8) -> Self {
         let values = faces.of(face).map(|p| plane.at(faces, p));
-        let form = values.map(|v| f64::from(sign) * v.value);
-        Self { on: On::Plane(plane), sign, form, error: values.map(|v| v.error) }
+        // Divided by a power of two, so that products of coefficients stay far from the ends of what doubles hold.
+        let largest = values.iter().fold(0.0f64, |m, v| m.max(v.value.abs()));
+        let scale = if largest.is_normal() { 2f64.powi(1023 - (largest.to_bits() >> 52) as i32) } else { 1.0 };
+        let form = values.map(|v| f64::from(sign) * v.value * scale);
+        let error = values.map(|v| if v.error == 0.0 { 0.0 } else { v.error * scale + f64::MIN_POSITIVE });
+        Self { on: On::Plane(plane), sign, form, error }
     }
 
     /// The function without rounding.
@@ -197,10 +201,13 @@ fn corner(f: &Edge, g: &Edge) -> ([f64; 3], [f64; 3]) {
     for (k, i, j) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
         let (left, right) = (f.form[i] * g.form[j], f.form[j] * g.form[i]);
         out.0[k] = left - right;
-        let bound = |a: usize, b: usize| {
-            f.form[a].abs() * g.error[b] + f.error[a] * g.form[b].abs() + f.error[a] * g.error[b]
-        };
-        out.1[k] = bound(i, j) + bound(j, i) + 2.0 * crate::camera::U * (left.abs() + right.abs());
+        let bound =
+            |a: usize, b: usize| f.form[a].abs() * g.error[b] + f.error[a] * g.form[b].abs() + f.error[a] * g.error[b];
+        let is_zero =
+            |a: usize, b: usize| f.form[a] == 0.0 && f.error[a] == 0.0 || g.form[b] == 0.0 && g.error[b] == 0.0;
+        // What products may lose below the smallest normal double.
+        let lost = if is_zero(i, j) && is_zero(j, i) { 0.0 } else { f64::MIN_POSITIVE };
+        out.1[k] = bound(i, j) + bound(j, i) + 2.0 * crate::camera::U * (left.abs() + right.abs()) + lost;
     }
     out
 }

@@ -80,7 +80,11 @@ fn fragments_lie_and_are_cut_as_in_fractions() {
             prop_assert_eq!(fragment.relation(&faces, &plane), want);
             // The form that planes across an axis share says the same, up to the side that it calls its front.
             let shared = fragment.relation(&faces, &Plane::of(&faces, face));
-            let turned = match want { Relation::Front => Relation::Behind, Relation::Behind => Relation::Front, other => other };
+            let turned = match want {
+                Relation::Front => Relation::Behind,
+                Relation::Behind => Relation::Front,
+                other => other,
+            };
             prop_assert!(shared == want || shared == turned);
             seen.borrow_mut()[want as usize] += 1;
             prop_assert_eq!(parts.is_some(), want == Relation::Across);
@@ -109,14 +113,15 @@ fn parts_share_the_pixels() {
     let triangles = prop::collection::vec([point(), point(), point()], 4);
     let run = runner.run(&(point(), triangles), |(eye, corners)| {
         let faces = Faces::new(corners).expect("small numbers");
-        let camera =
-            Camera::new(eye, [-0.25, 0.25, -0.25], [0.0625, 0.0, 0.0], [0.0, -0.0625, 0.0], [8, 8]).expect("spans space");
+        let camera = Camera::new(eye, [-0.25, 0.25, -0.25], [0.0625, 0.0, 0.0], [0.0, -0.0625, 0.0], [8, 8])
+            .expect("spans space");
         if !faces.ids().all(|f| faces.has_area(f)) {
             return Ok(());
         }
         let mut parts = vec![Fragment::whole(0)];
         for face in 1..4 {
-            let cut = |f: &Fragment| f.split(&faces, &Plane::of(&faces, face)).1.map_or_else(|| vec![f.clone()], Vec::from);
+            let cut =
+                |f: &Fragment| f.split(&faces, &Plane::of(&faces, face)).1.map_or_else(|| vec![f.clone()], Vec::from);
             parts = parts.iter().flat_map(cut).collect();
         }
         let mut count = [0i32; 64];
