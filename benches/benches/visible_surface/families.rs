@@ -27,8 +27,7 @@ pub(crate) struct Case {
 }
 
 /// Scenes of the data folder, small ones first.
-const REAL: [&str; 8] =
-    ["whale_tall", "duplex", "whale_large", "delft", "office_a", "pandora", "sponza", "castle"];
+const REAL: [&str; 8] = ["whale_tall", "duplex", "whale_large", "delft", "office_a", "pandora", "sponza", "castle"];
 
 impl Family {
     pub(crate) const ALL: [Self; 8] = [

@@ -150,7 +150,8 @@ pub(crate) fn read(text: &str) -> Result<Vec<Row>, String> {
 
 fn parse(line: &str) -> Option<Row> {
     let all: Vec<&str> = line.split(',').collect();
-    let &[family, faces, method, is_exact, prepare, draw, wrong, ties, covered, pieces, written, exact] = &all[..] else {
+    let &[family, faces, method, is_exact, prepare, draw, wrong, ties, covered, pieces, written, exact] = &all[..]
+    else {
         return None;
     };
     Some(Row {
@@ -170,7 +171,9 @@ fn parse(line: &str) -> Option<Row> {
 }
 
 pub(crate) fn print(rows: &[Row]) {
-    println!("| scene | faces | method | prepare, ms | draw, ms | wrong | ties | covered | pieces | overdraw | exact |");
+    println!(
+        "| scene | faces | method | prepare, ms | draw, ms | wrong | ties | covered | pieces | overdraw | exact |"
+    );
     println!("| --- | --: | --- | --: | --: | --: | --: | --: | --: | --: | --: |");
     for r in rows {
         println!(

@@ -1,7 +1,9 @@
 //! What the precision of depths is worth: wrong pixels of each format, as the nearest depth moves away from what is seen.
 
 use sightlines::scenes::surfaces::{self, DepthPairsOptions, depth_pairs};
-use sightlines::visible_surface::{Camera, Chosen, DepthFormat, Faces, RayCaster, Shot, VisibleSurface, ZBuffer, compare};
+use sightlines::visible_surface::{
+    Camera, Chosen, DepthFormat, Faces, RayCaster, Shot, VisibleSurface, ZBuffer, compare,
+};
 
 /// One over these are the nearest depths; the farthest is [`FAR`].
 const NEAR: [u32; 8] = [1, 4, 16, 64, 256, 1024, 4096, 16_384];

@@ -2,9 +2,7 @@
 
 use sightlines::bake::{SceneBakeOptions, bake_scene};
 use sightlines::scenes::{TowerOptions, tower, tower_rooms};
-use sightlines::visible_surface::{
-    Bsp, BspOptions, Camera, Chosen, Faces, Shot, VisibleSurface, ZBuffer, cull,
-};
+use sightlines::visible_surface::{Bsp, BspOptions, Camera, Chosen, Faces, Shot, VisibleSurface, ZBuffer, cull};
 use std::error::Error;
 use std::time::Instant;
 
@@ -52,7 +50,10 @@ pub(crate) fn print(test: bool, size: [u32; 2]) -> Result<(), Box<dyn Error>> {
         n_eyes += 1;
     }
     assert!(totals[1][0] < totals[0][0], "with the table fewer fragments are drawn");
-    println!("\nA tower of {} triangles, {n_eyes} eyes in its rooms; means. The tree took {built:.2} s.\n", faces.len());
+    println!(
+        "\nA tower of {} triangles, {n_eyes} eyes in its rooms; means. The tree took {built:.2} s.\n",
+        faces.len()
+    );
     println!("| faces | BSP front to back: fragments | pixels | ms | z-buffer: ms |");
     println!("| --- | --: | --: | --: | --: |");
     for (name, total) in ["all", "those of the table"].iter().zip(totals) {

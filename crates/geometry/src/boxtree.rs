@@ -95,7 +95,8 @@ impl<const D: usize> BoxTree<D> {
         let n = boxes.len();
         let sorted = std::array::from_fn(|axis| {
             let mut ids: Vec<u32> = (0..n as u32).collect();
-            let key = |i: u32| (boxes[i as usize].min[axis] + boxes[i as usize].max[axis], boxes[i as usize].min[axis], i);
+            let key =
+                |i: u32| (boxes[i as usize].min[axis] + boxes[i as usize].max[axis], boxes[i as usize].min[axis], i);
             ids.sort_unstable_by(|&a, &b| {
                 let (a, b) = (key(a), key(b));
                 a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))

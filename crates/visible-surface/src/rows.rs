@@ -53,15 +53,7 @@ pub(crate) fn spans(
 
 /// Those of the pixels from `from` to before `to` of a row whose centres are inside a side.
 #[inline]
-fn narrowed(
-    camera: &Camera,
-    faces: &Faces,
-    side: &Side,
-    y: u32,
-    from: u32,
-    to: u32,
-    doubts: &mut u64,
-) -> (u32, u32) {
+fn narrowed(camera: &Camera, faces: &Faces, side: &Side, y: u32, from: u32, to: u32, doubts: &mut u64) -> (u32, u32) {
     let base = side.b * (f64::from(y) + 0.5) + side.c;
     let at = |x: u32| side.a * (f64::from(x) + 0.5) + base;
     let (first, last) = (at(from), at(to - 1));

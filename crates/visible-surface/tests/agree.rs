@@ -5,13 +5,22 @@ mod oracle;
 use proptest::prelude::*;
 use sightlines_geometry::Point3;
 use sightlines_visible_surface::{
-    Camera, Chosen, Comparison, DepthFormat, Faces, RayCaster, Shot, VisibleSurface, ZBuffer, compare,
+    Bsp, BspOptions, Camera, Chosen, Comparison, DepthFormat, Faces, Newell, Painter, RayCaster, Schumacker,
+    SchumackerOptions, Shot, VisibleSurface, ZBuffer, compare,
 };
 use std::cell::Cell;
 
 /// All methods that are right by their promise.
 fn exact_methods(faces: &Faces) -> Vec<Box<dyn VisibleSurface>> {
-    vec![Box::new(ZBuffer::new(DepthFormat::Exact)), Box::new(RayCaster::build(faces))]
+    let bsp = Bsp::build(faces, &BspOptions::default());
+    vec![
+        Box::new(ZBuffer::new(DepthFormat::Exact)),
+        Box::new(RayCaster::build(faces)),
+        Box::new(Newell),
+        Box::new(bsp.clone()),
+        Box::new(bsp.front_to_back()),
+        Box::new(Schumacker::build(faces, &SchumackerOptions::default())),
+    ]
 }
 
 /// Points of a grid, some a unit in the last place beside it, scaled.
@@ -32,7 +41,8 @@ fn camera() -> impl Strategy<Value = Camera> {
         [[-0.5, 0.25, -0.5], [0.125, 0.0, 0.125], [0.0, -0.125, 0.0625]],
         [[0.0, 0.5, -0.5], [0.1, 0.0, 0.1], [0.03, -0.125, -0.07]],
     ]);
-    let depths = prop::sample::select(vec![[0.0, f64::INFINITY], [0.0, f64::INFINITY], [0.5, 1.5], [0.3, f64::INFINITY]]);
+    let depths =
+        prop::sample::select(vec![[0.0, f64::INFINITY], [0.0, f64::INFINITY], [0.5, 1.5], [0.3, f64::INFINITY]]);
     (point(4), rays, depths).prop_map(|(eye, [corner, across, down], [near, far])| {
         let camera = Camera::new(eye, corner, across, down, [8, 8]).expect("rays that span space");
         camera.with_depths(near, far).expect("a range of depths")
@@ -98,6 +108,7 @@ fn coordinates_of_any_size_are_drawn() {
         for format in DepthFormat::ALL {
             ZBuffer::new(format).picture(&shot);
         }
+        Painter.picture(&shot);
         covered.set(covered.get() + truth.n_covered());
         Ok(())
     });

@@ -117,6 +117,27 @@ fn newell_is_right_at_any_scale() {
     assert!(n_covered.get() > 300 && n_mixed.get() > 5, "{} {}", n_covered.get(), n_mixed.get());
 }
 
+/// Pieces whose corners are products of numbers near the smallest double were once lost.
+#[test]
+fn newell_keeps_pieces_of_tiny_faces() {
+    let soup = [
+        [[1.0, 0.0, 1.0], [3.0, 4.0, 1.0], [3.0, 4.0, 2.0]],
+        [[1.0, 4.0, 1.0], [3.0, 3.0, 5.0], [3.0, 2.0, 5.0]],
+        [[1.0, 3.0, 5.0], [3.0, 0.0, 1.0], [3.0, 0.0, 2.0]],
+        [[2.0, 0.0, 4.0], [2.0, 4.0, 2.0], [3.0, 0.0, 0.0]],
+        [[1.0, 4.0, 1.0], [0.0, 1.0, 2.0], [4.0, 1.0, 4.0]],
+    ];
+    let times = |v: [f64; 3], exponent: i32| v.map(|x| x * 2f64.powi(exponent));
+    let faces = Faces::new(soup.map(|t: Triangle| t.map(|p| times(p, -127))).to_vec()).unwrap();
+    let [corner, across, down] = [[-1.0, -1.0, 1.0], [0.25, 0.0, 0.0], [0.0, 0.25, 0.0]].map(|v| times(v, -95));
+    let camera = Camera::new(times([1.5, 2.5, -3.0], -127), corner, across, down, [8; 2]).unwrap();
+    let chosen = Chosen::all(&faces);
+    let truth = look(&faces, &camera, &chosen);
+    let (image, counters) = Newell.picture(&Shot { faces: &faces, camera: &camera, chosen: &chosen });
+    assert_eq!((truth.wrong(&image), truth.n_covered()), (vec![], 6));
+    assert!(counters.splits > 0);
+}
+
 /// Soundness and tightness of the order itself: no face is drawn before one that it hides, and something is split
 /// exactly if faces hide each other in a circle. The impostor: two faces of which one hides the other, exchanged, are
 /// found.

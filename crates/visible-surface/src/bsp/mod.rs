@@ -148,7 +148,10 @@ impl Bsp {
 
 impl VisibleSurface for Bsp {
     fn name(&self) -> &'static str {
-        "bsp"
+        match self.order {
+            Order::BackToFront => "bsp",
+            Order::FrontToBack => "bsp-front",
+        }
     }
 
     /// # Panics

@@ -49,7 +49,8 @@ impl VisibleSurface for RayCaster {
         assert_eq!(self.n_faces, shot.faces.len(), "a tree is asked about the faces that it was built of");
         let [width, height] = shot.camera.size();
         let mut image = Image::new([width, height]);
-        let mut cast = Cast { caster: self, shot, duel: Duel::default(), n_boxes: 0, n_faces: 0, n_doubts: 0, stack: Vec::new() };
+        let mut cast =
+            Cast { caster: self, shot, duel: Duel::default(), n_boxes: 0, n_faces: 0, n_doubts: 0, stack: Vec::new() };
         for y in 0..height {
             for x in 0..width {
                 let face = cast.first(x, y);

@@ -68,13 +68,8 @@ impl Side {
         let (v, v_size) = depth_value(camera, faces, &plane);
         // t >= depth where v / (n · d) >= depth, so v - depth * n · d has the sign of v: the function of a direction has no
         // constant, so the constant is added below.
-        let mut side = Self::new(
-            camera,
-            n.map(|x| -depth * x),
-            n_size.map(|x| depth * x),
-            Source::Depth(plane, depth),
-            false,
-        );
+        let mut side =
+            Self::new(camera, n.map(|x| -depth * x), n_size.map(|x| depth * x), Source::Depth(plane, depth), false);
         side.c += v;
         side.error += 16.0 * U * v_size + U * side.c.abs();
         side

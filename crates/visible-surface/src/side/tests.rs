@@ -19,21 +19,30 @@ fn det(a: &R3, b: &R3, c: &R3) -> BigRational {
 }
 
 fn sign(x: &BigRational) -> i32 {
-    if x.is_zero() { 0 } else if x.is_positive() { 1 } else { -1 }
+    if x.is_zero() {
+        0
+    } else if x.is_positive() {
+        1
+    } else {
+        -1
+    }
 }
 
 /// Points of a coarse grid, and some a few units in the last place beside it.
 fn point() -> impl Strategy<Value = Point3> {
-    let one = (-2i32..3, prop::sample::select(vec![0i64, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, -1])).prop_map(|(x, ulps)| {
-        let x = f64::from(x) * 0.125;
-        if x == 0.0 { 0.0 } else { f64::from_bits(x.to_bits().wrapping_add_signed(ulps)) }
-    });
+    let one = (-2i32..3, prop::sample::select(vec![0i64, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, -1])).prop_map(
+        |(x, ulps)| {
+            let x = f64::from(x) * 0.125;
+            if x == 0.0 { 0.0 } else { f64::from_bits(x.to_bits().wrapping_add_signed(ulps)) }
+        },
+    );
     [one.clone(), one.clone(), one]
 }
 
 /// An eye on the grid whose rays pass through points of the grid.
 fn camera(eye: Point3) -> Camera {
-    Camera::new(eye, [-0.3125, 0.3125, -0.5], [0.125, 0.0, 0.0], [0.0, -0.125, 0.0], [4, 4]).expect("rays that span space")
+    Camera::new(eye, [-0.3125, 0.3125, -0.5], [0.125, 0.0, 0.0], [0.0, -0.125, 0.0], [4, 4])
+        .expect("rays that span space")
 }
 
 fn ray(camera: &Camera, x: u32, y: u32) -> R3 {
@@ -66,7 +75,8 @@ fn signs_are_those_of_fractions() {
         // Exactly one side of a line has a pixel, unless the line is none.
         let other = Side::edge(&camera, a[1], a[0]);
         let both = [edge.has(&camera, &faces, x, y), other.has(&camera, &faces, x, y)];
-        let line = [[0, 0], [3, 0], [0, 3]].map(|[x, y]| sign(&det(&sub(&rational(a[0]), &e), &sub(&rational(a[1]), &e), &ray(&camera, x, y))));
+        let line = [[0, 0], [3, 0], [0, 3]]
+            .map(|[x, y]| sign(&det(&sub(&rational(a[0]), &e), &sub(&rational(a[1]), &e), &ray(&camera, x, y))));
         prop_assert_eq!(both[0] != both[1], line != [0; 3], "{:?}", both);
         if !(faces.has_area(0) && faces.has_area(1)) {
             return Ok(());

@@ -55,7 +55,6 @@ impl Depth {
 /// A method that is ready to draw.
 #[derive(Debug)]
 pub(super) struct Ready {
-    name: &'static str,
     method: Box<dyn VisibleSurface>,
     prepared: Prepared,
 }
@@ -82,11 +81,6 @@ impl Ready {
     /// Makes a method ready.
     pub(super) fn new(kind: Kind, depth: DepthFormat, faces: &Faces) -> Self {
         let start = Instant::now();
-        let tree = || {
-            let tree = Bsp::build(faces, &BspOptions::default());
-            let splits = tree.stats().splits;
-            (tree, splits)
-        };
         let (method, splits): (Box<dyn VisibleSurface>, u64) = match kind {
             Kind::Painter => (Box::new(Painter), 0),
             Kind::Newell => (Box::new(Newell), 0),
@@ -95,31 +89,50 @@ impl Ready {
                 let splits = clusters.stats().splits;
                 (Box::new(clusters), splits)
             }
-            Kind::Bsp => {
-                let (tree, splits) = tree();
-                (Box::new(tree), splits)
-            }
-            Kind::BspFront => {
-                let (tree, splits) = tree();
-                (Box::new(tree.front_to_back()), splits)
+            Kind::Bsp | Kind::BspFront => {
+                let tree = Bsp::build(faces, &BspOptions::default());
+                return Self::walking(kind, tree, start.elapsed());
             }
             Kind::Zbuffer => (Box::new(ZBuffer::new(depth)), 0),
             Kind::Raycast => (Box::new(RayCaster::build(faces)), 0),
         };
         let prepared = Prepared { time: start.elapsed(), splits };
-        let name = match kind {
-            // One tree has one name, whichever way it is walked.
-            Kind::BspFront => "bsp-front",
-            _ => method.name(),
-        };
-        Self { name, method, prepared }
+        Self { method, prepared }
+    }
+
+    /// A tree that took so long to build, walked in the order of a method.
+    fn walking(kind: Kind, tree: Bsp, time: Duration) -> Self {
+        let prepared = Prepared { time, splits: tree.stats().splits };
+        let tree = if kind == Kind::BspFront { tree.front_to_back() } else { tree };
+        Self { method: Box::new(tree), prepared }
     }
 
     /// Draws a picture.
     pub(super) fn draw(&self, shot: &Shot<'_>) -> Drawn {
         let start = Instant::now();
         let (image, counters) = self.method.picture(shot);
-        Drawn { method: self.name, image, counters, prepared: self.prepared, time: start.elapsed() }
+        Drawn { method: self.method.name(), image, counters, prepared: self.prepared, time: start.elapsed() }
+    }
+}
+
+/// Makes methods ready one after the other; a tree that serves two of them is built once.
+#[derive(Debug, Default)]
+pub(super) struct Readied {
+    tree: Option<(Bsp, Duration)>,
+}
+
+impl Readied {
+    /// Makes a method ready.
+    pub(super) fn next(&mut self, kind: Kind, depth: DepthFormat, faces: &Faces) -> Ready {
+        if !matches!(kind, Kind::Bsp | Kind::BspFront) {
+            return Ready::new(kind, depth, faces);
+        }
+        let (tree, time) = self.tree.get_or_insert_with(|| {
+            let start = Instant::now();
+            let tree = Bsp::build(faces, &BspOptions::default());
+            (tree, start.elapsed())
+        });
+        Ready::walking(kind, tree.clone(), *time)
     }
 }
 

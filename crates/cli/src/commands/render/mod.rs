@@ -16,7 +16,7 @@ use crate::progress::Bar;
 use crate::view::Up;
 use cull::{Cull, leave_out, seen_by_table};
 use eye::EyeArgs;
-use method::{Depth, Drawn, Kind, Ready, compared, format_of};
+use method::{Depth, Drawn, Kind, Readied, Ready, compared, format_of};
 use outcome::{Outcome, Row};
 use sightlines::formats::scene::read_scene;
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
@@ -163,12 +163,12 @@ fn side_by_side(
     leave_out(&facing, faces, camera, None, &mut whole);
     let reference = caster.draw(&Shot { chosen: &whole, ..*shot }).image;
     let mut all: Vec<(Vec<u32>, Comparison)> = Vec::new();
-    let mut rows = Vec::new();
+    let (mut rows, mut readied) = (Vec::new(), Readied::default());
     for (k, &(kind, depth)) in methods.iter().enumerate() {
         bar.set(k, methods.len());
         let drawn: Drawn = match kind {
             Kind::Raycast => caster.draw(shot),
-            _ => Ready::new(kind, depth, faces).draw(shot),
+            _ => readied.next(kind, depth, faces).draw(shot),
         };
         let comparison = compare(shot, &reference, &drawn.image);
         rows.push(Row::new(&drawn, Some(&comparison)));
