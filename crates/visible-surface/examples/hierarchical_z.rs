@@ -1,6 +1,8 @@
-//! What each kind of culling leaves of a scene, and what hierarchical z adds: `hierarchical_z [FILE [EYE_X EYE_Y EYE_Z AT_X AT_Y AT_Z]]`.
+//! What each kind of culling leaves of a scene, and what hierarchical z adds: `hierarchical_z [FILE [EYE_X EYE_Y EYE_Z
+//! AT_X AT_Y AT_Z]]`.
 //!
-//! Without a file a generated city is looked at from one of its streets. With a file and no eye, from the middle of the scene along its longest side.
+//! Without a file a generated city is looked at from one of its streets. With a file and no eye, from the middle of the
+//! scene along its longest side.
 
 use sightlines_scenes::{CityOptions, city};
 use sightlines_visible_surface::cull::{self, object_boxes};

@@ -39,15 +39,24 @@ pub trait VisibleSurface: std::fmt::Debug {
 
     /// The picture of what is seen, and what it took.
     fn picture(&self, shot: &Shot<'_>) -> (Image, Counters) {
-        let mut counters = Counters::default();
-        let image = match self.see(shot, &mut counters) {
-            Seen::Picture(image) => image,
-            Seen::BackToFront(fragments) => back_to_front(shot, &fragments, &mut counters),
-            Seen::FrontToBack(fragments) => front_to_back(shot, &fragments, &mut counters),
-        };
-        counters.covered = image.n_covered();
-        (image, counters)
+        drawn(self, shot)
     }
+}
+
+/// The picture of what a method answers.
+pub(crate) fn drawn<M: VisibleSurface + ?Sized>(method: &M, shot: &Shot<'_>) -> (Image, Counters) {
+    let mut counters = Counters::default();
+    let image = match method.see(shot, &mut counters) {
+        Seen::Picture(image) => image,
+        Seen::BackToFront(fragments) => back_to_front(shot, &fragments, &mut counters),
+        Seen::FrontToBack(fragments) => {
+            let mut canvas = Canvas::new(shot);
+            let _ = fragments.iter().find(|fragment| canvas.draw(fragment, &mut counters) == 0);
+            canvas.finish()
+        }
+    };
+    counters.covered = image.n_covered();
+    (image, counters)
 }
 
 /// Draws fragments one over the other.
@@ -65,18 +74,27 @@ fn back_to_front(shot: &Shot<'_>, fragments: &[Fragment], counters: &mut Counter
     image
 }
 
-/// Draws fragments where nothing is yet, until the picture is full.
-fn front_to_back(shot: &Shot<'_>, fragments: &[Fragment], counters: &mut Counters) -> Image {
-    let mut image = Image::new(shot.camera.size());
-    let [width, height] = shot.camera.size();
-    // For each row how many pixels show nothing yet.
-    let mut open = vec![width; height as usize];
-    let mut n_open = u64::from(width) * u64::from(height);
-    for fragment in fragments {
-        if n_open == 0 {
-            break;
-        }
+/// A picture into which fragments are drawn where nothing is yet.
+#[derive(Debug)]
+pub(crate) struct Canvas<'a> {
+    shot: &'a Shot<'a>,
+    image: Image,
+    /// For each row how many pixels show nothing yet.
+    open: Vec<u32>,
+    n_open: u64,
+}
+
+impl<'a> Canvas<'a> {
+    pub(crate) fn new(shot: &'a Shot<'a>) -> Self {
+        let [width, height] = shot.camera.size();
+        let n_open = u64::from(width) * u64::from(height);
+        Self { shot, image: Image::new([width, height]), open: vec![width; height as usize], n_open }
+    }
+
+    /// Draws a fragment; how many pixels show nothing after it.
+    pub(crate) fn draw(&mut self, fragment: &Fragment, counters: &mut Counters) -> u64 {
         let mut written = 0;
+        let Self { shot, image, open, .. } = self;
         counters.exact += fragment.spans(shot.camera, shot.faces, |y, from, to| {
             if open[y as usize] == 0 {
                 return;
@@ -89,9 +107,13 @@ fn front_to_back(shot: &Shot<'_>, fragments: &[Fragment], counters: &mut Counter
             open[y as usize] -= new;
             written += u64::from(new);
         });
-        n_open -= written;
+        self.n_open -= written;
         counters.written += written;
         counters.fragments += 1;
+        self.n_open
     }
-    image
+
+    pub(crate) fn finish(self) -> Image {
+        self.image
+    }
 }

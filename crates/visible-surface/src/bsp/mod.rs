@@ -13,8 +13,10 @@ mod tree;
 use crate::counters::Counters;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
-use crate::method::{Seen, Shot, VisibleSurface};
+use crate::image::Image;
+use crate::method::{Canvas, Seen, Shot, VisibleSurface, drawn};
 pub(crate) use choose::{Parts, Tally, WEIGHTS, cut};
+use std::ops::ControlFlow;
 pub(crate) use tree::{Child, Place, Tree, Walked};
 
 /// Which of the candidates' planes cuts a node. Ties go to the first candidate.
@@ -132,15 +134,21 @@ impl Bsp {
         self.stats
     }
 
+    /// Calls `at` for each node in the order of the eye with the fragments in its plane by ascending id; until it has enough.
+    fn walk(&self, shot: &Shot<'_>, mut at: impl FnMut(&[Fragment]) -> ControlFlow<()>) -> Walked {
+        assert_eq!(self.tree.n_faces(), shot.faces.len(), "a tree is walked with the faces of which it was made");
+        self.tree.walk(shot.faces, shot.camera.eye(), self.order, shot.chosen, |node| at(self.tree.own(node)))
+    }
+
     /// The chosen faces' fragments in the order of the eye. Those in one plane come so that the lower id is seen.
     fn ordered(&self, shot: &Shot<'_>, counters: &mut Counters) -> Vec<Fragment> {
         let mut out = Emitted::new(shot);
-        let walked = self.tree.walk(shot.faces, shot.camera.eye(), self.order, shot.chosen, |node| {
-            let own = self.tree.own(node);
+        let walked = self.walk(shot, |own| {
             match self.order {
                 Order::BackToFront => own.iter().rev().for_each(|f| out.push(f)),
                 Order::FrontToBack => own.iter().for_each(|f| out.push(f)),
             }
+            ControlFlow::Continue(())
         });
         out.finish(walked, counters)
     }
@@ -157,12 +165,35 @@ impl VisibleSurface for Bsp {
     /// # Panics
     /// If the faces are not as many as those of which the tree was made.
     fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        assert_eq!(self.tree.n_faces(), shot.faces.len(), "a tree is walked with the faces of which it was made");
         let fragments = self.ordered(shot, counters);
         match self.order {
             Order::BackToFront => Seen::BackToFront(fragments),
             Order::FrontToBack => Seen::FrontToBack(fragments),
         }
+    }
+
+    /// From the nearest to the farthest, the walk ends when the picture is full.
+    fn picture(&self, shot: &Shot<'_>) -> (Image, Counters) {
+        if self.order == Order::BackToFront {
+            return drawn(self, shot);
+        }
+        let mut counters = Counters::default();
+        let mut canvas = Canvas::new(shot);
+        let mut is_counted = vec![false; shot.faces.len()];
+        let walked = self.walk(shot, |own| {
+            for fragment in own.iter().filter(|f| shot.chosen.has(f.face())) {
+                let new = !std::mem::replace(&mut is_counted[fragment.face() as usize], true);
+                counters.polygons += u64::from(new);
+                if canvas.draw(fragment, &mut counters) == 0 {
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        walked.count(&mut counters);
+        let image = canvas.finish();
+        counters.covered = image.n_covered();
+        (image, counters)
     }
 }
 
@@ -189,8 +220,7 @@ impl<'a> Emitted<'a> {
 
     pub(crate) fn finish(self, walked: Walked, counters: &mut Counters) -> Vec<Fragment> {
         counters.polygons += self.n_faces;
-        counters.tested("nodes visited", walked.visited);
-        counters.tested("subtrees skipped", walked.skipped);
+        walked.count(counters);
         self.fragments
     }
 }

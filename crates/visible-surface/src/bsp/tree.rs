@@ -2,11 +2,12 @@
 
 use super::Order;
 use crate::chosen::Chosen;
+use crate::counters::Counters;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
 use crate::plane::Plane;
 use sightlines_geometry::Point3;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// No node.
 const NONE: u32 = u32::MAX;
@@ -52,6 +53,14 @@ pub(crate) struct Walked {
     pub(crate) visited: u64,
     /// Children of those that do not, and were not entered.
     pub(crate) skipped: u64,
+}
+
+impl Walked {
+    /// Adds to the tests of a picture.
+    pub(crate) fn count(self, counters: &mut Counters) {
+        counters.tested("nodes visited", self.visited);
+        counters.tested("subtrees skipped", self.skipped);
+    }
 }
 
 impl Tree {
@@ -137,14 +146,14 @@ impl Tree {
     }
 
     /// Calls `at` for the nodes in the order of an eye, without those that hold nothing chosen, nor below; and without planes that
-    /// hold the eye, of which nothing is seen.
+    /// hold the eye, of which nothing is seen; until it says that it has enough.
     pub(crate) fn walk(
         &self,
         faces: &Faces,
         eye: Point3,
         order: Order,
         chosen: &Chosen,
-        mut at: impl FnMut(u32),
+        mut at: impl FnMut(u32) -> ControlFlow<()>,
     ) -> Walked {
         let mut walked = Walked::default();
         let marked = self.marks(chosen);
@@ -155,7 +164,9 @@ impl Tree {
         }
         while let Some((id, is_open)) = stack.pop() {
             if is_open {
-                at(id);
+                if at(id).is_break() {
+                    break;
+                }
                 continue;
             }
             if !marked[id as usize] {
@@ -165,7 +176,9 @@ impl Tree {
             walked.visited += 1;
             let node = &self.nodes[id as usize];
             let Some(plane) = node.plane else {
-                at(id);
+                if at(id).is_break() {
+                    break;
+                }
                 continue;
             };
             let side = plane.side(faces, eye);

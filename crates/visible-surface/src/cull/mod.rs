@@ -1,8 +1,8 @@
 //! Culling: which faces need not be drawn, whatever draws them.
 //!
-//! Each function takes faces away from a [`Chosen`] and says how many. What it takes away covers no pixel ([`frustum`]), shows only its back
-//! ([`backface`]), or belongs to objects that someone who knows says cannot be seen ([`objects`]). What hides behind other faces is the
-//! subject of [`hierarchical`](crate::hierarchical).
+//! Each function takes faces away from a [`Chosen`] and says how many. What it takes away covers no pixel ([`frustum()`]),
+//! shows only its back ([`backface()`]), or belongs to objects that someone who knows says cannot be seen ([`objects`]).
+//! What hides behind other faces is the subject of [`hierarchical`](crate::hierarchical).
 
 mod backface;
 mod frustum;
@@ -17,7 +17,8 @@ use crate::chosen::Chosen;
 use crate::faces::Faces;
 use sightlines_geometry::Aabb;
 
-/// Keeps the faces of those objects for which `keep` says so: for whoever has a table of what is potentially visible. How many went.
+/// Keeps the faces of those objects for which `keep` says so: for whoever has a table of what is potentially visible. How
+/// many went.
 pub fn objects(faces: &Faces, chosen: &mut Chosen, keep: impl Fn(u32) -> bool) -> u64 {
     chosen.retain(|face| keep(faces.object(face)))
 }

@@ -1,15 +1,16 @@
 //! Planes, normals and triangles under matrices, and back faces in projection space.
 //!
-//! A plane is a row: `plane · point` is its function. If points are transformed by M, planes are by the inverse of M from the right, which for columns
-//! is the inverse transpose. Only its direction matters, so the cofactors do, which are the inverse transpose times the determinant: nothing is
-//! divided by. They turn a plane round if the determinant is negative, hence its sign is put on as well. Transforming a normal by M itself is
-//! right only if M keeps angles.
+//! A plane is a row: `plane · point` is its function. If points are transformed by M, planes are by the inverse of M from
+//! the right, which for columns is the inverse transpose. Only its direction matters, so the cofactors do, which are the
+//! inverse transpose times the determinant: nothing is divided by. They turn a plane round if the determinant is
+//! negative, hence its sign is put on as well. Transforming a normal by M itself is right only if M keeps angles.
 //!
-//! A matrix is given by rows and applied to columns `(x, y, z, 1)`. What is computed is rounded, as usual, but signs that decide are exact for
-//! the numbers given.
+//! A matrix is given by rows and applied to columns `(x, y, z, 1)`. What is computed is rounded, as usual, but signs that
+//! decide are exact for the numbers given.
 //!
-//! Source: Turkowski, "Properties of surface-normal transformations", Graphics Gems, 1990, for normals; the test in projection space is the classical one
-//! of Sutherland, Sproull and Schumacker, "A Characterization of Ten Hidden-Surface Algorithms", 1974.
+//! Source: Turkowski, "Properties of surface-normal transformations", Graphics Gems, 1990, for normals; the test in
+//! projection space is the classical one of Sutherland, Sproull and Schumacker, "A Characterization of Ten Hidden-Surface
+//! Algorithms", 1974.
 
 use super::{Facing, View};
 use crate::camera::{Camera, U};
@@ -65,9 +66,9 @@ pub fn triangle(matrix: &Matrix, corners: &[Point3; 3]) -> Option<[Point3; 3]> {
     Some(if sign > 0 { [a, b, c] } else { [a, c, b] })
 }
 
-/// The perspective of a camera: from scene units to (pixels to the right, pixels down, depth in the picture, 1), each times the depth and a positive
-/// number. Depth in the picture grows with depth: it is 0 at the nearest depth and 1 at the farthest, be that infinite; for a camera that sees from depth 0 on
-/// it is `-1 / depth`.
+/// The perspective of a camera: from scene units to (pixels to the right, pixels down, depth in the picture, 1), each
+/// times the depth and a positive number. Depth in the picture grows with depth: it is 0 at the nearest depth and 1 at
+/// the farthest, be that infinite; for a camera that sees from depth 0 on it is `-1 / depth`.
 ///
 /// Rounded; without rounding for cameras of small whole numbers.
 pub fn projection(camera: &Camera) -> Matrix {
@@ -75,8 +76,8 @@ pub fn projection(camera: &Camera) -> Matrix {
     let row = |n: Point3| [n[0], n[1], n[2], -dot(n, view.eye)];
     let [x, y, depth] = view.normals.map(row);
     let [near, far] = camera.depths();
-    // Depth in the picture is far (t - near) / (t (far - near)), or (t - near) / t, or -1 / t; what it is divided by besides t is left
-    // out and multiplied to the other rows instead.
+    // Depth in the picture is far (t - near) / (t (far - near)), or (t - near) / t, or -1 / t; what it is divided by
+    // besides t is left out and multiplied to the other rows instead.
     let (slope, constant, scale) = match (near > 0.0, far < f64::INFINITY) {
         (true, true) => (far, -far * near, far - near),
         (true, false) => (1.0, -near, 1.0),
@@ -88,11 +89,12 @@ pub fn projection(camera: &Camera) -> Matrix {
     [x, y, z, depth]
 }
 
-/// Which side of a face is seen in projection space, where the eye is infinitely far away and all rays are parallel: the sign of the z
-/// coefficient of the transformed plane. Exact for the matrix and the corners given.
+/// Which side of a face is seen in projection space, where the eye is infinitely far away and all rays are parallel: the
+/// sign of the z coefficient of the transformed plane. Exact for the matrix and the corners given.
 ///
-/// * `matrix`: a perspective, for which the eye is the point that it sends to (0, 0, k, 0), or a parallel projection, for which the eye looks from
-///   where z is least. Whether depth is standard or reversed does not matter for a perspective: the eye is in the scene, and k says.
+/// * `matrix`: a perspective, for which the eye is the point that it sends to (0, 0, k, 0), or a parallel projection, for
+///   which the eye looks from where z is least. Whether depth is standard or reversed does not matter for a perspective:
+///   the eye is in the scene, and k says.
 ///
 /// [`Facing::Mixed`] for a singular matrix, and for numbers that are not finite.
 pub fn facing_in_projection(matrix: &Matrix, corners: &[Point3; 3]) -> Facing {
@@ -100,8 +102,9 @@ pub fn facing_in_projection(matrix: &Matrix, corners: &[Point3; 3]) -> Facing {
     if !(matrix.iter().all(|row| finite(row.iter())) && corners.iter().all(|p| finite(p.iter()))) {
         return Facing::Mixed;
     }
-    // With C for cofactors, the eye is row 2 of C divided by C[2][3], and the z coefficient is row 2 of C times the plane. So the plane's function at the
-    // eye is their quotient. For a parallel projection C[2][3] is 0 and the way to the eye is minus row 2 of C divided by the determinant.
+    // With C for cofactors, the eye is row 2 of C divided by C[2][3], and the z coefficient is row 2 of C times the
+    // plane. So the plane's function at the eye is their quotient. For a parallel projection C[2][3] is 0 and the way to
+    // the eye is minus row 2 of C divided by the determinant.
     let Some(det) = determinant_sign(matrix).filter(|&s| s != 0) else { return Facing::Mixed };
     let coefficient = z_coefficient_sign(matrix, corners);
     let rows = [0, 1, 3].map(|k| [matrix[k][0], matrix[k][1], matrix[k][2]]);
@@ -125,7 +128,8 @@ fn z_coefficient_sign(matrix: &Matrix, corners: &[Point3; 3]) -> i32 {
     let size = crate::vector::cross_size(grown(a, b), grown(a, c));
     with[2] = [size[0], size[1], size[2], crate::vector::dot_size(size, a)];
     let (_, all) = determinant(&with);
-    // Two differences, a product and a sum, three more in the constant, seven in the determinant; the rest is for the bound itself.
+    // Two differences, a product and a sum, three more in the constant, seven in the determinant; the rest is for the
+    // bound itself.
     let error = 32.0 * U * all;
     if value.abs() > error && no_underflow(matrix.iter().flatten().chain(corners.iter().flatten())) {
         return if value > 0.0 { 1 } else { -1 };
@@ -151,8 +155,9 @@ pub fn determinant_sign(matrix: &Matrix) -> Option<i32> {
     Some(exact_determinant(&matrix.map(|row| row.map(Dyadic::new))).sign())
 }
 
-/// Whether no product of six of the numbers and of their differences can be too small for a normal double: all are 0 or at least 2^-100, so that
-/// differences are at least 2^-152. (An overflow leaves no finite bound, and nothing exceeds that.)
+/// Whether no product of six of the numbers and of their differences can be too small for a normal double: all are 0 or
+/// at least 2^-100, so that differences are at least 2^-152. (An overflow leaves no finite bound, and nothing exceeds
+/// that.)
 fn no_underflow<'a>(mut all: impl Iterator<Item = &'a f64>) -> bool {
     const LEAST: f64 = f64::from_bits((1023 - 100) << 52);
     all.all(|&x| x == 0.0 || x.abs() >= LEAST)

@@ -1,11 +1,12 @@
 //! The lowest level from faces, conservatively: a pixel counts where it is covered wholly, with the farthest depth in it.
 //!
-//! A single face covers a pixel if all four corners of the pixel are surely on the inner side of its edges. At edges that faces share
-//! that would leave a crack, in a wall of two triangles along its diagonal. So from the face at a pixel's centre one goes on: over each edge that
-//! may meet the pixel to a face that has the same edge and lies on its other side in the picture. If there is one each time,
-//! the faces gone through cover the pixel. For what they cover of it is closed and holds the centre; if it were not all, its
-//! border would have a point inside of the pixel that is on one edge of theirs and near no corner of any; but beyond that edge is another of
-//! them. Folds and borders of a surface stop it: there no face is on the other side.
+//! A single face covers a pixel if all four corners of the pixel are surely on the inner side of its edges. At edges that
+//! faces share that would leave a crack, in a wall of two triangles along its diagonal. So from the face at a pixel's
+//! centre one goes on: over each edge that may meet the pixel to a face that has the same edge and lies on its other side
+//! in the picture. If there is one each time, the faces gone through cover the pixel. For what they cover of it is closed
+//! and holds the centre; if it were not all, its border would have a point inside of the pixel that is on one edge of
+//! theirs and near no corner of any; but beyond that edge is another of them. Folds and borders of a surface stop it:
+//! there no face is on the other side.
 //!
 //! Where doubles are not sure the pixel stays open.
 

@@ -1,17 +1,18 @@
 //! Hierarchical z: what hides behind what an eye has already been shown to see.
 //!
-//! A [`DepthPyramid`] keeps for each pixel of a picture from which depth on everything is hidden, and for squares of pixels, of squares of
-//! squares and so on the farthest of these depths. What lies behind that in all pixels that it may cover is hidden. Few numbers answer for a large box; where the coarse ones are
-//! in doubt, finer ones are asked.
+//! A [`DepthPyramid`] keeps for each pixel of a picture from which depth on everything is hidden, and for squares of
+//! pixels, of squares of squares and so on the farthest of these depths. What lies behind that in all pixels that it may
+//! cover is hidden. Few numbers answer for a large box; where the coarse ones are in doubt, finer ones are asked.
 //!
 //! What "a pixel" is, is a matter of choice: [`Rays`].
 //!
-//! Depths are kept as *nearness*, one over the depth, which is linear in the picture, larger where it is nearer, and 0 for what is infinitely
-//! far away. All numbers are bounds, rounded towards visible: kept ones are farther than what is there, asked ones nearer.
+//! Depths are kept as *nearness*, one over the depth, which is linear in the picture, larger where it is nearer, and 0
+//! for what is infinitely far away. All numbers are bounds, rounded towards visible: kept ones are farther than what is
+//! there, asked ones nearer.
 //!
-//! Source: Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993. Pixels that single faces cover wholly: "inner-conservative
-//! rasterisation" of Hasselgren, Akenine-Möller and Ohlsson, GPU Gems 2, 2005, chapter 42. Going on across edges that
-//! faces share is our own.
+//! Source: Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993. Pixels that single faces cover
+//! wholly: "inner-conservative rasterisation" of Hasselgren, Akenine-Möller and Ohlsson, GPU Gems 2, 2005, chapter 42.
+//! Going on across edges that faces share is our own.
 
 mod footprint;
 mod inner;
@@ -35,8 +36,8 @@ pub enum Rays {
     All,
 }
 
-/// Takes away the faces that a pyramid hides, first by the boxes of objects and then one by one; how many went. What is outside of the picture or of the depths that the camera sees goes as well,
-/// for nothing would change.
+/// Takes away the faces that a pyramid hides, first by the boxes of objects and then one by one; how many went. What is
+/// outside of the picture or of the depths that the camera sees goes as well, for nothing would change.
 ///
 /// What made the pyramid may be asked about too: a face does not hide itself, and what is seen stays.
 pub fn cull(faces: &Faces, chosen: &mut Chosen, pyramid: &DepthPyramid) -> u64 {

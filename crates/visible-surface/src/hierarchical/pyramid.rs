@@ -30,7 +30,8 @@ pub struct Level {
 const AT_FIRST: u32 = 4;
 
 impl DepthPyramid {
-    /// From a picture of some of the faces that was drawn with this camera: what lies behind what is seen at the centres of pixels. [`Rays::Centres`].
+    /// From a picture of some of the faces that was drawn with this camera: what lies behind what is seen at the centres
+    /// of pixels. [`Rays::Centres`].
     ///
     /// The depth of the face at each pixel is computed anew, so any method may have drawn it; but the picture is believed. Pixels
     /// that it does not have hide nothing, and neither do those with faces that do not exist.
@@ -44,8 +45,8 @@ impl DepthPyramid {
 
     /// From faces: what lies behind those pixels that they cover wholly. [`Rays::All`].
     ///
-    /// A pixel counts if a face covers it wholly, or several do that share edges. It costs more than drawing; few large faces hide nearly
-    /// as much as all.
+    /// A pixel counts if a face covers it wholly, or several do that share edges. It costs more than drawing; few large
+    /// faces hide nearly as much as all.
     pub fn conservative(faces: &Faces, camera: &Camera, chosen: &Chosen) -> Self {
         Self::with_neighbours(faces, &Neighbours::of(faces), camera, chosen)
     }
@@ -87,8 +88,8 @@ impl DepthPyramid {
 
     /// Whether no ray that it answers for sees anything in a closed box: in front of it there is always something.
     ///
-    /// Errs towards visible. What may reach the eye or behind it, and what has coordinates that no scene may have, is not hidden; what is
-    /// surely outside of the picture or of the depths that the camera sees is.
+    /// Errs towards visible. What may reach the eye or behind it, and what has coordinates that no scene may have, is not
+    /// hidden; what is surely outside of the picture or of the depths that the camera sees is.
     pub fn hides(&self, b: &Aabb<3>) -> bool {
         b.is_empty() || is_usable(&[b.min, b.max]) && self.hides_points(corners_of(b))
     }

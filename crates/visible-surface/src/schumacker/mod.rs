@@ -20,7 +20,7 @@ use crate::fragment::Fragment;
 use crate::method::{Seen, Shot, VisibleSurface};
 use crate::plane::Plane;
 use fixed::Fixed;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// How clusters are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,6 +144,7 @@ impl Schumacker {
                 (false, Order::BackToFront) => own.iter().rev().for_each(|f| out.push(f)),
                 (false, Order::FrontToBack) => own.iter().for_each(|f| out.push(f)),
             }
+            ControlFlow::Continue(())
         });
         counters.tested("sides of faces", n_copies);
         out.finish(walked, counters)

@@ -157,6 +157,16 @@ fn the_smallest_box_alone_would_not_do() {
     assert_eq!(frustum.of_box(&behind), Cover::Outside);
 }
 
+/// A ball behind the eye is outside of no side of a wide picture by its radius; it is behind all the same.
+#[test]
+fn balls_behind_the_eye_are_outside() {
+    let mut eye = Eye::ahead([0; 3], [4, 4]);
+    eye.rays[0] = [-4, 4, 1];
+    let frustum = Frustum::of(&eye.camera());
+    let ball = |z: f64| frustum.of_sphere([0.0, 0.0, z], 2.0);
+    assert_eq!([-3.0, -1.0, 1.0, 30.0].map(ball), [Cover::Outside, Cover::Across, Cover::Across, Cover::Inside]);
+}
+
 #[test]
 fn nonsense_is_kept() {
     let frustum = Frustum::of(&Eye::ahead([0; 3], [4, 4]).camera());

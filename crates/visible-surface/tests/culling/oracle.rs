@@ -94,8 +94,8 @@ impl Eye {
         along(along(corner.map(|v| v * parts), x, across), y, down)
     }
 
-    /// The rays through all places of a grid with so many parts to a pixel, borders included; for 0 those through the centres of pixels.
-    /// Each with the number that it was multiplied by.
+    /// The rays through all places of a grid with so many parts to a pixel, borders included; for 0 those through the
+    /// centres of pixels. Each with the number that it was multiplied by.
     pub(crate) fn fan(&self, parts: i128) -> Vec<(i128, P)> {
         let [width, height] = self.size.map(i128::from);
         let mut all = Vec::new();
