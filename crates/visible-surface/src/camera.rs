@@ -157,6 +157,21 @@ impl Camera {
         [0, 1, 2].map(|k| self.corner[k] + x * self.across[k] + y * self.down[k])
     }
 
+    /// Normals of the planes through the eye that give, of a point, pixels to the right and down and depth; all times depth and volume.
+    pub(crate) fn normals(&self) -> [Point3; 3] {
+        self.normals
+    }
+
+    /// What the rounding of the normals is measured by.
+    pub(crate) fn normal_sizes(&self) -> [Point3; 3] {
+        self.normal_sizes
+    }
+
+    /// The volume that the rays span, positive, and how much it may be off.
+    pub(crate) fn volume(&self) -> (f64, f64) {
+        (self.volume, self.volume_error)
+    }
+
     /// The sum of the magnitudes that [`Self::ray`] adds, for the lower right corner of the picture: what rounding in rays is measured by.
     pub(crate) fn reach(&self) -> Point3 {
         let [width, height] = self.size.map(f64::from);

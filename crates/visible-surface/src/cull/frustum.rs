@@ -4,10 +4,9 @@
 //! through the eye and the picture's edges. Products are taken in doubles with derived bounds, and only what is surely
 //! outside is called so.
 
-use super::{View, object_boxes};
+use super::{is_usable, object_boxes};
 use crate::camera::{Camera, TINY_ERROR, U};
 use crate::chosen::Chosen;
-use crate::cull::view::is_usable;
 use crate::faces::Faces;
 use crate::vector::{dot, dot_size, minus};
 use sightlines_geometry::{Aabb, Point3};
@@ -48,9 +47,8 @@ pub struct Frustum {
 impl Frustum {
     /// The volume of a camera.
     pub fn of(camera: &Camera) -> Self {
-        let view = View::of(camera);
-        let [x, y, depth] = view.normals;
-        let [x_size, y_size, depth_size] = view.sizes;
+        let [x, y, depth] = camera.normals();
+        let [x_size, y_size, depth_size] = camera.normal_sizes();
         let size = camera.size().map(f64::from);
         let through_eye = |normal: Point3, size: Point3| Side { normal, size, at: [0.0; 2] };
         // Pixels to the right, times depth, are x · (p - eye), and depth is depth · (p - eye): so left of the right edge is
@@ -62,7 +60,8 @@ impl Frustum {
             )
         };
         let [near, far] = camera.depths();
-        let volume = [view.volume - view.volume_error, view.volume + view.volume_error];
+        let (volume, error) = camera.volume();
+        let volume = [volume - error, volume + error];
         let at = [near * volume[0] * (1.0 - 8.0 * U), near * volume[1] * (1.0 + 8.0 * U)];
         let mut sides = vec![
             through_eye(x, x_size),

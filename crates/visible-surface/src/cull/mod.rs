@@ -7,15 +7,14 @@
 mod backface;
 mod frustum;
 pub mod transform;
-mod view;
 
 pub use backface::{Facing, backface, backface_region, corners_of, facing};
 pub use frustum::{Cover, Frustum, frustum};
-pub(crate) use view::{View, is_usable};
 
 use crate::chosen::Chosen;
 use crate::faces::Faces;
-use sightlines_geometry::Aabb;
+use sightlines_geometry::coordinate::MAX_MAGNITUDE;
+use sightlines_geometry::{Aabb, Point3};
 
 /// Keeps the faces of those objects for which `keep` says so: for whoever has a table of what is potentially visible. How
 /// many went.
@@ -32,4 +31,9 @@ pub fn object_boxes(faces: &Faces, chosen: &Chosen) -> Vec<Aabb<3>> {
         *own = faces.of(face).iter().fold(*own, |all, &p| all.with(p));
     }
     boxes
+}
+
+/// Whether coordinates are numbers of a size with which nothing overflows. Smaller ones than a scene may have do no harm.
+pub(crate) fn is_usable(points: &[Point3]) -> bool {
+    points.iter().flatten().all(|x| x.abs() <= MAX_MAGNITUDE)
 }

@@ -12,7 +12,7 @@
 //! projection space is the classical one of Sutherland, Sproull and Schumacker, "A Characterization of Ten Hidden-Surface
 //! Algorithms", 1974.
 
-use super::{Facing, View};
+use super::Facing;
 use crate::camera::{Camera, U};
 use crate::exact::{self, Dyadic};
 use crate::vector::{cross, dot, minus};
@@ -72,9 +72,8 @@ pub fn triangle(matrix: &Matrix, corners: &[Point3; 3]) -> Option<[Point3; 3]> {
 ///
 /// Rounded; without rounding for cameras of small whole numbers.
 pub fn projection(camera: &Camera) -> Matrix {
-    let view = View::of(camera);
-    let row = |n: Point3| [n[0], n[1], n[2], -dot(n, view.eye)];
-    let [x, y, depth] = view.normals.map(row);
+    let row = |n: Point3| [n[0], n[1], n[2], -dot(n, camera.eye())];
+    let [x, y, depth] = camera.normals().map(row);
     let [near, far] = camera.depths();
     // Depth in the picture is far (t - near) / (t (far - near)), or (t - near) / t, or -1 / t; what it is divided by
     // besides t is left out and multiplied to the other rows instead.
@@ -84,7 +83,7 @@ pub fn projection(camera: &Camera) -> Matrix {
         (false, _) => (0.0, -1.0, 1.0),
     };
     let mut z = depth.map(|v| v * slope);
-    z[3] += constant * view.volume;
+    z[3] += constant * camera.volume().0;
     let [x, y, depth] = [x, y, depth].map(|row| row.map(|v| v * scale));
     [x, y, z, depth]
 }

@@ -2,7 +2,6 @@
 
 use super::Rays;
 use crate::camera::{Camera, U};
-use crate::cull::View;
 use crate::fragment::Extents;
 use crate::rows::Window;
 use sightlines_geometry::Point3;
@@ -18,8 +17,8 @@ pub(super) struct Footprint {
 
 impl Footprint {
     /// Of the convex hull of points with coordinates of usable size.
-    pub(super) fn of(camera: &Camera, view: &View, rays: Rays, points: impl IntoIterator<Item = Point3>) -> Self {
-        let extents = Extents::around(points.into_iter().map(|p| view.place(p)));
+    pub(super) fn of(camera: &Camera, rays: Rays, points: impl IntoIterator<Item = Point3>) -> Self {
+        let extents = Extents::around(points.into_iter().map(|p| camera.place(p)));
         let pixels = match rays {
             Rays::Centres => extents.window(camera),
             Rays::All => touched(camera, &extents),

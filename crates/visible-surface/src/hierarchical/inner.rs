@@ -16,7 +16,6 @@ use super::pyramid::Level;
 use super::sampled::Bounds;
 use crate::camera::Camera;
 use crate::chosen::Chosen;
-use crate::cull::View;
 use crate::faces::Faces;
 use crate::fragment::{Extents, Fragment, facing};
 use crate::side::Side;
@@ -65,15 +64,15 @@ struct Shape {
 
 impl Shape {
     /// None if it shows nothing in the picture.
-    fn of(camera: &Camera, view: &View, faces: &Faces, face: u32) -> Option<Self> {
+    fn of(camera: &Camera, faces: &Faces, face: u32) -> Option<Self> {
         let corners = faces.of(face);
-        let extents = Extents::around(corners.map(|p| view.place(p)));
+        let extents = Extents::around(corners.map(|p| camera.place(p)));
         let size = camera.size().map(f64::from);
         if (0..2).any(|k| extents.pixels[k][1] < 0.0 || extents.pixels[k][0] > size[k]) {
             return None;
         }
         let sign = facing(camera, faces, face)?;
-        let Bounds { plane, least } = Bounds::of(camera, view, faces, face)?;
+        let Bounds { plane, least } = Bounds::of(camera, faces, face)?;
         let edges = [0, 1, 2].map(|k| {
             let side = Side::edge(camera, corners[k], corners[(k + 1) % 3]).times(sign);
             Linear { a: side.a, b: side.b, c: side.c, error: side.error }
@@ -175,8 +174,7 @@ impl Sheet<'_> {
 
 /// Writes for each pixel that faces cover wholly how near they are at least; of several in front of each other the nearest.
 pub(super) fn fill(faces: &Faces, neighbours: &Neighbours, camera: &Camera, chosen: &Chosen, base: &mut Level) {
-    let view = View::of(camera);
-    let mut shapes: Vec<Shape> = chosen.iter().filter_map(|f| Shape::of(camera, &view, faces, f)).collect();
+    let mut shapes: Vec<Shape> = chosen.iter().filter_map(|f| Shape::of(camera, faces, f)).collect();
     // What is near first: then less of what is behind has to be looked at.
     shapes.sort_by(|a, b| b.range[1].total_cmp(&a.range[1]).then(a.face.cmp(&b.face)));
     let mut slot = vec![NONE; faces.len()];

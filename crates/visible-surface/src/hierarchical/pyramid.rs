@@ -4,7 +4,7 @@ use super::footprint::{Footprint, nearness_below};
 use super::{Neighbours, Rays, inner, sampled};
 use crate::camera::Camera;
 use crate::chosen::Chosen;
-use crate::cull::{View, corners_of, is_usable};
+use crate::cull::{corners_of, is_usable};
 use crate::faces::Faces;
 use crate::image::Image;
 use crate::rows::Window;
@@ -14,7 +14,6 @@ use sightlines_geometry::{Aabb, Point3};
 #[derive(Debug, Clone, PartialEq)]
 pub struct DepthPyramid {
     camera: Camera,
-    view: View,
     rays: Rays,
     levels: Vec<Level>,
 }
@@ -73,7 +72,7 @@ impl DepthPyramid {
             let next = last.halved(farthest);
             levels.push(next);
         }
-        Self { camera: *camera, view: View::of(camera), rays, levels }
+        Self { camera: *camera, rays, levels }
     }
 
     /// Which rays it answers for.
@@ -100,7 +99,7 @@ impl DepthPyramid {
     }
 
     fn hides_points(&self, points: impl IntoIterator<Item = Point3>) -> bool {
-        let footprint = Footprint::of(&self.camera, &self.view, self.rays, points);
+        let footprint = Footprint::of(&self.camera, self.rays, points);
         let Window { min, max } = footprint.pixels;
         if footprint.pixels.is_empty() {
             return true;

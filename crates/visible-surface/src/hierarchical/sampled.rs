@@ -3,7 +3,6 @@
 use super::footprint::nearness_below;
 use super::pyramid::Level;
 use crate::camera::Camera;
-use crate::cull::View;
 use crate::faces::{Faces, NOTHING};
 use crate::fragment::{Extents, facing};
 use crate::image::Image;
@@ -20,9 +19,9 @@ pub(super) struct Bounds {
 
 impl Bounds {
     /// Of a face; none if it is seen edge-on, or if nothing is in front.
-    pub(super) fn of(camera: &Camera, view: &View, faces: &Faces, face: u32) -> Option<Self> {
+    pub(super) fn of(camera: &Camera, faces: &Faces, face: u32) -> Option<Self> {
         facing(camera, faces, face)?;
-        let extents = Extents::around(faces.of(face).map(|p| view.place(p)));
+        let extents = Extents::around(faces.of(face).map(|p| camera.place(p)));
         let farthest = Some(extents.depth[1]).filter(|&t| t > 0.0)?;
         Some(Self { plane: Nearness::of(camera, faces, face), least: nearness_below(farthest) })
     }
@@ -30,7 +29,6 @@ impl Bounds {
 
 /// Writes for each pixel that shows a face how near that is at the pixel's centre, or a little less.
 pub(super) fn fill(faces: &Faces, camera: &Camera, image: &Image, base: &mut Level) {
-    let view = View::of(camera);
     let [width, height] = [0, 1].map(|k| camera.size()[k].min(image.size()[k]));
     // Neighbouring pixels mostly show one face.
     let mut last = (NOTHING, None);
@@ -42,7 +40,7 @@ pub(super) fn fill(faces: &Faces, camera: &Camera, image: &Image, base: &mut Lev
                 continue;
             }
             if face != last.0 {
-                last = (face, Bounds::of(camera, &view, faces, face));
+                last = (face, Bounds::of(camera, faces, face));
             }
             if let Some(bounds) = last.1 {
                 // The plane's bound tells near places; the corner's holds for any plane.
