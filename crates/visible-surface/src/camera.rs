@@ -81,7 +81,7 @@ impl Camera {
     /// An eye with any rays: see the type.
     ///
     /// # Errors
-    /// [`CameraError`]; of the rays if they do not span space, or have a coordinate that is neither 0 nor from 2^-100 to 2^100.
+    /// [`CameraError`]; of the rays if they do not span space, or have a component above 2^100. Components below 2^-100 count as 0.
     pub fn new(eye: Point3, corner: Point3, across: Point3, down: Point3, size: [u32; 2]) -> Result<Self, CameraError> {
         let mut eye = eye;
         for x in &mut eye {

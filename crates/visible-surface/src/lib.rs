@@ -5,7 +5,8 @@
 //! Does not know: tables of what is visible (who has one says which faces may be drawn), files, colours.
 //! Invariants: which pixels a face covers, which of two faces is nearer at a pixel, and on which side of a plane a fragment lies
 //! are signs of polynomials in input coordinates, computed exactly; so all exact methods show the same face in every pixel, but for
-//! those whose centre lies exactly on the line in which two faces pass through each other. Same input, same picture.
+//! those where two faces that are not in one plane are met first at the same depth, exactly: on the line in which they pass through each other, or on an
+//! edge that they share. There either may be shown. Same input, same picture.
 
 pub mod any_order;
 pub mod bsp;

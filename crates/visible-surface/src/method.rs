@@ -34,7 +34,8 @@ pub trait VisibleSurface: std::fmt::Debug {
     /// What it is called.
     fn name(&self) -> &'static str;
 
-    /// What is seen. Faces that are seen edge-on show nothing. Where two faces are at one depth, the one with the lower id is seen.
+    /// What is seen. Faces that are seen edge-on show nothing. Where two faces are at one depth, the one with the
+    /// lower id is seen; if they lie in different planes, either may be.
     fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen;
 
     /// The picture of what is seen, and what it took.

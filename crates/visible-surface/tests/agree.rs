@@ -55,7 +55,7 @@ fn faces() -> impl Strategy<Value = Faces> {
 }
 
 /// Invariant: every exact method shows the face that brute force finds, in every pixel but those whose ray meets the line in which two
-/// faces pass through each other.
+/// faces of different planes meet.
 #[test]
 fn exact_methods_show_what_is_seen() {
     let (covered, on_edge, ties) = (Cell::new(0), Cell::new(0), Cell::new(0));

@@ -8,7 +8,9 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sightlines_visible_surface::bsp::{Bsp, BspOptions, Heuristic};
-use sightlines_visible_surface::{Camera, Chosen, Counters, Faces, Fragment, Seen, Shot, VisibleSurface};
+use sightlines_visible_surface::{
+    Camera, Chosen, Counters, Faces, Fragment, Plane, Relation, Seen, Shot, VisibleSurface,
+};
 use soups::{cameras, cube, cycle, triangles};
 
 const SIDE: u32 = 16;
@@ -267,5 +269,35 @@ fn large_trees_are_cut_across_axes_and_show_what_rays_meet() {
         for bsp in [bsp.clone(), bsp.clone().front_to_back()] {
             assert_eq!(truth.wrong(&bsp.picture(&shot).0), []);
         }
+    }
+}
+
+/// What was wrong once: products of numbers near both ends of what is accepted vanished, and their bounds with them, so a corner beside a plane
+/// counted as on it.
+#[test]
+fn corners_beside_planes_at_both_ends_of_the_range() {
+    let p = |k: i32| 2f64.powi(k);
+    let (e, h, d) = (p(-139), p(200), p(-191));
+    let (x, y, s) = (0.9375 * e, e - p(-192), p(-141));
+    let faces = Faces::new(vec![
+        [[e, e, e], [h, e, e + d], [e + d, h, e]],
+        [[-4.0, y, -4.0], [-4.0, y, -5.0], [-5.0, y, -4.0]],
+        [[e, e, h], [e, e + d, e], [e, e - d, e]],
+        [[x, y, e - s], [x, y, e + s], [x, e + s, e - s]],
+    ])
+    .unwrap();
+    let [_, behind] = Fragment::whole(2).split(&faces, &Plane::of(&faces, 0)).1.unwrap();
+    assert_eq!(behind.relation(&faces, &Plane::Axis(1, y)), Relation::Across);
+    let eye = [0.0, e - p(-190), e - p(-150)];
+    let corner = [1.0, 7.0 * p(-54) - 0.5, p(-11) - 0.5];
+    let camera = Camera::new(eye, corner, [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1, 1]).unwrap();
+    let chosen = Chosen::all(&faces);
+    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let truth = oracle::look(&faces, &camera, &chosen);
+    assert_eq!((truth.faces[0], truth.n_in_doubt()), (Some(3), 0));
+    let options = BspOptions { heuristic: Heuristic::FirstFace, candidates: 1, axis_above: usize::MAX };
+    let tree = Bsp::build(&faces, &options);
+    for method in [&tree, &tree.clone().front_to_back()] {
+        assert_eq!(truth.wrong(&method.picture(&shot).0), []);
     }
 }

@@ -95,7 +95,8 @@ fn mean(corners: &[Place; 3], (weight, error): ([f64; 3], [f64; 3])) -> Option<P
         (place.scaled[axis], place.error[axis]) = (value, bound * (1.0 + 64.0 * U) + f64::MIN_POSITIVE);
     }
     // The depth is divided by the sum of the weights as well.
-    place.volume_error = (place.volume_error * (sum + off) + place.volume * (off + 4.0 * U * sum)) * (1.0 + 64.0 * U);
+    place.volume_error = (place.volume_error * (sum + off) + place.volume * (off + 4.0 * U * sum)) * (1.0 + 64.0 * U)
+        + f64::MIN_POSITIVE;
     place.volume *= sum;
     Some(place)
 }

@@ -183,15 +183,17 @@ fn corner_sign(faces: &Faces, face: u32, f: &Edge, g: &Edge, plane: &Plane, at: 
 /// The determinant in doubles, and how much it may be off.
 fn determinant(f: &Edge, g: &Edge, at: &[Approx; 3]) -> (f64, f64) {
     let (corner, error) = corner(f, g);
-    let mut value = 0.0;
-    let mut off = 0.0;
+    let (mut value, mut off) = (0.0, 0.0);
+    let mut is_zero = true;
     for k in 0..3 {
         value += corner[k] * at[k].value;
         let bound = error[k] * (at[k].value.abs() + at[k].error) + corner[k].abs() * at[k].error;
         off += bound + 4.0 * crate::camera::U * (corner[k] * at[k].value).abs();
+        // Products may vanish below the smallest double, and their bounds with them: only a factor that is 0 makes 0.
+        is_zero &= (corner[k] == 0.0 && error[k] == 0.0) || (at[k].value == 0.0 && at[k].error == 0.0);
     }
     // The bounds themselves are rounded.
-    (value, off * (1.0 + 64.0 * crate::camera::U) + if off > 0.0 { crate::plane::LEAST } else { 0.0 })
+    (value, if is_zero { 0.0 } else { off * (1.0 + 64.0 * crate::camera::U) + crate::plane::LEAST })
 }
 
 /// Where two edges meet, in barycentric coordinates up to a positive factor, and how much each may be off. Positive for edges that

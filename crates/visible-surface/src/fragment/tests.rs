@@ -6,7 +6,7 @@ use sightlines_geometry::Point3;
 
 type R3 = [BigRational; 3];
 
-fn point() -> impl Strategy<Value = Point3> {
+fn point() -> impl Strategy<Value = Point3> + Clone {
     let one = prop::sample::select(vec![-3i32, -1, 0, 0, 1, 2]).prop_map(|x| f64::from(x) * 0.125);
     // Many lie in one plane.
     (one.clone(), one, prop::sample::select(vec![0.0, 0.0, 0.0, 0.125])).prop_map(|(x, y, z)| [x, y, z])
@@ -60,11 +60,33 @@ fn relation(polygon: &[R3], face: &[Point3; 3]) -> Relation {
     }
 }
 
+/// Coordinates near both ends of what is accepted, some next to each other there.
+fn extreme() -> impl Strategy<Value = Point3> + Clone {
+    let power = |k: i32| 2f64.powi(k);
+    let ends =
+        [power(-139), power(-139) + power(-191), power(-139) - power(-192), power(-60), 1.0, power(60), power(200)];
+    let one = (prop::sample::select(ends.to_vec()), prop::sample::select(vec![1.0, 1.0, 0.0, -1.0]));
+    let one = one.prop_map(|(x, sign): (f64, f64)| x * sign + 0.0);
+    [one.clone(), one.clone(), one]
+}
+
 #[test]
 fn fragments_lie_and_are_cut_as_in_fractions() {
+    let seen = cut_and_compare(point());
+    assert!(seen.iter().all(|&n| n > 0), "kinds that never came: {seen:?}");
+}
+
+#[test]
+fn fragments_of_any_size_are_cut_as_in_fractions() {
+    let seen = cut_and_compare(extreme());
+    assert!([0, 1, 3, 4].iter().all(|&k| seen[k] > 0), "kinds that never came: {seen:?}");
+}
+
+/// Cuts faces with such corners again and again, and compares; how often each relation came, and pieces of more than three corners.
+fn cut_and_compare(point: impl Strategy<Value = Point3> + Clone) -> [u64; 5] {
     let seen = std::cell::RefCell::new([0u64; 5]);
     let mut runner = proptest::test_runner::TestRunner::default();
-    let triangles = prop::collection::vec([point(), point(), point()], 5);
+    let triangles = prop::collection::vec([point.clone(), point.clone(), point], 5);
     let run = runner.run(&(triangles, prop::collection::vec(any::<bool>(), 4)), |(corners, ways)| {
         let faces = Faces::new(corners.clone()).expect("small numbers");
         if !faces.ids().all(|f| faces.has_area(f)) {
@@ -102,7 +124,7 @@ fn fragments_lie_and_are_cut_as_in_fractions() {
         Ok(())
     });
     assert_eq!(run, Ok(()));
-    assert!(seen.borrow().iter().all(|&n| n > 0), "kinds that never came: {:?}", seen.borrow());
+    seen.into_inner()
 }
 
 /// Invariant: of a face and the parts that it is cut into, each pixel of the face has exactly one part; extents hold all of them.
