@@ -59,6 +59,8 @@ type Meeting = Option<(Side, i32)>;
 #[derive(Debug, Default)]
 pub(crate) struct Duel {
     last: Option<([u32; 2], Meeting)>,
+    /// For each face one that was found to lie in its plane and has no higher id, itself if there is none.
+    plane_mate: Vec<u32>,
     /// How often it was asked.
     pub(crate) asked: u64,
 }
@@ -71,11 +73,8 @@ impl Duel {
         self.asked += 1;
         let pair = [face.min(other), face.max(other)];
         if self.last.as_ref().is_none_or(|(of, _)| *of != pair) {
-            let [first, second] = pair.map(|f| Plane::of(faces, f));
-            let line = (!first.is_same(faces, &second)).then(|| {
-                let sign = eye_sign(camera, faces, &first) * eye_sign(camera, faces, &second);
-                (Side::cut(camera, faces, first, second), sign)
-            });
+            let mates = pair.map(|f| self.first_mate(f, faces.len()));
+            let line = if mates[0] == mates[1] { None } else { self.meeting(camera, faces, mates, pair) };
             self.last = Some((pair, line));
         }
         let first_wins = match &self.last {
@@ -84,5 +83,31 @@ impl Duel {
             _ => true,
         };
         first_wins == (face == pair[0])
+    }
+
+    /// The lowest id that is known to lie in the plane of a face.
+    fn first_mate(&mut self, face: u32, n: usize) -> u32 {
+        if self.plane_mate.is_empty() {
+            self.plane_mate = (0..n as u32).collect();
+        }
+        let mut at = face;
+        while self.plane_mate[at as usize] != at {
+            let next = self.plane_mate[at as usize];
+            // Ways become shorter as they are gone.
+            self.plane_mate[at as usize] = self.plane_mate[next as usize];
+            at = next;
+        }
+        at
+    }
+
+    /// Where the planes of two faces meet. If they are one, that is remembered of their mates.
+    fn meeting(&mut self, camera: &Camera, faces: &Faces, mates: [u32; 2], pair: [u32; 2]) -> Meeting {
+        let [first, second] = pair.map(|f| Plane::of(faces, f));
+        if first.is_same(faces, &second) {
+            self.plane_mate[mates[0].max(mates[1]) as usize] = mates[0].min(mates[1]);
+            return None;
+        }
+        let sign = eye_sign(camera, faces, &first) * eye_sign(camera, faces, &second);
+        Some((Side::cut(camera, faces, first, second), sign))
     }
 }
