@@ -83,6 +83,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &args.svg {
         std::fs::write(path, chart(&rows))?;
     }
+    if let Some(row) = rows.iter().find(|r| r.is_exact && r.wrong > 0) {
+        return Err(format!("{} of {} is wrong in {} pixels", row.method, row.family, row.wrong).into());
+    }
     if args.draw.is_none() {
         measured::print(&rows);
         if !args.only_families {
