@@ -225,18 +225,30 @@ impl Place {
         if bounds.iter().any(|x| x.is_nan()) { [f64::NEG_INFINITY, f64::INFINITY] } else { bounds }
     }
 
-    /// Bounds of the place in pixels, to the right or down; everything if the point may be behind the eye.
-    pub fn pixels(&self, axis: usize) -> [f64; 2] {
+    /// Bounds of the place in pixels, to the right and down; everything if the point may be behind the eye.
+    #[inline]
+    pub fn pixels(&self) -> [[f64; 2]; 2] {
+        const ALL: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
         let (low, high) = (self.scaled[2] - self.error[2], self.scaled[2] + self.error[2]);
         // Half the bound again for the rounding of these very lines.
         if !(low > 0.5 * self.error[2] && high < f64::INFINITY) {
-            return [f64::NEG_INFINITY, f64::INFINITY];
+            return [ALL; 2];
         }
-        let (a, b) = (self.scaled[axis] - self.error[axis], self.scaled[axis] + self.error[axis]);
+        let (most, least) = (1.0 / low, 1.0 / high);
+        // Three roundings, of the sum, the inverse and the product, are covered by going out by some more.
         let down = |x: f64| x - x.abs() * 8.0 * U - TINY_ERROR;
         let up = |x: f64| x + x.abs() * 8.0 * U + TINY_ERROR;
-        let bounds = [down(if a > 0.0 { a / high } else { a / low }), up(if b > 0.0 { b / low } else { b / high })];
-        if bounds.iter().any(|x| x.is_nan()) { [f64::NEG_INFINITY, f64::INFINITY] } else { bounds }
+        [0, 1].map(|axis| {
+            let (a, b) = (self.scaled[axis] - self.error[axis], self.scaled[axis] + self.error[axis]);
+            let bounds = [down(a * if a > 0.0 { least } else { most }), up(b * if b > 0.0 { most } else { least })];
+            if bounds.iter().any(|x| x.is_nan()) { ALL } else { bounds }
+        })
+    }
+
+    /// Whether the point is surely behind the eye.
+    #[inline]
+    pub(crate) fn is_behind(&self) -> bool {
+        self.scaled[2] < -2.0 * self.error[2]
     }
 }
 
@@ -310,10 +322,11 @@ mod tests {
             };
             prop_assert!(holds(place.depth(), &t), "{:?} {}", place.depth(), t);
             if t.is_positive() {
-                prop_assert!(holds(place.pixels(0), &(&x / &t)), "x");
-                prop_assert!(holds(place.pixels(1), &(&y / &t)), "y");
+                prop_assert!(holds(place.pixels()[0], &(&x / &t)), "x");
+                prop_assert!(holds(place.pixels()[1], &(&y / &t)), "y");
             } else {
-                prop_assert_eq!(place.pixels(0), [f64::NEG_INFINITY, f64::INFINITY]);
+                prop_assert_eq!(place.pixels(), [[f64::NEG_INFINITY, f64::INFINITY]; 2]);
+                prop_assert!(place.is_behind() || t.is_zero() || rational(place.depth()[1]) >= BigRational::zero());
             }
             // And they are no wider than some roundings, where the point is not next to the eye's plane.
             let [low, high] = place.depth();
@@ -327,10 +340,10 @@ mod tests {
         let camera = Camera::look_at([0.; 3], [0., 0., -1.], [0., 1., 0.], 90.0, [200, 100]).unwrap();
         let place = camera.place([-2.0, 1.0, -1.0]);
         let middle = |b: [f64; 2]| (b[0] + b[1]) / 2.0;
-        assert!(middle(place.pixels(0)).abs() < 1e-9 && middle(place.pixels(1)).abs() < 1e-9);
+        assert!(place.pixels().iter().all(|&b| middle(b).abs() < 1e-9));
         assert!((middle(place.depth()) - 1.0).abs() < 1e-12);
         let place = camera.place([1.0, -1.0, -2.0]);
-        assert!((middle(place.pixels(0)) - 125.0).abs() < 1e-9 && (middle(place.pixels(1)) - 75.0).abs() < 1e-9);
+        assert!((middle(place.pixels()[0]) - 125.0).abs() < 1e-9 && (middle(place.pixels()[1]) - 75.0).abs() < 1e-9);
     }
 
     #[test]

@@ -35,9 +35,10 @@ impl Nearness {
             return Self { a: 0.0, b: 0.0, c: 0.0, error: f64::INFINITY };
         }
         let largest = reach / least;
-        // A quotient adds one rounding, which is the last term with room for those of this line.
+        // The inverse and the product add two roundings, which is the last term with room for those of this line.
         let error = (24.0 * U * reach + largest * value_error) / least + 16.0 * U * largest + LEAST;
-        let scaled = |n: [f64; 3]| dot(normal, n) / value;
+        let inverse = 1.0 / value;
+        let scaled = |n: [f64; 3]| dot(normal, n) * inverse;
         let (a, b, c) = (scaled(across), scaled(down), scaled(corner));
         if [a, b, c, error].iter().all(|x| x.is_finite()) {
             Self { a, b, c, error }

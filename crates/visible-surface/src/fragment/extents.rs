@@ -22,10 +22,8 @@ impl Extents {
     pub(crate) fn around(places: impl IntoIterator<Item = Place>) -> Self {
         places.into_iter().fold(Self::NONE, |all, place| {
             let grown = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-            Self {
-                pixels: [0, 1].map(|k| grown(all.pixels[k], place.pixels(k))),
-                depth: grown(all.depth, place.depth()),
-            }
+            let pixels = place.pixels();
+            Self { pixels: [0, 1].map(|k| grown(all.pixels[k], pixels[k])), depth: grown(all.depth, place.depth()) }
         })
     }
 

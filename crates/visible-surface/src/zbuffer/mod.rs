@@ -16,7 +16,7 @@ use crate::fragment::{Fragment, facing};
 use crate::image::Image;
 use crate::method::{Seen, Shot, VisibleSurface};
 use crate::nearness::{Duel, Nearness};
-use crate::rows::spans;
+use crate::rows::{Window, spans};
 use crate::side::Side;
 use formats::{Double, F32, F32Reversed, Format, U24};
 
@@ -167,8 +167,7 @@ fn draw(shot: &Shot<'_>, counters: &mut Counters, mut span: impl FnMut(u32, &Nea
     let plain = camera.depths() == [0.0, f64::INFINITY];
     for face in chosen.iter() {
         counters.polygons += 1;
-        let fragment = Fragment::whole(face);
-        let window = fragment.extents(camera, faces).window(camera);
+        let window = Window::of_triangle(camera, faces.of(face));
         if window.is_empty() {
             continue;
         }
@@ -181,7 +180,7 @@ fn draw(shot: &Shot<'_>, counters: &mut Counters, mut span: impl FnMut(u32, &Nea
             let sides = [(p, q), (q, r), (r, p)].map(|(a, b)| Side::edge(camera, a, b).times(sign));
             spans(camera, faces, &sides, window, each)
         } else {
-            spans(camera, faces, &fragment.sides(camera, faces), window, each)
+            spans(camera, faces, &Fragment::whole(face).sides(camera, faces), window, each)
         };
     }
 }
