@@ -1,5 +1,6 @@
 //! What tests across crates share: where real data is, and what was seen there.
 
+mod numbers;
 pub mod quake_bytes;
 pub mod scenes;
 pub mod surfaces;

@@ -1,5 +1,6 @@
 //! Small scenes made of bytes, and what has to hold for whoever says what an eye sees of them.
 
+use crate::numbers::Numbers;
 use sightlines::geometry::Point3;
 use sightlines::visible_surface::{
     Bsp, BspOptions, Camera, Chosen, DepthFormat, Faces, Newell, Painter, RayCaster, Schumacker, SchumackerOptions,
@@ -13,47 +14,37 @@ pub struct SmallShot {
     camera: Camera,
 }
 
-/// Numbers of a byte string, one after the other; zeros at its end.
-struct Numbers<'a>(std::slice::Iter<'a, u8>);
-
-impl Numbers<'_> {
-    fn one(&mut self) -> u8 {
-        *self.0.next().unwrap_or(&0)
+/// Mostly eighths between -1 and 1; else the same beside it, scaled, or any double.
+fn coordinate(numbers: &mut Numbers<'_>) -> f64 {
+    let kind = numbers.byte();
+    let x = f64::from(i32::from(numbers.byte()) % 17 - 8) / 8.0;
+    match kind {
+        0..=219 => x,
+        220..=233 => f64::from_bits(x.to_bits() ^ 1),
+        234..=247 => x * 2f64.powi(i32::from(numbers.byte()) - 128),
+        _ => f64::from_bits(u64::from_le_bytes(std::array::from_fn(|_| numbers.byte()))),
     }
+}
 
-    /// Mostly eighths between -1 and 1; else the same beside it, scaled, or any double.
-    fn coordinate(&mut self) -> f64 {
-        let small = |byte: u8| f64::from(i32::from(byte) % 17 - 8) / 8.0;
-        let kind = self.one();
-        let x = small(self.one());
-        match kind {
-            0..=219 => x,
-            220..=233 => f64::from_bits(x.to_bits() ^ 1),
-            234..=247 => x * 2f64.powi(i32::from(self.one()) - 128),
-            _ => f64::from_bits(u64::from_le_bytes(std::array::from_fn(|_| self.one()))),
-        }
-    }
-
-    fn point(&mut self) -> Point3 {
-        std::array::from_fn(|_| self.coordinate())
-    }
+fn point(numbers: &mut Numbers<'_>) -> Point3 {
+    std::array::from_fn(|_| coordinate(numbers))
 }
 
 impl SmallShot {
     /// The scene that bytes stand for; none if their numbers are refused.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
-        let mut numbers = Numbers(bytes.iter());
-        let (eye, at) = (numbers.point(), numbers.point());
-        let angle = f64::from(numbers.one() % 180);
-        let [w, h] = [numbers.one() % 16, numbers.one() % 16].map(u32::from);
+        let mut numbers = Numbers::new(bytes);
+        let (eye, at) = (point(&mut numbers), point(&mut numbers));
+        let angle = f64::from(numbers.byte() % 180);
+        let [w, h] = [numbers.byte() % 16, numbers.byte() % 16].map(u32::from);
         let mut camera = Camera::look_at(eye, at, [0.0, 1.0, 0.0], angle, [w, h]).ok()?;
-        let depths = [numbers.coordinate(), numbers.coordinate()];
+        let depths = [coordinate(&mut numbers), coordinate(&mut numbers)];
         if let Ok(limited) = camera.with_depths(depths[0], depths[1]) {
             camera = limited;
         }
         let mut corners = Vec::new();
-        while numbers.0.len() > 0 && corners.len() < 12 {
-            corners.push(std::array::from_fn(|_| numbers.point()));
+        while !numbers.is_empty() && corners.len() < 12 {
+            corners.push(std::array::from_fn(|_| point(&mut numbers)));
         }
         Some(Self { faces: Faces::new(corners).ok()?, camera })
     }

@@ -1,5 +1,6 @@
 //! Small worlds of triangles made of bytes, and what has to hold for whoever says what is hidden in them.
 
+use crate::numbers::Numbers;
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, patches};
@@ -18,37 +19,32 @@ pub struct SmallWorld {
     targets: Vec<Aabb<3>>,
 }
 
-/// Numbers of a byte string, one after the other; zeros at its end.
-struct Numbers<'a>(std::slice::Iter<'a, u8>);
+fn one(numbers: &mut Numbers<'_>, n: i32) -> i32 {
+    i32::from(numbers.byte()) % n
+}
 
-impl Numbers<'_> {
-    fn one(&mut self, n: i32) -> i32 {
-        i32::from(*self.0.next().unwrap_or(&0)) % n
-    }
+fn point(numbers: &mut Numbers<'_>, n: i32) -> Point3 {
+    std::array::from_fn(|_| f64::from(one(numbers, 2 * n + 1) - n) * 0.5)
+}
 
-    fn point(&mut self, n: i32) -> Point3 {
-        std::array::from_fn(|_| f64::from(self.one(2 * n + 1) - n) * 0.5)
-    }
-
-    fn cuboid(&mut self, reach: i32, size: i32) -> Aabb<3> {
-        let min = self.point(reach);
-        Aabb { min, max: std::array::from_fn(|k| min[k] + f64::from(self.one(size)) * 0.5) }
-    }
+fn cuboid(numbers: &mut Numbers<'_>, reach: i32, size: i32) -> Aabb<3> {
+    let min = point(numbers, reach);
+    Aabb { min, max: std::array::from_fn(|k| min[k] + f64::from(one(numbers, size)) * 0.5) }
 }
 
 impl SmallWorld {
     /// The world that bytes stand for: coordinates are halves between -12 and 12, so things touch often. None without a
     /// triangle.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
-        let mut numbers = Numbers(bytes.iter());
-        let volume = numbers.cuboid(6, 5);
-        let targets = (0..4).map(|_| numbers.cuboid(24, 6)).collect();
+        let numbers = &mut Numbers::new(bytes);
+        let volume = cuboid(numbers, 6, 5);
+        let targets = (0..4).map(|_| cuboid(numbers, 24, 6)).collect();
         let mut objects = Vec::new();
-        while numbers.0.len() > 0 && objects.len() < 12 {
-            let (origin, u, v) = (numbers.point(24), numbers.point(20), numbers.point(20));
+        while !numbers.is_empty() && objects.len() < 12 {
+            let (origin, u, v) = (point(numbers, 24), point(numbers, 20), point(numbers, 20));
             let at = |s: f64, t: f64| std::array::from_fn(|k| origin[k] + s * u[k] + t * v[k]);
             let vertices = vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
-            let triangles = if numbers.one(3) == 0 { vec![[0, 1, 2]] } else { vec![[0, 1, 2], [0, 2, 3]] };
+            let triangles = if one(numbers, 3) == 0 { vec![[0, 1, 2]] } else { vec![[0, 1, 2], [0, 2, 3]] };
             objects.push(SceneObject { name: objects.len().to_string(), vertices, triangles });
         }
         let scene = Scene::new(objects).expect("small numbers make a scene");

@@ -58,7 +58,8 @@ use order::Order;
 ///
 /// Counts how often each test was made, of pairs whose bounds in a tree of bounds meet. Cost: for n fragments, that of
 /// sorting them, and of the tests of all pairs that overlap in the picture of which the farther one reaches as near as
-/// the other; at worst n² for n faces, and n³ fragments.
+/// the other; at worst n² for n faces, and n³ fragments. Large faces whose
+/// planes all pass through one point are slow, since most of their corners are decided exactly: seconds for 60 of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Newell;
 
