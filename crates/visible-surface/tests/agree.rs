@@ -95,9 +95,12 @@ fn coordinates_of_any_size_are_drawn() {
     let mixed = || prop_oneof![3 => point(4), 2 => extreme()];
     let faces = prop::collection::vec([mixed(), mixed(), mixed()], 1..6);
     let eyes = prop_oneof![3 => point(4), 1 => extreme()];
-    let run = runner.run(&(faces, eyes, camera()), |(corners, eye, camera)| {
-        let [corner, across, down] = camera.rays();
-        let camera = Camera::new(eye, corner, across, down, [5, 7]).expect("an eye of any size");
+    let powers = prop::sample::select(vec![-90i32, -40, 0, 0, 0, 40, 97]);
+    let run = runner.run(&(faces, eyes, camera(), powers, 0..5u32), |(corners, eye, camera, power, wide)| {
+        // The same rays with another unit of depth; and now and then a very wide picture of them.
+        let [corner, across, down] = camera.rays().map(|ray| ray.map(|x| x * 2f64.powi(power)));
+        let (across, size) = if wide == 0 { (across.map(|x| x / 64.0), [400, 2]) } else { (across, [5, 7]) };
+        let camera = Camera::new(eye, corner, across, down, size).expect("an eye of any size");
         let faces = Faces::new(corners).expect("accepted coordinates");
         let chosen = Chosen::all(&faces);
         let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
