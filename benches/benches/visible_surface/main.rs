@@ -133,7 +133,21 @@ fn chart(rows: &[Row]) -> String {
             "soup: ms to prepare",
             ["bsp", "schumacker", "raycast"].map(|m| of("soup", m, &|r| r.prepare * 1e3)).to_vec(),
         ),
-        panel("cycles: wrong pixels", ["painter", "newell"].map(|m| of("cycles", m, &|r| r.wrong as f64)).to_vec()),
+        panel(
+            "wrong pixels (of exact methods: 0)",
+            [
+                ("coplanar", "painter"),
+                ("soup", "painter"),
+                ("interleaved", "painter"),
+                ("cycles", "painter"),
+                ("soup", "zbuffer-f32"),
+            ]
+            .map(|(family, method)| Series {
+                name: format!("{family}, {method}"),
+                ..of(family, method, &|r| r.wrong as f64)
+            })
+            .to_vec(),
+        ),
         panel(
             "pieces for each face",
             [("lattice", "newell"), ("lattice", "bsp"), ("split_worst", "bsp"), ("soup", "newell"), ("soup", "bsp")]
