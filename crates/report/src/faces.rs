@@ -167,12 +167,8 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::png::decoded;
     use std::collections::BTreeSet;
-
-    fn decoded(png: &[u8]) -> ([u32; 2], Vec<[u8; 3]>) {
-        let picture = image::load_from_memory(png).unwrap().into_rgb8();
-        ([picture.width(), picture.height()], picture.pixels().map(|p| p.0).collect())
-    }
 
     #[test]
     fn faces_have_colours_of_their_own() {

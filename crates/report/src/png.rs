@@ -52,6 +52,13 @@ pub(crate) fn encode_pixels(
     encoded.map(|()| png).map_err(|error| PngError::Encode(error.into()))
 }
 
+/// Size and pixels of a picture, for tests.
+#[cfg(test)]
+pub(crate) fn decoded(png: &[u8]) -> ([u32; 2], Vec<[u8; 3]>) {
+    let picture = image::load_from_memory(png).unwrap().into_rgb8();
+    ([picture.width(), picture.height()], picture.pixels().map(|p| p.0).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
