@@ -7,7 +7,6 @@
 //! ray traversal", JCGT 2(2), 2013, for the idea.
 
 use crate::camera::{Camera, U};
-use crate::chosen::Chosen;
 use crate::counters::Counters;
 use crate::faces::{Faces, NOTHING};
 use crate::fragment::{Fragment, facing};
@@ -198,12 +197,4 @@ impl Cast<'_> {
 pub(crate) fn covers(camera: &Camera, faces: &Faces, face: u32, x: u32, y: u32) -> bool {
     facing(camera, faces, face).is_some()
         && Fragment::whole(face).sides(camera, faces).iter().all(|side| side.has(camera, faces, x, y))
-}
-
-/// Which face each of the `chosen` pixels shows, by trying all faces: for tests and small scenes.
-pub fn first_of_all(faces: &Faces, camera: &Camera, chosen: &Chosen, x: u32, y: u32) -> u32 {
-    let mut duel = Duel::default();
-    chosen.iter().filter(|&f| covers(camera, faces, f, x, y)).fold(NOTHING, |best, face| {
-        if best == NOTHING || duel.wins(camera, faces, face, best, x, y) { face } else { best }
-    })
 }
