@@ -55,20 +55,9 @@ impl Fragment {
         }
         let edges = self.edges();
         let before = |k: usize| &edges[(k + edges.len() - 1) % edges.len()];
-        let mut own = Extents::NONE;
-        for (k, edge) in edges.iter().enumerate() {
-            match mean(&corners, corner(before(k), edge)) {
-                Some(place) => {
-                    let at = Extents::around([place]);
-                    let grown = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-                    own = Extents {
-                        pixels: [0, 1].map(|k| grown(own.pixels[k], at.pixels[k])),
-                        depth: grown(own.depth, at.depth),
-                    };
-                }
-                None => return whole,
-            }
-        }
+        let places = edges.iter().enumerate().map(|(k, edge)| mean(&corners, corner(before(k), edge)));
+        let Some(places) = places.collect::<Option<Vec<Place>>>() else { return whole };
+        let own = Extents::around(places);
         // Both hold.
         let both = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
         Extents { pixels: [0, 1].map(|k| both(own.pixels[k], whole.pixels[k])), depth: both(own.depth, whole.depth) }
