@@ -321,12 +321,15 @@ mod tests {
                 (low == f64::NEG_INFINITY || rational(low) <= *x) && (high == f64::INFINITY || rational(high) >= *x)
             };
             prop_assert!(holds(place.depth(), &t), "{:?} {}", place.depth(), t);
+            // What is called behind is, and what is clearly behind is called so.
+            let tiny = way.iter().fold(BigRational::zero(), |sum, w| sum + w.abs()) * rational(1e-12) + rational(1e-280);
+            prop_assert!(!place.is_behind() || t.is_negative());
+            prop_assert!(place.is_behind() || t > -tiny);
             if t.is_positive() {
                 prop_assert!(holds(place.pixels()[0], &(&x / &t)), "x");
                 prop_assert!(holds(place.pixels()[1], &(&y / &t)), "y");
             } else {
                 prop_assert_eq!(place.pixels(), [[f64::NEG_INFINITY, f64::INFINITY]; 2]);
-                prop_assert!(place.is_behind() || t.is_zero() || rational(place.depth()[1]) >= BigRational::zero());
             }
             // And they are no wider than some roundings, where the point is not next to the eye's plane.
             let [low, high] = place.depth();
