@@ -63,17 +63,7 @@ proptest! {
         let bsp = Bsp::build(&faces, &options);
         let stats = bsp.stats();
         prop_assert_eq!(stats.fragments as u64, stats.faces as u64 + stats.splits);
-        let mut chosen = Chosen::all(&faces);
-        chosen.retain(|f| keep >> f & 1 == 1);
-        for chosen in [Chosen::all(&faces), chosen] {
-            let truth = look(&faces, &camera, &chosen);
-            let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
-            for bsp in [bsp.clone(), bsp.clone().front_to_back()] {
-                let (image, counters) = bsp.picture(&shot);
-                prop_assert_eq!(truth.wrong(&image), vec![], "{:?}", options);
-                prop_assert!(counters.polygons <= chosen.len() as u64);
-            }
-        }
+        oracle::check(&faces, &camera, |f| keep >> f & 1 == 1, &[&bsp, &bsp.clone().front_to_back()]);
     }
 
     /// Invariant: a walk limited to some faces sends those alone, all of them that are not edge-on, and enters no more nodes than

@@ -44,17 +44,7 @@ proptest! {
         let clusters = Schumacker::build(&faces, &SchumackerOptions { max_faces });
         let stats = clusters.stats();
         prop_assert_eq!(stats.fragments as u64, Chosen::all(&faces).len() as u64 + stats.splits);
-        let mut chosen = Chosen::all(&faces);
-        chosen.retain(|f| keep >> f & 1 == 1);
-        for chosen in [Chosen::all(&faces), chosen] {
-            let truth = look(&faces, &camera, &chosen);
-            let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
-            for clusters in [clusters.clone(), clusters.clone().front_to_back()] {
-                let (image, counters) = clusters.picture(&shot);
-                prop_assert_eq!(truth.wrong(&image), vec![], "{:?}", stats);
-                prop_assert!(counters.polygons <= chosen.len() as u64);
-            }
-        }
+        oracle::check(&faces, &camera, |f| keep >> f & 1 == 1, &[&clusters, &clusters.clone().front_to_back()]);
     }
 }
 

@@ -6,7 +6,7 @@
 
 use num_bigint::{BigInt, Sign};
 use sightlines_geometry::Point3;
-use sightlines_visible_surface::{Camera, Chosen, Faces, Image, NOTHING};
+use sightlines_visible_surface::{Camera, Chosen, Faces, Image, NOTHING, Shot, VisibleSurface};
 
 /// What is seen, and where that is a matter of rules.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +41,21 @@ impl Truth {
     /// How many pixels show a face.
     pub(crate) fn n_covered(&self) -> usize {
         self.faces.iter().flatten().count()
+    }
+}
+
+/// Methods show what is seen of all faces, and of those that are kept, and draw no others.
+pub(crate) fn check(faces: &Faces, camera: &Camera, keep: impl FnMut(u32) -> bool, methods: &[&dyn VisibleSurface]) {
+    let mut kept = Chosen::all(faces);
+    kept.retain(keep);
+    for chosen in [Chosen::all(faces), kept] {
+        let truth = look(faces, camera, &chosen);
+        let shot = Shot { faces, camera, chosen: &chosen };
+        for method in methods {
+            let (image, counters) = method.picture(&shot);
+            assert_eq!(truth.wrong(&image), [], "{} of {:?}", method.name(), faces);
+            assert!(counters.polygons <= chosen.len() as u64, "{}", method.name());
+        }
     }
 }
 
