@@ -2,7 +2,7 @@
 //!
 //! Owns: the coordinate types ([`Point2`], [`Point3`], [`Segment2`], [`Aabb`]), the orientation predicate of
 //! the plane in two forms with one meaning ([`Adaptive`], [`SmallGrid`]) and that of space ([`orient3d`]),
-//! convex polygons in the plane, oriented portals of each kind, trees of boxes ([`BoxTree`]).
+//! convex polygons in the plane, oriented portals of each kind, trees of boxes ([`BoxTree`]), places to sample ([`Random`]).
 //! Does not know: walls, cells, portals, files.
 //! Invariants: a predicate reads input coordinates only and its sign is exact for every coordinate that
 //! [`check_coordinate`] accepts; nothing here compares with an epsilon.
@@ -16,6 +16,7 @@ pub mod orient3;
 pub mod polygon;
 pub mod portal;
 pub mod portal3;
+pub mod random;
 pub mod segment;
 
 pub use bounds::Aabb;
@@ -27,6 +28,7 @@ pub use orient3::orient3d;
 pub use polygon::{is_convex_ccw, polygon_contains, signed_area};
 pub use portal::Portal2;
 pub use portal3::Portal3;
+pub use random::Random;
 pub use segment::Segment2;
 
 #[cfg(doctest)]

@@ -1,0 +1,125 @@
+//! Which faces are proven hidden.
+
+use crate::views::{View, Views};
+use rayon::prelude::*;
+use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_multifocal::{BackendError, FromRegion, Occludees, Split, Witness, adaptive};
+use sightlines_pvs::Table;
+use sightlines_visible_surface::Faces;
+use std::fmt;
+
+/// Makes a from-region method for the scene, for one thread.
+pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
+
+/// What says what is hidden. What any of them hides is hidden.
+#[derive(Clone, Copy, Default)]
+pub struct HiddenBy<'a> {
+    /// A from-region method, such as the multifocal z-buffer with sheets.
+    pub method: Option<MakeMethod<'a>>,
+    /// A table of the scene; asked about views that are cells of it, see [`Views::of_cells`].
+    pub table: Option<&'a Table>,
+}
+
+impl fmt::Debug for HiddenBy<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("HiddenBy").field("method", &self.method.is_some()).field("table", &self.table.is_some()).finish()
+    }
+}
+
+/// Rays from each box towards what is not yet seen: what they hit need not be asked about.
+const N_RAYS_PER_FACE: u32 = 8;
+
+/// What hides faces of a scene, made ready to be asked about any views.
+pub(crate) struct Hider<'a> {
+    faces: &'a Faces,
+    table: Option<TableFaces<'a>>,
+    method: Option<(MakeMethod<'a>, Occludees, Witness)>,
+}
+
+impl<'a> Hider<'a> {
+    /// O(n log² n).
+    pub(crate) fn new(faces: &'a Faces, by: &HiddenBy<'a>) -> Self {
+        let method = by.method.map(|make| {
+            // Each face is an object of its own.
+            let occludees = Occludees::new(faces.corners().iter().map(|t| vec![*t]).collect());
+            (make, occludees, Witness::new(faces.corners().iter().map(std::slice::from_ref)))
+        });
+        Self { faces, table: by.table.map(|table| TableFaces::new(faces, table)), method }
+    }
+
+    /// For each view which faces may be visible from it. Errs towards visible only, as far as method and table do.
+    pub(crate) fn may_see(&self, views: &Views) -> Result<Vec<Vec<bool>>, BackendError> {
+        let start = |view: &View| -> Vec<bool> {
+            let mut visible: Vec<bool> = self.faces.ids().map(|face| self.faces.has_area(face)).collect();
+            if let Some(table) = &self.table {
+                table.hide(view, self.faces, &mut visible);
+            }
+            visible
+        };
+        let Some((make, occludees, witness)) = &self.method else {
+            return Ok(views.parts().par_iter().map(start).collect());
+        };
+        let n_rays = u32::try_from(self.faces.len()).unwrap_or(u32::MAX).saturating_mul(N_RAYS_PER_FACE).max(1 << 12);
+        let split = Split { depth: 0, n_rays, ..Split::default() };
+        let ask = |method: &mut Box<dyn FromRegion + Send>, view: &View| {
+            let mut visible = start(view);
+            adaptive::see(&mut **method, occludees, witness, &view.volume, &split, &mut visible, &mut |_| {})?;
+            Ok(visible)
+        };
+        views.parts().par_iter().map_init(make, ask).collect()
+    }
+}
+
+/// A table as something that hides faces.
+struct TableFaces<'a> {
+    table: &'a Table,
+    /// For each face the cells whose closed boxes meet its box; none if cells do not tell where it can be reached.
+    touched: Vec<Vec<u32>>,
+}
+
+impl<'a> TableFaces<'a> {
+    fn new(faces: &Faces, table: &'a Table) -> Self {
+        if table.info_value("subdivide") != Some("kd") {
+            // Boxes from elsewhere leave gaps.
+            return Self { table, touched: vec![Vec::new(); faces.len()] };
+        }
+        let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
+        let tree = BoxTree::build(&cells, 8);
+        // Within the box around all cells, what is in no cell is inside of something solid.
+        let all = Aabb::<3>::around(cells.iter().flat_map(|b| [b.min, b.max]));
+        let meet = |a: &Aabb<3>, b: &Aabb<3>| (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k]);
+        let touched = |face: u32| {
+            let b = faces.bounds(face);
+            let mut found = Vec::new();
+            if !(all.contains(b.min) && all.contains(b.max)) {
+                return found;
+            }
+            tree.visit(
+                |node| meet(node, &b),
+                |cell| {
+                    if meet(&cells[cell as usize], &b) {
+                        found.push(cell);
+                    }
+                },
+            );
+            found
+        };
+        Self { table, touched: faces.ids().into_par_iter().map(touched).collect() }
+    }
+
+    /// Hides faces of objects that the view's cell does not see, and faces that touch no cell that it sees: a ray that reaches a face
+    /// comes through a cell whose closed box the face touches. A face that touches no cell of a k-d tree is inside of something solid, but
+    /// is left visible: this costs little, and nothing has to be said about what is outside.
+    fn hide(&self, view: &View, faces: &Faces, visible: &mut [bool]) {
+        let Some(cell) = view.cell else { return };
+        let mut objects = vec![false; self.table.objects().len()];
+        self.table.visible_objects(cell).into_iter().for_each(|o| objects[o as usize] = true);
+        let mut seen = vec![false; self.table.n_cells()];
+        self.table.visible(cell).for_each(|c| seen[c.idx()] = true);
+        for (face, visible) in faces.ids().zip(visible) {
+            let touched = &self.touched[face as usize];
+            let reached = touched.is_empty() || touched.iter().any(|&c| seen[c as usize]);
+            *visible &= reached && objects[faces.object(face) as usize];
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! Simplified variants of a scene for the cells of a table, within a memory budget.
+//!
+//! A cell's variant is what is left of the scene for eyes in that cell. Cells that see much the same share one: the variants are merged,
+//! those first that grow least by it, until all together fit.
+
+use crate::hidden::{HiddenBy, Hider};
+use crate::intercepts::Intercepts;
+use crate::mesh::Mesh;
+use crate::options::SimplifyOptions;
+use crate::select::{Account, least_visible};
+use crate::simplified::Simplified;
+use crate::simplify::{SimplifyError, check_table, in_threads, within_budget};
+use crate::views::Views;
+use rayon::prelude::*;
+use sightlines_cells::Scene;
+use sightlines_pvs::{CellId, Table};
+use sightlines_visible_surface::Faces;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How to make levels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelOptions {
+    /// How to simplify for each group of cells.
+    pub simplify: SimplifyOptions,
+    /// Bytes that all levels may take together.
+    pub memory: u64,
+    /// Bytes that a triangle takes where levels are kept: three indices and its share of vertices.
+    pub bytes_per_triangle: u64,
+}
+
+impl Default for LevelOptions {
+    /// No budget of rays, a part for each cell, 64 MiB, and a triangle with half a vertex of 32 bytes.
+    fn default() -> Self {
+        let simplify = SimplifyOptions { n_parts: 1, ..SimplifyOptions::default() };
+        Self { simplify, memory: 64 << 20, bytes_per_triangle: 28 }
+    }
+}
+
+/// A variant of the scene for some cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// The cells that it may be drawn for, ascending.
+    pub cells: Vec<CellId>,
+    /// What is left.
+    pub simplified: Simplified,
+    /// What it takes, by the options' measure.
+    pub n_bytes: u64,
+}
+
+/// Variants for cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Levels {
+    /// The level of each cell of the table.
+    pub of_cell: Vec<u32>,
+    /// The levels, by their first cells.
+    pub levels: Vec<Level>,
+}
+
+/// Makes levels for all cells of a table, whose cells have to be boxes.
+///
+/// * `by`: what proves faces hidden, beside the table itself
+///
+/// Each level keeps the promise of [`simplify`](crate::simplify) for all eyes in its cells. Memory counts triangles, not files.
+/// Deterministic. Costs a simplification for each level, and for each cell the bounds of what it may see; merging is quadratic in the
+/// number of cells at worst, times the number of triangles over 64.
+///
+/// # Errors
+/// [`SimplifyError`]; [`SimplifyError::Memory`] if a single level for all cells is too large.
+pub fn levels(
+    scene: &Scene,
+    table: &Table,
+    by: &HiddenBy<'_>,
+    options: &LevelOptions,
+) -> Result<Levels, SimplifyError> {
+    options.simplify.check()?;
+    check_table(scene, table)?;
+    in_threads(options.simplify.threads, || {
+        let faces = Faces::of_scene(scene)?;
+        let hider = Hider::new(&faces, &HiddenBy { method: by.method, table: Some(table) });
+        let maker = Maker { scene, table, faces: &faces, hider, mesh: Mesh::new(scene), options };
+        let all: Vec<CellId> = (0..table.n_cells() as u32).map(CellId).collect();
+        let kept = all.par_iter().map(|&cell| maker.kept(cell)).collect::<Result<Vec<Bits>, SimplifyError>>()?;
+        let mut groups = Groups::new(table, kept, options.bytes_per_triangle);
+        groups.merge_equal();
+        while groups.n_bytes() > options.memory && groups.merge_cheapest() {}
+        let mut made: BTreeMap<Vec<CellId>, Level> = BTreeMap::new();
+        loop {
+            let wanted = groups.cells();
+            made.retain(|cells, _| wanted.contains(cells));
+            let missing: Vec<&Vec<CellId>> = wanted.iter().filter(|cells| !made.contains_key(*cells)).collect();
+            let new = missing.par_iter().map(|cells| maker.level(cells)).collect::<Result<Vec<Level>, SimplifyError>>()?;
+            made.extend(new.into_iter().map(|level| (level.cells.clone(), level)));
+            // What fits many cells may take more than what was kept for each of them.
+            let n_bytes: u64 = made.values().map(|level| level.n_bytes).sum();
+            if n_bytes <= options.memory {
+                return Ok(Levels::new(table.n_cells(), made.into_values().collect()));
+            }
+            if !groups.merge_cheapest() {
+                return Err(SimplifyError::Memory { asked: options.memory, least: n_bytes });
+            }
+        }
+    })
+}
+
+impl Levels {
+    fn new(n_cells: usize, levels: Vec<Level>) -> Self {
+        let mut of_cell = vec![0; n_cells];
+        for (id, level) in (0..).zip(&levels) {
+            level.cells.iter().for_each(|cell| of_cell[cell.idx()] = id);
+        }
+        Self { of_cell, levels }
+    }
+
+    /// Bytes of all levels.
+    pub fn n_bytes(&self) -> u64 {
+        self.levels.iter().map(|level| level.n_bytes).sum()
+    }
+}
+
+/// Makes levels.
+struct Maker<'a> {
+    scene: &'a Scene,
+    table: &'a Table,
+    faces: &'a Faces,
+    hider: Hider<'a>,
+    mesh: Mesh,
+    options: &'a LevelOptions,
+}
+
+impl Maker<'_> {
+    /// What is left for the eyes of one cell, without collapsing: near enough to choose what to merge.
+    fn kept(&self, cell: CellId) -> Result<Bits, SimplifyError> {
+        let views = Views::of_cells(self.table, &[cell])?;
+        let intercepts = Intercepts::of_hider(self.faces, &views, &self.hider, self.options.simplify.depth)?;
+        let mut kept = Bits::new(self.faces.len());
+        let visible = || self.faces.ids().filter(|&f| !intercepts.is_hidden(f));
+        visible().for_each(|face| kept.set(face, true));
+        let budget = self.options.simplify.budget;
+        if budget > 0.0 {
+            let mut account = Account::new(1);
+            least_visible(&intercepts, visible(), budget, &mut account, |face| kept.set(face, false));
+        }
+        Ok(kept)
+    }
+
+    fn level(&self, cells: &[CellId]) -> Result<Level, SimplifyError> {
+        let options = &self.options.simplify;
+        let views = Views::of_cells(self.table, cells)?.cut(options.n_parts);
+        let intercepts = Intercepts::of_hider(self.faces, &views, &self.hider, options.depth)?;
+        let simplified = within_budget(self.scene, self.faces, self.mesh.clone(), &views, &intercepts, options);
+        let n_bytes = simplified.counts.left as u64 * self.options.bytes_per_triangle;
+        Ok(Level { cells: cells.to_vec(), simplified, n_bytes })
+    }
+}
+
+/// A set of faces.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Bits(Vec<u64>);
+
+impl Bits {
+    fn new(n: usize) -> Self {
+        Self(vec![0; n.div_ceil(64)])
+    }
+
+    fn set(&mut self, face: u32, to: bool) {
+        let (word, bit) = (&mut self.0[face as usize / 64], 1 << (face % 64));
+        *word = if to { *word | bit } else { *word & !bit };
+    }
+
+    fn count(&self) -> u64 {
+        self.0.iter().map(|w| u64::from(w.count_ones())).sum()
+    }
+
+    fn count_with(&self, other: &Self) -> u64 {
+        self.0.iter().zip(&other.0).map(|(a, b)| u64::from((a | b).count_ones())).sum()
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.0.iter_mut().zip(&other.0).for_each(|(a, b)| *a |= b);
+    }
+}
+
+/// Cells that share what is kept.
+struct Group {
+    cells: Vec<CellId>,
+    kept: Bits,
+    n_kept: u64,
+    /// Groups that it may be merged with.
+    near: BTreeSet<usize>,
+}
+
+/// A partition of the cells.
+struct Groups {
+    /// None where one was merged into another.
+    all: Vec<Option<Group>>,
+    /// Pairs that may be merged, by how many more triangles that keeps in memory.
+    pairs: BTreeSet<(i64, usize, usize)>,
+    bytes_per_triangle: u64,
+}
+
+impl Groups {
+    /// Each cell by itself. Those may be merged that have a portal between them, or follow each other in the table.
+    fn new(table: &Table, kept: Vec<Bits>, bytes_per_triangle: u64) -> Self {
+        let n = kept.len();
+        let mut near = vec![BTreeSet::new(); n];
+        let mut join = |a: usize, b: usize| {
+            if a != b {
+                near[a].insert(b);
+                near[b].insert(a);
+            }
+        };
+        (1..n).for_each(|cell| join(cell - 1, cell));
+        table.portals().iter().for_each(|p| join(p.cells[0].idx(), p.cells[1].idx()));
+        let group = |((cell, kept), near): ((u32, Bits), BTreeSet<usize>)| {
+            Some(Group { cells: vec![CellId(cell)], n_kept: kept.count(), kept, near })
+        };
+        let all: Vec<Option<Group>> = (0..).zip(kept).zip(near).map(group).collect();
+        let mut groups = Self { all, pairs: BTreeSet::new(), bytes_per_triangle };
+        for a in 0..n {
+            let later: Vec<usize> = groups.group(a).near.iter().copied().filter(|b| *b > a).collect();
+            later.into_iter().for_each(|b| groups.offer(a, b));
+        }
+        groups
+    }
+
+    fn group(&self, id: usize) -> &Group {
+        self.all[id].as_ref().expect("only groups that are there are asked about")
+    }
+
+    /// What merging costs: triangles of the union, less those of both.
+    fn cost(&self, a: usize, b: usize) -> i64 {
+        let (a, b) = (self.group(a), self.group(b));
+        a.kept.count_with(&b.kept) as i64 - a.n_kept as i64 - b.n_kept as i64
+    }
+
+    fn offer(&mut self, a: usize, b: usize) {
+        self.pairs.insert((self.cost(a, b), a.min(b), a.max(b)));
+    }
+
+    fn n_bytes(&self) -> u64 {
+        self.all.iter().flatten().map(|g| g.n_kept).sum::<u64>() * self.bytes_per_triangle
+    }
+
+    fn cells(&self) -> BTreeSet<Vec<CellId>> {
+        self.all.iter().flatten().map(|g| g.cells.clone()).collect()
+    }
+
+    /// Merges all that keep the same.
+    fn merge_equal(&mut self) {
+        let mut first: BTreeMap<Bits, usize> = BTreeMap::new();
+        for id in 0..self.all.len() {
+            let kept = self.group(id).kept.clone();
+            match first.get(&kept) {
+                Some(&other) => self.merge(other, id),
+                None => drop(first.insert(kept, id)),
+            }
+        }
+    }
+
+    /// Merges the two that save most; whether there were two.
+    fn merge_cheapest(&mut self) -> bool {
+        match self.pairs.first() {
+            Some(&(_, a, b)) => {
+                self.merge(a, b);
+                true
+            }
+            None => false,
+        }
+    }
+
+    fn merge(&mut self, a: usize, b: usize) {
+        for id in [a, b] {
+            let near: Vec<usize> = self.group(id).near.iter().copied().collect();
+            for other in near {
+                let pair = (self.cost(id, other), id.min(other), id.max(other));
+                self.pairs.remove(&pair);
+            }
+        }
+        let Some(gone) = self.all[b].take() else { return };
+        let into = self.all[a].as_mut().expect("only groups that are there are merged");
+        into.cells.extend(gone.cells);
+        into.cells.sort_unstable();
+        into.kept.add(&gone.kept);
+        into.n_kept = into.kept.count();
+        into.near.extend(&gone.near);
+        into.near.retain(|&id| id != a && id != b);
+        let near: Vec<usize> = into.near.iter().copied().collect();
+        for other in near {
+            if let Some(other) = self.all[other].as_mut() {
+                other.near.remove(&b);
+                other.near.insert(a);
+            }
+            self.offer(a, other);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

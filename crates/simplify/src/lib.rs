@@ -1,0 +1,45 @@
+//! Fewer triangles for a volume of viewpoints: what intercepts no visible ray goes, what intercepts few goes within a budget.
+//!
+//! Owns: how much of the view a triangle can take up, as a proven upper bound ([`Intercepts`]) and as an estimate by rays
+//! ([`Estimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table ([`levels`]); the measurement of
+//! what a simplified scene changes ([`measure`]); the ordinary geometric metric, to compare with ([`geometric`]).
+//! Does not know: how hidden things are proven (a [`FromRegion`](sightlines_multifocal::FromRegion) method or a table says so), files.
+//! Invariants: for every eye in the closed boxes of [`Views`], the share of the sphere of directions in which the first surface met
+//! is another one than before is at most [`Simplified::bound`], which is at most the budget; with a budget of 0 it is none.
+//!
+//! # The promise
+//! Let a direction's first hit be the face that its ray from the eye meets first. Faces are kept, taken away, or put in. If
+//! a ray's first hit before is a kept face and its first hit after is no new one, they are the same face: a kept face that is
+//! nearer after was as near before. So a direction can only change if its first hit before was taken away, or if its
+//! first hit after is new. Therefore the share that changes is at most the sum of what faces taken away and new faces
+//! take up of the sphere of directions, each counted where it is not proven hidden; and this holds for every eye of a box if each
+//! term is a bound for every eye of it. That a face is hidden is said of the scene before; for a new face it may be used as well, as a ray
+//! that reaches it has passed a place where a face was taken away, and counts already.
+
+pub mod bound;
+pub mod estimate;
+mod hidden;
+mod intercepts;
+pub mod levels;
+mod measure;
+mod mesh;
+mod options;
+mod rays;
+mod select;
+mod simplified;
+mod simplify;
+mod views;
+
+pub use estimate::{Estimate, Interval};
+pub use hidden::{HiddenBy, MakeMethod};
+pub use intercepts::Intercepts;
+pub use levels::{Level, LevelOptions, Levels, levels};
+pub use measure::{Measured, MeasureOptions, measure};
+pub use options::{OptionsError, SimplifyOptions};
+pub use simplified::{Counts, Simplified};
+pub use simplify::{SimplifyError, geometric, simplify};
+pub use views::{View, Views, ViewsError};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

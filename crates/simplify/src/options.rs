@@ -1,0 +1,74 @@
+//! How to simplify.
+
+/// How to simplify.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SimplifyOptions {
+    /// The largest share of the sphere of directions, from 0 to 1, in which the first hit may be another one, for every eye. 0 takes
+    /// away only what is proven hidden.
+    pub budget: f64,
+    /// The share of the budget, from 0 to 1, that is kept for collapsing edges; the rest is for triangles to be left out, which makes
+    /// holes as large as the budget.
+    pub collapse: f64,
+    /// At least so many boxes are made of the views before bounds are made.
+    pub n_parts: usize,
+    /// Rays for the estimate that weighs faces for collapsing.
+    pub n_rays: u64,
+    /// How often a triangle is cut in four, to bound what it takes up.
+    pub depth: u32,
+    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    pub threads: usize,
+}
+
+impl Default for SimplifyOptions {
+    fn default() -> Self {
+        Self { budget: 0.0, collapse: 0.5, n_parts: 8, n_rays: 1 << 18, depth: 4, threads: 0 }
+    }
+}
+
+/// An option out of its range.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OptionsError {
+    /// The budget.
+    #[error("the budget is a share of the sphere of directions, from 0 to 1, not {0}")]
+    Budget(f64),
+    /// The share for collapsing.
+    #[error("the share of the budget for collapsing is from 0 to 1, not {0}")]
+    Collapse(f64),
+    /// Number of boxes.
+    #[error("the views are cut into 1 to 65536 boxes, not {0}")]
+    Parts(usize),
+    /// Depth of triangles.
+    #[error("triangles are cut in four at most 8 times, not {0}")]
+    Depth(u32),
+}
+
+impl SimplifyOptions {
+    /// With another budget.
+    #[must_use]
+    pub const fn with_budget(mut self, budget: f64) -> Self {
+        self.budget = budget;
+        self
+    }
+
+    /// Checks all ranges.
+    ///
+    /// # Errors
+    /// [`OptionsError`], of the first offender.
+    pub fn check(&self) -> Result<(), OptionsError> {
+        let share = |x: f64| (0.0..=1.0).contains(&x);
+        if !share(self.budget) {
+            return Err(OptionsError::Budget(self.budget));
+        }
+        if !share(self.collapse) {
+            return Err(OptionsError::Collapse(self.collapse));
+        }
+        if !(1..=crate::Views::MOST).contains(&self.n_parts) {
+            return Err(OptionsError::Parts(self.n_parts));
+        }
+        if self.depth > 8 {
+            return Err(OptionsError::Depth(self.depth));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,112 @@
+//! From where a scene is looked at.
+
+use sightlines_multifocal::{Volume, VolumeError};
+use sightlines_geometry::Aabb;
+use sightlines_pvs::{CellId, Table};
+
+/// A box of eyes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// Where the eye can be, a closed box.
+    pub volume: Volume,
+    /// The cell of a table that it is in, if it comes from one.
+    pub cell: Option<CellId>,
+}
+
+/// All places of the eye: some closed boxes, which may overlap.
+///
+/// Bounds are made for each of them and hold for each, so many small boxes give better bounds than one large one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Views(Vec<View>);
+
+/// Why there are no such views.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewsError {
+    /// No box at all.
+    #[error("there is no place for the eye: no view volume is given")]
+    None,
+    /// The table is of a plan.
+    #[error("the table's cells are flat; a scene in space is looked at from boxes")]
+    Flat,
+    /// The table has no such cell.
+    #[error("the table has no cell {cell}; it has {n_cells}, numbered from 0")]
+    NoCell {
+        /// What was asked for.
+        cell: u32,
+        /// How many there are.
+        n_cells: usize,
+    },
+    /// The table does not say which box a cell fills.
+    #[error("cell {cell} of the table is no box, or its shape is not known")]
+    NoBox {
+        /// The cell.
+        cell: u32,
+    },
+    /// A box that is no volume.
+    #[error(transparent)]
+    Volume(#[from] VolumeError),
+}
+
+/// Whether the cells of a table are the boxes that it has of them.
+fn has_boxes(table: &Table) -> bool {
+    table.planes().is_none() && matches!(table.info_value("subdivide"), Some("kd" | "boxes"))
+}
+
+impl Views {
+    /// The largest number of boxes.
+    pub const MOST: usize = 1 << 16;
+
+    /// Eyes in boxes.
+    ///
+    /// # Errors
+    /// [`ViewsError::None`] for an empty list.
+    pub fn new(volumes: impl IntoIterator<Item = Volume>) -> Result<Self, ViewsError> {
+        let views: Vec<View> = volumes.into_iter().map(|volume| View { volume, cell: None }).collect();
+        if views.is_empty() { Err(ViewsError::None) } else { Ok(Self(views)) }
+    }
+
+    /// Eyes in cells of a table whose cells are boxes.
+    ///
+    /// # Errors
+    /// [`ViewsError`]
+    pub fn of_cells(table: &Table, cells: &[CellId]) -> Result<Self, ViewsError> {
+        if table.dimension() != 3 {
+            return Err(ViewsError::Flat);
+        }
+        let view = |&cell: &CellId| {
+            let n_cells = table.n_cells();
+            let record = table.cells().get(cell.idx()).ok_or(ViewsError::NoCell { cell: cell.0, n_cells })?;
+            let bounds = Aabb { min: record.min, max: record.max };
+            if bounds.is_empty() || !has_boxes(table) {
+                return Err(ViewsError::NoBox { cell: cell.0 });
+            }
+            Ok(View { volume: Volume::new(bounds)?, cell: Some(cell) })
+        };
+        let views: Vec<View> = cells.iter().map(view).collect::<Result<_, _>>()?;
+        if views.is_empty() { Err(ViewsError::None) } else { Ok(Self(views)) }
+    }
+
+    /// The same places in at least `n` boxes, as far as doubles allow: the box with the longest side is halved until there are enough.
+    #[must_use]
+    pub fn cut(mut self, n: usize) -> Self {
+        let longest = |v: &View| {
+            let b = v.volume.bounds();
+            (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max)
+        };
+        while self.0.len() < n.min(Self::MOST) {
+            // Of equals the first.
+            let at = (0..self.0.len()).rev().max_by(|&a, &b| longest(&self.0[a]).total_cmp(&longest(&self.0[b])));
+            let Some((at, [low, high])) = at.and_then(|at| Some((at, self.0[at].volume.halves()?))) else { break };
+            let cell = self.0[at].cell;
+            self.0[at].volume = low;
+            self.0.insert(at + 1, View { volume: high, cell });
+        }
+        self
+    }
+
+    /// The boxes.
+    pub fn parts(&self) -> &[View] {
+        &self.0
+    }
+}
