@@ -97,6 +97,21 @@ impl PlaneOf {
     }
 }
 
+/// At most the distance of two boxes, in scene units: 0 if they touch.
+pub(crate) fn distance(a: &Aabb<3>, b: &Aabb<3>) -> f64 {
+    apart(a, b, 0.0)
+}
+
+/// At most their distance, if the first may be larger by `off` on each side.
+fn apart(a: &Aabb<3>, b: &Aabb<3>, off: f64) -> f64 {
+    let gap = |k: usize| {
+        let apart = (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]);
+        // The difference rounds once.
+        down(down(apart) - off)
+    };
+    length_down([gap(0), gap(1), gap(2)])
+}
+
 /// A part of a triangle.
 struct Piece {
     /// Rounded once for each level at most.
@@ -111,14 +126,9 @@ impl Piece {
         let around = Aabb::<3>::around(self.corners);
         // A middle is off by a rounding of a number no larger than the corners, beyond what its ends are off.
         let off = 2.0 * U * largest * f64::from(self.level) + f64::MIN_POSITIVE * f64::from(self.level);
-        let gap = |k: usize| {
-            let apart = (around.min[k] - eyes.max[k]).max(eyes.min[k] - around.max[k]);
-            // The difference rounds once.
-            down(down(apart) - off)
-        };
-        let near = length_down([gap(0), gap(1), gap(2)]).max(plane.heights[0]);
+        let near = apart(&around, eyes, off).max(plane.heights[0]);
         let size = (0..3).map(|k| around.max[k] - around.min[k]).fold(0.0, f64::max);
-        if self.level < depth && size > near / 2.0 {
+        if self.level < depth && size > near / 8.0 {
             return self.parts().iter().fold(0.0, |sum, part| up(sum + part.share(plane, eyes, largest, depth)));
         }
         if near == 0.0 {

@@ -9,6 +9,8 @@ pub struct SimplifyOptions {
     /// The share of the budget, from 0 to 1, that is kept for collapsing edges; the rest is for triangles to be left out, which makes
     /// holes as large as the budget.
     pub collapse: f64,
+    /// How far collapsing may move a surface, as a part of its distance to the eye, for every eye; infinite for any.
+    pub shift: f64,
     /// At least so many boxes are made of the views before bounds are made.
     pub n_parts: usize,
     /// Rays for the estimate that weighs faces for collapsing.
@@ -21,7 +23,7 @@ pub struct SimplifyOptions {
 
 impl Default for SimplifyOptions {
     fn default() -> Self {
-        Self { budget: 0.0, collapse: 0.5, n_parts: 8, n_rays: 1 << 18, depth: 4, threads: 0 }
+        Self { budget: 0.0, collapse: 0.5, shift: 1.0 / 128.0, n_parts: 8, n_rays: 1 << 18, depth: 4, threads: 0 }
     }
 }
 
@@ -35,6 +37,9 @@ pub enum OptionsError {
     /// The share for collapsing.
     #[error("the share of the budget for collapsing is from 0 to 1, not {0}")]
     Collapse(f64),
+    /// How far surfaces may move.
+    #[error("collapsing moves surfaces by a part of their distance that is at least 0, not {0}")]
+    Shift(f64),
     /// Number of boxes.
     #[error("the views are cut into 1 to 65536 boxes, not {0}")]
     Parts(usize),
@@ -62,6 +67,9 @@ impl SimplifyOptions {
         }
         if !share(self.collapse) {
             return Err(OptionsError::Collapse(self.collapse));
+        }
+        if self.shift.is_nan() || self.shift < 0.0 {
+            return Err(OptionsError::Shift(self.shift));
         }
         if !(1..=crate::Views::MOST).contains(&self.n_parts) {
             return Err(OptionsError::Parts(self.n_parts));

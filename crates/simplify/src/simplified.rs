@@ -13,8 +13,12 @@ pub struct Simplified {
     /// For every eye of the views: the share of the sphere of directions in which the first hit is another one is at most this.
     /// A proven bound; for [`geometric`](crate::geometric) there is none, and it is infinite.
     pub bound: f64,
-    /// How far collapsing has moved the surface at most, in scene units: no point of it by more. 0 if nothing was collapsed.
+    /// How far collapsing has moved the surface at most, in scene units: points of what was changed, before and after, are no farther from the
+    /// other surface. 0 if nothing was collapsed. Holes of what was left out are not counted.
     pub deviation: f64,
+    /// How far collapsing has moved it at most as a part of its distance to the eye, for every eye: near the angle by which it seems to have
+    /// moved. At most [`SimplifyOptions::shift`](crate::SimplifyOptions::shift); infinite for [`geometric`](crate::geometric).
+    pub shift: f64,
     /// What became of the triangles.
     pub counts: Counts,
 }

@@ -8,7 +8,7 @@ use crate::mesh::{Change, Collapser, Mesh, Policy, State, Weights};
 use crate::options::{OptionsError, SimplifyOptions};
 use crate::select::{Account, least_visible};
 use crate::simplified::{Counts, Simplified};
-use crate::views::{Views, ViewsError};
+use crate::views::{View, Views, ViewsError};
 use sightlines_cells::Scene;
 use sightlines_geometry::{Aabb, Point3, orient3d};
 use sightlines_multifocal::BackendError;
@@ -155,7 +155,7 @@ pub(crate) fn within_budget(
     if budget > 0.0 {
         counts.deleted += delete(&mut mesh, &mut account, budget - kept);
     }
-    let mut deviation = 0.0;
+    let [mut deviation, mut shift] = [0.0; 2];
     if kept > 0.0 {
         // Half of what is kept pays for what goes, the other for what comes.
         let mut paid = Paid::choose(faces, views, intercepts, &mesh, options, account);
@@ -168,24 +168,24 @@ pub(crate) fn within_budget(
         };
         let mut collapser = Collapser::new(&mesh, &weights);
         collapser.run(&mut mesh, &mut paid);
-        deviation = collapser.deviation();
+        (deviation, shift) = (collapser.deviation(), paid.shift);
         account = paid.settle(&mesh);
         counts.deleted += delete(&mut mesh, &mut account, budget);
     }
-    finish(scene, &mesh, counts, account.most(), deviation)
+    finish(scene, &mesh, counts, account.most(), [deviation, shift])
 }
 
 fn kept_faces<'a>(mesh: &'a Mesh, faces: &Faces) -> impl Iterator<Item = u32> + 'a {
     faces.ids().filter(|&f| mesh.face(f).state == State::Kept)
 }
 
-fn finish(scene: &Scene, mesh: &Mesh, mut counts: Counts, bound: f64, deviation: f64) -> Simplified {
+fn finish(scene: &Scene, mesh: &Mesh, mut counts: Counts, bound: f64, [deviation, shift]: [f64; 2]) -> Simplified {
     let (triangles, origin) = mesh.left(scene);
     counts.new = mesh.faces().iter().filter(|f| f.state == State::New).count();
     counts.left = mesh.n_left();
     let kept = counts.left - counts.new;
     counts.collapsed = counts.before - counts.without_area - counts.hidden - counts.deleted - kept;
-    Simplified { triangles, origin, bound, deviation, counts }
+    Simplified { triangles, origin, bound, deviation, shift, counts }
 }
 
 /// Collapses what is paid for.
@@ -195,6 +195,9 @@ struct Paid<'a> {
     intercepts: &'a Intercepts,
     depth: u32,
     budget: f64,
+    most_shift: f64,
+    /// The largest shift so far.
+    shift: f64,
     account: Account,
     /// Faces whose change is paid for.
     may_go: Vec<bool>,
@@ -215,12 +218,33 @@ impl<'a> Paid<'a> {
         let mut may_go = vec![false; faces.len()];
         let limit = budget - budget * options.collapse / 2.0;
         least_visible(intercepts, kept_faces(mesh, faces), limit, &mut account, |face| may_go[face as usize] = true);
-        Self { faces, views, intercepts, depth: options.depth, budget, account, may_go, charges: BTreeMap::new() }
+        let (depth, most_shift) = (options.depth, options.shift);
+        Self {
+            faces,
+            views,
+            intercepts,
+            depth,
+            budget,
+            most_shift,
+            shift: 0.0,
+            account,
+            may_go,
+            charges: BTreeMap::new(),
+        }
     }
 
     /// What a triangle takes up at most, in each part.
     fn shares(&self, corners: &[Point3; 3]) -> Vec<f64> {
         self.views.parts().iter().map(|v| bound::share(corners, v.volume.bounds(), self.depth)).collect()
+    }
+
+    /// At most the distance of any eye to the faces of a change, before and after.
+    fn nearest(&self, mesh: &Mesh, change: &Change) -> f64 {
+        let changed = change.lost.iter().chain(change.moved.iter().map(|(f, _)| f));
+        let corners = changed.flat_map(|&f| mesh.corners(f)).chain([mesh.place(change.to)]);
+        let around = Aabb::<3>::around(corners);
+        let to = |view: &View| bound::distance(&around, view.volume.bounds());
+        self.views.parts().iter().map(to).fold(f64::INFINITY, f64::min)
     }
 
     /// What was not changed after all need not be paid for.
@@ -237,8 +261,13 @@ impl Policy for Paid<'_> {
         self.may_go[face as usize]
     }
 
-    fn accepts(&mut self, mesh: &Mesh, change: &Change) -> bool {
+    fn accepts(&mut self, mesh: &Mesh, change: &Change, moved: f64) -> bool {
         if change.lost.iter().chain(change.moved.iter().map(|(f, _)| f)).any(|&f| !self.may_go[f as usize]) {
+            return false;
+        }
+        let shift = moved / self.nearest(mesh, change);
+        // Also where the distance is 0.
+        if shift.is_nan() || shift > self.most_shift {
             return false;
         }
         let new: Vec<(u32, Vec<f64>)> =
@@ -253,6 +282,7 @@ impl Policy for Paid<'_> {
             return false;
         }
         self.account = account;
+        self.shift = self.shift.max(shift.next_up());
         change.lost.iter().for_each(|face| drop(self.charges.remove(face)));
         self.charges.extend(new);
         true
@@ -326,7 +356,7 @@ pub fn geometric(scene: &Scene, target: usize) -> Result<Simplified, SimplifyErr
         fn may_touch(&self, _: &Mesh, _: u32) -> bool {
             true
         }
-        fn accepts(&mut self, _: &Mesh, _: &Change) -> bool {
+        fn accepts(&mut self, _: &Mesh, _: &Change, _: f64) -> bool {
             true
         }
         fn is_done(&self, mesh: &Mesh) -> bool {
@@ -345,7 +375,7 @@ pub fn geometric(scene: &Scene, target: usize) -> Result<Simplified, SimplifyErr
     let mut collapser = Collapser::new(&mesh, &weights);
     collapser.run(&mut mesh, &mut Count(target));
     let deviation = collapser.deviation();
-    Ok(finish(scene, &mesh, counts, f64::INFINITY, deviation))
+    Ok(finish(scene, &mesh, counts, f64::INFINITY, [deviation, f64::INFINITY]))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Collapsing edges, those that matter least first.
 
+use super::apart::apart;
 use super::change::normal;
 use super::quadric::Quadric;
 use super::{Change, Mesh, State};
@@ -12,8 +13,8 @@ pub(crate) trait Policy {
     /// Whether a face may be changed at all.
     fn may_touch(&self, mesh: &Mesh, face: u32) -> bool;
 
-    /// Whether a change is made; if so it is paid for.
-    fn accepts(&mut self, mesh: &Mesh, change: &Change) -> bool;
+    /// Whether a change is made; if so it is paid for. `moved`: how far the surface has moved there at most, since the beginning.
+    fn accepts(&mut self, mesh: &Mesh, change: &Change, moved: f64) -> bool;
 
     /// Whether there are few enough faces.
     fn is_done(&self, mesh: &Mesh) -> bool;
@@ -56,8 +57,9 @@ impl Ord for Candidate {
 pub(crate) struct Collapser {
     quadrics: Vec<Quadric>,
     stamps: Vec<u32>,
-    /// How far what is at a place now has come at most.
+    /// For each face how far it is from what was there at the beginning at most, and what was there from it.
     moved: Vec<f64>,
+    deviation: f64,
     /// Subtracted from all places, so that quadrics have small numbers.
     origin: Point3,
     heap: BinaryHeap<Reverse<Candidate>>,
@@ -71,7 +73,8 @@ impl Collapser {
         let mut collapser = Self {
             quadrics: vec![Quadric::default(); n],
             stamps: vec![0; n],
-            moved: vec![0.0; n],
+            moved: vec![0.0; mesh.faces().len()],
+            deviation: 0.0,
             origin,
             heap: BinaryHeap::new(),
         };
@@ -133,12 +136,15 @@ impl Collapser {
                 continue;
             }
             let Some(change) = Change::new(mesh, from, to) else { continue };
-            if !policy.accepts(mesh, &change) {
+            // What is near to a face now was near to what it replaces, and that to what was there.
+            let before = mesh.at(from).iter().map(|&f| self.moved[f as usize]).fold(0.0, f64::max);
+            let moved = (before + apart(mesh, &change)).next_up();
+            if !policy.accepts(mesh, &change, moved) {
                 continue;
             }
+            change.moved.iter().for_each(|&(face, _)| self.moved[face as usize] = moved);
+            self.deviation = self.deviation.max(moved);
             change.apply(mesh);
-            let step = distance(mesh.place(from), mesh.place(to));
-            self.moved[to as usize] = self.moved[to as usize].max((self.moved[from as usize] + step).next_up());
             let quadric = self.quadrics[from as usize];
             self.quadrics[to as usize].add(&quadric);
             [from, to].into_iter().for_each(|p| self.stamps[p as usize] += 1);
@@ -161,17 +167,10 @@ impl Collapser {
         }
     }
 
-    /// How far a point of the surface has moved at most, scene units: along the way of the corner that was moved farthest.
+    /// How far a point of the surface is from the surface at the beginning at most, and the other way round; scene units.
     pub(crate) fn deviation(&self) -> f64 {
-        self.moved.iter().copied().fold(0.0, f64::max)
+        self.deviation
     }
-}
-
-/// At least the distance of two points.
-fn distance(a: Point3, b: Point3) -> f64 {
-    // Two roundings in each square, two in the sum, one in the root: less than 8 of them.
-    let square: f64 = (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum();
-    square.sqrt() * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE
 }
 
 fn cross(u: Point3, v: Point3) -> Point3 {

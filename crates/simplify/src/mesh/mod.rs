@@ -3,6 +3,7 @@
 //! Objects keep their own vertices, as they may differ in more than their place (texture coordinates, normals); the mesh knows which
 //! vertex of its object each corner is.
 
+mod apart;
 mod change;
 mod collapse;
 mod quadric;
