@@ -22,7 +22,10 @@ pub struct HiddenBy<'a> {
 
 impl fmt::Debug for HiddenBy<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("HiddenBy").field("method", &self.method.is_some()).field("table", &self.table.is_some()).finish()
+        f.debug_struct("HiddenBy")
+            .field("method", &self.method.is_some())
+            .field("table", &self.table.is_some())
+            .finish()
     }
 }
 

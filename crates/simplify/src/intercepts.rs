@@ -31,12 +31,7 @@ impl Intercepts {
         Self::of_hider(faces, views, &Hider::new(faces, by), depth)
     }
 
-    pub(crate) fn of_hider(
-        faces: &Faces,
-        views: &Views,
-        hider: &Hider<'_>,
-        depth: u32,
-    ) -> Result<Self, BackendError> {
+    pub(crate) fn of_hider(faces: &Faces, views: &Views, hider: &Hider<'_>, depth: u32) -> Result<Self, BackendError> {
         let visible = hider.may_see(views)?;
         let of = |(view, visible): (&View, &Vec<bool>)| {
             let share = |face: u32| {

@@ -88,7 +88,8 @@ pub fn levels(
             let wanted = groups.cells();
             made.retain(|cells, _| wanted.contains(cells));
             let missing: Vec<&Vec<CellId>> = wanted.iter().filter(|cells| !made.contains_key(*cells)).collect();
-            let new = missing.par_iter().map(|cells| maker.level(cells)).collect::<Result<Vec<Level>, SimplifyError>>()?;
+            let new =
+                missing.par_iter().map(|cells| maker.level(cells)).collect::<Result<Vec<Level>, SimplifyError>>()?;
             made.extend(new.into_iter().map(|level| (level.cells.clone(), level)));
             // What fits many cells may take more than what was kept for each of them.
             let n_bytes: u64 = made.values().map(|level| level.n_bytes).sum();

@@ -14,7 +14,8 @@
 //! first hit after is new. Therefore the share that changes is at most the sum of what faces taken away and new faces
 //! take up of the sphere of directions, each counted where it is not proven hidden; and this holds for every eye of a box if each
 //! term is a bound for every eye of it. That a face is hidden is said of the scene before; for a new face it may be used as well, as a ray
-//! that reaches it has passed a place where a face was taken away, and counts already.
+//! that reaches it has passed a place where a face was taken away, and counts already. Merging faces in one plane changes no surface, and so
+//! no first hit but in its name.
 
 pub mod bound;
 pub mod estimate;
@@ -34,7 +35,7 @@ pub use estimate::{Estimate, Interval};
 pub use hidden::{HiddenBy, MakeMethod};
 pub use intercepts::Intercepts;
 pub use levels::{Level, LevelOptions, Levels, levels};
-pub use measure::{Measured, MeasureOptions, measure};
+pub use measure::{MeasureOptions, Measured, measure};
 pub use options::{OptionsError, SimplifyOptions};
 pub use simplified::{Counts, Simplified};
 pub use simplify::{SimplifyError, geometric, simplify};

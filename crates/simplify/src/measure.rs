@@ -7,7 +7,7 @@ use crate::simplify::{SimplifyError, in_threads};
 use crate::views::Views;
 use rayon::prelude::*;
 use sightlines_cells::Scene;
-use sightlines_geometry::{Point3, Random};
+use sightlines_geometry::{Point3, Random, orient3d};
 use sightlines_visible_surface::Faces;
 
 /// How to measure.
@@ -32,7 +32,8 @@ impl Default for MeasureOptions {
 /// Shares of rays that are changed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// Rays whose first hit is not the same face any more: it was taken away or changed, or something else is met. What is promised.
+    /// Rays whose first hit is on another surface: not on the same face, nor on one of the same object in the same plane, exactly. What
+    /// is promised.
     pub changed: f64,
     /// The same, for the eye for which it is most.
     pub worst: f64,
@@ -55,7 +56,8 @@ struct Changes {
     moved: u64,
 }
 
-/// Sends fresh rays through a scene before and after. A ray's first hit is the same if it is the same triangle, unchanged.
+/// Sends fresh rays through a scene before and after. A ray's first hit is the same if it is on the same
+/// triangle, or on one of the same object in the same plane.
 ///
 /// Deterministic for a seed. O(n log n) and two traced rays for each ray.
 ///
@@ -80,6 +82,12 @@ pub fn measure(
                 let way = random.direction();
                 let (a, b) = (old.first_hit(place, way), new.first_hit(place, way));
                 if a == b.and_then(|b| after.origin[b as usize]) && a.is_some() == b.is_some() {
+                    continue;
+                }
+                if let (Some(a), Some(b)) = (a, b)
+                    && before.object(a) == after.object[b as usize]
+                    && in_one_plane(before.of(a), after.faces.of(b))
+                {
                     continue;
                 }
                 changes.changed += 1;
@@ -134,6 +142,11 @@ impl Left {
         }
         Ok(Self { faces: Faces::new(corners)?, object, origin })
     }
+}
+
+/// Whether two triangles lie in one plane, exactly.
+fn in_one_plane([a, b, c]: &[Point3; 3], other: &[Point3; 3]) -> bool {
+    other.iter().all(|p| orient3d(*a, *b, *c, *p) == 0.0)
 }
 
 /// How far along a ray the plane of a triangle is, rounded.

@@ -9,6 +9,9 @@ pub struct SimplifyOptions {
     /// The share of the budget, from 0 to 1, that is kept for collapsing edges; the rest is for triangles to be left out, which makes
     /// holes as large as the budget.
     pub collapse: f64,
+    /// Whether to merge faces of an object that lie in one plane, exactly. It changes no place that is seen; colours and texture
+    /// coordinates are interpolated over the larger faces, so they stay the same only where they are linear.
+    pub flat: bool,
     /// How far collapsing may move a surface, as a part of its distance to the eye, for every eye; infinite for any.
     pub shift: f64,
     /// At least so many boxes are made of the views before bounds are made.
@@ -23,7 +26,16 @@ pub struct SimplifyOptions {
 
 impl Default for SimplifyOptions {
     fn default() -> Self {
-        Self { budget: 0.0, collapse: 0.5, shift: 1.0 / 128.0, n_parts: 8, n_rays: 1 << 18, depth: 4, threads: 0 }
+        Self {
+            budget: 0.0,
+            collapse: 0.5,
+            flat: false,
+            shift: 1.0 / 128.0,
+            n_parts: 8,
+            n_rays: 1 << 18,
+            depth: 4,
+            threads: 0,
+        }
     }
 }
 

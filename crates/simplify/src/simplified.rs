@@ -6,9 +6,9 @@ use sightlines_cells::{Scene, SceneError, SceneObject};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simplified {
     /// For each object of the scene the triangles that are left, as indices of the object's own vertices: no vertex is new.
-    /// Kept ones come first, in their order, then new ones.
+    /// Kept ones come first, in their order, then merged and new ones.
     pub triangles: Vec<Vec<[u32; 3]>>,
-    /// For each of them which triangle of its object it was, and `None` for a new one.
+    /// For each of them which triangle of its object it was, and `None` for a merged or new one.
     pub origin: Vec<Vec<Option<u32>>>,
     /// For every eye of the views: the share of the sphere of directions in which the first hit is another one is at most this.
     /// A proven bound; for [`geometric`](crate::geometric) there is none, and it is infinite.
@@ -38,12 +38,16 @@ pub struct Counts {
     pub collapsed: usize,
     /// Put in by collapsing.
     pub new: usize,
-    /// What is left, new ones included.
+    /// Saved by merging faces in one plane.
+    pub merged_away: usize,
+    /// Put in by merging: they cover what was covered before.
+    pub merged: usize,
+    /// What is left, new and merged ones included.
     pub left: usize,
 }
 
 impl Simplified {
-    /// Whether what is left lies inside of what was there: nothing is new. Only then may it hide something, where it was made for or
+    /// Whether what is left lies inside of what was there: nothing is new but what was merged. Only then may it hide something, where it was made for or
     /// elsewhere.
     pub fn is_part_of_the_original(&self) -> bool {
         self.counts.new == 0

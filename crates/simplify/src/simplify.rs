@@ -4,7 +4,7 @@ use crate::bound;
 use crate::estimate::Estimate;
 use crate::hidden::HiddenBy;
 use crate::intercepts::Intercepts;
-use crate::mesh::{Change, Collapser, Mesh, Policy, State, Weights};
+use crate::mesh::{Change, Collapser, Mesh, Policy, State, Weights, merge};
 use crate::options::{OptionsError, SimplifyOptions};
 use crate::select::{Account, least_visible};
 use crate::simplified::{Counts, Simplified};
@@ -57,6 +57,7 @@ const WEIGHT_OF_AREA: f64 = 1e-3;
 ///    ([quadrics](Collapser) weighted by the estimate; silhouettes and borders keep their share). A corner moves to a
 ///    neighbour, so no vertex is new and all that belongs to vertices survives.
 /// 4. What is left of the budget leaves out more.
+/// 5. If asked for, faces of an object that lie in one plane, exactly, are merged where the surface stays the same set of points.
 ///
 /// * `by`: what proves faces hidden; with nothing, bounds are still bounds, and larger
 ///
@@ -172,6 +173,11 @@ pub(crate) fn within_budget(
         account = paid.settle(&mesh);
         counts.deleted += delete(&mut mesh, &mut account, budget);
     }
+    if options.flat {
+        let before = mesh.n_left();
+        merge(&mut mesh);
+        counts.merged_away = before - mesh.n_left();
+    }
     finish(scene, &mesh, counts, account.most(), [deviation, shift])
 }
 
@@ -181,10 +187,10 @@ fn kept_faces<'a>(mesh: &'a Mesh, faces: &Faces) -> impl Iterator<Item = u32> + 
 
 fn finish(scene: &Scene, mesh: &Mesh, mut counts: Counts, bound: f64, [deviation, shift]: [f64; 2]) -> Simplified {
     let (triangles, origin) = mesh.left(scene);
-    counts.new = mesh.faces().iter().filter(|f| f.state == State::New).count();
-    counts.left = mesh.n_left();
-    let kept = counts.left - counts.new;
-    counts.collapsed = counts.before - counts.without_area - counts.hidden - counts.deleted - kept;
+    let n = |state: State| mesh.faces().iter().filter(|f| f.state == state).count();
+    (counts.new, counts.merged, counts.left) = (n(State::New), n(State::Merged), mesh.n_left());
+    let gone = counts.before - counts.without_area - counts.hidden - counts.deleted - counts.merged_away;
+    counts.collapsed = gone - counts.merged - n(State::Kept);
     Simplified { triangles, origin, bound, deviation, shift, counts }
 }
 
@@ -343,7 +349,7 @@ impl Areas {
 }
 
 /// Simplifies a scene by its shape alone, to at most `target` triangles as far as edges can be collapsed: the ordinary metric, which
-/// knows no eyes, to compare with. Nothing is promised of what is seen.
+/// knows no eyes, to compare with. Each object is a mesh of its own. Nothing is promised of what is seen.
 ///
 /// # Errors
 /// [`SimplifyError::Faces`]
@@ -364,7 +370,7 @@ pub fn geometric(scene: &Scene, target: usize) -> Result<Simplified, SimplifyErr
         }
     }
     let faces = Faces::of_scene(scene)?;
-    let mut mesh = Mesh::new(scene);
+    let mut mesh = Mesh::of_objects(scene);
     let mut counts = Counts { before: faces.len(), ..Counts::default() };
     for face in faces.ids().filter(|&f| !faces.has_area(f)) {
         counts.without_area += 1;

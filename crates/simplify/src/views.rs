@@ -1,7 +1,7 @@
 //! From where a scene is looked at.
 
-use sightlines_multifocal::{Volume, VolumeError};
 use sightlines_geometry::Aabb;
+use sightlines_multifocal::{Volume, VolumeError};
 use sightlines_pvs::{CellId, Table};
 
 /// A box of eyes.

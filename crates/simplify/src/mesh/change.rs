@@ -75,9 +75,8 @@ fn partner(mesh: &Mesh, lost: &[u32], face: u32, from: u32, to: u32) -> Option<u
         face.corners.iter().position(|&c| c == place).map(|k| face.wedges[k])
     };
     let own = wedge_at(face, from)?;
-    let goes_with = |&&other: &&u32| {
-        mesh.face(other).object == mesh.face(face).object && wedge_at(other, from) == Some(own)
-    };
+    let goes_with =
+        |&&other: &&u32| mesh.face(other).object == mesh.face(face).object && wedge_at(other, from) == Some(own);
     lost.iter().find(goes_with).and_then(|&other| wedge_at(other, to))
 }
 

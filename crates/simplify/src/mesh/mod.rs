@@ -6,10 +6,12 @@
 mod apart;
 mod change;
 mod collapse;
+mod flat;
 mod quadric;
 
 pub(crate) use change::Change;
 pub(crate) use collapse::{Collapser, Policy, Weights};
+pub(crate) use flat::merge;
 
 use sightlines_cells::Scene;
 use sightlines_geometry::Point3;
@@ -31,6 +33,8 @@ pub(crate) struct Face {
 pub(crate) enum State {
     /// It is as it was.
     Kept,
+    /// It covers a part of what kept faces in its plane covered: a face that was not there before, of a surface that was.
+    Merged,
     /// Some corner has moved: a face that was not there before.
     New,
     /// It is gone.
@@ -48,12 +52,25 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// All triangles of a scene, in the order of `Faces::of_scene`. O(n log n).
+    /// All triangles of a scene, in the order of `Faces::of_scene`; corners at one place are one, whichever objects they are of.
+    /// O(n log n).
     pub(crate) fn new(scene: &Scene) -> Self {
+        Self::joined(scene, true)
+    }
+
+    /// The same, but objects have nothing in common.
+    pub(crate) fn of_objects(scene: &Scene) -> Self {
+        Self::joined(scene, false)
+    }
+
+    fn joined(scene: &Scene, across_objects: bool) -> Self {
         let mut ids: BTreeMap<[u64; 3], u32> = BTreeMap::new();
         let mut places = Vec::new();
         let mut faces = Vec::with_capacity(scene.n_triangles());
         for (object, o) in (0..).zip(scene.objects()) {
+            if !across_objects {
+                ids.clear();
+            }
             // Negative zero is zero.
             let mut place = |p: &Point3| {
                 let p = p.map(|x| x + 0.0);
@@ -138,7 +155,7 @@ impl Mesh {
         around
     }
 
-    /// For each of `n` objects what is left: triangles and which triangle of the object each was; kept ones first.
+    /// For each of `n` objects what is left: triangles and which triangle of the object each was; kept ones first, then merged ones.
     pub(crate) fn left(&self, scene: &Scene) -> (Vec<Vec<[u32; 3]>>, Vec<Vec<Option<u32>>>) {
         let (mut triangles, mut origin) = (Vec::new(), Vec::new());
         let mut first = 0;
@@ -146,8 +163,9 @@ impl Mesh {
             let faces = &self.faces[first..first + object.triangles.len()];
             first += object.triangles.len();
             let of = |state: State| (0..).zip(faces).filter(move |(_, f)| f.state == state);
-            triangles.push(of(State::Kept).chain(of(State::New)).map(|(_, f)| f.wedges).collect());
-            origin.push(of(State::Kept).map(|(k, _)| Some(k)).chain(of(State::New).map(|_| None)).collect());
+            let changed = || of(State::Merged).chain(of(State::New));
+            triangles.push(of(State::Kept).chain(changed()).map(|(_, f)| f.wedges).collect());
+            origin.push(of(State::Kept).map(|(k, _)| Some(k)).chain(changed().map(|_| None)).collect());
         }
         (triangles, origin)
     }

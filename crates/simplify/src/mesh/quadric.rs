@@ -25,7 +25,11 @@ impl Quadric {
             linear: [x, y, z].map(|n| n * d * weight),
             constant: d * d * weight,
         };
-        if quadric.constant.is_finite() && quadric.square.iter().all(|q| q.is_finite()) { quadric } else { Self::default() }
+        if quadric.constant.is_finite() && quadric.square.iter().all(|q| q.is_finite()) {
+            quadric
+        } else {
+            Self::default()
+        }
     }
 
     pub(super) fn add(&mut self, other: &Self) {

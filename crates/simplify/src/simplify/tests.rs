@@ -6,7 +6,9 @@ use sightlines_cells::SceneObject;
 use sightlines_geometry::Random;
 use sightlines_multifocal::mesh::{SheetMethod, Sheets};
 use sightlines_multifocal::{FromRegion, Volume};
-use sightlines_scenes::{CityOptions, SurfaceOptions, TowerOptions, city, city_crossings, surfaces, tower, tower_rooms};
+use sightlines_scenes::{
+    CityOptions, SurfaceOptions, TowerOptions, city, city_crossings, surfaces, tower, tower_rooms,
+};
 use sightlines_visible_surface::{Camera, Chosen, NOTHING, RayCaster, Shot, VisibleSurface};
 use std::sync::Arc;
 
@@ -140,9 +142,8 @@ fn no_budget_changes_no_pixel() {
 
 /// That a measured share can be at most `bound`: of all rays, and of the worst eye's, where that is not chance.
 fn check(measured: &crate::Measured, bound: f64, n_rays: u64, n_eyes: usize) -> Result<(), TestCaseError> {
-    let low = |share: f64, n: u64, wrong: f64| {
-        estimate::interval((share * n as f64).round() as u64, n, 1.0 - wrong).ends[0]
-    };
+    let low =
+        |share: f64, n: u64, wrong: f64| estimate::interval((share * n as f64).round() as u64, n, 1.0 - wrong).ends[0];
     prop_assert!(low(measured.changed, measured.n_rays, 1e-9) <= bound, "{:?} {}", measured, bound);
     prop_assert!(low(measured.worst, n_rays, 1e-9 / n_eyes as f64) <= bound, "{:?} {}", measured, bound);
     Ok(())
@@ -166,7 +167,8 @@ proptest! {
         };
         let max = [0, 1, 2].map(|k| at[k] + size[k]);
         let views = views(at, max);
-        let options = SimplifyOptions { budget, collapse, n_parts: 3, n_rays: 2000, ..SimplifyOptions::default() };
+        let flat = seed.is_multiple_of(2);
+        let options = SimplifyOptions { budget, collapse, flat, n_parts: 3, n_rays: 2000, ..SimplifyOptions::default() };
         let left = simplified(&scene, &views, &options);
         prop_assert!(left.bound <= budget);
         let options = MeasureOptions { n_eyes: 8, n_rays: 500, seed, threads: 1 };
@@ -176,7 +178,7 @@ proptest! {
             prop_assert_eq!(measured.changed, 0.0);
         }
         let c = left.counts;
-        prop_assert_eq!(c.before, c.without_area + c.hidden + c.deleted + c.collapsed + (c.left - c.new));
+        prop_assert_eq!(c.before + c.new, c.without_area + c.hidden + c.deleted + c.collapsed + c.merged_away + c.left);
     }
 }
 
@@ -216,7 +218,8 @@ fn a_broken_promise_is_measured() {
     let elsewhere = self::views([4.0, 4.0, 200.0], [8.0, 8.0, 220.0]);
     let other = simplified(&scene, &elsewhere, &SimplifyOptions::default().with_budget(0.05));
     let shape = geometric(&scene, good.counts.left).unwrap();
-    let tenfold = simplified(&scene, &views, &SimplifyOptions { collapse: 0.0, ..SimplifyOptions::default() }.with_budget(0.5));
+    let tenfold =
+        simplified(&scene, &views, &SimplifyOptions { collapse: 0.0, ..SimplifyOptions::default() }.with_budget(0.5));
     for (name, wrong) in [("elsewhere", other), ("shape", shape), ("tenfold", tenfold)] {
         assert!(told(&wrong, good.bound), "{name}");
     }
@@ -240,6 +243,46 @@ fn the_geometric_metric_changes_more() {
     let measured = [&ours, &theirs].map(|s| measure(&scene, s, &views, &MeasureOptions::default()).unwrap());
     assert!(measured[0].changed * 5.0 < measured[1].changed, "{measured:?}");
     assert!(measured[0].moved < measured[1].moved, "{measured:?}");
+}
+
+/// Faces that were merged cover what was covered, and nothing else.
+#[test]
+fn merging_changes_no_surface() {
+    let streets = CityOptions { blocks_x: 2, blocks_z: 2, ..CityOptions::default() };
+    let scene = city(streets).unwrap();
+    let b = city_crossings(streets).unwrap()[0];
+    let views = views(b.min, b.max);
+    let options = SimplifyOptions { flat: true, ..SimplifyOptions::default() };
+    let left = simplified(&scene, &views, &options);
+    let Counts { hidden, merged_away, left: n, before, .. } = left.counts;
+    assert!(n * 2 < before - hidden && merged_away > 0 && left.is_part_of_the_original(), "{:?}", left.counts);
+    // From anywhere, what is left looks as what was left without merging.
+    let plain = simplified(&scene, &views, &SimplifyOptions::default());
+    let plain = plain.scene(&scene).unwrap();
+    let all = simplified(
+        &plain,
+        &self::views(scene.bounds().min, scene.bounds().max),
+        &SimplifyOptions { n_parts: 1, ..options },
+    );
+    let anywhere = self::views(scene.bounds().min, scene.bounds().max.map(|x| x + 50.0));
+    let measure_options = MeasureOptions { n_eyes: 50, n_rays: 2000, ..MeasureOptions::default() };
+    let measured = measure(&plain, &all, &anywhere, &measure_options).unwrap();
+    assert_eq!((measured.changed, measured.other_object), (0.0, 0.0), "{:?}", all.counts);
+    // Bent ever so little, nothing is merged.
+    let mut random = Random::new(8);
+    let mut bent = terrain(6, 3.0, 0.0, 1);
+    bent.vertices.iter_mut().for_each(|v| {
+        if random.unit() < 0.5 {
+            v[2] = v[2].next_up();
+        }
+    });
+    let bent = Scene::new(vec![bent]).unwrap();
+    let mut mesh = Mesh::new(&bent);
+    crate::mesh::merge(&mut mesh);
+    assert!(mesh.n_left() > 50, "{}", mesh.n_left());
+    let mut mesh = Mesh::new(&Scene::new(vec![terrain(6, 3.0, 0.0, 1)]).unwrap());
+    crate::mesh::merge(&mut mesh);
+    assert_eq!(mesh.n_left(), 2);
 }
 
 #[test]
@@ -357,7 +400,8 @@ fn flat_surfaces_do_not_move() {
 
 #[test]
 fn strange_scenes_have_answers() {
-    let object = |vertices: Vec<Point3>, triangles: Vec<[u32; 3]>| SceneObject { name: "x".into(), vertices, triangles };
+    let object =
+        |vertices: Vec<Point3>, triangles: Vec<[u32; 3]>| SceneObject { name: "x".into(), vertices, triangles };
     let fan = (0..6).map(|k| [0, 1, 2 + k]).collect::<Vec<_>>();
     let fan = object((0..8u32).map(|k| [f64::from(k), f64::from(k * k), f64::from(k * k * k)]).collect(), fan);
     let flat = object(vec![[0.0; 3], [1.0; 3], [2.0; 3]], vec![[0, 1, 2], [0, 0, 1], [2, 2, 2]]);
@@ -367,14 +411,17 @@ fn strange_scenes_have_answers() {
     let tiny = object(vec![[1e-40, 0., 0.], [0., 1e-40, 0.], [0., 0., 1e-40]], vec![[0, 1, 2]]);
     let far = object(vec![[1e9, 0., 0.], [1e9, 1., 0.], [1e9, 0., 1.]], vec![[0, 1, 2]]);
     let scene = Scene::new(vec![fan, flat, twice, huge, none, tiny, far, terrain(4, 3.0, 1.0, 1)]).unwrap();
-    for (min, max) in [([0.0; 3], [0.0; 3]), ([-1.0; 3], [1.0; 3]), ([0., 0., 5.], [1., 1., 5.]), ([-1e50; 3], [1e50; 3])] {
+    for (min, max) in
+        [([0.0; 3], [0.0; 3]), ([-1.0; 3], [1.0; 3]), ([0., 0., 5.], [1., 1., 5.]), ([-1e50; 3], [1e50; 3])]
+    {
         for budget in [0.0, 0.01, 1.0] {
             for collapse in [0.0, 1.0] {
                 let views = views(min, max);
                 let options = SimplifyOptions { budget, collapse, n_rays: 1000, ..SimplifyOptions::default() };
                 let left = simplified(&scene, &views, &options);
                 assert!(left.bound <= budget && left.counts.without_area == 3);
-                let measured = measure(&scene, &left, &views, &MeasureOptions { n_eyes: 10, n_rays: 100, ..Default::default() });
+                let measured =
+                    measure(&scene, &left, &views, &MeasureOptions { n_eyes: 10, n_rays: 100, ..Default::default() });
                 assert!(measured.unwrap().changed <= budget, "{budget} {collapse}");
                 drop(geometric(&scene, 3).unwrap());
             }
@@ -406,7 +453,11 @@ fn threads_change_nothing() {
     let (scene, rooms) = small_tower();
     let views = views(rooms[1].min, rooms[1].max);
     let run = |threads| {
-        simplified(&scene, &views, &SimplifyOptions { threads, n_rays: 10_000, ..SimplifyOptions::default().with_budget(0.01) })
+        simplified(
+            &scene,
+            &views,
+            &SimplifyOptions { threads, n_rays: 10_000, ..SimplifyOptions::default().with_budget(0.01) },
+        )
     };
     assert_eq!(run(1), run(3));
 }

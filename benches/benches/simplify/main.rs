@@ -1,0 +1,158 @@
+//! Simplification by what triangles intercept: how much is left at a budget, what fresh rays find changed, and the ordinary metric of shape
+//! at equal counts.
+//!
+//! Measuring and drawing are two steps: `--csv` keeps what was measured, `--draw` makes a chart of such a file, always the same. Ends with 1
+//! if a bound is above its budget, or if more is found changed than was promised.
+
+mod cases;
+mod measured;
+#[cfg(feature = "meshopt")]
+mod meshopt;
+
+use clap::Parser;
+use measured::Row;
+use sightlines_benches::chart::{Panel, Series, svg};
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Simplification for a volume of viewpoints.
+#[derive(Debug, Clone, Parser)]
+struct Args {
+    /// Runs only if this bench's name contains it.
+    filter: Option<String>,
+    /// Scenes, of: tower, city, and names of real scenes with the file of their cells.
+    #[arg(long, value_delimiter = ',', default_values_t = ["tower", "city", "sponza:cells_walk"].map(str::to_owned))]
+    scenes: Vec<String>,
+    /// Views of each scene.
+    #[arg(long, default_value_t = 3)]
+    views: usize,
+    /// Budgets.
+    #[arg(long, value_delimiter = ',', default_values_t = [0.0, 1e-4, 1e-3, 1e-2])]
+    budgets: Vec<f64>,
+    /// Shares of the budget that are kept for collapsing.
+    #[arg(long, value_delimiter = ',', default_values_t = [0.0, 0.5])]
+    collapse: Vec<f64>,
+    /// Fresh eyes for each measurement.
+    #[arg(long, default_value_t = 16)]
+    eyes: usize,
+    /// Rays from each eye at least; there are more for small budgets.
+    #[arg(long, default_value_t = 20_000)]
+    rays: u64,
+    /// Writes what was measured.
+    #[arg(long)]
+    csv: Option<PathBuf>,
+    /// Measures nothing, and draws what this file says was measured.
+    #[arg(long, value_name = "CSV", requires = "svg")]
+    draw: Option<PathBuf>,
+    /// The chart to write.
+    #[arg(long)]
+    svg: Option<PathBuf>,
+    /// Checks the answers on a small city.
+    #[arg(long)]
+    test: bool,
+    /// Given by cargo.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> ExitCode {
+    let mut args = Args::parse();
+    if args.filter.as_ref().is_some_and(|f| !"simplify".contains(f.as_str())) {
+        return ExitCode::SUCCESS;
+    }
+    if args.test {
+        (args.scenes, args.views, args.eyes, args.rays) = (vec!["small".to_owned()], 1, 4, 2000);
+        args.budgets = vec![0.0, 1e-2];
+    }
+    match run(&args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether every promise was kept.
+fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
+    let rows = match &args.draw {
+        Some(file) => measured::read(&std::fs::read_to_string(file)?)?,
+        None => measure(args)?,
+    };
+    if args.test {
+        check(&rows)?;
+    }
+    if let Some(path) = &args.svg {
+        std::fs::write(path, chart(&rows))?;
+    }
+    if args.draw.is_none() {
+        measured::print(&rows);
+    }
+    let broken: Vec<&Row> = rows.iter().filter(|r| r.breaks_its_promise()).collect();
+    broken.iter().for_each(|r| eprintln!("BROKEN: {r:?}"));
+    Ok(broken.is_empty())
+}
+
+fn measure(args: &Args) -> Result<Vec<Row>, Box<dyn Error>> {
+    let mut rows = Vec::new();
+    for name in &args.scenes {
+        for case in cases::named(name, args.views)? {
+            for &budget in &args.budgets {
+                // Nothing is collapsed without a budget.
+                let shares = if budget == 0.0 { &args.collapse[..1] } else { &args.collapse[..] };
+                for &collapse in shares {
+                    rows.extend(measured::all(&case, budget, collapse, args.eyes, args.rays)?);
+                    if let Some(path) = &args.csv {
+                        std::fs::write(path, measured::write(&rows))?;
+                    }
+                }
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Share of triangles left by budget, and what is changed by what is left.
+fn chart(rows: &[Row]) -> String {
+    let mut scenes: Vec<&str> = rows.iter().map(|r| r.scene.as_str()).collect();
+    scenes.dedup();
+    let lines = |metric: &str, x: fn(&Row) -> f64, y: fn(&Row) -> f64| -> Vec<Series> {
+        let line = |scene: &&str| {
+            let mut points: Vec<[f64; 2]> = rows
+                .iter()
+                .filter(|r| r.scene == *scene && r.metric == metric && r.budget > 0.0)
+                .map(|r| [x(r), y(r)])
+                .collect();
+            points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+            Series { name: format!("{scene}, {metric}"), points }
+        };
+        scenes.iter().map(line).collect()
+    };
+    let panel = |title: &str, series: Vec<Series>| Panel { title: title.into(), x_name: "budget".into(), series };
+    let left = |r: &Row| r.left as f64 / r.before as f64;
+    let panels = [
+        panel("share of triangles left", lines("intercepts", |r| r.budget, left)),
+        panel("share of rays changed, worst eye", lines("intercepts", |r| r.budget, |r| r.worst)),
+        panel("the same, metric of shape, equal counts", lines("shape", |r| r.budget, |r| r.worst)),
+    ];
+    svg("Simplification", &panels)
+}
+
+/// What must hold of a small scene, whatever the machine.
+fn check(rows: &[Row]) -> Result<(), Box<dyn Error>> {
+    let ours: Vec<&Row> = rows.iter().filter(|r| r.metric == "intercepts").collect();
+    assert!(ours.len() == 3 && rows.len() >= 6, "{} rows", rows.len());
+    assert!(ours[0].changed == 0.0 && ours[1..].iter().all(|r| r.changed > 0.0 && r.left < ours[0].left), "{ours:?}");
+    let shape = |r: &&Row| rows.iter().find(|s| s.metric == "shape" && s.budget == r.budget && s.collapse == r.collapse);
+    assert!(ours.iter().all(|r| shape(r).is_some_and(|s| s.changed > 10.0 * r.changed && s.left <= r.left)), "{rows:?}");
+    let text = measured::write(rows);
+    assert_eq!(measured::read(&text)?, rows, "what was measured is read back");
+    assert_eq!(chart(&measured::read(&text)?), chart(rows), "the same numbers make the same chart");
+    assert!(measured::read(&text.replacen("intercepts,", "", 1)).is_err());
+    let mut broken = ours[2].clone();
+    broken.worst = broken.bound * 2.0;
+    assert!(broken.breaks_its_promise() && !ours[2].breaks_its_promise());
+    Ok(())
+}

@@ -1,0 +1,208 @@
+//! What is measured of a scene, a place, a budget and a metric.
+
+use crate::cases::Case;
+use sightlines::simplify::{
+    HiddenBy, MeasureOptions, SimplifyOptions, Simplified, estimate, geometric, measure, simplify,
+};
+use std::error::Error;
+use std::time::Instant;
+
+/// One metric at one budget.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) scene: String,
+    pub(crate) view: usize,
+    pub(crate) budget: f64,
+    /// Share of the budget that is kept for collapsing.
+    pub(crate) collapse: f64,
+    /// `intercepts` is ours, `shape` the quadrics of the geometry alone at the same count, `meshopt` another one's.
+    pub(crate) metric: String,
+    pub(crate) before: usize,
+    pub(crate) hidden: usize,
+    pub(crate) left: usize,
+    pub(crate) new: usize,
+    /// Promised; infinite if nothing is.
+    pub(crate) bound: f64,
+    /// Measured, of all rays and for the worst eye.
+    pub(crate) changed: f64,
+    pub(crate) worst: f64,
+    pub(crate) other_object: f64,
+    pub(crate) moved: f64,
+    pub(crate) rays_per_eye: u64,
+    pub(crate) n_eyes: usize,
+    pub(crate) seconds: f64,
+}
+
+const HEAD: &str = "scene,view,budget,collapse,metric,before,hidden,left,new,bound,changed,worst,other_object,moved,rays_per_eye,n_eyes,seconds";
+
+impl Row {
+    /// Whether more was changed than was promised, and not by chance: the chance is below one in a million.
+    pub(crate) fn breaks_its_promise(&self) -> bool {
+        if self.metric != "intercepts" {
+            return false;
+        }
+        let hits = (self.worst * self.rays_per_eye as f64).round() as u64;
+        let confidence = 1.0 - 1e-6 / self.n_eyes.max(1) as f64;
+        let surely = estimate::interval(hits, self.rays_per_eye, confidence).ends[0];
+        self.bound > self.budget || surely > self.bound || (self.budget == 0.0 && self.changed > 0.0)
+    }
+}
+
+/// Ours, and the others at the same count.
+pub(crate) fn all(
+    case: &Case,
+    budget: f64,
+    collapse: f64,
+    n_eyes: usize,
+    n_rays: u64,
+) -> Result<Vec<Row>, Box<dyn Error>> {
+    let make = || case.method();
+    let by = HiddenBy { method: Some(&make), table: case.table.as_deref() };
+    let options = SimplifyOptions { budget, collapse, ..SimplifyOptions::default() };
+    let start = Instant::now();
+    let ours = simplify(&case.scene, &case.views, &by, &options)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let rays = if budget > 0.0 { ((50.0 / budget) as u64).clamp(n_rays, 500_000) } else { n_rays };
+    let row = |metric: &str, of: &Simplified, seconds: f64, rays: u64| -> Result<Row, Box<dyn Error>> {
+        let options = MeasureOptions { n_eyes, n_rays: rays, ..MeasureOptions::default() };
+        let m = measure(&case.scene, of, &case.views, &options)?;
+        let row = Row {
+            scene: case.name.clone(),
+            view: case.view,
+            budget,
+            collapse,
+            metric: metric.to_owned(),
+            before: of.counts.before,
+            hidden: of.counts.hidden,
+            left: of.counts.left,
+            new: of.counts.new,
+            bound: of.bound,
+            changed: m.changed,
+            worst: m.worst,
+            other_object: m.other_object,
+            moved: m.moved,
+            rays_per_eye: rays,
+            n_eyes,
+            seconds,
+        };
+        eprintln!("{row:?}");
+        Ok(row)
+    };
+    let mut rows = vec![row("intercepts", &ours, seconds, rays)?];
+    let start = Instant::now();
+    let shape = geometric(&case.scene, ours.counts.left)?;
+    rows.push(row("shape", &shape, start.elapsed().as_secs_f64(), n_rays)?);
+    #[cfg(feature = "meshopt")]
+    {
+        let start = Instant::now();
+        let theirs = crate::meshopt::simplified(&case.scene, ours.counts.left);
+        rows.push(row("meshopt", &theirs, start.elapsed().as_secs_f64(), n_rays)?);
+    }
+    Ok(rows)
+}
+
+pub(crate) fn write(rows: &[Row]) -> String {
+    let line = |r: &Row| {
+        format!(
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+            r.scene,
+            r.view,
+            r.budget,
+            r.collapse,
+            r.metric,
+            r.before,
+            r.hidden,
+            r.left,
+            r.new,
+            r.bound,
+            r.changed,
+            r.worst,
+            r.other_object,
+            r.moved,
+            r.rays_per_eye,
+            r.n_eyes,
+            r.seconds
+        )
+    };
+    format!("{HEAD}\n{}", rows.iter().map(line).collect::<String>())
+}
+
+pub(crate) fn read(text: &str) -> Result<Vec<Row>, String> {
+    let mut lines = text.lines().zip(1..);
+    if lines.next().is_none_or(|(head, _)| head != HEAD) {
+        return Err("line 1: not what this bench writes".to_owned());
+    }
+    lines.map(|(line, number)| parse(line).ok_or_else(|| format!("line {number}: not a row of this bench"))).collect()
+}
+
+fn parse(line: &str) -> Option<Row> {
+    let all: Vec<&str> = line.split(',').collect();
+    let &[
+        scene,
+        view,
+        budget,
+        collapse,
+        metric,
+        before,
+        hidden,
+        left,
+        new,
+        bound,
+        changed,
+        worst,
+        other_object,
+        moved,
+        rays_per_eye,
+        n_eyes,
+        seconds,
+    ] = &all[..]
+    else {
+        return None;
+    };
+    Some(Row {
+        scene: scene.to_owned(),
+        view: view.parse().ok()?,
+        budget: budget.parse().ok()?,
+        collapse: collapse.parse().ok()?,
+        metric: metric.to_owned(),
+        before: before.parse().ok()?,
+        hidden: hidden.parse().ok()?,
+        left: left.parse().ok()?,
+        new: new.parse().ok()?,
+        bound: bound.parse().ok()?,
+        changed: changed.parse().ok()?,
+        worst: worst.parse().ok()?,
+        other_object: other_object.parse().ok()?,
+        moved: moved.parse().ok()?,
+        rays_per_eye: rays_per_eye.parse().ok()?,
+        n_eyes: n_eyes.parse().ok()?,
+        seconds: seconds.parse().ok()?,
+    })
+}
+
+pub(crate) fn print(rows: &[Row]) {
+    println!(
+        "| scene | view | budget | collapse | metric | triangles | left | new | promised | changed | worst eye | other object | moved | rays | s |"
+    );
+    println!("| --- | --: | --: | --: | --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |");
+    for r in rows {
+        let bound = if r.bound.is_finite() { format!("{:.2e}", r.bound) } else { "-".to_owned() };
+        println!(
+            "| {} | {} | {} | {} | {} | {} | {:.2} % | {} | {bound} | {:.2e} | {:.2e} | {:.2e} | {:.2e} | {} | {:.1} |",
+            r.scene,
+            r.view,
+            r.budget,
+            r.collapse,
+            r.metric,
+            r.before,
+            100.0 * r.left as f64 / r.before as f64,
+            r.new,
+            r.changed,
+            r.worst,
+            r.other_object,
+            r.moved,
+            r.rays_per_eye * r.n_eyes as u64,
+            r.seconds
+        );
+    }
+}
