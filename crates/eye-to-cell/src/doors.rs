@@ -51,6 +51,13 @@ impl Doors {
         self.n_closed == 0 || self.closed.get(portal as usize / 64).is_none_or(|word| word >> (portal % 64) & 1 == 0)
     }
 
+    /// The closed portals, ascending. O(largest portal that was ever closed / 64 + closed ones).
+    pub fn closed(&self) -> impl Iterator<Item = u32> + '_ {
+        (0u32..).zip(&self.closed).flat_map(|(word, &bits)| {
+            (0..u64::BITS).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| u64::BITS * word + bit)
+        })
+    }
+
     /// Number of closed portals.
     pub fn n_closed(&self) -> usize {
         self.n_closed
@@ -67,6 +74,9 @@ mod tests {
         assert!(doors.is_open(7) && !doors.open(7));
         assert!(doors.close(200) && !doors.close(200) && !doors.is_open(200) && doors.is_open(199));
         assert_eq!(doors.n_closed(), 1);
+        doors.close(63);
+        assert_eq!(doors.closed().collect::<Vec<_>>(), [63, 200]);
+        doors.open(63);
         assert!(doors.open(200) && doors.is_open(200));
         doors.close(3);
         doors.open_all();

@@ -1,7 +1,8 @@
 //! Where the viewer is, and which directions the picture covers.
 
 use crate::front::Front;
-use crate::side::{MOST_SIDES, Reach, Side, Vector, cross, dot, minus, norm};
+use crate::side::{MOST_SIDES, Reach, Side, Vector, cross, dot, minus, norm, radius};
+use sightlines_geometry::Aabb;
 use std::f64::consts::{PI, TAU};
 
 /// An eye and the cone of directions that it looks at, in the plane or in space.
@@ -101,6 +102,14 @@ impl View {
     /// The eye, in scene units.
     pub fn eye(&self) -> [f64; 3] {
         self.eye
+    }
+
+    /// Whether the cone may meet a box (scene units; z is 0 in a plane): what is not cut off by one of its sides alone.
+    ///
+    /// Errs towards `true`, near the edges of the cone by more than rounding. A box around the eye is met. O(sides).
+    pub fn may_meet(&self, bounds: &Aabb<3>) -> bool {
+        let reach = self.reach(radius(bounds, self.eye));
+        self.parts().iter().any(|part| !part.sides(reach).any(|side| side.excludes_box(bounds, self.eye)))
     }
 
     /// What is looked at in a mirror: the eye behind it, and the cone with these sides as the mirror shows it.
@@ -255,6 +264,17 @@ mod tests {
         // Straight up, with up along it: some picture.
         let up = View::pinhole([0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 1.0, 1.0).unwrap();
         assert!(contains(&up, [0.0, 0.0, 1.0]) && !contains(&up, [0.0, 0.0, -1.0]));
+    }
+
+    #[test]
+    fn boxes_are_met() {
+        let view = View::planar([1.0, 2.0], [1.0, 0.0], 1.0).unwrap();
+        let at = |x: f64, y: f64| Aabb { min: [x, y, 0.0], max: [x + 1.0, y + 1.0, 0.0] };
+        assert!(view.may_meet(&at(5.0, 2.0)) && view.may_meet(&at(0.5, 1.5)) && view.may_meet(&at(5.0, 3.5)));
+        assert!(!view.may_meet(&at(-3.0, 2.0)) && !view.may_meet(&at(2.0, 5.0)));
+        assert!(View::all_round([1.0, 2.0, 0.0]).unwrap().may_meet(&at(-3.0, 2.0)));
+        let wide = View::planar([1.0, 2.0], [1.0, 0.0], 6.0).unwrap();
+        assert!(wide.may_meet(&at(1.0, 5.0)) && !wide.may_meet(&at(-9.0, 1.5)));
     }
 
     #[test]

@@ -184,6 +184,31 @@ impl PlaneTree {
         }
     }
 
+    /// Calls `visit` with every cell that some point of the closed box from `min` to `max` (scene units) may be in, until it
+    /// says `false`; a cell comes more than once if it is on several leaves. Whoever contains a box meets at least the same
+    /// leaves, rounding included. Errs towards more cells. `pending` is scratch. O(nodes met).
+    pub fn for_each_cell_of_box(
+        &self,
+        min: [f64; 3],
+        max: [f64; 3],
+        pending: &mut Vec<u32>,
+        mut visit: impl FnMut(CellId) -> bool,
+    ) {
+        pending.clear();
+        pending.push(0);
+        while let Some(at) = pending.pop() {
+            let node = &self.nodes[at as usize];
+            let (above, below) = node.sides_of_box(min, max, self.slack);
+            for (child, open) in node.children.iter().zip([above, below]) {
+                match *child {
+                    PlaneChild::Node(next) if open => pending.push(next),
+                    PlaneChild::Cell(cell) if open && !visit(cell) => return,
+                    _ => {}
+                }
+            }
+        }
+    }
+
     /// Checks that this is a tree over the cells of a table.
     pub(crate) fn check(&self, n_cells: usize, dimension: u8) -> Result<(), PlaneError> {
         if dimension != 3 {
@@ -223,6 +248,24 @@ impl PlaneNode {
         let size = (((x.abs() + y.abs()) + z.abs()) + self.offset.abs()) + slack;
         let near = slack + (RELATIVE * size + f64::MIN_POSITIVE);
         let (certainly_above, certainly_below) = (height > near, height < -near);
+        (!certainly_below, !certainly_above)
+    }
+
+    /// Whether some point of a box may be above the plane or within `slack` of it, and whether one may be below or so.
+    ///
+    /// As [`PlaneNode::sides`] for the box's corners that are farthest above and below; these are chosen by signs, without
+    /// rounding. The bound is taken for the largest magnitudes in the box, so it is enough for both, and a larger box has a
+    /// larger one: with sums of monotone steps, a box that contains another is on no fewer sides.
+    #[inline]
+    fn sides_of_box(&self, min: [f64; 3], max: [f64; 3], slack: f64) -> (bool, bool) {
+        const RELATIVE: f64 = 4.0 * f64::EPSILON;
+        let up = |k: usize| self.normal[k] * if self.normal[k] >= 0.0 { max[k] } else { min[k] };
+        let down = |k: usize| self.normal[k] * if self.normal[k] >= 0.0 { min[k] } else { max[k] };
+        let largest = |k: usize| (self.normal[k] * min[k]).abs().max((self.normal[k] * max[k]).abs());
+        let (top, bottom) = (((up(0) + up(1)) + up(2)) - self.offset, ((down(0) + down(1)) + down(2)) - self.offset);
+        let size = (((largest(0) + largest(1)) + largest(2)) + self.offset.abs()) + slack;
+        let near = slack + (RELATIVE * size + f64::MIN_POSITIVE);
+        let (certainly_above, certainly_below) = (bottom > near, top < -near);
         (!certainly_below, !certainly_above)
     }
 }

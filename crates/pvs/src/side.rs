@@ -38,6 +38,20 @@ pub fn polygon_may_contain(corners: impl IntoIterator<Item = [f64; 2]>, p: [f64;
     !ends.is_some_and(|(first, last)| certainly_right(last, first, p))
 }
 
+/// Whether the closed box from `min` to `max` may touch the closed convex polygon with these counter-clockwise corners, as far as
+/// the lines through the polygon's sides tell; so it does if there are none. With the polygon's own box they tell all.
+///
+/// Errs towards `true`, near those lines only. O(corners).
+#[inline]
+pub(crate) fn polygon_may_touch_box(polygon: &[[f64; 2]], min: [f64; 2], max: [f64; 2]) -> bool {
+    !sides(polygon).any(|(a, b)| {
+        // The corner of the box that is farthest to the left of the side; chosen without rounding.
+        let x = if b[1] >= a[1] { min[0] } else { max[0] };
+        let y = if b[0] >= a[0] { max[1] } else { min[1] };
+        certainly_right(a, b, [x, y])
+    })
+}
+
 /// The first corner at which the polygon certainly is not convex and counter-clockwise, if any.
 ///
 /// Finds right turns that are more than rounding, and polygons that do not go round just once, which
@@ -154,6 +168,20 @@ mod tests {
         let (left, right) = ((a[0] - c[0]) * (b[1] - c[1]), (a[1] - c[1]) * (b[0] - c[0]));
         assert_eq!((left, right), (3.0 * 5e-324, 4.0 * 5e-324));
         assert!(!certainly_right(a, b, c));
+    }
+
+    proptest! {
+        /// Invariant: a box touches a triangle if no axis and no side separates the two, in whole numbers.
+        #[test]
+        fn sides_boxes_touch_as_in_whole_numbers(t in [small(), small(), small()], min in small(), size in [0i64..4, 0i64..4]) {
+            let [a, b, c] = t;
+            prop_assume!(exact(a, b, c) != 0);
+            let [a, b, c] = if exact(a, b, c) > 0 { [a, b, c] } else { [a, c, b] };
+            let max = [min[0] + size[0], min[1] + size[1]];
+            let corners = [min, [max[0], min[1]], max, [min[0], max[1]]];
+            let apart = [(a, b), (b, c), (c, a)].iter().any(|&(p, q)| corners.iter().all(|&v| exact(p, q, v) < 0));
+            prop_assert_eq!(polygon_may_touch_box(&[a, b, c].map(float), float(min), float(max)), !apart);
+        }
     }
 
     #[test]

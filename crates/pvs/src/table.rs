@@ -240,6 +240,29 @@ impl Table {
         found.dedup();
     }
 
+    /// Calls `visit` with every cell that the closed box from `min` to `max` (scene units; z is 0 in a plane) touches, until it says
+    /// `false`; a cell may come more than once, in no particular order. `pending` is scratch.
+    ///
+    /// Cells are closed polygons, or boxes, or what a [`PlaneTree`] says, as for [`Table::locate`]. Errs towards touching, by
+    /// rounding only: a box that touches a cell is never told otherwise. A NaN bounds nothing. O(cells near the box).
+    #[inline]
+    pub fn for_each_touching(
+        &self,
+        min: [f64; 3],
+        max: [f64; 3],
+        pending: &mut Vec<u32>,
+        mut visit: impl FnMut(CellId) -> bool,
+    ) {
+        if let Some(planes) = &self.parts.planes {
+            return planes.for_each_cell_of_box(min, max, pending, visit);
+        }
+        self.parts.locator.for_each_candidate_of_box(min, max, pending, |id| {
+            let cell = &self.parts.cells[id.idx()];
+            let apart = (0..3).any(|k| cell.min[k] > max[k] || cell.max[k] < min[k]);
+            apart || !side::polygon_may_touch_box(&cell.polygon, [min[0], min[1]], [max[0], max[1]]) || visit(id)
+        });
+    }
+
     /// What a viewer at `p` may see: the union of the rows of all cells that contain `p`. Empty if `p`
     /// is outside every cell.
     ///

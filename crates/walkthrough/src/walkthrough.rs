@@ -53,6 +53,9 @@ pub struct Frame<'a> {
     /// What is seen in mirrors, if [`WalkOptions::bounces`] asks for it. All of it with [`Answer::Full`] only: otherwise anything
     /// may be seen in any mirror, listed or not.
     pub images: &'a [Image],
+    /// The cells that the eye is in, those with mirrors that it looks into, and those that it will be in if it goes on like this: the
+    /// most urgent first, each once. For whatever else is prepared for the viewers of a cell.
+    pub ahead: &'a [CellId],
 }
 
 /// What was done so far.
@@ -164,7 +167,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
             Answer::Late => self.counters.late += 1,
             Answer::Outside => self.counters.outside += 1,
         }
-        Frame { seen: &self.seen, at: &self.at, answer, images: &self.images }
+        Frame { seen: &self.seen, at: &self.at, answer, images: &self.images, ahead: &self.wishes }
     }
 
     fn look(&mut self, view: &View, method: Method) -> Answer {
@@ -268,6 +271,36 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         changed
     }
 
+    /// Goes on in another table, such as one in which a wall was added or taken away. Outlooks and mirrors of the old one
+    /// are dropped, and what its thread still makes is not looked at; the first frames are [`Answer::Late`] as at the beginning. The
+    /// viewer's path and the counters go on.
+    ///
+    /// `keep` says which portal of the new table a closed portal of the old one is; it stays closed. Those that are none (`None`) are forgotten,
+    /// and what took their place is open, which errs towards visible. `Some` keeps the numbers; [`crate::same_portals`]
+    /// compares corners. O(closed portals), and a new thread.
+    ///
+    /// Movers follow by [`crate::Movers::replace`], simplified levels by [`crate::Levels::forget`].
+    pub fn replace(&mut self, resident: R, source: S, keep: impl Fn(u32) -> Option<u32>) {
+        let mut doors = Doors::all_open();
+        self.doors.closed().filter_map(keep).for_each(|portal| {
+            doors.close(portal);
+        });
+        self.doors = doors;
+        self.resident = resident;
+        self.outlooks = Prefetcher::new(Outlooks(source), self.options.budget);
+        self.seen.clear(0, 0);
+        self.images.clear();
+        self.at.clear();
+        self.mirrored.clear();
+        self.wishes.clear();
+        self.last = None;
+    }
+
+    /// What can be asked at once.
+    pub fn resident(&self) -> &R {
+        &self.resident
+    }
+
     /// Which portals are closed.
     pub fn doors(&self) -> &Doors {
         &self.doors
@@ -289,7 +322,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         self.outlooks.take_error()
     }
 
-    /// Bytes of the outlooks that are kept, and their number.
+    /// Bytes of the outlooks that are kept, and their number. Counts anew with [`Walkthrough::replace`], as the next one does.
     pub fn kept(&self) -> (usize, usize) {
         (self.outlooks.n_bytes(), self.outlooks.n_kept())
     }

@@ -247,6 +247,41 @@ impl Locator {
         }
     }
 
+    /// Calls `visit` with every cell listed in a leaf whose closed region meets the closed box from `min` to `max` (scene
+    /// units), until it says `false`; a cell comes once for each leaf that lists it. A cell whose box a complete locator
+    /// was built for is among them if the two boxes share a point: that point leads to such a leaf. A NaN bounds nothing.
+    /// `pending` is scratch. O(nodes met).
+    #[inline]
+    pub fn for_each_candidate_of_box(
+        &self,
+        min: [f64; 3],
+        max: [f64; 3],
+        pending: &mut Vec<u32>,
+        mut visit: impl FnMut(CellId) -> bool,
+    ) {
+        pending.clear();
+        pending.push(0);
+        while let Some(at) = pending.pop() {
+            match self.nodes[at as usize] {
+                Node::Inner { axis, split, high } => {
+                    let axis = usize::from(axis);
+                    let (above, below) = (min[axis] > split, max[axis] < split);
+                    if !below {
+                        pending.push(high);
+                    }
+                    if !above {
+                        pending.push(at + 1);
+                    }
+                }
+                Node::Leaf { start, end } => {
+                    if !self.list(start, end).iter().all(|&cell| visit(cell)) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
     fn list(&self, start: u32, end: u32) -> &[CellId] {
         &self.cells[start as usize..end as usize]
     }

@@ -96,6 +96,40 @@ proptest! {
         prop_assert!(found.iter().all(|cell| clear.contains(cell)), "{:?} {:?}", found, clear);
     }
 
+    /// Invariant: a box has the cells of all its points; if there is one plane, those of its corners and no others; a larger box has
+    /// at least as many.
+    #[test]
+    fn planes_boxes_have_the_cells_of_their_points(
+        choices in plane_choices(),
+        p in [-5i64..6, -5i64..6, -5i64..6],
+        size in [0i64..4, 0i64..4, 0i64..4],
+        unit in prop_oneof![Just(1.0), Just(0.1)],
+    ) {
+        let nodes = plane_nodes(&choices, 5, 1.0);
+        let at = |p: [i64; 3]| p.map(|x| x as f64 * unit);
+        let far = std::array::from_fn(|k| p[k] + size[k]);
+        let of_box = |tree: &PlaneTree, min: [i64; 3], max: [i64; 3]| {
+            let mut cells = Vec::new();
+            tree.for_each_cell_of_box(at(min), at(max), &mut Vec::new(), |cell| { cells.push(cell); true });
+            cells.sort_unstable();
+            cells.dedup();
+            cells
+        };
+        let tree = PlaneTree::new(nodes.clone(), 0.0).unwrap();
+        let told = of_box(&tree, p, far);
+        let corners = (0..8).map(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { p[k] } else { far[k] }));
+        let at_corners = |tree: &PlaneTree| corners.clone().flat_map(|c: [i64; 3]| found(tree, at(c))).collect::<Vec<_>>();
+        prop_assert!(at_corners(&tree).iter().all(|cell| told.contains(cell)));
+        let larger = of_box(&tree, p.map(|x| x - 1), far.map(|x| x + 2));
+        prop_assert!(told.iter().all(|cell| larger.contains(cell)));
+        let children = [PlaneChild::Cell(CellId(0)), PlaneChild::Cell(CellId(1))];
+        let one = PlaneTree::new(vec![PlaneNode { children, ..nodes[0] }], 0.0).unwrap();
+        let mut cells = at_corners(&one);
+        cells.sort_unstable();
+        cells.dedup();
+        prop_assert_eq!(of_box(&one, p, far), cells);
+    }
+
     /// Whatever the numbers, one side at least is open.
     #[test]
     fn planes_extreme_numbers_lose_nothing(n in any::<[f64; 4]>(), p in any::<[f64; 3]>(), slack in any::<f64>()) {

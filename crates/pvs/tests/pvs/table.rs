@@ -39,6 +39,30 @@ proptest! {
         prop_assert_eq!(table.objects_in(&seen), (0..table.objects().len() as u32).filter(touched).collect::<Vec<_>>());
     }
 
+    /// Invariant: a box touches the cells that its points are located in, and only cells whose box it touches; it is not asked
+    /// for more once it was told to stop.
+    #[test]
+    fn boxes_touch_the_cells_of_their_points(parts in any_parts(), p in [-9i8..10, -9i8..10, -4i8..5], size in [0i8..4, 0i8..4, 0i8..4]) {
+        let table = Table::new(parts).unwrap();
+        let n = usize::from(table.dimension());
+        let half = |k: usize, x: i8| if k < n { f64::from(x) / 2.0 } else { 0.0 };
+        let (min, max): ([f64; 3], [f64; 3]) = (std::array::from_fn(|k| half(k, p[k])), std::array::from_fn(|k| half(k, p[k] + size[k])));
+        let mut touched = Vec::new();
+        table.for_each_touching(min, max, &mut Vec::new(), |cell| { touched.push(cell); true });
+        for i in 0..64i8 {
+            let step = [i % 4, i / 4 % 4, i / 16];
+            let at: [f64; 3] = std::array::from_fn(|k| half(k, p[k] + step[k].min(size[k])));
+            prop_assert!(table.locate(&at[..n]).iter().all(|cell| touched.contains(cell)), "{:?}", at);
+        }
+        for cell in &touched {
+            let cell = &table.cells()[cell.idx()];
+            prop_assert!((0..3).all(|k| cell.min[k] <= max[k] && min[k] <= cell.max[k]));
+        }
+        let mut n_told = 0;
+        table.for_each_touching(min, max, &mut Vec::new(), |_| { n_told += 1; false });
+        prop_assert_eq!(n_told, usize::from(!touched.is_empty()));
+    }
+
     /// Invariant: a stripped table has the same rows and finds a point in no fewer cells.
     #[test]
     fn stripping_only_adds_cells(parts in any_parts(), p in [-9i8..10, -9i8..10, -9i8..10]) {

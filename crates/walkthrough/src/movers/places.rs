@@ -1,0 +1,114 @@
+//! Which cells a box touches.
+
+use sightlines_eye_to_cell::{CellSource, TableCells};
+use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_pvs::{CellId, Table};
+use std::borrow::Borrow;
+use std::sync::Arc;
+
+/// Where the cells of a table are, at hand without waiting.
+pub trait Places {
+    /// 2 or 3.
+    fn dimension(&self) -> u8;
+
+    /// Number of cells; ids are below it.
+    fn n_cells(&self) -> usize;
+
+    /// The box around all cells; [`Aabb::EMPTY`] without cells. May take long; it is asked for once.
+    fn bounds(&self) -> Aabb<3>;
+
+    /// Calls `visit` with every cell that the closed box touches (z is 0 in a plane), until it says `false`. A cell may come more than
+    /// once, in no particular order. `pending` is room to work in.
+    ///
+    /// Errs towards touching, by rounding; what truly touches a box is told for every larger one too.
+    fn touching(&self, bounds: &Aabb<3>, pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool);
+}
+
+impl<T: Borrow<Table>> Places for TableCells<T> {
+    fn dimension(&self) -> u8 {
+        self.table().dimension()
+    }
+
+    fn n_cells(&self) -> usize {
+        self.table().n_cells()
+    }
+
+    fn bounds(&self) -> Aabb<3> {
+        self.table().cells().iter().fold(Aabb::EMPTY, |all, cell| all.with(cell.min).with(cell.max))
+    }
+
+    fn touching(&self, bounds: &Aabb<3>, pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool) {
+        self.table().for_each_touching(bounds.min, bounds.max, pending, visit);
+    }
+}
+
+impl<P: Places + ?Sized> Places for Arc<P> {
+    fn dimension(&self) -> u8 {
+        (**self).dimension()
+    }
+
+    fn n_cells(&self) -> usize {
+        (**self).n_cells()
+    }
+
+    fn bounds(&self) -> Aabb<3> {
+        (**self).bounds()
+    }
+
+    fn touching(&self, bounds: &Aabb<3>, pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool) {
+        (**self).touching(bounds, pending, visit);
+    }
+}
+
+/// The boxes of all cells of any source, such as a packed table, read once and kept in a tree.
+///
+/// Cells count as their boxes: where they are polygons, or cut by planes, more cells are touched than by the table itself.
+/// About 200 bytes for each cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellBoxes {
+    dimension: u8,
+    boxes: Vec<Aabb<3>>,
+    tree: BoxTree<3>,
+}
+
+impl CellBoxes {
+    /// Reads the boxes of all cells. O(n log n).
+    ///
+    /// # Errors
+    /// The first of the source.
+    pub fn read<S: CellSource + ?Sized>(source: &S) -> Result<Self, S::Error> {
+        let boxes = (0..source.n_cells() as u32).map(|i| source.cell_box(CellId(i))).collect::<Result<Vec<_>, _>>()?;
+        let tree = BoxTree::build(&boxes, 4);
+        Ok(Self { dimension: source.dimension(), boxes, tree })
+    }
+}
+
+fn touch(a: &Aabb<3>, b: &Aabb<3>) -> bool {
+    !(0..3).any(|k| a.min[k] > b.max[k] || b.min[k] > a.max[k])
+}
+
+impl Places for CellBoxes {
+    fn dimension(&self) -> u8 {
+        self.dimension
+    }
+
+    fn n_cells(&self) -> usize {
+        self.boxes.len()
+    }
+
+    fn bounds(&self) -> Aabb<3> {
+        self.tree.nodes()[0].bounds
+    }
+
+    fn touching(&self, bounds: &Aabb<3>, _pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool) {
+        let goes_on = std::cell::Cell::new(true);
+        self.tree.visit(
+            |node| goes_on.get() && touch(node, bounds),
+            |i| {
+                if goes_on.get() && touch(&self.boxes[i as usize], bounds) {
+                    goes_on.set(visit(CellId(i)));
+                }
+            },
+        );
+    }
+}
