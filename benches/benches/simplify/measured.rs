@@ -2,7 +2,7 @@
 
 use crate::cases::Case;
 use sightlines::simplify::{
-    HiddenBy, MeasureOptions, SimplifyOptions, Simplified, estimate, geometric, measure, simplify,
+    MeasureOptions, Prepared, Simplified, SimplifyOptions, estimate, geometric, measure,
 };
 use std::error::Error;
 use std::time::Instant;
@@ -15,6 +15,8 @@ pub(crate) struct Row {
     pub(crate) budget: f64,
     /// Share of the budget that is kept for collapsing.
     pub(crate) collapse: f64,
+    /// Whether faces in one plane are merged.
+    pub(crate) flat: bool,
     /// `intercepts` is ours, `shape` the quadrics of the geometry alone at the same count, `meshopt` another one's.
     pub(crate) metric: String,
     pub(crate) before: usize,
@@ -30,10 +32,11 @@ pub(crate) struct Row {
     pub(crate) moved: f64,
     pub(crate) rays_per_eye: u64,
     pub(crate) n_eyes: usize,
+    /// Without what is asked once for all budgets: what is hidden.
     pub(crate) seconds: f64,
 }
 
-const HEAD: &str = "scene,view,budget,collapse,metric,before,hidden,left,new,bound,changed,worst,other_object,moved,rays_per_eye,n_eyes,seconds";
+const HEAD: &str = "scene,view,budget,collapse,flat,metric,before,hidden,left,new,bound,changed,worst,other_object,moved,rays_per_eye,n_eyes,seconds";
 
 impl Row {
     /// Whether more was changed than was promised, and not by chance: the chance is below one in a million.
@@ -51,18 +54,17 @@ impl Row {
 /// Ours, and the others at the same count.
 pub(crate) fn all(
     case: &Case,
+    prepared: &Prepared<'_>,
     budget: f64,
-    collapse: f64,
+    (collapse, flat): (f64, bool),
     n_eyes: usize,
     n_rays: u64,
 ) -> Result<Vec<Row>, Box<dyn Error>> {
-    let make = || case.method();
-    let by = HiddenBy { method: Some(&make), table: case.table.as_deref() };
-    let options = SimplifyOptions { budget, collapse, ..SimplifyOptions::default() };
+    let options = SimplifyOptions { budget, collapse, flat, ..SimplifyOptions::default() };
     let start = Instant::now();
-    let ours = simplify(&case.scene, &case.views, &by, &options)?;
+    let ours = prepared.simplify(&options)?;
     let seconds = start.elapsed().as_secs_f64();
-    let rays = if budget > 0.0 { ((50.0 / budget) as u64).clamp(n_rays, 500_000) } else { n_rays };
+    let rays = if budget > 0.0 { ((20.0 / budget) as u64).clamp(n_rays, 200_000.max(n_rays)) } else { n_rays };
     let row = |metric: &str, of: &Simplified, seconds: f64, rays: u64| -> Result<Row, Box<dyn Error>> {
         let options = MeasureOptions { n_eyes, n_rays: rays, ..MeasureOptions::default() };
         let m = measure(&case.scene, of, &case.views, &options)?;
@@ -71,6 +73,7 @@ pub(crate) fn all(
             view: case.view,
             budget,
             collapse,
+            flat,
             metric: metric.to_owned(),
             before: of.counts.before,
             hidden: of.counts.hidden,
@@ -104,11 +107,12 @@ pub(crate) fn all(
 pub(crate) fn write(rows: &[Row]) -> String {
     let line = |r: &Row| {
         format!(
-            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
             r.scene,
             r.view,
             r.budget,
             r.collapse,
+            r.flat,
             r.metric,
             r.before,
             r.hidden,
@@ -142,6 +146,7 @@ fn parse(line: &str) -> Option<Row> {
         view,
         budget,
         collapse,
+        flat,
         metric,
         before,
         hidden,
@@ -164,6 +169,7 @@ fn parse(line: &str) -> Option<Row> {
         view: view.parse().ok()?,
         budget: budget.parse().ok()?,
         collapse: collapse.parse().ok()?,
+        flat: flat.parse().ok()?,
         metric: metric.to_owned(),
         before: before.parse().ok()?,
         hidden: hidden.parse().ok()?,
@@ -182,17 +188,18 @@ fn parse(line: &str) -> Option<Row> {
 
 pub(crate) fn print(rows: &[Row]) {
     println!(
-        "| scene | view | budget | collapse | metric | triangles | left | new | promised | changed | worst eye | other object | moved | rays | s |"
+        "| scene | view | budget | collapse | flat | metric | triangles | left | new | promised | changed | worst eye | other object | moved | rays | s |"
     );
-    println!("| --- | --: | --: | --: | --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |");
+    println!("| --- | --: | --: | --: | --- | --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |");
     for r in rows {
         let bound = if r.bound.is_finite() { format!("{:.2e}", r.bound) } else { "-".to_owned() };
         println!(
-            "| {} | {} | {} | {} | {} | {} | {:.2} % | {} | {bound} | {:.2e} | {:.2e} | {:.2e} | {:.2e} | {} | {:.1} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {:.2} % | {} | {bound} | {:.2e} | {:.2e} | {:.2e} | {:.2e} | {} | {:.1} |",
             r.scene,
             r.view,
             r.budget,
             r.collapse,
+            r.flat,
             r.metric,
             r.before,
             100.0 * r.left as f64 / r.before as f64,

@@ -295,6 +295,3 @@ impl Groups {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

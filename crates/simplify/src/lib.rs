@@ -19,26 +19,31 @@
 
 pub mod bound;
 pub mod estimate;
+mod geometric;
 mod hidden;
 mod intercepts;
 pub mod levels;
 mod measure;
 mod mesh;
 mod options;
+mod paid;
 mod rays;
 mod select;
 mod simplified;
 mod simplify;
+mod vector;
 mod views;
+mod weigh;
 
 pub use estimate::{Estimate, Interval};
+pub use geometric::geometric;
 pub use hidden::{HiddenBy, MakeMethod};
 pub use intercepts::Intercepts;
 pub use levels::{Level, LevelOptions, Levels, levels};
 pub use measure::{MeasureOptions, Measured, measure};
 pub use options::{OptionsError, SimplifyOptions};
 pub use simplified::{Counts, Simplified};
-pub use simplify::{SimplifyError, geometric, simplify};
+pub use simplify::{Prepared, SimplifyError, simplify};
 pub use views::{View, Views, ViewsError};
 
 #[cfg(doctest)]

@@ -4,6 +4,7 @@ use crate::estimate::Places;
 use crate::rays::Traced;
 use crate::simplified::Simplified;
 use crate::simplify::{SimplifyError, in_threads};
+use crate::vector::{dot, minus, normal};
 use crate::views::Views;
 use rayon::prelude::*;
 use sightlines_cells::Scene;
@@ -150,10 +151,7 @@ fn in_one_plane([a, b, c]: &[Point3; 3], other: &[Point3; 3]) -> bool {
 }
 
 /// How far along a ray the plane of a triangle is, rounded.
-fn depth([a, b, c]: &[Point3; 3], eye: Point3, way: Point3) -> f64 {
-    let minus = |p: &Point3, q: &Point3| [0, 1, 2].map(|k| p[k] - q[k]);
-    let (u, v, to) = (minus(b, a), minus(c, a), minus(a, &eye));
-    let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    let dot = |p: Point3| (0..3).map(|k| n[k] * p[k]).sum::<f64>();
-    dot(to) / dot(way)
+fn depth(t: &[Point3; 3], eye: Point3, way: Point3) -> f64 {
+    let n = normal(t);
+    dot(n, minus(t[0], eye)) / dot(n, way)
 }

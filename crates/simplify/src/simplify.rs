@@ -1,20 +1,20 @@
 //! From a scene to one with fewer triangles.
 
-use crate::bound;
 use crate::estimate::Estimate;
 use crate::hidden::HiddenBy;
 use crate::intercepts::Intercepts;
-use crate::mesh::{Change, Collapser, Mesh, Policy, State, Weights, merge};
+use crate::mesh::{Collapser, Left, Mesh, State, Weights, merge};
 use crate::options::{OptionsError, SimplifyOptions};
+use crate::paid::Paid;
 use crate::select::{Account, least_visible};
 use crate::simplified::{Counts, Simplified};
-use crate::views::{View, Views, ViewsError};
+use crate::views::{Views, ViewsError};
+use crate::weigh::{Areas, Fronts};
 use sightlines_cells::Scene;
-use sightlines_geometry::{Aabb, Point3, orient3d};
+use sightlines_geometry::Aabb;
 use sightlines_multifocal::BackendError;
 use sightlines_pvs::Table;
 use sightlines_visible_surface::{Faces, FacesError};
-use std::collections::BTreeMap;
 
 /// Why a scene was not simplified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -80,16 +80,65 @@ pub fn simplify(
     by: &HiddenBy<'_>,
     options: &SimplifyOptions,
 ) -> Result<Simplified, SimplifyError> {
-    options.check()?;
-    if let Some(table) = by.table {
-        check_table(scene, table)?;
+    Prepared::new(scene, views, by, options)?.simplify(options)
+}
+
+/// A scene of which it is known what its faces can intercept for some views: to be simplified with several budgets.
+#[derive(Debug)]
+pub struct Prepared<'a> {
+    scene: &'a Scene,
+    faces: Faces,
+    views: Views,
+    intercepts: Intercepts,
+}
+
+impl<'a> Prepared<'a> {
+    /// Asks what is hidden, and bounds what is not. Of the options, only the number of parts, the depth and the threads matter.
+    ///
+    /// # Errors
+    /// [`SimplifyError`]
+    pub fn new(
+        scene: &'a Scene,
+        views: &Views,
+        by: &HiddenBy<'_>,
+        options: &SimplifyOptions,
+    ) -> Result<Self, SimplifyError> {
+        options.check()?;
+        if let Some(table) = by.table {
+            check_table(scene, table)?;
+        }
+        in_threads(options.threads, || {
+            let faces = Faces::of_scene(scene)?;
+            let views = views.clone().cut(options.n_parts);
+            let intercepts = Intercepts::new(&faces, &views, by, options.depth)?;
+            Ok(Self { scene, faces, views, intercepts })
+        })
     }
-    in_threads(options.threads, || {
-        let faces = Faces::of_scene(scene)?;
-        let views = views.clone().cut(options.n_parts);
-        let intercepts = Intercepts::new(&faces, &views, by, options.depth)?;
-        Ok(within_budget(scene, &faces, Mesh::new(scene), &views, &intercepts, options))
-    })
+
+    /// What [`simplify`] does with what is known.
+    ///
+    /// # Errors
+    /// [`SimplifyError::Options`]
+    pub fn simplify(&self, options: &SimplifyOptions) -> Result<Simplified, SimplifyError> {
+        options.check()?;
+        let Self { scene, faces, views, intercepts } = self;
+        Ok(in_threads(options.threads, || within_budget(scene, faces, Mesh::new(scene), views, intercepts, options)))
+    }
+
+    /// What its faces can intercept, for each part of [`Self::views`].
+    pub const fn intercepts(&self) -> &Intercepts {
+        &self.intercepts
+    }
+
+    /// The views, in parts.
+    pub const fn views(&self) -> &Views {
+        &self.views
+    }
+
+    /// Its faces.
+    pub const fn faces(&self) -> &Faces {
+        &self.faces
+    }
 }
 
 /// Runs with so many threads; 0 for one for each core.
@@ -181,207 +230,23 @@ pub(crate) fn within_budget(
     finish(scene, &mesh, counts, account.most(), [deviation, shift])
 }
 
-fn kept_faces<'a>(mesh: &'a Mesh, faces: &Faces) -> impl Iterator<Item = u32> + 'a {
+pub(crate) fn kept_faces<'a>(mesh: &'a Mesh, faces: &Faces) -> impl Iterator<Item = u32> + 'a {
     faces.ids().filter(|&f| mesh.face(f).state == State::Kept)
 }
 
-fn finish(scene: &Scene, mesh: &Mesh, mut counts: Counts, bound: f64, [deviation, shift]: [f64; 2]) -> Simplified {
-    let (triangles, origin) = mesh.left(scene);
+pub(crate) fn finish(
+    scene: &Scene,
+    mesh: &Mesh,
+    mut counts: Counts,
+    bound: f64,
+    [deviation, shift]: [f64; 2],
+) -> Simplified {
+    let Left { triangles, origin } = mesh.left(scene);
     let n = |state: State| mesh.faces().iter().filter(|f| f.state == state).count();
     (counts.new, counts.merged, counts.left) = (n(State::New), n(State::Merged), mesh.n_left());
     let gone = counts.before - counts.without_area - counts.hidden - counts.deleted - counts.merged_away;
     counts.collapsed = gone - counts.merged - n(State::Kept);
     Simplified { triangles, origin, bound, deviation, shift, counts }
-}
-
-/// Collapses what is paid for.
-struct Paid<'a> {
-    faces: &'a Faces,
-    views: &'a Views,
-    intercepts: &'a Intercepts,
-    depth: u32,
-    budget: f64,
-    most_shift: f64,
-    /// The largest shift so far.
-    shift: f64,
-    account: Account,
-    /// Faces whose change is paid for.
-    may_go: Vec<bool>,
-    /// What new faces take up, part by part.
-    charges: BTreeMap<u32, Vec<f64>>,
-}
-
-impl<'a> Paid<'a> {
-    fn choose(
-        faces: &'a Faces,
-        views: &'a Views,
-        intercepts: &'a Intercepts,
-        mesh: &Mesh,
-        options: &SimplifyOptions,
-        mut account: Account,
-    ) -> Self {
-        let budget = options.budget;
-        let mut may_go = vec![false; faces.len()];
-        let limit = budget - budget * options.collapse / 2.0;
-        least_visible(intercepts, kept_faces(mesh, faces), limit, &mut account, |face| may_go[face as usize] = true);
-        let (depth, most_shift) = (options.depth, options.shift);
-        Self {
-            faces,
-            views,
-            intercepts,
-            depth,
-            budget,
-            most_shift,
-            shift: 0.0,
-            account,
-            may_go,
-            charges: BTreeMap::new(),
-        }
-    }
-
-    /// What a triangle takes up at most, in each part.
-    fn shares(&self, corners: &[Point3; 3]) -> Vec<f64> {
-        self.views.parts().iter().map(|v| bound::share(corners, v.volume.bounds(), self.depth)).collect()
-    }
-
-    /// At most the distance of any eye to the faces of a change, before and after.
-    fn nearest(&self, mesh: &Mesh, change: &Change) -> f64 {
-        let changed = change.lost.iter().chain(change.moved.iter().map(|(f, _)| f));
-        let corners = changed.flat_map(|&f| mesh.corners(f)).chain([mesh.place(change.to)]);
-        let around = Aabb::<3>::around(corners);
-        let to = |view: &View| bound::distance(&around, view.volume.bounds());
-        self.views.parts().iter().map(to).fold(f64::INFINITY, f64::min)
-    }
-
-    /// What was not changed after all need not be paid for.
-    fn settle(mut self, mesh: &Mesh) -> Account {
-        for face in self.faces.ids().filter(|&f| self.may_go[f as usize] && mesh.face(f).state == State::Kept) {
-            self.account.refund(|part| self.intercepts.of(part, face));
-        }
-        self.account
-    }
-}
-
-impl Policy for Paid<'_> {
-    fn may_touch(&self, _: &Mesh, face: u32) -> bool {
-        self.may_go[face as usize]
-    }
-
-    fn accepts(&mut self, mesh: &Mesh, change: &Change, moved: f64) -> bool {
-        if change.lost.iter().chain(change.moved.iter().map(|(f, _)| f)).any(|&f| !self.may_go[f as usize]) {
-            return false;
-        }
-        let shift = moved / self.nearest(mesh, change);
-        // Also where the distance is 0.
-        if shift.is_nan() || shift > self.most_shift {
-            return false;
-        }
-        let new: Vec<(u32, Vec<f64>)> =
-            change.moved.iter().map(|&(f, _)| (f, self.shares(&change.corners(mesh, f)))).collect();
-        let mut account = self.account.clone();
-        for face in change.lost.iter().chain(change.moved.iter().map(|(f, _)| f)) {
-            if let Some(charge) = self.charges.get(face) {
-                account.refund(|part| charge[part]);
-            }
-        }
-        if !new.iter().all(|(_, charge)| account.spend(self.budget, |part| charge[part])) {
-            return false;
-        }
-        self.account = account;
-        self.shift = self.shift.max(shift.next_up());
-        change.lost.iter().for_each(|face| drop(self.charges.remove(face)));
-        self.charges.extend(new);
-        true
-    }
-
-    fn is_done(&self, _: &Mesh) -> bool {
-        false
-    }
-}
-
-/// From which sides faces are seen.
-struct Fronts(Vec<[bool; 2]>);
-
-impl Fronts {
-    fn new(faces: &Faces, views: &Views) -> Self {
-        let corners: Vec<Point3> = views.parts().iter().flat_map(|v| v.volume.corners()).collect();
-        let of = |face: u32| {
-            let [a, b, c] = *faces.of(face);
-            let mut sides = [false; 2];
-            for &eye in &corners {
-                let side = orient3d(a, b, c, eye);
-                sides[0] |= side > 0.0;
-                sides[1] |= side < 0.0;
-            }
-            sides
-        };
-        Self(faces.ids().map(of).collect())
-    }
-
-    /// Whether some eye may be on one side of one face and on the other side of the other.
-    fn may_differ(&self, f: u32, g: u32) -> bool {
-        let (f, g) = (self.0[f as usize], self.0[g as usize]);
-        f != g || f == [true, true]
-    }
-}
-
-/// Areas of faces as shares of all.
-struct Areas {
-    of: Vec<f64>,
-    sum: f64,
-}
-
-impl Areas {
-    fn new(faces: &Faces) -> Self {
-        let area = |&[a, b, c]: &[Point3; 3]| {
-            let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-            let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-            n.iter().map(|x| x * x).sum::<f64>().sqrt() / 2.0
-        };
-        let of: Vec<f64> = faces.corners().iter().map(area).collect();
-        Self { sum: of.iter().sum(), of }
-    }
-
-    fn share(&self, face: u32) -> f64 {
-        let share = self.of[face as usize] / self.sum;
-        if share.is_finite() { share } else { 0.0 }
-    }
-}
-
-/// Simplifies a scene by its shape alone, to at most `target` triangles as far as edges can be collapsed: the ordinary metric, which
-/// knows no eyes, to compare with. Each object is a mesh of its own. Nothing is promised of what is seen.
-///
-/// # Errors
-/// [`SimplifyError::Faces`]
-///
-/// # Source
-/// Garland and Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997; weighted by area.
-pub fn geometric(scene: &Scene, target: usize) -> Result<Simplified, SimplifyError> {
-    struct Count(usize);
-    impl Policy for Count {
-        fn may_touch(&self, _: &Mesh, _: u32) -> bool {
-            true
-        }
-        fn accepts(&mut self, _: &Mesh, _: &Change, _: f64) -> bool {
-            true
-        }
-        fn is_done(&self, mesh: &Mesh) -> bool {
-            mesh.n_left() <= self.0
-        }
-    }
-    let faces = Faces::of_scene(scene)?;
-    let mut mesh = Mesh::of_objects(scene);
-    let mut counts = Counts { before: faces.len(), ..Counts::default() };
-    for face in faces.ids().filter(|&f| !faces.has_area(f)) {
-        counts.without_area += 1;
-        mesh.remove(face);
-    }
-    let area = Areas::new(&faces);
-    let weights = Weights { face: &|face| area.share(face), may_be_silhouette: &|_, _| false };
-    let mut collapser = Collapser::new(&mesh, &weights);
-    collapser.run(&mut mesh, &mut Count(target));
-    let deviation = collapser.deviation();
-    Ok(finish(scene, &mesh, counts, f64::INFINITY, [deviation, f64::INFINITY]))
 }
 
 #[cfg(test)]

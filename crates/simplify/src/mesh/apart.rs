@@ -1,7 +1,7 @@
 //! How far the surface is apart before and after a change.
 
-use super::change::normal;
 use super::{Change, Mesh};
+use crate::vector::{cross, dot, length, minus, normal};
 use sightlines_geometry::Point3;
 
 /// Unit of rounding of doubles, 2^-53.
@@ -80,20 +80,4 @@ fn to_segment(a: Point3, b: Point3) -> f64 {
 
 fn local(t: [Point3; 3], origin: Point3) -> [Point3; 3] {
     t.map(|p| minus(p, origin))
-}
-
-fn minus(p: Point3, q: Point3) -> Point3 {
-    [0, 1, 2].map(|k| p[k] - q[k])
-}
-
-fn dot(p: Point3, q: Point3) -> f64 {
-    (0..3).map(|k| p[k] * q[k]).sum()
-}
-
-fn length(v: Point3) -> f64 {
-    dot(v, v).sqrt()
-}
-
-fn cross(u: Point3, v: Point3) -> Point3 {
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }

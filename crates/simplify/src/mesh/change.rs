@@ -1,6 +1,7 @@
 //! Moving all that is at one place of a mesh to a neighbour.
 
 use super::{Mesh, State};
+use crate::vector::{dot, normal};
 use sightlines_geometry::Point3;
 
 /// What happens if place `from` is moved to `to`.
@@ -85,12 +86,6 @@ fn turns_over(mesh: &Mesh, face: u32, from: u32, to: u32) -> bool {
     let before = mesh.corners(face);
     let after = mesh.face(face).corners.map(|c| mesh.place(if c == from { to } else { c }));
     let (n, m) = (normal(&before), normal(&after));
-    let dot: f64 = (0..3).map(|k| n[k] * m[k]).sum();
+    let dot = dot(n, m);
     dot.is_nan() || dot <= 0.0
-}
-
-/// A normal, twice the area long.
-pub(super) fn normal([a, b, c]: &[Point3; 3]) -> Point3 {
-    let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }

@@ -1,9 +1,9 @@
 //! Collapsing edges, those that matter least first.
 
 use super::apart::apart;
-use super::change::normal;
 use super::quadric::Quadric;
 use super::{Change, Mesh, State};
+use crate::vector::{cross, dot, length, normal};
 use sightlines_geometry::Point3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -108,7 +108,7 @@ impl Collapser {
                     return;
                 }
                 let across = cross(*n, *m);
-                across.iter().map(|x| x * x).sum()
+                dot(across, across)
             }
             _ => 1.0,
         };
@@ -173,11 +173,7 @@ impl Collapser {
     }
 }
 
-fn cross(u: Point3, v: Point3) -> Point3 {
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-}
-
 fn unit(v: Point3) -> Point3 {
-    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let length = length(v);
     if length > 0.0 && length.is_finite() { v.map(|x| x / length) } else { [0.0; 3] }
 }

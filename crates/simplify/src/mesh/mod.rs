@@ -41,6 +41,13 @@ pub(crate) enum State {
     Gone,
 }
 
+/// Of each object the triangles that are left, and which triangle of the object each of them was.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Left {
+    pub(crate) triangles: Vec<Vec<[u32; 3]>>,
+    pub(crate) origin: Vec<Vec<Option<u32>>>,
+}
+
 /// Triangles with what is next to what.
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
@@ -155,18 +162,18 @@ impl Mesh {
         around
     }
 
-    /// For each of `n` objects what is left: triangles and which triangle of the object each was; kept ones first, then merged ones.
-    pub(crate) fn left(&self, scene: &Scene) -> (Vec<Vec<[u32; 3]>>, Vec<Vec<Option<u32>>>) {
-        let (mut triangles, mut origin) = (Vec::new(), Vec::new());
+    /// For each object what is left: kept triangles first, then merged ones.
+    pub(crate) fn left(&self, scene: &Scene) -> Left {
+        let mut left = Left::default();
         let mut first = 0;
         for object in scene.objects() {
             let faces = &self.faces[first..first + object.triangles.len()];
             first += object.triangles.len();
             let of = |state: State| (0..).zip(faces).filter(move |(_, f)| f.state == state);
             let changed = || of(State::Merged).chain(of(State::New));
-            triangles.push(of(State::Kept).chain(changed()).map(|(_, f)| f.wedges).collect());
-            origin.push(of(State::Kept).map(|(k, _)| Some(k)).chain(changed().map(|_| None)).collect());
+            left.triangles.push(of(State::Kept).chain(changed()).map(|(_, f)| f.wedges).collect());
+            left.origin.push(of(State::Kept).map(|(k, _)| Some(k)).chain(changed().map(|_| None)).collect());
         }
-        (triangles, origin)
+        left
     }
 }

@@ -1,9 +1,10 @@
 use super::*;
+use crate::geometric;
 use crate::measure::{MeasureOptions, measure};
 use crate::{Simplified, estimate};
 use proptest::prelude::*;
 use sightlines_cells::SceneObject;
-use sightlines_geometry::Random;
+use sightlines_geometry::{Point3, Random};
 use sightlines_multifocal::mesh::{SheetMethod, Sheets};
 use sightlines_multifocal::{FromRegion, Volume};
 use sightlines_scenes::{
