@@ -3,11 +3,13 @@
 //! Owns: the choice of subdivision and predicate ([`bake_plan`]), the table made from a cell graph
 //! ([`table_of`]) and the way back ([`graph_of`], [`axial_graph_of`]), stab trees for a finished table ([`with_stab_trees`]),
 //! the REJECT lumps of a WAD ([`reject_wad`]),
-//! the visibility of Quake maps and how far a search of one came ([`quake`]).
+//! the visibility of Quake maps and how far a search of one came ([`quake`]),
+//! the table of a scene that changes ([`live`]).
 //! Does not know: paths, the command line, pictures.
 //! Invariants: the same scene and options give the same table, byte for byte, with any number of
 //! threads; every approximation on the way errs towards visible.
 
+pub mod live;
 mod mirrors;
 mod objects;
 mod plan;
@@ -19,6 +21,7 @@ mod sectors;
 mod stab;
 mod table;
 
+pub use live::{LiveScene, LiveUpdate};
 pub use plan::{BakeError, BakeOptions, BakeSummary, Baked, ParseSubdivideError, Subdivide, bake_plan};
 pub use quake::{
     BakedMap, BakedPrt, PrtBakeError, PrtOptions, SeenClusters, VisMap, bake_map, bake_prt, convex_graph_of, vis_map,

@@ -5,7 +5,7 @@ use crate::plan::BakeError;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Portal, Scene};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{PortalForm, SceneOptions, SceneSummary, subdivide_scene};
-use sightlines_pvs::{CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines_pvs::{CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableError, TableParts};
 use sightlines_sightline::ShaftCounters;
 use sightlines_stabtree::{Known, Progress, SearchOptions, SeenInSpace, see_space};
 use std::time::{Duration, Instant};
@@ -121,9 +121,7 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
     let found = mirrors::of_scene(&graph, scene);
     let n_mirror_parts = found.parts.len();
     let (n_lost_mirrors, n_other_mirror_triangles) = (found.n_lost, found.n_other_triangles);
-    let mut parts = scene_parts(&graph, seen, scene, &boxes, info);
-    parts.mirrors = found.parts;
-    let table = Table::new(parts)?;
+    let table = scene_table(&graph, seen, scene, &boxes, info, found.parts)?;
     let cut = cut.summary;
     Ok(BakedScene {
         table,
@@ -142,7 +140,7 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
 }
 
 /// The box around an object's triangles; empty, and so never seen, if it has none.
-fn drawn_box(object: &sightlines_cells::SceneObject) -> Aabb<3> {
+pub(crate) fn drawn_box(object: &sightlines_cells::SceneObject) -> Aabb<3> {
     Aabb::around(object.corners().flatten())
 }
 
@@ -152,7 +150,7 @@ fn n_triangles(object: &sightlines_cells::SceneObject) -> u32 {
 }
 
 /// The same graph with one portal for each pair of cells: the rectangle around the exact pieces.
-fn loosened(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
+pub(crate) fn loosened(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
     let mut portals: Vec<Portal<Axial>> = Vec::new();
     let mut sorted: Vec<&Portal<Axial>> = graph.portals().iter().collect();
     sorted.sort_by_key(|p| p.cells);
@@ -168,7 +166,7 @@ fn loosened(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
     CellGraph::new(graph.cells().to_vec(), portals)
 }
 
-fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, String)> {
+pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, String)> {
     let portals = match options.portals {
         PortalMode::Bounding => "bounding",
         PortalMode::Exact | PortalMode::TwoLevel => "exact",
@@ -183,13 +181,15 @@ fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, Stri
     ]
 }
 
-fn scene_parts(
+/// The table of a scene that was cut, when it is known who sees whom.
+pub(crate) fn scene_table(
     graph: &CellGraph<Axial>,
     seen: SeenInSpace,
     scene: &Scene,
     boxes: &[Aabb<3>],
     info: Vec<(String, String)>,
-) -> TableParts {
+    mirrors: Vec<MirrorRecord>,
+) -> Result<Table, TableError> {
     let cell = |id: CellId| {
         let Aabb { min, max } = graph.cell(id).bounds;
         CellRecord { min, max, group: None, polygon: Vec::new() }
@@ -200,7 +200,7 @@ fn scene_parts(
         let b = if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b };
         ObjectRecord { name: o.name.clone(), min: b.min, max: b.max }
     };
-    TableParts {
+    Table::new(TableParts {
         portals: graph.portals().iter().map(portal_record).collect(),
         rows: seen.cells,
         objects: scene.objects().iter().zip(boxes).map(object).collect(),
@@ -210,8 +210,9 @@ fn scene_parts(
         locator: Locator::build(&bounds, 3),
         cells,
         info,
+        mirrors,
         ..TableParts::empty(3)
-    }
+    })
 }
 
 /// The corners counter-clockwise as seen from the first cell: the normal by the right-hand rule points

@@ -36,13 +36,13 @@ impl Estimate {
     }
 
     pub(crate) fn of(traced: &Traced<'_>, n_faces: usize, views: &Views, n_rays: u64) -> Self {
-        let places = Places::new(views);
+        let (places, step) = (Places::new(views), step_of(n_rays));
         let task = |task: u64| {
-            let mut random = Random::new(task);
+            let (mut random, mut rays) = (Random::new(task), traced.rays());
             (task * PER_TASK..((task + 1) * PER_TASK).min(n_rays))
                 .filter_map(|ray| {
                     let eye = places.any(&mut random);
-                    traced.first_hit(eye, direction_in_strip(scattered(ray, n_rays), n_rays, &mut random))
+                    rays.of(eye, direction_in_strip(scattered(ray, n_rays, step), n_rays, &mut random))
                 })
                 .collect::<Vec<u32>>()
         };
@@ -99,14 +99,15 @@ pub fn interval(k: u64, n: u64, confidence: f64) -> Interval {
     Interval { share: counted, ends: [end(counted, 0.0), end(counted, 1.0)] }
 }
 
-/// A whole number below `n` for each below `n`, all different, neighbours far apart.
-fn scattered(i: u64, n: u64) -> u64 {
-    // A step near the golden section of n that has no divisor in common with it.
-    let mut step = ((n as f64 * 0.618_033_988_749_895) as u64).max(1);
-    while gcd(step, n) != 1 {
-        step += 1;
-    }
+/// A whole number below `n` for each below `n`, all different, neighbours far apart; `step` is [`step_of`] n.
+fn scattered(i: u64, n: u64, step: u64) -> u64 {
     (u128::from(i) * u128::from(step) % u128::from(n)) as u64
+}
+
+/// A step near the golden section of n that has no divisor in common with it.
+fn step_of(n: u64) -> u64 {
+    let near = ((n as f64 * 0.618_033_988_749_895) as u64).max(1);
+    (near..).find(|&step| gcd(step, n) == 1).unwrap_or(1)
 }
 
 fn gcd(a: u64, b: u64) -> u64 {
@@ -224,7 +225,7 @@ mod tests {
     #[test]
     fn scattering_takes_each_once() {
         for n in [1, 2, 7, 100, 4096, 10_007] {
-            let mut all: Vec<u64> = (0..n).map(|i| scattered(i, n)).collect();
+            let mut all: Vec<u64> = (0..n).map(|i| scattered(i, n, step_of(n))).collect();
             all.sort_unstable();
             assert!(all.iter().copied().eq(0..n), "{n}");
         }

@@ -79,9 +79,10 @@ pub fn measure(
             let mut random = Random::new(options.seed ^ (eye as u64).wrapping_mul(0x2545_f491_4f6c_dd1d));
             let place = places.any(&mut random);
             let mut changes = Changes::default();
+            let (mut old, mut new) = (old.rays(), new.rays());
             for _ in 0..options.n_rays {
                 let way = random.direction();
-                let (a, b) = (old.first_hit(place, way), new.first_hit(place, way));
+                let (a, b) = (old.of(place, way), new.of(place, way));
                 if a == b.and_then(|b| after.origin[b as usize]) && a.is_some() == b.is_some() {
                     continue;
                 }

@@ -1,7 +1,7 @@
 //! Rays through a scene, one by one, by the exact ray caster.
 
 use sightlines_geometry::Point3;
-use sightlines_visible_surface::{Camera, Chosen, Faces, NOTHING, RayCaster, Shot, VisibleSurface};
+use sightlines_visible_surface::{Camera, Chosen, Faces, NOTHING, RayCaster, Rays};
 
 /// A scene that rays are sent through.
 #[derive(Debug)]
@@ -17,12 +17,21 @@ impl<'a> Traced<'a> {
         Self { faces, chosen: Chosen::all(faces), caster: RayCaster::build(faces) }
     }
 
+    /// Rays for one thread.
+    pub(crate) fn rays(&self) -> FirstHits<'_> {
+        FirstHits(self.caster.rays(self.faces, &self.chosen))
+    }
+}
+
+/// Rays, one by one.
+#[derive(Debug)]
+pub(crate) struct FirstHits<'a>(Rays<'a>);
+
+impl FirstHits<'_> {
     /// The face that a ray meets first; none if it meets nothing, or if the direction is nowhere.
-    pub(crate) fn first_hit(&self, eye: Point3, direction: Point3) -> Option<u32> {
+    pub(crate) fn of(&mut self, eye: Point3, direction: Point3) -> Option<u32> {
         let camera = one_pixel(eye, direction)?;
-        let shot = Shot { faces: self.faces, camera: &camera, chosen: &self.chosen };
-        let (image, _) = self.caster.picture(&shot);
-        Some(image.at(0, 0)).filter(|&face| face != NOTHING)
+        Some(self.0.first(&camera, 0, 0)).filter(|&face| face != NOTHING)
     }
 }
 
@@ -67,9 +76,10 @@ mod tests {
         let square = |x: f64| [[x, -1.0, -1.0], [x, 3.0, -1.0], [x, -1.0, 3.0]];
         let faces = Faces::new(vec![square(2.0), square(1.0), square(-1.0)]).unwrap();
         let traced = Traced::new(&faces);
-        assert_eq!(traced.first_hit([0.0; 3], [1.0, 0.1, 0.1]), Some(1));
-        assert_eq!(traced.first_hit([1.5, 0.0, 0.0], [1.0, 0.1, 0.1]), Some(0));
-        assert_eq!(traced.first_hit([0.0; 3], [-1.0, 0.1, 0.1]), Some(2));
-        assert_eq!(traced.first_hit([0.0; 3], [0.0, 1.0, 0.0]), None);
+        let mut rays = traced.rays();
+        assert_eq!(rays.of([0.0; 3], [1.0, 0.1, 0.1]), Some(1));
+        assert_eq!(rays.of([1.5, 0.0, 0.0], [1.0, 0.1, 0.1]), Some(0));
+        assert_eq!(rays.of([0.0; 3], [-1.0, 0.1, 0.1]), Some(2));
+        assert_eq!(rays.of([0.0; 3], [0.0, 1.0, 0.0]), None);
     }
 }

@@ -45,7 +45,7 @@ pub use method::{Seen, Shot, VisibleSurface};
 pub use newell::Newell;
 pub use painter::Painter;
 pub use plane::Plane;
-pub use raycast::RayCaster;
+pub use raycast::{RayCaster, Rays};
 pub use schumacker::{Schumacker, SchumackerOptions, SchumackerStats};
 pub use zbuffer::{DepthFormat, ZBuffer};
 

@@ -86,6 +86,11 @@ impl Duel {
         first_wins == (face == pair[0])
     }
 
+    /// Forgets what depends on the eye; which faces lie in one plane does not.
+    pub(crate) fn look_from_elsewhere(&mut self) {
+        self.last = None;
+    }
+
     /// The lowest id that is known to lie in the plane of a face.
     fn first_mate(&mut self, face: u32, n: usize) -> u32 {
         if self.plane_mate.is_empty() {

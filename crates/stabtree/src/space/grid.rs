@@ -20,13 +20,12 @@ impl Marks {
         self.words[row * self.width + col / 64].load(Relaxed) >> (col % 64) & 1 == 1
     }
 
+    /// Sets a bit; whether it was not set. Of several threads that set the same bit one is told so.
     #[inline]
-    pub(super) fn set(&self, row: usize, col: usize) {
+    pub(super) fn set(&self, row: usize, col: usize) -> bool {
         let (word, bit) = (&self.words[row * self.width + col / 64], 1 << (col % 64));
         // Most bits are set already, and loading is cheaper.
-        if word.load(Relaxed) & bit == 0 {
-            word.fetch_or(bit, Relaxed);
-        }
+        word.load(Relaxed) & bit == 0 && word.fetch_or(bit, Relaxed) & bit == 0
     }
 
     /// The bits of a row from one column to before another, as masked words.
@@ -42,6 +41,28 @@ impl Marks {
     /// Whether any bit of some rows and columns is set.
     pub(super) fn any(&self, rows: [usize; 2], cols: [usize; 2]) -> bool {
         (rows[0]..rows[1]).any(|row| self.part(row, cols).any(|(word, mask)| word & mask != 0))
+    }
+
+    /// Whether any bit of some rows and columns is set that `other`, of the same size, has not.
+    pub(super) fn any_beyond(&self, other: &Self, rows: [usize; 2], cols: [usize; 2]) -> bool {
+        (rows[0]..rows[1]).any(|row| {
+            let mut words = self.part(row, cols).zip(other.part(row, cols));
+            words.any(|((word, mask), (other, _))| word & !other & mask != 0)
+        })
+    }
+
+    /// How many bits of some rows and columns are set that `other`, of the same size, has not; counting ends beyond
+    /// `most`.
+    pub(super) fn count_beyond(&self, other: &Self, rows: [usize; 2], cols: [usize; 2], most: u32) -> u32 {
+        let mut n = 0;
+        for row in rows[0]..rows[1] {
+            let words = self.part(row, cols).zip(other.part(row, cols));
+            n += words.map(|((word, mask), (other, _))| (word & !other & mask).count_ones()).sum::<u32>();
+            if n > most {
+                break;
+            }
+        }
+        n
     }
 
     /// Whether all bits of some rows and columns are set.
@@ -64,7 +85,7 @@ mod tests {
     fn ranges_are_read_as_bits_one_by_one() {
         let marks = Marks::new(3, 130);
         let set = [(0, 0), (1, 63), (1, 64), (2, 129), (0, 65)];
-        set.iter().for_each(|&(r, c)| marks.set(r, c));
+        assert!(set.iter().all(|&(r, c)| marks.set(r, c)));
         let ends = [0, 1, 62, 63, 64, 65, 66, 127, 128, 129, 130];
         for rows in [[0, 1], [0, 2], [1, 3]] {
             for cols in ends.iter().flat_map(|&a| ends.iter().filter(move |&&b| b > a).map(move |&b| [a, b])) {
@@ -74,5 +95,11 @@ mod tests {
             }
         }
         assert_eq!(marks.ones(1).collect::<Vec<_>>(), [63, 64]);
+        let other = Marks::new(3, 130);
+        assert!([(0, 0), (1, 63)].into_iter().all(|(r, c)| other.set(r, c)) && !other.set(1, 63));
+        assert!(marks.any_beyond(&other, [0, 3], [0, 130]) && marks.any_beyond(&other, [1, 2], [63, 65]));
+        assert_eq!(marks.count_beyond(&other, [0, 3], [0, 130], 9), 3);
+        assert_eq!(marks.count_beyond(&other, [0, 3], [0, 130], 0), 1);
+        assert!(!marks.any_beyond(&other, [0, 2], [0, 64]) && !other.any_beyond(&marks, [0, 3], [0, 130]));
     }
 }

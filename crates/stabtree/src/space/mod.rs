@@ -13,15 +13,20 @@
 
 mod explain;
 mod grid;
+mod live;
+mod notes;
 mod objects;
 mod opaque;
 mod pairs;
 mod slivers;
 
 pub use explain::{SpaceExplanation, explain_space};
+pub use live::{LiveSpace, SpaceUpdate};
 
 use crate::search::{Known, SearchOptions};
 use grid::Marks;
+use live::Doubt;
+use notes::{Hand, Notes};
 use opaque::opaque_rectangles;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
@@ -68,6 +73,8 @@ struct Question<'a> {
     touching: Vec<Vec<u32>>,
     /// For each cell the objects that a line may reach in it or in a sliver behind it.
     within_reach: Vec<Vec<u32>>,
+    /// For each cell the objects that it lies in.
+    around: Vec<Vec<u32>>,
     /// For each cell, which cells it hangs together with through portals, as the least of them.
     component: Vec<u32>,
     /// Places by places.
@@ -76,6 +83,10 @@ struct Question<'a> {
     objects: Marks,
     /// Objects by places: which may see it.
     maybe: Marks,
+    /// The only pairs that are asked about, if not all are.
+    doubt: Option<Doubt>,
+    /// Whether lines are kept for later.
+    noting: bool,
     n_assumed: AtomicU64,
 }
 
@@ -99,6 +110,9 @@ const SLIVER: u32 = u32::MAX;
 
 /// Pairs of groups are halved on one thread until there are this many for each thread.
 const TASKS_PER_THREAD: usize = 256;
+
+/// The same where few pairs are asked about.
+const FEW_TASKS_PER_THREAD: usize = 16;
 
 /// Finds which cells of a graph see each other, and which objects they see.
 ///
@@ -131,17 +145,21 @@ pub fn see_space(
     assert!(fits(&known.visible, n) && possible_fits, "what is known is about these cells and objects");
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
     let question = Question::new(graph, objects, &blockers, known);
-    let threads = match options.threads {
+    let (counters, _) = on_threads(options.threads, |threads| question.answer(threads, options));
+    question.into_seen(counters)
+}
+
+/// Runs something on so many threads, told how many; 0 for one for each core.
+fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T + Send) -> T {
+    let threads = match threads {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         t => t,
     };
-    let run = || question.answer(threads, options);
-    let counters = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(run),
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(|| run(threads)),
         // Threads cannot be had: the threads of the process will do.
-        Err(_) => run(),
-    };
-    question.into_seen(counters)
+        Err(_) => run(threads),
+    }
 }
 
 impl<'a> Question<'a> {
@@ -172,10 +190,16 @@ impl<'a> Question<'a> {
         });
         let touching: Vec<Vec<u32>> = touching.collect();
         let within_reach = slivers::within_reach(graph, &slivers, &touching);
+        let lies_in = |(cell, near): (&Aabb<3>, &Vec<u32>)| -> Vec<u32> {
+            near.iter().copied().filter(|&o| objects::within(cell, &boxes[o as usize])).collect()
+        };
+        let around = extents.iter().zip(&within_reach).map(lies_in).collect();
         let cells = Marks::new(cell_at.len(), cell_at.len());
         for (row, &cell) in cell_at.iter().enumerate() {
             let places = known.visible.iter_ones(cell as usize).map(|col| place[col]).filter(|p| *p != SLIVER);
-            places.for_each(|col| cells.set(row, col as usize));
+            for col in places {
+                cells.set(row, col as usize);
+            }
         }
         let [objects, maybe] = [(); 2].map(|()| Marks::new(boxes.len(), cell_at.len()));
         let possible = known.possible.as_ref();
@@ -191,10 +215,13 @@ impl<'a> Question<'a> {
             place,
             touching,
             within_reach,
+            around,
             component: components(graph),
             cells,
             objects,
             maybe,
+            doubt: None,
+            noting: false,
             n_assumed: AtomicU64::new(0),
         }
     }
@@ -207,16 +234,23 @@ impl<'a> Question<'a> {
 
     fn may_see_object(&self, place: usize, object: usize) -> bool {
         self.possible.is_none_or(|(_, objects)| objects.get(self.cell_at[place] as usize, object))
+            && self.doubt.as_ref().is_none_or(|doubt| doubt.objects.get(object, place))
     }
 
-    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> ShaftCounters {
+    fn hand(&self) -> Hand<'a> {
+        Hand { shaft: Shaft::new(self.blockers), notes: self.noting.then(Notes::default) }
+    }
+
+    /// Decides all that is asked; returns what it took, and what was noted.
+    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> (ShaftCounters, Notes) {
         let n = self.cell_at.len();
         if n == 0 {
-            return ShaftCounters::default();
+            return (ShaftCounters::default(), Notes::default());
         }
-        let mut first = Shaft::new(self.blockers);
+        let mut first = self.hand();
         let mut tasks = vec![[0, 0]];
-        while tasks.len() < TASKS_PER_THREAD * threads {
+        let per_thread = if self.doubt.is_some() { FEW_TASKS_PER_THREAD } else { TASKS_PER_THREAD };
+        while tasks.len() < per_thread * threads {
             let mut smaller = Vec::new();
             tasks.iter().for_each(|&pair| self.settle(pair, &mut first, &mut |p| smaller.push(p)));
             tasks = smaller;
@@ -229,27 +263,41 @@ impl<'a> Question<'a> {
             let done = done.fetch_add(1, Relaxed) + 1;
             options.progress.iter().for_each(|progress| progress(done, all));
         };
-        let shaft = || Shaft::new(self.blockers);
-        let pairs = tasks.into_par_iter().with_max_len(1).map_init(shaft, |shaft, task| {
-            let before = shaft.counters();
-            let mut stack = vec![task];
-            while let Some(pair) = stack.pop() {
-                self.settle(pair, shaft, &mut |p| stack.push(p));
-            }
-            step();
-            shaft.counters() - before
-        });
-        let pairs = pairs.reduce(ShaftCounters::default, |a, b| a + b);
-        (0..n).into_par_iter().for_each(|place| self.survey_objects(place));
-        let state = || (Shaft::new(self.blockers), Vec::new());
-        let objects =
-            (0..self.boxes.len()).into_par_iter().with_max_len(4).map_init(state, |(shaft, stack), object| {
-                let before = shaft.counters();
-                self.settle_object(object, shaft, stack);
+        let pairs = tasks.into_par_iter().with_max_len(1).map_init(
+            || self.hand(),
+            |hand, task| {
+                let before = hand.shaft.counters();
+                let mut stack = vec![task];
+                while let Some(pair) = stack.pop() {
+                    self.settle(pair, hand, &mut |p| stack.push(p));
+                }
                 step();
-                shaft.counters() - before
-            });
-        first.counters() + pairs + objects.reduce(ShaftCounters::default, |a, b| a + b)
+                (hand.shaft.counters() - before, hand.take_notes())
+            },
+        );
+        let pairs: Vec<(ShaftCounters, Notes)> = pairs.collect();
+        let survey = (0..n).into_par_iter().map(|place| {
+            let mut notes = self.noting.then(Notes::default);
+            self.survey_objects(place, notes.as_mut());
+            (ShaftCounters::default(), notes.unwrap_or_default())
+        });
+        let survey: Vec<(ShaftCounters, Notes)> = survey.collect();
+        let objects = (0..self.boxes.len()).into_par_iter().with_max_len(4).map_init(
+            || (self.hand(), Vec::new()),
+            |(hand, stack), object| {
+                let before = hand.shaft.counters();
+                self.settle_object(object, hand, stack);
+                step();
+                (hand.shaft.counters() - before, hand.take_notes())
+            },
+        );
+        let objects: Vec<(ShaftCounters, Notes)> = objects.collect();
+        let mut all = (first.shaft.counters(), first.take_notes());
+        for (counters, notes) in pairs.into_iter().chain(survey).chain(objects) {
+            all.0 = all.0 + counters;
+            all.1.append(notes);
+        }
+        all
     }
 
     fn into_seen(self, counters: ShaftCounters) -> SeenInSpace {

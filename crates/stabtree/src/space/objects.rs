@@ -1,9 +1,10 @@
 //! Which objects a cell sees: those that touch it, and those that a line from it reaches.
 
 use super::Question;
-use super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
+use super::notes::{FoundFor, Hand, Notes};
+use super::pairs::{CELL_BUDGET, FEW, GROUP_BUDGET, apart};
 use sightlines_geometry::Aabb;
-use sightlines_sightline::{Shaft, Sight, Target};
+use sightlines_sightline::{Sight, Target};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Whether two closed boxes have a point in common.
@@ -12,7 +13,7 @@ pub(super) fn touch(a: &Aabb<3>, b: &Aabb<3>) -> bool {
 }
 
 /// Whether a closed box lies in another.
-fn within(inner: &Aabb<3>, outer: &Aabb<3>) -> bool {
+pub(super) fn within(inner: &Aabb<3>, outer: &Aabb<3>) -> bool {
     outer.contains(inner.min) && outer.contains(inner.max)
 }
 
@@ -22,52 +23,53 @@ impl Question<'_> {
     ///
     /// A line to an object ends in a cell that the object touches, so only objects that touch a visible
     /// cell, or a sliver behind it, may be seen; those that a visible cell lies in are.
-    pub(super) fn survey_objects(&self, place: usize) {
+    pub(super) fn survey_objects(&self, place: usize, mut notes: Option<&mut Notes>) {
         let own = self.cell_at[place] as usize;
-        self.touching[own].iter().for_each(|&o| self.objects.set(o as usize, place));
+        for &object in &self.touching[own] {
+            self.objects.set(object as usize, place);
+        }
+        let asked = self.doubt.as_ref().is_none_or(|doubt| doubt.rows[place]);
         for other in self.cells.ones(place) {
             let cell = self.cell_at[other] as usize;
-            for &object in &self.within_reach[cell] {
-                let o = object as usize;
-                if self.may_see_object(place, o) {
-                    self.maybe.set(o, place);
+            for &object in &self.around[cell] {
+                if self.objects.set(object as usize, place) {
+                    notes.iter_mut().for_each(|notes| notes.inside.push([object, own as u32]));
                 }
-                if !self.objects.get(o, place) && within(&self.graph.cells()[cell].bounds, &self.boxes[o]) {
-                    self.objects.set(o, place);
+            }
+            for &object in self.within_reach[cell].iter().filter(|_| asked) {
+                if self.may_see_object(place, object as usize) {
+                    self.maybe.set(object as usize, place);
                 }
             }
         }
     }
 
     /// Decides which cells see an object: groups of cells first, then their halves.
-    pub(super) fn settle_object(&self, object: usize, shaft: &mut Shaft<'_>, stack: &mut Vec<u32>) {
-        let target = &self.boxes[object];
+    pub(super) fn settle_object(&self, object: usize, hand: &mut Hand<'_>, stack: &mut Vec<u32>) {
+        let (target, row) = (&self.boxes[object], [object, object + 1]);
         stack.clear();
         stack.push(0);
         while let Some(n) = stack.pop() {
             let node = &self.tree.nodes()[n as usize];
             let places = [node.start as usize, node.end as usize];
-            let open = |p: &usize| self.maybe.get(object, *p) && !self.objects.get(object, *p);
-            if !(places[0]..places[1]).any(|p| open(&p)) {
+            if !self.maybe.any_beyond(&self.objects, row, places) {
                 continue;
             }
             // Groups that touch the object, or some cell of which sees it, are not hidden from it.
-            let ask =
-                node.is_leaf() || (apart(&node.bounds, target) && !self.objects.any([object, object + 1], places));
+            let worth_it = || self.doubt.is_none() || self.maybe.count_beyond(&self.objects, row, places, FEW) > FEW;
+            let ask = node.is_leaf() || (apart(&node.bounds, target) && !self.objects.any(row, places) && worth_it());
             if ask {
                 let budget = if node.is_leaf() { CELL_BUDGET } else { GROUP_BUDGET };
-                match shaft.decide(&node.bounds, target, Target::Surface, budget) {
+                let found_for = if node.is_leaf() { FoundFor::Object([object, places[0]]) } else { FoundFor::Groups };
+                match hand.shaft.decide(&node.bounds, target, Target::Surface, budget) {
                     Sight::Blocked => continue,
-                    Sight::Open(line) => {
-                        self.follow(&line, [&node.bounds, target]);
-                        if node.is_leaf() {
-                            self.objects.set(object, places[0]);
-                        }
-                    }
+                    Sight::Open(line) => self.follow(&line, [&node.bounds, target], found_for, hand),
                     Sight::Undecided => {
                         if node.is_leaf() {
                             self.n_assumed.fetch_add(1, Relaxed);
                             self.objects.set(object, places[0]);
+                            let pair = [object as u32, self.cell_at[places[0]]];
+                            hand.notes.iter_mut().for_each(|notes| notes.assumed_objects.push(pair));
                         }
                     }
                 }

@@ -4,34 +4,35 @@
 //! together, and covered by rectangles that cannot be made larger: each blocks as much as can be blocked
 //! by one.
 
+use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use std::collections::BTreeMap;
 
 /// Fields of a plane that are painted at once; larger planes are cut.
-const MAX_FIELDS: usize = 1 << 24;
+pub(super) const MAX_FIELDS: usize = 1 << 24;
 
 /// A rectangle on a plane, by its extents along two axes.
-type Patch = Aabb<2>;
+pub(super) type Patch = Aabb<2>;
 
 /// What lies on one plane.
-#[derive(Debug, Default)]
-struct Plane {
-    walls: Vec<Patch>,
-    portals: Vec<Patch>,
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Plane {
+    pub(super) walls: Vec<Patch>,
+    pub(super) portals: Vec<Patch>,
     /// Cross-sections of what no line gets into.
-    solid: Vec<Patch>,
+    pub(super) solid: Vec<Patch>,
 }
 
 /// A double as a key with the order of its value.
-fn key(x: f64) -> u64 {
+pub(super) fn key(x: f64) -> u64 {
     // Negative zero is zero.
     let bits = (x + 0.0).to_bits();
     if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
 }
 
 /// The axes of a plane's extents.
-const fn others(axis: usize) -> [usize; 2] {
+pub(super) const fn others(axis: usize) -> [usize; 2] {
     [(axis + 1) % 3, (axis + 2) % 3]
 }
 
@@ -41,41 +42,73 @@ const fn others(axis: usize) -> [usize; 2] {
 /// `solid` are boxes that no line from a cell gets into: with them, walls go on through what stands
 /// between them.
 pub(super) fn opaque_rectangles(graph: &CellGraph<Axial>, solid: &[Aabb<3>]) -> Vec<Aabb<3>> {
-    let mut planes: BTreeMap<(usize, u64), (f64, Plane)> = BTreeMap::new();
-    let flat = |b: &Aabb<3>, axis: usize| {
-        let [u, v] = others(axis);
-        Patch { min: [b.min[u], b.min[v]], max: [b.max[u], b.max[v]] }
-    };
-    for cell in graph.cells() {
-        for axis in 0..3 {
-            for at in [cell.bounds.min[axis], cell.bounds.max[axis]] {
-                let plane = planes.entry((axis, key(at))).or_insert_with(|| (at, Plane::default()));
-                plane.1.walls.push(flat(&cell.bounds, axis));
+    Walls::of(graph, solid, &Walls::default()).rectangles().collect()
+}
+
+/// The walls of a graph, plane by plane.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Walls {
+    planes: BTreeMap<(usize, u64), Covered>,
+}
+
+/// What lies on a plane, and the rectangles that cover it.
+#[derive(Debug, Clone)]
+struct Covered {
+    at: f64,
+    plane: Plane,
+    rectangles: Vec<Aabb<3>>,
+}
+
+impl Walls {
+    /// The walls of a graph; arguments as for [`opaque_rectangles`]. Planes with the same on them as `before` are not
+    /// covered anew, which is most of the cost.
+    pub(super) fn of(graph: &CellGraph<Axial>, solid: &[Aabb<3>], before: &Self) -> Self {
+        let mut planes: BTreeMap<(usize, u64), Covered> = BTreeMap::new();
+        let flat = |b: &Aabb<3>, axis: usize| {
+            let [u, v] = others(axis);
+            Patch { min: [b.min[u], b.min[v]], max: [b.max[u], b.max[v]] }
+        };
+        for cell in graph.cells() {
+            for axis in 0..3 {
+                for at in [cell.bounds.min[axis], cell.bounds.max[axis]] {
+                    let new = || Covered { at, plane: Plane::default(), rectangles: Vec::new() };
+                    let covered = planes.entry((axis, key(at))).or_insert_with(new);
+                    covered.plane.walls.push(flat(&cell.bounds, axis));
+                }
             }
         }
-    }
-    for portal in graph.portals() {
-        let axis = usize::from(portal.shape.axis);
-        if let Some(plane) = planes.get_mut(&(axis, key(portal.shape.at()))) {
-            plane.1.portals.push(flat(&portal.shape.extent, axis));
+        for portal in graph.portals() {
+            let axis = usize::from(portal.shape.axis);
+            if let Some(covered) = planes.get_mut(&(axis, key(portal.shape.at()))) {
+                covered.plane.portals.push(flat(&portal.shape.extent, axis));
+            }
         }
-    }
-    let mut rectangles = Vec::new();
-    for ((axis, _), (at, mut plane)) in planes {
-        plane.solid.extend(solid.iter().filter(|b| b.min[axis] <= at && at <= b.max[axis]).map(|b| flat(b, axis)));
-        let [u, v] = others(axis);
-        plane.cover(&mut |patch| {
-            let (mut min, mut max) = ([at; 3], [at; 3]);
-            (min[u], min[v], max[u], max[v]) = (patch.min[0], patch.min[1], patch.max[0], patch.max[1]);
-            rectangles.push(Aabb { min, max });
+        planes.par_iter_mut().for_each(|(&(axis, at_key), Covered { at, plane, rectangles })| {
+            let through = solid.iter().filter(|b| b.min[axis] <= *at && *at <= b.max[axis]);
+            plane.solid.extend(through.map(|b| flat(b, axis)));
+            if let Some(same) = before.planes.get(&(axis, at_key)).filter(|covered| covered.plane == *plane) {
+                rectangles.clone_from(&same.rectangles);
+                return;
+            }
+            let [u, v] = others(axis);
+            plane.cover(&mut |patch| {
+                let (mut min, mut max) = ([*at; 3], [*at; 3]);
+                (min[u], min[v], max[u], max[v]) = (patch.min[0], patch.min[1], patch.max[0], patch.max[1]);
+                rectangles.push(Aabb { min, max });
+            });
         });
+        Self { planes }
     }
-    rectangles
+
+    /// The rectangles, plane by plane.
+    pub(super) fn rectangles(&self) -> impl Iterator<Item = Aabb<3>> + '_ {
+        self.planes.values().flat_map(|covered| covered.rectangles.iter().copied())
+    }
 }
 
 impl Plane {
     /// The distinct coordinates along one extent, ascending.
-    fn lines(&self, k: usize) -> Vec<f64> {
+    pub(super) fn lines(&self, k: usize) -> Vec<f64> {
         let mut lines: Vec<f64> =
             self.walls.iter().chain(&self.portals).chain(&self.solid).flat_map(|p| [p.min[k], p.max[k]]).collect();
         lines.sort_unstable_by(f64::total_cmp);
@@ -83,7 +116,7 @@ impl Plane {
         lines
     }
 
-    fn cover(self, take: &mut impl FnMut(Patch)) {
+    fn cover(&self, take: &mut impl FnMut(Patch)) {
         let (us, vs) = (self.lines(0), self.lines(1));
         if us.len().saturating_mul(vs.len()) > MAX_FIELDS {
             let (k, at) = if us.len() >= vs.len() { (0, us[us.len() / 2]) } else { (1, vs[vs.len() / 2]) };
@@ -92,7 +125,7 @@ impl Plane {
             high.cover(take);
             return;
         }
-        Painting::new(&self, us, vs).cover(take);
+        Painting::new(self, us, vs).cover(take);
     }
 
     /// The parts on either side of a line.
@@ -115,16 +148,16 @@ impl Plane {
 }
 
 /// A plane cut into fields by all lines of its patches.
-struct Painting {
+pub(super) struct Painting {
     us: Vec<f64>,
     vs: Vec<f64>,
     /// What each field is, row by row.
-    fields: Vec<Field>,
+    pub(super) fields: Vec<Field>,
 }
 
 /// What a field of a plane is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Field {
+pub(super) enum Field {
     /// Open, or of no cell.
     Free,
     /// Inside of what no line gets into.
@@ -134,7 +167,7 @@ enum Field {
 }
 
 impl Painting {
-    fn new(plane: &Plane, us: Vec<f64>, vs: Vec<f64>) -> Self {
+    pub(super) fn new(plane: &Plane, us: Vec<f64>, vs: Vec<f64>) -> Self {
         let n = us.len().saturating_sub(1) * vs.len().saturating_sub(1);
         let mut painting = Self { us, vs, fields: vec![Field::Free; n] };
         plane.solid.iter().for_each(|p| painting.paint(p, Field::Solid));

@@ -1,8 +1,10 @@
 //! Pairs of groups of cells, halved until one hides from the other or they are single cells.
 
 use super::Question;
+use super::live::Doubt;
+use super::notes::{FoundFor, Hand, Line, Proof};
 use sightlines_geometry::Aabb;
-use sightlines_sightline::{FreeLine, Shaft, Sight, Target};
+use sightlines_sightline::{FreeLine, FreeSpan, Sight, Target};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Linear programs spent on a pair of groups; one that takes more is halved.
@@ -10,6 +12,9 @@ pub(super) const GROUP_BUDGET: u32 = 64;
 
 /// Linear programs spent on a pair of single cells, or a cell and an object, before it counts as visible.
 pub(super) const CELL_BUDGET: u32 = 2000;
+
+/// Where only some pairs are asked about, groups with no more of them than this are halved at once.
+pub(super) const FEW: u32 = 3;
 
 /// Two nodes of the tree of cells, the first not after the second.
 pub(super) type Pair = [u32; 2];
@@ -21,8 +26,12 @@ pub(super) fn apart(a: &Aabb<3>, b: &Aabb<3>) -> bool {
 
 impl Question<'_> {
     /// Decides what can be decided of a pair; the rest is handed on as smaller pairs.
-    pub(super) fn settle(&self, [a, b]: Pair, shaft: &mut Shaft<'_>, smaller: &mut impl FnMut(Pair)) {
+    pub(super) fn settle(&self, [a, b]: Pair, hand: &mut Hand<'_>, smaller: &mut impl FnMut(Pair)) {
         let (na, nb) = (self.tree.nodes()[a as usize], self.tree.nodes()[b as usize]);
+        let (rows, cols) = ([na.start as usize, na.end as usize], [nb.start as usize, nb.end as usize]);
+        if self.doubt.as_ref().is_some_and(|doubt| !doubt.cells.any_beyond(&self.cells, rows, cols)) {
+            return;
+        }
         if a == b {
             if !na.is_leaf() {
                 let [left, right] = self.tree.children(a);
@@ -30,18 +39,19 @@ impl Question<'_> {
             }
             return;
         }
-        let (rows, cols) = ([na.start as usize, na.end as usize], [nb.start as usize, nb.end as usize]);
         if self.cells.all(rows, cols) {
             return;
         }
         if na.is_leaf() && nb.is_leaf() {
-            self.settle_cells([rows[0], cols[0]], [&na.bounds, &nb.bounds], shaft);
+            self.settle_cells([rows[0], cols[0]], [&na.bounds, &nb.bounds], hand);
             return;
         }
-        if apart(&na.bounds, &nb.bounds) && !self.cells.any(rows, cols) {
-            match shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET) {
+        let few = |doubt: &Doubt| doubt.cells.count_beyond(&self.cells, rows, cols, FEW) <= FEW;
+        let worth_it = self.doubt.as_ref().is_none_or(|doubt| !few(doubt));
+        if worth_it && apart(&na.bounds, &nb.bounds) && !self.cells.any(rows, cols) {
+            match hand.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET) {
                 Sight::Blocked => return,
-                Sight::Open(line) => self.follow(&line, [&na.bounds, &nb.bounds]),
+                Sight::Open(line) => self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, hand),
                 Sight::Undecided => {}
             }
         }
@@ -53,31 +63,40 @@ impl Question<'_> {
         }
     }
 
-    fn settle_cells(&self, [a, b]: [usize; 2], bounds: [&Aabb<3>; 2], shaft: &mut Shaft<'_>) {
+    fn settle_cells(&self, [a, b]: [usize; 2], bounds: [&Aabb<3>; 2], hand: &mut Hand<'_>) {
         if !self.may_see_cell(a, b) {
             return;
         }
-        match shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
+        match hand.shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
             Sight::Blocked => {}
-            Sight::Open(line) => {
-                self.follow(&line, bounds);
-                self.join(a, b);
-            }
+            Sight::Open(line) => self.follow(&line, bounds, FoundFor::Cells([a, b]), hand),
             Sight::Undecided => {
                 self.n_assumed.fetch_add(1, Relaxed);
-                self.join(a, b);
+                if self.join(a, b) {
+                    let notes = hand.notes.iter_mut();
+                    notes.for_each(|notes| notes.assumed.push([a, b].map(|place| self.cell_at[place])));
+                }
             }
         }
     }
 
-    fn join(&self, a: usize, b: usize) {
-        self.cells.set(a, b);
-        self.cells.set(b, a);
+    /// Marks two cells, by their places, as seeing each other; whether they were not. Of several threads that join
+    /// the same cells one is told so.
+    pub(super) fn join(&self, a: usize, b: usize) -> bool {
+        let new = self.cells.set(a.min(b), a.max(b));
+        self.cells.set(a.max(b), a.min(b));
+        new
     }
 
     /// Marks everything that a line passes: its cells see each other, and the objects on it.
-    pub(super) fn follow(&self, line: &FreeLine, [from, to]: [&Aabb<3>; 2]) {
+    pub(super) fn follow(&self, line: &FreeLine, [from, to]: [&Aabb<3>; 2], found_for: FoundFor, hand: &mut Hand<'_>) {
         let span = line.span(from, to, self.blockers);
+        let cells = self.cells_on(&span);
+        self.mark(line, span, &cells, found_for, hand);
+    }
+
+    /// The cells, by their places, that the free part of a line certainly passes.
+    pub(super) fn cells_on(&self, span: &FreeSpan) -> Vec<usize> {
         let mut cells: Vec<usize> = Vec::new();
         self.tree.visit(
             |b| span.may_meet(b),
@@ -88,16 +107,52 @@ impl Question<'_> {
                 }
             },
         );
+        cells
+    }
+
+    /// Marks that `cells`, which the free part of a line passes, see each other, and the objects on it.
+    pub(super) fn mark(
+        &self,
+        line: &FreeLine,
+        span: FreeSpan,
+        cells: &[usize],
+        found_for: FoundFor,
+        hand: &mut Hand<'_>,
+    ) {
+        let noting = hand.notes.is_some();
+        let number = hand.notes.as_ref().map_or(0, |notes| notes.lines.len() as u32);
+        let (mut pairs, mut seen) = (Vec::new(), Vec::new());
+        let mut join = |a: usize, b: usize| {
+            if self.join(a, b) && noting {
+                pairs.push(Proof { pair: [a, b].map(|place| self.cell_at[place]), line: number });
+            }
+        };
         for (i, &a) in cells.iter().enumerate() {
-            cells[..i].iter().for_each(|&b| self.join(a, b));
+            cells[..i].iter().for_each(|&b| join(a, b));
         }
+        if let FoundFor::Cells([a, b]) = found_for {
+            join(a, b);
+        }
+        let mut see = |object: usize, place: usize| {
+            if self.objects.set(object, place) && noting {
+                seen.push(Proof { pair: [object as u32, self.cell_at[place]], line: number });
+            }
+        };
         self.object_tree.visit(
             |b| span.may_meet(b),
             |object| {
                 if span.meets(&self.boxes[object as usize]) {
-                    cells.iter().for_each(|&cell| self.objects.set(object as usize, cell));
+                    cells.iter().for_each(|&place| see(object as usize, place));
                 }
             },
         );
+        if let FoundFor::Object([object, place]) = found_for {
+            see(object, place);
+        }
+        if let Some(notes) = hand.notes.as_mut().filter(|_| !pairs.is_empty() || !seen.is_empty()) {
+            notes.lines.push(Line { line: *line, span });
+            notes.cells.append(&mut pairs);
+            notes.objects.append(&mut seen);
+        }
     }
 }

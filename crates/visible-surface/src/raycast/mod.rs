@@ -7,6 +7,7 @@
 //! ray traversal", JCGT 2(2), 2013, for the idea.
 
 use crate::camera::{Camera, U};
+use crate::chosen::Chosen;
 use crate::counters::Counters;
 use crate::faces::{Faces, NOTHING};
 use crate::fragment::{Fragment, facing};
@@ -35,6 +36,25 @@ impl RayCaster {
         let boxes: Vec<Aabb<3>> = ids.iter().map(|&f| faces.bounds(f)).collect();
         Self { n_faces: faces.len(), ids, tree: BoxTree::build(&boxes, PER_LEAF) }
     }
+
+    /// Rays one by one, from any eyes: what is learnt about faces is kept from one to the next.
+    ///
+    /// # Panics
+    /// If the faces are not as many as those that the tree was built of.
+    pub fn rays<'a>(&'a self, faces: &'a Faces, chosen: &'a Chosen) -> Rays<'a> {
+        assert_eq!(self.n_faces, faces.len(), "a tree is asked about the faces that it was built of");
+        Rays {
+            caster: self,
+            faces,
+            chosen,
+            duel: Duel::default(),
+            camera: None,
+            n_boxes: 0,
+            n_faces: 0,
+            n_doubts: 0,
+            stack: Vec::new(),
+        }
+    }
 }
 
 impl VisibleSurface for RayCaster {
@@ -45,31 +65,33 @@ impl VisibleSurface for RayCaster {
     /// # Panics
     /// If the faces are not as many as those that the tree was built of.
     fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        assert_eq!(self.n_faces, shot.faces.len(), "a tree is asked about the faces that it was built of");
         let [width, height] = shot.camera.size();
         let mut image = Image::new([width, height]);
-        let mut cast =
-            Cast { caster: self, shot, duel: Duel::default(), n_boxes: 0, n_faces: 0, n_doubts: 0, stack: Vec::new() };
+        let mut rays = self.rays(shot.faces, shot.chosen);
         for y in 0..height {
             for x in 0..width {
-                let face = cast.first(x, y);
+                let face = rays.first(shot.camera, x, y);
                 image.span_mut(y, x, x + 1)[0] = face;
                 counters.written += u64::from(face != NOTHING);
             }
         }
         counters.polygons = shot.chosen.len() as u64;
-        counters.exact += cast.duel.asked + cast.n_doubts;
-        counters.tested("boxes", cast.n_boxes);
-        counters.tested("faces", cast.n_faces);
+        counters.exact += rays.duel.asked + rays.n_doubts;
+        counters.tested("boxes", rays.n_boxes);
+        counters.tested("faces", rays.n_faces);
         Seen::Picture(image)
     }
 }
 
-/// Rays of one picture.
-struct Cast<'a> {
+/// Rays through a scene. Holds room to work in; use one for each thread.
+#[derive(Debug)]
+pub struct Rays<'a> {
     caster: &'a RayCaster,
-    shot: &'a Shot<'a>,
+    faces: &'a Faces,
+    chosen: &'a Chosen,
     duel: Duel,
+    /// Of the last ray.
+    camera: Option<Camera>,
     n_boxes: u64,
     n_faces: u64,
     n_doubts: u64,
@@ -118,10 +140,14 @@ impl Ray {
     }
 }
 
-impl Cast<'_> {
-    /// The face that the ray of a pixel meets first.
-    fn first(&mut self, x: u32, y: u32) -> u32 {
-        let Shot { camera, faces, chosen } = *self.shot;
+impl Rays<'_> {
+    /// The face that the ray of a pixel meets first, exactly as [`RayCaster`] has it; [`NOTHING`] if there is none.
+    pub fn first(&mut self, camera: &Camera, x: u32, y: u32) -> u32 {
+        if self.camera.as_ref() != Some(camera) {
+            self.duel.look_from_elsewhere();
+            self.camera = Some(*camera);
+        }
+        let (faces, chosen) = (self.faces, self.chosen);
         let tree = &self.caster.tree;
         let ray = Ray::new(camera, x, y);
         // The nearest face, one over its depth, how much that may be off, and a depth that it surely does not exceed.
@@ -143,7 +169,7 @@ impl Cast<'_> {
             for &i in &tree.order()[node.start as usize..node.end as usize] {
                 let face = self.caster.ids[i as usize];
                 self.n_faces += 1;
-                if !chosen.has(face) || !self.meets(&ray, face, x, y) {
+                if !chosen.has(face) || !self.meets(camera, &ray, face, x, y) {
                     continue;
                 }
                 let plane = Nearness::of(camera, faces, face);
@@ -168,8 +194,8 @@ impl Cast<'_> {
 
     /// Whether the ray of a pixel meets a face, at a depth that the camera sees.
     #[inline]
-    fn meets(&mut self, ray: &Ray, face: u32, x: u32, y: u32) -> bool {
-        let Shot { camera, faces, .. } = *self.shot;
+    fn meets(&mut self, camera: &Camera, ray: &Ray, face: u32, x: u32, y: u32) -> bool {
+        let faces = self.faces;
         let corners = faces.of(face).map(|p| minus(p, ray.eye));
         let (mut positive, mut negative, mut doubt) = (false, false, false);
         for (p, q) in [(corners[0], corners[1]), (corners[1], corners[2]), (corners[2], corners[0])] {

@@ -1,0 +1,178 @@
+//! The table of a scene that changes: doors that close and open, walls that are built, moved and torn down, furniture
+//! that is carried about.
+//!
+//! The scene is cut anew, which is quick beside seeing; who sees whom is brought up to date by
+//! [`LiveSpace`](sightlines_stabtree::LiveSpace) where walls differ. The table is the one that
+//! [`bake_scene`](crate::bake_scene) makes of the new scene, byte for byte, unless pairs are given up
+//! ([`BakedScene::n_assumed`](crate::BakedScene::n_assumed)): of those, an update may know that they are hidden, from the
+//! time when they were easier.
+//!
+//! Doors of the run-time are portals by id. A portal that is closed is a wall, for the rows of the table only: its
+//! portals stay, so that ids mean the same when it is opened.
+
+mod cut;
+
+use crate::mirrors;
+use crate::plan::BakeError;
+use crate::scene::{PortalMode, SceneBakeOptions, drawn_box, info, scene_table};
+use cut::Cut;
+use sightlines_cells::{Axial, AxialDoor, CellGraph, PortalId, Scene};
+use sightlines_geometry::Aabb;
+use sightlines_kdtree::{PortalForm, SceneOptions};
+use sightlines_pvs::Table;
+use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceUpdate};
+use std::time::{Duration, Instant};
+
+/// A scene with its table, and what it takes to keep that up to date.
+///
+/// Memory beside the table: see [`LiveSpace`](sightlines_stabtree::LiveSpace).
+#[derive(Debug, Clone)]
+pub struct LiveScene {
+    cutting: SceneOptions,
+    portals: PortalMode,
+    threads: usize,
+    scene: Scene,
+    /// The boxes of its objects.
+    boxes: Vec<Aabb<3>>,
+    cut: Cut,
+    /// Closed openings.
+    closed: Vec<AxialDoor>,
+    space: LiveSpace,
+    table: Table,
+}
+
+/// What an update did, and how long it took.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LiveUpdate {
+    /// What changed, and what was asked.
+    pub space: SpaceUpdate,
+    /// Time to cut the scene.
+    pub cut_time: Duration,
+    /// Time to decide who sees what.
+    pub see_time: Duration,
+    /// Time to make the table.
+    pub table_time: Duration,
+}
+
+impl LiveScene {
+    /// Bakes a scene as [`bake_scene`](crate::bake_scene) does, and keeps what updates need. With
+    /// [`PortalMode::TwoLevel`] the exact pieces are asked at once: the answer is the same.
+    ///
+    /// # Errors
+    /// As [`bake_scene`](crate::bake_scene).
+    pub fn new(scene: Scene, options: &SceneBakeOptions<'_>) -> Result<Self, BakeError> {
+        let (portals, threads) = (options.portals, options.threads);
+        let cutting = SceneOptions { portals: PortalForm::Exact, ..options.cut };
+        let cut = Cut::of(&scene, &cutting, portals)?;
+        let search = SearchOptions { threads, progress: options.progress, ..SearchOptions::default() };
+        let boxes = boxes_of(&scene);
+        let space = LiveSpace::new(cut.graph.clone(), &cut.solid, boxes.clone(), &search);
+        let table = tabulate(&scene, &boxes, &cut, &space, &cutting, portals)?;
+        Ok(Self { cutting, portals, threads, scene, boxes, cut, closed: Vec::new(), space, table })
+    }
+
+    /// The scene.
+    pub const fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The table, as of the last update.
+    pub const fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// Cells and portals, closed ones among them: ids are those of the table.
+    pub const fn graph(&self) -> &CellGraph<Axial> {
+        &self.cut.graph
+    }
+
+    /// Goes over to another scene, whatever it is; quick if it differs little.
+    ///
+    /// Objects may come, go, move and change their order. Portals that were closed stay closed as far as they lie in the
+    /// same openings; all others are open.
+    ///
+    /// # Errors
+    /// As [`bake_scene`](crate::bake_scene); then everything stays as it was.
+    pub fn update(&mut self, scene: Scene) -> Result<LiveUpdate, BakeError> {
+        let start = Instant::now();
+        let cut = Cut::of(&scene, &self.cutting, self.portals)?;
+        let cut_time = start.elapsed();
+        (self.boxes, self.scene, self.cut) = (boxes_of(&scene), scene, cut);
+        Ok(LiveUpdate { cut_time, ..self.see()? })
+    }
+
+    /// Closes portals, by their ids in the table: its rows become those of a scene with a wall in each of these openings.
+    /// Ids that there are not close nothing.
+    ///
+    /// # Errors
+    /// [`BakeError::Table`] for a defect of this crate.
+    pub fn close(&mut self, portals: &[PortalId]) -> Result<LiveUpdate, BakeError> {
+        let found = portals.iter().filter_map(|id| self.cut.graph.portals().get(id.idx()));
+        let more: Vec<AxialDoor> = found.map(|portal| portal.shape).collect();
+        self.closed.extend(more);
+        self.see()
+    }
+
+    /// Opens portals, by their ids in the table; those that are open stay so.
+    ///
+    /// # Errors
+    /// [`BakeError::Table`] for a defect of this crate.
+    pub fn open(&mut self, portals: &[PortalId]) -> Result<LiveUpdate, BakeError> {
+        let found = portals.iter().filter_map(|id| self.cut.graph.portals().get(id.idx()));
+        let opened: Vec<AxialDoor> = found.map(|portal| portal.shape).collect();
+        // What was closed before the scene changed may be several portals now.
+        let stay = self.closed_portals().into_iter().map(|id| self.cut.graph.portals()[id.idx()].shape);
+        self.closed = stay.filter(|door| !opened.contains(door)).collect();
+        self.see()
+    }
+
+    /// The portals that are closed, ascending. O(portals × closed openings).
+    pub fn closed_portals(&self) -> Vec<PortalId> {
+        let ids = (0u32..).map(PortalId).zip(self.cut.graph.portals());
+        ids.filter(|(_, portal)| self.is_closed(&portal.shape)).map(|(id, _)| id).collect()
+    }
+
+    fn is_closed(&self, portal: &AxialDoor) -> bool {
+        let lies_in = |door: &AxialDoor| {
+            let (inner, outer) = (&portal.extent, &door.extent);
+            portal.axis == door.axis && outer.contains(inner.min) && outer.contains(inner.max)
+        };
+        self.closed.iter().any(lies_in)
+    }
+
+    /// Brings the answer and the table up to date with the scene that is cut and the portals that are closed.
+    fn see(&mut self) -> Result<LiveUpdate, BakeError> {
+        let start = Instant::now();
+        let search = SearchOptions { threads: self.threads, ..SearchOptions::default() };
+        let graph = if self.closed.is_empty() {
+            self.cut.graph.clone()
+        } else {
+            let open = self.cut.graph.portals().iter().filter(|portal| !self.is_closed(&portal.shape));
+            CellGraph::new(self.cut.graph.cells().to_vec(), open.cloned().collect())
+        };
+        let space = self.space.update(graph, &self.cut.solid, self.boxes.clone(), &search);
+        let see_time = start.elapsed();
+        let start = Instant::now();
+        self.table = tabulate(&self.scene, &self.boxes, &self.cut, &self.space, &self.cutting, self.portals)?;
+        Ok(LiveUpdate { space, cut_time: Duration::ZERO, see_time, table_time: start.elapsed() })
+    }
+}
+
+fn boxes_of(scene: &Scene) -> Vec<Aabb<3>> {
+    scene.objects().iter().map(drawn_box).collect()
+}
+
+fn tabulate(
+    scene: &Scene,
+    boxes: &[Aabb<3>],
+    cut: &Cut,
+    space: &LiveSpace,
+    cutting: &SceneOptions,
+    portals: PortalMode,
+) -> Result<Table, BakeError> {
+    let options = SceneBakeOptions { cut: *cutting, portals, ..SceneBakeOptions::default() };
+    let info = info(&options, &cut.summary);
+    let mirrors = mirrors::of_scene(&cut.graph, scene).parts;
+    Ok(scene_table(&cut.graph, space.seen().clone(), scene, boxes, info, mirrors)?)
+}

@@ -1,0 +1,346 @@
+//! An answer that is brought up to date when walls, doors or objects change, instead of found anew.
+//!
+//! Beside the answer the lines are kept that proved it. When walls change:
+//! * a pair that was visible stays so unless its line meets a rectangle that was closed;
+//! * a pair that was hidden stays so unless both see, or touch, one rectangle that was opened: every line that joins
+//!   them now was blocked there;
+//! * a cell that was none before sees at most what those saw that it overlaps, what those rectangles show, and what
+//!   lies with it where no cells were. Lines that are not cut and pass it show what it sees.
+//!
+//! All other pairs are asked about as ever, groups first; groups without such pairs are passed over. Lines that are
+//! cut are followed once more on both sides of the cut, and those that ended at a wall that is gone, further on.
+//!
+//! The answer is that of [`see_space`](super::see_space): both are exact, but for pairs that are given up
+//! ([`SeenInSpace::n_assumed`]). Such a pair is asked about again with every update, but a pair that was proven to be
+//! hidden stays hidden, though a new search, which meets other groups and rectangles, might give it up.
+
+mod change;
+mod doubt;
+mod matching;
+
+pub(super) use doubt::Doubt;
+
+use super::notes::{FoundFor, Hand, Line, Notes, Proof};
+use super::opaque::Walls;
+use super::{Question, SeenInSpace, on_threads, slivers};
+use crate::search::{Known, SearchOptions};
+use change::Change;
+use matching::{Matching, heirs, same_boxes};
+use rayon::prelude::*;
+use sightlines_cells::{Axial, CellGraph};
+use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_sightline::{Blockers, ShaftCounters};
+use std::cell::Cell;
+
+/// Rectangles opened beyond which all is found anew: as many questions to all cells.
+const MOST_OPENED: usize = 256;
+
+/// The answer for a graph in space, and what it takes to keep it up to date.
+///
+/// Memory beside the answer: about 300 bytes for each line (there are fewer than visible pairs of cells, as a line shows
+/// several), twelve bytes for each pair that is visible, and the walls, plane by plane.
+#[derive(Debug, Clone)]
+pub struct LiveSpace {
+    graph: CellGraph<Axial>,
+    objects: Vec<Aabb<3>>,
+    seen: SeenInSpace,
+    walls: Walls,
+    notes: Notes,
+}
+
+/// What an update did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SpaceUpdate {
+    /// Whether so much changed that everything was found anew.
+    pub rebuilt: bool,
+    /// Cells with the same bounds as one before.
+    pub n_cells_kept: usize,
+    /// All other cells.
+    pub n_cells_new: usize,
+    /// Objects with a box that no object had before.
+    pub n_objects_new: usize,
+    /// Rectangles that are walls now and were none.
+    pub n_closed: usize,
+    /// Rectangles that were walls and are none any more.
+    pub n_opened: usize,
+    /// Lines known before.
+    pub n_lines: usize,
+    /// Those of them that a wall cuts now.
+    pub n_lines_cut: usize,
+    /// What it took to decide. Varies with threads.
+    pub counters: ShaftCounters,
+}
+
+impl LiveSpace {
+    /// Finds which cells of a graph see each other and which objects they see, as [`see_space`](super::see_space)
+    /// does, and keeps what an update needs. Arguments, exactness and cost as there.
+    pub fn new(graph: CellGraph<Axial>, solid: &[Aabb<3>], objects: Vec<Aabb<3>>, options: &SearchOptions<'_>) -> Self {
+        let (seen, walls, notes) = on_threads(options.threads, |threads| {
+            let walls = Walls::of(&graph, solid, &Walls::default());
+            let (seen, notes) = anew(&graph, &walls, &objects, threads, options);
+            (seen, walls, notes)
+        });
+        Self { graph, objects, seen, walls, notes }
+    }
+
+    /// The graph that the answer is about.
+    pub const fn graph(&self) -> &CellGraph<Axial> {
+        &self.graph
+    }
+
+    /// The answer.
+    pub const fn seen(&self) -> &SeenInSpace {
+        &self.seen
+    }
+
+    /// Number of lines that are kept.
+    pub const fn n_lines(&self) -> usize {
+        self.notes.lines.len()
+    }
+
+    /// Goes over to another graph, other solid boxes and other objects; arguments as for [`Self::new`].
+    ///
+    /// Whatever they are, the answer is the one for them; if most cells and objects have the bounds that they had, it is
+    /// found quickly. Ids of cells and objects need not be the same.
+    ///
+    /// Cost: O(cells + portals + objects + visible pairs), with small constants, and what it takes to decide about pairs
+    /// whose line is cut, pairs that see the same opened rectangle, and new cells and objects.
+    pub fn update(
+        &mut self,
+        graph: CellGraph<Axial>,
+        solid: &[Aabb<3>],
+        objects: Vec<Aabb<3>>,
+        options: &SearchOptions<'_>,
+    ) -> SpaceUpdate {
+        let notes = std::mem::take(&mut self.notes);
+        let run = |threads| self.updated(notes, &graph, solid, &objects, threads, options);
+        let (seen, walls, notes, update) = on_threads(options.threads, run);
+        *self = Self { graph, objects, seen, walls, notes };
+        update
+    }
+
+    fn updated(
+        &self,
+        notes: Notes,
+        graph: &CellGraph<Axial>,
+        solid: &[Aabb<3>],
+        boxes: &[Aabb<3>],
+        threads: usize,
+        options: &SearchOptions<'_>,
+    ) -> (SeenInSpace, Walls, Notes, SpaceUpdate) {
+        let walls = Walls::of(graph, solid, &self.walls);
+        let same_objects = same_boxes(&self.objects, boxes);
+        let cells = self.same_cells(graph);
+        let change = change::between(&self.graph, graph, &cells);
+        let n_cells_kept = cells.old_of.iter().flatten().count();
+        let mut update = SpaceUpdate {
+            n_cells_kept,
+            n_cells_new: graph.n_cells() - n_cells_kept,
+            n_objects_new: same_objects.iter().filter(|old| old.is_none()).count(),
+            n_closed: change.closed.len(),
+            n_opened: change.opened.len(),
+            n_lines: notes.lines.len(),
+            ..SpaceUpdate::default()
+        };
+        if n_cells_kept < graph.n_cells() / 2 || change.opened.len() > MOST_OPENED {
+            let (seen, notes) = anew(graph, &walls, boxes, threads, options);
+            (update.rebuilt, update.n_lines_cut, update.counters) = (true, update.n_lines, seen.counters);
+            return (seen, walls, notes, update);
+        }
+        let blockers = Blockers::new(walls.rectangles());
+        let nothing = Known::nothing(graph.n_cells());
+        let mut question = Question::new(graph, boxes, &blockers, &nothing);
+        question.noting = true;
+        let step =
+            Step { question: &question, old: self, cells: &cells, heirs: heirs(&same_objects, self.objects.len()) };
+        let (doubt, mut kept, n_cut) = step.prepare(notes, &change, &same_objects);
+        update.n_lines_cut = n_cut;
+        question.doubt = Some(doubt);
+        let (counters, found) = question.answer(threads, options);
+        kept.append(found);
+        update.counters = counters;
+        kept.compact();
+        (question.into_seen(counters), walls, kept, update)
+    }
+
+    /// The cells that have the same bounds and are no slivers.
+    fn same_cells(&self, graph: &CellGraph<Axial>) -> Matching {
+        let [old, new] = [&self.graph, graph].map(|g| g.cells().iter().map(|c| c.bounds).collect::<Vec<_>>());
+        let [old_slivers, new_slivers] = [&old, &new].map(|extents| slivers::find(extents));
+        Matching::of(&same_boxes(&old, &new), old.len())
+            .only(|old, new| !old_slivers[old as usize] && !new_slivers[new as usize])
+    }
+}
+
+fn anew(
+    graph: &CellGraph<Axial>,
+    walls: &Walls,
+    objects: &[Aabb<3>],
+    threads: usize,
+    options: &SearchOptions<'_>,
+) -> (SeenInSpace, Notes) {
+    let blockers = Blockers::new(walls.rectangles());
+    let nothing = Known::nothing(graph.n_cells());
+    let mut question = Question::new(graph, objects, &blockers, &nothing);
+    question.noting = true;
+    let (counters, notes) = question.answer(threads, options);
+    (question.into_seen(counters), notes)
+}
+
+/// Whether the free part of a line may meet any box of a tree: certain if it says no.
+fn meets_any(line: &Line, tree: &BoxTree<3>) -> bool {
+    let met = Cell::new(false);
+    tree.visit(|b| !met.get() && line.span.may_meet(b), |_| met.set(true));
+    met.get()
+}
+
+/// From one graph to the next.
+struct Step<'a> {
+    question: &'a Question<'a>,
+    old: &'a LiveSpace,
+    cells: &'a Matching,
+    /// For each old object the new ones with the same box.
+    heirs: Vec<Vec<u32>>,
+}
+
+impl Step<'_> {
+    /// Marks what old lines still prove; returns what is in doubt, what is noted, and how many lines are cut.
+    fn prepare(&self, mut notes: Notes, change: &Change, same_objects: &[Option<u32>]) -> (Doubt, Notes, usize) {
+        let question = self.question;
+        let mut doubt = Doubt::none(question.cell_at.len(), question.boxes.len());
+        let [closed, opened] = [&change.closed, &change.opened].map(|walls| BoxTree::build(walls, 1));
+        let new = self.new_boxes(same_objects);
+        let kind = |line: &Line| match () {
+            () if meets_any(line, &closed) => Kind::Cut,
+            () if meets_any(line, &opened) => Kind::Freed,
+            () if meets_any(line, &new) => Kind::Near,
+            () => Kind::Away,
+        };
+        let kinds: Vec<Kind> = notes.lines.par_iter().map(kind).collect();
+        let of_kind = |wanted: Kind| -> Vec<u32> {
+            (0u32..).zip(&kinds).filter(|(_, kind)| **kind == wanted).map(|(line, _)| line).collect()
+        };
+        let pick = |lines: &[u32]| -> Vec<Line> { lines.iter().map(|&i| notes.lines[i as usize].clone()).collect() };
+        let (freed, near) = (pick(&of_kind(Kind::Freed)), pick(&of_kind(Kind::Near)));
+        let (cut, number) = notes.take_lines(&of_kind(Kind::Cut));
+        self.carry_over(&mut notes, &number, &mut doubt);
+        let whole = near.par_iter().map_init(
+            || question.hand(),
+            |hand, line| {
+                let cells = question.cells_on(&line.span);
+                question.mark(&line.line, line.span.clone(), &cells, FoundFor::Groups, hand);
+                hand.take_notes()
+            },
+        );
+        let parts = cut.par_iter().chain(&freed).map_init(
+            || question.hand(),
+            |hand, line| {
+                self.follow_parts(line, hand);
+                hand.take_notes()
+            },
+        );
+        let found: Vec<Notes> = whole.chain(parts).collect();
+        found.into_iter().for_each(|found| notes.append(found));
+        let candidates = doubt::candidates(question, self.old, self.cells, &change.opened);
+        let seers = change
+            .opened
+            .par_iter()
+            .map_init(|| question.hand(), |hand, opened| question.seers(opened, &candidates, hand));
+        let seers: Vec<Vec<usize>> = seers.collect();
+        for (opened, seers) in change.opened.iter().zip(&seers) {
+            doubt.through(opened, seers, question);
+        }
+        doubt.new_cells(question, self.old, self.cells, &self.heirs);
+        for (object, _) in (0u32..).zip(same_objects).filter(|(_, old)| old.is_none()) {
+            (0..question.cell_at.len()).for_each(|place| doubt.object(object, place));
+        }
+        (doubt, notes, cut.len())
+    }
+
+    /// The boxes of new cells and new objects.
+    fn new_boxes(&self, same_objects: &[Option<u32>]) -> BoxTree<3> {
+        let cells = self.question.graph.cells().iter().zip(&self.cells.old_of);
+        let cells = cells.filter(|(_, old)| old.is_none()).map(|(cell, _)| cell.bounds);
+        let objects = self.question.boxes.iter().zip(same_objects).filter(|(_, old)| old.is_none());
+        let boxes: Vec<Aabb<3>> = cells.chain(objects.map(|(bounds, _)| *bounds)).collect();
+        BoxTree::build(&boxes, 1)
+    }
+
+    /// The place of an old cell that is still there.
+    fn place(&self, cell: u32) -> Option<usize> {
+        self.question.place_of(self.cells.new_of[cell as usize]?)
+    }
+
+    /// Marks the pairs of lines that are still there, by their new numbers, and gives them the new ids; the other pairs
+    /// are in doubt.
+    fn carry_over(&self, notes: &mut Notes, number: &[Option<u32>], doubt: &mut Doubt) {
+        let question = self.question;
+        notes.cells.retain_mut(|proof| {
+            let [Some(a), Some(b)] = proof.pair.map(|cell| self.place(cell)) else { return false };
+            let Some(line) = number[proof.line as usize] else {
+                doubt.pair(a, b);
+                return false;
+            };
+            question.join(a, b);
+            *proof = Proof { pair: [a, b].map(|place| question.cell_at[place]), line };
+            true
+        });
+        let mut more = Vec::new();
+        notes.objects.retain_mut(|proof| {
+            let [object, cell] = proof.pair;
+            let (Some(place), [first, others @ ..]) = (self.place(cell), &self.heirs[object as usize][..]) else {
+                return false;
+            };
+            let Some(line) = number[proof.line as usize] else {
+                self.heirs[object as usize].iter().for_each(|&same| doubt.object(same, place));
+                return false;
+            };
+            let of = |object: u32| Proof { pair: [object, question.cell_at[place]], line };
+            question.objects.set(*first as usize, place);
+            *proof = of(*first);
+            for &other in others {
+                question.objects.set(other as usize, place);
+                more.push(of(other));
+            }
+            true
+        });
+        notes.objects.append(&mut more);
+        for pair in notes.assumed.drain(..) {
+            if let [Some(a), Some(b)] = pair.map(|cell| self.place(cell)) {
+                doubt.pair(a, b);
+            }
+        }
+        for [object, cell] in notes.assumed_objects.drain(..).chain(notes.inside.drain(..)) {
+            if let Some(place) = self.place(cell) {
+                self.heirs[object as usize].iter().for_each(|&same| doubt.object(same, place));
+            }
+        }
+    }
+
+    /// Follows a line from cells on it, as far as it goes from there.
+    fn follow_parts(&self, line: &Line, hand: &mut Hand<'_>) {
+        let question = self.question;
+        let mut left = question.cells_on(&line.span);
+        while let Some(&place) = left.first() {
+            let bounds = &question.graph.cells()[question.cell_at[place] as usize].bounds;
+            let span = line.line.span(bounds, bounds, question.blockers);
+            let cells = question.cells_on(&span);
+            left.retain(|other| *other != place && !cells.contains(other));
+            question.mark(&line.line, span, &cells, FoundFor::Groups, hand);
+        }
+    }
+}
+
+/// What a change means to a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// A wall may be in its way now.
+    Cut,
+    /// It may go further now.
+    Freed,
+    /// It may pass a new cell or object.
+    Near,
+    /// Nothing.
+    Away,
+}
