@@ -8,11 +8,13 @@ use crate::commands::{
     export::ExportArgs,
     generate::GenerateArgs,
     info::InfoArgs,
+    levels::LevelsArgs,
     multifocal::MultifocalArgs,
     pack::{PackArgs, UnpackArgs},
     query::QueryArgs,
     reject::RejectArgs,
     render::RenderArgs,
+    simplify::SimplifyArgs,
     vis::VisArgs,
     walk::WalkArgs,
 };
@@ -63,6 +65,11 @@ pub(crate) enum Command {
     /// Draw what one eye sees of a scene in space by one of the methods of visible-surface determination, or by all, side by
     /// side, with what differs
     Render(RenderArgs),
+    /// Write a scene with fewer triangles for eyes in a volume: without what is hidden from there, and within a budget without
+    /// what can hardly be seen
+    Simplify(SimplifyArgs),
+    /// Write simplified variants of a scene for the cells of its table, within a memory
+    Levels(LevelsArgs),
     /// Sum up a table, a WAD, a GeoJSON plan, a scene in space, a Quake map or a portal file
     Info(InfoArgs),
     /// Write a generated scene of any size

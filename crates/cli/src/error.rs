@@ -1,19 +1,20 @@
 //! What can go wrong, as one line for the user.
 
 use crate::commands::render::RenderError;
-use crate::commands::walk::{Found, PathError};
+use crate::commands::walk::{Found, PathError, UnlikeLevels};
 use sightlines::bake::quake::StateError;
 use sightlines::bake::region::GridError;
 use sightlines::bake::{BakeError, PrtBakeError, RegionBakeError, RejectError, StabBakeError};
 use sightlines::eye_to_cell::{Method, ViewError};
 use sightlines::formats::quake::VisibilityError;
-use sightlines::formats::scene::SceneWriteError;
+use sightlines::formats::scene::{RewriteError, SceneWriteError};
 use sightlines::formats::{ReadError, WriteError};
 use sightlines::multifocal::{BackendError, JobError, PlaneError, VolumeError};
 use sightlines::packed::{PackError, PackedError};
 use sightlines::pvs::DecodeError;
 use sightlines::report::{DrawError, PngError};
 use sightlines::scenes::SceneError;
+use sightlines::simplify::{SimplifyError, ViewsError};
 use std::io;
 use std::path::PathBuf;
 
@@ -176,6 +177,25 @@ pub(crate) enum CliError {
     /// What one eye sees cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// A scene whose triangles were moved, where something is to hide.
+    #[error("{}: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the original \
+             that it was made from", .0.display())]
+    NoOccluder(PathBuf),
+    /// A scene that cannot be simplified.
+    #[error("{}: {source}", path.display())]
+    Simplify { path: PathBuf, source: SimplifyError },
+    /// Places of the eye that are none.
+    #[error("{}: {source}", path.display())]
+    Views { path: PathBuf, source: ViewsError },
+    /// A scene that cannot be written again.
+    #[error("{}: {source}", path.display())]
+    Rewrite { path: PathBuf, source: RewriteError },
+    /// An index of levels for another table.
+    #[error("{}: {source}", path.display())]
+    LevelsOf { path: PathBuf, source: UnlikeLevels },
+    /// A folder that holds what nobody asked to be replaced.
+    #[error("{}: the folder has {name:?} in it, which is no level: name a new folder, or one that only holds levels", path.display())]
+    NotLevels { path: PathBuf, name: String },
     /// An output file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),

@@ -7,7 +7,7 @@ use sightlines::cells::{CellGraph, Plan, Planar};
 use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
 use sightlines::formats::quake::prt::PrtDialect;
 use sightlines::formats::quake::{Bsp, BspFormat, Prt, read_bsp, read_prt};
-use sightlines::formats::scene::read_scene;
+use sightlines::formats::scene::{Simplified, read_scene};
 use sightlines::formats::{ReadError, SceneFile, Wad, geojson};
 use sightlines::packed;
 use sightlines::pvs::{Table, format};
@@ -136,12 +136,27 @@ pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, CliError> {
         (Some(Kind::Wad), map) => Ok(Input::Plan(doom(path, map)?)),
         (Some(Kind::Json | Kind::Scene | Kind::Prt | Kind::Bsp), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
         (Some(Kind::Json), None) => Ok(Input::Plan(plan(path)?)),
-        (Some(Kind::Scene), None) => Ok(Input::Scene(read_scene(path)?)),
+        (Some(Kind::Scene), None) => Ok(Input::Scene(occluders(path)?)),
         (Some(Kind::Prt), None) => Ok(Input::Portals(read_prt(path)?)),
         (Some(Kind::Bsp), None) => Ok(Input::Map(read_bsp(path)?)),
         (Some(Kind::Table | Kind::Packed) | None, _) => {
             Err(CliError::Kind { path: path.to_owned(), expected: BUILDABLE })
         }
+    }
+}
+
+/// Reads a scene that is to hide something, and refuses one that might hide what can be seen.
+pub(crate) fn occluders(path: &Path) -> Result<SceneFile, CliError> {
+    let file = read_scene(path)?;
+    check_occluder(path, &file)?;
+    Ok(file)
+}
+
+/// Refuses a scene whose triangles were moved by simplification.
+pub(crate) fn check_occluder(path: &Path, file: &SceneFile) -> Result<(), CliError> {
+    match file.info.simplified {
+        Some(Simplified { occluder: false }) => Err(CliError::NoOccluder(path.to_owned())),
+        _ => Ok(()),
     }
 }
 

@@ -8,6 +8,8 @@
 mod args;
 mod commands;
 mod error;
+mod folder;
+mod hiding;
 mod input;
 mod measure;
 mod memory;
@@ -65,6 +67,8 @@ fn run(arguments: &Arguments) -> Result<Answer, CliError> {
         Command::Draw(args) => commands::draw::run(args),
         Command::Multifocal(args) => commands::multifocal::run(args),
         Command::Render(args) => commands::render::run(args, show_progress),
+        Command::Simplify(args) => commands::simplify::run(args, show_progress),
+        Command::Levels(args) => commands::levels::run(args, show_progress),
         Command::Info(args) => commands::info::run(args),
         Command::Generate(args) => commands::generate::run(args),
         Command::Demo(args) => commands::demo::run(args, show_progress),

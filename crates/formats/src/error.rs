@@ -1,7 +1,7 @@
 //! Errors of reading a file: its path, and what is wrong inside.
 
 use crate::quake::{BspError, PrtError};
-use crate::{DoomError, GeoJsonError, SceneReadError, ViewCellsError, WadError};
+use crate::{DoomError, GeoJsonError, LevelsIndexError, SceneReadError, ViewCellsError, WadError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -45,6 +45,9 @@ pub enum ReadErrorKind {
     /// It has no view cells.
     #[error(transparent)]
     ViewCells(Box<ViewCellsError>),
+    /// It is no index of levels.
+    #[error(transparent)]
+    Levels(#[from] LevelsIndexError),
     /// It is not a sound portal file of a Quake map.
     #[error(transparent)]
     Prt(#[from] PrtError),

@@ -2,7 +2,8 @@
 //! glTF and OBJ scenes in space, boxes where viewers can be, maps of the Quake family with their portals.
 //!
 //! Owns: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
-//! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]), view cells ([`view_cells`]), maps of the Quake family and their visibility
+//! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]) and simplified levels of them
+//! ([`levels`]), view cells ([`view_cells`]), maps of the Quake family and their visibility
 //! ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), and errors that name the file
 //! and the place in it ([`ReadError`]).
 //! Does not know: how a plan is cut into cells, what a sightline is, how a REJECT table is computed.
@@ -15,6 +16,7 @@ pub mod doom;
 pub mod error;
 pub mod files;
 pub mod geojson;
+pub mod levels;
 mod point;
 pub mod quake;
 pub mod reject;
@@ -26,9 +28,10 @@ pub use doom::{DoomError, DoomMap, MapLumps};
 pub use error::{ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
 pub use geojson::GeoJsonError;
+pub use levels::{LevelFile, LevelsIndex, LevelsIndexError};
 pub use quake::{Bsp, Prt};
 pub use reject::RejectTable;
-pub use scene::{SceneFile, SceneInfo, SceneReadError};
+pub use scene::{GltfSource, SceneFile, SceneInfo, SceneReadError, Simplified};
 pub use view_cells::{ViewCell, ViewCells, ViewCellsError};
 pub use wad::{LumpName, Wad, WadBuilder, WadError};
 

@@ -3,10 +3,10 @@
 
 mod common;
 
-use common::glb::{SMALL_OBJ, small_doc};
+use common::glb::{SMALL_OBJ, rich_doc, small_doc};
 use common::setting;
 use sightlines_formats::SceneFile;
-use sightlines_formats::scene::{SceneReadError, parse_glb, parse_obj, write_glb};
+use sightlines_formats::scene::{SceneReadError, parse_glb, parse_glb_with_source, parse_obj, write_glb};
 use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
 
 /// Uses everything in a scene; returns its number of triangles.
@@ -33,7 +33,33 @@ fn check(read: Result<SceneFile, SceneReadError>) -> Option<usize> {
 }
 
 fn check_glb(bytes: &[u8]) -> Option<usize> {
+    check_rewritten(bytes);
     check(parse_glb(bytes, None))
+}
+
+/// Takes every other triangle away, as far as the document can be written again; returns whether it could be.
+fn check_rewritten(bytes: &[u8]) -> bool {
+    let Ok((file, source)) = parse_glb_with_source(bytes.to_vec(), None) else { return false };
+    assert_eq!(source.n_objects(), file.scene.objects().len());
+    let every_other = |list: &[[u32; 3]]| -> Vec<[u32; 3]> {
+        list.iter().enumerate().filter(|(k, _)| k % 2 == 0).map(|(_, t)| *t).collect()
+    };
+    let changes: Vec<_> = file.scene.objects().iter().map(|o| Some(every_other(&o.triangles))).collect();
+    let kept = |k: usize| changes[k].as_deref().unwrap_or_default();
+    let corners = |k: usize, t: &[u32; 3]| t.map(|v| file.scene.objects()[k].vertices[v as usize]);
+    let expected: Vec<_> = (0..changes.len()).flat_map(|k| kept(k).iter().map(move |t| corners(k, t))).collect();
+    match source.rewrite(&changes, None) {
+        Ok(bytes) => {
+            let again = parse_glb(&bytes, None).unwrap_or_else(|e| panic!("{e}"));
+            let found: Vec<_> = again.scene.objects().iter().flat_map(|o| o.corners()).collect();
+            assert_eq!(found, expected);
+            true
+        }
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            false
+        }
+    }
 }
 
 fn check_obj(bytes: &[u8]) -> Option<usize> {
@@ -73,6 +99,12 @@ fn small_text() -> Vec<u8> {
 #[test]
 fn damaged_glbs_are_read_or_refused() {
     run(&small_doc().glb(), check_glb);
+}
+
+#[test]
+fn damaged_glbs_are_written_again_or_refused() {
+    assert!(check_rewritten(&small_doc().glb()) && check_rewritten(&rich_doc().glb()));
+    run(&rich_doc().glb(), check_glb);
 }
 
 #[test]

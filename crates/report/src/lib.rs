@@ -4,7 +4,8 @@
 //! scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`], [`svg_to_png`]); the JSON export
 //! ([`export_json`]); the numbers that sum a table up ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]);
 //! pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]);
-//! pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]).
+//! pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]);
+//! pictures of soft shadows ([`light_png`]).
 //! Does not know: how a table was made, files, how the numbers are worded.
 //! Invariants: a table is only looked at, and what is shown is what it says; the same table and options
 //! give the same bytes on every machine; pictures of tables have no text, so they need no fonts.
@@ -13,6 +14,7 @@ mod draw;
 mod export;
 mod faces;
 mod frame;
+mod light;
 mod multifocal;
 mod outline;
 mod png;
@@ -27,6 +29,7 @@ pub use draw::{
 };
 pub use export::{export_json, write_json};
 pub use faces::{MARK, NO_FACE, NOWHERE, SheetPicture, face_colour, faces_png, sheet_png, sheet_size};
+pub use light::{LIT, LightPixel, UMBRA, light_png};
 pub use multifocal::{OPEN, buffer_png, distance_png, voronoi_png};
 pub use png::{PngError, svg_to_png};
 pub use share::ViewerShare;

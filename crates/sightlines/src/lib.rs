@@ -38,6 +38,10 @@ pub use sightlines_report as report;
 pub use sightlines_scenes as scenes;
 #[cfg(feature = "sightline")]
 pub use sightlines_sightline as sightline;
+#[cfg(feature = "simplify")]
+pub use sightlines_simplify as simplify;
+#[cfg(feature = "area-light")]
+pub use sightlines_area_light as area_light;
 #[cfg(feature = "stabtree")]
 pub use sightlines_stabtree as stabtree;
 #[cfg(feature = "triangulation")]

@@ -7,7 +7,7 @@ use sightlines_cells::Point3;
 
 /// A kind of number, as `componentType` states it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Component {
+pub(super) enum Component {
     I8,
     U8,
     I16,
@@ -35,6 +35,10 @@ impl Component {
             Self::I16 | Self::U16 => 2,
             Self::U32 | Self::F32 => 4,
         }
+    }
+
+    pub(super) fn is_float(self) -> bool {
+        self == Self::F32
     }
 
     /// The value of the number in `b`, which has its size.
@@ -113,7 +117,9 @@ impl<'a> Replaced<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Elements<'a> {
     pub(super) count: usize,
-    component: Component,
+    /// Bytes of an element.
+    pub(super) size: usize,
+    pub(super) component: Component,
     normalized: bool,
     /// `None` if all elements are zero but for those replaced.
     base: Option<Strided<'a>>,
@@ -131,10 +137,10 @@ impl<'a> Elements<'a> {
         let a = document.accessors.get(accessor).ok_or(AccessorErrorKind::Missing)?;
         let wrong = || AccessorErrorKind::Type { found: a.kind.clone(), component: a.component_type };
         let component = Component::of(a.component_type).filter(|&c| fits(a, c, role)).ok_or_else(wrong)?;
+        let size = element_size(&a.kind, component).ok_or_else(wrong)?;
         if a.count == 0 {
             return Err(AccessorErrorKind::Empty);
         }
-        let size = element_size(component, role);
         let views = Views { document, buffers };
         let base = a.buffer_view.map(|view| views.strided(view, a.byte_offset, a.count, size, true)).transpose()?;
         let replaced = a.sparse.as_deref().map(|s| views.replaced(s, a.count, size)).transpose()?;
@@ -142,10 +148,11 @@ impl<'a> Elements<'a> {
         if base.is_none() && a.count > a.sparse.as_deref().map_or(0, |s| views.n_bytes_around(s)) {
             return Err(AccessorErrorKind::Unbacked { count: a.count });
         }
-        Ok(Self { count: a.count, component, normalized: a.normalized, base, replaced })
+        Ok(Self { count: a.count, size, component, normalized: a.normalized, base, replaced })
     }
 
-    fn get(&self, k: usize) -> Option<&'a [u8]> {
+    /// The bytes of element `k`, below `count`; `None` stands for zeros.
+    pub(super) fn get(&self, k: usize) -> Option<&'a [u8]> {
         let replaced = self.replaced.and_then(|r| r.get(k));
         replaced.or_else(|| self.base.map(|base| base.get(k)))
     }
@@ -160,6 +167,15 @@ impl<'a> Elements<'a> {
         })
     }
 
+    /// The numbers of element `k`, below `count`, as they are stored. Not for matrices, which may have gaps.
+    pub(super) fn numbers(&self, k: usize) -> Vec<f64> {
+        let size = self.component.size();
+        match self.get(k) {
+            Some(bytes) => bytes.chunks_exact(size).map(|b| self.component.value(b)).collect(),
+            None => vec![0.0; self.size / size],
+        }
+    }
+
     /// Index `k`, below `count`.
     pub(super) fn index(&self, k: usize) -> u32 {
         self.get(k).map_or(0, |bytes| self.component.index(bytes))
@@ -171,6 +187,7 @@ fn fits(a: &Accessor, component: Component, role: AccessorRole) -> bool {
     match role {
         AccessorRole::Positions => a.kind == "VEC3" && component != Component::U32,
         AccessorRole::Indices => a.kind == "SCALAR" && is_index(component),
+        AccessorRole::Attribute => true,
     }
 }
 
@@ -178,11 +195,29 @@ fn is_index(component: Component) -> bool {
     matches!(component, Component::U8 | Component::U16 | Component::U32)
 }
 
-fn element_size(component: Component, role: AccessorRole) -> usize {
-    match role {
-        AccessorRole::Positions => 3 * component.size(),
-        AccessorRole::Indices => component.size(),
+/// Bytes of an element; columns of matrices begin at multiples of four (section 3.6.2.4 of the specification).
+fn element_size(kind: &str, component: Component) -> Option<usize> {
+    let size = component.size();
+    let columns = |n: usize| n * (n * size).next_multiple_of(4);
+    match kind {
+        "SCALAR" => Some(size),
+        "VEC2" => Some(2 * size),
+        "VEC3" => Some(3 * size),
+        "VEC4" => Some(4 * size),
+        "MAT2" => Some(columns(2)),
+        "MAT3" => Some(columns(3)),
+        "MAT4" => Some(columns(4)),
+        _ => None,
     }
+}
+
+/// The bytes of a buffer view.
+pub(super) fn view_bytes<'a>(
+    document: &Document,
+    buffers: &'a Buffers<'_>,
+    view: usize,
+) -> Result<&'a [u8], AccessorErrorKind> {
+    Views { document, buffers }.bytes(view)
 }
 
 /// Finds bytes of buffer views.
@@ -192,6 +227,15 @@ struct Views<'a, 'b, 'd> {
 }
 
 impl<'a> Views<'a, '_, '_> {
+    fn bytes(&self, view: usize) -> Result<&'a [u8], AccessorErrorKind> {
+        let v = self.document.buffer_views.get(view).ok_or(AccessorErrorKind::NoView { view })?;
+        let buffer = v.buffer;
+        let whole = self.buffers.get(buffer).map_err(|kind| AccessorErrorKind::Buffer { buffer, kind })?;
+        let end = v.byte_offset.checked_add(v.byte_length);
+        let bytes = end.and_then(|end| whole.get(v.byte_offset..end));
+        bytes.ok_or(AccessorErrorKind::ViewRange { view, buffer, len: whole.len() })
+    }
+
     /// `count` elements of `size` bytes, from `offset` in a view; only vertices may be `spaced` by a stride.
     fn strided(
         &self,
@@ -201,13 +245,8 @@ impl<'a> Views<'a, '_, '_> {
         size: usize,
         spaced: bool,
     ) -> Result<Strided<'a>, AccessorErrorKind> {
-        let v = self.document.buffer_views.get(view).ok_or(AccessorErrorKind::NoView { view })?;
-        let buffer = v.buffer;
-        let whole = self.buffers.get(buffer).map_err(|kind| AccessorErrorKind::Buffer { buffer, kind })?;
-        let end = v.byte_offset.checked_add(v.byte_length);
-        let bytes = end.and_then(|end| whole.get(v.byte_offset..end));
-        let bytes = bytes.ok_or(AccessorErrorKind::ViewRange { view, buffer, len: whole.len() })?;
-        let stride = v.byte_stride.filter(|_| spaced).unwrap_or(size);
+        let bytes = self.bytes(view)?;
+        let stride = self.document.buffer_views[view].byte_stride.filter(|_| spaced).unwrap_or(size);
         if stride < size {
             return Err(AccessorErrorKind::Stride { view, stride, size });
         }

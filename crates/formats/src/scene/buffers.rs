@@ -75,6 +75,26 @@ impl<'a> Buffers<'a> {
         Self { buffers, binary, folder, first, loaded: buffers.iter().map(|_| OnceCell::new()).collect() }
     }
 
+    /// The same, with the contents of files and data URIs that were read before.
+    pub(super) fn with_loaded(self, loaded: &'a [Option<Vec<u8>>]) -> Self {
+        for (cell, bytes) in self.loaded.iter().zip(loaded) {
+            if let Some(bytes) = bytes {
+                // The cell is new, so it is empty.
+                let _ = cell.set(Cow::Borrowed(bytes));
+            }
+        }
+        self
+    }
+
+    /// What was read of files and data URIs, by buffer.
+    pub(super) fn into_loaded(self) -> Vec<Option<Vec<u8>>> {
+        let owned = |cell: OnceCell<Cow<'a, [u8]>>| match cell.into_inner() {
+            Some(Cow::Owned(bytes)) => Some(bytes),
+            _ => None,
+        };
+        self.loaded.into_iter().map(owned).collect()
+    }
+
     /// The bytes of a buffer, as many as it states.
     pub(super) fn get(&self, buffer: usize) -> Result<&[u8], BufferErrorKind> {
         let Some(&first) = self.first.get(buffer) else { return Err(BufferErrorKind::Missing) };
@@ -98,20 +118,21 @@ impl<'a> Buffers<'a> {
         };
         match uri.get(..5) {
             Some(scheme) if scheme.eq_ignore_ascii_case("data:") => data_uri(&uri[5..]).map(Cow::Owned),
-            _ => self.load_file(uri).map(Cow::Owned),
+            _ => load_file(self.folder, uri).map(Cow::Owned),
         }
     }
+}
 
-    fn load_file(&self, uri: &str) -> Result<Vec<u8>, BufferErrorKind> {
-        let refused = || BufferErrorKind::Uri { uri: uri.to_owned() };
-        let path = self.folder.zip(relative_path(uri)).map(|(folder, path)| folder.join(path)).ok_or_else(refused)?;
-        let failed = |source| BufferErrorKind::Io { uri: uri.to_owned(), source };
-        // A device or pipe may never end.
-        if !fs::metadata(&path).map_err(failed)?.is_file() {
-            return Err(refused());
-        }
-        fs::read(&path).map_err(failed)
+/// The file that a URI names in or below `folder`.
+pub(super) fn load_file(folder: Option<&Path>, uri: &str) -> Result<Vec<u8>, BufferErrorKind> {
+    let refused = || BufferErrorKind::Uri { uri: uri.to_owned() };
+    let path = folder.zip(relative_path(uri)).map(|(folder, path)| folder.join(path)).ok_or_else(refused)?;
+    let failed = |source| BufferErrorKind::Io { uri: uri.to_owned(), source };
+    // A device or pipe may never end.
+    if !fs::metadata(&path).map_err(failed)?.is_file() {
+        return Err(refused());
     }
+    fs::read(&path).map_err(failed)
 }
 
 /// The path that a URI names, if it leads into or below the folder where one is: a scene from elsewhere

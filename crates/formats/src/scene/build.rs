@@ -1,7 +1,7 @@
 //! From corners and triangles to the objects of a scene, the same way for all formats.
 
 use super::error::SceneReadError;
-use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo};
+use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplified};
 use crate::point::are_collinear;
 use sightlines_cells::{Point3, Scene, SceneObject};
 
@@ -35,9 +35,15 @@ pub(super) struct Builder {
     objects: Vec<SceneObject>,
     mirrors: Vec<u32>,
     n_degenerate: usize,
+    simplified: Option<Simplified>,
 }
 
 impl Builder {
+    /// No objects yet, and what the file says of the whole.
+    pub(super) fn saying(simplified: Option<Simplified>) -> Self {
+        Self { simplified, ..Self::default() }
+    }
+
     /// Adds an object, without those of its triangles that have no area.
     ///
     /// `mirrored` turns every triangle round, so that fronts stay fronts.
@@ -63,7 +69,7 @@ impl Builder {
 
     /// The scene, if there is anything to see in it.
     pub(super) fn finish(self, format: SceneFormat) -> Result<SceneFile, SceneReadError> {
-        let (n_objects, n_degenerate) = (self.objects.len(), self.n_degenerate);
+        let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let n_triangles = scene.n_triangles();
         if n_triangles == 0 {
@@ -79,6 +85,7 @@ impl Builder {
             n_objects_without_triangles: scene.objects().iter().filter(|o| o.triangles.is_empty()).count(),
             n_triangles,
             n_degenerate_triangles: n_degenerate,
+            simplified,
         };
         Ok(SceneFile { scene, info })
     }

@@ -190,6 +190,8 @@ pub enum AccessorRole {
     Positions,
     /// Indices into the corners.
     Indices,
+    /// Anything else that corners have, or that a document keeps.
+    Attribute,
 }
 
 impl fmt::Display for AccessorRole {
@@ -197,6 +199,7 @@ impl fmt::Display for AccessorRole {
         f.write_str(match self {
             Self::Positions => "positions",
             Self::Indices => "indices",
+            Self::Attribute => "attribute",
         })
     }
 }

@@ -12,6 +12,8 @@ use std::path::Path;
 
 pub(super) use super::buffers::MAGIC;
 
+/// Modes from here on make triangles; those before are points and lines.
+pub(super) const FIRST_OF_TRIANGLES: u32 = TRIANGLES;
 const TRIANGLE_STRIP: u32 = 5;
 const TRIANGLE_FAN: u32 = 6;
 
@@ -47,16 +49,47 @@ const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// Khronos Group, glTF 2.0 Specification (ISO/IEC 12113:2022), and KHR_mesh_quantization.
 /// Chosen here: extensions that code geometry in another way, skins and morph weights are refused.
 pub fn parse_glb(bytes: &[u8], folder: Option<&Path>) -> Result<SceneFile, SceneReadError> {
-    let (text, binary) = if bytes.starts_with(MAGIC) { split_glb(bytes)? } else { (bytes, None) };
-    // Some editors begin a text with a byte order mark.
-    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
-    let text = std::str::from_utf8(text).map_err(|e| SceneReadError::Utf8 { offset: e.valid_up_to() })?;
+    parse(bytes, folder, |_| {}).map(|(file, _)| file)
+}
+
+/// A node with a mesh, as it is read: what an object comes from, one for each primitive of the mesh.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Origin<'a> {
+    pub(super) node: usize,
+    pub(super) mesh: usize,
+    /// Whether triangles are turned round.
+    pub(super) mirrors: bool,
+    /// The mesh's primitives.
+    pub(super) locals: &'a [LocalMesh],
+}
+
+/// What was read of buffers outside a file, by buffer.
+pub(super) type Loaded = Vec<Option<Vec<u8>>>;
+
+/// Reads a scene, and tells `watch` of each node with a mesh, in the order of objects; returns also what was read of
+/// buffers outside the file.
+pub(super) fn parse(
+    bytes: &[u8],
+    folder: Option<&Path>,
+    watch: impl FnMut(Origin<'_>),
+) -> Result<(SceneFile, Loaded), SceneReadError> {
+    let (text, binary) = split(bytes)?;
     let document: Document = serde_json::from_str(text).map_err(|source| SceneReadError::Json { source })?;
     check_understood(&document)?;
     let placed = place_nodes(&document)?;
     check_size(&document, &placed)?;
     let buffers = Buffers::new(&document.buffers, binary, folder);
-    build(&document, &buffers, &placed)?.finish(SceneFormat::Gltf)
+    let file = build(&document, &buffers, &placed, watch)?.finish(SceneFormat::Gltf)?;
+    Ok((file, buffers.into_loaded()))
+}
+
+/// The text of a GLB or a glTF, and the binary chunk.
+pub(super) fn split(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), SceneReadError> {
+    let (text, binary) = if bytes.starts_with(MAGIC) { split_glb(bytes)? } else { (bytes, None) };
+    // Some editors begin a text with a byte order mark.
+    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
+    let text = std::str::from_utf8(text).map_err(|e| SceneReadError::Utf8 { offset: e.valid_up_to() })?;
+    Ok((text, binary))
 }
 
 fn check_understood(document: &Document) -> Result<(), SceneReadError> {
@@ -187,8 +220,13 @@ fn check_size(document: &Document, placed: &[Placed<'_>]) -> Result<(), SceneRea
     Ok(())
 }
 
-fn build(document: &Document, buffers: &Buffers<'_>, placed: &[Placed<'_>]) -> Result<Builder, SceneReadError> {
-    let mut builder = Builder::default();
+fn build(
+    document: &Document,
+    buffers: &Buffers<'_>,
+    placed: &[Placed<'_>],
+    mut watch: impl FnMut(Origin<'_>),
+) -> Result<Builder, SceneReadError> {
+    let mut builder = Builder::saying(document.asset.simplified);
     // Meshes by their index, read when the first node has them.
     let mut meshes: Vec<Option<Vec<LocalMesh>>> = Vec::new();
     meshes.resize_with(document.meshes.len(), || None);
@@ -200,6 +238,7 @@ fn build(document: &Document, buffers: &Buffers<'_>, placed: &[Placed<'_>]) -> R
                 unread.insert(at.mesh.primitives.iter().enumerate().map(read).collect::<Result<_, _>>()?)
             }
         };
+        watch(Origin { node: at.index, mesh: at.mesh_idx, mirrors: at.world.mirrors(), locals: mesh });
         for (k, local) in mesh.iter().enumerate() {
             let world = |(&vertex, &p)| {
                 check_point(at.world.apply(p)).map_err(|kind| at.fail(k, PrimitiveErrorKind::Vertex { vertex, kind }))
@@ -216,8 +255,8 @@ fn build(document: &Document, buffers: &Buffers<'_>, placed: &[Placed<'_>]) -> R
 
 /// A primitive as it is in its mesh.
 #[derive(Debug)]
-struct LocalMesh {
-    mesh: Compact,
+pub(super) struct LocalMesh {
+    pub(super) mesh: Compact,
     /// Of each corner of `mesh`.
     positions: Vec<[f64; 3]>,
 }
@@ -243,7 +282,7 @@ impl LocalMesh {
     }
 }
 
-fn read_indices(indices: &Elements<'_>, n_positions: usize) -> Result<Vec<usize>, PrimitiveErrorKind> {
+pub(super) fn read_indices(indices: &Elements<'_>, n_positions: usize) -> Result<Vec<usize>, PrimitiveErrorKind> {
     let check = |position| {
         let index = indices.index(position);
         let fail = PrimitiveErrorKind::Index { position, index, n_positions };

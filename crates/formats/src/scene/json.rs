@@ -3,6 +3,7 @@
 //! Numbers of transforms are read in double precision, as JSON has them. In single precision a building
 //! that is written 10,000 km from the origin would have its walls moved against each other.
 
+use super::Simplified;
 use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
@@ -31,6 +32,9 @@ pub(super) struct Document {
 #[derive(Debug, Deserialize)]
 pub(super) struct Asset {
     pub(super) version: String,
+    /// What its extras say of it: `{"sightlines": {"simplified": {"occluder": false}}}`.
+    #[serde(default, rename = "extras", deserialize_with = "super::role::simplified")]
+    pub(super) simplified: Option<Simplified>,
 }
 
 #[derive(Debug, Deserialize)]

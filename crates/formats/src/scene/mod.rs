@@ -7,6 +7,7 @@
 //! | numbers | single precision or quantised, placed by transforms in double precision | double precision |
 //! | mirrors | nodes with `"extras": {"sightlines": {"role": "mirror"}}`, or a name that ends in `-mirror` | objects with such a name |
 //! | left out | materials, animations, cameras | materials, normals, lines, curves |
+//! | written again | with fewer triangles, and all else as it was ([`GltfSource::rewrite`]) | as GLB, without materials |
 //!
 //! Objects keep their order, which gives them their ids, even those that are only points or lines and have
 //! no triangles. Corners that nothing uses are left out, and so are triangles without area. What bends a
@@ -21,7 +22,9 @@ mod gltf;
 mod json;
 mod obj;
 mod polygon;
+mod rewrite;
 mod role;
+mod source;
 mod transform;
 mod write;
 
@@ -31,7 +34,9 @@ pub use error::{
 };
 pub use gltf::parse_glb;
 pub use obj::parse_obj;
-pub use write::write_glb;
+pub use rewrite::RewriteError;
+pub use source::{GltfSource, ObjectSource, parse_glb_with_source};
+pub use write::{write_glb, write_simplified_glb};
 
 use crate::ReadError;
 use sightlines_cells::Scene;
@@ -74,6 +79,18 @@ pub struct SceneInfo {
     pub n_triangles: usize,
     /// Number of triangles that were left out because they have no area: their corners lie on a line, exactly.
     pub n_degenerate_triangles: usize,
+    /// What the file says if its scene has fewer triangles than the one that it was made from.
+    pub simplified: Option<Simplified>,
+}
+
+/// How a scene with fewer triangles is related to the one that it was made from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Simplified {
+    /// Whether it lies inside the original, so that what it hides was hidden before: triangles were only taken
+    /// away. A scene of which triangles were moved may hide what can be seen, and must not be used to hide.
+    ///
+    /// Files that say that they are simplified, but not how, are read as `false`.
+    pub occluder: bool,
 }
 
 /// A format of scenes in space.
@@ -114,19 +131,46 @@ pub enum LengthUnit {
 /// [`ReadError`] with the file's name and the place in it.
 pub fn read_scene(path: impl AsRef<Path>) -> Result<SceneFile, ReadError> {
     let path = path.as_ref();
-    let bytes = fs::read(path).map_err(|error| ReadError::new(path, error))?;
-    // A bare file name has the empty path as parent, which is the current folder.
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let named = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
-    let is_text = || bytes.trim_ascii_start().starts_with(b"{");
-    let parsed = if bytes.starts_with(gltf::MAGIC) {
-        parse_glb(&bytes, Some(folder))
-    } else if named("obj") {
-        parse_obj(&bytes)
-    } else if named("glb") || named("gltf") || is_text() {
-        parse_glb(&bytes, Some(folder))
-    } else {
-        Err(SceneReadError::UnknownFormat)
+    let (bytes, format) = read_bytes(path)?;
+    let parsed = match format {
+        SceneFormat::Gltf => parse_glb(&bytes, Some(folder_of(path))),
+        SceneFormat::Obj => parse_obj(&bytes),
     };
     parsed.map_err(|error| ReadError::new(path, error))
+}
+
+/// As [`read_scene`], with what it takes to write the file again with fewer triangles; an OBJ has no such source.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn read_scene_with_source(path: impl AsRef<Path>) -> Result<(SceneFile, Option<GltfSource>), ReadError> {
+    let path = path.as_ref();
+    let (bytes, format) = read_bytes(path)?;
+    let parsed = match format {
+        SceneFormat::Gltf => {
+            parse_glb_with_source(bytes, Some(folder_of(path))).map(|(file, source)| (file, Some(source)))
+        }
+        SceneFormat::Obj => parse_obj(&bytes).map(|file| (file, None)),
+    };
+    parsed.map_err(|error| ReadError::new(path, error))
+}
+
+/// The folder where buffers are searched. A bare file name has the empty path as parent, which is the current folder.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+fn read_bytes(path: &Path) -> Result<(Vec<u8>, SceneFormat), ReadError> {
+    let bytes = fs::read(path).map_err(|error| ReadError::new(path, error))?;
+    let named = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    let format = if bytes.starts_with(gltf::MAGIC) {
+        SceneFormat::Gltf
+    } else if named("obj") {
+        SceneFormat::Obj
+    } else if named("glb") || named("gltf") || bytes.trim_ascii_start().starts_with(b"{") {
+        SceneFormat::Gltf
+    } else {
+        return Err(ReadError::new(path, SceneReadError::UnknownFormat));
+    };
+    Ok((bytes, format))
 }

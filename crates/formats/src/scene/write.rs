@@ -1,7 +1,9 @@
 //! Scenes in space as GLB.
 
+use super::Simplified;
 use super::error::SceneWriteError;
 use serde::Serialize;
+use serde_json::{Value, json};
 use sightlines_cells::{Scene, SceneObject};
 
 /// Writes a scene as GLB: a node, a mesh and a primitive per object, without transforms.
@@ -12,17 +14,31 @@ use sightlines_cells::{Scene, SceneObject};
 /// # Errors
 /// [`SceneWriteError`]: a coordinate that single precision cannot hold exactly is refused, not rounded.
 pub fn write_glb(scene: &Scene) -> Result<Vec<u8>, SceneWriteError> {
+    write(scene, None)
+}
+
+/// As [`write_glb`], of a scene that has fewer triangles than the one that it was made from, and says so.
+///
+/// # Errors
+/// As [`write_glb`].
+pub fn write_simplified_glb(scene: &Scene, simplified: Simplified) -> Result<Vec<u8>, SceneWriteError> {
+    write(scene, Some(simplified))
+}
+
+fn write(scene: &Scene, simplified: Option<Simplified>) -> Result<Vec<u8>, SceneWriteError> {
     let mut parts = Parts::default();
     for (k, object) in scene.objects().iter().enumerate() {
         let is_mirror = u32::try_from(k).is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
         parts.add(k, object, is_mirror)?;
     }
-    parts.into_glb()
+    parts.into_glb(simplified)
 }
 
 #[derive(Debug, Serialize)]
 struct Asset {
     version: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    extras: Option<Value>,
 }
 
 #[derive(Debug, Serialize)]
@@ -193,10 +209,13 @@ impl<'a> Parts<'a> {
         self.accessors.len() - 1
     }
 
-    fn into_glb(self) -> Result<Vec<u8>, SceneWriteError> {
+    fn into_glb(self, simplified: Option<Simplified>) -> Result<Vec<u8>, SceneWriteError> {
         let buffer = Buffer { byte_length: self.binary.len() };
         let document = Document {
-            asset: Asset { version: "2.0" },
+            asset: Asset {
+                version: "2.0",
+                extras: simplified.map(|s| json!({"sightlines": {"simplified": {"occluder": s.occluder}}})),
+            },
             scene: 0,
             scenes: [Roots { nodes: (0..self.nodes.len()).collect() }],
             nodes: &self.nodes,
@@ -205,20 +224,27 @@ impl<'a> Parts<'a> {
             buffer_views: &self.views,
             buffers: if self.binary.is_empty() { &[] } else { std::slice::from_ref(&buffer) },
         };
-        let mut text = serde_json::to_vec(&document).expect("names and finite numbers are JSON");
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let mut glb = Vec::with_capacity(28 + text.len() + self.binary.len());
-        glb.extend_from_slice(b"glTF\x02\0\0\0\0\0\0\0");
-        for (kind, content) in [(b"JSON", &text), (b"BIN\0", &self.binary)] {
-            if !content.is_empty() {
-                // A chunk longer than its length can say makes the file too long as well.
-                glb.extend_from_slice(&(content.len() as u32).to_le_bytes());
-                glb.extend_from_slice(kind);
-                glb.extend_from_slice(content);
-            }
-        }
-        let len = u32::try_from(glb.len()).map_err(|_| SceneWriteError::TooLarge { len: glb.len() })?;
-        glb[8..12].copy_from_slice(&len.to_le_bytes());
-        Ok(glb)
+        let text = serde_json::to_vec(&document).expect("names and finite numbers are JSON");
+        container(text, &self.binary).map_err(|len| SceneWriteError::TooLarge { len })
     }
+}
+
+/// A GLB of a text and a binary chunk, which is left out if it is empty; or its length, if that is more than 4 GiB.
+pub(super) fn container(mut text: Vec<u8>, binary: &[u8]) -> Result<Vec<u8>, usize> {
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let padding = binary.len().next_multiple_of(4) - binary.len();
+    let mut glb = Vec::with_capacity(28 + text.len() + binary.len() + padding);
+    glb.extend_from_slice(b"glTF\x02\0\0\0\0\0\0\0");
+    for (kind, content, padding) in [(b"JSON", &text[..], 0), (b"BIN\0", binary, padding)] {
+        if !content.is_empty() {
+            // A chunk longer than its length can say makes the file too long as well.
+            glb.extend_from_slice(&((content.len() + padding) as u32).to_le_bytes());
+            glb.extend_from_slice(kind);
+            glb.extend_from_slice(content);
+            glb.resize(glb.len() + padding, 0);
+        }
+    }
+    let len = u32::try_from(glb.len()).map_err(|_| glb.len())?;
+    glb[8..12].copy_from_slice(&len.to_le_bytes());
+    Ok(glb)
 }

@@ -133,6 +133,81 @@ pub fn small_doc() -> Doc {
     doc
 }
 
+/// A GLB with a little of everything that a reader of triangles skips: attributes in one buffer view and in several, a pool
+/// of vertices for two primitives, morph targets, a picture, an animation, a camera, extras, a second scene.
+pub fn rich_doc() -> Doc {
+    let mut doc = Doc::new(json!([
+        {"name": "root", "children": [1, 2, 5], "translation": [0.1, 0.2, 0.3], "extras": {"bufferView": 9}},
+        {"name": "left", "mesh": 0, "scale": [1, 1, -1]},
+        {"name": "right", "mesh": 0, "translation": [5, 0, 0], "children": [3]},
+        {"name": "below", "mesh": 1, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 7, 0, 1]},
+        {"name": "elsewhere", "mesh": 2},
+        {"camera": 0},
+    ]));
+    doc.json["scenes"] = json!([{"nodes": [0], "name": "first"}, {"nodes": [4]}]);
+    doc.json["asset"] = json!({"version": "2.0", "generator": "a test", "extras": {"by": ["hand"]}});
+    doc.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}]);
+    doc.json["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_lights_punctual"]);
+    doc.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
+    // A grid of nine points, each with a normal and a coordinate of textures in the same buffer view.
+    let mut bytes = Vec::new();
+    for k in 0..9u8 {
+        let point = [f32::from(k % 3), f32::from(k / 3), f32::from(k * k) / 8.0, 0.0, 0.0, 1.0];
+        bytes.extend(point.iter().flat_map(|x| x.to_le_bytes()));
+        bytes.extend([f32::from(k) / 8.0, 0.25].iter().flat_map(|x| x.to_le_bytes()));
+    }
+    let view = doc.view(&bytes, Some(32));
+    let part = |offset: usize, kind: &str| json!({"bufferView": view, "byteOffset": offset, "componentType": 5126, "type": kind, "count": 9});
+    let mut position = part(0, "VEC3");
+    (position["min"], position["max"]) = (json!([0, 0, 0]), json!([2, 2, 8]));
+    position["name"] = json!("places");
+    let pool = [("POSITION", position), ("NORMAL", part(12, "VEC3")), ("TEXCOORD_0", part(24, "VEC2"))];
+    let pool: Vec<(&str, usize)> = pool.into_iter().map(|(name, a)| (name, doc.push("accessors", a))).collect();
+    // Colours of three bytes, each at a multiple of four; a word of one byte for each corner of our own making.
+    let colours: Vec<u8> = (0..9u8).flat_map(|k| [k, 2 * k, 255 - k, 77]).collect();
+    let colours = doc.view(&colours, Some(4));
+    let colours = doc.push(
+        "accessors",
+        json!({"bufferView": colours, "componentType": 5121, "normalized": true, "type": "VEC3", "count": 9}),
+    );
+    let mut attributes = json!({"COLOR_0": colours});
+    for (name, accessor) in &pool {
+        attributes[name] = json!(accessor);
+    }
+    let moved = doc.positions(&[[0.0, 0.0, 0.5]; 9]);
+    let first = doc.indices(&[0, 1, 3, 1, 4, 3, 1, 2, 4], 1);
+    let second = doc.indices(&[3, 4, 6, 7, 5, 8], 2);
+    doc.push("meshes", json!({"name": "grid", "extras": [1, 2], "weights": [0], "primitives": [
+        {"attributes": attributes, "indices": first, "material": 1, "targets": [{"POSITION": moved}], "extras": "x"},
+        {"attributes": attributes, "indices": second, "material": 0, "mode": 5, "targets": [{"POSITION": moved}]},
+    ]}));
+    let alone = doc.positions(&[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]]);
+    let ends = doc.indices(&[0, 1, 2, 0, 2, 3], 4);
+    let line = doc.indices(&[0, 3], 1);
+    doc.mesh(json!([{"attributes": {"POSITION": alone}, "indices": ends}, {"attributes": {"POSITION": alone}, "indices": line, "mode": 1}]));
+    doc.triangle();
+    let picture = doc.view(b"\x89PNG and so on", None);
+    doc.json["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}, {"uri": "nowhere.png"}]);
+    doc.json["textures"] = json!([{"source": 0}, {"source": 1}]);
+    doc.json["materials"] = json!([
+        {"name": "plain", "extensions": {"KHR_materials_unlit": {}}},
+        {"name": "painted", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
+    ]);
+    let times = doc.accessor(&[0, 0, 0, 0, 0, 0, 128, 63], 5126, "SCALAR", 2);
+    (doc.json["accessors"][times]["min"], doc.json["accessors"][times]["max"]) = (json!([0]), json!([1]));
+    let weights = doc.accessor(&[0; 8], 5126, "SCALAR", 2);
+    let turns: Vec<u8> = [[0f32; 3], [1.0; 3]].iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let moves = doc.accessor(&turns, 5126, "VEC3", 2);
+    doc.json["animations"] = json!([{
+        "samplers": [{"input": times, "output": moves}, {"input": times, "output": weights}],
+        "channels": [
+            {"sampler": 0, "target": {"node": 0, "path": "translation"}},
+            {"sampler": 1, "target": {"node": 1, "path": "weights"}},
+        ],
+    }]);
+    doc
+}
+
 /// An OBJ with a little of everything.
 pub const SMALL_OBJ: &str = "# a room
 mtllib x.mtl

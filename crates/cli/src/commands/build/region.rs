@@ -5,25 +5,17 @@ use super::facts::Facts;
 use super::space::{Stated, informed};
 use super::view_cells::ViewCellsArgs;
 use crate::error::CliError;
-use crate::measure::MeasureArg;
+use crate::hiding::{BufferArgs, Hiding, Maker};
 use crate::output::{bytes, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::region::grid;
 use sightlines::bake::{BakedRegions, CellsFrom, RegionBakeOptions, bake_regions};
 use sightlines::formats::SceneFile;
-use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
-use sightlines::geometry::Point3;
-use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
-use sightlines::multifocal::{
-    BackendError, Buffer, Chosen, FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, Split, Together,
-};
-use sightlines::multifocal_cpu::{Fast, Reference};
-use sightlines::multifocal_gpu::{Gpu, GpuBackend, Way, WithFallback};
+use sightlines::multifocal::Split;
 use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
 use std::path::Path;
-use std::sync::Arc;
 
 /// What is asked who sees whom, for scenes in space.
 #[derive(Debug, Clone, clap::Args)]
@@ -38,34 +30,12 @@ pub(crate) struct RegionArgs {
     /// Scenes in space only: a grid of boxes as cells, in the view region or else the scene's box
     #[arg(long, value_name = "NX,NY,NZ", value_parser = counts, conflicts_with = "cells")]
     grid: Option<[u32; 3]>,
-    /// multifocal: what buffers compare
-    #[arg(long, value_name = "WHAT", default_value = "height")]
-    measure: MeasureArg,
-    /// multifocal: planes on each side of a cell; 0 for none
-    #[arg(long, value_name = "N", default_value_t = Layout::default().n_levels, value_parser = clap::value_parser!(u32).range(0..=256))]
-    planes: u32,
-    /// multifocal: texels along the longer side of a plane
-    #[arg(long, value_name = "N", default_value_t = Layout::default().texels, value_parser = clap::value_parser!(u32).range(1..=8192))]
-    texels: u32,
-    /// multifocal: the most surfaces that are drawn on each side of a cell; those that seem to hide most
-    #[arg(long, value_name = "N", default_value_t = 500)]
-    occluders: u32,
-    /// multifocal: do not carry over to a plane what is known on the one before
-    #[arg(long)]
-    no_carry: bool,
-    /// multifocal: how many sides of triangles are looked at to find a surface between a cell and an object; 0 for none
-    #[arg(long, value_name = "N", default_value_t = SheetMethod::DEFAULT_LIMIT as u32)]
-    sheets: u32,
+    #[command(flatten)]
+    buffers: BufferArgs,
     /// multifocal: how often a cell is cut in two where much is in doubt
     #[arg(long, value_name = "N", default_value_t = Split::default().depth, value_parser = clap::value_parser!(u32).range(0..=12))]
     split: u32,
-    /// multifocal: who draws the buffers
-    #[arg(long, value_name = "WHO", default_value = "cpu")]
-    backend: Backend,
 }
-
-/// The most bytes of the buffers around one cell.
-const MOST_BYTES: u64 = 1 << 31;
 
 /// Who says what is hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -77,17 +47,6 @@ enum Method {
     Shafts,
     /// Voxels inside of closed surfaces, extended to blockers
     Voxels,
-}
-
-/// Who draws, as an argument.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Backend {
-    /// In whole numbers, in threads
-    Cpu,
-    /// In exact arithmetic, very slow
-    Reference,
-    /// As cpu, bit for bit, on a graphics card; the CPU takes over where there is none
-    Gpu,
 }
 
 fn counts(text: &str) -> Result<[u32; 3], String> {
@@ -113,22 +72,6 @@ impl RegionArgs {
     pub(super) fn of_space(&self) -> [(&'static str, bool); 3] {
         [("--method", self.method.is_some()), ("--cells", self.cells.is_given()), ("--grid", self.grid.is_some())]
     }
-
-    /// Refuses buffers that would not fit into the memory of most machines.
-    fn check_memory(&self, path: &Path) -> Result<(), CliError> {
-        let bytes = 6 * u64::from(self.planes) * u64::from(self.texels).pow(2) * size_of::<u32>() as u64;
-        if bytes <= MOST_BYTES {
-            return Ok(());
-        }
-        let (planes, texels) = (self.planes, self.texels);
-        Err(CliError::Buffers { path: path.to_owned(), planes, texels, bytes, most: MOST_BYTES })
-    }
-
-    fn layout(&self) -> Layout {
-        let measure = self.measure.measure();
-        let reproject = !self.no_carry && measure.is_height();
-        Layout { n_levels: self.planes, texels: self.texels, measure, reproject, ..Layout::default() }
-    }
 }
 
 /// Builds the table of a scene that came from `path`.
@@ -140,7 +83,7 @@ pub(super) fn bake(
     show_progress: bool,
 ) -> Result<BakedRegions, CliError> {
     args.check_for_space(path)?;
-    region.check_memory(path)?;
+    region.buffers.check_memory(path)?;
     let failed = |source| CliError::BakeRegion { path: path.to_owned(), source };
     let cut = args.cut();
     let cells = match (region.cells.read()?, region.grid) {
@@ -153,15 +96,13 @@ pub(super) fn bake(
         (None, None) => CellsFrom::KdTree,
     };
     let method = region.method.unwrap_or(Method::Sightlines);
-    let maker = match method {
+    let hiding = match method {
         Method::Sightlines => None,
-        Method::Multifocal | Method::Both => Some(Maker::Buffers(Buffers::new(file, region))),
-        Method::Shafts => Some(Maker::Shafts(ViewShafts::new(patches(&triangles(file), &PatchOptions::default())))),
-        Method::Voxels => {
-            let voxels = Voxels::new(&file.scene, VoxelOptions::default());
-            Some(Maker::Voxels(Box::new(voxels.expect("the number of voxels is within limits"))))
-        }
+        Method::Multifocal | Method::Both => Some(Hiding::Buffers),
+        Method::Shafts => Some(Hiding::Shafts),
+        Method::Voxels => Some(Hiding::Voxels),
     };
+    let maker = hiding.map(|hiding| Maker::new(hiding, &file.scene, &region.buffers));
     let make = || maker.as_ref().expect("only called if there is one").make();
     let bar = Bar::new("who sees whom", show_progress);
     let progress = |done, all| bar.set(done, all);
@@ -180,112 +121,6 @@ pub(super) fn bake(
     let baked = baked.map_err(failed)?;
     let table = informed(baked.table, &file.info).map_err(|error| failed(error.into()))?;
     Ok(BakedRegions { table, ..baked })
-}
-
-/// The triangles of all objects.
-fn triangles(file: &SceneFile) -> Vec<[Point3; 3]> {
-    file.scene.objects().iter().flat_map(|o| o.corners()).collect()
-}
-
-/// What the methods of all threads are made from.
-enum Maker {
-    Buffers(Buffers),
-    Shafts(ViewShafts),
-    Voxels(Box<Voxels>),
-}
-
-impl Maker {
-    fn make(&self) -> Box<dyn FromRegion + Send> {
-        match self {
-            Self::Buffers(buffers) => buffers.make(),
-            Self::Shafts(shafts) => Box::new(shafts.clone()),
-            Self::Voxels(voxels) => voxels.clone(),
-        }
-    }
-}
-
-/// What multifocal methods share.
-struct Buffers {
-    chosen: Arc<Chosen>,
-    sheets: Option<(Arc<Sheets>, usize)>,
-    scene: sightlines::geometry::Aabb<3>,
-    layout: Layout,
-    backend: Backend,
-    gpu: Option<Gpu>,
-}
-
-impl Buffers {
-    fn new(file: &SceneFile, region: &RegionArgs) -> Self {
-        let triangles = triangles(file);
-        let layout = region.layout();
-        let patches = if region.planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
-        let sheets = (region.sheets > 0).then(|| (Arc::new(Sheets::new(&triangles)), region.sheets as usize));
-        let gpu = if region.backend == Backend::Gpu { open() } else { None };
-        Self {
-            chosen: Arc::new(Chosen::new(patches, region.occluders as usize)),
-            sheets,
-            scene: file.scene.bounds(),
-            layout,
-            backend: region.backend,
-            gpu,
-        }
-    }
-
-    fn make(&self) -> Box<dyn FromRegion + Send> {
-        let mut methods: Vec<Box<dyn FromRegion + Send>> = Vec::new();
-        if self.layout.n_levels > 0 {
-            methods.push(match (self.backend, &self.gpu) {
-                (Backend::Reference, _) => self.buffers(Reference),
-                (Backend::Gpu, Some(gpu)) => {
-                    let gpu = GpuBackend::new(gpu.clone(), Way::Compute);
-                    self.buffers(Telling(WithFallback::new(gpu, WithFallback::new(Fast::new(), Reference))))
-                }
-                _ => self.buffers(WithFallback::new(Fast::new(), Reference)),
-            });
-        }
-        if let Some((sheets, limit)) = &self.sheets {
-            methods.push(Box::new(SheetMethod::shared(Arc::clone(sheets)).with_limit(*limit)));
-        }
-        Box::new(Together::new(methods))
-    }
-
-    fn buffers(&self, backend: impl MultifocalBackend + 'static) -> Box<dyn FromRegion + Send> {
-        Box::new(Multifocal::new(backend, Arc::clone(&self.chosen), self.scene, self.layout))
-    }
-}
-
-/// The graphics card, if there is one.
-fn open() -> Option<Gpu> {
-    match Gpu::open() {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            tracing::warn!("{error}; the CPU takes over");
-            None
-        }
-    }
-}
-
-/// A backend with one that takes over, which says so.
-#[derive(Debug)]
-struct Telling<A, B>(WithFallback<A, B>);
-
-impl<A: MultifocalBackend, B: MultifocalBackend> MultifocalBackend for Telling<A, B> {
-    fn name(&self) -> &'static str {
-        self.0.name()
-    }
-
-    fn supports(&self, measure: Measure) -> bool {
-        self.0.supports(measure)
-    }
-
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
-        let before = self.0.took_over().cloned();
-        let done = self.0.render(job, out);
-        if let Some(error) = self.0.took_over().filter(|error| before.as_ref() != Some(error)) {
-            tracing::warn!("{error}; the CPU takes over");
-        }
-        done
-    }
 }
 
 /// What was built.

@@ -11,7 +11,6 @@ use crate::measure::MeasureArg;
 use crate::output;
 use crate::region::Region;
 use outcome::{FieldInfo, Outcome};
-use sightlines::formats::scene::read_scene;
 use sightlines::geometry::Point3;
 use sightlines::multifocal::mesh::{PatchOptions, patches};
 use sightlines::multifocal::{Buffer, Job, Occluder, Plane, Volume};
@@ -73,7 +72,7 @@ pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, CliError> {
     if input::kind_of(&args.scene)? != Some(Kind::Scene) {
         return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
     }
-    let scene = read_scene(&args.scene)?.scene;
+    let scene = input::occluders(&args.scene)?.scene;
     let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|object| object.corners()).collect();
     let volume = Volume::new(args.volume.0)?;
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;

@@ -74,6 +74,9 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, CliE
         return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
     }
     let file = read_scene(&args.scene)?;
+    if args.cull.contains(&Cull::Pvs) {
+        input::check_occluder(&args.scene, &file)?;
+    }
     let faces =
         Faces::of_scene(&file.scene).map_err(|source| RenderError::Faces { path: args.scene.clone(), source })?;
     let up = args.eye.up(Up::axis(file.info.up));

@@ -1,10 +1,12 @@
 //! `walk`: what each method leaves to draw along a walk, and what it costs.
 
+mod levels;
 mod measure;
 mod nesting;
 mod outcome;
 mod path;
 
+pub(crate) use levels::UnlikeLevels;
 pub(crate) use nesting::Found;
 pub(crate) use path::PathError;
 
@@ -54,6 +56,9 @@ pub(crate) struct WalkArgs {
     /// Frames a second in the pass that does not wait for what is prepared ahead; as many as possible if not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     fps: Option<u32>,
+    /// A folder that `sightlines levels` wrote for this table: also count the triangles that are drawn with its levels
+    #[arg(long, value_name = "FOLDER")]
+    levels: Option<PathBuf>,
     /// A chart to write
     #[arg(short, long, value_name = "CHART.svg")]
     output: Option<PathBuf>,
@@ -102,6 +107,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
         lens.view(*stand).map_err(|error| refused(args.path.as_deref().unwrap_or(file), k, error))
     };
     let views: Vec<View> = stands.iter().enumerate().map(view).collect::<Result<_, _>>()?;
+    let drawn = args.levels.as_ref().map(|folder| levels::drawn(folder, cells, file, &views)).transpose()?;
     let methods = match args.method {
         Methods::One(method) if method != Method::CellToCell => vec![Method::CellToCell, method],
         methods => methods.list(),
@@ -113,7 +119,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
     let walk = Walk { cells, file, views: &views, polygons: &polygons, options, fps: args.fps };
     let measured = walk.measure(&methods, &|done, all| bar.set(done, all))?;
     drop(bar);
-    let outcome = Outcome::new(args, lens.fov, step, cells, &polygons, &measured);
+    let outcome = Outcome::new(args, lens.fov, step, cells, &polygons, &measured).with_levels(drawn);
     if let Some(out) = &args.output {
         output::save(out, walk_svg(&outcome.title(), &outcome.bars()).as_bytes())?;
     }

@@ -1,6 +1,7 @@
 //! What was measured, as text, CSV and bars of a chart.
 
 use super::WalkArgs;
+use super::levels::Drawn;
 use super::measure::{Measured, MethodSums};
 use crate::output::{bytes, count};
 use crate::tables::Cells;
@@ -37,6 +38,8 @@ pub(super) struct Outcome {
     /// Of a packed table: bytes that stay in memory, and bytes of its blocks that are kept at the end.
     packed_bytes: Option<[usize; 2]>,
     methods: Vec<MethodLine>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    levels: Option<Drawn>,
 }
 
 /// What a method leaves to draw, and costs, on average.
@@ -128,7 +131,13 @@ impl Outcome {
             n_dropped: *n_dropped,
             packed_bytes: cells.bytes_in_memory().map(|(resident, blocks)| [resident, blocks]),
             methods: methods.iter().map(line).collect(),
+            levels: None,
         }
+    }
+
+    /// The same, with what is drawn with levels.
+    pub(super) fn with_levels(self, levels: Option<Drawn>) -> Self {
+        Self { levels, ..self }
     }
 
     /// The title of the chart.
@@ -214,6 +223,9 @@ impl fmt::Display for Outcome {
         )?;
         if let Some([resident, blocks]) = self.packed_bytes.map(|list| list.map(|n| bytes(n as u64))) {
             writeln!(f, "packed table   {resident} in memory, {blocks} of blocks kept")?;
+        }
+        if let Some(levels) = &self.levels {
+            write!(f, "{levels}")?;
         }
         writeln!(f, "left to draw   on average; of it, % of the first line; of all, %")?;
         writeln!(

@@ -1,0 +1,103 @@
+//! `levels`: simplified variants of a scene for the cells of its table.
+
+mod outcome;
+
+use crate::Answer;
+use crate::commands::simplify::{HowArgs, ReadScene, read, written};
+use crate::error::CliError;
+use crate::folder::NewFolder;
+use crate::input;
+use crate::output;
+use crate::progress::Bar;
+use outcome::Outcome;
+use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
+use sightlines::multifocal::FromRegion;
+use sightlines::simplify::{HiddenBy, LevelOptions, MakeMethod, SimplifyError, SimplifyOptions, levels};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Rays that weigh faces for each level: they only choose what is collapsed first, and there are many levels.
+const N_RAYS: u64 = 1 << 15;
+
+/// Arguments of `levels`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "The folder gets level_0.glb, level_1.glb and so on, and index.json, which says for each cell of the \
+                  table which level is drawn for eyes in it. Each level is the scene for those eyes, but for the budget: \
+                  what the table or the method hides from them is not in it. Cells that see much the same share a level. \
+                  `sightlines walk` with --levels counts what is drawn then."
+)]
+pub(crate) struct LevelsArgs {
+    /// The scene: GLB, glTF, or OBJ, of which only triangles and names are kept
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// The table of the scene, with boxes as cells
+    #[arg(long, value_name = "FILE.pvs")]
+    table: PathBuf,
+    #[command(flatten)]
+    how: HowArgs,
+    /// Bytes that the triangles of all levels may take together, textures not counted
+    #[arg(long, value_name = "BYTES", default_value_t = LevelOptions::default().memory)]
+    memory: u64,
+    /// The folder to write: a new one, or one that only holds levels, which are replaced
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Whether a file in a folder of levels is one that this command writes.
+fn is_ours(name: &str) -> bool {
+    let number = name.strip_prefix("level_").and_then(|rest| rest.strip_suffix(".glb"));
+    name == INDEX_NAME || number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
+}
+
+pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, CliError> {
+    let ReadScene { file, source } = read(&args.scene)?;
+    let scene = &file.scene;
+    let table = input::table(&args.table)?;
+    // What cannot be written is told before the work is done.
+    let folder = NewFolder::new(&args.output, is_ours)?;
+    let (method, maker) = args.how.maker(&args.scene, scene)?;
+    let make = || -> Box<dyn FromRegion + Send> { maker.as_ref().expect("only called if there is one").make() };
+    let make: MakeMethod<'_> = &make;
+    let by = HiddenBy { method: maker.is_some().then_some(make), table: None };
+    let standard = LevelOptions::default();
+    let simplify = args.how.options(standard.simplify.n_parts);
+    let options =
+        LevelOptions { simplify: SimplifyOptions { n_rays: N_RAYS, ..simplify }, memory: args.memory, ..standard };
+    let start = Instant::now();
+    let bar = Bar::new("levels", show_progress);
+    let made = levels(scene, &table, &by, &options).map_err(|source| {
+        let of_table = matches!(source, SimplifyError::OtherScene(_) | SimplifyError::Views(_));
+        let path = if of_table { &args.table } else { &args.scene };
+        CliError::Simplify { path: path.clone(), source }
+    })?;
+    drop(bar);
+    let mut index = LevelsIndex {
+        n_triangles: scene.n_triangles() as u64,
+        budget: args.how.budget(),
+        levels: Vec::new(),
+        cells: made.of_cell.iter().map(|&level| Some(level)).collect(),
+    };
+    let mut n_bytes = 0;
+    for (k, level) in made.levels.iter().enumerate() {
+        let bytes = written(&args.scene, scene, source.as_ref(), &level.simplified)?;
+        let file = format!("level_{k}.glb");
+        folder.save(&file, &bytes)?;
+        n_bytes += bytes.len() as u64;
+        index.levels.push(LevelFile {
+            file,
+            n_triangles: level.simplified.counts.left as u64,
+            n_bytes: level.n_bytes,
+            bound: level.simplified.bound,
+            occluder: level.simplified.is_part_of_the_original(),
+        });
+    }
+    folder.save(INDEX_NAME, write_levels_index(&index).as_bytes())?;
+    let outcome = Outcome::new(args, method, &index, n_bytes, start.elapsed());
+    folder.finish()?;
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}

@@ -1,0 +1,130 @@
+//! `light`: the soft shadows of an area light, with rays only where nothing is proven.
+
+mod method;
+mod outcome;
+
+use crate::Answer;
+use crate::commands::render::RenderError;
+use crate::commands::render::eye::EyeArgs;
+use crate::error::CliError;
+use crate::input::{self, Kind as FileKind};
+use crate::output;
+use crate::region::Region;
+use crate::view::Up;
+use method::{Kind, made};
+use outcome::Outcome;
+use sightlines::area_light::{Options, Shade, Shadows, Sides, shown};
+use sightlines::multifocal::{FromRegion, Volume};
+use sightlines::report::{LightPixel, light_png};
+use sightlines::visible_surface::{Chosen, DepthFormat, Faces, Shot, VisibleSurface, ZBuffer};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// The most halvings: a face becomes up to two to the power of it.
+const MOST_DEPTH: u32 = 24;
+/// The most rays for a pixel.
+const MOST_RAYS: u32 = 65_536;
+
+/// Arguments of `light`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "What is seen is cut into pieces until each is proven to be wholly in umbra (blue) or wholly lit \
+                  (pale), or is small. Pixels in doubt are reds, the paler the more of the light arrives, by rays to points of \
+                  the light. Surfaces are lit on the side that the eye sees, by what of the light is in front of them; both \
+                  sides of every surface cast shadows. With --grey the picture is the share of the light alone."
+)]
+pub(crate) struct LightArgs {
+    /// The scene: GLB, glTF or OBJ
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// The light: a box, its lower corner, then its upper one; flat for a rectangle, one point for a lamp without size
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    light: Region,
+    #[command(flatten)]
+    eye: EyeArgs,
+    /// How umbrae are found; several, separated by commas, are asked one after the other
+    #[arg(long, value_name = "NAME[,NAME...]", value_enum, value_delimiter = ',', default_value = "sheets")]
+    method: Vec<Kind>,
+    /// How often a face is halved at most
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_DEPTH)))]
+    depth: u32,
+    /// Pieces whose longest edge is no longer are not halved, in scene units
+    #[arg(long, value_name = "LENGTH", default_value_t = 0.0)]
+    min_size: f64,
+    /// Rays for each pixel in doubt
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_RAYS)))]
+    rays: u32,
+    /// Draw the share of the light in grey, not what is proven
+    #[arg(long)]
+    grey: bool,
+    /// The picture to write
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &LightArgs) -> Result<Answer, CliError> {
+    if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        return Err(CliError::NotPng(args.output.clone()));
+    }
+    output::refuse_same(&args.scene, &args.output)?;
+    if input::kind_of(&args.scene)? != Some(FileKind::Scene) {
+        return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
+    }
+    // All of it casts shadows.
+    let file = input::occluders(&args.scene)?;
+    let faces =
+        Faces::of_scene(&file.scene).map_err(|source| RenderError::Faces { path: args.scene.clone(), source })?;
+    let light = Volume::new(args.light.0)?;
+    let camera = args.eye.camera(args.eye.up(Up::axis(file.info.up)))?;
+    let shot = Shot { faces: &faces, camera: &camera, chosen: &Chosen::all(&faces) };
+    let image = ZBuffer::new(DepthFormat::Exact).picture(&shot).0;
+    let chosen = shown(&faces, &image);
+
+    let start = Instant::now();
+    let mut method = made(&args.method, faces.corners(), file.scene.bounds());
+    let options = Options { sides: Sides::Towards(camera.eye()), max_depth: args.depth, min_size: args.min_size };
+    let shadows = Shadows::new(&faces);
+    let lighting = shadows
+        .classify(&chosen, &light, &mut method, &options)
+        .map_err(|source| CliError::Backend { path: args.scene.clone(), source })?;
+    let decided = start.elapsed();
+    let start = Instant::now();
+    let picture = shadows.picture(&lighting, &camera, &image, args.rays);
+    let drawn = start.elapsed();
+
+    let pixels: Vec<LightPixel> = picture.shades.iter().map(|&shade| pixel(shade)).collect();
+    let png = light_png(picture.size, &pixels, args.grey);
+    let png = png.map_err(|source| CliError::Png { path: args.output.clone(), source })?;
+    let (counts, rays) = Outcome::counts(&picture);
+    let outcome = Outcome {
+        scene: args.scene.display().to_string(),
+        n_faces: faces.len(),
+        n_shown: chosen.len(),
+        light: args.light.0,
+        method: method.name(),
+        n_pieces: lighting.pieces().len(),
+        areas: *lighting.areas(),
+        size: picture.size,
+        pixels: counts,
+        rays,
+        decided,
+        drawn,
+        file: args.output.display().to_string(),
+    };
+    output::save(&args.output, &png)?;
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// A pixel as the picture has it.
+fn pixel(shade: Shade) -> LightPixel {
+    match shade {
+        Shade::Nothing => LightPixel::Nothing,
+        Shade::Umbra => LightPixel::Umbra,
+        Shade::Lit => LightPixel::Lit,
+        Shade::Traced(share) => LightPixel::Doubt(share),
+    }
+}

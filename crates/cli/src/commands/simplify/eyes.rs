@@ -1,0 +1,45 @@
+//! Where eyes are: boxes, or cells of a table.
+
+use crate::error::CliError;
+use crate::input;
+use crate::region::Region;
+use sightlines::multifocal::Volume;
+use sightlines::pvs::{CellId, Table};
+use sightlines::simplify::Views;
+use std::path::PathBuf;
+
+/// Where eyes are, as arguments.
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct EyesArgs {
+    /// Where eyes may be: a box, its lower corner, then its upper one; may be given several times
+    #[arg(
+        long,
+        value_name = "X0,Y0,Z0,X1,Y1,Z1",
+        allow_hyphen_values = true,
+        required_unless_present = "table",
+        conflicts_with = "table"
+    )]
+    volume: Vec<Region>,
+    /// A table of the scene: eyes are in its cells of --cell, and what it hides from them is hidden
+    #[arg(long, value_name = "FILE.pvs", requires = "cell")]
+    pub(super) table: Option<PathBuf>,
+    /// The cells of the table, by number, separated by commas
+    #[arg(long, value_name = "N[,N...]", value_delimiter = ',', requires = "table")]
+    cell: Vec<u32>,
+}
+
+impl EyesArgs {
+    /// The table, if there is one, and the places.
+    pub(super) fn read(&self) -> Result<(Option<Table>, Views), CliError> {
+        let Some(path) = &self.table else {
+            let volumes = self.volume.iter().map(|region| Volume::new(region.0)).collect::<Result<Vec<_>, _>>()?;
+            let views = Views::new(volumes).expect("the arguments have a volume");
+            return Ok((None, views));
+        };
+        let table = input::table(path)?;
+        let cells: Vec<CellId> = self.cell.iter().copied().map(CellId).collect();
+        let failed = |source| CliError::Views { path: path.clone(), source };
+        let views = Views::of_cells(&table, &cells).map_err(failed)?;
+        Ok((Some(table), views))
+    }
+}

@@ -1,0 +1,186 @@
+//! What was simplified, in numbers.
+
+use super::SimplifyArgs;
+use crate::output::{bytes, count, percent, seconds};
+use serde::Serialize;
+use sightlines::cells::Scene;
+use sightlines::geometry::Point3;
+use sightlines::simplify::estimate::interval;
+use sightlines::simplify::{Estimate, Measured, Simplified, SimplifyError, SimplifyOptions, Views};
+use sightlines::visible_surface::Faces;
+use std::fmt;
+use std::time::Duration;
+
+/// The result.
+#[derive(Debug, Serialize)]
+pub(super) struct Outcome {
+    scene: String,
+    out: String,
+    n_bytes: usize,
+    /// Boxes where eyes may be.
+    n_volumes: usize,
+    method: &'static str,
+    table: Option<String>,
+    budget: f64,
+    /// Triangles before, and what became of them.
+    n_before: usize,
+    n_without_area: usize,
+    n_hidden: usize,
+    n_deleted: usize,
+    n_collapsed: usize,
+    n_new: usize,
+    n_left: usize,
+    /// The share of the sphere of directions that changes at most, for every eye.
+    bound: f64,
+    /// How far surfaces were moved at most, in scene units.
+    deviation: f64,
+    /// Whether the result may be used to hide.
+    occluder: bool,
+    report: Option<Report>,
+    seconds: f64,
+}
+
+/// What rays say.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    n_rays: u64,
+    /// Shares of rays that meet another face first, of all eyes and of the worst one.
+    changed: f64,
+    worst: f64,
+    worst_eye: Point3,
+    /// Shares that meet another object, or a place that differs in depth by more than a hundredth.
+    other_object: f64,
+    moved: f64,
+    /// Share of rays that what is gone intercepted before, by other rays, and an interval in which it lies with a
+    /// probability of 99 %.
+    estimate: f64,
+    estimate_interval: [f64; 2],
+    n_estimate_rays: u64,
+}
+
+impl Report {
+    pub(super) fn new(
+        scene: &Scene,
+        views: &Views,
+        simplified: &Simplified,
+        measured: &Measured,
+        options: &SimplifyOptions,
+    ) -> Result<Self, SimplifyError> {
+        let faces = Faces::of_scene(scene)?;
+        let estimate = Estimate::new(&faces, views, options.n_rays);
+        let (mut first, mut hits) = (0, 0);
+        for (o, origin) in scene.objects().iter().zip(&simplified.origin) {
+            let mut kept = vec![false; o.triangles.len()];
+            origin.iter().flatten().for_each(|&k| kept[k as usize] = true);
+            let gone = (first..).zip(&kept).filter(|(_, kept)| !**kept);
+            hits += gone.map(|(face, _)| estimate.hits(face)).sum::<u64>();
+            first += o.triangles.len() as u32;
+        }
+        let found = interval(hits, estimate.n_rays(), 0.99);
+        Ok(Self {
+            n_rays: measured.n_rays,
+            changed: measured.changed,
+            worst: measured.worst,
+            worst_eye: measured.worst_eye,
+            other_object: measured.other_object,
+            moved: measured.moved,
+            estimate: found.share,
+            estimate_interval: found.ends,
+            n_estimate_rays: estimate.n_rays(),
+        })
+    }
+}
+
+impl Outcome {
+    pub(super) fn new(
+        args: &SimplifyArgs,
+        method: &'static str,
+        simplified: &Simplified,
+        n_volumes: usize,
+        n_bytes: usize,
+        report: Option<Report>,
+        time: Duration,
+    ) -> Self {
+        let counts = &simplified.counts;
+        Self {
+            scene: args.scene.display().to_string(),
+            out: args.output.display().to_string(),
+            n_bytes,
+            n_volumes,
+            method,
+            table: args.eyes.table.as_ref().map(|table| table.display().to_string()),
+            budget: args.how.budget(),
+            n_before: counts.before,
+            n_without_area: counts.without_area,
+            n_hidden: counts.hidden,
+            n_deleted: counts.deleted,
+            n_collapsed: counts.collapsed,
+            n_new: counts.new,
+            n_left: counts.left,
+            bound: simplified.bound,
+            deviation: simplified.deviation,
+            occluder: simplified.is_part_of_the_original(),
+            report,
+            seconds: time.as_secs_f64(),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
+        let table = self.table.as_ref().map_or(String::new(), |table| format!(", and the table {table}"));
+        let method = if self.method == "none" { "no method" } else { self.method };
+        writeln!(f, "eyes           in {}; hidden by {method}{table}", boxes(self.n_volumes))?;
+        let share = |n: usize| percent(if self.n_before > 0 { n as f64 / self.n_before as f64 } else { 0.0 });
+        writeln!(f, "before         {}", count(self.n_before as u64, "triangle"))?;
+        if self.n_without_area > 0 {
+            writeln!(f, "without area   {}", self.n_without_area)?;
+        }
+        writeln!(f, "hidden         {}, {}, which is proven", self.n_hidden, share(self.n_hidden))?;
+        writeln!(f, "left out       {}, {}, within the budget", self.n_deleted, share(self.n_deleted))?;
+        let moved = if self.n_new > 0 { format!(", by at most {} units", self.deviation) } else { String::new() };
+        writeln!(f, "collapsed      {} to {}{moved}", self.n_collapsed, self.n_new)?;
+        writeln!(f, "left           {}, {}", self.n_left, share(self.n_left))?;
+        writeln!(
+            f,
+            "promised       {} of the view changes at most, for every eye; {} were allowed",
+            parts(self.bound),
+            parts(self.budget)
+        )?;
+        if let Some(report) = &self.report {
+            let [x, y, z] = report.worst_eye;
+            writeln!(f, "measured       {} of {} rays meet another face", parts(report.changed), report.n_rays)?;
+            writeln!(f, "               {} at the worst eye, {x},{y},{z}", parts(report.worst))?;
+            writeln!(
+                f,
+                "               {} another object, {} another object or depth",
+                parts(report.other_object),
+                parts(report.moved)
+            )?;
+            let [low, high] = report.estimate_interval.map(parts);
+            writeln!(
+                f,
+                "estimate       {} was seen of what is gone, from {low} to {high} (99 %), by {} rays",
+                parts(report.estimate),
+                report.n_estimate_rays
+            )?;
+        }
+        let may = if self.occluder {
+            "lies inside of the original, and may hide"
+        } else {
+            "has moved triangles, and must not be used to hide"
+        };
+        writeln!(f, "the result     {may}")?;
+        writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
+    }
+}
+
+/// A share that may be very small.
+pub(crate) fn parts(share: f64) -> String {
+    if share == 0.0 || share >= 0.01 { percent(share) } else { format!("{:.3e}", share) }
+}
+
+fn boxes(n: usize) -> String {
+    if n == 1 { "a box".to_owned() } else { format!("{n} boxes") }
+}

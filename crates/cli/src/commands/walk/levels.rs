@@ -1,0 +1,88 @@
+//! What is drawn along a walk with the levels of a folder, and without.
+
+use crate::error::CliError;
+use crate::output::percent;
+use crate::tables::Cells;
+use serde::Serialize;
+use sightlines::eye_to_cell::View;
+use sightlines::formats::levels::{INDEX_NAME, read_levels_index};
+use sightlines::walkthrough::{LevelError, LevelIndex, LevelSize, Resident};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Why levels do not go with a table.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum UnlikeLevels {
+    #[error("the levels are for another table: the index has {levels} cells, {} has {table}", path.display())]
+    Count { levels: usize, path: PathBuf, table: usize },
+    #[error(transparent)]
+    Index(#[from] LevelError),
+}
+
+/// Triangles that are drawn, on average over the frames with the eye in a cell.
+#[derive(Debug, Serialize)]
+pub(super) struct Drawn {
+    folder: String,
+    n_levels: usize,
+    n_frames: usize,
+    /// Frames in which all cells that the eye is in have the same level.
+    n_with_level: usize,
+    /// Without levels all of the scene is drawn.
+    without: u64,
+    with_mean: f64,
+    with_most: u64,
+}
+
+/// Counts the triangles of each frame.
+pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[View]) -> Result<Drawn, CliError> {
+    let path = folder.join(INDEX_NAME);
+    let index = read_levels_index(&path)?;
+    let unlike = |source| CliError::LevelsOf { path: path.clone(), source };
+    let [table, _] = cells.counts();
+    if index.cells.len() != table {
+        return Err(unlike(UnlikeLevels::Count { levels: index.cells.len(), path: file.to_owned(), table }));
+    }
+    let sizes = index.levels.iter().map(|level| LevelSize { bytes: level.n_bytes, n_triangles: level.n_triangles });
+    let sizes: Vec<LevelSize> = sizes.collect();
+    let levels = LevelIndex::new(index.cells, sizes).map_err(|error| unlike(error.into()))?;
+    let (mut pending, mut at) = (Vec::new(), Vec::new());
+    let (mut n_frames, mut n_with_level, mut sum, mut most) = (0, 0, 0, 0);
+    for view in views {
+        Resident::locate(cells, view.eye(), &mut pending, &mut at);
+        if !at.is_empty() {
+            let n = levels.n_triangles_at(&at, index.n_triangles);
+            n_frames += 1;
+            n_with_level += usize::from(levels.level_at(&at).is_some());
+            sum += n;
+            most = most.max(n);
+        }
+    }
+    Ok(Drawn {
+        folder: folder.display().to_string(),
+        n_levels: levels.levels().len(),
+        n_frames,
+        n_with_level,
+        without: index.n_triangles,
+        with_mean: if n_frames > 0 { sum as f64 / n_frames as f64 } else { 0.0 },
+        with_most: most,
+    })
+}
+
+impl fmt::Display for Drawn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let share = |n: f64| percent(if self.without > 0 { n / self.without as f64 } else { 0.0 });
+        let (mean, most) = (self.with_mean, self.with_most);
+        writeln!(
+            f,
+            "levels         {} of {}, in {} of {} frames inside",
+            self.n_levels, self.folder, self.n_with_level, self.n_frames
+        )?;
+        writeln!(f, "triangles      {} a frame without levels", self.without)?;
+        writeln!(
+            f,
+            "               {mean:.1} with levels on average, {}; at most {most}, {}",
+            share(mean),
+            share(most as f64)
+        )
+    }
+}

@@ -1,0 +1,111 @@
+//! A folder of results that appears whole or not at all.
+
+use crate::error::CliError;
+use sightlines::formats::atomic_write;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A folder that is filled beside its place, and removed unless it is finished.
+#[derive(Debug)]
+pub(crate) struct NewFolder {
+    target: PathBuf,
+    beside: PathBuf,
+}
+
+impl NewFolder {
+    /// Begins a folder that will replace what is at `target`, if that is nothing, or a folder of files whose names are `ours`.
+    pub(crate) fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self, CliError> {
+        let failed = |source| CliError::Folder { path: target.to_owned(), source };
+        // A name with a dot or a slash at its end has a place all the same.
+        let target = match target.canonicalize() {
+            Ok(found) => found,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => target.to_owned(),
+            Err(error) => return Err(failed(error)),
+        };
+        if target.exists() {
+            for entry in fs::read_dir(&target).map_err(failed)? {
+                let entry = entry.map_err(failed)?;
+                let name = entry.file_name().to_string_lossy().into_owned();
+                if !ours(&name) || !entry.file_type().map_err(failed)?.is_file() {
+                    return Err(CliError::NotLevels { path: target, name });
+                }
+            }
+        }
+        let beside = beside(&target, "new").ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
+        fs::create_dir(&beside).map_err(failed)?;
+        Ok(Self { target, beside })
+    }
+
+    /// Writes a file into it.
+    pub(crate) fn save(&self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
+        Ok(atomic_write(self.beside.join(name), bytes)?)
+    }
+
+    /// Puts it in its place.
+    pub(crate) fn finish(self) -> Result<(), CliError> {
+        let failed = |source| CliError::Folder { path: self.target.clone(), source };
+        if !self.target.exists() {
+            return fs::rename(&self.beside, &self.target).map_err(failed);
+        }
+        let old = beside(&self.target, "old").ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
+        fs::rename(&self.target, &old).map_err(failed)?;
+        if let Err(error) = fs::rename(&self.beside, &self.target) {
+            // What was there goes back; the reason above is the one to report.
+            let _ = fs::rename(&old, &self.target);
+            return Err(failed(error));
+        }
+        fs::remove_dir_all(&old).map_err(failed)
+    }
+}
+
+impl Drop for NewFolder {
+    fn drop(&mut self) {
+        // After it was put in its place there is nothing left.
+        let _ = fs::remove_dir_all(&self.beside);
+    }
+}
+
+/// A hidden name in the same folder.
+fn beside(target: &Path, what: &str) -> Option<PathBuf> {
+    let mut name = std::ffi::OsString::from(".");
+    name.push(target.file_name()?);
+    name.push(format!(".{}.{what}", std::process::id()));
+    Some(target.with_file_name(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn folders_appear_whole_and_replace_only_ours() {
+        let all = tempfile::tempdir().unwrap();
+        let target = all.path().join("levels");
+        let ours = |name: &str| name.ends_with(".x");
+        drop(NewFolder::new(&target, ours).unwrap());
+        assert!(names(all.path()).is_empty());
+        for files in [&["a.x", "b.x"][..], &["c.x"], &[]] {
+            let new = NewFolder::new(&target, ours).unwrap();
+            files.iter().for_each(|name| new.save(name, b"").unwrap());
+            new.finish().unwrap();
+            assert_eq!(
+                (names(&target), names(all.path())),
+                (files.iter().map(|s| (*s).to_owned()).collect(), vec!["levels".to_owned()])
+            );
+        }
+        fs::write(target.join("letter"), "dear").unwrap();
+        let error = NewFolder::new(&target, ours).unwrap_err().to_string();
+        assert!(error.contains("the folder has \"letter\" in it"), "{error}");
+        assert!(NewFolder::new(&target.join("letter"), ours).is_err());
+        assert!(NewFolder::new(&all.path().join("no/such"), ours).is_err());
+        assert_eq!(names(all.path()), ["levels"]);
+    }
+}

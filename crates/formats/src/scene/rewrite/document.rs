@@ -1,0 +1,146 @@
+//! Finding one's way in a document that is kept as it was.
+//!
+//! The document was read before, but readers are more lenient than writers may be: what was skipped may have any form.
+
+use super::error::RewriteError;
+use serde_json::{Map, Value};
+
+/// What has members.
+pub(super) type Object = Map<String, Value>;
+
+pub(super) fn form(place: impl Into<String>, expected: &'static str) -> RewriteError {
+    RewriteError::Form { place: place.into(), expected }
+}
+
+pub(super) fn as_object(value: &mut Value, place: impl FnOnce() -> String) -> Result<&mut Object, RewriteError> {
+    value.as_object_mut().ok_or_else(|| form(place(), "an object"))
+}
+
+/// An index into a list of the document.
+pub(super) fn as_index(value: &Value, place: impl FnOnce() -> String) -> Result<usize, RewriteError> {
+    value.as_u64().and_then(|n| usize::try_from(n).ok()).ok_or_else(|| form(place(), "an index"))
+}
+
+/// A member that is a list; empty if there is none.
+pub(super) fn list<'v>(object: &'v mut Object, key: &str) -> Result<&'v mut [Value], RewriteError> {
+    match object.get_mut(key) {
+        None | Some(Value::Null) => Ok(&mut []),
+        Some(Value::Array(list)) => Ok(list),
+        Some(_) => Err(form(key, "a list")),
+    }
+}
+
+/// The accessors of a primitive's attributes and of its morph targets, with the names of the attributes.
+pub(super) fn attributes(primitive: &mut Value) -> Result<Vec<(&str, &mut Value)>, RewriteError> {
+    let primitive = as_object(primitive, || "primitive".to_owned())?;
+    let mut found = Vec::new();
+    for (key, value) in primitive {
+        match (key.as_str(), value) {
+            (_, Value::Null) => {}
+            ("attributes", value) => {
+                let named = as_object(value, || "attributes".to_owned())?;
+                found.extend(named.iter_mut().map(|(name, accessor)| (name.as_str(), accessor)));
+            }
+            ("targets", Value::Array(targets)) => {
+                for target in targets {
+                    let named = as_object(target, || "target".to_owned())?;
+                    found.extend(named.iter_mut().map(|(name, accessor)| (name.as_str(), accessor)));
+                }
+            }
+            ("targets", _) => return Err(form("targets", "a list")),
+            _ => {}
+        }
+    }
+    found.retain(|(_, accessor)| !accessor.is_null());
+    Ok(found)
+}
+
+/// Visits each index of an accessor that the format itself has.
+pub(super) fn for_each_accessor(
+    document: &mut Object,
+    visit: &mut dyn FnMut(&mut Value) -> Result<(), RewriteError>,
+) -> Result<(), RewriteError> {
+    for (k, animation) in list(document, "animations")?.iter_mut().enumerate() {
+        for sampler in list(as_object(animation, || format!("animations[{k}]"))?, "samplers")? {
+            let sampler = as_object(sampler, || format!("animations[{k}].samplers"))?;
+            visit_member(sampler, "input", visit)?;
+            visit_member(sampler, "output", visit)?;
+        }
+    }
+    for (k, skin) in list(document, "skins")?.iter_mut().enumerate() {
+        visit_member(as_object(skin, || format!("skins[{k}]"))?, "inverseBindMatrices", visit)?;
+    }
+    for (k, mesh) in list(document, "meshes")?.iter_mut().enumerate() {
+        for primitive in list(as_object(mesh, || format!("meshes[{k}]"))?, "primitives")? {
+            if let Some(primitive) = primitive.as_object_mut() {
+                visit_member(primitive, "indices", visit)?;
+            }
+            for (_, accessor) in attributes(primitive)? {
+                visit(accessor)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn visit_member(
+    object: &mut Object,
+    key: &str,
+    visit: &mut dyn FnMut(&mut Value) -> Result<(), RewriteError>,
+) -> Result<(), RewriteError> {
+    match object.get_mut(key) {
+        None | Some(Value::Null) => Ok(()),
+        Some(value) => visit(value),
+    }
+}
+
+/// Visits each index of a buffer view in a value, extensions included, extras not.
+pub(super) fn for_each_view(
+    value: &mut Value,
+    visit: &mut dyn FnMut(&mut Value) -> Result<(), RewriteError>,
+) -> Result<(), RewriteError> {
+    match value {
+        Value::Array(list) => list.iter_mut().try_for_each(|value| for_each_view(value, visit)),
+        Value::Object(object) => object.iter_mut().try_for_each(|(key, value)| match key.as_str() {
+            "extras" => Ok(()),
+            "bufferView" if value.is_null() => Ok(()),
+            "bufferView" => visit(value),
+            _ => for_each_view(value, visit),
+        }),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn references_are_found_where_they_stand() {
+        let mut document = json!({
+            "extras": {"bufferView": 77},
+            "images": [{"bufferView": 3}, {"uri": "x", "extensions": {"X": [{"bufferView": 4, "extras": {"bufferView": 9}}]}}],
+            "animations": [{"samplers": [{"input": 10, "output": 11}]}], "skins": [{"inverseBindMatrices": 12}, {}],
+            "meshes": [{"primitives": [{"indices": 13, "attributes": {"A": 14}, "targets": [{"B": 15}]}, {"mode": 1}]}]
+        });
+        let (mut views, mut accessors) = (Vec::new(), Vec::new());
+        let into = |list: &mut Vec<usize>, value: &Value| {
+            list.push(as_index(value, String::new)?);
+            Ok(())
+        };
+        for_each_view(&mut document, &mut |v| into(&mut views, v)).unwrap();
+        for_each_accessor(document.as_object_mut().unwrap(), &mut |v| into(&mut accessors, v)).unwrap();
+        accessors.sort_unstable();
+        assert_eq!((views, accessors), (vec![3, 4], vec![10, 11, 12, 13, 14, 15]));
+    }
+
+    #[test]
+    fn other_forms_are_refused() {
+        for text in [r#"{"meshes": 3}"#, r#"{"meshes": [[]]}"#, r#"{"meshes": [{"primitives": [[{"A": 1}]]}]}"#] {
+            let mut document: Value = serde_json::from_str(text).unwrap();
+            let found = for_each_accessor(document.as_object_mut().unwrap(), &mut |_| Ok(()));
+            assert!(matches!(found, Err(RewriteError::Form { .. })), "{text}: {found:?}");
+        }
+    }
+}

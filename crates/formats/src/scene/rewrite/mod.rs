@@ -1,0 +1,90 @@
+//! A glTF document written again as GLB with other triangles, and all else as it was.
+
+mod copies;
+mod document;
+mod error;
+mod extensions;
+mod images;
+mod meshes;
+mod repack;
+mod variants;
+
+pub use error::RewriteError;
+
+use super::Simplified;
+use super::buffers::Buffers;
+use super::gltf::split;
+use super::json::Document;
+use super::source::GltfSource;
+use super::write::container;
+use copies::{Copies, Original};
+use document::{Object, as_object, list};
+use serde_json::{Value, json};
+use variants::Variants;
+
+/// As [`GltfSource::rewrite`] says.
+pub(super) fn rewrite(
+    source: &GltfSource,
+    triangles: &[Option<Vec<[u32; 3]>>],
+    simplified: Option<Simplified>,
+) -> Result<Vec<u8>, RewriteError> {
+    check(source, triangles)?;
+    let (text, binary) = split(&source.bytes).expect("the source was read before");
+    let document: Document = serde_json::from_str(text).expect("the source was read before");
+    let mut whole: Value = serde_json::from_str(text).map_err(|source| RewriteError::Json { source })?;
+    let root = as_object(&mut whole, || "the document".to_owned())?;
+    let folder = source.folder.as_deref();
+    let buffers = Buffers::new(&document.buffers, binary, folder).with_loaded(&source.loaded);
+    let keep_all = extensions::any_unknown(root)?;
+    let outside = images::outside(root, folder)?;
+    let variants = Variants::new(source, &document, triangles);
+    let old = list(root, "accessors")?.to_vec();
+    let original = Original { document: &document, buffers: &buffers };
+    let mut copies = Copies::new(original, &old);
+    if !variants.are_all_as_before() {
+        meshes::change(root, source, original, &variants, &mut copies, keep_all)?;
+    }
+    if let Some(simplified) = simplified {
+        mark(root, simplified.occluder && document.asset.simplified.is_none_or(|before| before.occluder))?;
+    }
+    extensions::forget_codings(root);
+    let binary = repack::repack(root, original, &old, copies.new, &outside, keep_all)?;
+    let text = serde_json::to_vec(&whole).expect("what was JSON is JSON");
+    container(text, &binary).map_err(|len| RewriteError::TooLarge { len })
+}
+
+fn check(source: &GltfSource, triangles: &[Option<Vec<[u32; 3]>>]) -> Result<(), RewriteError> {
+    let (found, expected) = (triangles.len(), source.n_objects());
+    if found != expected {
+        return Err(RewriteError::Objects { found, expected });
+    }
+    for (object, list) in triangles.iter().enumerate() {
+        let n_vertices = source.object(object).map_or(0, |o| o.corners.len());
+        for (triangle, corners) in list.iter().flatten().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= n_vertices) {
+                return Err(RewriteError::Index { object, triangle, vertex });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Writes into the extras of the asset whether the scene may be used to hide.
+fn mark(root: &mut Object, occluder: bool) -> Result<(), RewriteError> {
+    let asset = root.get_mut("asset").and_then(Value::as_object_mut);
+    let asset = asset.ok_or_else(|| document::form("asset", "an object"))?;
+    let extras = member(asset, "extras");
+    let ours = member(extras, "sightlines");
+    ours.insert("simplified".to_owned(), json!({"occluder": occluder}));
+    Ok(())
+}
+
+/// A member that is an object, made one if it is not: what was there instead becomes its member `was`.
+fn member<'v>(object: &'v mut Object, key: &str) -> &'v mut Object {
+    let value = object.entry(key.to_owned()).or_insert(Value::Null);
+    if !value.is_object() {
+        let was = value.take();
+        *value = if was.is_null() { json!({}) } else { json!({"was": was}) };
+    }
+    value.as_object_mut().expect("just made one")
+}

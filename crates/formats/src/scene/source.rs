@@ -1,0 +1,120 @@
+//! Where the objects of a glTF scene come from, so that their document can be written again with fewer triangles.
+
+use super::error::SceneReadError;
+use super::gltf::{Loaded, parse};
+use super::rewrite::{RewriteError, rewrite};
+use super::{SceneFile, Simplified};
+use std::path::{Path, PathBuf};
+
+/// A glTF document with its buffers, and what the objects of its scene come from.
+#[derive(Debug)]
+pub struct GltfSource {
+    pub(super) bytes: Vec<u8>,
+    pub(super) folder: Option<PathBuf>,
+    /// What was read of buffers outside `bytes`, by buffer.
+    pub(super) loaded: Loaded,
+    /// The nodes with meshes, in the order of their objects.
+    pub(super) origins: Vec<NodeOrigin>,
+    /// For meshes that were read, for each primitive the indices in its accessors of its object's vertices, ascending.
+    pub(super) corners: Vec<Vec<Vec<usize>>>,
+    /// Index into `origins`, and primitive, of each object.
+    objects: Vec<(u32, u32)>,
+}
+
+/// A node with a mesh.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NodeOrigin {
+    pub(super) node: usize,
+    pub(super) mesh: usize,
+    pub(super) mirrors: bool,
+    /// Of the first primitive.
+    pub(super) first_object: usize,
+}
+
+/// What an object comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ObjectSource<'a> {
+    /// Its node, as an index in the document.
+    pub node: usize,
+    /// The mesh of the node, as an index in the document.
+    pub mesh: usize,
+    /// The primitive of the mesh.
+    pub primitive: usize,
+    /// For each of the object's vertices its index in the primitive's accessors, ascending.
+    pub corners: &'a [usize],
+    /// Whether the node mirrors its mesh: triangles of the object then run the other way round than in the file.
+    pub is_mirrored: bool,
+}
+
+/// As [`parse_glb`](super::parse_glb), with what it takes to write the document again with fewer triangles.
+///
+/// Costs the memory of the file and of its outside buffers, and a number for each vertex of a mesh.
+///
+/// # Errors
+/// As [`parse_glb`](super::parse_glb).
+pub fn parse_glb_with_source(bytes: Vec<u8>, folder: Option<&Path>) -> Result<(SceneFile, GltfSource), SceneReadError> {
+    let (mut origins, mut objects, mut corners) = (Vec::new(), Vec::new(), Vec::<Vec<Vec<usize>>>::new());
+    let (file, loaded) = parse(&bytes, folder, |origin| {
+        let (node, mesh) = (origin.node, origin.mesh);
+        if corners.len() <= mesh {
+            corners.resize_with(mesh + 1, Vec::new);
+        }
+        if corners[mesh].is_empty() {
+            corners[mesh] = origin.locals.iter().map(|local| local.mesh.corners.clone()).collect();
+        }
+        let first_object = objects.len();
+        // Objects, and so nodes that have some, are fewer than `MAX_OBJECTS`.
+        objects.extend((0..origin.locals.len()).map(|k| (origins.len() as u32, k as u32)));
+        if !origin.locals.is_empty() {
+            origins.push(NodeOrigin { node, mesh, mirrors: origin.mirrors, first_object });
+        }
+    })?;
+    let folder = folder.map(Path::to_owned);
+    Ok((file, GltfSource { bytes, folder, loaded, origins, corners, objects }))
+}
+
+impl GltfSource {
+    /// Number of objects of the scene.
+    pub fn n_objects(&self) -> usize {
+        self.objects.len()
+    }
+
+    /// What object `k` comes from; `None` if there is no such object.
+    pub fn object(&self, k: usize) -> Option<ObjectSource<'_>> {
+        let &(origin, primitive) = self.objects.get(k)?;
+        let (origin, primitive) = (&self.origins[origin as usize], primitive as usize);
+        let corners = &self.corners[origin.mesh][primitive];
+        Some(ObjectSource { node: origin.node, mesh: origin.mesh, primitive, corners, is_mirrored: origin.mirrors })
+    }
+
+    /// The document as GLB, with other triangles, and all else as it was.
+    ///
+    /// * `triangles`: for each object `None` if it stays as it is, or all triangles that it shall have, as indices of its
+    ///   vertices in the scene and wound as there.
+    /// * `simplified`: what the result says of itself to readers of ours; the result is no occluder if the source is none.
+    ///
+    /// Reading the result gives the objects that have anything left, in the same order: those that stay as they are, and the
+    /// others with these triangles in this order, at vertices with the same bits. (Triangles without area are left out by
+    /// readers of ours, and names `#1`, `#2` count the primitives that are left.)
+    ///
+    /// Nodes, materials, textures, cameras, animations, extras and extensions survive. Nodes that shared a mesh and now
+    /// differ get meshes of their own, which are put behind the others. A primitive without triangles goes, a mesh without
+    /// primitives goes from its node; the node stays. Strips and fans become lists. All attributes of vertices, and their
+    /// morph targets, are copied byte by byte, without the vertices that nothing uses any more; sparse accessors of changed
+    /// primitives become dense. Accessors and buffer views that nothing uses are left out, except where an extension that
+    /// is not understood may mean them: then all of them stay, in their places. Buffers, and images in files beside the
+    /// document as far as they can be read, go into the GLB.
+    ///
+    /// Costs time and memory in proportion to the result and the source. The same arguments give the same bytes.
+    ///
+    /// # Errors
+    /// [`RewriteError`]: arguments that do not fit the scene, attributes that are not sound, and extensions that may speak
+    /// of the triangles that are to change.
+    pub fn rewrite(
+        &self,
+        triangles: &[Option<Vec<[u32; 3]>>],
+        simplified: Option<Simplified>,
+    ) -> Result<Vec<u8>, RewriteError> {
+        rewrite(self, triangles, simplified)
+    }
+}
