@@ -5,6 +5,7 @@ use sightlines::cells::{CellId, Scene};
 use sightlines::formats::scene::read_scene;
 use sightlines::formats::view_cells::read_view_cells;
 use sightlines::geometry::{Aabb, Point3};
+use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::{SheetMethod, Sheets};
 use sightlines::multifocal::{FromRegion, Volume};
 use sightlines::pvs::Table;
@@ -99,6 +100,10 @@ fn levels_are_for_all_cells_and_fit() {
     let [first, last] = [few.levels.first().unwrap(), few.levels.last().unwrap()];
     let elsewhere = Views::of_cells(&table, &last.cells).unwrap();
     assert!(measure(&scene, &first.simplified, &elsewhere, &options).unwrap().changed > 0.01);
+    // Merging faces leaves less, so more levels fit.
+    let flat = LevelOptions { simplify: SimplifyOptions { flat: true, ..all.simplify }, memory, ..all };
+    let merged = levels(&scene, &table, &by, &flat).unwrap();
+    assert!(merged.levels.len() >= few.levels.len() && merged.n_bytes() <= memory);
     let none = levels(&scene, &table, &by, &LevelOptions { memory: 1000, ..all }).unwrap_err();
     assert!(matches!(none, SimplifyError::Memory { asked: 1000, least } if least > 1000), "{none}");
     let threads = |threads| LevelOptions { simplify: SimplifyOptions { threads, ..all.simplify }, memory, ..all };
@@ -118,9 +123,14 @@ fn what_does_not_fit_is_refused() {
     assert_eq!(Views::of_cells(&table, &[none]).unwrap_err(), ViewsError::NoCell { cell: none.0, n_cells });
     assert_eq!(Views::of_cells(&table, &[]).unwrap_err(), ViewsError::None);
     assert_eq!(Views::new([]).unwrap_err(), ViewsError::None);
-    let shape = table.strip_geometry();
-    drop(Views::of_cells(&shape, &[CellId(0)]));
-    drop(scene);
+    // A table of the same scene that is cut otherwise.
+    let cut = SceneOptions { detail_below: Some(100.0), ..SceneOptions::default() };
+    let coarse = bake_scene(&scene, &SceneBakeOptions { cut, ..SceneBakeOptions::default() }).unwrap().table;
+    let last = CellId(n_cells as u32 - 1);
+    let views = Views::of_cells(&table, &[last]).unwrap();
+    let by = HiddenBy { method: None, table: Some(&coarse) };
+    let error = simplify(&scene, &views, &by, &SimplifyOptions::default()).unwrap_err();
+    assert_eq!(error, SimplifyError::OtherTable { cell: last.0 });
 }
 
 fn real(scene: &str, file: &str) -> Option<PathBuf> {

@@ -9,6 +9,7 @@ use crate::commands::{
     generate::GenerateArgs,
     info::InfoArgs,
     levels::LevelsArgs,
+    light::LightArgs,
     multifocal::MultifocalArgs,
     pack::{PackArgs, UnpackArgs},
     query::QueryArgs,
@@ -68,6 +69,8 @@ pub(crate) enum Command {
     /// Write a scene with fewer triangles for eyes in a volume: without what is hidden from there, and within a budget without
     /// what can hardly be seen
     Simplify(SimplifyArgs),
+    /// Draw which surfaces an area light reaches not at all, wholly, or in part, as one eye sees them
+    Light(LightArgs),
     /// Write simplified variants of a scene for the cells of its table, within a memory
     Levels(LevelsArgs),
     /// Sum up a table, a WAD, a GeoJSON plan, a scene in space, a Quake map or a portal file

@@ -67,6 +67,7 @@ fn run(arguments: &Arguments) -> Result<Answer, CliError> {
         Command::Draw(args) => commands::draw::run(args),
         Command::Multifocal(args) => commands::multifocal::run(args),
         Command::Render(args) => commands::render::run(args, show_progress),
+        Command::Light(args) => commands::light::run(args),
         Command::Simplify(args) => commands::simplify::run(args, show_progress),
         Command::Levels(args) => commands::levels::run(args, show_progress),
         Command::Info(args) => commands::info::run(args),

@@ -137,7 +137,8 @@ impl Piece {
         let square = down(near * near);
         let slanted = if plane.heights[1] < near { up(plane.heights[1] / near) } else { 1.0 };
         let share = up(up(up(self.area / square) * slanted) / SPHERE);
-        if share.is_nan() { 0.5 } else { share.min(0.5) }
+        // Nothing that has an area takes up nothing, however little it is.
+        if share.is_nan() { 0.5 } else { share.clamp(f64::from_bits(1), 0.5) }
     }
 
     fn parts(&self) -> [Self; 4] {

@@ -83,7 +83,7 @@ pub fn interval(k: u64, n: u64, confidence: f64) -> Interval {
     if n == 0 {
         return Interval { share: 0.0, ends: [0.0, 1.0] };
     }
-    let counted = k as f64 / n as f64;
+    let counted = k.min(n) as f64 / n as f64;
     // Half of what may go wrong on each side.
     let allowed = (2.0 / (1.0 - confidence.clamp(0.0, 1.0 - 1e-15))).ln() / n as f64;
     let term = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (x / y).ln() };

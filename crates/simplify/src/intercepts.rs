@@ -23,6 +23,9 @@ impl Intercepts {
     ///
     /// * `depth`: how often a triangle is cut in four to bound what it takes up, see [`bound::share`]
     ///
+    /// # Panics
+    /// If a view is of a cell that the table does not have, or a face of an object that it does not have.
+    ///
     /// Errs upwards only. Costs what the method costs for each part, and O(4^depth) for each visible face near a part.
     ///
     /// # Errors
@@ -54,6 +57,9 @@ impl Intercepts {
     }
 
     /// What a face can intercept for eyes of a part.
+    ///
+    /// # Panics
+    /// If there is no such part or face.
     pub fn of(&self, part: usize, face: u32) -> f64 {
         self.bounds[part * self.n_faces + face as usize]
     }

@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 use crate::options::SimplifyOptions;
 use crate::select::{Account, least_visible};
 use crate::simplified::Simplified;
-use crate::simplify::{SimplifyError, check_table, in_threads, within_budget};
+use crate::simplify::{SimplifyError, check_mirrors, check_table, in_threads, within_budget};
 use crate::views::Views;
 use rayon::prelude::*;
 use sightlines_cells::Scene;
@@ -61,7 +61,7 @@ pub struct Levels {
 /// * `by`: what proves faces hidden, beside the table itself
 ///
 /// Each level keeps the promise of [`simplify`](crate::simplify) for all eyes in its cells. Memory counts triangles, not files.
-/// Deterministic. Costs a simplification for each level, and for each cell the bounds of what it may see; merging is quadratic in the
+/// Deterministic. Costs a simplification for each cell and each merged level, and for each cell the bounds of what it may see; merging is quadratic in the
 /// number of cells at worst, times the number of triangles over 64.
 ///
 /// # Errors
@@ -73,6 +73,7 @@ pub fn levels(
     options: &LevelOptions,
 ) -> Result<Levels, SimplifyError> {
     options.simplify.check()?;
+    check_mirrors(scene, &options.simplify)?;
     check_table(scene, table)?;
     in_threads(options.simplify.threads, || {
         let faces = Faces::of_scene(scene)?;
@@ -82,7 +83,6 @@ pub fn levels(
         let kept = all.par_iter().map(|&cell| maker.kept(cell)).collect::<Result<Vec<Bits>, SimplifyError>>()?;
         let mut groups = Groups::new(table, kept, options.bytes_per_triangle);
         groups.merge_equal();
-        while groups.n_bytes() > options.memory && groups.merge_cheapest() {}
         let mut made: BTreeMap<Vec<CellId>, Level> = BTreeMap::new();
         loop {
             let wanted = groups.cells();
@@ -91,14 +91,16 @@ pub fn levels(
             let new =
                 missing.par_iter().map(|cells| maker.level(cells)).collect::<Result<Vec<Level>, SimplifyError>>()?;
             made.extend(new.into_iter().map(|level| (level.cells.clone(), level)));
-            // What fits many cells may take more than what was kept for each of them.
-            let n_bytes: u64 = made.values().map(|level| level.n_bytes).sum();
+            let n_bytes = made.values().fold(0u64, |sum, level| sum.saturating_add(level.n_bytes));
             if n_bytes <= options.memory {
                 return Ok(Levels::new(table.n_cells(), made.into_values().collect()));
             }
+            // What is kept is about in proportion to what levels take.
+            let share = n_bytes as f64 / groups.n_bytes().max(1) as f64;
             if !groups.merge_cheapest() {
                 return Err(SimplifyError::Memory { asked: options.memory, least: n_bytes });
             }
+            while groups.n_bytes() as f64 * share > options.memory as f64 && groups.merge_cheapest() {}
         }
     })
 }
@@ -114,7 +116,7 @@ impl Levels {
 
     /// Bytes of all levels.
     pub fn n_bytes(&self) -> u64 {
-        self.levels.iter().map(|level| level.n_bytes).sum()
+        self.levels.iter().fold(0, |sum, level| sum.saturating_add(level.n_bytes))
     }
 }
 
@@ -149,7 +151,8 @@ impl Maker<'_> {
         let views = Views::of_cells(self.table, cells)?.cut(options.n_parts);
         let intercepts = Intercepts::of_hider(self.faces, &views, &self.hider, options.depth)?;
         let simplified = within_budget(self.scene, self.faces, self.mesh.clone(), &views, &intercepts, options);
-        let n_bytes = simplified.counts.left as u64 * self.options.bytes_per_triangle;
+        let n_bytes = simplified.counts.left as u64;
+        let n_bytes = n_bytes.saturating_mul(self.options.bytes_per_triangle);
         Ok(Level { cells: cells.to_vec(), simplified, n_bytes })
     }
 }
@@ -239,7 +242,7 @@ impl Groups {
     }
 
     fn n_bytes(&self) -> u64 {
-        self.all.iter().flatten().map(|g| g.n_kept).sum::<u64>() * self.bytes_per_triangle
+        self.all.iter().flatten().map(|g| g.n_kept).sum::<u64>().saturating_mul(self.bytes_per_triangle)
     }
 
     fn cells(&self) -> BTreeSet<Vec<CellId>> {

@@ -4,7 +4,7 @@
 //! ([`Estimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table ([`levels`]); the measurement of
 //! what a simplified scene changes ([`measure`]); the ordinary geometric metric, to compare with ([`geometric`]).
 //! Does not know: how hidden things are proven (a [`FromRegion`](sightlines_multifocal::FromRegion) method or a table says so), files.
-//! Invariants: for every eye in the closed boxes of [`Views`], the share of the sphere of directions in which the first surface met
+//! Invariants: for every eye in the closed boxes of [`Views`] that lies on no surface, the share of the sphere of directions in which the first surface met
 //! is another one than before is at most [`Simplified::bound`], which is at most the budget; with a budget of 0 it is none.
 //!
 //! # The promise

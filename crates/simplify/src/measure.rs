@@ -14,7 +14,7 @@ use sightlines_visible_surface::Faces;
 /// How to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MeasureOptions {
-    /// Eyes, anywhere in the views.
+    /// Eyes: half of them anywhere in the views by volume, the others in one box of them after the other.
     pub n_eyes: usize,
     /// Rays from each eye, anywhere on the sphere.
     pub n_rays: u64,
@@ -77,7 +77,9 @@ pub fn measure(
         let places = Places::new(views);
         let look = |eye: usize| {
             let mut random = Random::new(options.seed ^ (eye as u64).wrapping_mul(0x2545_f491_4f6c_dd1d));
-            let place = places.any(&mut random);
+            // Every other eye is in one part after the other, so that flat parts get some as well.
+            let part = views.parts()[eye / 2 % views.parts().len()].volume;
+            let place = if eye.is_multiple_of(2) { places.any(&mut random) } else { random.point(part.bounds()) };
             let mut changes = Changes::default();
             let (mut old, mut new) = (old.rays(), new.rays());
             for _ in 0..options.n_rays {

@@ -3,7 +3,7 @@
 /// How to simplify.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimplifyOptions {
-    /// The largest share of the sphere of directions, from 0 to 1, in which the first hit may be another one, for every eye. 0 takes
+    /// The largest share of the sphere of directions, from 0 to 1, in which the first hit may be another one, for every eye that lies on no surface. 0 takes
     /// away only what is proven hidden.
     pub budget: f64,
     /// The share of the budget, from 0 to 1, that is kept for collapsing edges; the rest is for triangles to be left out, which makes
@@ -12,6 +12,8 @@ pub struct SimplifyOptions {
     /// Whether to merge faces of an object that lie in one plane, exactly. It changes no place that is seen; colours and texture
     /// coordinates are interpolated over the larger faces, so they stay the same only where they are linear.
     pub flat: bool,
+    /// Whether scenes with mirrors are taken as if there were none; else they are refused, as mirrors show what is hidden.
+    pub ignore_mirrors: bool,
     /// How far collapsing may move a surface, as a part of its distance to the eye, for every eye; infinite for any.
     pub shift: f64,
     /// At least so many boxes are made of the views before bounds are made.
@@ -30,6 +32,7 @@ impl Default for SimplifyOptions {
             budget: 0.0,
             collapse: 0.5,
             flat: false,
+            ignore_mirrors: false,
             shift: 1.0 / 128.0,
             n_parts: 8,
             n_rays: 1 << 18,

@@ -88,7 +88,8 @@ impl Policy for Paid<'_> {
         if change.lost.iter().chain(change.moved.iter().map(|(f, _)| f)).any(|&f| !self.may_go[f as usize]) {
             return false;
         }
-        let shift = moved / self.nearest(mesh, change);
+        // What was there at the beginning may be nearer by as much as it is away.
+        let shift = (moved / (self.nearest(mesh, change) - moved).next_down().max(0.0)).next_up();
         // Also where the distance is 0.
         if shift.is_nan() || shift > self.most_shift {
             return false;
@@ -105,7 +106,7 @@ impl Policy for Paid<'_> {
             return false;
         }
         self.account = account;
-        self.shift = self.shift.max(shift.next_up());
+        self.shift = self.shift.max(shift);
         change.lost.iter().for_each(|face| drop(self.charges.remove(face)));
         self.charges.extend(new);
         true

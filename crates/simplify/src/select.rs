@@ -31,9 +31,9 @@ impl Account {
     pub(crate) fn refund(&mut self, cost: impl Fn(usize) -> f64) {
         self.spent.iter_mut().enumerate().for_each(|(part, spent)| {
             let cost = cost(part);
-            // What is left is rounded up; it is never less than nothing.
+            // What is left is rounded up; it is never less than nothing, nor more than before.
             if cost > 0.0 {
-                *spent = (*spent - cost).next_up().max(0.0);
+                *spent = (*spent - cost).next_up().clamp(0.0, *spent);
             }
         });
     }

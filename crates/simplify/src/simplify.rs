@@ -32,6 +32,18 @@ pub enum SimplifyError {
     /// The table is not of the scene.
     #[error("the table is of another scene: {0}")]
     OtherScene(String),
+    /// A view is of a cell that the table does not have, or has elsewhere.
+    #[error("the views are cells of another table: cell {cell} of this one is not there")]
+    OtherTable {
+        /// The cell.
+        cell: u32,
+    },
+    /// A scene in which things are seen that are hidden.
+    #[error("the scene has {n} mirrors, and what is seen in them alone would be left out; mirrors can be ignored")]
+    Mirrors {
+        /// How many.
+        n: usize,
+    },
     /// Cells of a table that are no boxes, or none at all.
     #[error(transparent)]
     Views(#[from] ViewsError),
@@ -60,6 +72,8 @@ const WEIGHT_OF_AREA: f64 = 1e-3;
 /// 5. If asked for, faces of an object that lie in one plane, exactly, are merged where the surface stays the same set of points.
 ///
 /// * `by`: what proves faces hidden; with nothing, bounds are still bounds, and larger
+///
+/// The promise is for eyes that lie on no surface: an eye on a wall sees past it on both sides, and what it hides from all other eyes is gone.
 ///
 /// Errs on the side of the promise (see [`crate`]): fewer triangles might do. A view inside of an object, or through which surfaces pass,
 /// is a place as any other: what it touches is never left out within a budget below one half. Meshes may be open, and need not be manifold: places at
@@ -104,8 +118,10 @@ impl<'a> Prepared<'a> {
         options: &SimplifyOptions,
     ) -> Result<Self, SimplifyError> {
         options.check()?;
+        check_mirrors(scene, options)?;
         if let Some(table) = by.table {
             check_table(scene, table)?;
+            check_views(views, table)?;
         }
         in_threads(options.threads, || {
             let faces = Faces::of_scene(scene)?;
@@ -150,7 +166,27 @@ pub(crate) fn in_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send
     }
 }
 
-/// Whether a table has the objects of a scene.
+/// Refuses scenes with mirrors, unless they do not matter.
+pub(crate) fn check_mirrors(scene: &Scene, options: &SimplifyOptions) -> Result<(), SimplifyError> {
+    match scene.mirrors().len() {
+        n if n > 0 && !options.ignore_mirrors => Err(SimplifyError::Mirrors { n }),
+        _ => Ok(()),
+    }
+}
+
+/// Whether the cells of views are cells of a table.
+fn check_views(views: &Views, table: &Table) -> Result<(), SimplifyError> {
+    for (cell, view) in views.parts().iter().filter_map(|v| Some((v.cell?, v))) {
+        let record = table.cells().get(cell.idx()).map(|c| Aabb { min: c.min, max: c.max });
+        let view = view.volume.bounds();
+        if !record.is_some_and(|cell| cell.contains(view.min) && cell.contains(view.max)) {
+            return Err(SimplifyError::OtherTable { cell: cell.0 });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a table has the objects of a scene, by their number, names and boxes; what is within a box is not told by a table.
 pub(crate) fn check_table(scene: &Scene, table: &Table) -> Result<(), SimplifyError> {
     let other = |what: String| Err(SimplifyError::OtherScene(what));
     if table.dimension() != 3 {

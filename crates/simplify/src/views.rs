@@ -3,6 +3,8 @@
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::{Volume, VolumeError};
 use sightlines_pvs::{CellId, Table};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A box of eyes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,17 +92,20 @@ impl Views {
     /// The same places in at least `n` boxes, as far as doubles allow: the box with the longest side is halved until there are enough.
     #[must_use]
     pub fn cut(mut self, n: usize) -> Self {
+        // A length that is not negative has the order of its bits.
         let longest = |v: &View| {
             let b = v.volume.bounds();
-            (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max)
+            (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max).to_bits()
         };
+        let mut heap: BinaryHeap<(u64, Reverse<usize>)> =
+            self.0.iter().enumerate().map(|(at, v)| (longest(v), Reverse(at))).collect();
         while self.0.len() < n.min(Self::MOST) {
             // Of equals the first.
-            let at = (0..self.0.len()).rev().max_by(|&a, &b| longest(&self.0[a]).total_cmp(&longest(&self.0[b])));
-            let Some((at, [low, high])) = at.and_then(|at| Some((at, self.0[at].volume.halves()?))) else { break };
-            let cell = self.0[at].cell;
+            let Some((_, Reverse(at))) = heap.pop() else { break };
+            let Some([low, high]) = self.0[at].volume.halves() else { break };
             self.0[at].volume = low;
-            self.0.insert(at + 1, View { volume: high, cell });
+            self.0.push(View { volume: high, ..self.0[at] });
+            heap.extend([at, self.0.len() - 1].map(|at| (longest(&self.0[at]), Reverse(at))));
         }
         self
     }

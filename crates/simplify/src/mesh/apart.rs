@@ -1,7 +1,7 @@
 //! How far the surface is apart before and after a change.
 
 use super::{Change, Mesh};
-use crate::vector::{cross, dot, length, minus, normal};
+use crate::vector::{dot, length, minus, normal};
 use sightlines_geometry::Point3;
 
 /// Unit of rounding of doubles, 2^-53.
@@ -9,8 +9,8 @@ const U: f64 = f64::EPSILON / 2.0;
 
 /// How far a point of the faces at `change.from` is from those that replace them at most, and the other way round, in scene units.
 ///
-/// Seen along the mean normal, the faces around a place are a fan that covers an outline once; afterwards they cover the same outline from another
-/// corner of it, so the two surfaces are apart by no more than the outline's corners differ in height. On a border the outline loses or
+/// Seen along the mean normal, the faces around a place all show their fronts, before and after, and their rim is one way; so both cover the same
+/// outline as often, and are apart by no more than the outline's corners differ in height. On a border the outline loses or
 /// gains a triangle, no wider than the corner that goes is away from the new edge. Where the fan is no such thing, the bound is the
 /// way that the corner goes.
 pub(super) fn apart(mesh: &Mesh, change: &Change) -> f64 {
@@ -30,7 +30,7 @@ fn seen_from_above(mesh: &Mesh, change: &Change) -> Option<f64> {
     let up = up.map(|x| x / long);
     let is_up = |t: &[Point3; 3]| dot(normal(t), up) > 0.0;
     let mut after = change.moved.iter().map(|&(f, _)| local(change.corners(mesh, f), from));
-    if !before.iter().all(is_up) || !after.all(|t| is_up(&t)) || !covers_once(mesh, change.from, &faces, up) {
+    if !before.iter().all(is_up) || !after.all(|t| is_up(&t)) || !has_plain_rim(mesh, change.from, &faces) {
         return None;
     }
     let heights = before.iter().flatten().map(|&p| dot(p, up));
@@ -50,24 +50,19 @@ fn seen_from_above(mesh: &Mesh, change: &Change) -> Option<f64> {
     Some((height + aside) * (1.0 + 8.0 * U))
 }
 
-/// Whether a fan whose faces are all seen from the front covers what it covers once: whether its rim goes round once at most.
-fn covers_once(mesh: &Mesh, centre: u32, faces: &[u32], up: Point3) -> bool {
-    // Two directions across.
-    let k = (0..3).fold(0, |least, k| if up[k].abs() < up[least].abs() { k } else { least });
-    let mut axis = [0.0; 3];
-    axis[k] = 1.0;
-    let x = cross(up, axis);
-    let y = cross(up, x);
-    let place = mesh.place(centre);
-    // The rim turns one way only, so it goes round as often as it gets from below the line along x to above.
-    let rounds = faces.iter().filter(|&&face| {
+/// Whether the rim of the faces around a place is one way: no place of it begins two edges, or ends two.
+fn has_plain_rim(mesh: &Mesh, centre: u32, faces: &[u32]) -> bool {
+    let mut ends = [Vec::new(), Vec::new()];
+    for &face in faces {
         let corners = mesh.face(face).corners;
         let at = corners.iter().position(|&c| c == centre).unwrap_or(0);
-        let [a, b] = [1, 2].map(|i| minus(mesh.place(corners[(at + i) % 3]), place));
-        let (ya, yb) = (dot(a, y), dot(b, y));
-        (ya < 0.0) != (yb < 0.0) && dot(a, x) * yb.abs() + dot(b, x) * ya.abs() > 0.0
-    });
-    rounds.count() <= 1
+        ends[0].push(corners[(at + 1) % 3]);
+        ends[1].push(corners[(at + 2) % 3]);
+    }
+    ends.iter_mut().all(|places| {
+        places.sort_unstable();
+        places.windows(2).all(|w| w[0] != w[1])
+    })
 }
 
 /// How far the origin is from a segment.

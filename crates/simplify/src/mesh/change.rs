@@ -31,6 +31,18 @@ impl Change {
         }
         let (lost, rest): (Vec<u32>, Vec<u32>) =
             mesh.at(from).iter().partition(|&&face| mesh.face(face).corners.contains(&to));
+        // What a lost face covered falls together with its third edge, which some other face has to have.
+        let keeps_edge = |&face: &u32| {
+            let corners = mesh.face(face).corners;
+            let third = corners.into_iter().find(|&c| c != from && c != to);
+            third.is_some_and(|third| {
+                let has_both = |f: &&u32| mesh.face(**f).corners.contains(&third) && !lost.contains(f);
+                mesh.at(to).iter().any(|f| has_both(&f)) || mesh.at(from).iter().any(|f| has_both(&f))
+            })
+        };
+        if !lost.iter().all(keeps_edge) {
+            return None;
+        }
         // What is next to both is next to a face that goes, else two sheets would be glued together.
         let others = mesh.around(to);
         let next_to_both = around.iter().filter(|(p, _)| others.binary_search_by_key(p, |o| o.0).is_ok()).count();

@@ -136,15 +136,19 @@ impl Collapser {
                 continue;
             }
             let Some(change) = Change::new(mesh, from, to) else { continue };
-            // What is near to a face now was near to what it replaces, and that to what was there.
+            // What is near to a face now was near to what it replaces, and that to what was there. What was near to a lost face is now
+            // near to one that is next to it.
             let before = mesh.at(from).iter().map(|&f| self.moved[f as usize]).fold(0.0, f64::max);
             let moved = (before + apart(mesh, &change)).next_up();
             if !policy.accepts(mesh, &change, moved) {
                 continue;
             }
-            change.moved.iter().for_each(|&(face, _)| self.moved[face as usize] = moved);
             self.deviation = self.deviation.max(moved);
             change.apply(mesh);
+            // Also of those that stay as they are: what was lost may now be nearest to one of them.
+            for &face in mesh.at(to) {
+                self.moved[face as usize] = self.moved[face as usize].max(moved);
+            }
             let quadric = self.quadrics[from as usize];
             self.quadrics[to as usize].add(&quadric);
             [from, to].into_iter().for_each(|p| self.stamps[p as usize] += 1);

@@ -1,7 +1,7 @@
 use super::*;
-use crate::geometric;
 use crate::measure::{MeasureOptions, measure};
 use crate::{Simplified, estimate};
+use crate::{bound, geometric};
 use proptest::prelude::*;
 use sightlines_cells::SceneObject;
 use sightlines_geometry::{Point3, Random};
@@ -387,6 +387,75 @@ proptest! {
     }
 }
 
+proptest! {
+    /// Few triangles of few places: strips, lone ones, such that face different ways, and such that pass through each other.
+    #[test]
+    fn small_meshes_are_no_farther_apart_than_said(
+        places in prop::collection::vec(prop::array::uniform3(0i32..8), 4..9),
+        triangles in prop::collection::vec(prop::array::uniform3(0u32..8), 1..9),
+        objects in 1usize..3,
+        seed: u64,
+    ) {
+        let vertices: Vec<Point3> = places.iter().map(|p| p.map(f64::from)).collect();
+        let triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| i % vertices.len() as u32)).collect();
+        let object = |of: &[[u32; 3]]| SceneObject { name: "x".into(), vertices: vertices.clone(), triangles: of.to_vec() };
+        let scene = Scene::new(triangles.chunks(triangles.len().div_ceil(objects)).map(object).collect()).unwrap();
+        let left = geometric(&scene, 1).unwrap();
+        let after = left.scene(&scene).unwrap();
+        let with_area: Vec<SceneObject> = scene.objects().iter().map(|o| {
+            let faces = Faces::new(o.corners().collect()).unwrap();
+            let triangles = faces.ids().filter(|&f| faces.has_area(f)).map(|f| o.triangles[f as usize]).collect();
+            SceneObject { triangles, ..o.clone() }
+        }).collect();
+        let before = Scene::new(with_area).unwrap();
+        prop_assume!(before.n_triangles() > 0);
+        prop_assert!(after.n_triangles() > 0);
+        let mut random = Random::new(seed);
+        for _ in 0..4 {
+            let apart = far_from(&before, &after, &mut random).max(far_from(&after, &before, &mut random));
+            prop_assert!(apart <= left.deviation + 1e-12, "{} {}", apart, left.deviation);
+        }
+    }
+}
+
+/// Cases in which steps do not add up by themselves.
+#[test]
+fn ears_and_lone_triangles_count() {
+    let object = |vertices: &[Point3], triangles: &[[u32; 3]]| SceneObject {
+        name: "x".into(),
+        vertices: vertices.to_vec(),
+        triangles: triangles.to_vec(),
+    };
+    let strip = object(
+        &[
+            [0.171875, 0.203125, 0.3125],
+            [0.625, 0.59375, 0.875],
+            [1.234375, 0.15625, 0.375],
+            [1.53125, 0.515625, 0.25],
+            [2.015625, 0.09375, 0.75],
+        ],
+        &[[0, 2, 1], [1, 2, 3], [2, 4, 3]],
+    );
+    let mixed = object(
+        &[[6., 5., 1.], [4., 1., 1.], [7., 6., 2.], [8., 6., 0.], [8., 2., 0.], [6., 1., 2.]],
+        &[[5, 0, 4], [3, 4, 0], [3, 4, 5]],
+    );
+    for scene in [strip, mixed] {
+        let scene = Scene::new(vec![scene]).unwrap();
+        let left = geometric(&scene, 1).unwrap();
+        let after = left.scene(&scene).unwrap();
+        let mut random = Random::new(1);
+        let apart = (0..500).map(|_| far_from(&scene, &after, &mut random)).fold(0.0, f64::max);
+        assert!(apart <= left.deviation, "{apart} {}", left.deviation);
+    }
+    // What is far from everything else does not collapse to nothing.
+    let lone = [
+        object(&[[0.; 3], [1., 0., 0.], [0., 1., 0.]], &[[0, 1, 2]]),
+        object(&[[1e3, 0., 0.], [1.1e3, 0., 0.], [1e3, 100., 0.]], &[[0, 1, 2]]),
+    ];
+    assert_eq!(geometric(&Scene::new(lone.to_vec()).unwrap(), 1).unwrap().counts.left, 2);
+}
+
 #[test]
 fn flat_surfaces_do_not_move() {
     let scene = Scene::new(vec![terrain(8, 3.0, 0.0, 1)]).unwrap();
@@ -397,6 +466,44 @@ fn flat_surfaces_do_not_move() {
     let left = geometric(&scene, 100).unwrap();
     let apart = far_from(&left.scene(&scene).unwrap(), &scene, &mut Random::new(1));
     assert!(apart > 0.05 && left.deviation < 20.0 * apart, "{apart} {}", left.deviation);
+}
+
+/// Corners, edges and faces of the views, where no random eye ever is.
+#[test]
+fn eyes_on_the_border_see_no_change() {
+    let streets = CityOptions { blocks_x: 2, blocks_z: 2, ..CityOptions::default() };
+    let scene = city(streets).unwrap();
+    let b = city_crossings(streets).unwrap()[0];
+    let left = simplified(&scene, &views(b.min, b.max), &SimplifyOptions::default());
+    for place in 0..27 {
+        let part = [place % 3, place / 3 % 3, place / 9].map(|third| f64::from(third) / 2.0);
+        let eye = [0, 1, 2].map(|k| b.min[k] + part[k] * (b.max[k] - b.min[k]));
+        assert_eq!(changed_pixels(&scene, &left, &views(eye, eye), 1, 12).0, 0, "{eye:?}");
+    }
+}
+
+#[test]
+fn sums_never_exceed_the_budget_by_refunds() {
+    let mut account = crate::select::Account::new(1);
+    let (a, b) = (0.009_947_183_943_243_58, 1e-19);
+    assert!(account.spend(1.0, |_| a));
+    account.refund(|_| b);
+    assert_eq!(account.most(), a);
+    // The smallest triangle as far away as coordinates go still takes up something.
+    let [e, d] = [-140, -192].map(|k| 2f64.powi(k));
+    let far = Aabb { min: [2f64.powi(200), e, e + d], max: [2f64.powi(200), e, e + d] };
+    assert!(bound::share(&[[e, e, e], [e + d, e, e], [e, e + d, e]], &far, 4) > 0.0);
+}
+
+#[test]
+fn mirrors_are_refused_unless_they_are_ignored() {
+    let scene = Scene::new(vec![terrain(2, 3.0, 1.0, 1)]).unwrap().with_mirrors(vec![0]).unwrap();
+    let views = views([0.0; 3], [1.0; 3]);
+    let options = SimplifyOptions::default();
+    let error = simplify(&scene, &views, &HiddenBy::default(), &options).unwrap_err();
+    assert_eq!(error, SimplifyError::Mirrors { n: 1 });
+    let options = SimplifyOptions { ignore_mirrors: true, ..options };
+    assert!(simplify(&scene, &views, &HiddenBy::default(), &options).is_ok());
 }
 
 #[test]

@@ -7,19 +7,19 @@ use sightlines::visible_surface::{Camera, CameraError};
 
 /// Where the eye is, where it looks, and through what.
 #[derive(Debug, clap::Args)]
-pub(super) struct EyeArgs {
+pub(crate) struct EyeArgs {
     /// Where the eye is, in scene units
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
-    pub(super) eye: Point3,
+    pub(crate) eye: Point3,
     /// A point that is in the middle of the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
-    pub(super) look_at: Point3,
+    pub(crate) look_at: Point3,
     /// What is up in the picture, an axis or a vector, if not the axis that the scene names (y if it names none)
     #[arg(long, value_name = "AXIS|X,Y,Z", allow_hyphen_values = true)]
     up: Option<Up>,
     /// The angle of view in degrees, from the lower to the upper edge of the picture
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0, allow_hyphen_values = true)]
-    pub(super) fov: f64,
+    pub(crate) fov: f64,
     /// Pixels to the right and down
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "640x480")]
     size: [u32; 2],
@@ -33,12 +33,12 @@ pub(super) struct EyeArgs {
 
 impl EyeArgs {
     /// What is up in the picture, where the scene says `named`.
-    pub(super) fn up(&self, named: Up) -> Point3 {
+    pub(crate) fn up(&self, named: Up) -> Point3 {
         self.up.unwrap_or(named).0
     }
 
     /// The camera.
-    pub(super) fn camera(&self, up: Point3) -> Result<Camera, RenderError> {
+    pub(crate) fn camera(&self, up: Point3) -> Result<Camera, RenderError> {
         let camera = Camera::look_at(self.eye, self.look_at, up, self.fov, self.size);
         camera.and_then(|camera| camera.with_depths(self.near, self.far)).map_err(|source| {
             let option = match source {

@@ -2,7 +2,7 @@
 
 mod cull;
 mod error;
-mod eye;
+pub(crate) mod eye;
 mod method;
 mod outcome;
 

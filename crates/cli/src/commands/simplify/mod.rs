@@ -59,6 +59,13 @@ pub(crate) struct HowArgs {
     /// The share of the budget that is kept for moving corners instead of leaving triangles out, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = SimplifyOptions::default().collapse, value_parser = share, allow_hyphen_values = true)]
     collapse: f64,
+    /// Also merge triangles of an object that lie in one plane, exactly: no surface changes; what is interpolated over triangles, such as texture
+    /// coordinates, stays the same only where it is linear
+    #[arg(long)]
+    flat: bool,
+    /// Take scenes with mirrors as if there were none; else they are refused, as mirrors show what is hidden
+    #[arg(long)]
+    ignore_mirrors: bool,
     /// What proves triangles hidden, besides a table
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Method::Multifocal)]
     method: Method,
@@ -110,7 +117,8 @@ impl HowArgs {
     /// The options, for views in at least so many parts.
     pub(crate) fn options(&self, n_parts: usize) -> SimplifyOptions {
         let standard = SimplifyOptions::default();
-        SimplifyOptions { budget: self.budget, collapse: self.collapse, threads: self.threads, n_parts, ..standard }
+        let Self { budget, collapse, flat, ignore_mirrors, threads, .. } = *self;
+        SimplifyOptions { budget, collapse, flat, ignore_mirrors, threads, n_parts, ..standard }
     }
 }
 

@@ -29,6 +29,9 @@ pub(super) struct Outcome {
     n_deleted: usize,
     n_collapsed: usize,
     n_new: usize,
+    /// Saved by merging triangles in one plane, and what merged ones there are.
+    n_merged_away: usize,
+    n_merged: usize,
     n_left: usize,
     /// The share of the sphere of directions that changes at most, for every eye.
     bound: f64,
@@ -51,7 +54,7 @@ pub(super) struct Report {
     /// Shares that meet another object, or a place that differs in depth by more than a hundredth.
     other_object: f64,
     moved: f64,
-    /// Share of rays that what is gone intercepted before, by other rays, and an interval in which it lies with a
+    /// Share of rays that what is gone, or was merged with others, intercepted before, by other rays, and an interval in which it lies with a
     /// probability of 99 %.
     estimate: f64,
     estimate_interval: [f64; 2],
@@ -116,6 +119,8 @@ impl Outcome {
             n_deleted: counts.deleted,
             n_collapsed: counts.collapsed,
             n_new: counts.new,
+            n_merged_away: counts.merged_away,
+            n_merged: counts.merged,
             n_left: counts.left,
             bound: simplified.bound,
             deviation: simplified.deviation,
@@ -141,6 +146,9 @@ impl fmt::Display for Outcome {
         writeln!(f, "left out       {}, {}, within the budget", self.n_deleted, share(self.n_deleted))?;
         let moved = if self.n_new > 0 { format!(", by at most {} units", self.deviation) } else { String::new() };
         writeln!(f, "collapsed      {} to {}{moved}", self.n_collapsed, self.n_new)?;
+        if self.n_merged > 0 {
+            writeln!(f, "merged         {} more into {}", self.n_merged_away, self.n_merged)?;
+        }
         writeln!(f, "left           {}, {}", self.n_left, share(self.n_left))?;
         writeln!(
             f,
@@ -161,8 +169,9 @@ impl fmt::Display for Outcome {
             let [low, high] = report.estimate_interval.map(parts);
             writeln!(
                 f,
-                "estimate       {} was seen of what is gone, from {low} to {high} (99 %), by {} rays",
+                "estimate       {} was seen of what is gone{}, from {low} to {high} (99 %), by {} rays",
                 parts(report.estimate),
+                if self.n_merged > 0 { " or merged" } else { "" },
                 report.n_estimate_rays
             )?;
         }
