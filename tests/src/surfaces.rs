@@ -26,7 +26,8 @@ fn coordinate(numbers: &mut Numbers<'_>) -> f64 {
     }
 }
 
-fn point(numbers: &mut Numbers<'_>) -> Point3 {
+/// A place with such coordinates.
+pub(crate) fn point(numbers: &mut Numbers<'_>) -> Point3 {
     std::array::from_fn(|_| coordinate(numbers))
 }
 

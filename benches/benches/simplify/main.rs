@@ -11,8 +11,8 @@ mod meshopt;
 
 use clap::Parser;
 use measured::Row;
-use sightlines_benches::chart::{Panel, Series, svg};
 use sightlines::simplify::{HiddenBy, Prepared, SimplifyOptions};
+use sightlines_benches::chart::{Panel, Series, svg};
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,9 +1,7 @@
 //! What is measured of a scene, a place, a budget and a metric.
 
 use crate::cases::Case;
-use sightlines::simplify::{
-    MeasureOptions, Prepared, Simplified, SimplifyOptions, estimate, geometric, measure,
-};
+use sightlines::simplify::{MeasureOptions, Prepared, Simplified, SimplifyOptions, estimate, geometric, measure};
 use std::error::Error;
 use std::time::Instant;
 

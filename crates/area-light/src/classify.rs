@@ -29,7 +29,7 @@ impl<'a> Shadows<'a> {
     ///
     /// A point of the light lights a point of a face's side if it is strictly in front of that side's plane, and no face is
     /// met between the two. A light shines from all of its points to all sides; what lies on its border, such as the ceiling
-    /// that a lamp is flush with, hides nothing from it. What is meant by a piece of a face is said at [`Piece`].
+    /// that a lamp is flush with, hides nothing from it that other points of the light see; of points of the light on a surface nothing is said. What is meant by a piece of a face is said at [`Piece`].
     ///
     /// * *umbra*: the light is behind the side's plane or on it, or `method` says that the piece is hidden. This
     ///   is as sure as [`FromRegion::guarantee`] says, and as complete as the method is. The method has to be made for the same faces, or some of them.

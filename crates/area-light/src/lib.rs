@@ -6,8 +6,8 @@
 //! Owns: the states of surfaces under a light ([`Shadows::classify`], [`Lighting`], [`Piece`]), the proof that a piece is wholly lit, pictures in
 //! which rays are cast only where nothing is proven ([`Shadows::picture`]).
 //! Does not know: how umbrae are found, colours, files, threads.
-//! Invariants: umbra and lit are proven, for the pieces with their true corners and with the given, rounded ones; rays decide
-//! nothing but what is worth asking, and shares where nothing is proven; the same input gives the same answer.
+//! Invariants: umbra and lit are proven of pieces with their true corners, which cover the face (a given corner may be off by a rounding, as
+//! [`Piece::error`] says), for all points of the light that lie on no surface; rays decide nothing but what is worth asking, and shares where nothing is proven; the same input gives the same answer.
 //!
 //! Source: the parts of a soft shadow and their exact borders: Nishita and Nakamae, "Half-tone representation of 3-D objects illuminated by area sources or
 //! polyhedron sources", COMPSAC 1983.

@@ -145,7 +145,9 @@ fn objs_lose_their_materials_and_nothing_else() {
     let obj = "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nv 0 0 -1\nv 1 0 -1\nv 0 1 -1\nv 0 0 1\nv 1 0 1\nv 0 1 1\n\
                o wall\nusemtl red\nf 1 2 3 4\no behind\nf 5 6 7\no before-mirror\nf 8 9 10\n";
     folder.write("s.obj", obj);
-    let run = folder.run(&["simplify", "s.obj", "--volume", "-0.5,-0.5,4,0.5,0.5,5", "-o", "s.glb"]).expect(0);
+    let args = ["simplify", "s.obj", "--volume", "-0.5,-0.5,4,0.5,0.5,5", "-o", "s.glb"];
+    assert!(folder.run(&args).expect(2).err.contains("the scene has mirrors (1)"));
+    let run = folder.run(&[&args[..], &["--ignore-mirrors"]].concat()).expect(0);
     assert!(run.err.contains("s.obj: of an OBJ, triangles and names are kept; materials are not"), "{}", run.err);
     let after = read_scene(folder.path("s.glb")).unwrap();
     let names: Vec<&str> = after.scene.objects().iter().map(|o| o.name.as_str()).collect();

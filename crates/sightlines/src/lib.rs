@@ -8,6 +8,8 @@
 //! A game that only asks tables needs the crate `sightlines-pvs` alone, which depends on nothing that
 //! bakes them.
 
+#[cfg(feature = "area-light")]
+pub use sightlines_area_light as area_light;
 #[cfg(feature = "bake")]
 pub use sightlines_bake as bake;
 #[cfg(feature = "cells")]
@@ -40,8 +42,6 @@ pub use sightlines_scenes as scenes;
 pub use sightlines_sightline as sightline;
 #[cfg(feature = "simplify")]
 pub use sightlines_simplify as simplify;
-#[cfg(feature = "area-light")]
-pub use sightlines_area_light as area_light;
 #[cfg(feature = "stabtree")]
 pub use sightlines_stabtree as stabtree;
 #[cfg(feature = "triangulation")]

@@ -39,7 +39,7 @@ pub enum SimplifyError {
         cell: u32,
     },
     /// A scene in which things are seen that are hidden.
-    #[error("the scene has {n} mirrors, and what is seen in them alone would be left out; mirrors can be ignored")]
+    #[error("the scene has mirrors ({n}), and what is seen in them alone would be left out; mirrors can be ignored")]
     Mirrors {
         /// How many.
         n: usize,

@@ -12,8 +12,9 @@ use sightlines::bake::{
 use sightlines::cells::Scene;
 use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
 use sightlines::formats::geojson::{parse_plan, write_plan};
+use sightlines::formats::levels::{LevelFile, LevelsIndex, parse_levels_index, write_levels_index};
 use sightlines::formats::quake::{graph_of_prt, prt::parse_prt};
-use sightlines::formats::scene::{SceneFile, parse_glb, parse_obj, write_glb};
+use sightlines::formats::scene::{SceneFile, parse_glb, parse_glb_with_source, parse_obj, write_glb};
 use sightlines::formats::view_cells::parse_view_cells;
 use sightlines::formats::wad::WadKind;
 use sightlines::formats::{LumpName, Wad, WadBuilder};
@@ -24,6 +25,7 @@ use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
 use sightlines_packed::{PackOptions, Packed, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
+use sightlines_tests::simplified::SmallMesh;
 use sightlines_tests::surfaces::SmallShot;
 use sightlines_tests::volumes::SmallWorld;
 use std::panic::catch_unwind;
@@ -41,7 +43,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 16] = [
+const TARGETS: [Target; 18] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
@@ -51,6 +53,8 @@ const TARGETS: [Target; 16] = [
     Target { name: "bake", seeds: plans, check: check_bake },
     Target { name: "scene", seeds: buildings, check: check_building },
     Target { name: "volumes", seeds: small_worlds, check: check_volumes },
+    Target { name: "levels-index", seeds: levels_indexes, check: check_levels_index },
+    Target { name: "simplify", seeds: small_worlds, check: check_simplified },
     Target { name: "surfaces", seeds: small_worlds, check: check_surfaces },
     Target { name: "pvs", seeds: tables, check: check_pvs },
     Target { name: "packed", seeds: packed_tables, check: check_packed },
@@ -76,6 +80,13 @@ fn check_volumes(bytes: &[u8]) -> bool {
 fn check_surfaces(bytes: &[u8]) -> bool {
     SmallShot::from_bytes(bytes).is_some_and(|shot| {
         shot.check();
+        true
+    })
+}
+
+fn check_simplified(bytes: &[u8]) -> bool {
+    SmallMesh::from_bytes(bytes).is_some_and(|mesh| {
+        mesh.check();
         true
     })
 }
@@ -151,6 +162,29 @@ fn view_cells() -> Vec<Vec<u8>> {
 {"max":[1,2,3],"min":[-15,2,0],"note":{"id":7,"min":[]},"id":"K\u00fcche"}]}"#;
     assert!(parse_view_cells(small.as_bytes()).is_ok());
     vec![small.into()]
+}
+
+/// Two levels for three cells, one of which has none.
+fn levels_indexes() -> Vec<Vec<u8>> {
+    let level = |k: u64| LevelFile {
+        file: format!("level_{k}.glb"),
+        n_triangles: 10 * k,
+        n_bytes: 280 * k,
+        bound: 5e-4,
+        occluder: k == 1,
+    };
+    let levels = vec![level(0), level(1)];
+    let index = LevelsIndex { n_triangles: 99, budget: 1e-3, levels, cells: vec![Some(1), None, Some(0)] };
+    vec![write_levels_index(&index).into_bytes()]
+}
+
+fn check_levels_index(bytes: &[u8]) -> bool {
+    parse_levels_index(bytes).is_ok_and(|index| {
+        assert!(index.cells.iter().flatten().all(|&level| (level as usize) < index.levels.len()));
+        let again = parse_levels_index(write_levels_index(&index).as_bytes()).expect("what was written is read");
+        assert_eq!(again, index);
+        true
+    })
 }
 
 /// A scene as OBJ text, in which a broken digit moves a wall.
@@ -249,7 +283,17 @@ fn check_scene(file: &SceneFile) -> bool {
 }
 
 fn check_glb(bytes: &[u8]) -> bool {
-    parse_glb(bytes, None).is_ok_and(|file| check_scene(&file))
+    let Ok((file, source)) = parse_glb_with_source(bytes, None) else { return false };
+    // Every other triangle goes; what cannot be kept is refused.
+    let half = |triangles: &Vec<[u32; 3]>| triangles.iter().step_by(2).copied().collect::<Vec<_>>();
+    let left: Vec<_> = file.scene.objects().iter().map(|o| Some(half(&o.triangles))).collect();
+    if let Ok(bytes) = source.rewrite(&left, None)
+        && let Ok(again) = parse_glb(&bytes, None)
+    {
+        let n: usize = left.iter().flatten().map(Vec::len).sum();
+        assert_eq!(again.info.n_triangles, n);
+    }
+    check_scene(&file)
 }
 
 fn check_obj(bytes: &[u8]) -> bool {
