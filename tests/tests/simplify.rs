@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// A small tower, its table, and where its rooms are.
 fn small_tower() -> (Scene, Table, Vec<Aabb<3>>) {
-    let options = TowerOptions { floors: 2, rooms_x: 3, rooms_y: 2, furniture: 1, ..TowerOptions::default() };
+    let options = TowerOptions { floors: 2, rooms_x: 2, rooms_y: 2, furniture: 1, ..TowerOptions::default() };
     let scene = tower(options).unwrap();
     let table = bake_scene(&scene, &SceneBakeOptions::default()).unwrap().table;
     (scene, table, tower_rooms(options).unwrap().into_iter().map(|r| r.bounds).collect())

@@ -283,7 +283,7 @@ fn check_scene(file: &SceneFile) -> bool {
 }
 
 fn check_glb(bytes: &[u8]) -> bool {
-    let Ok((file, source)) = parse_glb_with_source(bytes, None) else { return false };
+    let Ok((file, source)) = parse_glb_with_source(bytes.to_vec(), None) else { return false };
     // Every other triangle goes; what cannot be kept is refused.
     let half = |triangles: &Vec<[u32; 3]>| triangles.iter().step_by(2).copied().collect::<Vec<_>>();
     let left: Vec<_> = file.scene.objects().iter().map(|o| Some(half(&o.triangles))).collect();
