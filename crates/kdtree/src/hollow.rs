@@ -11,29 +11,49 @@ use crate::tree::AxialTree;
 use sightlines_cells::{Point3, Scene};
 use sightlines_geometry::{Aabb, Point2, orient2d};
 
-/// For each room whether it is hollow: closed on all sides, also where the tree ends; nothing inside of
-/// its cells; and no triangle turns its front to them. Errs towards "no".
+/// For each room that is asked about whether it is hollow: closed on all sides, also where the tree ends; nothing
+/// inside of its cells; and no triangle turns its front to them. Errs towards "no".
 pub(crate) fn hollow_rooms(
     scene: &Scene,
     survey: &Survey,
     faces: &[AxialFace<3>],
     tree: &AxialTree<3>,
     rooms: &Rooms,
+    asked: Vec<bool>,
 ) -> Vec<bool> {
-    let mut hollow = vec![true; rooms.cells.len()];
-    for (object, &is_detail) in scene.objects().iter().zip(&survey.detail) {
+    let mut hollow = Hollow { n_left: asked.iter().filter(|asked| **asked).count(), rooms: asked };
+    let ends = Ends::of(tree.bounds(), faces);
+    let is_open = |cells: &[u32]| !cells.iter().all(|&c| ends.close(&tree.cells()[c as usize].bounds));
+    for (room, cells) in rooms.cells.iter().enumerate() {
+        if hollow.rooms[room] && is_open(cells) {
+            hollow.rule_out(room);
+        }
+    }
+    for ((object, shape), &is_detail) in scene.objects().iter().zip(&survey.shapes).zip(&survey.detail) {
+        if hollow.n_left == 0 {
+            break;
+        }
         if is_detail {
             // The box around a small thing is small.
-            visit_inside(tree, &object.bounds(), |cell| hollow[rooms.of_cell[cell] as usize] = false);
+            visit_inside(tree, &shape.bounds, |cell| hollow.rule_out(rooms.of_cell[cell] as usize));
         } else {
             object.corners().for_each(|corners| show(&corners, tree, rooms, &mut hollow));
         }
     }
-    let ends = Ends::of(tree.bounds(), faces);
-    for (room, cells) in rooms.cells.iter().enumerate() {
-        hollow[room] = hollow[room] && cells.iter().all(|&c| ends.close(&tree.cells()[c as usize].bounds));
+    hollow.rooms
+}
+
+/// The rooms that may still be hollow.
+struct Hollow {
+    rooms: Vec<bool>,
+    /// How many there are.
+    n_left: usize,
+}
+
+impl Hollow {
+    fn rule_out(&mut self, room: usize) {
+        self.n_left -= usize::from(std::mem::take(&mut self.rooms[room]));
     }
-    hollow
 }
 
 fn visit_inside(tree: &AxialTree<3>, extent: &Aabb<3>, mut visit: impl FnMut(usize)) {
@@ -44,7 +64,7 @@ fn visit_inside(tree: &AxialTree<3>, extent: &Aabb<3>, mut visit: impl FnMut(usi
 }
 
 /// Marks the rooms that have a triangle inside, or in front of which it is.
-fn show(corners: &[Point3; 3], tree: &AxialTree<3>, rooms: &Rooms, hollow: &mut [bool]) {
+fn show(corners: &[Point3; 3], tree: &AxialTree<3>, rooms: &Rooms, hollow: &mut Hollow) {
     let extent = Aabb::around(*corners);
     let mut meets = [Meets::Inside; 3];
     let mut across = vec![0, 1, 2];
@@ -58,9 +78,11 @@ fn show(corners: &[Point3; 3], tree: &AxialTree<3>, rooms: &Rooms, hollow: &mut 
         }
     }
     visit_cells(tree, &extent, meets, |cell| {
-        let (bounds, still) = (&tree.cells()[cell.idx()].bounds, &mut hollow[rooms.of_cell[cell.idx()] as usize]);
-        *still = *still && !across.iter().all(|&axis| overlap(corners, bounds, axis));
-        true
+        let (bounds, room) = (&tree.cells()[cell.idx()].bounds, rooms.of_cell[cell.idx()] as usize);
+        if hollow.rooms[room] && across.iter().all(|&axis| overlap(corners, bounds, axis)) {
+            hollow.rule_out(room);
+        }
+        hollow.n_left > 0
     });
 }
 

@@ -4,7 +4,7 @@
 //! splitting planes ([`Options`]), the tree with its cells, portals and point location ([`AxialTree`]),
 //! the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]), and that from a
 //! [`Scene`](sightlines_cells::Scene): which of its triangles hide ([`scene_faces`]), which cells are
-//! inside of solid matter ([`subdivide_scene`]).
+//! inside of solid matter ([`subdivide_scene`], [`SceneCutter`] for scenes that change).
 //! Does not know: sightlines, tables, files, walls that are not axis-parallel.
 //! Invariants: the cells tile the bounds without gap or overlap; no coordinate is ever computed, so
 //! cells and portals have the coordinates of faces and bounds, bit for bit; a portal is an opening of
@@ -31,6 +31,7 @@ mod error;
 mod face;
 mod flat;
 mod hollow;
+mod kept;
 mod matter;
 mod mesh;
 mod plan;
@@ -50,7 +51,9 @@ pub use error::{FaceError, KdError};
 pub use face::{AxialFace, AxialPlane, FaceClass, classify, cleaves};
 pub use plan::{PlanFaces, PlanSubdivision, plan_faces, planar_graph, subdivide_plan};
 pub use portals::{AxialPortal, PortalForm};
-pub use scene::{SceneOptions, SceneSubdivision, SceneSummary, TwoLevelPortal, subdivide_scene, two_level};
+pub use scene::{
+    SceneCutter, SceneOptions, SceneSubdivision, SceneSummary, TwoLevelPortal, subdivide_scene, two_level,
+};
 pub use scene_faces::{SceneFaces, default_detail_below, scene_faces};
 pub use tree::{AxialCell, AxialNode, AxialTree};
 

@@ -68,7 +68,8 @@ pub(crate) fn left_out(
 ) -> Vec<Option<LeftOut>> {
     let rooms = Rooms::of(tree);
     let solid = solid_rooms(scene, survey, tree, &rooms);
-    let hollow = hollow_rooms(scene, survey, &found.faces, tree, &rooms);
+    let asked = solid.iter().map(|solid| !solid).collect();
+    let hollow = hollow_rooms(scene, survey, &found.faces, tree, &rooms, asked);
     let in_region = |c: u32| view_region.is_none_or(|region| meet(&tree.cells()[c as usize].bounds, &region));
     let reachable = rooms.any(in_region);
     let why = |room: usize| match (solid[room], hollow[room], reachable[room]) {

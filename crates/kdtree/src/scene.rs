@@ -2,6 +2,7 @@
 
 use crate::build::{Options, subdivide};
 use crate::error::KdError;
+use crate::kept::Kept;
 use crate::matter::{LeftOut, left_out};
 use crate::portals::{AxialPortal, PortalForm, bounding_portals};
 use crate::scene_faces::{SceneFaces, Survey};
@@ -142,22 +143,42 @@ pub fn two_level(tree: &AxialTree<3>) -> Vec<TwoLevelPortal> {
 /// and [`KdError::ViewRegion`] for a view region that is no box; [`KdError::Tau`],
 /// [`KdError::DetailBelow`], [`KdError::TooManyCells`].
 pub fn subdivide_scene(scene: &Scene, options: &SceneOptions) -> Result<SceneSubdivision, KdError> {
-    if let Some(size) = options.detail_below.filter(|s| s.is_nan() || *s < 0.0) {
-        return Err(KdError::DetailBelow(size));
-    }
-    let bounds = root_box(scene, options.view_region)?;
-    let survey = Survey::of(scene, options);
-    let found = survey.faces(scene);
-    let tree = subdivide(&found.faces, bounds, &Options { tau: options.tau, max_cells: options.max_cells })?;
-    let out = match options.keep_solid {
-        true => vec![None; tree.cells().len()],
-        false => left_out(scene, &survey, &found, &tree, options.view_region),
-    };
-    Ok(SceneSubdivision::assemble(tree, &out, found, options.portals))
+    SceneCutter::default().cut(scene, options)
 }
 
-fn root_box(scene: &Scene, view_region: Option<Aabb<3>>) -> Result<Aabb<3>, KdError> {
-    let bounds = scene.bounds();
+/// Cuts scenes one after the other. What the next one has in common with the last is not looked at again.
+///
+/// Memory: about that of the last scene.
+#[derive(Debug, Clone, Default)]
+pub struct SceneCutter {
+    kept: Kept,
+}
+
+impl SceneCutter {
+    /// Cuts a scene as [`subdivide_scene`] does, with the same result.
+    ///
+    /// Cost: as there, but for finding the faces: O(vertices) for objects that the last scene had too, and what planes
+    /// take on which something differs.
+    ///
+    /// # Errors
+    /// As [`subdivide_scene`].
+    pub fn cut(&mut self, scene: &Scene, options: &SceneOptions) -> Result<SceneSubdivision, KdError> {
+        if let Some(size) = options.detail_below.filter(|s| s.is_nan() || *s < 0.0) {
+            return Err(KdError::DetailBelow(size));
+        }
+        let survey = Survey::of(scene, options, &mut self.kept);
+        let bounds = root_box(survey.bounds(), options.view_region)?;
+        let found = survey.faces(&mut self.kept);
+        let tree = subdivide(&found.faces, bounds, &Options { tau: options.tau, max_cells: options.max_cells })?;
+        let out = match options.keep_solid {
+            true => vec![None; tree.cells().len()],
+            false => left_out(scene, &survey, &found, &tree, options.view_region),
+        };
+        Ok(SceneSubdivision::assemble(tree, &out, found, options.portals))
+    }
+}
+
+fn root_box(bounds: Aabb<3>, view_region: Option<Aabb<3>>) -> Result<Aabb<3>, KdError> {
     let Some(region) = view_region else { return Ok(bounds) };
     for x in region.min.into_iter().chain(region.max) {
         check_coordinate(x).map_err(KdError::Bounds)?;

@@ -3,10 +3,12 @@
 use crate::coplanar::{FlatRect, inner_rectangles};
 use crate::face::AxialFace;
 use crate::flat::{large_regions, united};
-use crate::mesh::{FlatTriangle, Mesh, TriangleKind, kind_of, others};
+use crate::kept::{Kept, PlaneFaces, Shape, total_order};
+use crate::mesh::{FlatTriangle, Mesh, others};
 use crate::scene::SceneOptions;
-use sightlines_cells::Scene;
+use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point2};
+use std::sync::Arc;
 
 /// What a k-d tree can follow of a scene.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -46,7 +48,8 @@ pub struct SceneFaces {
 ///
 /// Leaving out faces only shows more. O(n log n) for n triangles of ordinary meshes.
 pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
-    Survey::of(scene, options).faces(scene)
+    let mut kept = Kept::default();
+    Survey::of(scene, options, &mut kept).faces(&mut kept)
 }
 
 /// A size below which things are detail, from the scene alone: the smaller of
@@ -59,18 +62,23 @@ pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
 /// 0 for a scene without corners. Computed in rounded arithmetic, the same on every machine; no choice of
 /// it is unsound. O(n log n) for n objects.
 pub fn default_detail_below(scene: &Scene) -> f64 {
-    let bounds = scene.bounds();
+    let boxes: Vec<Aabb<3>> = scene.objects().iter().map(SceneObject::bounds).collect();
+    detail_below_of(&boxes)
+}
+
+/// The same from the boxes of all objects.
+fn detail_below_of(objects: &[Aabb<3>]) -> f64 {
+    let bounds = around_all(objects.iter());
     if bounds.is_empty() {
         return 0.0;
     }
-    let extents = |b: Aabb<3>| {
+    let extents = |b: &Aabb<3>| {
         let mut extents: [f64; 3] = std::array::from_fn(|k| (b.max[k] - b.min[k]).max(0.0));
         extents.sort_unstable_by(f64::total_cmp);
         extents
     };
-    let middle = extents(bounds)[1];
-    let boxes = scene.objects().iter().map(|o| extents(o.bounds()));
-    let mut boxes: Vec<[f64; 3]> = boxes.filter(|b| b[2] < middle / 2.0).collect();
+    let middle = extents(&bounds)[1];
+    let mut boxes: Vec<[f64; 3]> = objects.iter().map(extents).filter(|b| b[2] < middle / 2.0).collect();
     boxes.sort_unstable_by(|a, b| a[2].total_cmp(&b[2]).then(a[1].total_cmp(&b[1])));
     let most = boxes.iter().map(|b| b[1] * b[2]).sum::<f64>() / 4.0;
     let mut below = 0.0;
@@ -79,6 +87,11 @@ pub fn default_detail_below(scene: &Scene) -> f64 {
         below > most
     });
     first_beyond.map_or(f64::INFINITY, |b| b[2]).min(middle / 20.0)
+}
+
+/// The box around boxes; those that are empty add nothing.
+fn around_all<'a>(boxes: impl Iterator<Item = &'a Aabb<3>>) -> Aabb<3> {
+    Aabb::around(boxes.filter(|b| !b.is_empty()).flat_map(|b| [b.min, b.max]))
 }
 
 fn largest_side(b: &Aabb<3>) -> f64 {
@@ -92,19 +105,30 @@ pub(crate) struct Survey {
     /// For each object whether it is detail.
     pub(crate) detail: Vec<bool>,
     /// The objects in pieces; empty for those that are detail.
-    pub(crate) meshes: Vec<Mesh>,
+    pub(crate) meshes: Vec<Arc<Mesh>>,
+    /// The triangles of the objects.
+    pub(crate) shapes: Vec<Arc<Shape>>,
 }
 
 impl Survey {
-    pub(crate) fn of(scene: &Scene, options: &SceneOptions) -> Self {
-        let detail_below = options.detail_below.unwrap_or_else(|| default_detail_below(scene));
-        let objects = scene.objects().iter();
-        let sorted = objects.map(|o| match largest_side(&o.bounds()) < detail_below {
-            true => (true, Mesh::default()),
-            false => (false, Mesh::of(o)),
-        });
-        let (detail, meshes) = sorted.unzip();
-        Self { detail_below, detail, meshes }
+    /// Sorts a scene; what is kept of the last one is used for objects that are the same, and replaced.
+    pub(crate) fn of(scene: &Scene, options: &SceneOptions, kept: &mut Kept) -> Self {
+        let shapes = kept.shapes_of(scene);
+        let boxes: Vec<Aabb<3>> = shapes.iter().map(|shape| shape.bounds).collect();
+        let detail_below = options.detail_below.unwrap_or_else(|| detail_below_of(&boxes));
+        let detail: Vec<bool> = boxes.iter().map(|b| largest_side(b) < detail_below).collect();
+        let nothing = Arc::new(Mesh::default());
+        let objects = scene.objects().iter().zip(&shapes).zip(&detail);
+        let mesh = |((object, shape), is_detail): ((&SceneObject, &Arc<Shape>), &bool)| match is_detail {
+            true => Arc::clone(&nothing),
+            false => Arc::clone(shape.mesh.get_or_init(|| Arc::new(Mesh::of(object)))),
+        };
+        Self { detail_below, meshes: objects.map(mesh).collect(), detail, shapes }
+    }
+
+    /// The box around all objects.
+    pub(crate) fn bounds(&self) -> Aabb<3> {
+        around_all(self.shapes.iter().map(|shape| &shape.bounds))
     }
 
     /// Whether a piece of an object that is not detail is.
@@ -118,39 +142,54 @@ impl Survey {
         !self.detail[object] && !self.is_small_thing(object, piece)
     }
 
-    pub(crate) fn faces(&self, scene: &Scene) -> SceneFaces {
+    /// The faces; those of planes with the same triangles as in the last scene are taken from there.
+    pub(crate) fn faces(&self, kept: &mut Kept) -> SceneFaces {
         let mut out = SceneFaces {
+            n_axial_triangles: self.shapes.iter().map(|shape| shape.flat.len()).sum(),
+            n_empty_triangles: self.shapes.iter().map(|shape| shape.n_empty).sum(),
+            n_other_triangles: self.shapes.iter().map(|shape| shape.n_other).sum(),
             n_detail_objects: self.detail.iter().filter(|d| **d).count(),
             detail: self.detail.clone(),
             detail_below: self.detail_below,
             ..SceneFaces::default()
         };
-        let mut hiding = self.hiding_triangles(scene, &mut out);
-        hiding.sort_by(|a, b| a.0.axis.cmp(&b.0.axis).then(a.0.at.total_cmp(&b.0.at)));
-        for plane in hiding.chunk_by(|a, b| (a.0.axis, a.0.at) == (b.0.axis, b.0.at)) {
-            let FlatTriangle { axis, at, .. } = plane[0].0;
-            let (rects, n_small) = self.rectangles(plane);
-            out.n_small_regions += n_small;
-            out.faces.extend(united(&rects).iter().map(|r| on_plane(r, axis, at)));
+        let hiding = self.hiding_triangles();
+        // By plane, and in each plane in their order.
+        let key = |(i, (flat, _)): (u32, &(&FlatTriangle, bool))| (flat.axis, total_order(flat.at), i);
+        let mut order: Vec<(usize, u64, u32)> = (0u32..).zip(&hiding).map(key).collect();
+        order.sort_unstable();
+        let flat = |i: u32| hiding[i as usize].0;
+        let mut planes = kept.take_planes(self.detail_below);
+        for group in order.chunk_by(|a, b| (a.0, flat(a.2).at) == (b.0, flat(b.2).at)) {
+            let (axis, at) = (group[0].0, flat(group[0].2).at);
+            let triangles = group.iter().map(|&(.., i)| (*hiding[i as usize].0, hiding[i as usize].1));
+            let plane = match planes.remove(&(axis, group[0].1)) {
+                Some(plane) if triangles.clone().eq(plane.triangles.iter().copied()) => plane,
+                _ => {
+                    let triangles: Vec<(FlatTriangle, bool)> = triangles.collect();
+                    let (rects, n_small) = self.rectangles(&triangles);
+                    PlaneFaces { triangles, rects: united(&rects), n_small }
+                }
+            };
+            out.n_small_regions += plane.n_small;
+            out.faces.extend(plane.rects.iter().map(|r| on_plane(r, axis, at)));
+            kept.planes.insert((axis, group[0].1), plane);
         }
         out
     }
 
-    /// The axis-parallel triangles that may hide, and whether they are of a closed piece; counts all.
-    fn hiding_triangles(&self, scene: &Scene, counts: &mut SceneFaces) -> Vec<(FlatTriangle, bool)> {
+    /// The axis-parallel triangles that may hide, and whether they are of a closed piece.
+    fn hiding_triangles(&self) -> Vec<(&FlatTriangle, bool)> {
         let mut hiding = Vec::new();
-        for (object, o) in scene.objects().iter().enumerate() {
-            for (triangle, corners) in o.corners().enumerate() {
-                match kind_of(&corners) {
-                    TriangleKind::Other => counts.n_other_triangles += 1,
-                    TriangleKind::Empty => counts.n_empty_triangles += 1,
-                    TriangleKind::Flat(flat) => {
-                        counts.n_axial_triangles += 1;
-                        let mesh = &self.meshes[object];
-                        if let Some(&piece) = mesh.piece_of.get(triangle).filter(|p| self.hides(object, **p)) {
-                            hiding.push((flat, mesh.pieces[piece as usize].closed));
-                        }
-                    }
+        for (object, (shape, mesh)) in self.shapes.iter().zip(&self.meshes).enumerate() {
+            if self.detail[object] {
+                continue;
+            }
+            let hides: Vec<bool> = (0..mesh.pieces.len() as u32).map(|piece| self.hides(object, piece)).collect();
+            for (triangle, flat) in &shape.flat {
+                let piece = mesh.piece_of[*triangle as usize] as usize;
+                if hides[piece] {
+                    hiding.push((flat, mesh.pieces[piece].closed));
                 }
             }
         }

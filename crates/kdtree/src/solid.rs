@@ -6,12 +6,12 @@
 //! where the ray leaves through a triangle's front, and sinks where it enters.
 
 use crate::matter::Rooms;
-use crate::mesh::{TriangleKind, kind_of};
+use crate::mesh::FlatTriangle;
 use crate::scene_faces::Survey;
 use crate::touch::{Meets, visit_cells};
 use crate::tree::AxialTree;
 use sightlines_cells::{Point3, Scene};
-use sightlines_geometry::{Aabb, Point2, orient2d};
+use sightlines_geometry::{Aabb, BoxTree, Point2, orient2d};
 
 /// The axis along which rays are sent.
 const RAY: usize = 0;
@@ -39,7 +39,7 @@ type Windings = Vec<(u32, i32)>;
 /// For each room whether each of its cells is inside of solid matter; see
 /// [`subdivide_scene`](crate::subdivide_scene). Errs towards "no".
 pub(crate) fn solid_rooms(scene: &Scene, survey: &Survey, tree: &AxialTree<3>, rooms: &Rooms) -> Vec<bool> {
-    let mut shells = Shells::of(scene, survey);
+    let mut shells = Shells::of(survey);
     let first: Vec<u32> = rooms.cells.iter().map(|cells| cells[0]).collect();
     let around = shells.around(tree, &first);
     let maybe: Vec<bool> = around.iter().map(|w| shells.is_matter(w)).collect();
@@ -50,25 +50,27 @@ pub(crate) fn solid_rooms(scene: &Scene, survey: &Survey, tree: &AxialTree<3>, r
     for (&cell, w) in asked.iter().zip(shells.around(tree, &asked)) {
         windings[cell as usize] = w;
     }
-    shells.forget_divided(scene, tree, &mut windings);
-    shells.find_containers(scene, survey, tree, &windings);
+    shells.forget_divided(scene, survey, tree, &mut windings);
+    shells.find_containers(survey, tree, &windings);
     rooms.cells.iter().map(|cells| cells.iter().all(|&c| shells.is_matter(&windings[c as usize]))).collect()
 }
 
 /// All shells of a scene.
 struct Shells {
     shells: Vec<Shell>,
-    /// By the lower end along `u`.
+    /// Shell by shell.
     sheets: Vec<Sheet>,
+    /// For each shell where its sheets begin; and where the last ones end.
+    first_sheet: Vec<u32>,
+    /// Of the boxes around the shells.
+    tree: BoxTree<3>,
     /// For each object the shell that each of its pieces is, if it is one.
     of_piece: Vec<Vec<Option<u32>>>,
-    /// For each object the piece of each triangle.
-    piece_of: Vec<Vec<u32>>,
 }
 
 impl Shells {
-    fn of(scene: &Scene, survey: &Survey) -> Self {
-        let (mut shells, mut of_piece) = (Vec::new(), Vec::new());
+    fn of(survey: &Survey) -> Self {
+        let (mut shells, mut of_piece): (Vec<Shell>, Vec<Vec<Option<u32>>>) = (Vec::new(), Vec::new());
         for (object, mesh) in survey.meshes.iter().enumerate() {
             let shell = |(piece, p): (u32, &crate::mesh::MeshPiece)| {
                 let is_shell = p.closed && p.axial && !survey.is_small_thing(object, piece);
@@ -79,20 +81,26 @@ impl Shells {
             };
             of_piece.push((0u32..).zip(&mesh.pieces).map(shell).collect());
         }
-        let piece_of = survey.meshes.iter().map(|m| m.piece_of.clone()).collect();
-        let mut out = Self { shells, sheets: Vec::new(), of_piece, piece_of };
         let mut sheets = Vec::new();
-        out.for_each_triangle(scene, |shell, corners| sheets.extend(sheet(shell, corners)));
-        sheets.sort_by(|a, b| a.u[0].total_cmp(&b.u[0]));
-        out.sheets = sheets;
-        out
+        for ((shape, mesh), shells) in survey.shapes.iter().zip(&survey.meshes).zip(&of_piece) {
+            for (triangle, flat) in shape.flat.iter().filter(|(_, flat)| flat.axis == RAY) {
+                // Objects that are detail have no pieces.
+                let piece = mesh.piece_of.get(*triangle as usize);
+                sheets.extend(piece.and_then(|&piece| shells[piece as usize]).map(|shell| Sheet::of(shell, flat)));
+            }
+        }
+        sheets.sort_by_key(|sheet| sheet.shell);
+        let first = |shell: usize| sheets.partition_point(|sheet| (sheet.shell as usize) < shell) as u32;
+        let first_sheet = (0..=shells.len()).map(first).collect();
+        let boxes: Vec<Aabb<3>> = shells.iter().map(|shell| shell.bounds).collect();
+        Self { shells, sheets, first_sheet, tree: BoxTree::build(&boxes, 2), of_piece }
     }
 
-    fn for_each_triangle(&self, scene: &Scene, mut f: impl FnMut(u32, &[Point3; 3])) {
-        for ((object, pieces), shells) in scene.objects().iter().zip(&self.piece_of).zip(&self.of_piece) {
-            for (&piece, corners) in pieces.iter().zip(object.corners()) {
-                if let Some(shell) = shells[piece as usize] {
-                    f(shell, &corners);
+    fn for_each_triangle(&self, scene: &Scene, survey: &Survey, mut f: impl FnMut(&[Point3; 3])) {
+        for ((object, mesh), shells) in scene.objects().iter().zip(&survey.meshes).zip(&self.of_piece) {
+            for (&piece, corners) in mesh.piece_of.iter().zip(object.corners()) {
+                if shells[piece as usize].is_some() {
+                    f(&corners);
                 }
             }
         }
@@ -101,20 +109,26 @@ impl Shells {
     /// How often shells wind around the middle of each of `cells`. Nothing for a cell without a middle
     /// that is inside of it, one unit in the last place thin.
     fn around(&self, tree: &AxialTree<3>, cells: &[u32]) -> Vec<Windings> {
-        let middles = cells.iter().map(|&c| middle(&tree.cells()[c as usize].bounds));
-        let mut points: Vec<(Point3, usize)> = middles.zip(0..).filter_map(|(m, i)| Some((m?, i))).collect();
-        points.sort_by(|a, b| a.0[1].total_cmp(&b.0[1]));
-        let mut out = vec![Vec::new(); cells.len()];
-        let mut coming = self.sheets.iter().peekable();
-        let mut active: Vec<&Sheet> = Vec::new();
-        for (p, i) in points {
-            while let Some(sheet) = coming.next_if(|s| s.u[0] <= p[1]) {
-                active.push(sheet);
-            }
-            active.retain(|s| s.u[1] >= p[1]);
-            out[i] = sums(active.iter().filter(|s| s.at > p[RAY]).map(|s| (s.shell, s.winding(p))));
-        }
-        out
+        cells
+            .iter()
+            .map(|&c| middle(&tree.cells()[c as usize].bounds).map_or_else(Vec::new, |p| self.around_point(p)))
+            .collect()
+    }
+
+    /// A shell winds around no point outside of its box, as it is closed.
+    fn around_point(&self, p: Point3) -> Windings {
+        let mut around = Vec::new();
+        self.tree.visit(
+            |b| b.contains(p),
+            |shell| {
+                let [first, end] = [shell, shell + 1].map(|i| self.first_sheet[i as usize] as usize);
+                if self.shells[shell as usize].bounds.contains(p) {
+                    let sheets = self.sheets[first..end].iter().filter(|s| s.at > p[RAY]);
+                    around.push((shell, sheets.map(|s| s.winding(p)).sum()));
+                }
+            },
+        );
+        sums(around.into_iter())
     }
 
     /// Whether a point with these windings is inside of an object: of its shells, more than that hollows
@@ -125,8 +139,8 @@ impl Shells {
     }
 
     /// Forgets the windings of cells that a triangle of a shell is inside of.
-    fn forget_divided(&self, scene: &Scene, tree: &AxialTree<3>, windings: &mut [Windings]) {
-        self.for_each_triangle(scene, |_, corners| {
+    fn forget_divided(&self, scene: &Scene, survey: &Survey, tree: &AxialTree<3>, windings: &mut [Windings]) {
+        self.for_each_triangle(scene, survey, |corners| {
             visit_cells(tree, &Aabb::around(*corners), [Meets::Inside; 3], |cell| {
                 windings[cell.idx()].clear();
                 true
@@ -135,10 +149,10 @@ impl Shells {
     }
 
     /// Finds the shells that other things lie in, whole. Hollows are no things.
-    fn find_containers(&mut self, scene: &Scene, survey: &Survey, tree: &AxialTree<3>, windings: &[Windings]) {
+    fn find_containers(&mut self, survey: &Survey, tree: &AxialTree<3>, windings: &[Windings]) {
         for (object, mesh) in survey.meshes.iter().enumerate() {
             if survey.detail[object] {
-                self.mark_around(None, &scene.objects()[object].bounds(), tree, windings);
+                self.mark_around(None, &survey.shapes[object].bounds, tree, windings);
             }
             for (piece, p) in mesh.pieces.iter().enumerate().filter(|(_, p)| !(p.closed && p.inverted)) {
                 self.mark_around(self.of_piece[object][piece], &p.bounds, tree, windings);
@@ -167,21 +181,20 @@ impl Shells {
     }
 }
 
-fn sheet(shell: u32, corners: &[Point3; 3]) -> Option<Sheet> {
-    let TriangleKind::Flat(flat) = kind_of(corners) else { return None };
-    let span = |of: fn(&Point2) -> f64| {
-        let [a, b, c] = flat.corners.each_ref().map(of);
-        [a.min(b).min(c), a.max(b).max(c)]
-    };
-    (flat.axis == RAY).then(|| Sheet { shell, at: flat.at, corners: flat.corners, u: span(|p| p.x), v: span(|p| p.y) })
-}
-
 impl Sheet {
+    fn of(shell: u32, flat: &FlatTriangle) -> Self {
+        let span = |of: fn(&Point2) -> f64| {
+            let [a, b, c] = flat.corners.each_ref().map(of);
+            [a.min(b).min(c), a.max(b).max(c)]
+        };
+        Self { shell, at: flat.at, corners: flat.corners, u: span(|p| p.x), v: span(|p| p.y) }
+    }
+
     /// How often the triangle's outline winds around a point, seen along the ray: once if the ray leaves
     /// through its front, minus once if it enters. A point on an edge is counted to the triangle on one
     /// side of it, always the same.
     fn winding(&self, p: Point3) -> i32 {
-        if p[2] < self.v[0] || p[2] > self.v[1] {
+        if p[1] < self.u[0] || p[1] > self.u[1] || p[2] < self.v[0] || p[2] > self.v[1] {
             return 0;
         }
         let q = Point2::new(p[1], p[2]);

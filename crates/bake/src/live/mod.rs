@@ -1,7 +1,7 @@
 //! The table of a scene that changes: doors that close and open, walls that are built, moved and torn down, furniture
 //! that is carried about.
 //!
-//! The scene is cut anew, which is quick beside seeing; who sees whom is brought up to date by
+//! The scene is cut with what the last one leaves of its faces ([`SceneCutter`]); who sees whom is brought up to date by
 //! [`LiveSpace`](sightlines_stabtree::LiveSpace) where walls differ. The table is the one that
 //! [`bake_scene`](crate::bake_scene) makes of the new scene, byte for byte, unless pairs are given up
 //! ([`BakedScene::n_assumed`](crate::BakedScene::n_assumed)): of those, an update may know that they are hidden, from the
@@ -18,7 +18,7 @@ use crate::scene::{PortalMode, SceneBakeOptions, drawn_box, info, scene_table};
 use cut::Cut;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, PortalId, Scene};
 use sightlines_geometry::Aabb;
-use sightlines_kdtree::{PortalForm, SceneOptions};
+use sightlines_kdtree::{PortalForm, SceneCutter, SceneOptions};
 use sightlines_pvs::Table;
 use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceUpdate};
 use std::time::{Duration, Instant};
@@ -34,6 +34,7 @@ pub struct LiveScene {
     scene: Scene,
     /// The boxes of its objects.
     boxes: Vec<Aabb<3>>,
+    cutter: SceneCutter,
     cut: Cut,
     /// Closed openings.
     closed: Vec<AxialDoor>,
@@ -64,12 +65,13 @@ impl LiveScene {
     pub fn new(scene: Scene, options: &SceneBakeOptions<'_>) -> Result<Self, BakeError> {
         let (portals, threads) = (options.portals, options.threads);
         let cutting = SceneOptions { portals: PortalForm::Exact, ..options.cut };
-        let cut = Cut::of(&scene, &cutting, portals)?;
+        let mut cutter = SceneCutter::default();
+        let cut = Cut::of(&mut cutter, &scene, &cutting, portals)?;
         let search = SearchOptions { threads, progress: options.progress, ..SearchOptions::default() };
         let boxes = boxes_of(&scene);
         let space = LiveSpace::new(cut.graph.clone(), &cut.solid, boxes.clone(), &search);
         let table = tabulate(&scene, &boxes, &cut, &space, &cutting, portals)?;
-        Ok(Self { cutting, portals, threads, scene, boxes, cut, closed: Vec::new(), space, table })
+        Ok(Self { cutting, portals, threads, scene, boxes, cutter, cut, closed: Vec::new(), space, table })
     }
 
     /// The scene.
@@ -96,7 +98,7 @@ impl LiveScene {
     /// As [`bake_scene`](crate::bake_scene); then everything stays as it was.
     pub fn update(&mut self, scene: Scene) -> Result<LiveUpdate, BakeError> {
         let start = Instant::now();
-        let cut = Cut::of(&scene, &self.cutting, self.portals)?;
+        let cut = Cut::of(&mut self.cutter, &scene, &self.cutting, self.portals)?;
         let cut_time = start.elapsed();
         (self.boxes, self.scene, self.cut) = (boxes_of(&scene), scene, cut);
         Ok(LiveUpdate { cut_time, ..self.see()? })

@@ -75,6 +75,8 @@ struct Question<'a> {
     within_reach: Vec<Vec<u32>>,
     /// For each cell the objects that it lies in.
     around: Vec<Vec<u32>>,
+    /// The places of cells that lie in some object.
+    inner: Vec<usize>,
     /// For each cell, which cells it hangs together with through portals, as the least of them.
     component: Vec<u32>,
     /// Places by places.
@@ -168,8 +170,7 @@ impl<'a> Question<'a> {
         let slivers = slivers::find(&extents);
         let regular: Vec<u32> = (0u32..).zip(&slivers).filter(|(_, sliver)| !**sliver).map(|(cell, _)| cell).collect();
         let boxes_of: Vec<Aabb<3>> = regular.iter().map(|&cell| extents[cell as usize]).collect();
-        let tree = BoxTree::build(&boxes_of, 1);
-        let object_tree = BoxTree::build(boxes, 2);
+        let (tree, object_tree) = rayon::join(|| BoxTree::build(&boxes_of, 1), || BoxTree::build(boxes, 2));
         let cell_at: Vec<u32> = tree.order().iter().map(|&i| regular[i as usize]).collect();
         let mut place = vec![SLIVER; extents.len()];
         for (at, &cell) in (0u32..).zip(&cell_at) {
@@ -193,7 +194,8 @@ impl<'a> Question<'a> {
         let lies_in = |(cell, near): (&Aabb<3>, &Vec<u32>)| -> Vec<u32> {
             near.iter().copied().filter(|&o| objects::within(cell, &boxes[o as usize])).collect()
         };
-        let around = extents.iter().zip(&within_reach).map(lies_in).collect();
+        let around: Vec<Vec<u32>> = extents.iter().zip(&within_reach).map(lies_in).collect();
+        let inner = (0..cell_at.len()).filter(|&at| !around[cell_at[at] as usize].is_empty()).collect();
         let cells = Marks::new(cell_at.len(), cell_at.len());
         for (row, &cell) in cell_at.iter().enumerate() {
             let places = known.visible.iter_ones(cell as usize).map(|col| place[col]).filter(|p| *p != SLIVER);
@@ -216,6 +218,7 @@ impl<'a> Question<'a> {
             touching,
             within_reach,
             around,
+            inner,
             component: components(graph),
             cells,
             objects,

@@ -65,12 +65,12 @@ impl Notes {
         (taken, number)
     }
 
-    /// Drops lines that prove nothing, if they are more than half. O(proofs).
+    /// Drops lines that prove nothing, if they are more than a quarter. O(proofs).
     pub(super) fn compact(&mut self) {
         let mut idle = vec![true; self.lines.len()];
         self.cells.iter().chain(&self.objects).for_each(|proof| idle[proof.line as usize] = false);
         let out: Vec<u32> = (0u32..).zip(&idle).filter(|(_, idle)| **idle).map(|(line, _)| line).collect();
-        if out.len() <= self.lines.len() / 2 {
+        if out.len() <= self.lines.len() / 4 {
             return;
         }
         let (_, number) = self.take_lines(&out);

@@ -2,7 +2,7 @@
 
 use super::Question;
 use super::notes::{FoundFor, Hand, Notes};
-use super::pairs::{CELL_BUDGET, FEW, GROUP_BUDGET, apart};
+use super::pairs::{CELL_BUDGET, FEW, apart};
 use sightlines_geometry::Aabb;
 use sightlines_sightline::{Sight, Target};
 use std::sync::atomic::Ordering::Relaxed;
@@ -28,15 +28,31 @@ impl Question<'_> {
         for &object in &self.touching[own] {
             self.objects.set(object as usize, place);
         }
-        let asked = self.doubt.as_ref().is_none_or(|doubt| doubt.rows[place]);
-        for other in self.cells.ones(place) {
-            let cell = self.cell_at[other] as usize;
+        let mut lies_in = |cell: usize| {
             for &object in &self.around[cell] {
                 if self.objects.set(object as usize, place) {
                     notes.iter_mut().for_each(|notes| notes.inside.push([object, own as u32]));
                 }
             }
-            for &object in self.within_reach[cell].iter().filter(|_| asked) {
+        };
+        if let Some(doubt) = self.doubt.as_ref().filter(|doubt| !doubt.rows[place]) {
+            // Little has to be looked at, for most places.
+            self.inner
+                .iter()
+                .filter(|other| self.cells.get(place, **other))
+                .for_each(|&o| lies_in(self.cell_at[o] as usize));
+            for &(object, near) in doubt.near_new.iter().filter(|near| self.cells.get(place, near.1)) {
+                debug_assert!(self.within_reach[self.cell_at[near] as usize].contains(&object));
+                if self.may_see_object(place, object as usize) {
+                    self.maybe.set(object as usize, place);
+                }
+            }
+            return;
+        }
+        for other in self.cells.ones(place) {
+            let cell = self.cell_at[other] as usize;
+            lies_in(cell);
+            for &object in &self.within_reach[cell] {
                 if self.may_see_object(place, object as usize) {
                     self.maybe.set(object as usize, place);
                 }
@@ -59,7 +75,7 @@ impl Question<'_> {
             let worth_it = || self.doubt.is_none() || self.maybe.count_beyond(&self.objects, row, places, FEW) > FEW;
             let ask = node.is_leaf() || (apart(&node.bounds, target) && !self.objects.any(row, places) && worth_it());
             if ask {
-                let budget = if node.is_leaf() { CELL_BUDGET } else { GROUP_BUDGET };
+                let budget = if node.is_leaf() { CELL_BUDGET } else { self.group_budget() };
                 let found_for = if node.is_leaf() { FoundFor::Object([object, places[0]]) } else { FoundFor::Groups };
                 match hand.shaft.decide(&node.bounds, target, Target::Surface, budget) {
                     Sight::Blocked => continue,

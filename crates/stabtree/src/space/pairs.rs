@@ -13,6 +13,9 @@ pub(super) const GROUP_BUDGET: u32 = 64;
 /// Linear programs spent on a pair of single cells, or a cell and an object, before it counts as visible.
 pub(super) const CELL_BUDGET: u32 = 2000;
 
+/// The same where only some pairs are asked about: less depends on the answer.
+pub(super) const FEW_BUDGET: u32 = 12;
+
 /// Where only some pairs are asked about, groups with no more of them than this are halved at once.
 pub(super) const FEW: u32 = 3;
 
@@ -49,7 +52,7 @@ impl Question<'_> {
         let few = |doubt: &Doubt| doubt.cells.count_beyond(&self.cells, rows, cols, FEW) <= FEW;
         let worth_it = self.doubt.as_ref().is_none_or(|doubt| !few(doubt));
         if worth_it && apart(&na.bounds, &nb.bounds) && !self.cells.any(rows, cols) {
-            match hand.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET) {
+            match hand.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, self.group_budget()) {
                 Sight::Blocked => return,
                 Sight::Open(line) => self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, hand),
                 Sight::Undecided => {}
@@ -61,6 +64,11 @@ impl Question<'_> {
         } else {
             self.tree.children(b).into_iter().for_each(|b| smaller([a, b]));
         }
+    }
+
+    /// Linear programs for a pair of groups.
+    pub(super) const fn group_budget(&self) -> u32 {
+        if self.doubt.is_some() { FEW_BUDGET } else { GROUP_BUDGET }
     }
 
     fn settle_cells(&self, [a, b]: [usize; 2], bounds: [&Aabb<3>; 2], hand: &mut Hand<'_>) {
@@ -154,5 +162,34 @@ impl Question<'_> {
             notes.cells.append(&mut pairs);
             notes.objects.append(&mut seen);
         }
+    }
+
+    /// Marks what the free part of a line passes among places and objects that `is_new`, with all that it passes;
+    /// returns what was not marked yet, pairs of cells and pairs of an object and a cell.
+    pub(super) fn mark_new(&self, line: u32, span: &FreeSpan, is_new: &[Vec<bool>; 2]) -> [Vec<Proof>; 2] {
+        let (mut pairs, mut seen) = (Vec::new(), Vec::new());
+        let cells = self.cells_on(span);
+        let (new, old): (Vec<usize>, Vec<usize>) = cells.iter().partition(|place| is_new[0][**place]);
+        for (i, &a) in new.iter().enumerate() {
+            for &b in new[..i].iter().chain(&old) {
+                if self.join(a, b) {
+                    pairs.push(Proof { pair: [a, b].map(|place| self.cell_at[place]), line });
+                }
+            }
+        }
+        let mut see = |object: u32, places: &[usize]| {
+            let unseen = places.iter().filter(|place| self.objects.set(object as usize, **place));
+            seen.extend(unseen.map(|&place| Proof { pair: [object, self.cell_at[place]], line }));
+        };
+        self.object_tree.visit(
+            |b| span.may_meet(b),
+            |object| {
+                let places = if is_new[1][object as usize] { &cells } else { &new };
+                if !places.is_empty() && span.meets(&self.boxes[object as usize]) {
+                    see(object, places);
+                }
+            },
+        );
+        [pairs, seen]
     }
 }

@@ -20,14 +20,16 @@ pub(in super::super) struct Doubt {
     pub(in super::super) cells: Marks,
     /// Objects by places.
     pub(in super::super) objects: Marks,
-    /// Places in doubt about some object.
+    /// Places in doubt about some object that is not new.
     pub(in super::super) rows: Vec<bool>,
+    /// New objects, each with the places within whose reach it is.
+    pub(in super::super) near_new: Vec<(u32, usize)>,
 }
 
 impl Doubt {
     pub(super) fn none(n_places: usize, n_objects: usize) -> Self {
         let [cells, objects] = [n_places, n_objects].map(|n_rows| Marks::new(n_rows, n_places));
-        Self { cells, objects, rows: vec![false; n_places] }
+        Self { cells, objects, rows: vec![false; n_places], near_new: Vec::new() }
     }
 
     /// Doubts whether two places see each other.
@@ -40,6 +42,16 @@ impl Doubt {
     pub(super) fn object(&mut self, object: u32, place: usize) {
         self.objects.set(object as usize, place);
         self.rows[place] = true;
+    }
+
+    /// Doubts from where an object is seen that was none before. O(places).
+    pub(super) fn new_object(&mut self, object: u32, question: &Question<'_>) {
+        for (place, &cell) in question.cell_at.iter().enumerate() {
+            self.objects.set(object as usize, place);
+            if question.within_reach[cell as usize].binary_search(&object).is_ok() {
+                self.near_new.push((object, place));
+            }
+        }
     }
 
     /// What may have come into sight through a place where a wall was: pairs that see it, or touch it, from either
@@ -55,12 +67,21 @@ impl Doubt {
         for &a in &low {
             high.iter().filter(|b| **b != a).for_each(|&b| self.pair(a, b));
         }
-        let cells = seers.iter().map(|&place| question.cell_at[place] as usize);
-        let mut near: Vec<u32> = cells.flat_map(|cell| question.within_reach[cell].iter().copied()).collect();
-        near.sort_unstable();
-        near.dedup();
-        for &place in seers {
-            near.iter().for_each(|&object| self.object(object, place));
+        let near = |seers: &[usize]| {
+            let cells = seers.iter().map(|&place| question.cell_at[place] as usize);
+            let mut near: Vec<u32> = cells.flat_map(|cell| question.within_reach[cell].iter().copied()).collect();
+            near.sort_unstable();
+            near.dedup();
+            near
+        };
+        // A line to an object goes on to it on the other side; slivers, which are thin, are on both.
+        let has_slivers = question.regular.len() < question.graph.n_cells();
+        let sides = if has_slivers { vec![(seers, seers)] } else { vec![(&low[..], &high[..]), (&high, &low)] };
+        for (from, to) in sides {
+            let near = near(to);
+            for &place in from {
+                near.iter().for_each(|&object| self.object(object, place));
+            }
         }
     }
 

@@ -8,7 +8,8 @@
 //!   lies with it where no cells were. Lines that are not cut and pass it show what it sees.
 //!
 //! All other pairs are asked about as ever, groups first; groups without such pairs are passed over. Lines that are
-//! cut are followed once more on both sides of the cut, and those that ended at a wall that is gone, further on.
+//! cut are followed once more on both sides of the cut, and those that ended at a wall that is gone, further on; those
+//! that proved what cells see that are gone show much of what the cells see that are there instead.
 //!
 //! The answer is that of [`see_space`](super::see_space): both are exact, but for pairs that are given up
 //! ([`SeenInSpace::n_assumed`]). Such a pair is asked about again with every update, but a pair that was proven to be
@@ -20,6 +21,7 @@ mod matching;
 
 pub(super) use doubt::Doubt;
 
+use super::grid::Marks;
 use super::notes::{FoundFor, Hand, Line, Notes, Proof};
 use super::opaque::Walls;
 use super::{Question, SeenInSpace, on_threads, slivers};
@@ -210,29 +212,34 @@ impl Step<'_> {
         let question = self.question;
         let mut doubt = Doubt::none(question.cell_at.len(), question.boxes.len());
         let [closed, opened] = [&change.closed, &change.opened].map(|walls| BoxTree::build(walls, 1));
-        let new = self.new_boxes(same_objects);
+        let new_objects: Vec<u32> =
+            (0u32..).zip(same_objects).filter(|(_, old)| old.is_none()).map(|(object, _)| object).collect();
+        let new_boxes: Vec<Aabb<3>> = new_objects.iter().map(|&object| question.boxes[object as usize]).collect();
+        let new_boxes = BoxTree::build(&new_boxes, 1);
         let kind = |line: &Line| match () {
             () if meets_any(line, &closed) => Kind::Cut,
             () if meets_any(line, &opened) => Kind::Freed,
-            () if meets_any(line, &new) => Kind::Near,
+            () if meets_any(line, &new_boxes) => Kind::Near,
             () => Kind::Away,
         };
         let kinds: Vec<Kind> = notes.lines.par_iter().map(kind).collect();
         let of_kind = |wanted: Kind| -> Vec<u32> {
             (0u32..).zip(&kinds).filter(|(_, kind)| **kind == wanted).map(|(line, _)| line).collect()
         };
-        let pick = |lines: &[u32]| -> Vec<Line> { lines.iter().map(|&i| notes.lines[i as usize].clone()).collect() };
-        let (freed, near) = (pick(&of_kind(Kind::Freed)), pick(&of_kind(Kind::Near)));
+        let freed: Vec<Line> = of_kind(Kind::Freed).iter().map(|&i| notes.lines[i as usize].clone()).collect();
+        let near = of_kind(Kind::Near);
         let (cut, number) = notes.take_lines(&of_kind(Kind::Cut));
-        self.carry_over(&mut notes, &number, &mut doubt);
-        let whole = near.par_iter().map_init(
-            || question.hand(),
-            |hand, line| {
-                let cells = question.cells_on(&line.span);
-                question.mark(&line.line, line.span.clone(), &cells, FoundFor::Groups, hand);
-                hand.take_notes()
-            },
-        );
+        let mut again = self.carry_over(&mut notes, &number, &mut doubt);
+        again.extend(near.iter().filter_map(|&line| number[line as usize]));
+        again.sort_unstable();
+        again.dedup();
+        let is_new = self.is_new(&new_objects);
+        let more = again.par_iter().map(|&line| question.mark_new(line, &notes.lines[line as usize].span, &is_new));
+        let more: Vec<[Vec<Proof>; 2]> = more.collect();
+        for [cells, objects] in more {
+            notes.cells.extend(cells);
+            notes.objects.extend(objects);
+        }
         let parts = cut.par_iter().chain(&freed).map_init(
             || question.hand(),
             |hand, line| {
@@ -240,7 +247,7 @@ impl Step<'_> {
                 hand.take_notes()
             },
         );
-        let found: Vec<Notes> = whole.chain(parts).collect();
+        let found: Vec<Notes> = parts.collect();
         found.into_iter().for_each(|found| notes.append(found));
         let candidates = doubt::candidates(question, self.old, self.cells, &change.opened);
         let seers = change
@@ -252,19 +259,17 @@ impl Step<'_> {
             doubt.through(opened, seers, question);
         }
         doubt.new_cells(question, self.old, self.cells, &self.heirs);
-        for (object, _) in (0u32..).zip(same_objects).filter(|(_, old)| old.is_none()) {
-            (0..question.cell_at.len()).for_each(|place| doubt.object(object, place));
-        }
+        new_objects.into_iter().for_each(|object| doubt.new_object(object, question));
         (doubt, notes, cut.len())
     }
 
-    /// The boxes of new cells and new objects.
-    fn new_boxes(&self, same_objects: &[Option<u32>]) -> BoxTree<3> {
-        let cells = self.question.graph.cells().iter().zip(&self.cells.old_of);
-        let cells = cells.filter(|(_, old)| old.is_none()).map(|(cell, _)| cell.bounds);
-        let objects = self.question.boxes.iter().zip(same_objects).filter(|(_, old)| old.is_none());
-        let boxes: Vec<Aabb<3>> = cells.chain(objects.map(|(bounds, _)| *bounds)).collect();
-        BoxTree::build(&boxes, 1)
+    /// Which places and objects are new.
+    fn is_new(&self, new_objects: &[u32]) -> [Vec<bool>; 2] {
+        let question = self.question;
+        let cells = question.cell_at.iter().map(|&cell| self.cells.old_of[cell as usize].is_none()).collect();
+        let mut objects = vec![false; question.boxes.len()];
+        new_objects.iter().for_each(|&object| objects[object as usize] = true);
+        [cells, objects]
     }
 
     /// The place of an old cell that is still there.
@@ -273,27 +278,66 @@ impl Step<'_> {
     }
 
     /// Marks the pairs of lines that are still there, by their new numbers, and gives them the new ids; the other pairs
-    /// are in doubt.
-    fn carry_over(&self, notes: &mut Notes, number: &[Option<u32>], doubt: &mut Doubt) {
-        let question = self.question;
-        notes.cells.retain_mut(|proof| {
-            let [Some(a), Some(b)] = proof.pair.map(|cell| self.place(cell)) else { return false };
-            let Some(line) = number[proof.line as usize] else {
+    /// are in doubt. Returns lines that proved pairs of cells that are gone: they may pass what is there instead.
+    fn carry_over(&self, notes: &mut Notes, number: &[Option<u32>], doubt: &mut Doubt) -> Vec<u32> {
+        let Doubt { cells, objects, rows, .. } = doubt;
+        let (of_cells, of_objects) = rayon::join(
+            || self.carry_over_cells(&mut notes.cells, number, cells),
+            || self.carry_over_objects(&mut notes.objects, number, objects, rows),
+        );
+        for pair in notes.assumed.drain(..) {
+            if let [Some(a), Some(b)] = pair.map(|cell| self.place(cell)) {
                 doubt.pair(a, b);
+            }
+        }
+        for [object, cell] in notes.assumed_objects.drain(..).chain(notes.inside.drain(..)) {
+            if let Some(place) = self.place(cell) {
+                self.heirs[object as usize].iter().for_each(|&same| doubt.object(same, place));
+            }
+        }
+        [of_cells, of_objects].concat()
+    }
+
+    fn carry_over_cells(&self, proofs: &mut Vec<Proof>, number: &[Option<u32>], doubt: &Marks) -> Vec<u32> {
+        let (question, mut again) = (self.question, Vec::new());
+        proofs.retain_mut(|proof| {
+            let line = number[proof.line as usize];
+            let [Some(a), Some(b)] = proof.pair.map(|cell| self.place(cell)) else {
+                again.extend(line);
+                return false;
+            };
+            let Some(line) = line else {
+                doubt.set(a, b);
+                doubt.set(b, a);
                 return false;
             };
             question.join(a, b);
             *proof = Proof { pair: [a, b].map(|place| question.cell_at[place]), line };
             true
         });
-        let mut more = Vec::new();
-        notes.objects.retain_mut(|proof| {
+        again
+    }
+
+    fn carry_over_objects(
+        &self,
+        proofs: &mut Vec<Proof>,
+        number: &[Option<u32>],
+        doubt: &Marks,
+        rows: &mut [bool],
+    ) -> Vec<u32> {
+        let (question, mut again, mut more) = (self.question, Vec::new(), Vec::new());
+        proofs.retain_mut(|proof| {
             let [object, cell] = proof.pair;
+            let line = number[proof.line as usize];
             let (Some(place), [first, others @ ..]) = (self.place(cell), &self.heirs[object as usize][..]) else {
+                again.extend(line);
                 return false;
             };
-            let Some(line) = number[proof.line as usize] else {
-                self.heirs[object as usize].iter().for_each(|&same| doubt.object(same, place));
+            let Some(line) = line else {
+                for &same in &self.heirs[object as usize] {
+                    doubt.set(same as usize, place);
+                }
+                rows[place] = true;
                 return false;
             };
             let of = |object: u32| Proof { pair: [object, question.cell_at[place]], line };
@@ -305,17 +349,8 @@ impl Step<'_> {
             }
             true
         });
-        notes.objects.append(&mut more);
-        for pair in notes.assumed.drain(..) {
-            if let [Some(a), Some(b)] = pair.map(|cell| self.place(cell)) {
-                doubt.pair(a, b);
-            }
-        }
-        for [object, cell] in notes.assumed_objects.drain(..).chain(notes.inside.drain(..)) {
-            if let Some(place) = self.place(cell) {
-                self.heirs[object as usize].iter().for_each(|&same| doubt.object(same, place));
-            }
-        }
+        proofs.append(&mut more);
+        again
     }
 
     /// Follows a line from cells on it, as far as it goes from there.
@@ -339,7 +374,7 @@ enum Kind {
     Cut,
     /// It may go further now.
     Freed,
-    /// It may pass a new cell or object.
+    /// It may pass a new object.
     Near,
     /// Nothing.
     Away,
