@@ -391,8 +391,8 @@ fn chart(rows: &[Row]) -> String {
 
 /// What must hold of small towers, whatever the machine.
 fn check(rows: &[Row]) -> Result<(), Box<dyn Error>> {
-    for kind in 0..KINDS.len() {
-        assert!(rows.iter().any(|r| r.kind == kind && r.edits > 0), "{} was measured", KINDS[kind]);
+    for (kind, name) in KINDS.iter().enumerate() {
+        assert!(rows.iter().any(|r| r.kind == kind && r.edits > 0), "{name} was measured");
     }
     let text = write(rows);
     assert_eq!(read(&text)?, rows, "what was measured is read back");
