@@ -33,7 +33,8 @@ pub(crate) fn simplified(scene: &Scene, target: usize) -> Simplified {
     let before = scene.n_triangles();
     let counts = Counts { before, left, new, collapsed: before - (left - new), ..Counts::default() };
     let [bound, deviation, shift] = [f64::INFINITY; 3];
-    Simplified { triangles: best, origin, bound, deviation, shift, counts }
+    let hidden = vec![Vec::new(); best.len()];
+    Simplified { triangles: best, origin, hidden, bound, deviation, shift, counts }
 }
 
 fn one(object: &SceneObject, error: f32) -> Vec<[u32; 3]> {

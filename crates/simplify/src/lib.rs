@@ -1,7 +1,7 @@
 //! Fewer triangles for a volume of viewpoints: what intercepts no visible ray goes, what intercepts few goes within a budget.
 //!
 //! Owns: how much of the view a triangle can take up, as a proven upper bound ([`Intercepts`]) and as an estimate by rays
-//! ([`Estimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table ([`levels`]); the measurement of
+//! ([`Estimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table ([`levels()`]); the measurement of
 //! what a simplified scene changes ([`measure`]); the ordinary geometric metric, to compare with ([`geometric`]).
 //! Does not know: how hidden things are proven (a [`FromRegion`](sightlines_multifocal::FromRegion) method or a table says so), files.
 //! Invariants: for every eye in the closed boxes of [`Views`] that lies on no surface, the share of the sphere of directions in which the first surface met
@@ -17,7 +17,9 @@
 //! that reaches it has passed a place where a face was taken away, and counts already. Merging faces in one plane changes no surface, and so
 //! no first hit but in its name.
 
+mod aimed;
 pub mod bound;
+mod compared;
 pub mod estimate;
 mod geometric;
 mod hidden;
@@ -35,6 +37,7 @@ mod vector;
 mod views;
 mod weigh;
 
+pub use aimed::{Aimed, measure_aimed};
 pub use estimate::{Estimate, Interval};
 pub use geometric::geometric;
 pub use hidden::{HiddenBy, MakeMethod};

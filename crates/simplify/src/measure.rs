@@ -1,15 +1,13 @@
 //! What a simplified scene changes, measured by fresh rays.
 
-use crate::estimate::Places;
+use crate::compared::{Compared, Eyes};
 use crate::rays::Traced;
 use crate::simplified::Simplified;
 use crate::simplify::{SimplifyError, in_threads};
-use crate::vector::{dot, minus, normal};
 use crate::views::Views;
 use rayon::prelude::*;
 use sightlines_cells::Scene;
-use sightlines_geometry::{Point3, Random, orient3d};
-use sightlines_visible_surface::Faces;
+use sightlines_geometry::Point3;
 
 /// How to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,38 +68,19 @@ pub fn measure(
     views: &Views,
     options: &MeasureOptions,
 ) -> Result<Measured, SimplifyError> {
-    let before = Faces::of_scene(scene)?;
-    let after = Left::new(scene, simplified)?;
+    let compared = Compared::new(scene, simplified)?;
     in_threads(options.threads, || {
-        let (old, new) = (Traced::new(&before), Traced::new(&after.faces));
-        let places = Places::new(views);
+        let traced = compared.traced();
+        let eyes = Eyes::new(views, options.seed);
         let look = |eye: usize| {
-            let mut random = Random::new(options.seed ^ (eye as u64).wrapping_mul(0x2545_f491_4f6c_dd1d));
-            // Every other eye is in one part after the other, so that flat parts get some as well.
-            let part = views.parts()[eye / 2 % views.parts().len()].volume;
-            let place = if eye.is_multiple_of(2) { places.any(&mut random) } else { random.point(part.bounds()) };
+            let (place, mut random) = eyes.place(eye);
             let mut changes = Changes::default();
-            let (mut old, mut new) = (old.rays(), new.rays());
+            let mut rays = traced.each_ref().map(Traced::rays);
             for _ in 0..options.n_rays {
-                let way = random.direction();
-                let (a, b) = (old.of(place, way), new.of(place, way));
-                if a == b.and_then(|b| after.origin[b as usize]) && a.is_some() == b.is_some() {
-                    continue;
-                }
-                if let (Some(a), Some(b)) = (a, b)
-                    && before.object(a) == after.object[b as usize]
-                    && in_one_plane(before.of(a), after.faces.of(b))
-                {
-                    continue;
-                }
-                changes.changed += 1;
-                let objects = [a.map(|a| before.object(a)), b.map(|b| after.object[b as usize])];
-                if objects[0] != objects[1] {
-                    changes.other_object += 1;
-                    changes.moved += 1;
-                } else if let (Some(a), Some(b)) = (a, b) {
-                    let [s, t] = [depth(before.of(a), place, way), depth(after.faces.of(b), place, way)];
-                    changes.moved += u64::from((s - t).abs() > 0.01 * s.abs());
+                if let Some(change) = compared.look(&mut rays, place, random.direction()) {
+                    changes.changed += 1;
+                    changes.other_object += u64::from(change.is_other_object);
+                    changes.moved += u64::from(change.has_moved);
                 }
             }
             (place, changes)
@@ -121,40 +100,4 @@ pub fn measure(
             n_rays,
         })
     })
-}
-
-/// What is left, with where it comes from.
-struct Left {
-    faces: Faces,
-    object: Vec<u32>,
-    /// The face of the whole scene that each one was.
-    origin: Vec<Option<u32>>,
-}
-
-impl Left {
-    fn new(scene: &Scene, simplified: &Simplified) -> Result<Self, SimplifyError> {
-        let (mut corners, mut object, mut origin) = (Vec::new(), Vec::new(), Vec::new());
-        let mut first = 0;
-        let lists = simplified.triangles.iter().zip(&simplified.origin);
-        for ((id, o), (triangles, origins)) in (0..).zip(scene.objects()).zip(lists) {
-            for (triangle, of) in triangles.iter().zip(origins) {
-                corners.push(triangle.map(|v| o.vertices[v as usize]));
-                object.push(id);
-                origin.push(of.map(|k| first + k));
-            }
-            first += o.triangles.len() as u32;
-        }
-        Ok(Self { faces: Faces::new(corners)?, object, origin })
-    }
-}
-
-/// Whether two triangles lie in one plane, exactly.
-fn in_one_plane([a, b, c]: &[Point3; 3], other: &[Point3; 3]) -> bool {
-    other.iter().all(|p| orient3d(*a, *b, *c, *p) == 0.0)
-}
-
-/// How far along a ray the plane of a triangle is, rounded.
-fn depth(t: &[Point3; 3], eye: Point3, way: Point3) -> f64 {
-    let n = normal(t);
-    dot(n, minus(t[0], eye)) / dot(n, way)
 }

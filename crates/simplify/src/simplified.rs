@@ -10,6 +10,8 @@ pub struct Simplified {
     pub triangles: Vec<Vec<[u32; 3]>>,
     /// For each of them which triangle of its object it was, and `None` for a merged or new one.
     pub origin: Vec<Vec<Option<u32>>>,
+    /// For each object which of its triangles were taken away because they are proven hidden, ascending.
+    pub hidden: Vec<Vec<u32>>,
     /// For every eye of the views that lies on no surface: the share of the sphere of directions in which the first hit is another one is at most this.
     /// A proven bound; for [`geometric`](crate::geometric) there is none, and it is infinite.
     pub bound: f64,

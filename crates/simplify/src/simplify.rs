@@ -66,7 +66,7 @@ const WEIGHT_OF_AREA: f64 = 1e-3;
 /// 1. What is proven hidden from every eye, or has no area, is taken away; no ray is changed.
 /// 2. The faces that intercept least are left out, within the budget but for the part that is kept for collapsing.
 /// 3. Of what intercepts least among the rest, edges are collapsed, those first that change the shape least where rays see it
-///    ([quadrics](Collapser) weighted by the estimate; silhouettes and borders keep their share). A corner moves to a
+///    (quadrics weighted by the estimate; silhouettes and borders keep their share). A corner moves to a
 ///    neighbour, so no vertex is new and all that belongs to vertices survives.
 /// 4. What is left of the budget leaves out more.
 /// 5. If asked for, faces of an object that lie in one plane, exactly, are merged where the surface stays the same set of points.
@@ -218,14 +218,20 @@ pub(crate) fn within_budget(
     options: &SimplifyOptions,
 ) -> Simplified {
     let mut counts = Counts { before: faces.len(), ..Counts::default() };
-    for face in faces.ids() {
-        if !faces.has_area(face) {
-            counts.without_area += 1;
-            mesh.remove(face);
-        } else if intercepts.is_hidden(face) {
-            counts.hidden += 1;
-            mesh.remove(face);
+    let mut hidden = vec![Vec::new(); scene.objects().len()];
+    let mut first = 0;
+    for (object, hidden) in scene.objects().iter().zip(&mut hidden) {
+        for (k, face) in (0..object.triangles.len() as u32).zip(first..) {
+            if !faces.has_area(face) {
+                counts.without_area += 1;
+                mesh.remove(face);
+            } else if intercepts.is_hidden(face) {
+                hidden.push(k);
+                mesh.remove(face);
+            }
         }
+        counts.hidden += hidden.len();
+        first += object.triangles.len() as u32;
     }
     let (budget, kept) = (options.budget, options.budget * options.collapse);
     let mut account = Account::new(intercepts.n_parts());
@@ -263,7 +269,7 @@ pub(crate) fn within_budget(
         merge(&mut mesh);
         counts.merged_away = before - mesh.n_left();
     }
-    finish(scene, &mesh, counts, account.most(), [deviation, shift])
+    Simplified { hidden, ..finish(scene, &mesh, counts, account.most(), [deviation, shift]) }
 }
 
 pub(crate) fn kept_faces<'a>(mesh: &'a Mesh, faces: &Faces) -> impl Iterator<Item = u32> + 'a {
@@ -282,7 +288,8 @@ pub(crate) fn finish(
     (counts.new, counts.merged, counts.left) = (n(State::New), n(State::Merged), mesh.n_left());
     let gone = counts.before - counts.without_area - counts.hidden - counts.deleted - counts.merged_away;
     counts.collapsed = gone - counts.merged - n(State::Kept);
-    Simplified { triangles, origin, bound, deviation, shift, counts }
+    let hidden = vec![Vec::new(); triangles.len()];
+    Simplified { triangles, origin, hidden, bound, deviation, shift, counts }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! that is carried about.
 //!
 //! The scene is cut with what the last one leaves of its faces ([`SceneCutter`]); who sees whom is brought up to date by
-//! [`LiveSpace`](sightlines_stabtree::LiveSpace) where walls differ. The table is the one that
+//! [`LiveSpace`] where walls differ. The table is the one that
 //! [`bake_scene`](crate::bake_scene) makes of the new scene, byte for byte, unless pairs are given up
 //! ([`BakedScene::n_assumed`](crate::BakedScene::n_assumed)): of those, an update may know that they are hidden, from the
 //! time when they were easier.
@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 
 /// A scene with its table, and what it takes to keep that up to date.
 ///
-/// Memory beside the table: see [`LiveSpace`](sightlines_stabtree::LiveSpace).
+/// Memory beside the table: see [`LiveSpace`].
 #[derive(Debug, Clone)]
 pub struct LiveScene {
     cutting: SceneOptions,

@@ -1,5 +1,6 @@
 use super::*;
 use crate::measure::{MeasureOptions, measure};
+use crate::measure_aimed;
 use crate::{Simplified, estimate};
 use crate::{bound, geometric};
 use proptest::prelude::*;
@@ -181,6 +182,33 @@ proptest! {
         let c = left.counts;
         prop_assert_eq!(c.before + c.new, c.without_area + c.hidden + c.deleted + c.collapsed + c.merged_away + c.left);
     }
+}
+
+/// Aimed rays find the same shares as rays in all directions.
+#[test]
+fn aimed_rays_agree_with_others() {
+    let streets = CityOptions { blocks_x: 3, blocks_z: 3, ..CityOptions::default() };
+    let scene = city(streets).unwrap();
+    let b = city_crossings(streets).unwrap()[0];
+    let views = views(b.min, b.max);
+    for (budget, collapse) in [(0.0, 0.0), (0.02, 0.0), (0.02, 1.0)] {
+        let options = SimplifyOptions { budget, collapse, ..SimplifyOptions::default() };
+        let left = simplified(&scene, &views, &options);
+        let options = MeasureOptions { n_eyes: 6, n_rays: 20_000, ..MeasureOptions::default() };
+        let all = measure(&scene, &left, &views, &options).unwrap();
+        let aimed = measure_aimed(&scene, &left, &views, &options).unwrap();
+        // By chance, 120,000 rays are off by the root of the share over that; aimed ones by much less.
+        let chance = 5.0 * (all.changed / 120_000.0).sqrt() + 1e-6;
+        assert!((all.changed - aimed.changed).abs() <= chance, "{all:?} {aimed:?}");
+        assert!(aimed.worst <= left.bound + 4.0 * aimed.worst_error, "{aimed:?} {}", left.bound);
+        assert!(aimed.worst_error <= aimed.worst / 20.0, "{aimed:?}");
+        assert_eq!(aimed.worst > 0.0, budget > 0.0);
+    }
+    // And what is left out for a budget ten times as large is told.
+    let tenfold = simplified(&scene, &views, &SimplifyOptions::default().with_budget(1e-3));
+    let options = MeasureOptions { n_eyes: 6, n_rays: 2000, ..MeasureOptions::default() };
+    let aimed = measure_aimed(&scene, &tenfold, &views, &options).unwrap();
+    assert!(aimed.worst - 4.0 * aimed.worst_error > 1e-4, "{aimed:?}");
 }
 
 /// What is left out is not far from what could be: where the budget allows a share, some of it is used.

@@ -1,0 +1,128 @@
+//! What a simplified scene changes, measured where it can have changed.
+
+use crate::compared::{Cause, Compared, Eyes};
+use crate::measure::MeasureOptions;
+use crate::rays::Traced;
+use crate::simplified::Simplified;
+use crate::simplify::{SimplifyError, in_threads};
+use crate::vector::{dot, length, minus, normal};
+use crate::views::Views;
+use rayon::prelude::*;
+use sightlines_cells::Scene;
+use sightlines_geometry::{Point3, Random};
+
+/// The share of directions that is changed, by rays that are aimed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aimed {
+    /// The mean over all eyes.
+    pub changed: f64,
+    /// For the eye for which it is most.
+    pub worst: f64,
+    /// The standard error of that: how far the estimate is off, typically.
+    pub worst_error: f64,
+    /// That eye.
+    pub worst_eye: Point3,
+}
+
+/// Measures as [`measure`](crate::measure) does, by rays towards the triangles that were taken away or put in: only such can have changed, so
+/// that small shares are found with few rays.
+///
+/// For each eye, half of the rays go to points of triangles that are said to be hidden, half to those of the others, to each about as often as it takes up of the view. A changed
+/// ray counts for the triangle that it was aimed at if that is the one which made the change, weighted by one over how likely it was sent. The mean is
+/// the share that changes; eyes within a triangle's plane do not count it.
+///
+/// Deterministic for a seed. O(n log n), and for each eye O(m) for m such triangles and two traced rays for each ray.
+///
+/// # Errors
+/// [`SimplifyError::Faces`]
+pub fn measure_aimed(
+    scene: &Scene,
+    simplified: &Simplified,
+    views: &Views,
+    options: &MeasureOptions,
+) -> Result<Aimed, SimplifyError> {
+    let compared = Compared::new(scene, simplified)?;
+    in_threads(options.threads, || {
+        let causes = compared.causes();
+        let traced = compared.traced();
+        let eyes = Eyes::new(views, options.seed);
+        let look = |eye: usize| {
+            let (place, mut random) = eyes.place(eye);
+            let mut rays = traced.each_ref().map(Traced::rays);
+            // Means add up, and so do squares of their errors.
+            let (mut mean, mut error) = (0.0, 0.0);
+            for causes in &causes {
+                let targets = Targets::new(&compared, causes, place);
+                let (mut sum, mut squares) = (0.0, 0.0);
+                for _ in 0..options.n_rays / 2 {
+                    let Some(shot) = targets.any(&compared, &mut random) else { break };
+                    let hit = compared.look(&mut rays, place, shot.way).is_some_and(|d| d.cause == shot.cause);
+                    let value = if hit { shot.weight } else { 0.0 };
+                    sum += value;
+                    squares += value * value;
+                }
+                let n = (options.n_rays / 2).max(1) as f64;
+                mean += sum / n;
+                error += (squares / n - (sum / n) * (sum / n)).max(0.0) / n;
+            }
+            (place, mean, error.sqrt())
+        };
+        let found: Vec<(Point3, f64, f64)> = (0..options.n_eyes).into_par_iter().map(look).collect();
+        let changed = found.iter().map(|f| f.1).sum::<f64>() / options.n_eyes.max(1) as f64;
+        // Of equals the first.
+        let worst = found.iter().rev().max_by(|a, b| a.1.total_cmp(&b.1)).copied();
+        let (worst_eye, worst, worst_error) = worst.unwrap_or(([0.0; 3], 0.0, 0.0));
+        Ok(Aimed { changed, worst, worst_error, worst_eye })
+    })
+}
+
+/// Triangles to aim at from an eye.
+struct Targets<'a> {
+    causes: &'a [Cause],
+    eye: Point3,
+    /// Sums of how much each takes up of the view, about.
+    sums: Vec<f64>,
+}
+
+/// A ray.
+struct Shot {
+    way: Point3,
+    cause: Cause,
+    /// What a change along it counts.
+    weight: f64,
+}
+
+impl<'a> Targets<'a> {
+    fn new(compared: &Compared, causes: &'a [Cause], eye: Point3) -> Self {
+        let mut sum = 0.0;
+        let add = |&cause: &Cause| {
+            let t = compared.corners(cause);
+            let middle = [0, 1, 2].map(|k| t.iter().map(|p| p[k] / 3.0).sum::<f64>());
+            // Never nothing: also a triangle whose middle is seen edge-on is aimed at.
+            let (area, square) = (length(normal(t)) / 2.0, dot(minus(middle, eye), minus(middle, eye)));
+            sum += share(t, minus(middle, eye)).min(0.5) + 0.01 * area / (area + square);
+            sum
+        };
+        Self { sums: causes.iter().map(add).collect(), causes, eye }
+    }
+
+    fn any(&self, compared: &Compared, random: &mut Random) -> Option<Shot> {
+        let all = self.sums.last().copied().filter(|sum| *sum > 0.0)?;
+        let at = random.unit() * all;
+        let k = self.sums.partition_point(|&s| s <= at).min(self.sums.len() - 1);
+        let chance = (self.sums[k] - if k == 0 { 0.0 } else { self.sums[k - 1] }) / all;
+        let cause = self.causes[k];
+        let t = compared.corners(cause);
+        let (s, u) = (random.unit(), random.unit());
+        let (s, u) = if s + u > 1.0 { (1.0 - s, 1.0 - u) } else { (s, u) };
+        let way = [0, 1, 2].map(|k| t[0][k] + s * (t[1][k] - t[0][k]) + u * (t[2][k] - t[0][k]) - self.eye[k]);
+        Some(Shot { way, cause, weight: share(t, way) / chance })
+    }
+}
+
+/// The share of the sphere that a triangle takes up, as if all of it were seen as its point at `way` from the eye.
+fn share(t: &[Point3; 3], way: Point3) -> f64 {
+    let cube = dot(way, way) * length(way);
+    let share = dot(normal(t), way).abs() / 2.0 / cube / (4.0 * std::f64::consts::PI);
+    if share.is_finite() { share } else { 0.0 }
+}

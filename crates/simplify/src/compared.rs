@@ -1,0 +1,158 @@
+//! A scene before and after, looked at along the same rays.
+
+use crate::estimate::Places;
+use crate::rays::{FirstHits, Traced};
+use crate::simplified::Simplified;
+use crate::simplify::SimplifyError;
+use crate::vector::{dot, minus, normal};
+use crate::views::Views;
+use sightlines_cells::Scene;
+use sightlines_geometry::{Point3, Random, orient3d};
+use sightlines_visible_surface::Faces;
+
+/// Fresh eyes in views.
+pub(crate) struct Eyes<'a> {
+    views: &'a Views,
+    places: Places<'a>,
+    seed: u64,
+}
+
+impl<'a> Eyes<'a> {
+    pub(crate) fn new(views: &'a Views, seed: u64) -> Self {
+        Self { views, places: Places::new(views), seed }
+    }
+
+    /// Where an eye is, and what its rays are drawn by. Every other eye is in one part after the other, so that flat parts get some
+    /// as well.
+    pub(crate) fn place(&self, eye: usize) -> (Point3, Random) {
+        let mut random = Random::new(self.seed ^ (eye as u64).wrapping_mul(0x2545_f491_4f6c_dd1d));
+        let part = self.views.parts()[eye / 2 % self.views.parts().len()].volume;
+        let place = if eye.is_multiple_of(2) { self.places.any(&mut random) } else { random.point(part.bounds()) };
+        (place, random)
+    }
+}
+
+/// A triangle that was taken away, or one that was put in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Cause {
+    Gone(u32),
+    New(u32),
+}
+
+/// What differs along a ray.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Difference {
+    /// What was met before and is gone; else what is met now and was not there.
+    pub(crate) cause: Cause,
+    pub(crate) is_other_object: bool,
+    /// Another object, or another depth by more than a hundredth.
+    pub(crate) has_moved: bool,
+}
+
+/// A scene before and after.
+pub(crate) struct Compared {
+    before: Faces,
+    after: Left,
+    /// Of faces before.
+    is_kept: Vec<bool>,
+    is_hidden: Vec<bool>,
+}
+
+impl Compared {
+    pub(crate) fn new(scene: &Scene, simplified: &Simplified) -> Result<Self, SimplifyError> {
+        let before = Faces::of_scene(scene)?;
+        let after = Left::new(scene, simplified)?;
+        let mut is_kept = vec![false; before.len()];
+        after.origin.iter().flatten().for_each(|&face| is_kept[face as usize] = true);
+        let mut is_hidden = vec![false; before.len()];
+        let mut first = 0;
+        for (object, hidden) in scene.objects().iter().zip(&simplified.hidden) {
+            hidden.iter().for_each(|&k| is_hidden[first + k as usize] = true);
+            first += object.triangles.len();
+        }
+        Ok(Self { before, after, is_kept, is_hidden })
+    }
+
+    /// Both, to send rays through.
+    pub(crate) fn traced(&self) -> [Traced<'_>; 2] {
+        [Traced::new(&self.before), Traced::new(&self.after.faces)]
+    }
+
+    /// What may make a difference: triangles with an area that are gone, or new; and such that should not, as they are said to be
+    /// hidden.
+    pub(crate) fn causes(&self) -> [Vec<Cause>; 2] {
+        let gone = self.before.ids().filter(|&f| !self.is_kept[f as usize] && self.before.has_area(f));
+        let (hidden, gone): (Vec<u32>, Vec<u32>) = gone.partition(|&f| self.is_hidden[f as usize]);
+        let new = (0..).zip(&self.after.origin).filter(|(_, origin)| origin.is_none()).map(|(f, _)| Cause::New(f));
+        [gone.into_iter().map(Cause::Gone).chain(new).collect(), hidden.into_iter().map(Cause::Gone).collect()]
+    }
+
+    pub(crate) fn corners(&self, cause: Cause) -> &[Point3; 3] {
+        match cause {
+            Cause::Gone(face) => self.before.of(face),
+            Cause::New(face) => self.after.faces.of(face),
+        }
+    }
+
+    /// What differs along a ray; nothing if both first hits are on the same triangle, or on triangles of the same object in the
+    /// same plane.
+    pub(crate) fn look(&self, [old, new]: &mut [FirstHits<'_>; 2], eye: Point3, way: Point3) -> Option<Difference> {
+        let (a, b) = (old.of(eye, way), new.of(eye, way));
+        let origin = b.and_then(|b| self.after.origin[b as usize]);
+        if a.is_some() == b.is_some() && a == origin {
+            return None;
+        }
+        let objects = [a.map(|a| self.before.object(a)), b.map(|b| self.after.object[b as usize])];
+        let is_other_object = objects[0] != objects[1];
+        let both = a.map(|a| self.before.of(a)).zip(b.map(|b| self.after.faces.of(b)));
+        if !is_other_object && both.is_some_and(|(a, b)| in_one_plane(a, b)) {
+            return None;
+        }
+        let cause = match (a, b) {
+            (Some(a), _) if !self.is_kept[a as usize] => Cause::Gone(a),
+            (_, Some(b)) => Cause::New(b),
+            (a, None) => Cause::Gone(a.unwrap_or(0)),
+        };
+        let moved = |(a, b): (&[Point3; 3], &[Point3; 3])| {
+            let [s, t] = [a, b].map(|face| depth(face, eye, way));
+            (s - t).abs() > 0.01 * s.abs()
+        };
+        Some(Difference { cause, is_other_object, has_moved: is_other_object || both.is_some_and(moved) })
+    }
+}
+
+/// What is left, with where it comes from.
+struct Left {
+    faces: Faces,
+    object: Vec<u32>,
+    /// The face of the whole scene that each one was.
+    origin: Vec<Option<u32>>,
+}
+
+impl Left {
+    fn new(scene: &Scene, simplified: &Simplified) -> Result<Self, SimplifyError> {
+        let (mut corners, mut object, mut origin) = (Vec::new(), Vec::new(), Vec::new());
+        let mut first = 0;
+        let lists = simplified.triangles.iter().zip(&simplified.origin);
+        for ((id, o), (triangles, origins)) in (0..).zip(scene.objects()).zip(lists) {
+            for (triangle, of) in triangles.iter().zip(origins) {
+                corners.push(triangle.map(|v| o.vertices[v as usize]));
+                object.push(id);
+                origin.push(of.map(|k| first + k));
+            }
+            first += o.triangles.len() as u32;
+        }
+        Ok(Self { faces: Faces::new(corners)?, object, origin })
+    }
+}
+
+/// Whether two triangles lie in one plane, exactly.
+fn in_one_plane([a, b, c]: &[Point3; 3], other: &[Point3; 3]) -> bool {
+    other.iter().all(|p| orient3d(*a, *b, *c, *p) == 0.0)
+}
+
+/// How far along a ray the plane of a triangle is, rounded.
+fn depth(t: &[Point3; 3], eye: Point3, way: Point3) -> f64 {
+    let n = normal(t);
+    dot(n, minus(t[0], eye)) / dot(n, way)
+}
