@@ -19,7 +19,8 @@ pub enum PortalMode {
     #[default]
     Exact,
     /// First the rectangles, then the exact pieces for what they leave in doubt. The same answer as
-    /// [`PortalMode::Exact`]; that one is quicker, as exact walls hide more from the first question on.
+    /// [`PortalMode::Exact`], but that of pairs which it gives up some may be found hidden by the rectangles; that one is quicker, as exact walls
+    /// hide more from the first question on.
     TwoLevel,
 }
 

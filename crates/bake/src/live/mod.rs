@@ -111,7 +111,7 @@ impl LiveScene {
     /// [`BakeError::Table`] for a defect of this crate.
     pub fn close(&mut self, portals: &[PortalId]) -> Result<LiveUpdate, BakeError> {
         let found = portals.iter().filter_map(|id| self.cut.graph.portals().get(id.idx()));
-        let more: Vec<AxialDoor> = found.map(|portal| portal.shape).collect();
+        let more: Vec<AxialDoor> = found.map(|portal| portal.shape).filter(|shape| !self.is_closed(shape)).collect();
         self.closed.extend(more);
         self.see()
     }
@@ -123,9 +123,13 @@ impl LiveScene {
     pub fn open(&mut self, portals: &[PortalId]) -> Result<LiveUpdate, BakeError> {
         let found = portals.iter().filter_map(|id| self.cut.graph.portals().get(id.idx()));
         let opened: Vec<AxialDoor> = found.map(|portal| portal.shape).collect();
-        // What was closed before the scene changed may be several portals now.
-        let stay = self.closed_portals().into_iter().map(|id| self.cut.graph.portals()[id.idx()].shape);
-        self.closed = stay.filter(|door| !opened.contains(door)).collect();
+        // What was closed before the scene changed may be several portals now, of which only some are opened; where it is walled up, none.
+        let (parted, mut closed): (Vec<AxialDoor>, Vec<AxialDoor>) =
+            self.closed.iter().partition(|door| opened.iter().any(|portal| lies_in(portal, door)));
+        let portals = self.cut.graph.portals().iter().map(|portal| portal.shape);
+        let stays = |portal: &AxialDoor| !opened.contains(portal) && parted.iter().any(|door| lies_in(portal, door));
+        closed.extend(portals.filter(stays));
+        self.closed = closed;
         self.see()
     }
 
@@ -136,11 +140,7 @@ impl LiveScene {
     }
 
     fn is_closed(&self, portal: &AxialDoor) -> bool {
-        let lies_in = |door: &AxialDoor| {
-            let (inner, outer) = (&portal.extent, &door.extent);
-            portal.axis == door.axis && outer.contains(inner.min) && outer.contains(inner.max)
-        };
-        self.closed.iter().any(lies_in)
+        self.closed.iter().any(|door| lies_in(portal, door))
     }
 
     /// Brings the answer and the table up to date with the scene that is cut and the portals that are closed.
@@ -159,6 +159,12 @@ impl LiveScene {
         self.table = tabulate(&self.scene, &self.boxes, &self.cut, &self.space, &self.cutting, self.portals)?;
         Ok(LiveUpdate { space, cut_time: Duration::ZERO, see_time, table_time: start.elapsed() })
     }
+}
+
+/// Whether an opening is a part of another one, or all of it.
+fn lies_in(portal: &AxialDoor, door: &AxialDoor) -> bool {
+    let (inner, outer) = (&portal.extent, &door.extent);
+    portal.axis == door.axis && outer.contains(inner.min) && outer.contains(inner.max)
 }
 
 fn boxes_of(scene: &Scene) -> Vec<Aabb<3>> {

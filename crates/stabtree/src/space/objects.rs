@@ -2,7 +2,7 @@
 
 use super::Question;
 use super::notes::{FoundFor, Hand, Notes};
-use super::pairs::{CELL_BUDGET, FEW, apart};
+use super::pairs::{CELL_BUDGET, FEW, GROUP_BUDGET, apart};
 use sightlines_geometry::Aabb;
 use sightlines_sightline::{Sight, Target};
 use std::sync::atomic::Ordering::Relaxed;
@@ -81,6 +81,9 @@ impl Question<'_> {
                     Sight::Blocked => continue,
                     Sight::Open(line) => self.follow(&line, [&node.bounds, target], found_for, hand),
                     Sight::Undecided => {
+                        if node.is_leaf() && self.is_object_hidden_in_groups(object, places[0], hand) {
+                            continue;
+                        }
                         if node.is_leaf() {
                             self.n_assumed.fetch_add(1, Relaxed);
                             self.objects.set(object, places[0]);
@@ -93,6 +96,28 @@ impl Question<'_> {
             if !node.is_leaf() {
                 stack.extend(self.tree.children(n));
             }
+        }
+    }
+
+    /// Where groups were not all asked, as only some pairs are in doubt: whether one with a cell, by its place, does not see an object. Who
+    /// asks about all pairs has asked these, and never came to the cell.
+    fn is_object_hidden_in_groups(&self, object: usize, place: usize, hand: &mut Hand<'_>) -> bool {
+        if self.doubt.is_none() {
+            return false;
+        }
+        let target = &self.boxes[object];
+        let mut n = 0;
+        loop {
+            let node = &self.tree.nodes()[n as usize];
+            if node.is_leaf() {
+                return false;
+            }
+            let ask = apart(&node.bounds, target);
+            if ask && hand.shaft.decide(&node.bounds, target, Target::Surface, GROUP_BUDGET) == Sight::Blocked {
+                return true;
+            }
+            let [low, high] = self.tree.children(n);
+            n = if (place as u32) < self.tree.nodes()[low as usize].end { low } else { high };
         }
     }
 }

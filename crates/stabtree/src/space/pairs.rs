@@ -58,11 +58,53 @@ impl Question<'_> {
                 Sight::Undecided => {}
             }
         }
-        let size = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
-        if nb.is_leaf() || (!na.is_leaf() && size(&na.bounds) >= size(&nb.bounds)) {
+        if self.halves_first([a, b]) {
             self.tree.children(a).into_iter().for_each(|a| smaller([a, b]));
         } else {
             self.tree.children(b).into_iter().for_each(|b| smaller([a, b]));
+        }
+    }
+
+    /// Which of two different nodes, not both leaves, is halved.
+    fn halves_first(&self, pair: Pair) -> bool {
+        let [a, b] = pair.map(|n| self.tree.nodes()[n as usize]);
+        let size = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
+        b.is_leaf() || (!a.is_leaf() && size(&a.bounds) >= size(&b.bounds))
+    }
+
+    /// Where groups were not all asked, as only some pairs are in doubt: whether one of those with two cells, by their places in order,
+    /// is hidden from the other. Who asks about all pairs has asked these, and never came to the cells.
+    fn is_hidden_in_groups(&self, [first, second]: [usize; 2], hand: &mut Hand<'_>) -> bool {
+        if self.doubt.is_none() {
+            return false;
+        }
+        let has = |n: u32, place: usize| {
+            let node = &self.tree.nodes()[n as usize];
+            (node.start as usize..node.end as usize).contains(&place)
+        };
+        let child = |n: u32, place: usize| {
+            let [low, high] = self.tree.children(n);
+            if has(low, place) { low } else { high }
+        };
+        let [mut a, mut b] = [0u32; 2];
+        loop {
+            if a == b {
+                (a, b) = (child(a, first), child(b, second));
+                continue;
+            }
+            let [na, nb] = [a, b].map(|n| self.tree.nodes()[n as usize]);
+            if na.is_leaf() && nb.is_leaf() {
+                return false;
+            }
+            let ask = apart(&na.bounds, &nb.bounds);
+            if ask && hand.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET) == Sight::Blocked {
+                return true;
+            }
+            if self.halves_first([a, b]) {
+                a = child(a, first);
+            } else {
+                b = child(b, second);
+            }
         }
     }
 
@@ -78,6 +120,7 @@ impl Question<'_> {
         match hand.shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
             Sight::Blocked => {}
             Sight::Open(line) => self.follow(&line, bounds, FoundFor::Cells([a, b]), hand),
+            Sight::Undecided if self.is_hidden_in_groups([a, b], hand) => {}
             Sight::Undecided => {
                 self.n_assumed.fetch_add(1, Relaxed);
                 if self.join(a, b) {

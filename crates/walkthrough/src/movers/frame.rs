@@ -216,7 +216,9 @@ impl<P: Places> Movers<P> {
     pub fn also(&mut self, cells: &[CellId], place: &mut dyn FnMut(MoverId) -> Aabb<3>) -> &[MoverId] {
         self.also.clear();
         if self.is_outside {
-            self.also.extend_from_slice(&self.seen);
+            // Also those that came since, and not those that went.
+            let there = (0..).zip(&self.slots).filter(|(_, slot)| slot.mover.is_some());
+            self.also.extend(there.map(|(slot, place)| MoverId { slot, generation: place.generation }));
             return &self.also;
         }
         self.round += 1;

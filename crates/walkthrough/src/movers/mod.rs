@@ -245,7 +245,8 @@ impl<P: Places> Movers<P> {
     }
 
     /// Goes on in another table, such as one in which a wall was added or a door cut: all volumes are entered into its cells. Nobody is
-    /// asked; who has no place there wakes. Ids stay. What the last frame reported is forgotten. A table of another dimension wakes all.
+    /// asked; who has no place there wakes. Ids stay. What the last frame reported is forgotten. In a table of another dimension nobody has a
+    /// known place (it is anywhere) nor a region until he is asked and promises anew, as one of both had no height.
     ///
     /// O(cells + entries of the volumes).
     pub fn replace(&mut self, places: P) {
@@ -257,7 +258,12 @@ impl<P: Places> Movers<P> {
         self.seen.clear();
         self.also.clear();
         self.broken.clear();
+        self.is_outside = false;
         for slot in 0..self.slots.len() as u32 {
+            if is_other_space && let Some(mover) = &mut self.slots[slot as usize].mover {
+                let everywhere = Aabb { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
+                (mover.motion, mover.is_lost, mover.bounds) = (mover.motion.anywhere(), true, everywhere);
+            }
             let Some(Mover { state: State::Asleep(volume), .. }) = self.slots[slot as usize].mover else { continue };
             if !is_other_space && is_within(&volume, &self.solid_within) && self.find_cells(&volume, |_| false) {
                 self.lists.enter(slot, &self.found);

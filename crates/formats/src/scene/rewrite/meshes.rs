@@ -69,7 +69,7 @@ pub(super) fn change(
         }
     }
     let lost = put_meshes(root, &mesh_of_node, &gone)?;
-    drop_weights(root, &lost)?;
+    drop_weights(root, &lost, keep_all)?;
     let mut k = 0;
     meshes.retain(|_| {
         k += 1;
@@ -215,7 +215,8 @@ fn put_meshes(
 }
 
 /// Takes away what animates the morph targets of nodes that have no mesh any more.
-fn drop_weights(root: &mut Object, lost: &BTreeSet<u64>) -> Result<(), RewriteError> {
+/// With `keep_all` an animation of nothing else stays as it is: others may count animations.
+fn drop_weights(root: &mut Object, lost: &BTreeSet<u64>, keep_all: bool) -> Result<(), RewriteError> {
     if lost.is_empty() || list(root, "animations")?.is_empty() {
         return Ok(());
     }
@@ -225,6 +226,7 @@ fn drop_weights(root: &mut Object, lost: &BTreeSet<u64>) -> Result<(), RewriteEr
         target["path"] == "weights" && target["node"].as_u64().is_some_and(|node| lost.contains(&node))
     };
     animations.retain_mut(|animation| match animation.get_mut("channels") {
+        Some(Value::Array(channels)) if keep_all && channels.iter().all(is_lost) => true,
         Some(Value::Array(channels)) if channels.iter().any(is_lost) => {
             channels.retain(|channel| !is_lost(channel));
             !channels.is_empty()
