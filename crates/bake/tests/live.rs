@@ -188,3 +188,63 @@ fn portals_close_and_open() {
     live.update(scene).expect("a table");
     assert_eq!(live.closed_portals(), [PortalId(0)]);
 }
+
+/// Walls that are a rounding apart, so that some pairs of cells are hard to decide about: an update that asks fewer groups than a
+/// rebuild must not give up what that one proves.
+#[test]
+fn walls_a_rounding_apart_are_decided_as_in_a_rebuild() {
+    let [p, q] = [0.899_999_999_999_999_9, 1.799_999_999_999_999_8];
+    let ends = [
+        [[0.6, p, 1.5], [p, q, q]],
+        [[0.0, 0.6, p], [0.6, 1.2, 1.5]],
+        [[0.0; 3], [0.001, 6.0, 6.0]],
+        [[0.3; 3], [1.5, p, 1.2]],
+    ];
+    let boxes: Vec<SceneObject> = ends.iter().map(|&[min, max]| block("b", &Aabb { min, max })).collect();
+    let before = Scene::new(boxes.clone()).expect("boxes");
+    let mut more = boxes;
+    more.insert(3, block("new", &Aabb { min: [p, 1.2, 0.6], max: [q, q, 1.5] }));
+    let after = Scene::new(more).expect("boxes");
+    let cut = SceneOptions { tau: 0.0, keep_solid: true, ..SceneOptions::default() };
+    let options = SceneBakeOptions { cut, threads: 1, ..SceneBakeOptions::default() };
+    let mut live = LiveScene::new(before, &options).expect("a table");
+    live.update(after.clone()).expect("a table");
+    let baked = bake_scene(&after, &options).expect("a table");
+    assert!(baked.n_assumed == 0 && live.table().to_bytes() == baked.table.to_bytes());
+}
+
+/// What is closed stays closed while it is walled up, whatever else is opened meanwhile.
+#[test]
+fn doors_that_are_walled_up_stay_closed() {
+    let at = |min, max| Aabb { min, max };
+    let mut shell = block("shell", &at([0.0; 3], [4.0, 5.0, 2.0]));
+    shell.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    let wall = |y: f64| block("wall", &at([2.0, y, 0.0], [2.25, y + 1.0, 2.0]));
+    let scene = |walls: &[f64]| {
+        let objects = std::iter::once(shell.clone()).chain(walls.iter().map(|&y| wall(y))).collect();
+        Scene::new(objects).expect("boxes")
+    };
+    let cut = SceneOptions { detail_below: Some(0.0), ..SceneOptions::default() };
+    let options = SceneBakeOptions { cut, threads: 1, ..SceneBakeOptions::default() };
+    let mut live = LiveScene::new(scene(&[0.0, 2.0, 4.0]), &options).expect("a table");
+    let door = |live: &LiveScene, y: f64| -> Vec<PortalId> {
+        let portals = (0u32..).map(PortalId).zip(live.graph().portals());
+        let is_there = |shape: &sightlines_geometry::AxialDoor| {
+            shape.axis == 0 && shape.at() == 2.0 && shape.extent.min[1] >= y && shape.extent.max[1] <= y + 1.0
+        };
+        portals.filter(|(_, portal)| is_there(&portal.shape)).map(|(id, _)| id).collect()
+    };
+    let first = door(&live, 1.0);
+    live.close(&first).expect("a table");
+    let closed = live.closed_portals();
+    assert!(!closed.is_empty());
+    live.update(scene(&[0.0, 2.0, 4.0, 1.0])).expect("a table");
+    assert!(live.closed_portals().is_empty());
+    let second = door(&live, 3.0);
+    live.open(&second).expect("a table");
+    live.update(scene(&[0.0, 2.0, 4.0])).expect("a table");
+    assert_eq!(live.closed_portals(), closed);
+    let first = door(&live, 1.0);
+    live.open(&first).expect("a table");
+    assert!(live.closed_portals().is_empty());
+}

@@ -342,3 +342,35 @@ fn volumes_shrink_when_they_come_into_view_for_nothing() {
     assert!(widths[2300..].iter().all(|&w| w < 4.0));
     assert!(movers.counters().asked < 600, "{:?}", movers.counters());
 }
+
+/// In a plane a region has no height, so in space nothing is left of it: a mover that rises within what it promised is seen.
+#[test]
+fn regions_of_a_plane_say_nothing_in_space() {
+    let [plane, space] = [Kind::Plane, Kind::Space].map(|kind| grid(kind, [4, 1, 3], |_| false, |_, _| true));
+    let mut movers = Movers::new(plane.cells(), MoverOptions { patience: 0, ..MoverOptions::default() });
+    let column = Aabb { min: [3.0, 0.0, 0.0], max: [4.0, 1.0, 3.0] };
+    let at = |z: f64| Aabb { min: [3.25, 0.25, z], max: [3.5, 0.5, z + 0.25] };
+    let id = movers.add(at(0.0), Motion::within(column).unwrap(), 0.0).unwrap();
+    let mut seen = Seen::new();
+    let n = space.table.n_cells();
+    see(&mut seen, plane.table.n_cells(), [0]);
+    for k in 0..10 {
+        assert!(movers.frame(f64::from(k), &frame(&seen, Answer::Full), &mut |_| at(0.0)).unwrap().is_empty());
+    }
+    assert!(movers.sleeps_in(id).is_some());
+    movers.replace(space.cells());
+    see(&mut seen, n, [0]);
+    for k in 10..20 {
+        assert!(movers.frame(f64::from(k), &frame(&seen, Answer::Full), &mut |_| at(0.0)).unwrap().is_empty());
+    }
+    // The uppermost cell of its column comes into view, and it is there.
+    see(&mut seen, n, [n as u32 - 1]);
+    assert_eq!(movers.frame(20.0, &frame(&seen, Answer::Full), &mut |_| at(2.5)).unwrap(), [id]);
+    assert!(movers.broken().is_empty());
+    // From outside everything is seen, also who came after the frame.
+    movers.frame(21.0, &frame(&seen, Answer::Outside), &mut |_| at(2.5)).unwrap();
+    let new = movers.add(at(0.0), Motion::ANY, 21.0).unwrap();
+    assert_eq!(movers.also(&[], &mut |_| unreachable!()), [id, new]);
+    movers.remove(id);
+    assert_eq!(movers.also(&[], &mut |_| unreachable!()), [new]);
+}
