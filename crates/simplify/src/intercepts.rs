@@ -35,15 +35,19 @@ impl Intercepts {
     }
 
     pub(crate) fn of_hider(faces: &Faces, views: &Views, hider: &Hider<'_>, depth: u32) -> Result<Self, BackendError> {
-        let visible = hider.may_see(views)?;
+        Ok(Self::of_visible(faces, views, &hider.may_see(views)?, depth))
+    }
+
+    /// With what is known of each part: which faces may be visible.
+    pub(crate) fn of_visible(faces: &Faces, views: &Views, visible: &[Vec<bool>], depth: u32) -> Self {
         let of = |(view, visible): (&View, &Vec<bool>)| {
             let share = |face: u32| {
                 if visible[face as usize] { bound::share(faces.of(face), view.volume.bounds(), depth) } else { 0.0 }
             };
             faces.ids().into_par_iter().map(share).collect::<Vec<f64>>()
         };
-        let bounds: Vec<Vec<f64>> = views.parts().iter().zip(&visible).map(of).collect();
-        Ok(Self { n_faces: faces.len(), bounds: bounds.concat() })
+        let bounds: Vec<Vec<f64>> = views.parts().iter().zip(visible).map(of).collect();
+        Self { n_faces: faces.len(), bounds: bounds.concat() }
     }
 
     /// Number of parts.

@@ -80,7 +80,8 @@ pub fn levels(
         let hider = Hider::new(&faces, &HiddenBy { method: by.method, table: Some(table) });
         let maker = Maker { scene, table, faces: &faces, hider, mesh: Mesh::new(scene), options };
         let all: Vec<CellId> = (0..table.n_cells() as u32).map(CellId).collect();
-        let kept = all.par_iter().map(|&cell| maker.kept(cell)).collect::<Result<Vec<Bits>, SimplifyError>>()?;
+        let asked = all.par_iter().map(|&cell| maker.kept(cell)).collect::<Result<Vec<_>, SimplifyError>>()?;
+        let (visible, kept): (Vec<Vec<bool>>, Vec<Bits>) = asked.into_iter().unzip();
         let mut groups = Groups::new(table, kept, options.bytes_per_triangle);
         groups.merge_equal();
         let mut made: BTreeMap<Vec<CellId>, Level> = BTreeMap::new();
@@ -88,8 +89,10 @@ pub fn levels(
             let wanted = groups.cells();
             made.retain(|cells, _| wanted.contains(cells));
             let missing: Vec<&Vec<CellId>> = wanted.iter().filter(|cells| !made.contains_key(*cells)).collect();
-            let new =
-                missing.par_iter().map(|cells| maker.level(cells)).collect::<Result<Vec<Level>, SimplifyError>>()?;
+            let new = missing
+                .par_iter()
+                .map(|cells| maker.level(cells, &visible))
+                .collect::<Result<Vec<Level>, SimplifyError>>()?;
             made.extend(new.into_iter().map(|level| (level.cells.clone(), level)));
             let n_bytes = made.values().fold(0u64, |sum, level| sum.saturating_add(level.n_bytes));
             if n_bytes <= options.memory {
@@ -131,25 +134,35 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// What is left for the eyes of one cell, without collapsing: near enough to choose what to merge.
-    fn kept(&self, cell: CellId) -> Result<Bits, SimplifyError> {
+    /// What may be visible for the eyes of one cell, and what is left of it, without collapsing: near enough to choose what to merge.
+    fn kept(&self, cell: CellId) -> Result<(Vec<bool>, Bits), SimplifyError> {
         let views = Views::of_cells(self.table, &[cell])?;
-        let intercepts = Intercepts::of_hider(self.faces, &views, &self.hider, self.options.simplify.depth)?;
+        let mut visible = self.hider.may_see(&views)?;
+        let intercepts = Intercepts::of_visible(self.faces, &views, &visible, self.options.simplify.depth);
         let mut kept = Bits::new(self.faces.len());
-        let visible = || self.faces.ids().filter(|&f| !intercepts.is_hidden(f));
-        visible().for_each(|face| kept.set(face, true));
+        let in_sight = || self.faces.ids().filter(|&f| !intercepts.is_hidden(f));
+        in_sight().for_each(|face| kept.set(face, true));
         let budget = self.options.simplify.budget;
         if budget > 0.0 {
             let mut account = Account::new(1);
-            least_visible(&intercepts, visible(), budget, &mut account, |face| kept.set(face, false));
+            least_visible(&intercepts, in_sight(), budget, &mut account, |face| kept.set(face, false));
         }
-        Ok(kept)
+        Ok((visible.pop().unwrap_or_default(), kept))
     }
 
-    fn level(&self, cells: &[CellId]) -> Result<Level, SimplifyError> {
+    /// * `visible`: for each cell what may be visible
+    fn level(&self, cells: &[CellId], visible: &[Vec<bool>]) -> Result<Level, SimplifyError> {
         let options = &self.options.simplify;
-        let views = Views::of_cells(self.table, cells)?.cut(options.n_parts);
-        let intercepts = Intercepts::of_hider(self.faces, &views, &self.hider, options.depth)?;
+        let views = Views::of_cells(self.table, cells)?;
+        let (views, intercepts) = if options.n_parts <= cells.len() {
+            let of_cells: Vec<Vec<bool>> = cells.iter().map(|cell| visible[cell.idx()].clone()).collect();
+            let intercepts = Intercepts::of_visible(self.faces, &views, &of_cells, options.depth);
+            (views, intercepts)
+        } else {
+            let views = views.cut(options.n_parts);
+            let intercepts = Intercepts::of_hider(self.faces, &views, &self.hider, options.depth)?;
+            (views, intercepts)
+        };
         let simplified = within_budget(self.scene, self.faces, self.mesh.clone(), &views, &intercepts, options);
         let n_bytes = simplified.counts.left as u64;
         let n_bytes = n_bytes.saturating_mul(self.options.bytes_per_triangle);

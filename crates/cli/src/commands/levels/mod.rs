@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// Rays that weigh faces for each level: they only choose what is collapsed first, and there are many levels.
-const N_RAYS: u64 = 1 << 15;
+const N_RAYS: u64 = 1 << 12;
 
 /// Arguments of `levels`.
 #[derive(Debug, clap::Args)]
