@@ -15,7 +15,7 @@
 //! the separating axis theorem for the rest. The exact planes and bounds were chosen here.
 
 use crate::Piece;
-use crate::vector::{cross, sub};
+use sightlines_geometry::vector::{cross, sub};
 use sightlines_geometry::{Aabb, Point3, orient3d};
 use sightlines_multifocal::Volume;
 

@@ -12,7 +12,6 @@
 //! Source: the parts of a soft shadow and their exact borders: Nishita and Nakamae, "Half-tone representation of 3-D objects illuminated by area sources or
 //! polyhedron sources", COMPSAC 1983.
 
-mod any_of;
 mod classify;
 mod hull;
 mod lighting;
@@ -22,7 +21,6 @@ mod piece;
 mod rays;
 mod vector;
 
-pub use any_of::AnyOf;
 pub use classify::Shadows;
 pub use lighting::{Areas, LightCounters, Lighting};
 pub use options::{Options, Side, Sides};

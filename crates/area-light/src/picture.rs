@@ -1,8 +1,8 @@
 //! Pictures of soft shadows: what is decided is drawn as it is, and rays are cast for the rest.
 
-use crate::vector::{cross, dot, sub};
 use crate::{Lighting, Piece, Shadows, Side, State};
 use sightlines_geometry::Point3;
+use sightlines_geometry::vector::{cross, dot, sub};
 use sightlines_multifocal::Volume;
 use sightlines_visible_surface::{Camera, Chosen, DepthFormat, Faces, Image, NOTHING, Shot, VisibleSurface, ZBuffer};
 

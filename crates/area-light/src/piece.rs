@@ -9,7 +9,7 @@
 //! techniques", Int. J. Numerical Methods in Engineering 20, 1984.
 
 use crate::Side;
-use crate::vector::{dot, sub};
+use sightlines_geometry::vector::{dot, sub};
 use sightlines_geometry::{Point3, check_coordinate};
 
 /// What is known of a piece.

@@ -2,7 +2,7 @@
 
 use crate::Side;
 use crate::hull::{Hull, Light};
-use crate::vector::{cross, dot, sub};
+use sightlines_geometry::vector::{cross, dot, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d};
 use sightlines_multifocal::Volume;
 use sightlines_visible_surface::Faces;

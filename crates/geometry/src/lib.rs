@@ -18,6 +18,7 @@ pub mod portal;
 pub mod portal3;
 pub mod random;
 pub mod segment;
+pub mod vector;
 
 pub use bounds::Aabb;
 pub use boxtree::{BoxNode, BoxTree};

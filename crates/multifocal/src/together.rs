@@ -3,42 +3,55 @@
 use crate::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
-/// What any of several methods calls hidden is hidden. They are asked in order, so the quick one comes first. About single
-/// polygons only the first is asked: by then most that is hidden is known to be, from boxes.
+/// What any of several methods calls hidden is hidden. They are asked in order, so the quick one comes first.
 #[derive(Debug)]
-pub struct Together(Vec<Box<dyn FromRegion + Send>>);
+pub struct Together {
+    methods: Vec<Box<dyn FromRegion + Send>>,
+    n_about_points: usize,
+}
 
 impl Together {
-    /// The methods, in the order in which they are asked.
+    /// The methods, in the order in which they are asked. Without methods nothing is hidden.
+    ///
+    /// About single polygons only the first is asked: where boxes are asked about before, most that is hidden is known
+    /// to be by then.
     pub fn new(methods: Vec<Box<dyn FromRegion + Send>>) -> Self {
-        Self(methods)
+        Self { methods, n_about_points: 1 }
+    }
+
+    /// The same, with all methods asked about single polygons too: for who asks about nothing else.
+    pub fn about_pieces(methods: Vec<Box<dyn FromRegion + Send>>) -> Self {
+        Self { n_about_points: methods.len(), methods }
     }
 }
 
 impl FromRegion for Together {
     fn name(&self) -> String {
-        self.0.iter().map(|m| m.name()).collect::<Vec<_>>().join("+")
+        self.methods.iter().map(|m| m.name()).collect::<Vec<_>>().join("+")
     }
 
     fn guarantee(&self) -> Guarantee {
-        let conditional = self.0.iter().map(|m| m.guarantee()).find(|g| *g != Guarantee::Conservative);
+        let conditional = self.methods.iter().map(|m| m.guarantee()).find(|g| *g != Guarantee::Conservative);
         conditional.unwrap_or(Guarantee::Conservative)
     }
 
     fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError> {
-        let umbrae = self.0.iter_mut().map(|method| method.umbra(volume)).collect::<Result<_, _>>()?;
-        Ok(Box::new(AnyUmbra(umbrae)))
+        let umbrae = self.methods.iter_mut().map(|method| method.umbra(volume)).collect::<Result<_, _>>()?;
+        Ok(Box::new(AnyUmbra { umbrae, n_about_points: self.n_about_points }))
     }
 }
 
-struct AnyUmbra<'a>(Vec<Box<dyn Umbra + 'a>>);
+struct AnyUmbra<'a> {
+    umbrae: Vec<Box<dyn Umbra + 'a>>,
+    n_about_points: usize,
+}
 
 impl Umbra for AnyUmbra<'_> {
     fn hides(&mut self, target: &Aabb<3>) -> bool {
-        self.0.iter_mut().any(|umbra| umbra.hides(target))
+        self.umbrae.iter_mut().any(|umbra| umbra.hides(target))
     }
 
     fn hides_points(&mut self, points: &[Point3]) -> bool {
-        self.0.first_mut().is_some_and(|umbra| umbra.hides_points(points))
+        self.umbrae.iter_mut().take(self.n_about_points).any(|umbra| umbra.hides_points(points))
     }
 }

@@ -4,7 +4,7 @@
 //! smaller ones. Rays are traced in plain doubles.
 
 use crate::Volume;
-use sightlines_geometry::{Aabb, BoxTree, Point3};
+use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
 
 /// The most rays towards one object: what so many do not reach is hidden, or hardly visible.
 const MOST_FOR_ONE: u32 = 64;
@@ -45,7 +45,7 @@ impl Witness {
         }
         let b = volume.bounds();
         let mut random =
-            Random(b.min[0].to_bits() ^ b.max[1].to_bits().rotate_left(17) ^ b.min[2].to_bits().rotate_left(41));
+            Random::new(b.min[0].to_bits() ^ b.max[1].to_bits().rotate_left(17) ^ b.min[2].to_bits().rotate_left(41));
         let all = Aabb { min: [-1.0; 3], max: [1.0; 3] };
         for _ in 0..n_rays / 4 {
             let origin = random.point(b);
@@ -73,7 +73,8 @@ impl Witness {
     /// the same volume and box.
     pub fn sees(&self, volume: &Volume, target: &Aabb<3>, n_rays: u32) -> bool {
         let b = volume.bounds();
-        let mut random = Random(b.min[0].to_bits() ^ target.max[1].to_bits().rotate_left(17) ^ target.min[2].to_bits());
+        let mut random =
+            Random::new(b.min[0].to_bits() ^ target.max[1].to_bits().rotate_left(17) ^ target.min[2].to_bits());
         (0..n_rays).any(|_| {
             let (origin, to) = (random.point(b), random.point(target));
             let way = std::array::from_fn(|k| to[k] - origin[k]);
@@ -145,22 +146,4 @@ fn hit([a, b, c]: &[Point3; 3], origin: Point3, direction: Point3) -> f64 {
     let t = dot(direction, q) / det;
     let at = dot(v, q) / det;
     if s >= 0.0 && t >= 0.0 && s + t <= 1.0 && at > 0.0 { at } else { f64::INFINITY }
-}
-
-/// A small generator (splitmix64), the same everywhere.
-struct Random(u64);
-
-impl Random {
-    /// From 0 to before 1.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn point(&mut self, b: &Aabb<3>) -> Point3 {
-        std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) * self.unit())
-    }
 }

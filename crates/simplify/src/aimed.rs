@@ -5,10 +5,10 @@ use crate::measure::MeasureOptions;
 use crate::rays::Traced;
 use crate::simplified::Simplified;
 use crate::simplify::{SimplifyError, in_threads};
-use crate::vector::{dot, length, minus, normal};
 use crate::views::Views;
 use rayon::prelude::*;
 use sightlines_cells::Scene;
+use sightlines_geometry::vector::{dot, length, normal, sub};
 use sightlines_geometry::{Point3, Random};
 
 /// The share of directions that is changed, by rays that are aimed.
@@ -99,8 +99,8 @@ impl<'a> Targets<'a> {
             let t = compared.corners(cause);
             let middle = [0, 1, 2].map(|k| t.iter().map(|p| p[k] / 3.0).sum::<f64>());
             // Never nothing: also a triangle whose middle is seen edge-on is aimed at.
-            let (area, square) = (length(normal(t)) / 2.0, dot(minus(middle, eye), minus(middle, eye)));
-            sum += share(t, minus(middle, eye)).min(0.5) + 0.01 * area / (area + square);
+            let (area, square) = (length(normal(*t)) / 2.0, dot(sub(middle, eye), sub(middle, eye)));
+            sum += share(t, sub(middle, eye)).min(0.5) + 0.01 * area / (area + square);
             sum
         };
         Self { sums: causes.iter().map(add).collect(), causes, eye }
@@ -123,6 +123,6 @@ impl<'a> Targets<'a> {
 /// The share of the sphere that a triangle takes up, as if all of it were seen as its point at `way` from the eye.
 fn share(t: &[Point3; 3], way: Point3) -> f64 {
     let cube = dot(way, way) * length(way);
-    let share = dot(normal(t), way).abs() / 2.0 / cube / (4.0 * std::f64::consts::PI);
+    let share = dot(normal(*t), way).abs() / 2.0 / cube / (4.0 * std::f64::consts::PI);
     if share.is_finite() { share } else { 0.0 }
 }

@@ -65,8 +65,8 @@ fn length_down(v: Point3) -> f64 {
 
 impl PlaneOf {
     fn new(&[a, b, c]: &[Point3; 3], eyes: &Aabb<3>) -> Self {
-        let minus = |p: Point3, q: Point3| [0, 1, 2].map(|k| p[k] - q[k]);
-        let (u, v) = (minus(b, a), minus(c, a));
+        let sub = |p: Point3, q: Point3| [0, 1, 2].map(|k| p[k] - q[k]);
+        let (u, v) = (sub(b, a), sub(c, a));
         // Each product has two rounded differences and its own rounding, and the difference rounds once more: less than 5 U of the
         // products' sizes; what is lost below the smallest normal number comes on top.
         let part = |i: usize, j: usize| {
@@ -80,7 +80,7 @@ impl PlaneOf {
         // The plane's function at the corners of the box, each with its error: of the normal, and four roundings.
         let (mut least, mut most, mut sides) = (f64::INFINITY, 0.0f64, [false; 2]);
         for corner in 0..8 {
-            let x = minus([0, 1, 2].map(|k| if corner >> k & 1 == 0 { eyes.min[k] } else { eyes.max[k] }), a);
+            let x = sub([0, 1, 2].map(|k| if corner >> k & 1 == 0 { eyes.min[k] } else { eyes.max[k] }), a);
             let value: f64 = (0..3).map(|k| n[k] * x[k]).sum();
             let error = (0..3).map(|k| (off[k] + 8.0 * U * (n[k].abs() + off[k])) * x[k].abs()).sum::<f64>();
             let error = error * (1.0 + 16.0 * U) + 8.0 * f64::MIN_POSITIVE;

@@ -4,9 +4,9 @@ use crate::estimate::Places;
 use crate::rays::{FirstHits, Traced};
 use crate::simplified::Simplified;
 use crate::simplify::SimplifyError;
-use crate::vector::{dot, minus, normal};
 use crate::views::Views;
 use sightlines_cells::Scene;
+use sightlines_geometry::vector::{dot, normal, sub};
 use sightlines_geometry::{Point3, Random, orient3d};
 use sightlines_visible_surface::Faces;
 
@@ -153,6 +153,6 @@ fn in_one_plane([a, b, c]: &[Point3; 3], other: &[Point3; 3]) -> bool {
 
 /// How far along a ray the plane of a triangle is, rounded.
 fn depth(t: &[Point3; 3], eye: Point3, way: Point3) -> f64 {
-    let n = normal(t);
-    dot(n, minus(t[0], eye)) / dot(n, way)
+    let n = normal(*t);
+    dot(n, sub(t[0], eye)) / dot(n, way)
 }

@@ -122,7 +122,7 @@ fn direction_in_strip(i: u64, n: u64, random: &mut Random) -> Point3 {
     loop {
         let (x, y) = (2.0 * random.unit() - 1.0, 2.0 * random.unit() - 1.0);
         let square = x * x + y * y;
-        if square > 1e-12 && square < 1.0 {
+        if square > 0.0 && square < 1.0 {
             let root = square.sqrt();
             return [radius * x / root, radius * y / root, z];
         }

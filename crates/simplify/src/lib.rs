@@ -33,7 +33,6 @@ mod rays;
 mod select;
 mod simplified;
 mod simplify;
-mod vector;
 mod views;
 mod weigh;
 

@@ -1,7 +1,7 @@
 //! What weighs faces and edges: from which sides they are seen, and how large they are.
 
-use crate::vector::{length, normal};
 use crate::views::Views;
+use sightlines_geometry::vector::{length, normal};
 use sightlines_geometry::{Point3, orient3d};
 use sightlines_visible_surface::Faces;
 
@@ -39,7 +39,7 @@ pub(crate) struct Areas {
 
 impl Areas {
     pub(crate) fn new(faces: &Faces) -> Self {
-        let area = |t: &[Point3; 3]| length(normal(t)) / 2.0;
+        let area = |t: &[Point3; 3]| length(normal(*t)) / 2.0;
         let of: Vec<f64> = faces.corners().iter().map(area).collect();
         Self { sum: of.iter().sum(), of }
     }

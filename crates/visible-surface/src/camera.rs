@@ -1,6 +1,6 @@
 //! An eye and its picture.
 
-use crate::vector::{cross, cross_size, dot, dot_size, minus};
+use crate::vector::{cross, cross_size, dot, dot_size, sub};
 use sightlines_geometry::{Point3, check_coordinate};
 
 /// Unit of rounding of doubles, 2^-53.
@@ -63,7 +63,7 @@ impl Camera {
         if !(angle > 0.0 && angle < 180.0) {
             return Err(CameraError::Angle);
         }
-        let ahead = unit(minus(at, eye)).ok_or(CameraError::Direction)?;
+        let ahead = unit(sub(at, eye)).ok_or(CameraError::Direction)?;
         let up = unit(up).ok_or(CameraError::Direction)?;
         let right = cross(ahead, up);
         // Of two unit vectors that are nearly parallel only noise is left.
@@ -180,7 +180,7 @@ impl Camera {
 
     /// Where a point is in the picture. See [`Place`].
     pub fn place(&self, p: Point3) -> Place {
-        let way = minus(p, self.eye);
+        let way = sub(p, self.eye);
         Place {
             scaled: self.normals.map(|n| dot(n, way)),
             // A difference; a product and a difference in the normal; a product and two sums: six roundings.

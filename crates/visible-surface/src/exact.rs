@@ -96,7 +96,7 @@ pub(crate) fn point(p: Point3) -> Dyadic3 {
     p.map(Dyadic::new)
 }
 
-pub(crate) fn minus(a: &Dyadic3, b: &Dyadic3) -> Dyadic3 {
+pub(crate) fn sub(a: &Dyadic3, b: &Dyadic3) -> Dyadic3 {
     [0, 1, 2].map(|k| &a[k] - &b[k])
 }
 

@@ -7,7 +7,7 @@ use crate::camera::{Camera, U};
 use crate::faces::Faces;
 use crate::plane::{LEAST, Plane};
 use crate::side::{Side, eye_sign};
-use crate::vector::{cross, cross_size, dot, dot_size, minus};
+use crate::vector::{cross, cross_size, dot, dot_size, sub};
 
 /// One over the depth of a face's plane: `a x + b y + c` for a place in pixels, off by at most `error` anywhere in the picture.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +23,7 @@ impl Nearness {
     #[inline]
     pub(crate) fn of(camera: &Camera, faces: &Faces, face: u32) -> Self {
         let [p, q, r] = *faces.of(face);
-        let (u, v, way) = (minus(q, p), minus(r, p), minus(p, camera.eye()));
+        let (u, v, way) = (sub(q, p), sub(r, p), sub(p, camera.eye()));
         let (normal, size) = (cross(u, v), cross_size(u, v));
         let [corner, across, down] = camera.rays();
         let value = dot(normal, way);

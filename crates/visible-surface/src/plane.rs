@@ -3,7 +3,7 @@
 use crate::camera::{TINY_ERROR, U};
 use crate::exact::{self, Dyadic, Dyadic3};
 use crate::faces::Faces;
-use crate::vector::{cross, cross_size, dot, dot_size, minus};
+use crate::vector::{cross, cross_size, dot, dot_size, sub};
 use sightlines_geometry::{Point3, orient3d};
 
 /// A plane through what was given: exact, whatever has been cut by it.
@@ -73,7 +73,7 @@ impl Plane {
                 if corners.contains(&p) {
                     return Approx { value: 0.0, error: 0.0 };
                 }
-                let (u, v, w) = (minus(b, a), minus(c, a), minus(p, a));
+                let (u, v, w) = (sub(b, a), sub(c, a), sub(p, a));
                 let value = dot(cross(u, v), w);
                 // Two differences, a product, a sum, a difference, a product, two sums: fewer than 16 roundings.
                 let error = 16.0 * U * dot_size(cross_size(u, v), w);
@@ -95,7 +95,7 @@ impl Plane {
             Self::Axis(k, at) => &Dyadic::new(p[k as usize]) - &Dyadic::new(at),
             Self::Face(face) => {
                 let a = exact::point(faces.of(face)[0]);
-                exact::dot(&self.exact_normal(faces), &exact::minus(&exact::point(p), &a))
+                exact::dot(&self.exact_normal(faces), &exact::sub(&exact::point(p), &a))
             }
         }
     }
@@ -106,7 +106,7 @@ impl Plane {
             Self::Axis(k, _) => std::array::from_fn(|i| Dyadic::new(if i == usize::from(k) { 1.0 } else { 0.0 })),
             Self::Face(face) => {
                 let [a, b, c] = faces.of(face).map(exact::point);
-                exact::cross(&exact::minus(&b, &a), &exact::minus(&c, &a))
+                exact::cross(&exact::sub(&b, &a), &exact::sub(&c, &a))
             }
         }
     }
@@ -120,7 +120,7 @@ impl Plane {
             }
             Self::Face(face) => {
                 let [a, b, c] = *faces.of(face);
-                let (u, v) = (minus(b, a), minus(c, a));
+                let (u, v) = (sub(b, a), sub(c, a));
                 (cross(u, v), cross_size(u, v))
             }
         }

@@ -2,22 +2,12 @@
 
 use sightlines_geometry::Point3;
 
-pub(crate) fn minus(a: Point3, b: Point3) -> Point3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn cross(a: Point3, b: Point3) -> Point3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
+pub(crate) use sightlines_geometry::vector::{cross, dot, sub};
 
 /// The cross product of the magnitudes, with sums in the place of differences: what the rounding of [`cross`] is measured by.
 pub(crate) fn cross_size(a: Point3, b: Point3) -> Point3 {
     let [a, b] = [a.map(f64::abs), b.map(f64::abs)];
     [a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]]
-}
-
-pub(crate) fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The scalar product of the magnitudes.

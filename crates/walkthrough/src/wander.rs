@@ -1,6 +1,7 @@
 //! A walk through a scene without a goal, for measuring.
 
 use sightlines_eye_to_cell::CellSource;
+use sightlines_geometry::Random;
 use sightlines_pvs::CellId;
 
 /// Where the viewer of a frame is, and looks.
@@ -29,13 +30,13 @@ pub fn wander<S: CellSource + ?Sized>(
     step: f64,
     seed: u64,
 ) -> Result<Vec<Stand>, S::Error> {
-    let mut chance = Chance(seed);
+    let mut chance = Random::new(seed);
     let mut frames = Vec::with_capacity(n_frames);
     let n_cells = source.n_cells();
     // Tries without finding a portal in a row.
     let mut n_failed = 0;
     while frames.len() < n_frames && n_failed < 16 * n_cells {
-        let mut cell = CellId(chance.below(n_cells) as u32);
+        let mut cell = CellId(below(&mut chance, n_cells) as u32);
         let mut doors = doors(source, cell)?;
         let Some(mut place) = middle(&doors) else {
             n_failed += 1;
@@ -47,8 +48,8 @@ pub fn wander<S: CellSource + ?Sized>(
         for _ in 0..40 {
             let others: Vec<&Door> = doors.iter().filter(|door| Some(door.portal) != came_by).collect();
             let &next = match others.len() {
-                0 => &doors[chance.below(doors.len())],
-                n => others[chance.below(n)],
+                0 => &doors[below(&mut chance, doors.len())],
+                n => others[below(&mut chance, n)],
             };
             (cell, came_by) = (next.to, Some(next.portal));
             doors = self::doors(source, cell)?;
@@ -112,15 +113,7 @@ fn mean(points: impl ExactSizeIterator<Item = [f64; 3]>) -> Option<[f64; 3]> {
     (n > 0.0).then(|| sum.map(|x| x / n))
 }
 
-/// Chance that is the same everywhere: splitmix64 (Steele, Lea, Flood 2014).
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((u128::from(z ^ (z >> 31)) * n as u128) >> 64) as usize
-    }
+/// A whole number from 0 to before `n`.
+fn below(chance: &mut Random, n: usize) -> usize {
+    ((u128::from(chance.bits()) * n as u128) >> 64) as usize
 }

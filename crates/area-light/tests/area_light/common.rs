@@ -1,11 +1,11 @@
 //! Scenes and methods.
 
-use sightlines_area_light::{AnyOf, Lighting, Options, Shadows};
+use sightlines_area_light::{Lighting, Options, Shadows};
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_from_region::ViewShafts;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::mesh::{PatchOptions, SheetMethod, patches};
-use sightlines_multifocal::{Chosen as ChosenOccluders, FromRegion, Layout, Multifocal, Volume};
+use sightlines_multifocal::{Chosen as ChosenOccluders, FromRegion, Layout, Multifocal, Together, Volume};
 use sightlines_multifocal_cpu::Fast;
 use sightlines_visible_surface::{Chosen, Faces};
 use std::sync::Arc;
@@ -54,8 +54,8 @@ pub(crate) fn multifocal(triangles: &[Triangle]) -> Multifocal<Fast> {
 }
 
 /// Shafts and sheets.
-pub(crate) fn method(triangles: &[Triangle]) -> AnyOf {
-    AnyOf::new(vec![Box::new(shafts(triangles)), Box::new(SheetMethod::new(triangles))])
+pub(crate) fn method(triangles: &[Triangle]) -> Together {
+    Together::about_pieces(vec![Box::new(shafts(triangles)), Box::new(SheetMethod::new(triangles))])
 }
 
 /// All faces.

@@ -1,24 +1,19 @@
 //! The suite's own source of chance: SplitMix64, the same on every machine.
 
-/// Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+use sightlines_geometry::Random as Bits;
+
+/// Chance that makes things meet.
 #[derive(Debug, Clone)]
-pub(super) struct Random(u64);
+pub(super) struct Random(Bits);
 
 impl Random {
     pub(super) fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        Self(Bits::new(seed))
     }
 
     /// Less than `n`, which is small, so that it does not matter that some are a little more likely.
     pub(super) fn below(&mut self, n: u32) -> u32 {
-        (self.next() % u64::from(n)) as u32
+        (self.0.bits() % u64::from(n)) as u32
     }
 
     pub(super) fn coin(&mut self) -> bool {
@@ -36,7 +31,7 @@ impl Random {
 
     /// From `low` to `high`, all bits used.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
+        low + (high - low) * self.0.unit()
     }
 }
 
@@ -47,7 +42,7 @@ mod tests {
     #[test]
     fn numbers_are_those_of_the_paper_and_within_their_ranges() {
         let mut random = Random::new(0);
-        assert_eq!([random.next(), random.next()], [0xe220_a839_7b1d_cdaf, 0x6e78_9e6a_a1b9_65f4]);
+        assert_eq!([random.0.bits(), random.0.bits()], [0xe220_a839_7b1d_cdaf, 0x6e78_9e6a_a1b9_65f4]);
         for _ in 0..1000 {
             assert!(random.below(3) < 3);
             let x = random.eighth(-1, 2);

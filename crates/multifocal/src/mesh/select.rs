@@ -1,6 +1,6 @@
 //! Which occluders are worth drawing.
 
-use super::vector::{add, basis, cross, dot, length, scaled, sub, unit, vector_area};
+use super::vector::{add, basis, cross, dot, length, scale, sub, unit, vector_area};
 use crate::{Occluder, Plane, Volume};
 use sightlines_geometry::Point3;
 use std::cmp::Ordering;
@@ -55,7 +55,7 @@ pub fn select(volume: &Volume, plane: &Plane, occluders: &[Occluder], n: usize) 
 impl Sketch {
     fn of(outline: &[Point3]) -> Self {
         let area = vector_area(outline);
-        let middle = scaled(outline.iter().fold([0.0; 3], |s, &p| add(s, p)), 1.0 / outline.len() as f64);
+        let middle = scale(outline.iter().fold([0.0; 3], |s, &p| add(s, p)), 1.0 / outline.len() as f64);
         // Along the longest edge, as rectangles have it.
         let next = |i: usize| sub(outline[(i + 1) % outline.len()], outline[i]);
         let longest = (0..outline.len()).map(next).reduce(|a, b| if length(b) > length(a) { b } else { a });
@@ -90,7 +90,7 @@ impl Sketch {
         // Seen from one eye the shadow grows with the distance; eyes that are apart take from it on both sides.
         let view = unit(way);
         let growth: [f64; 2] = std::array::from_fn(|i| {
-            let across = sub(self.axes[i], scaled(view, dot(self.axes[i], view)));
+            let across = sub(self.axes[i], scale(view, dot(self.axes[i], view)));
             let (width, spread) = (self.widths[i] * length(across), reach(unit(across)));
             if width > 0.0 { 1.0 - spread / width } else { f64::NEG_INFINITY }
         });
@@ -107,7 +107,7 @@ impl Sketch {
 
     /// Which part of the shadow's end falls into the plane's window, by the middle and the widths of the shadow.
     fn share_of_window(&self, eye: Point3, last: f64, plane: &Plane) -> f64 {
-        let end = add(self.middle, scaled(sub(self.middle, eye), last));
+        let end = add(self.middle, scale(sub(self.middle, eye), last));
         let (low, high) = (plane.origin(), plane.end());
         let mut share = 1.0;
         for (i, axis) in plane.across().into_iter().enumerate() {

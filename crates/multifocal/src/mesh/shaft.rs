@@ -223,6 +223,18 @@ mod tests {
         std::array::from_fn(|k| &low[k] + (&high[k] - &low[k]) * part(k))
     }
 
+    /// Whether all points lie in a plane. Exact.
+    fn is_flat(points: &[Point3]) -> bool {
+        let n = points.len();
+        (0..n).all(|i| {
+            (0..i).all(|j| {
+                (0..j).all(|k| {
+                    (0..k).all(|l| sightlines_geometry::orient3d(points[i], points[j], points[k], points[l]) == 0.0)
+                })
+            })
+        })
+    }
+
     /// Whether the point at `s` of the segment `a`-`b` lies on the segment `v`-`e`, both closed, for some `s`.
     fn meets(a: &Q3, b: &Q3, v: &Q3, e: &Q3) -> bool {
         // a + s (b - a) = v + t (e - v): two of the equations give s and t, the third has to agree.
@@ -263,7 +275,8 @@ mod tests {
         }
 
         /// Invariant: points on a grid are outside if and only if a half-space or box says so: by separation
-        /// from the hull of the sixteen corners along the directions of all pairs of edges.
+        /// from the hull of the sixteen corners along the directions of all pairs of edges. Of a hull that lies in a
+        /// plane no half-spaces are known, and less is said to miss it.
         #[test]
         fn shaft_misses_what_is_clearly_outside(v in boxes(), e in boxes(), a in point(), b in point()) {
             let shaft = Shaft::new(&v, &e);
@@ -276,7 +289,7 @@ mod tests {
                 let hull = corners.iter().map(|&c| f(n, c)).fold(f64::NEG_INFINITY, f64::max);
                 f(n, a).min(f(n, b)) > hull + 1e-6
             });
-            if far {
+            if far && !is_flat(&corners) {
                 prop_assert!(shaft.code(a) & shaft.code(b) != 0 || shaft.certainly_misses(a, b));
             }
         }

@@ -2,46 +2,19 @@
 
 use sightlines_geometry::{Point2, Point3, orient2d};
 
-pub(super) fn sub(a: Point3, b: Point3) -> Point3 {
-    std::array::from_fn(|k| a[k] - b[k])
-}
-
-pub(super) fn add(a: Point3, b: Point3) -> Point3 {
-    std::array::from_fn(|k| a[k] + b[k])
-}
-
-pub(super) fn scaled(a: Point3, s: f64) -> Point3 {
-    a.map(|x| x * s)
-}
-
-pub(super) fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn cross(a: Point3, b: Point3) -> Point3 {
-    std::array::from_fn(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
-}
-
-pub(super) fn length(a: Point3) -> f64 {
-    dot(a, a).sqrt()
-}
+pub(super) use sightlines_geometry::vector::{add, cross, dot, length, normal, scale, sub};
 
 /// Of length 1, or zero for a vector that has no direction.
 pub(super) fn unit(a: Point3) -> Point3 {
     let l = length(a);
-    if l > 0.0 { scaled(a, 1.0 / l) } else { [0.0; 3] }
-}
-
-/// Twice the area of a triangle, along its right-hand normal.
-pub(super) fn normal([a, b, c]: [Point3; 3]) -> Point3 {
-    cross(sub(b, a), sub(c, a))
+    if l > 0.0 { scale(a, 1.0 / l) } else { [0.0; 3] }
 }
 
 /// Area of a loop along its right-hand normal.
 pub(super) fn vector_area(outline: &[Point3]) -> Point3 {
     let Some(&o) = outline.first() else { return [0.0; 3] };
     let twice = outline.windows(2).fold([0.0; 3], |sum, w| add(sum, cross(sub(w[0], o), sub(w[1], o))));
-    scaled(twice, 0.5)
+    scale(twice, 0.5)
 }
 
 /// Whether three points lie on a line. Exact.

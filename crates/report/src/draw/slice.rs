@@ -17,6 +17,8 @@ pub struct SliceOptions {
     pub up: Up,
     /// Where to cut, as a coordinate on the axis that points up, in scene units.
     pub height: f64,
+    /// A line of sight to draw, as it is seen from above, in scene units; it may be at other heights.
+    pub line: Option<[[f64; 3]; 2]>,
     /// The longer side of the picture in pixels, from [`MIN_SIZE`](super::MIN_SIZE) to
     /// [`MAX_SIZE`](super::MAX_SIZE).
     pub size: u32,
@@ -25,7 +27,7 @@ pub struct SliceOptions {
 impl Default for SliceOptions {
     /// The cells alone at height 0, y up, 1600 pixels.
     fn default() -> Self {
-        Self { view: View::Plan, up: Up::Y, height: 0.0, size: 1600 }
+        Self { view: View::Plan, up: Up::Y, height: 0.0, line: None, size: 1600 }
     }
 }
 
@@ -37,9 +39,9 @@ impl Default for SliceOptions {
 /// [`DrawError`] for a table of a plan, a cell that does not exist, a height without cells, an unusable size
 /// or point.
 pub fn slice_svg(table: &Table, options: &SliceOptions) -> Result<String, DrawError> {
-    let SliceOptions { view, up, height, size } = *options;
+    let SliceOptions { view, up, height, line, size } = *options;
     let (seen, eye) = look(table, view, size)?;
-    if !height.is_finite() {
+    if !height.is_finite() || !line.iter().flatten().flatten().all(|x| x.is_finite()) {
         return Err(DrawError::NotFinite);
     }
     let figure = Figure::of_slice(table, up, height);
@@ -48,7 +50,8 @@ pub fn slice_svg(table: &Table, options: &SliceOptions) -> Result<String, DrawEr
         let high = table.cells().iter().map(|c| c.max[up.axis()]).fold(f64::NEG_INFINITY, f64::max);
         return Err(DrawError::NoCellAt { height, low, high });
     }
-    let marks = Marks { eye: eye.map(|eye| Point2::from(up.on_floor(eye))), ..Marks::default() };
+    let on_floor = |p: [f64; 3]| Point2::from(up.on_floor(p));
+    let marks = Marks { eye: eye.map(on_floor), line: line.map(|ends| ends.map(on_floor)), ..Marks::default() };
     let title = format!("{} at height {height}", title(view));
     Ok(Picture::new(&figure, seen.as_ref(), size).draw(&title, &marks, false, true))
 }

@@ -2,21 +2,7 @@
 
 use sightlines_geometry::Point3;
 
-pub(super) fn sub(a: Point3, b: Point3) -> Point3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(super) fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn cross(a: Point3, b: Point3) -> Point3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(super) fn scale(a: Point3, by: f64) -> Point3 {
-    a.map(|x| x * by)
-}
+pub(super) use sightlines_geometry::vector::{cross, dot, scale, sub};
 
 /// `a + by * b`.
 pub(super) fn along(a: Point3, b: Point3, by: f64) -> Point3 {

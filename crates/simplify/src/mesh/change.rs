@@ -1,8 +1,8 @@
 //! Moving all that is at one place of a mesh to a neighbour.
 
 use super::{Mesh, State};
-use crate::vector::{dot, normal};
 use sightlines_geometry::Point3;
+use sightlines_geometry::vector::{dot, normal};
 
 /// What happens if place `from` is moved to `to`.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,7 +97,7 @@ fn partner(mesh: &Mesh, lost: &[u32], face: u32, from: u32, to: u32) -> Option<u
 fn turns_over(mesh: &Mesh, face: u32, from: u32, to: u32) -> bool {
     let before = mesh.corners(face);
     let after = mesh.face(face).corners.map(|c| mesh.place(if c == from { to } else { c }));
-    let (n, m) = (normal(&before), normal(&after));
+    let (n, m) = (normal(before), normal(after));
     let dot = dot(n, m);
     dot.is_nan() || dot <= 0.0
 }

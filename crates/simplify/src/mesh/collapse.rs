@@ -3,8 +3,8 @@
 use super::apart::apart;
 use super::quadric::Quadric;
 use super::{Change, Mesh, State};
-use crate::vector::{cross, dot, length, normal};
 use sightlines_geometry::Point3;
+use sightlines_geometry::vector::{cross, dot, length, normal};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -80,7 +80,7 @@ impl Collapser {
         };
         for (id, face) in (0..).zip(mesh.faces()).filter(|(_, f)| f.state != State::Gone) {
             let corners = face.corners.map(|c| collapser.local(mesh, c));
-            let quadric = Quadric::plane(normal(&corners), corners[0], (weights.face)(id));
+            let quadric = Quadric::plane(normal(corners), corners[0], (weights.face)(id));
             face.corners.iter().for_each(|&c| collapser.quadrics[c as usize].add(&quadric));
         }
         for place in 0..n as u32 {
@@ -100,7 +100,7 @@ impl Collapser {
     /// face and, where two faces meet, in proportion to how much they bend.
     fn keep_edge(&mut self, mesh: &Mesh, weights: &Weights<'_>, a: u32, b: u32) {
         let faces: Vec<u32> = mesh.at(a).iter().copied().filter(|&f| mesh.face(f).corners.contains(&b)).collect();
-        let normals: Vec<Point3> = faces.iter().map(|&f| unit(normal(&mesh.corners(f)))).collect();
+        let normals: Vec<Point3> = faces.iter().map(|&f| unit(normal(mesh.corners(f)))).collect();
         let weight = faces.iter().map(|&f| (weights.face)(f)).fold(0.0, f64::max);
         let bend = match (&faces[..], &normals[..]) {
             ([f, g], [n, m]) => {

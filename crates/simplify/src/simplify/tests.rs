@@ -142,6 +142,24 @@ fn no_budget_changes_no_pixel() {
     }
 }
 
+/// The same of a real scene, from a view cell in its courtyard.
+#[test]
+fn no_budget_changes_no_pixel_of_a_real_scene() {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA").map(std::path::PathBuf::from) else {
+        eprintln!("SKIPPED: SIGHTLINES_DATA is not set, so real data is not tested");
+        return;
+    };
+    let folder = data.join("scenes/sponza");
+    let scene = sightlines_formats::scene::read_scene(folder.join("sponza.glb")).unwrap().scene;
+    let cells = sightlines_formats::view_cells::read_view_cells(folder.join("cells_walk.json")).unwrap().cells;
+    let b = cells[cells.len() / 2].bounds;
+    let views = views(b.min, b.max);
+    let left = simplified(&scene, &views, &SimplifyOptions::default());
+    let (changed, all) = changed_pixels(&scene, &left, &views, 24, 12);
+    assert_eq!((changed, left.bound), (0, 0.0), "of {all}");
+    assert!(all == 24 * 6 * 144 && left.counts.hidden * 10 > left.counts.before, "{:?}", left.counts);
+}
+
 /// That a measured share can be at most `bound`: of all rays, and of the worst eye's, where that is not chance.
 fn check(measured: &crate::Measured, bound: f64, n_rays: u64, n_eyes: usize) -> Result<(), TestCaseError> {
     let low =
@@ -365,9 +383,9 @@ fn collapsing_keeps_what_belongs_to_vertices() {
 
 /// The distance of a point and a triangle, by the nearest of its inside, its sides and corners.
 fn to_triangle(p: Point3, &[a, b, c]: &[Point3; 3]) -> f64 {
-    let minus = |p: Point3, q: Point3| [0, 1, 2].map(|k| p[k] - q[k]);
+    let sub = |p: Point3, q: Point3| [0, 1, 2].map(|k| p[k] - q[k]);
     let dot = |p: Point3, q: Point3| (0..3).map(|k| p[k] * q[k]).sum::<f64>();
-    let (u, v, w) = (minus(b, a), minus(c, a), minus(p, a));
+    let (u, v, w) = (sub(b, a), sub(c, a), sub(p, a));
     let [uu, uv, vv, wu, wv] = [dot(u, u), dot(u, v), dot(v, v), dot(w, u), dot(w, v)];
     let whole = uu * vv - uv * uv;
     let (s, t) = ((vv * wu - uv * wv) / whole, (uu * wv - uv * wu) / whole);
@@ -379,7 +397,7 @@ fn to_triangle(p: Point3, &[a, b, c]: &[Point3; 3]) -> f64 {
         return at(s, t);
     }
     let side = |from: Point3, to: Point3| {
-        let (way, off) = (minus(to, from), minus(p, from));
+        let (way, off) = (sub(to, from), sub(p, from));
         let t = (dot(off, way) / dot(way, way)).clamp(0.0, 1.0);
         let d = [0, 1, 2].map(|k| off[k] - t * way[k]);
         dot(d, d).sqrt()

@@ -8,7 +8,7 @@ use super::{is_usable, object_boxes};
 use crate::camera::{Camera, TINY_ERROR, U};
 use crate::chosen::Chosen;
 use crate::faces::Faces;
-use crate::vector::{dot, dot_size, minus};
+use crate::vector::{dot, dot_size, sub};
 use sightlines_geometry::{Aabb, Point3};
 
 /// How something lies to the view volume.
@@ -94,7 +94,7 @@ impl Frustum {
         if self.is_apart(b) {
             return Cover::Outside;
         }
-        let (low, high) = (minus(b.min, self.eye), minus(b.max, self.eye));
+        let (low, high) = (sub(b.min, self.eye), sub(b.max, self.eye));
         let farthest = [0, 1, 2].map(|k| low[k].abs().max(high[k].abs()));
         self.each(|side| {
             // The least and the greatest value over the box, axis by axis.
@@ -123,7 +123,7 @@ impl Frustum {
         }
         self.each(|side| {
             points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], &p| {
-                let way = minus(p, self.eye);
+                let way = sub(p, self.eye);
                 let value = dot(side.normal, way);
                 let error = 16.0 * U * dot_size(side.size, way) + TINY_ERROR;
                 [least.min(value - error), greatest.max(value + error)]
@@ -141,7 +141,7 @@ impl Frustum {
         if self.is_apart(&Aabb { min: grown(-1.0), max: grown(1.0) }) {
             return Cover::Outside;
         }
-        let way = minus(centre, self.eye);
+        let way = sub(centre, self.eye);
         self.each(|side| {
             // The normal's length, at least: its own error is at most five roundings of its size.
             let length = dot(side.normal, side.normal).sqrt() + 8.0 * U * side.size.iter().sum::<f64>();

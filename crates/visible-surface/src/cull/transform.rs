@@ -15,7 +15,7 @@
 use super::Facing;
 use crate::camera::{Camera, U};
 use crate::exact::{self, Dyadic};
-use crate::vector::{cross, dot, minus};
+use crate::vector::{cross, dot, sub};
 use sightlines_geometry::Point3;
 
 /// A 4 by 4 matrix, row by row.
@@ -24,7 +24,7 @@ pub type Matrix = [[f64; 4]; 4];
 /// The function of the plane of a triangle, as (normal, constant): positive in front, in scene units cubed. Rounded.
 pub fn plane_of(corners: &[Point3; 3]) -> [f64; 4] {
     let [a, b, c] = *corners;
-    let n = cross(minus(b, a), minus(c, a));
+    let n = cross(sub(b, a), sub(c, a));
     [n[0], n[1], n[2], -dot(n, a)]
 }
 
@@ -134,7 +134,7 @@ fn z_coefficient_sign(matrix: &Matrix, corners: &[Point3; 3]) -> i32 {
         return if value > 0.0 { 1 } else { -1 };
     }
     let [a, b, c] = corners.map(exact::point);
-    let n = exact::cross(&exact::minus(&b, &a), &exact::minus(&c, &a));
+    let n = exact::cross(&exact::sub(&b, &a), &exact::sub(&c, &a));
     let constant = -exact::dot(&n, &a);
     let [x, y, z] = n;
     let mut rows = matrix.map(|row| row.map(Dyadic::new));

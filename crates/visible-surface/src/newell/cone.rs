@@ -14,7 +14,7 @@ use crate::fragment::{Edge, Fragment, On};
 use crate::method::Shot;
 use crate::plane::{Approx, LEAST, Plane};
 use crate::side::depth_value;
-use crate::vector::{cross, cross_size, dot, minus};
+use crate::vector::{cross, cross_size, dot, sub};
 use sightlines_geometry::{Point3, orient3d};
 use std::cell::{Cell, OnceCell};
 
@@ -97,7 +97,7 @@ impl Line {
     fn edge(sight: &Sight<'_>, p: Point3, q: Point3, sign: i32) -> Self {
         let turned = p > q;
         let (p, q) = if turned { (q, p) } else { (p, q) };
-        let [u, v] = [p, q].map(|x| minus(x, sight.shot.camera.eye()));
+        let [u, v] = [p, q].map(|x| sub(x, sight.shot.camera.eye()));
         Self::new(cross(u, v), cross_size(u, v), Source::Edge(p, q), turned != (sign < 0))
     }
 
@@ -118,13 +118,13 @@ impl Line {
             let eye = sight.shot.camera.eye();
             let normal = match &self.source {
                 Source::Edge(p, q) => {
-                    let [u, v] = [p, q].map(|p| exact::minus(&exact::point(*p), &exact::point(eye)));
+                    let [u, v] = [p, q].map(|p| exact::sub(&exact::point(*p), &exact::point(eye)));
                     exact::cross(&u, &v)
                 }
                 Source::Cut(first, second) => {
                     let (n, m) = (first.exact_normal(sight.shot.faces), second.exact_normal(sight.shot.faces));
                     let [v, w] = [first, second].map(|p| -p.exact_at(sight.shot.faces, eye));
-                    exact::minus(&exact::times(&n, &w), &exact::times(&m, &v))
+                    exact::sub(&exact::times(&n, &w), &exact::times(&m, &v))
                 }
             };
             Box::new(if self.flip { normal.map(|x| -x) } else { normal })
@@ -150,7 +150,7 @@ impl Line {
         match &self.source {
             Source::Edge(a, b) if *a == p || *b == p => 0,
             Source::Edge(..) => {
-                let way = minus(p, eye);
+                let way = sub(p, eye);
                 let value = dot(self.normal, way);
                 // One rounding of the difference, three of the product.
                 let size: f64 = (0..3).map(|k| (self.error[k] + 8.0 * U * self.normal[k].abs()) * way[k].abs()).sum();
@@ -174,7 +174,7 @@ impl Line {
                 if m == 0 {
                     return turn * w * n;
                 }
-                let way = exact::minus(&exact::point(p), &exact::point(eye));
+                let way = exact::sub(&exact::point(p), &exact::point(eye));
                 sight.n_exact.set(sight.n_exact.get() + 1);
                 exact::dot(self.exactly(sight), &way).sign()
             }

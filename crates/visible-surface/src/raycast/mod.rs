@@ -14,7 +14,7 @@ use crate::fragment::{Fragment, facing};
 use crate::image::Image;
 use crate::method::{Seen, Shot, VisibleSurface};
 use crate::nearness::{Duel, Nearness};
-use crate::vector::{cross, cross_size, dot, dot_size, minus};
+use crate::vector::{cross, cross_size, dot, dot_size, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3};
 
 /// Casts a ray through the centre of each pixel.
@@ -196,7 +196,7 @@ impl Rays<'_> {
     #[inline]
     fn meets(&mut self, camera: &Camera, ray: &Ray, face: u32, x: u32, y: u32) -> bool {
         let faces = self.faces;
-        let corners = faces.of(face).map(|p| minus(p, ray.eye));
+        let corners = faces.of(face).map(|p| sub(p, ray.eye));
         let (mut positive, mut negative, mut doubt) = (false, false, false);
         for (p, q) in [(corners[0], corners[1]), (corners[1], corners[2]), (corners[2], corners[0])] {
             let value = dot(cross(p, q), ray.way);

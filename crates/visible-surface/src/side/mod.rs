@@ -8,7 +8,7 @@ use crate::camera::{Camera, U};
 use crate::exact::{self, Dyadic, Dyadic3};
 use crate::faces::Faces;
 use crate::plane::{LEAST, Plane};
-use crate::vector::{cross, cross_size, dot, dot_size, minus};
+use crate::vector::{cross, cross_size, dot, dot_size, sub};
 use sightlines_geometry::Point3;
 use std::cell::OnceCell;
 
@@ -45,7 +45,7 @@ impl Side {
     pub(crate) fn edge(camera: &Camera, p: Point3, q: Point3) -> Self {
         let flip = p > q;
         let (p, q) = if flip { (q, p) } else { (p, q) };
-        let (u, v) = (minus(p, camera.eye()), minus(q, camera.eye()));
+        let (u, v) = (sub(p, camera.eye()), sub(q, camera.eye()));
         // Two differences, a product and a sum: four roundings.
         Self::new(camera, cross(u, v), cross_size(u, v), Source::Edge(p, q), flip)
     }
@@ -135,13 +135,13 @@ impl Side {
         let [corner, across, down] = camera.rays().map(exact::point);
         let (normal, constant) = match &self.source {
             Source::Edge(p, q) => {
-                let [u, v] = [p, q].map(|p| exact::minus(&exact::point(*p), &eye));
+                let [u, v] = [p, q].map(|p| exact::sub(&exact::point(*p), &eye));
                 (exact::cross(&u, &v), None)
             }
             Source::Cut(first, second) => {
                 let (n, m) = (first.exact_normal(faces), second.exact_normal(faces));
                 let [v, w] = [first, second].map(|p| -p.exact_at(faces, camera.eye()));
-                (exact::minus(&exact::times(&n, &w), &exact::times(&m, &v)), None)
+                (exact::sub(&exact::times(&n, &w), &exact::times(&m, &v)), None)
             }
             Source::Depth(plane, depth) => {
                 let n = plane.exact_normal(faces);
@@ -170,7 +170,7 @@ pub(crate) fn depth_value(camera: &Camera, faces: &Faces, plane: &Plane) -> (f64
         Plane::Face(face) => {
             let a = faces.of(face)[0];
             let (n, size) = plane.normal(faces);
-            let way = minus(a, camera.eye());
+            let way = sub(a, camera.eye());
             (dot(n, way), dot_size(size, way))
         }
     }
