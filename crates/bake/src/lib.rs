@@ -1,7 +1,7 @@
 //! The offline pipeline: from a scene to its visibility table in one call.
 //!
-//! Owns: the choice of subdivision and predicate ([`bake_plan`]), the table made from a cell graph
-//! ([`table_of`]) and the way back ([`graph_of`], [`axial_graph_of`]), stab trees for a finished table ([`with_stab_trees`]),
+//! Owns: the choice of subdivision and predicate ([`bake_plan`]), and of methods by what a scene is like ([`auto`]), the table made from a cell graph
+//! ([`table_of`]) and the way back ([`graph_of`], [`axial_graph_of`]), stab trees for a finished table ([`with_stab_trees`]), proofs for it ([`certify_table`]),
 //! the REJECT lumps of a WAD ([`reject_wad`]),
 //! the visibility of Quake maps and how far a search of one came ([`quake`]),
 //! the table of a scene that changes ([`live`]).
@@ -9,6 +9,8 @@
 //! Invariants: the same scene and options give the same table, byte for byte, with any number of
 //! threads; every approximation on the way errs towards visible.
 
+pub mod auto;
+mod certify;
 pub mod live;
 mod mirrors;
 mod objects;
@@ -21,6 +23,7 @@ mod sectors;
 mod stab;
 mod table;
 
+pub use certify::{Certified, CertifyError, Proofs, certify_table};
 pub use live::{LiveScene, LiveUpdate};
 pub use plan::{BakeError, BakeOptions, BakeSummary, Baked, ParseSubdivideError, Subdivide, bake_plan};
 pub use quake::{

@@ -7,12 +7,14 @@
 //! [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
 //! [`StabTree`] (every stabbable portal sequence out of one cell), [`stab_trees`] (those out of all cells, in one graph,
 //! up to a limit), [`explain`](fn@explain),
-//! [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none).
+//! [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none), [`certify_plan`] and
+//! [`certify_space`] (proofs of all rows of a table).
 //! Does not know: files, tables, how cells were cut. The search over sequences is generic over the
 //! [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
 //! Invariants: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and
 //! does not depend on the number of threads or on which hints a caller gives.
 
+mod certify;
 mod chords;
 mod convex;
 mod explain;
@@ -22,6 +24,7 @@ mod space;
 mod tree;
 mod zones;
 
+pub use certify::{CertifyOptions, certify_plan, certify_space, plan_network, space_network};
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
     BlockedConvex, Blocking, ByPolygons, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,

@@ -4,25 +4,25 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// A matrix of bits that are only ever set.
 #[derive(Debug)]
-pub(super) struct Marks {
+pub(crate) struct Marks {
     width: usize,
     words: Vec<AtomicU64>,
 }
 
 impl Marks {
-    pub(super) fn new(n_rows: usize, n_cols: usize) -> Self {
+    pub(crate) fn new(n_rows: usize, n_cols: usize) -> Self {
         let width = n_cols.div_ceil(64);
         Self { width, words: std::iter::repeat_with(AtomicU64::default).take(n_rows * width).collect() }
     }
 
     #[inline]
-    pub(super) fn get(&self, row: usize, col: usize) -> bool {
+    pub(crate) fn get(&self, row: usize, col: usize) -> bool {
         self.words[row * self.width + col / 64].load(Relaxed) >> (col % 64) & 1 == 1
     }
 
     /// Sets a bit; whether it was not set. Of several threads that set the same bit one is told so.
     #[inline]
-    pub(super) fn set(&self, row: usize, col: usize) -> bool {
+    pub(crate) fn set(&self, row: usize, col: usize) -> bool {
         let (word, bit) = (&self.words[row * self.width + col / 64], 1 << (col % 64));
         // Most bits are set already, and loading is cheaper.
         word.load(Relaxed) & bit == 0 && word.fetch_or(bit, Relaxed) & bit == 0
@@ -39,7 +39,7 @@ impl Marks {
     }
 
     /// Whether any bit of some rows and columns is set.
-    pub(super) fn any(&self, rows: [usize; 2], cols: [usize; 2]) -> bool {
+    pub(crate) fn any(&self, rows: [usize; 2], cols: [usize; 2]) -> bool {
         (rows[0]..rows[1]).any(|row| self.part(row, cols).any(|(word, mask)| word & mask != 0))
     }
 
@@ -66,12 +66,12 @@ impl Marks {
     }
 
     /// Whether all bits of some rows and columns are set.
-    pub(super) fn all(&self, rows: [usize; 2], cols: [usize; 2]) -> bool {
+    pub(crate) fn all(&self, rows: [usize; 2], cols: [usize; 2]) -> bool {
         (rows[0]..rows[1]).all(|row| self.part(row, cols).all(|(word, mask)| word & mask == mask))
     }
 
     /// The set columns of a row, ascending.
-    pub(super) fn ones(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn ones(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
         let words = &self.words[row * self.width..][..self.width];
         words.iter().enumerate().flat_map(|(i, word)| crate::search::ones(word.load(Relaxed)).map(move |b| i * 64 + b))
     }

@@ -24,10 +24,12 @@ pub use explain::{SpaceExplanation, explain_space};
 pub use live::{LiveSpace, SpaceUpdate};
 
 use crate::search::{Known, SearchOptions};
-use grid::Marks;
+pub(crate) use grid::Marks;
 use live::Doubt;
 use notes::{Hand, Notes};
 use opaque::opaque_rectangles;
+pub(crate) use opaque::opaque_without_solid;
+pub(crate) use pairs::halves_first;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
@@ -152,7 +154,7 @@ pub fn see_space(
 }
 
 /// Runs something on so many threads, told how many; 0 for one for each core.
-fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T + Send) -> T {
+pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T + Send) -> T {
     let threads = match threads {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         t => t,

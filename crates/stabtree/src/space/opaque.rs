@@ -45,6 +45,26 @@ pub(super) fn opaque_rectangles(graph: &CellGraph<Axial>, solid: &[Aabb<3>]) -> 
     Walls::of(graph, solid, &Walls::default()).rectangles().collect()
 }
 
+/// Rectangles that cover all walls of a graph, made as large as can be without a part of them in the inside of a cell or of a portal:
+/// they go on through all that is no cell. What is solid need not be known for that.
+pub(crate) fn opaque_without_solid(graph: &CellGraph<Axial>) -> Vec<Aabb<3>> {
+    let all = Aabb::<3>::around(graph.cells().iter().flat_map(|c| [c.bounds.min, c.bounds.max]));
+    let mut planes = Walls::planes(graph);
+    planes.par_iter_mut().for_each(|(&(axis, _), covered)| {
+        let through =
+            graph.cells().iter().map(|c| &c.bounds).filter(|b| b.min[axis] < covered.at && covered.at < b.max[axis]);
+        covered.plane.portals.extend(through.map(|b| flat(b, axis)));
+        covered.plane.solid.push(flat(&all, axis));
+        covered.cover(axis);
+    });
+    Walls { planes }.rectangles().collect()
+}
+
+fn flat(b: &Aabb<3>, axis: usize) -> Patch {
+    let [u, v] = others(axis);
+    Patch { min: [b.min[u], b.min[v]], max: [b.max[u], b.max[v]] }
+}
+
 /// The walls of a graph, plane by plane.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Walls {
@@ -63,11 +83,21 @@ impl Walls {
     /// The walls of a graph; arguments as for [`opaque_rectangles`]. Planes with the same on them as `before` are not
     /// covered anew, which is most of the cost.
     pub(super) fn of(graph: &CellGraph<Axial>, solid: &[Aabb<3>], before: &Self) -> Self {
+        let mut planes = Self::planes(graph);
+        planes.par_iter_mut().for_each(|(&(axis, at_key), covered)| {
+            let through = solid.iter().filter(|b| b.min[axis] <= covered.at && covered.at <= b.max[axis]);
+            covered.plane.solid.extend(through.map(|b| flat(b, axis)));
+            match before.planes.get(&(axis, at_key)).filter(|same| same.plane == covered.plane) {
+                Some(same) => covered.rectangles.clone_from(&same.rectangles),
+                None => covered.cover(axis),
+            }
+        });
+        Self { planes }
+    }
+
+    /// The planes of a graph with walls and portals on them, not covered yet.
+    fn planes(graph: &CellGraph<Axial>) -> BTreeMap<(usize, u64), Covered> {
         let mut planes: BTreeMap<(usize, u64), Covered> = BTreeMap::new();
-        let flat = |b: &Aabb<3>, axis: usize| {
-            let [u, v] = others(axis);
-            Patch { min: [b.min[u], b.min[v]], max: [b.max[u], b.max[v]] }
-        };
         for cell in graph.cells() {
             for axis in 0..3 {
                 for at in [cell.bounds.min[axis], cell.bounds.max[axis]] {
@@ -83,26 +113,24 @@ impl Walls {
                 covered.plane.portals.push(flat(&portal.shape.extent, axis));
             }
         }
-        planes.par_iter_mut().for_each(|(&(axis, at_key), Covered { at, plane, rectangles })| {
-            let through = solid.iter().filter(|b| b.min[axis] <= *at && *at <= b.max[axis]);
-            plane.solid.extend(through.map(|b| flat(b, axis)));
-            if let Some(same) = before.planes.get(&(axis, at_key)).filter(|covered| covered.plane == *plane) {
-                rectangles.clone_from(&same.rectangles);
-                return;
-            }
-            let [u, v] = others(axis);
-            plane.cover(&mut |patch| {
-                let (mut min, mut max) = ([*at; 3], [*at; 3]);
-                (min[u], min[v], max[u], max[v]) = (patch.min[0], patch.min[1], patch.max[0], patch.max[1]);
-                rectangles.push(Aabb { min, max });
-            });
-        });
-        Self { planes }
+        planes
     }
 
     /// The rectangles, plane by plane.
     pub(super) fn rectangles(&self) -> impl Iterator<Item = Aabb<3>> + '_ {
         self.planes.values().flat_map(|covered| covered.rectangles.iter().copied())
+    }
+}
+
+impl Covered {
+    /// Covers the walls of a plane perpendicular to an axis.
+    fn cover(&mut self, axis: usize) {
+        let (at, [u, v], rectangles) = (self.at, others(axis), &mut self.rectangles);
+        self.plane.cover(&mut |patch| {
+            let (mut min, mut max) = ([at; 3], [at; 3]);
+            (min[u], min[v], max[u], max[v]) = (patch.min[0], patch.min[1], patch.max[0], patch.max[1]);
+            rectangles.push(Aabb { min, max });
+        });
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Question;
 use super::live::Doubt;
 use super::notes::{FoundFor, Hand, Line, Proof};
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_sightline::{FreeLine, FreeSpan, Sight, Target};
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -20,11 +20,18 @@ pub(super) const FEW_BUDGET: u32 = 12;
 pub(super) const FEW: u32 = 3;
 
 /// Two nodes of the tree of cells, the first not after the second.
-pub(super) type Pair = [u32; 2];
+pub(crate) type Pair = [u32; 2];
 
 /// Whether two boxes do not overlap along some axis.
 pub(super) fn apart(a: &Aabb<3>, b: &Aabb<3>) -> bool {
     (0..3).any(|k| a.max[k] <= b.min[k] || b.max[k] <= a.min[k])
+}
+
+/// Which of two different nodes, not both leaves, is halved.
+pub(crate) fn halves_first(tree: &BoxTree<3>, pair: Pair) -> bool {
+    let [a, b] = pair.map(|n| tree.nodes()[n as usize]);
+    let size = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
+    b.is_leaf() || (!a.is_leaf() && size(&a.bounds) >= size(&b.bounds))
 }
 
 impl Question<'_> {
@@ -58,18 +65,11 @@ impl Question<'_> {
                 Sight::Undecided => {}
             }
         }
-        if self.halves_first([a, b]) {
+        if halves_first(&self.tree, [a, b]) {
             self.tree.children(a).into_iter().for_each(|a| smaller([a, b]));
         } else {
             self.tree.children(b).into_iter().for_each(|b| smaller([a, b]));
         }
-    }
-
-    /// Which of two different nodes, not both leaves, is halved.
-    fn halves_first(&self, pair: Pair) -> bool {
-        let [a, b] = pair.map(|n| self.tree.nodes()[n as usize]);
-        let size = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
-        b.is_leaf() || (!a.is_leaf() && size(&a.bounds) >= size(&b.bounds))
     }
 
     /// Where groups were not all asked, as only some pairs are in doubt: whether one of those with two cells, by their places in order,
@@ -100,7 +100,7 @@ impl Question<'_> {
             if ask && hand.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET) == Sight::Blocked {
                 return true;
             }
-            if self.halves_first([a, b]) {
+            if halves_first(&self.tree, [a, b]) {
                 a = child(a, first);
             } else {
                 b = child(b, second);

@@ -1,0 +1,56 @@
+//! Bakes a plan, proves its table, and checks the proofs: that of an office, or the first map of a WAD.
+//!
+//! Run as `cargo run --release -p sightlines-bake --example prove_a_plan -- [MAP.wad]`.
+
+use sightlines_bake::{BakeOptions, Proofs, bake_plan, certify_table, graph_of};
+use sightlines_cells::Plan;
+use sightlines_certificates::plan::PlanProofs;
+use sightlines_formats::{DoomMap, Wad, doom::list_maps};
+use sightlines_scenes::{OfficeOptions, office};
+use sightlines_stabtree::{CertifyOptions, plan_network};
+use std::error::Error;
+use std::time::Instant;
+
+fn plan() -> Result<Plan, Box<dyn Error>> {
+    let Some(path) = std::env::args().nth(1) else {
+        return Ok(office(OfficeOptions { seed: 5, rooms_x: 10, rooms_y: 4, ..OfficeOptions::default() })?);
+    };
+    let wad = Wad::read(path)?;
+    let lumps = list_maps(&wad).into_iter().next().ok_or("no map")?;
+    Ok(DoomMap::parse(&wad, &lumps)?.plan()?)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let baked = bake_plan(&plan()?, &BakeOptions::default())?;
+    let table = &baked.table;
+    let n = table.n_cells() as u64;
+    println!(
+        "{n} cells, {} pairs see each other, {} do not; decided in {:?}",
+        baked.summary.n_visible_pairs,
+        n * (n - 1) / 2 - baked.summary.n_visible_pairs,
+        baked.summary.see_time
+    );
+    let certified = certify_table(table, &CertifyOptions::default())?;
+    let bytes = certified.proofs.to_bytes();
+    let Proofs::Plan(made) = &certified.proofs else { return Err("a plan has proofs of a plan".into()) };
+    let n_blocks: usize = made.walks.iter().map(|walk| walk.blocks.len()).sum();
+    println!(
+        "proven in {:?}: {} lines, {} walks with {n_blocks} blocked chains, {} bytes",
+        certified.time,
+        made.lines.len(),
+        made.walks.len(),
+        bytes.len()
+    );
+    let start = Instant::now();
+    let proofs = PlanProofs::from_bytes(&bytes)?;
+    let graph = graph_of(table).ok_or("the table has its cells and portals")?;
+    let proven = proofs.check(&plan_network(&graph)?)?;
+    println!(
+        "checked in {:?}: {} pairs are visible, {} are hidden, {} are open",
+        start.elapsed(),
+        proven.visible.len(),
+        proven.hidden.len(),
+        proven.n_open()
+    );
+    Ok(())
+}

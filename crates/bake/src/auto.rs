@@ -1,0 +1,247 @@
+//! No more than a scene needs: what a scene in space is like, and which methods and buffers that asks for.
+//!
+//! Nothing here decides what is hidden; a bad choice costs time, or hides less than another one would.
+
+use sightlines_cells::Scene;
+use sightlines_geometry::vector::{length, normal};
+use sightlines_geometry::{Aabb, Point3, Random};
+use sightlines_multifocal::mesh::Mesh;
+use sightlines_multifocal::{Layout, Witness};
+use std::fmt;
+
+/// What a scene in space is like. Shares are of the area of all triangles, unless they say otherwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneFacts {
+    /// Triangles.
+    pub n_triangles: usize,
+    /// Objects.
+    pub n_objects: usize,
+    /// The share of what is perpendicular to an axis, and so is a wall to sightlines.
+    pub axial: f64,
+    /// The share of flat pieces that stand alone, such as screens and signs: surfaces that hang together with nothing that lies in
+    /// another plane.
+    pub loose: f64,
+    /// The share of rays from anywhere in the scene's box that leave it without meeting anything: 0 for rooms, nearly 1 for a plain.
+    pub openness: f64,
+    /// The longest side of the object in the middle, by that side, as a share of the scene's longest side.
+    pub object_size: f64,
+}
+
+/// Rays by which it is told how open a scene is: the share is within 0.02 of the truth in 98 scenes of 100.
+const N_RAYS: u32 = 4096;
+
+impl SceneFacts {
+    /// Measures a scene. The same scene gives the same facts. O(n log n) of triangles.
+    pub fn of(scene: &Scene) -> Self {
+        let triangles: Vec<Vec<[Point3; 3]>> = scene.objects().iter().map(|o| o.corners().collect()).collect();
+        let flat = |t: &[Point3; 3]| (0..3).any(|k| t[0][k] == t[1][k] && t[1][k] == t[2][k]);
+        let all: Vec<[Point3; 3]> = triangles.iter().flatten().copied().collect();
+        let area = |t: &[Point3; 3]| length(normal(*t)) / 2.0;
+        let total: f64 = all.iter().map(area).sum();
+        let share = |part: f64| if total > 0.0 { (part / total).min(1.0) } else { 0.0 };
+        let longest = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
+        let mut sizes: Vec<f64> = scene.objects().iter().map(|o| longest(&o.bounds())).collect();
+        sizes.sort_by(f64::total_cmp);
+        let (whole, middle) = (longest(&scene.bounds()), sizes.get(sizes.len() / 2).copied().unwrap_or(0.0));
+        Self {
+            n_triangles: all.len(),
+            n_objects: triangles.len(),
+            axial: share(all.iter().filter(|t| flat(t)).map(area).fold(0.0, |sum, area| sum + area)),
+            loose: share(loose_area(&all)),
+            openness: openness(scene, &triangles),
+            object_size: if whole > 0.0 { middle / whole } else { 0.0 },
+        }
+    }
+}
+
+/// The area of surfaces that lie in one plane, of all that hang together by edges.
+fn loose_area(triangles: &[[Point3; 3]]) -> f64 {
+    let mesh = Mesh::weld(triangles);
+    let n = mesh.triangles().len();
+    let mut area = 0.0;
+    let mut done = vec![false; n];
+    for first in 0..n as u32 {
+        let (mut stack, mut flat, mut here) = (vec![first], true, 0.0);
+        let plane = mesh.corners(first);
+        while let Some(t) = stack.pop() {
+            if std::mem::replace(&mut done[t as usize], true) {
+                continue;
+            }
+            let corners = mesh.corners(t);
+            let [a, b, c] = plane;
+            flat = flat && corners.iter().all(|&p| sightlines_geometry::orient3d(a, b, c, p) == 0.0);
+            here += length(normal(corners)) / 2.0;
+            let near = mesh.outline_edges(t).iter().flat_map(|&edge| mesh.triangles_at(edge));
+            stack.extend(near.filter(|&&other| !done[other as usize]));
+        }
+        if flat {
+            area += here;
+        }
+    }
+    area
+}
+
+fn openness(scene: &Scene, triangles: &[Vec<[Point3; 3]>]) -> f64 {
+    let witness = Witness::new(triangles.iter().map(Vec::as_slice));
+    let mut random = Random::new(0);
+    let bounds = scene.bounds();
+    let leaves = |_: &u32| {
+        let (origin, way) = (random.point(&bounds), random.direction());
+        witness.first_hit(origin, way).is_none()
+    };
+    (0..N_RAYS).filter(leaves).count() as f64 / f64::from(N_RAYS)
+}
+
+/// From which share of axial walls on sightlines alone are asked: what little is slanted then hides little that the rest does not.
+const AXIAL: f64 = 0.9;
+
+/// From which share of loose pieces in the open on buffers are drawn: they put pieces together that do not touch, as sheets cannot.
+const LOOSE: f64 = 0.5;
+
+/// Below which openness a scene counts as rooms, whose walls hang together.
+const ROOMS: f64 = 0.1;
+
+/// From which openness on a k-d tree finds little to cut along.
+const OPEN: f64 = 0.5;
+
+/// How to bake a scene. Sightlines through the portals of a k-d tree, which are the default, are always asked, so nothing is looser than
+/// by default.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneChoice {
+    /// Whether sheets are asked as well: surfaces in any direction.
+    pub sheets: bool,
+    /// Planes of buffers on each side of a cell; 0 for none.
+    pub planes: u32,
+    /// Texels along the longer side of such a plane.
+    pub texels: u32,
+    /// Why, a sentence each.
+    pub reasons: Vec<String>,
+}
+
+impl SceneChoice {
+    /// Chooses by what the scene is like.
+    ///
+    /// * `given_cells`: whether cells are boxes that were given. They may be large and astride of walls, so that sightlines between them pass nearly
+    ///   everywhere; and they are few, so that asking sheets about each costs little. A k-d tree has thousands of cells.
+    pub fn of(facts: &SceneFacts, given_cells: bool) -> Self {
+        let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+        let standard = Layout::default();
+        let mut choice = Self { sheets: false, planes: 0, texels: standard.texels, reasons: Vec::new() };
+        if facts.axial >= AXIAL {
+            let axial = percent(facts.axial);
+            choice
+                .reasons
+                .push(format!("{axial} of the area is perpendicular to an axis: sightlines know these walls"));
+            if !given_cells {
+                return choice;
+            }
+            choice.reasons.push("cells are given: sheets are asked as well, from each as a whole".to_owned());
+        } else {
+            let slanted = percent(1.0 - facts.axial);
+            choice.reasons.push(format!("{slanted} of the area is slanted: sheets know it, besides sightlines"));
+        }
+        choice.sheets = true;
+        let (loose, open) = (percent(facts.loose), percent(facts.openness));
+        if facts.openness >= OPEN && !given_cells {
+            choice.reasons.push(format!(
+                "{open} of rays leave: in the open a k-d tree has few cells, and boxes of your own tell more"
+            ));
+        }
+        if facts.loose >= LOOSE && facts.openness >= ROOMS {
+            choice.planes = standard.n_levels;
+            choice.texels = texels(facts.object_size);
+            let texels = choice.texels;
+            choice
+                .reasons
+                .push(format!("{loose} of the area stands alone, {open} of rays leave: buffers put pieces together"));
+            choice.reasons.push(format!(
+                "an object in the middle is {} of the scene: {texels} texels",
+                percent(facts.object_size)
+            ));
+        } else {
+            choice.reasons.push(format!("{loose} of the area stands alone, {open} of rays leave: no buffers"));
+        }
+        choice
+    }
+
+    /// Whether anything but sightlines is asked.
+    pub fn asks_a_method(&self) -> bool {
+        self.sheets || self.planes > 0
+    }
+}
+
+/// Two texels for an object in the middle, as a power of two from 32 to 256.
+fn texels(object_size: f64) -> u32 {
+    [32, 64, 128].into_iter().find(|&n| f64::from(n) * object_size >= 2.0).unwrap_or(256)
+}
+
+impl fmt::Display for SceneChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("sightlines")?;
+        if self.sheets {
+            f.write_str(" and sheets")?;
+        }
+        if self.planes > 0 {
+            write!(f, " and buffers of {} planes with {} texels", self.planes, self.texels)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sightlines_cells::SceneObject;
+
+    fn object(corners: Vec<Point3>, triangles: Vec<[u32; 3]>) -> SceneObject {
+        SceneObject { name: String::new(), vertices: corners, triangles }
+    }
+
+    /// A box, turned about z by a rotation with rational cosine, or not.
+    fn block(min: Point3, max: Point3, turned: bool) -> SceneObject {
+        let corner = |i: usize| -> Point3 { std::array::from_fn(|k| if i >> k & 1 == 0 { min[k] } else { max[k] }) };
+        let turn = |p: Point3| if turned { [0.8 * p[0] - 0.6 * p[1], 0.6 * p[0] + 0.8 * p[1], p[2]] } else { p };
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        object((0..8).map(|i| turn(corner(i))).collect(), triangles)
+    }
+
+    fn facts(objects: Vec<SceneObject>) -> SceneFacts {
+        SceneFacts::of(&Scene::new(objects).expect("a scene"))
+    }
+
+    #[test]
+    fn facts_are_what_they_say() {
+        let room = facts(vec![block([0.0; 3], [8.0, 6.0, 3.0], false), block([2.0; 3], [3.0; 3], false)]);
+        assert_eq!((room.axial, room.loose, room.openness), (1.0, 0.0, 0.0));
+        assert_eq!((room.n_triangles, room.n_objects, room.object_size), (24, 2, 1.0));
+        // The top and bottom of a block that is turned about z stay axial: 2 * 2 of 2 * 2 + 4 * 2 * 5 square units.
+        let turned = facts(vec![block([0.0; 3], [2.0, 1.0, 5.0], true)]);
+        assert!((turned.axial - 4.0 / 34.0).abs() < 1e-12 && turned.loose == 0.0, "{turned:?}");
+        let screen = |x: f64| {
+            object(
+                vec![[x, 0.0, 0.0], [x + 1.0, 2.0, 0.0], [x, 0.0, 3.0], [x + 1.0, 2.0, 3.0]],
+                vec![[0, 1, 2], [1, 3, 2]],
+            )
+        };
+        let screens = facts((0..4).map(|i| screen(f64::from(i))).collect());
+        assert!(screens.loose > 0.999 && screens.axial == 0.0, "{screens:?}");
+        assert!(screens.openness > 0.2 && screens.openness < 0.9, "{screens:?}");
+    }
+
+    #[test]
+    fn choices_follow_the_facts() {
+        let room =
+            SceneFacts { n_triangles: 1, n_objects: 1, axial: 0.95, loose: 0.9, openness: 0.9, object_size: 0.1 };
+        let choice = SceneChoice::of(&room, false);
+        assert!(!choice.asks_a_method() && choice.to_string() == "sightlines", "{choice:?}");
+        let slanted = SceneChoice::of(&SceneFacts { axial: 0.2, loose: 0.1, ..room }, false);
+        assert_eq!(slanted.to_string(), "sightlines and sheets");
+        let screens = SceneChoice::of(&SceneFacts { axial: 0.2, ..room }, false);
+        assert_eq!(screens.to_string(), "sightlines and sheets and buffers of 9 planes with 32 texels");
+        let given = SceneChoice::of(&SceneFacts { loose: 0.1, ..room }, true);
+        assert!(given.sheets && given.planes == 0 && given.reasons.len() == 3, "{given:?}");
+        assert_eq!([0.5, 0.04, 0.02, 0.001].map(texels), [32, 64, 128, 256]);
+        assert!([&choice, &slanted, &screens].iter().all(|c| !c.reasons.is_empty()));
+    }
+}

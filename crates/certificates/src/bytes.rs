@@ -1,0 +1,323 @@
+//! The bytes of proofs: numbers of seven bits a byte, doubles, and a frame with a checksum around them.
+
+use num_bigint::{BigInt, Sign};
+
+/// What proof files begin with.
+const MAGIC: [u8; 8] = *b"SLPROOFS";
+/// The version that is written, and the only one that is read.
+pub const VERSION: u32 = 1;
+/// Magic, version, kind; then the body; then the checksum.
+const HEAD: usize = 8 + 4 + 1;
+
+/// Why bytes are no proofs, and where that shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("byte {offset}: {kind}")]
+pub struct ReadError {
+    /// Byte offset from the beginning.
+    pub offset: usize,
+    /// What is wrong there.
+    pub kind: ReadErrorKind,
+}
+
+/// What is wrong with bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadErrorKind {
+    /// The first bytes are not those of proofs.
+    #[error("these are no proofs of a table")]
+    Magic,
+    /// Another version.
+    #[error("version {0} of the format; this reader knows version 1")]
+    Version(u32),
+    /// Proofs for a kind of table that is not known.
+    #[error("proofs of kind {0}, which is not known")]
+    Kind(u8),
+    /// The bytes end too early, or a number of items is larger than what is left can hold.
+    #[error("{need} bytes are needed and {left} are left")]
+    Cut {
+        /// Bytes needed.
+        need: u64,
+        /// Bytes left.
+        left: u64,
+    },
+    /// A number that is longer than it need be, or larger than it may be.
+    #[error("a number is out of range")]
+    Number,
+    /// A double that is no coordinate.
+    #[error("a number is no coordinate")]
+    Coordinate,
+    /// A code that means nothing.
+    #[error("code {0} means nothing here")]
+    Code(u8),
+    /// Bytes after the end.
+    #[error("{0} bytes too many")]
+    Trailing(u64),
+    /// Damaged.
+    #[error("the checksum is wrong: the file is damaged")]
+    Checksum,
+    /// Proofs that are nested deeper than a proof may be.
+    #[error("proofs are nested too deeply")]
+    Depth,
+}
+
+/// Which kind of table proofs are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Of a plan: polygons joined by segments.
+    Plan,
+    /// Of a scene in space cut into boxes.
+    Space,
+    /// Of convex cells in space, as Quake maps have them.
+    Convex,
+}
+
+impl Kind {
+    const ALL: [Self; 3] = [Self::Plan, Self::Space, Self::Convex];
+
+    const fn code(self) -> u8 {
+        match self {
+            Self::Plan => 1,
+            Self::Space => 2,
+            Self::Convex => 3,
+        }
+    }
+}
+
+/// Puts a frame around a body.
+pub(crate) fn framed(kind: Kind, body: Writer) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(HEAD + body.0.len() + 4);
+    bytes.extend(MAGIC);
+    bytes.extend(VERSION.to_le_bytes());
+    bytes.push(kind.code());
+    bytes.extend(body.0);
+    let checksum = crc32fast::hash(&bytes);
+    bytes.extend(checksum.to_le_bytes());
+    bytes
+}
+
+/// The kind of proofs and a reader at the beginning of their body; the checksum is right.
+pub(crate) fn unframed(bytes: &[u8]) -> Result<(Kind, Reader<'_>), ReadError> {
+    let fail = |offset, kind| Err(ReadError { offset, kind });
+    if bytes.len() < HEAD + 4 {
+        let (need, left) = ((HEAD + 4) as u64, bytes.len() as u64);
+        let is_ours = bytes.iter().zip(&MAGIC).all(|(a, b)| a == b);
+        return fail(0, if is_ours { ReadErrorKind::Cut { need, left } } else { ReadErrorKind::Magic });
+    }
+    if bytes[..8] != MAGIC {
+        return fail(0, ReadErrorKind::Magic);
+    }
+    let four = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+    if four(8) != VERSION {
+        return fail(8, ReadErrorKind::Version(four(8)));
+    }
+    let end = bytes.len() - 4;
+    if crc32fast::hash(&bytes[..end]) != four(end) {
+        return fail(end, ReadErrorKind::Checksum);
+    }
+    match Kind::ALL.into_iter().find(|kind| kind.code() == bytes[12]) {
+        Some(kind) => Ok((kind, Reader { bytes: &bytes[..end], at: HEAD })),
+        None => fail(12, ReadErrorKind::Kind(bytes[12])),
+    }
+}
+
+/// Collects bytes.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Writer(Vec<u8>);
+
+impl Writer {
+    pub(crate) fn byte(&mut self, x: u8) {
+        self.0.push(x);
+    }
+
+    pub(crate) fn number(&mut self, x: impl Into<u64>) {
+        let mut x = x.into();
+        while x > 0x7f {
+            self.0.push(x as u8 | 0x80);
+            x >>= 7;
+        }
+        self.0.push(x as u8);
+    }
+
+    pub(crate) fn size(&mut self, n: usize) {
+        self.number(n as u64);
+    }
+
+    /// A double: in four bytes if that loses nothing, else in eight; `wide` says which.
+    pub(crate) fn double(&mut self, x: f64, wide: bool) {
+        if wide {
+            self.0.extend(x.to_le_bytes());
+        } else {
+            self.0.extend((x as f32).to_le_bytes());
+        }
+    }
+
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        self.0.extend(bytes);
+    }
+
+    pub(crate) fn whole(&mut self, x: &BigInt) {
+        let bytes = x.magnitude().to_bytes_le();
+        let n = if x.sign() == Sign::NoSign { 0 } else { bytes.len() };
+        self.size(2 * n + usize::from(x.sign() == Sign::Minus));
+        self.0.extend(&bytes[..n]);
+    }
+}
+
+/// Whether four bytes hold a double without loss.
+pub(crate) fn is_narrow(x: f64) -> bool {
+    f64::from(x as f32) == x
+}
+
+/// Reads numbers, and never past the end.
+#[derive(Debug, Clone)]
+pub(crate) struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    /// An error about the `back` bytes just read.
+    pub(crate) fn fail<T>(&self, back: usize, kind: ReadErrorKind) -> Result<T, ReadError> {
+        Err(ReadError { offset: self.at - back, kind })
+    }
+
+    fn take(&mut self, n: usize) -> Result<&'a [u8], ReadError> {
+        let left = self.bytes.len() - self.at;
+        if n > left {
+            return self.fail(0, ReadErrorKind::Cut { need: n as u64, left: left as u64 });
+        }
+        self.at += n;
+        Ok(&self.bytes[self.at - n..self.at])
+    }
+
+    pub(crate) fn byte(&mut self) -> Result<u8, ReadError> {
+        Ok(self.take(1)?[0])
+    }
+
+    /// A number below 2^32.
+    pub(crate) fn number(&mut self) -> Result<u32, ReadError> {
+        let mut x = 0u64;
+        for k in 0..5 {
+            let byte = self.byte()?;
+            x |= u64::from(byte & 0x7f) << (7 * k);
+            if byte & 0x80 == 0 {
+                let is_short = k == 0 || byte != 0;
+                return match u32::try_from(x) {
+                    Ok(x) if is_short => Ok(x),
+                    _ => self.fail(k + 1, ReadErrorKind::Number),
+                };
+            }
+        }
+        self.fail(5, ReadErrorKind::Number)
+    }
+
+    /// The number of items to come, of `size` bytes each at least: never more than there can be.
+    pub(crate) fn count(&mut self, size: usize) -> Result<usize, ReadError> {
+        let before = self.at;
+        let n = self.number()? as usize;
+        let (need, left) = ((n as u64).saturating_mul(size as u64), (self.bytes.len() - self.at) as u64);
+        if need > left { self.fail(self.at - before, ReadErrorKind::Cut { need, left }) } else { Ok(n) }
+    }
+
+    /// A coordinate of four or eight bytes.
+    pub(crate) fn coordinate(&mut self, wide: bool) -> Result<f64, ReadError> {
+        let n = if wide { 8 } else { 4 };
+        let bytes = self.take(n)?;
+        let x = if wide {
+            f64::from_le_bytes(std::array::from_fn(|k| bytes[k]))
+        } else {
+            f64::from(f32::from_le_bytes(std::array::from_fn(|k| bytes[k])))
+        };
+        if crate::exact::is_coordinate(x) { Ok(x) } else { self.fail(n, ReadErrorKind::Coordinate) }
+    }
+
+    pub(crate) fn bytes(&mut self, n: usize) -> Result<&'a [u8], ReadError> {
+        self.take(n)
+    }
+
+    pub(crate) fn whole(&mut self) -> Result<BigInt, ReadError> {
+        let before = self.at;
+        let n = self.number()? as usize;
+        let bytes = self.take(n / 2)?;
+        // One way to write each number.
+        if bytes.last() == Some(&0) || n == 1 {
+            return self.fail(self.at - before, ReadErrorKind::Number);
+        }
+        let sign = if n % 2 == 1 { Sign::Minus } else { Sign::Plus };
+        Ok(BigInt::from_bytes_le(sign, bytes))
+    }
+
+    /// Nothing may follow.
+    pub(crate) fn end(&self) -> Result<(), ReadError> {
+        match self.bytes.len() - self.at {
+            0 => Ok(()),
+            n => self.fail(0, ReadErrorKind::Trailing(n as u64)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn numbers_come_back(x in any::<u32>(), y in any::<i128>(), z in -1e9f64..1e9) {
+            let mut writer = Writer::default();
+            writer.number(x);
+            writer.whole(&BigInt::from(y));
+            writer.double(z, true);
+            writer.double(f64::from(z as f32), false);
+            let bytes = framed(Kind::Space, writer);
+            let (kind, mut reader) = unframed(&bytes).unwrap();
+            prop_assert_eq!(kind, Kind::Space);
+            prop_assert_eq!(reader.number().unwrap(), x);
+            prop_assert_eq!(reader.whole().unwrap(), BigInt::from(y));
+            prop_assert_eq!(reader.coordinate(true).unwrap(), z);
+            prop_assert_eq!(reader.coordinate(false).unwrap(), f64::from(z as f32));
+            prop_assert!(reader.end().is_ok());
+        }
+    }
+
+    fn of(body: &[u8]) -> Vec<u8> {
+        framed(Kind::Plan, Writer(body.to_vec()))
+    }
+
+    #[test]
+    fn bad_numbers_are_refused_where_they_are() {
+        let number = |body: &[u8]| unframed(&of(body)).unwrap().1.number().unwrap_err().to_string();
+        assert_eq!(number(&[]), "byte 13: 1 bytes are needed and 0 are left");
+        assert_eq!(number(&[0x80, 0]), "byte 13: a number is out of range");
+        assert_eq!(number(&[0xff, 0xff, 0xff, 0xff, 0x1f]), "byte 13: a number is out of range");
+        assert_eq!(number(&[0xff; 6]), "byte 13: a number is out of range");
+        let bytes = of(&[9, 1, 2]);
+        assert_eq!(
+            unframed(&bytes).unwrap().1.count(4).unwrap_err().to_string(),
+            "byte 13: 36 bytes are needed and 2 are left"
+        );
+        let bytes = of(&[2, 0]);
+        assert_eq!(unframed(&bytes).unwrap().1.whole().unwrap_err().kind, ReadErrorKind::Number);
+        let bytes = of(&f64::NAN.to_le_bytes());
+        assert_eq!(unframed(&bytes).unwrap().1.coordinate(true).unwrap_err().kind, ReadErrorKind::Coordinate);
+    }
+
+    #[test]
+    fn frames_that_are_none_are_refused() {
+        let bytes = of(&[1, 2, 3]);
+        let error = |bytes: &[u8]| unframed(bytes).unwrap_err().to_string();
+        assert_eq!(error(b"GIF89a"), "byte 0: these are no proofs of a table");
+        assert_eq!(error(&bytes[..9]), "byte 0: 17 bytes are needed and 9 are left");
+        assert_eq!(error(b"this is some other kind of file"), "byte 0: these are no proofs of a table");
+        let mut other = bytes.clone();
+        other[8] = 7;
+        assert_eq!(error(&other), "byte 8: version 7 of the format; this reader knows version 1");
+        let mut other = bytes.clone();
+        other[14] ^= 1;
+        assert_eq!(error(&other), "byte 16: the checksum is wrong: the file is damaged");
+        let mut other = bytes[..bytes.len() - 4].to_vec();
+        other[12] = 9;
+        other.extend(crc32fast::hash(&other).to_le_bytes());
+        assert_eq!(error(&other), "byte 12: proofs of kind 9, which is not known");
+    }
+}

@@ -1,0 +1,34 @@
+//! Proofs of whole tables: a witness for what is visible, a certificate for what is hidden.
+//!
+//! Owns: the proofs as data, their bytes, and a checker that shares no code with the solvers that find them:
+//! [`plan`] for polygons of the plane, [`space`] for boxes. Who finds proofs hands them to a maker here, which checks each of
+//! them at once.
+//! Does not know: cells' graphs, searching, tables, files.
+//! Invariants: decisions are signs of exact numbers; no step of a proof rests on a later one; what is read from bytes
+//! never takes more memory than a few times its size, and a few bits for each pair of cells of the network it is checked against.
+
+mod bits;
+mod bytes;
+mod exact;
+mod graph;
+mod pairs;
+pub mod plan;
+mod proven;
+pub mod space;
+mod walk;
+
+pub use bytes::{Kind, ReadError, ReadErrorKind, VERSION};
+pub use pairs::Pairs;
+pub use proven::{NoWall, Proven, Refusal};
+
+/// The kind of proofs that bytes hold; their frame and checksum are right.
+///
+/// # Errors
+/// [`ReadError`] for bytes that are no proofs, or damaged.
+pub fn kind_of(bytes: &[u8]) -> Result<Kind, ReadError> {
+    bytes::unframed(bytes).map(|(kind, _)| kind)
+}
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

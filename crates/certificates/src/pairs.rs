@@ -1,0 +1,122 @@
+//! Sets of pairs of cells.
+
+/// Pairs of cells, without order; a bit for each ordered pair.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pairs {
+    n: usize,
+    width: usize,
+    words: Vec<u64>,
+}
+
+impl Pairs {
+    /// No pairs of `n` cells. Takes `n²` bits.
+    pub fn none(n: usize) -> Self {
+        let width = n.div_ceil(64);
+        Self { n, width, words: vec![0; n * width] }
+    }
+
+    /// Number of cells.
+    pub fn n_cells(&self) -> usize {
+        self.n
+    }
+
+    /// Whether a pair is in the set; a pair with a cell that does not exist is not.
+    pub fn has(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (a as usize, b as usize);
+        a < self.n && b < self.n && self.words[a * self.width + b / 64] >> (b % 64) & 1 == 1
+    }
+
+    /// Puts a pair in, both ways round.
+    ///
+    /// # Panics
+    /// If there are no such cells.
+    pub fn add(&mut self, a: u32, b: u32) {
+        let (a, b) = (a as usize, b as usize);
+        assert!(a < self.n && b < self.n, "cells {a} and {b} of {}", self.n);
+        self.words[a * self.width + b / 64] |= 1 << (b % 64);
+        self.words[b * self.width + a / 64] |= 1 << (a % 64);
+    }
+
+    /// Puts in every pair of some cells, each with itself too.
+    ///
+    /// # Panics
+    /// If there are no such cells.
+    pub fn add_all(&mut self, cells: &[u32]) {
+        for (i, &a) in cells.iter().enumerate() {
+            cells[..=i].iter().for_each(|&b| self.add(a, b));
+        }
+    }
+
+    /// Takes a pair out, both ways round.
+    ///
+    /// # Panics
+    /// If there are no such cells.
+    pub fn remove(&mut self, a: u32, b: u32) {
+        let (a, b) = (a as usize, b as usize);
+        assert!(a < self.n && b < self.n, "cells {a} and {b} of {}", self.n);
+        self.words[a * self.width + b / 64] &= !(1 << (b % 64));
+        self.words[b * self.width + a / 64] &= !(1 << (a % 64));
+    }
+
+    /// The pairs of a cell: bit `j % 64` of word `j / 64` says whether it is paired with cell `j`.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn row(&self, cell: u32) -> &[u64] {
+        assert!((cell as usize) < self.n, "cell {cell} of {}", self.n);
+        &self.words[cell as usize * self.width..][..self.width]
+    }
+
+    /// The cells that a cell is paired with, ascending.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn of(&self, cell: u32) -> impl Iterator<Item = u32> + '_ {
+        ones(self.row(cell))
+    }
+
+    /// Pairs of different cells, lower number first, ascending.
+    pub fn iter(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        (0..self.n as u32).flat_map(|a| self.of(a).filter(move |&b| b > a).map(move |b| [a, b]))
+    }
+
+    /// Number of pairs of different cells.
+    pub fn len(&self) -> u64 {
+        let all: u64 = self.words.iter().map(|w| u64::from(w.count_ones())).sum();
+        let own = (0..self.n as u32).filter(|&c| self.has(c, c)).count() as u64;
+        (all - own) / 2
+    }
+
+    /// Whether there is no pair of different cells.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The places of the ones of a row, ascending.
+pub(crate) fn ones(row: &[u64]) -> impl Iterator<Item = u32> + '_ {
+    (0u32..).zip(row).flat_map(|(i, &word)| {
+        let mut word = word;
+        std::iter::from_fn(move || {
+            let place = (word != 0).then(|| i * 64 + word.trailing_zeros());
+            word &= word.wrapping_sub(1);
+            place
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_are_kept_both_ways_round() {
+        let mut pairs = Pairs::none(70);
+        [[3, 69], [0, 1], [64, 63], [5, 5]].iter().for_each(|&[a, b]| pairs.add(a, b));
+        assert_eq!(pairs.iter().collect::<Vec<_>>(), [[0, 1], [3, 69], [63, 64]]);
+        assert_eq!((pairs.len(), pairs.is_empty(), pairs.n_cells()), (3, false, 70));
+        assert!(pairs.has(69, 3) && pairs.has(5, 5) && !pairs.has(3, 70) && !pairs.has(99, 0));
+        pairs.remove(69, 3);
+        assert_eq!((pairs.len(), pairs.of(3).count(), pairs.of(5).collect::<Vec<_>>()), (2, 0, vec![5]));
+    }
+}

@@ -1,0 +1,220 @@
+//! The geometry that proofs of a plan speak of: convex polygons joined by segments, checked exactly.
+
+use super::line::{Line, PlanLine};
+use crate::exact::{is_coordinate, turn};
+use crate::graph::Gates;
+use std::cmp::Ordering;
+
+/// A point of the plane, in scene units.
+pub type Point = [f64; 2];
+
+/// An opening between two cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanPortal {
+    /// The two cells.
+    pub cells: [u32; 2],
+    /// The side of each cell that it lies on. Portals on one side of a cell lie on one line.
+    pub sides: [u32; 2],
+    /// The left end, as seen by who goes from the first cell to the second.
+    pub left: Point,
+    /// The right end.
+    pub right: Point,
+}
+
+/// Why cells and portals are nothing that can be proven about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NetworkError {
+    /// More than 2^30 cells or portals.
+    #[error("there are too many cells or portals")]
+    TooMany,
+    /// A coordinate that is not finite, or of a magnitude that is neither 0 nor from 2^-140 to 2^200.
+    #[error("cell {0} has a coordinate out of range")]
+    Coordinate(u32),
+    /// Not a convex polygon with counter-clockwise corners, or no box with an inside.
+    #[error("cell {0} is not convex")]
+    NotConvex(u32),
+    /// A portal to a cell that does not exist, or from a cell to itself.
+    #[error("portal {0} does not join two cells")]
+    Cells(u32),
+    /// A portal that does not lie on the border of one of its cells, with the inside on the right hand.
+    #[error("portal {portal} is not on the border of cell {cell}")]
+    OffBorder {
+        /// The portal.
+        portal: u32,
+        /// The cell.
+        cell: u32,
+    },
+    /// Portals on one side of a cell that are not on one line.
+    #[error("portals {} and {} are said to be on one side of cell {cell}, and are not", portals[0], portals[1])]
+    Sides {
+        /// The cell.
+        cell: u32,
+        /// The portals.
+        portals: [u32; 2],
+    },
+}
+
+/// Convex polygons and the portals between them, for which it was checked that
+///
+/// * cells are convex and counter-clockwise;
+/// * each portal lies on the border of both its cells, and is crossed outwards;
+/// * portals with one side number of a cell lie on one line.
+///
+/// So a line that goes from cell to cell through portals meets each cell once, and leaves none by the side that it
+/// came in by.
+#[derive(Debug, Clone)]
+pub struct PlanNetwork {
+    pub(super) gates: Gates,
+    /// The ends of each gate, left and right, as seen by who crosses it.
+    pub(super) ends: Vec<[Point; 2]>,
+    /// Lower and upper corners of boxes around cells.
+    pub(super) boxes: Vec<[Point; 2]>,
+    checksum: u32,
+}
+
+impl PlanNetwork {
+    /// Checks cells, given by their corners, and portals. Exact; O(size).
+    ///
+    /// # Errors
+    /// The first [`NetworkError`].
+    pub fn new(cells: &[Vec<Point>], portals: &[PlanPortal]) -> Result<Self, NetworkError> {
+        if cells.len().max(portals.len()) > 1 << 30 {
+            return Err(NetworkError::TooMany);
+        }
+        for (id, corners) in (0u32..).zip(cells) {
+            if !corners.as_flattened().iter().all(|x| is_coordinate(*x)) {
+                return Err(NetworkError::Coordinate(id));
+            }
+            if !is_convex(corners) {
+                return Err(NetworkError::NotConvex(id));
+            }
+        }
+        for (id, portal) in (0u32..).zip(portals) {
+            let [a, b] = portal.cells;
+            if a == b || a.max(b) as usize >= cells.len() {
+                return Err(NetworkError::Cells(id));
+            }
+            let ends = [portal.left, portal.right];
+            if !ends.as_flattened().iter().all(|x| is_coordinate(*x)) {
+                return Err(NetworkError::OffBorder { portal: id, cell: a });
+            }
+            // Who leaves a cell has it behind: its border runs from right to left, counter-clockwise.
+            for (cell, [from, to]) in [(a, [portal.right, portal.left]), (b, [portal.left, portal.right])] {
+                if !is_on_border(&cells[cell as usize], from, to) {
+                    return Err(NetworkError::OffBorder { portal: id, cell });
+                }
+            }
+        }
+        let gates = Gates::new(cells.len(), portals.iter().map(|p| (p.cells, p.sides)));
+        let ends: Vec<[Point; 2]> = portals.iter().flat_map(|p| [[p.left, p.right], [p.right, p.left]]).collect();
+        for cell in 0..cells.len() as u32 {
+            for pair in gates.exits(cell).windows(2) {
+                let [g, h] = [pair[0], pair[1]];
+                let [left, right] = ends[g as usize];
+                let straight = ends[h as usize].iter().all(|&p| turn(left, right, p) == Ordering::Equal);
+                if gates.gate(g).sides[0] == gates.gate(h).sides[0] && !straight {
+                    return Err(NetworkError::Sides { cell, portals: [g / 2, h / 2] });
+                }
+            }
+        }
+        let boxes = cells.iter().map(|corners| around(corners)).collect();
+        Ok(Self { gates, ends, boxes, checksum: checksum(cells, portals) })
+    }
+
+    /// Number of cells.
+    pub fn n_cells(&self) -> usize {
+        self.gates.n_cells()
+    }
+
+    /// Number of portals.
+    pub fn n_portals(&self) -> usize {
+        self.gates.len() / 2
+    }
+
+    /// A number that proofs carry, so that those of other cells or portals are noticed.
+    pub fn checksum(&self) -> u32 {
+        self.checksum
+    }
+
+    /// The ends of a gate, left and right as seen by who crosses it. Gate `2p` is portal `p` crossed from its first cell
+    /// into its second, gate `2p + 1` the other way.
+    ///
+    /// # Panics
+    /// If there is no such gate.
+    pub fn gate_ends(&self, gate: u32) -> [Point; 2] {
+        self.ends[gate as usize]
+    }
+
+    /// The cells that a line passes, in order, followed from its cell both ways through portals that it crosses
+    /// strictly. An open set of lines joins any two of them. Empty if it crosses no portal of its cell, or if there is
+    /// no such cell. Exact.
+    pub fn follow(&self, line: &PlanLine) -> Vec<u32> {
+        let Some(exact) = Line::of(line).filter(|_| (line.cell as usize) < self.n_cells()) else { return Vec::new() };
+        let mut cells = Vec::new();
+        self.go(line.cell, &exact.reversed(), &mut cells);
+        cells.reverse();
+        cells.push(line.cell);
+        self.go(line.cell, &exact, &mut cells);
+        if cells.len() > 1 { cells } else { Vec::new() }
+    }
+
+    fn go(&self, from: u32, line: &Line, cells: &mut Vec<u32>) {
+        let (mut cell, mut entry_side) = (from, None);
+        // Convex cells are met once.
+        for _ in 0..self.n_cells() {
+            let crosses = |gate: &&u32| {
+                Some(self.gates.gate(**gate).sides[0]) != entry_side && {
+                    let [left, right] = self.ends[**gate as usize];
+                    line.side(left) == Ordering::Greater && line.side(right) == Ordering::Less
+                }
+            };
+            let Some(&gate) = self.gates.exits(cell).iter().find(crosses) else { return };
+            let gate = self.gates.gate(gate);
+            (cell, entry_side) = (gate.cells[1], Some(gate.sides[1]));
+            cells.push(cell);
+        }
+    }
+}
+
+/// Whether a polygon is convex and counter-clockwise; straight angles are allowed.
+fn is_convex(corners: &[Point]) -> bool {
+    let n = corners.len();
+    // Every corner lies to the left of every edge or on its line, and they are not all on one line.
+    let edges = || (0..n).map(|i| [corners[i], corners[(i + 1) % n]]);
+    let inside = edges().all(|[a, b]| a != b && corners.iter().all(|&c| turn(a, b, c) != Ordering::Less));
+    n >= 3 && inside && edges().any(|[a, b]| corners.iter().any(|&c| turn(a, b, c) == Ordering::Greater))
+}
+
+/// Whether `from` to `to` runs along the border of a convex counter-clockwise polygon.
+fn is_on_border(corners: &[Point], from: Point, to: Point) -> bool {
+    let n = corners.len();
+    let inside = corners.iter().all(|&c| turn(from, to, c) != Ordering::Less);
+    let on_line: Vec<Point> = corners.iter().copied().filter(|&c| turn(from, to, c) == Ordering::Equal).collect();
+    let [low, high] = around(&on_line);
+    let within = |p: Point| (0..2).all(|k| low[k] <= p[k] && p[k] <= high[k]);
+    n >= 3 && from != to && inside && on_line.len() >= 2 && within(from) && within(to)
+}
+
+fn around(points: &[Point]) -> [Point; 2] {
+    points.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
+        [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
+    })
+}
+
+fn checksum(cells: &[Vec<Point>], portals: &[PlanPortal]) -> u32 {
+    let mut hash = crc32fast::Hasher::new();
+    // Negative zero is zero.
+    let mut point = |p: Point| p.iter().for_each(|x| hash.update(&(x + 0.0).to_le_bytes()));
+    cells.iter().for_each(|cell| {
+        point([cell.len() as f64, 0.0]);
+        cell.iter().for_each(|&p| point(p));
+    });
+    for p in portals {
+        point(p.left);
+        point(p.right);
+        point(p.cells.map(f64::from));
+        point(p.sides.map(f64::from));
+    }
+    hash.finalize()
+}

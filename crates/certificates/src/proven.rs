@@ -1,0 +1,112 @@
+//! What proofs prove, and why they are refused.
+
+use crate::pairs::Pairs;
+
+/// Pairs of cells for which a proof was checked.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Proven {
+    /// Pairs that an open set of lines joins.
+    pub visible: Pairs,
+    /// Pairs that no open set of lines joins.
+    pub hidden: Pairs,
+}
+
+impl Proven {
+    pub(crate) fn new(visible: Pairs, hidden: Pairs) -> Self {
+        Self { visible, hidden }
+    }
+
+    /// Number of pairs of different cells for which there is no proof.
+    pub fn n_open(&self) -> u64 {
+        let n = self.visible.n_cells() as u64;
+        n * n.saturating_sub(1) / 2 - self.visible.len() - self.hidden.len()
+    }
+}
+
+/// Why proofs are refused: the first that does not hold.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// They speak of other cells and portals.
+    #[error("the proofs are about other cells or portals than the table has")]
+    OtherTable,
+    /// A line that passes no portal of its cell.
+    #[error("line {index} passes no portal of cell {cell}")]
+    Line {
+        /// Which line.
+        index: usize,
+        /// The cell.
+        cell: u32,
+    },
+    /// An unproven pair that is none.
+    #[error("unproven pair {index} is no pair of cells")]
+    Pair {
+        /// Which.
+        index: usize,
+    },
+    /// A walk from a cell that does not exist.
+    #[error("walk {walk} begins in cell {from}, which does not exist")]
+    Source {
+        /// Which walk.
+        walk: usize,
+        /// The cell.
+        from: u32,
+    },
+    /// A chain that is said to be blocked, and it is not shown.
+    #[error("walk {walk}, from cell {from}: reason {block} does not show that the chain is blocked")]
+    Block {
+        /// Which walk.
+        walk: usize,
+        /// The cell.
+        from: u32,
+        /// Which of its reasons.
+        block: usize,
+    },
+    /// A chain of gates that nothing stops enters a cell that is said to be hidden.
+    #[error("walk {walk}, from cell {from}: a chain of portals enters cell {cell}, which should be hidden")]
+    Entered {
+        /// Which walk.
+        walk: usize,
+        /// The cell.
+        from: u32,
+        /// The cell that is entered.
+        cell: u32,
+    },
+    /// A walk that ended before all its reasons were used: it is not the walk that they were made for.
+    #[error("walk {walk}, from cell {from}: not all of its reasons are used")]
+    Unused {
+        /// Which walk.
+        walk: usize,
+        /// The cell.
+        from: u32,
+    },
+    /// A rectangle that should hide things is no wall.
+    #[error("blocker {index} is no wall: {why}")]
+    Blocker {
+        /// Which.
+        index: usize,
+        /// Why not.
+        why: NoWall,
+    },
+    /// A proof about two boxes that does not hold.
+    #[error("proof {index} does not show that its two boxes are hidden from each other")]
+    Boxes {
+        /// Which.
+        index: usize,
+    },
+}
+
+/// Why a rectangle is no wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoWall {
+    /// It is not flat along exactly one axis.
+    #[error("it is no rectangle")]
+    Shape,
+    /// It is in the inside of a cell.
+    #[error("it goes through cell {0}")]
+    Cell(u32),
+    /// A portal is in it.
+    #[error("portal {0} is in it")]
+    Portal(u32),
+}

@@ -1,0 +1,354 @@
+//! Why nothing leads from one box to another past rectangles: proofs about pairs of boxes, and their checker.
+//!
+//! # What is shown
+//! A line with a direction along every axis reaches each coordinate on an axis at some time, and times are linear in the
+//! coordinate: on axis `k` it reaches `x` at `s_k |x| + q_k`, with a positive slowness `s_k`, where `|x|` is `x`, or `-x` if the
+//! line goes towards smaller coordinates. Who passes the inside of a box enters its extent along each axis before he leaves that
+//! along any other. Who crosses the plane of a rectangle and does not meet it goes *past* it in one of six ways: beside one of
+//! its four edges, before he leaves the first box, or after he enters the second.
+//!
+//! For each choice of directions a tree shows that no way is left: a node names a rectangle and has a branch for each way past
+//! it that lines can take; on its leaves, positive multiples of comparisons of times that hold there add up to
+//! one that is false for all slownesses. Where a way is one comparison and was dealt with, the lines that are left obey its
+//! reverse, but for those that are equal, which are no open set.
+//!
+//! Source: that lines of one octant are linear in slownesses and offsets is the project's own.
+
+use super::network::{Box3, flat_axis};
+use crate::exact::Dyadic;
+use num_bigint::BigInt;
+use std::cmp::Ordering;
+
+/// A way past a rectangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Way {
+    /// Beside an edge: the plane is crossed before the extent along an axis is entered, or after it is left.
+    Beside {
+        /// The axis; not the rectangle's own.
+        axis: u8,
+        /// Before; else after.
+        before: bool,
+    },
+    /// The plane is crossed before the first box is left.
+    InFirst,
+    /// The plane is crossed after the second box is entered.
+    InSecond,
+}
+
+/// A comparison of two times that holds on a branch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Claim {
+    /// A box is entered along one axis before it is left along another.
+    Box {
+        /// Which of the two boxes.
+        second: bool,
+        /// The axis that is entered.
+        enter: u8,
+        /// The axis that is left.
+        leave: u8,
+    },
+    /// A comparison of the way that is taken past a rectangle.
+    Taken {
+        /// How many rectangles were gone past before it.
+        depth: u32,
+        /// Which comparison: [`Way::Beside`] has one, the others have two, for the two axes after the rectangle's own.
+        part: u8,
+    },
+    /// The reverse of a way beside a rectangle that was dealt with.
+    Reversed {
+        /// How many rectangles were gone past before it.
+        depth: u32,
+        /// The way.
+        way: Way,
+    },
+}
+
+/// Claims with positive multipliers, which add up to something false.
+pub type Sum = Vec<(Claim, BigInt)>;
+
+/// Why no line is left on a branch.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Branch {
+    /// Its claims contradict each other.
+    Empty(Sum),
+    /// A rectangle is in the way.
+    Past {
+        /// Which, among the blockers.
+        blocker: u32,
+        /// Ways past it, in the order in which they are dealt with.
+        ways: Vec<(Way, Branch)>,
+        /// Why nothing is left after those; `None` if they are all that lines can take.
+        rest: Option<Sum>,
+    },
+}
+
+/// The coordinate on an axis that is reached.
+type Event = (usize, f64);
+
+/// A rectangle gone past.
+struct Passage<'a> {
+    rectangle: &'a Box3,
+    axis: usize,
+    taken: Option<Way>,
+    done: Vec<Way>,
+}
+
+/// The lines of one choice of directions from one box to another.
+pub(super) struct Lines<'a> {
+    boxes: [&'a Box3; 2],
+    blockers: &'a [Box3],
+    /// Whether lines go towards larger coordinates.
+    forward: [bool; 3],
+    path: Vec<Passage<'a>>,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(boxes: [&'a Box3; 2], blockers: &'a [Box3], forward: [bool; 3]) -> Self {
+        Self { boxes, blockers, forward, path: Vec::new() }
+    }
+
+    fn enter(&self, b: &Box3, axis: usize) -> Event {
+        (axis, b[usize::from(!self.forward[axis])][axis])
+    }
+
+    fn leave(&self, b: &Box3, axis: usize) -> Event {
+        (axis, b[usize::from(self.forward[axis])][axis])
+    }
+
+    /// Whether a coordinate is reached before another on the same axis.
+    fn earlier(&self, axis: usize, x: f64, y: f64) -> bool {
+        if self.forward[axis] { x < y } else { x > y }
+    }
+
+    /// Whether along some axis the second box is left before the first is entered: then no line leads from one to the other.
+    pub(super) fn lead_away(&self) -> bool {
+        (0..3).any(|k| !self.earlier(k, self.enter(self.boxes[0], k).1, self.leave(self.boxes[1], k).1))
+    }
+
+    /// The comparisons of a way, earlier event first; `None` for a way that no line takes.
+    fn comparisons(&self, rectangle: &Box3, own: usize, way: Way) -> Option<Vec<[Event; 2]>> {
+        let at = rectangle[0][own];
+        let plane = (own, at);
+        let others = [(own + 1) % 3, (own + 2) % 3];
+        let [first, second] = self.boxes;
+        match way {
+            Way::Beside { axis, before } => {
+                let axis = usize::from(axis);
+                others.contains(&axis).then(|| {
+                    vec![if before {
+                        [plane, self.enter(rectangle, axis)]
+                    } else {
+                        [self.leave(rectangle, axis), plane]
+                    }]
+                })
+            }
+            Way::InFirst => self
+                .earlier(own, at, self.leave(first, own).1)
+                .then(|| others.map(|k| [plane, self.leave(first, k)]).to_vec()),
+            Way::InSecond => self
+                .earlier(own, self.enter(second, own).1, at)
+                .then(|| others.map(|k| [self.enter(second, k), plane]).to_vec()),
+        }
+    }
+
+    /// What a claim says, if it holds on this branch.
+    fn comparison(&self, claim: Claim) -> Option<[Event; 2]> {
+        match claim {
+            Claim::Box { second, enter, leave } => {
+                let (b, enter, leave) = (self.boxes[usize::from(second)], usize::from(enter), usize::from(leave));
+                (enter < 3 && leave < 3 && enter != leave).then(|| [self.enter(b, enter), self.leave(b, leave)])
+            }
+            Claim::Taken { depth, part } => {
+                let passage = self.path.get(depth as usize)?;
+                let comparisons = self.comparisons(passage.rectangle, passage.axis, passage.taken?)?;
+                comparisons.get(usize::from(part)).copied()
+            }
+            Claim::Reversed { depth, way } => {
+                let passage = self.path.get(depth as usize).filter(|passage| passage.done.contains(&way))?;
+                match self.comparisons(passage.rectangle, passage.axis, way)?[..] {
+                    [[early, late]] => Some([late, early]),
+                    _ => None,
+                }
+            }
+        }
+    }
+
+    /// Whether claims add up to: something that is never negative is negative.
+    fn contradict(&self, sum: &Sum) -> bool {
+        let mut slownesses = [(); 3].map(|()| Dyadic::whole(BigInt::from(0)));
+        let mut offsets = [(); 3].map(|()| BigInt::from(0));
+        for (claim, multiplier) in sum {
+            let Some([early, late]) = self.comparison(*claim) else { return false };
+            if multiplier.sign() != num_bigint::Sign::Plus {
+                return false;
+            }
+            for ((axis, x), multiplier) in [(early, multiplier.clone()), (late, -multiplier)] {
+                let x = Dyadic::new(if self.forward[axis] { x } else { -x });
+                slownesses[axis] = &slownesses[axis] + &(&x * &Dyadic::whole(multiplier.clone()));
+                offsets[axis] += multiplier;
+            }
+        }
+        let zero = BigInt::from(0);
+        !sum.is_empty()
+            && offsets.iter().all(|offset| *offset == zero)
+            && slownesses.iter().all(|slowness| slowness.sign() != Ordering::Less)
+    }
+
+    /// Whether a branch shows that no line is left on it.
+    pub(super) fn none_left(&mut self, branch: &Branch) -> bool {
+        let (blocker, ways, rest) = match branch {
+            Branch::Empty(sum) => return self.contradict(sum),
+            Branch::Past { blocker, ways, rest } => (*blocker, ways, rest),
+        };
+        let Some(rectangle) = self.blockers.get(blocker as usize) else { return false };
+        let Some(axis) = flat_axis(rectangle) else { return false };
+        self.path.push(Passage { rectangle, axis, taken: None, done: Vec::new() });
+        let depth = self.path.len() - 1;
+        let mut is_shown = true;
+        for (way, branch) in ways {
+            self.path[depth].taken = Some(*way);
+            is_shown = self.none_left(branch);
+            if !is_shown {
+                break;
+            }
+            self.path[depth].done.push(*way);
+        }
+        self.path[depth].taken = None;
+        is_shown = is_shown
+            && match rest {
+                Some(sum) => self.contradict(sum),
+                None => self.all_are_done(depth),
+            };
+        self.path.pop();
+        is_shown
+    }
+
+    /// Whether every way past a rectangle that lines can take was dealt with.
+    fn all_are_done(&self, depth: usize) -> bool {
+        let Passage { rectangle, axis, done, .. } = &self.path[depth];
+        let beside = (0..3u8).flat_map(|axis| [true, false].map(|before| Way::Beside { axis, before }));
+        let mut ways = beside.chain([Way::InFirst, Way::InSecond]);
+        ways.all(|way| done.contains(&way) || self.comparisons(rectangle, *axis, way).is_none())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// All claims that may hold on a branch, and some that do not.
+    fn claims(n_passed: u32) -> Vec<Claim> {
+        let mut all = Vec::new();
+        for (enter, leave) in (0..3).flat_map(|enter| (0..3).map(move |leave| (enter, leave))) {
+            all.extend([false, true].map(|second| Claim::Box { second, enter, leave }));
+        }
+        for depth in 0..n_passed {
+            all.extend([0, 1, 2].map(|part| Claim::Taken { depth, part }));
+            all.extend(ways().into_iter().map(|way| Claim::Reversed { depth, way }));
+        }
+        all
+    }
+
+    fn ways() -> Vec<Way> {
+        let beside = (0..3u8).flat_map(|axis| [true, false].map(|before| Way::Beside { axis, before }));
+        beside.chain([Way::InFirst, Way::InSecond]).collect()
+    }
+
+    /// Two or three claims that the checker takes for a contradiction.
+    fn contradiction(lines: &Lines<'_>, n_passed: u32) -> Option<Sum> {
+        let all = claims(n_passed);
+        let sum = |some: &[Claim]| -> Sum { some.iter().map(|claim| (*claim, BigInt::from(1))).collect() };
+        for (i, &a) in all.iter().enumerate() {
+            for (j, &b) in all[..=i].iter().enumerate() {
+                let thirds = all[..=j].iter().map(|&c| sum(&[a, b, c]));
+                let found = std::iter::once(sum(&[a, b])).chain(thirds).find(|sum| lines.contradict(sum));
+                if found.is_some() {
+                    return found;
+                }
+            }
+        }
+        None
+    }
+
+    /// Any proof that the checker takes, with each blocker gone past once.
+    fn any_proof(lines: &mut Lines<'_>, next: u32) -> Option<Branch> {
+        if let Some(sum) = contradiction(lines, next) {
+            return Some(Branch::Empty(sum));
+        }
+        let blockers = lines.blockers;
+        let rectangle = blockers.get(next as usize)?;
+        let axis = flat_axis(rectangle)?;
+        lines.path.push(Passage { rectangle, axis, taken: None, done: Vec::new() });
+        let mut found = Some(Vec::new());
+        for way in ways() {
+            lines.path[next as usize].taken = Some(way);
+            let branch = match lines.comparisons(rectangle, axis, way) {
+                Some(_) => any_proof(lines, next + 1),
+                None => continue,
+            };
+            found = found.zip(branch).map(|(mut found, branch)| {
+                found.push((way, branch));
+                found
+            });
+            if found.is_none() {
+                break;
+            }
+            lines.path[next as usize].done.push(way);
+        }
+        lines.path.pop();
+        Some(Branch::Past { blocker: next, ways: found?, rest: None })
+    }
+
+    /// A small box or, if `flat`, a rectangle that is often larger, on a grid of a few units.
+    fn extent(flat: bool) -> impl Strategy<Value = Box3> {
+        let sizes = if flat { 2i32..8 } else { 1i32..3 };
+        let side =
+            (if flat { -2i32..4 } else { 0i32..5 }, sizes).prop_map(|(x, size)| [f64::from(x), f64::from(x + size)]);
+        (prop::array::uniform3(side), 0usize..3).prop_map(move |(mut sides, axis)| {
+            if flat {
+                sides[axis][1] = sides[axis][0];
+            }
+            [0, 1].map(|end| sides.map(|side| side[end]))
+        })
+    }
+
+    /// Whether the segment between two points meets no rectangle.
+    fn is_free(p: [f64; 3], q: [f64; 3], blockers: &[Box3]) -> bool {
+        blockers.iter().all(|b| {
+            let axis = flat_axis(b).expect("a rectangle");
+            let t = (b[0][axis] - p[axis]) / (q[axis] - p[axis]);
+            let x = [0, 1, 2].map(|k| p[k] + t * (q[k] - p[k]));
+            let is_met = (0..3).all(|k| k == axis || (b[0][k] <= x[k] && x[k] <= b[1][k]));
+            !((0.0..=1.0).contains(&t) && is_met)
+        })
+    }
+
+    proptest! {
+        /// Whatever can be got past the checker: no line of the octant refutes it. Boxes may overlap, and rectangles lie anywhere.
+        #[test]
+        fn no_line_refutes_what_is_accepted(
+            boxes in [extent(false), extent(false)],
+            blockers in prop::collection::vec(extent(true), 0..3),
+            shares in prop::collection::vec(prop::array::uniform6(0.01f64..0.99), 200),
+        ) {
+            let at = |b: &Box3, s: &[f64]| [0, 1, 2].map(|k| b[0][k] + (b[1][k] - b[0][k]) * s[k]);
+            for octant in 0..8 {
+                let forward = [0, 1, 2].map(|k| octant >> k & 1 == 1);
+                let mut lines = Lines::new([&boxes[0], &boxes[1]], &blockers, forward);
+                let leads_away = lines.lead_away();
+                let proof = if leads_away { None } else { any_proof(&mut lines, 0) };
+                if let Some(proof) = &proof {
+                    prop_assert!(lines.none_left(proof));
+                }
+                if leads_away || proof.is_some() {
+                    for s in &shares {
+                        let (p, q) = (at(&boxes[0], &s[..3]), at(&boxes[1], &s[3..]));
+                        let is_ours = (0..3).all(|k| (p[k] < q[k]) == forward[k]);
+                        prop_assert!(!(is_ours && is_free(p, q, &blockers)), "{p:?} {q:?} {proof:?}");
+                    }
+                }
+            }
+        }
+    }
+}

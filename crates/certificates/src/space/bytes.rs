@@ -1,0 +1,231 @@
+//! Proofs of scenes in space as bytes.
+//!
+//! After the frame: the checksum of the network (four bytes); lines; blockers; proofs of boxes, each with its octants. Boxes are
+//! six places among the coordinates of the network.
+
+use super::branch::{Branch, Claim, Sum, Way};
+use super::network::{BoxLine, BoxName};
+use super::{BoxProof, BoxProofs};
+use crate::bytes::{Kind, ReadError, ReadErrorKind, Reader, Writer, framed, is_narrow, unframed};
+use num_bigint::BigInt;
+
+/// Branches of branches that are read.
+const DEEPEST: usize = 200;
+/// Ways past a blocker that are written.
+const MOST_WAYS: usize = 100;
+/// Claims of a sum that are written.
+const MOST_CLAIMS: usize = 254;
+
+/// Whether octants come back from their bytes as they are.
+pub(super) fn can_be_written(octants: &[(u8, Branch)]) -> bool {
+    let mut before = 0u8;
+    octants.iter().all(|(octant, branch)| {
+        let is_new = *octant < 8 && before >> octant & 1 == 0;
+        before |= 1 << (octant & 7);
+        is_new && branch_can(branch, 0)
+    })
+}
+
+fn branch_can(branch: &Branch, depth: usize) -> bool {
+    let sum_can = |sum: &Sum| sum.len() <= MOST_CLAIMS;
+    match branch {
+        Branch::Empty(sum) => sum_can(sum),
+        Branch::Past { ways, rest, .. } => {
+            let is_way = |way: Way| way_of(code_of(way)) == way;
+            depth < DEEPEST
+                && ways.len() <= MOST_WAYS
+                && rest.iter().all(sum_can)
+                && ways.iter().all(|(way, branch)| is_way(*way) && branch_can(branch, depth + 1))
+        }
+    }
+}
+
+impl BoxProofs {
+    /// The bytes of these proofs: for the same proofs always the same.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut writer = Writer::default();
+        writer.bytes(&self.checksum.to_le_bytes());
+        writer.size(self.lines.len());
+        for line in &self.lines {
+            let values = line.points.as_flattened().iter().map(|&x| f64::from_bits(x));
+            let wide = !values.clone().all(is_narrow);
+            writer.number(2 * u64::from(line.cell) + u64::from(wide));
+            values.for_each(|x| writer.double(x, wide));
+        }
+        writer.size(self.blockers.len());
+        self.blockers.iter().for_each(|name| write_name(name, &mut writer));
+        writer.size(self.boxes.len());
+        for proof in &self.boxes {
+            proof.boxes.iter().for_each(|name| write_name(name, &mut writer));
+            let octants = proof.octants.iter().fold(0u8, |bits, (octant, _)| bits | 1 << (octant & 7));
+            writer.byte(octants);
+            for octant in 0..8 {
+                if let Some((_, branch)) = proof.octants.iter().find(|(o, _)| *o == octant) {
+                    write_branch(branch, &mut writer);
+                }
+            }
+        }
+        framed(Kind::Space, writer)
+    }
+
+    /// Reads proofs. Whether they prove anything is another question ([`BoxProofs::check`]).
+    ///
+    /// # Errors
+    /// [`ReadError`] with the offset of what is wrong.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadError> {
+        let (kind, mut reader) = unframed(bytes)?;
+        if kind != Kind::Space {
+            return Err(ReadError { offset: 12, kind: ReadErrorKind::Kind(bytes[12]) });
+        }
+        let four = reader.bytes(4)?;
+        let checksum = u32::from_le_bytes([four[0], four[1], four[2], four[3]]);
+        let n = reader.count(25)?;
+        let mut lines = Vec::with_capacity(n);
+        for _ in 0..n {
+            let head = reader.number()?;
+            let mut points = [[0; 3]; 2];
+            for x in points.as_flattened_mut() {
+                *x = reader.coordinate(head % 2 == 1)?.to_bits();
+            }
+            lines.push(BoxLine { cell: head / 2, points });
+        }
+        let n = reader.count(6)?;
+        let blockers = (0..n).map(|_| read_name(&mut reader)).collect::<Result<_, _>>()?;
+        let n = reader.count(13)?;
+        let mut boxes = Vec::with_capacity(n);
+        for _ in 0..n {
+            let names = [read_name(&mut reader)?, read_name(&mut reader)?];
+            let bits = reader.byte()?;
+            let mut octants = Vec::new();
+            for octant in (0..8).filter(|octant| bits >> octant & 1 == 1) {
+                octants.push((octant, read_branch(&mut reader, 0)?));
+            }
+            boxes.push(BoxProof { boxes: names, octants });
+        }
+        reader.end()?;
+        Ok(Self { checksum, lines, blockers, boxes })
+    }
+}
+
+/// The lower places, then how much higher the upper ones are.
+fn write_name(name: &BoxName, writer: &mut Writer) {
+    let [low, high] = name.0;
+    low.iter().for_each(|&x| writer.number(x));
+    low.iter().zip(&high).for_each(|(x, y)| writer.number(y.wrapping_sub(*x)));
+}
+
+fn read_name(reader: &mut Reader<'_>) -> Result<BoxName, ReadError> {
+    let mut name = BoxName::default();
+    for side in 0..2 {
+        for k in 0..3 {
+            let x = reader.number()?;
+            let base = if side == 0 { 0 } else { name.0[0][k] };
+            match base.checked_add(x) {
+                Some(x) => name.0[side][k] = x,
+                None => return reader.fail(0, ReadErrorKind::Number),
+            }
+        }
+    }
+    Ok(name)
+}
+
+/// Six ways beside, by axis and side, and two others.
+fn code_of(way: Way) -> u8 {
+    match way {
+        Way::Beside { axis, before } => 2 * (axis % 3) + u8::from(before),
+        Way::InFirst => 6,
+        Way::InSecond => 7,
+    }
+}
+
+fn way_of(code: u8) -> Way {
+    match code {
+        0..=5 => Way::Beside { axis: code / 2, before: code % 2 == 1 },
+        6 => Way::InFirst,
+        _ => Way::InSecond,
+    }
+}
+
+/// A leaf begins with the number of its claims, a node with 255, its blocker, and how many ways with or without a rest.
+fn write_branch(branch: &Branch, writer: &mut Writer) {
+    match branch {
+        Branch::Empty(sum) => write_sum(sum, writer),
+        Branch::Past { blocker, ways, rest } => {
+            writer.byte(255);
+            writer.number(*blocker);
+            writer.byte(2 * ways.len().min(MOST_WAYS) as u8 + u8::from(rest.is_some()));
+            for (way, branch) in ways.iter().take(MOST_WAYS) {
+                writer.byte(code_of(*way));
+                write_branch(branch, writer);
+            }
+            rest.iter().for_each(|sum| write_sum(sum, writer));
+        }
+    }
+}
+
+fn read_branch(reader: &mut Reader<'_>, depth: usize) -> Result<Branch, ReadError> {
+    let first = reader.byte()?;
+    if first != 255 {
+        return Ok(Branch::Empty(read_sum(reader, first)?));
+    }
+    if depth == DEEPEST {
+        return reader.fail(1, ReadErrorKind::Depth);
+    }
+    let blocker = reader.number()?;
+    let head = reader.byte()?;
+    let mut ways = Vec::new();
+    for _ in 0..head / 2 {
+        let code = reader.byte()?;
+        if code > 7 {
+            return reader.fail(1, ReadErrorKind::Code(code));
+        }
+        ways.push((way_of(code), read_branch(reader, depth + 1)?));
+    }
+    let rest = if head % 2 == 1 {
+        let n = reader.byte()?;
+        Some(read_sum(reader, n)?)
+    } else {
+        None
+    };
+    Ok(Branch::Past { blocker, ways, rest })
+}
+
+/// Claims of one kind, and their shape within it: 18 about boxes, 2 taken, 8 reversed.
+fn write_sum(sum: &Sum, writer: &mut Writer) {
+    let n = sum.len().min(MOST_CLAIMS);
+    writer.byte(n as u8);
+    let one = BigInt::from(1);
+    for (claim, multiplier) in &sum[..n] {
+        let (code, depth) = match *claim {
+            Claim::Box { second, enter, leave } => (9 * u8::from(second) + 3 * (enter % 3) + leave % 3, None),
+            Claim::Taken { depth, part } => (18 + part % 2, Some(depth)),
+            Claim::Reversed { depth, way } => (20 + code_of(way), Some(depth)),
+        };
+        // Most multipliers are 1.
+        writer.byte(2 * code + u8::from(*multiplier != one));
+        depth.into_iter().for_each(|depth| writer.number(depth));
+        if *multiplier != one {
+            writer.whole(multiplier);
+        }
+    }
+}
+
+fn read_sum(reader: &mut Reader<'_>, n: u8) -> Result<Sum, ReadError> {
+    if n == 255 {
+        return reader.fail(1, ReadErrorKind::Code(n));
+    }
+    let mut sum = Vec::with_capacity(usize::from(n));
+    for _ in 0..n {
+        let head = reader.byte()?;
+        let code = head / 2;
+        let claim = match code {
+            0..=17 => Claim::Box { second: code >= 9, enter: code % 9 / 3, leave: code % 3 },
+            18 | 19 => Claim::Taken { depth: reader.number()?, part: code - 18 },
+            20..=27 => Claim::Reversed { depth: reader.number()?, way: way_of(code - 20) },
+            _ => return reader.fail(1, ReadErrorKind::Code(head)),
+        };
+        let multiplier = if head % 2 == 1 { reader.whole()? } else { BigInt::from(1) };
+        sum.push((claim, multiplier));
+    }
+    Ok(sum)
+}

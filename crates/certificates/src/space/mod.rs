@@ -1,0 +1,113 @@
+//! Proofs of tables of scenes in space that were cut into boxes.
+//!
+//! *Visible* pairs are proven by lines, each followed exactly through the portals that it crosses. *Hidden* pairs are proven for
+//! pairs of boxes, most of them around many cells: for each octant of directions a tree of rectangles shows that
+//! no line gets past them ([`Branch`]). That the rectangles are walls is checked too: no cell has a part of one in its inside, and no
+//! portal lies in one. A line that goes from cell to cell through portals is at each of its points in the inside of a cell or
+//! of a portal (or passes an edge, which no open set of lines does), and so meets none of them.
+
+mod branch;
+mod bytes;
+mod make;
+mod network;
+
+pub use branch::{Branch, Claim, Sum, Way};
+pub use make::BoxMaker;
+pub use network::{Box3, BoxLine, BoxName, BoxNetwork, BoxNetworkError, BoxPortal, Point3};
+
+use crate::pairs::Pairs;
+use crate::proven::{NoWall, Proven, Refusal};
+use branch::Lines;
+use network::{flat_axis, is_within};
+
+/// A proof that no cell in one box sees a cell in another.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BoxProof {
+    /// The two boxes.
+    pub boxes: [BoxName; 2],
+    /// Directions of lines from the first to the second (bit `k`: towards larger coordinates on axis `k`), and why none of them is
+    /// free. Directions that are missing lead away from the second box.
+    pub octants: Vec<(u8, Branch)>,
+}
+
+/// Proofs of a table of boxes.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct BoxProofs {
+    /// [`BoxNetwork::checksum`] of the cells and portals.
+    pub checksum: u32,
+    /// Lines that prove pairs to be visible.
+    pub lines: Vec<BoxLine>,
+    /// Rectangles that proofs name.
+    pub blockers: Vec<BoxName>,
+    /// Proofs that pairs of cells are hidden.
+    pub boxes: Vec<BoxProof>,
+}
+
+impl BoxProofs {
+    /// Checks every proof, and says what they prove together. Exact.
+    ///
+    /// Cost: O(blockers (cells + portals)) comparisons, those of the proofs, and O(cells) for each proof of boxes. Memory: a few bits
+    /// for each pair of cells.
+    ///
+    /// # Errors
+    /// [`Refusal`] for proofs of another network and for the first proof that does not hold.
+    pub fn check(&self, network: &BoxNetwork) -> Result<Proven, Refusal> {
+        if self.checksum != network.checksum() {
+            return Err(Refusal::OtherTable);
+        }
+        let mut proven = Proven::new(Pairs::none(network.n_cells()), Pairs::none(network.n_cells()));
+        for (index, line) in self.lines.iter().enumerate() {
+            let cells = network.follow(line);
+            if cells.is_empty() {
+                return Err(Refusal::Line { index, cell: line.cell });
+            }
+            proven.visible.add_all(&cells);
+        }
+        let mut blockers = Vec::with_capacity(self.blockers.len());
+        for (index, name) in self.blockers.iter().enumerate() {
+            let shape = Err(Refusal::Blocker { index, why: NoWall::Shape });
+            let Some(rectangle) = network.named(name) else { return shape };
+            if let Some(why) = no_wall(&rectangle, network) {
+                return Err(Refusal::Blocker { index, why });
+            }
+            blockers.push(rectangle);
+        }
+        for (index, proof) in self.boxes.iter().enumerate() {
+            let boxes = proof.boxes.map(|name| network.named(&name));
+            let [Some(first), Some(second)] = boxes else { return Err(Refusal::Boxes { index }) };
+            if !are_hidden([&first, &second], &proof.octants, &blockers) {
+                return Err(Refusal::Boxes { index });
+            }
+            let within = |b: &Box3| -> Vec<u32> {
+                (0u32..).zip(&network.cells).filter(|(_, cell)| is_within(cell, b)).map(|(id, _)| id).collect()
+            };
+            let (firsts, seconds) = (within(&first), within(&second));
+            for &a in &firsts {
+                // A cell in both would be proven not to see itself, which no proof does.
+                seconds.iter().filter(|&&b| b != a).for_each(|&b| proven.hidden.add(a, b));
+            }
+        }
+        Ok(proven)
+    }
+}
+
+/// Whether for every octant no line leads from inside of the first box to inside of the second past the blockers.
+fn are_hidden(boxes: [&Box3; 2], octants: &[(u8, Branch)], blockers: &[Box3]) -> bool {
+    (0..8u8).all(|octant| {
+        let mut lines = Lines::new(boxes, blockers, [0, 1, 2].map(|k| octant >> k & 1 == 1));
+        let mut own = octants.iter().filter(|(o, _)| *o == octant);
+        lines.lead_away() || own.any(|(_, branch)| lines.none_left(branch))
+    })
+}
+
+/// Why lines from cell to cell through portals might pass a rectangle; `None` if none does. Exact.
+fn no_wall(rectangle: &Box3, network: &BoxNetwork) -> Option<NoWall> {
+    let Some(axis) = flat_axis(rectangle) else { return Some(NoWall::Shape) };
+    let at = rectangle[0][axis];
+    let overlap = |b: &Box3| (0..3).all(|k| k == axis || (b[0][k] < rectangle[1][k] && rectangle[0][k] < b[1][k]));
+    let through = |b: &Box3| b[0][axis] < at && at < b[1][axis] && overlap(b);
+    let inside = |p: &Box3| flat_axis(p) == Some(axis) && p[0][axis] == at && overlap(p);
+    let cell = (0u32..).zip(&network.cells).find(|(_, b)| through(b)).map(|(id, _)| NoWall::Cell(id));
+    let portal = || (0u32..).zip(&network.portals).find(|(_, p)| inside(&p.extent)).map(|(id, _)| NoWall::Portal(id));
+    cell.or_else(portal)
+}

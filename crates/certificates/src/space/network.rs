@@ -1,0 +1,236 @@
+//! The geometry that proofs of scenes in space speak of: boxes joined by rectangles, checked exactly.
+
+use crate::exact::{is_coordinate, turn};
+use crate::graph::Gates;
+use std::cmp::Ordering;
+
+/// A point of space, in scene units.
+pub type Point3 = [f64; 3];
+
+/// A closed box, by its lower and its upper corner. A rectangle is a box that is flat along one axis.
+pub type Box3 = [Point3; 2];
+
+/// An opening between two boxes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxPortal {
+    /// The two cells.
+    pub cells: [u32; 2],
+    /// The rectangle.
+    pub extent: Box3,
+    /// The axis that it is perpendicular to.
+    pub axis: u8,
+    /// Whether who goes from the first cell to the second goes towards larger coordinates.
+    pub forward: bool,
+}
+
+/// Why boxes and portals are nothing that can be proven about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BoxNetworkError {
+    /// More than 2^30 cells or portals.
+    #[error("there are too many cells or portals")]
+    TooMany,
+    /// A box without an inside, or with a coordinate out of range.
+    #[error("cell {0} is no box with an inside")]
+    Cell(u32),
+    /// A portal to a cell that does not exist, or from a cell to itself.
+    #[error("portal {0} does not join two cells")]
+    Cells(u32),
+    /// A portal that is not on the walls of both its cells.
+    #[error("portal {portal} is not on the wall of cell {cell}")]
+    OffWall {
+        /// The portal.
+        portal: u32,
+        /// The cell.
+        cell: u32,
+    },
+}
+
+/// A line that passes a cell and portals of it, and so joins the cells between them: from one point towards another, by
+/// the bits of their coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BoxLine {
+    /// A cell that it passes.
+    pub cell: u32,
+    /// The points.
+    pub points: [[u64; 3]; 2],
+}
+
+impl BoxLine {
+    /// The line through two points.
+    pub fn through(cell: u32, from: Point3, to: Point3) -> Self {
+        Self { cell, points: [from, to].map(|p| p.map(f64::to_bits)) }
+    }
+}
+
+/// Boxes and the rectangles that join them, for which it was checked that boxes have an inside, and that each portal lies in
+/// the walls of its two cells, crossed outwards.
+#[derive(Debug, Clone)]
+pub struct BoxNetwork {
+    pub(super) gates: Gates,
+    pub(super) cells: Vec<Box3>,
+    pub(super) portals: Vec<BoxPortal>,
+    /// The coordinates of cells and portals along each axis, ascending, each once: names for the coordinates of proofs.
+    pub(super) places: [Vec<f64>; 3],
+    checksum: u32,
+}
+
+impl BoxNetwork {
+    /// Checks cells and portals. Exact; O(size log size).
+    ///
+    /// # Errors
+    /// The first [`BoxNetworkError`].
+    pub fn new(cells: &[Box3], portals: &[BoxPortal]) -> Result<Self, BoxNetworkError> {
+        if cells.len().max(portals.len()) > 1 << 30 {
+            return Err(BoxNetworkError::TooMany);
+        }
+        let fits = |b: &Box3| b.as_flattened().iter().all(|x| is_coordinate(*x));
+        for (id, b) in (0u32..).zip(cells) {
+            if !fits(b) || (0..3).any(|k| b[0][k] >= b[1][k]) {
+                return Err(BoxNetworkError::Cell(id));
+            }
+        }
+        for (id, portal) in (0u32..).zip(portals) {
+            let [a, b] = portal.cells;
+            if a == b || a.max(b) as usize >= cells.len() {
+                return Err(BoxNetworkError::Cells(id));
+            }
+            for (first, cell) in [(true, a), (false, b)] {
+                let off = Err(BoxNetworkError::OffWall { portal: id, cell });
+                let axis = usize::from(portal.axis);
+                if !fits(&portal.extent) || flat_axis(&portal.extent) != Some(axis) {
+                    return off;
+                }
+                let own = &cells[cell as usize];
+                // The first cell is left: by its upper wall, if that is forward.
+                let wall = if portal.forward == first { own[1][axis] } else { own[0][axis] };
+                if wall != portal.extent[0][axis] || !is_within(&portal.extent, own) {
+                    return off;
+                }
+            }
+        }
+        let sides = |p: &BoxPortal| {
+            let (low, high) = (2 * u32::from(p.axis), 2 * u32::from(p.axis) + 1);
+            if p.forward { [high, low] } else { [low, high] }
+        };
+        let gates = Gates::new(cells.len(), portals.iter().map(|p| (p.cells, sides(p))));
+        let mut hash = crc32fast::Hasher::new();
+        let mut places: [Vec<f64>; 3] = Default::default();
+        for b in cells.iter().chain(portals.iter().map(|p| &p.extent)) {
+            for corner in b {
+                for (k, x) in corner.iter().enumerate() {
+                    // Negative zero is zero.
+                    hash.update(&(x + 0.0).to_le_bytes());
+                    places[k].push(x + 0.0);
+                }
+            }
+        }
+        for p in portals {
+            p.cells.iter().for_each(|cell| hash.update(&cell.to_le_bytes()));
+            hash.update(&[p.axis, u8::from(p.forward)]);
+        }
+        for axis in &mut places {
+            axis.sort_by(f64::total_cmp);
+            axis.dedup();
+        }
+        Ok(Self { gates, cells: cells.to_vec(), portals: portals.to_vec(), places, checksum: hash.finalize() })
+    }
+
+    /// Number of cells.
+    pub fn n_cells(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// A number that proofs carry, so that those of other cells or portals are noticed.
+    pub fn checksum(&self) -> u32 {
+        self.checksum
+    }
+
+    /// The name of a box all whose coordinates are some of cells or portals; else `None`.
+    pub fn name(&self, b: &Box3) -> Option<BoxName> {
+        let place = |k: usize, x: f64| self.places[k].binary_search_by(|y| y.total_cmp(&(x + 0.0))).ok();
+        let mut name = BoxName::default();
+        for (side, corner) in b.iter().enumerate() {
+            for (k, &x) in corner.iter().enumerate() {
+                name.0[side][k] = u32::try_from(place(k, x)?).ok()?;
+            }
+        }
+        Some(name)
+    }
+
+    /// The box of a name; `None` if there is none, or it is upside down.
+    pub(super) fn named(&self, name: &BoxName) -> Option<Box3> {
+        let mut b = [[0.0; 3]; 2];
+        for (corner, places) in b.iter_mut().zip(&name.0) {
+            for (k, x) in corner.iter_mut().enumerate() {
+                *x = *self.places[k].get(places[k] as usize)?;
+            }
+        }
+        (0..3).all(|k| b[0][k] <= b[1][k]).then_some(b)
+    }
+
+    /// The cells that a line passes, in order, followed from its cell both ways through portals that it crosses
+    /// strictly. An open set of lines joins any two of them. Empty if it crosses no portal of its cell, or if there is no
+    /// such cell. Exact.
+    pub fn follow(&self, line: &BoxLine) -> Vec<u32> {
+        let points = line.points.map(|p| p.map(f64::from_bits));
+        let fits = points.as_flattened().iter().all(|x| is_coordinate(*x));
+        if !fits || line.cell as usize >= self.cells.len() {
+            return Vec::new();
+        }
+        let [p, q] = points;
+        let mut cells = Vec::new();
+        self.go(line.cell, [q, p], &mut cells);
+        cells.reverse();
+        cells.push(line.cell);
+        self.go(line.cell, [p, q], &mut cells);
+        if cells.len() > 1 { cells } else { Vec::new() }
+    }
+
+    fn go(&self, from: u32, line: [Point3; 2], cells: &mut Vec<u32>) {
+        let (mut cell, mut entry_side) = (from, None);
+        for _ in 0..self.cells.len() {
+            let crosses = |gate: &&u32| {
+                let side = self.gates.gate(**gate).sides[0];
+                Some(side) != entry_side && passes(line, &self.portals[**gate as usize / 2].extent, side)
+            };
+            let Some(&gate) = self.gates.exits(cell).iter().find(crosses) else { return };
+            let gate = self.gates.gate(gate);
+            (cell, entry_side) = (gate.cells[1], Some(gate.sides[1]));
+            cells.push(cell);
+        }
+    }
+}
+
+/// A box, by the places of its coordinates among those of a network.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct BoxName(pub(super) [[u32; 3]; 2]);
+
+/// The axis that a rectangle is perpendicular to.
+pub(super) fn flat_axis(b: &Box3) -> Option<usize> {
+    let is_flat = |k: usize| b[0][k] == b[1][k];
+    let has_extent = |k: usize| b[0][k] < b[1][k];
+    (0..3).find(|&k| is_flat(k) && (0..3).all(|other| other == k || has_extent(other)))
+}
+
+/// Whether a closed box lies in another.
+pub(super) fn is_within(inner: &Box3, outer: &Box3) -> bool {
+    (0..3).all(|k| outer[0][k] <= inner[0][k] && inner[1][k] <= outer[1][k])
+}
+
+/// Whether a directed line leaves a box through a rectangle of the side `2 axis` (towards smaller coordinates) or
+/// `2 axis + 1`, strictly inside of it.
+///
+/// Seen in the plane of the axis and another one, the line passes between two points if they are on its two sides.
+fn passes([p, q]: [Point3; 2], extent: &Box3, side: u32) -> bool {
+    let (axis, forward) = (side as usize / 2, side % 2 == 1);
+    let right_way = if forward { p[axis] < q[axis] } else { p[axis] > q[axis] };
+    right_way
+        && (0..3).filter(|&b| b != axis).all(|b| {
+            let flat = |r: Point3| [r[axis], r[b]];
+            let sides = extent.map(|corner| turn(flat(p), flat(q), flat(corner)));
+            // Larger coordinates are on the left of who goes forward.
+            let [low, high] = if forward { sides } else { [sides[1], sides[0]] };
+            low == Ordering::Less && high == Ordering::Greater
+        })
+}

@@ -1,0 +1,272 @@
+//! The walk that a proof of hidden pairs is about: every chain of gates out of a cell that could lead to a cell which
+//! is to be proven hidden.
+//!
+//! # What it shows
+//! Cells are convex, so a line goes through a chain of cells, each once, and leaves none by the side that it came in
+//! by. From a *source* the walk follows all such chains, each with the *candidates* that it may still lead to. It ends
+//! a chain at a gate
+//!
+//! * if gates of the chain together with this one are known to be **blocked**: a proof was checked that no open set of
+//!   lines passes all of them;
+//! * if no candidate is left. A candidate goes when it does not reach in front of a gate of the chain, and when the
+//!   chain enters a cell from which it is **proven hidden already**: lines that lead on from there would join the two.
+//!
+//! If no chain enters a candidate, all candidates are hidden from the source, and from then on count as proven. Each
+//! step rests on earlier ones only.
+//!
+//! # Who decides
+//! At a gate that neither rule ends, a [`Director`] says whether the chain goes on or is blocked, and by which gates.
+//! Who checks reads that from the proofs; who makes proofs asks a solver. Blocked gates are remembered with the last of
+//! them, at most [`MOST_KEPT`] lists, the ones used last first, so the same reason need not be given again.
+
+use crate::graph::{Gate, Gates};
+use crate::pairs::{Pairs, ones};
+use std::rc::Rc;
+
+/// Lists of blocked gates that are remembered for each last gate. It is part of the format.
+const MOST_KEPT: usize = 64;
+
+/// What happens at a gate.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Crossing {
+    /// The chain goes on behind it.
+    Open,
+    /// No open set of lines passes these gates of the chain and the new one; ascending, without the new one.
+    Blocked(Vec<u32>),
+}
+
+/// Says what happens at gates. `start`, then `cross` and `back` in the order of a stack: `back` for each crossing that
+/// was open.
+pub(crate) trait Director {
+    /// Why it does not say.
+    type Stop;
+
+    /// A chain begins with this gate.
+    fn start(&mut self, gate: u32);
+
+    /// The chain comes to a gate.
+    fn cross(&mut self, chain: &[u32], gate: u32) -> Result<Crossing, Self::Stop>;
+
+    /// The last gate is taken off the chain.
+    fn back(&mut self);
+}
+
+/// Which cells reach in front of a gate.
+pub(crate) trait Fronts {
+    /// A bit for each cell: `false` only for cells that lie wholly behind the gate or beside it on its line or plane.
+    fn row(&mut self, gate: u32) -> &[u64];
+}
+
+/// Why a walk ended early.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Ended<S> {
+    /// The director stopped it.
+    Stopped(S),
+    /// A chain entered a candidate.
+    Entered(u32),
+    /// It took more steps than allowed.
+    TooLong,
+}
+
+/// A cell on the chain.
+struct Frame {
+    cell: u32,
+    entry_side: u32,
+    /// The next exit and the end of the exits.
+    next: usize,
+    end: usize,
+    /// Where its candidates are.
+    candidates: [usize; 2],
+}
+
+/// The scratch memory of walks, what is proven, and what is known to be blocked.
+pub(crate) struct Walk<'a, F> {
+    gates: &'a Gates,
+    fronts: F,
+    /// Pairs that are proven to be hidden.
+    hidden: Pairs,
+    /// For each gate, lists of gates that are blocked together with it.
+    blocked: Vec<Vec<Rc<[u32]>>>,
+    /// What `blocked` was before this walk, where it is another now.
+    before: Vec<(u32, Vec<Rc<[u32]>>)>,
+    is_changed: Vec<bool>,
+    on_chain: Vec<bool>,
+    is_met: Vec<bool>,
+    chain: Vec<u32>,
+    frames: Vec<Frame>,
+    /// Candidates of all frames: the index of a word, and its bits.
+    arena: Vec<(u32, u64)>,
+}
+
+impl<'a, F: Fronts> Walk<'a, F> {
+    pub(crate) fn new(gates: &'a Gates, fronts: F) -> Self {
+        Self {
+            gates,
+            fronts,
+            hidden: Pairs::none(gates.n_cells()),
+            blocked: vec![Vec::new(); gates.len()],
+            before: Vec::new(),
+            is_changed: vec![false; gates.len()],
+            on_chain: vec![false; gates.len()],
+            is_met: vec![false; gates.n_cells()],
+            chain: Vec::new(),
+            frames: Vec::new(),
+            arena: Vec::new(),
+        }
+    }
+
+    pub(crate) fn hidden(&self) -> &Pairs {
+        &self.hidden
+    }
+
+    pub(crate) fn into_hidden(self) -> Pairs {
+        self.hidden
+    }
+
+    /// Proves that `source` sees none of the candidates, cells in a row of bits other than itself that are not proven yet;
+    /// with at most so many steps. After an error everything is as it was before.
+    pub(crate) fn prove<D: Director>(
+        &mut self,
+        source: u32,
+        candidates: &[u64],
+        director: &mut D,
+        most_steps: u64,
+    ) -> Result<(), Ended<D::Stop>> {
+        let end = self.follow(source, candidates, director, most_steps);
+        for gate in self.chain.drain(..) {
+            self.on_chain[gate as usize] = false;
+        }
+        for frame in self.frames.drain(..) {
+            self.is_met[frame.cell as usize] = false;
+        }
+        self.is_met[source as usize] = false;
+        for (gate, lists) in self.before.drain(..) {
+            self.is_changed[gate as usize] = false;
+            if end.is_err() {
+                self.blocked[gate as usize] = lists;
+            }
+        }
+        if end.is_ok() {
+            for other in ones(candidates) {
+                self.hidden.add(source, other);
+            }
+        }
+        end
+    }
+
+    fn follow<D: Director>(
+        &mut self,
+        source: u32,
+        candidates: &[u64],
+        director: &mut D,
+        most_steps: u64,
+    ) -> Result<(), Ended<D::Stop>> {
+        self.arena.clear();
+        self.arena.extend((0u32..).zip(candidates).filter(|(_, bits)| **bits != 0).map(|(i, &bits)| (i, bits)));
+        if self.arena.is_empty() {
+            return Ok(());
+        }
+        let all = [0, self.arena.len()];
+        self.is_met[source as usize] = true;
+        let mut n_steps = 0;
+        for place in self.gates.exit_range(source) {
+            let gate = self.gates.exit(place);
+            if let Some(left) = self.left(gate, all) {
+                director.start(gate);
+                self.enter(gate, left)?;
+            }
+            while let Some(frame) = self.frames.last_mut() {
+                if frame.next == frame.end {
+                    self.leave(director);
+                    continue;
+                }
+                n_steps += 1;
+                if n_steps > most_steps {
+                    return Err(Ended::TooLong);
+                }
+                let gate = self.gates.exit(frame.next);
+                frame.next += 1;
+                let (entry_side, own) = (frame.entry_side, frame.candidates);
+                let Gate { cells: [_, to], sides: [side, _] } = self.gates.gate(gate);
+                if side == entry_side || self.is_met[to as usize] || self.is_blocked(gate) {
+                    continue;
+                }
+                let Some(left) = self.left(gate, own) else { continue };
+                match director.cross(&self.chain, gate).map_err(Ended::Stopped)? {
+                    Crossing::Open => self.enter(gate, left)?,
+                    Crossing::Blocked(others) => {
+                        self.arena.truncate(own[1]);
+                        self.remember(gate, others.into());
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The candidates that are left behind a gate, at the end of the arena; `None` if there are none.
+    fn left(&mut self, gate: u32, [start, end]: [usize; 2]) -> Option<[usize; 2]> {
+        let front = self.fronts.row(gate);
+        let hidden = self.hidden.row(self.gates.gate(gate).cells[1]);
+        let first = self.arena.len();
+        for k in start..end {
+            let (i, bits) = self.arena[k];
+            let bits = bits & front[i as usize] & !hidden[i as usize];
+            if bits != 0 {
+                self.arena.push((i, bits));
+            }
+        }
+        (self.arena.len() > first).then_some([first, self.arena.len()])
+    }
+
+    fn enter<S>(&mut self, gate: u32, candidates: [usize; 2]) -> Result<(), Ended<S>> {
+        let Gate { cells: [_, cell], sides: [_, entry_side] } = self.gates.gate(gate);
+        let own = &self.arena[candidates[0]..candidates[1]];
+        let word = own.binary_search_by_key(&(cell / 64), |(i, _)| *i);
+        self.chain.push(gate);
+        self.on_chain[gate as usize] = true;
+        self.is_met[cell as usize] = true;
+        let exits = self.gates.exit_range(cell);
+        self.frames.push(Frame { cell, entry_side, next: exits.start, end: exits.end, candidates });
+        if word.is_ok_and(|k| own[k].1 >> (cell % 64) & 1 == 1) { Err(Ended::Entered(cell)) } else { Ok(()) }
+    }
+
+    fn leave<D: Director>(&mut self, director: &mut D) {
+        if let Some(frame) = self.frames.pop() {
+            self.is_met[frame.cell as usize] = false;
+            self.arena.truncate(frame.candidates[0]);
+        }
+        if let Some(gate) = self.chain.pop() {
+            self.on_chain[gate as usize] = false;
+            // What is left of a chain of one gate is no chain.
+            if !self.chain.is_empty() {
+                director.back();
+            }
+        }
+    }
+
+    /// Whether the chain with this gate is known to be blocked.
+    fn is_blocked(&mut self, gate: u32) -> bool {
+        let on_chain = &self.on_chain;
+        let lists = &self.blocked[gate as usize];
+        let Some(k) = lists.iter().position(|list| list.iter().all(|&g| on_chain[g as usize])) else { return false };
+        if k > 0 {
+            self.note_change(gate);
+            self.blocked[gate as usize][..=k].rotate_right(1);
+        }
+        true
+    }
+
+    fn remember(&mut self, gate: u32, others: Rc<[u32]>) {
+        self.note_change(gate);
+        let lists = &mut self.blocked[gate as usize];
+        lists.truncate(MOST_KEPT - 1);
+        lists.insert(0, others);
+    }
+
+    fn note_change(&mut self, gate: u32) {
+        if !std::mem::replace(&mut self.is_changed[gate as usize], true) {
+            self.before.push((gate, self.blocked[gate as usize].clone()));
+        }
+    }
+}

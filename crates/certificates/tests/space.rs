@@ -1,0 +1,284 @@
+//! Proofs of boxes, by hand: good ones are taken, impostors are refused, and whatever is taken is true.
+
+use proptest::prelude::*;
+use sightlines_certificates::space::{
+    Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch, Claim, Sum, Way,
+};
+use sightlines_certificates::{Kind, NoWall, Refusal, kind_of};
+
+/// Two rooms side by side with a thick wall between them, and a corridor behind both that joins them. Doors are at
+/// the far ends, so that the rooms do not see each other.
+fn rooms() -> (Vec<Box3>, Vec<BoxPortal>) {
+    let cells = vec![
+        [[0.0, 0.0, 0.0], [4.0, 4.0, 2.0]],
+        [[5.0, 0.0, 0.0], [9.0, 4.0, 2.0]],
+        [[0.0, 4.0, 0.0], [9.0, 5.0, 2.0]],
+    ];
+    let door = |cell: u32, x: f64| BoxPortal {
+        cells: [cell, 2],
+        extent: [[x, 4.0, 0.0], [x + 1.0, 4.0, 2.0]],
+        axis: 1,
+        forward: true,
+    };
+    (cells, vec![door(0, 0.0), door(1, 8.0)])
+}
+
+fn network() -> BoxNetwork {
+    let (cells, portals) = rooms();
+    BoxNetwork::new(&cells, &portals).unwrap()
+}
+
+/// The face of the wall towards the first room; as high and as long as the rooms.
+const WALL: Box3 = [[4.0, 0.0, 0.0], [4.0, 4.0, 2.0]];
+
+/// A way beside the wall before it is entered (or after it is left) along an axis, and why no line takes it.
+fn beside(axis: u8, before: bool) -> (Way, Branch) {
+    let taken = (Claim::Taken { depth: 0, part: 0 }, 1.into());
+    let reason = if before {
+        Claim::Box { second: false, enter: axis, leave: 0 }
+    } else {
+        Claim::Box { second: true, enter: 0, leave: axis }
+    };
+    (Way::Beside { axis, before }, Branch::Empty(vec![taken, (reason, 1.into())]))
+}
+
+/// Nothing gets past the wall, whatever the octant.
+fn past(blocker: u32) -> Branch {
+    Branch::Past {
+        blocker,
+        ways: [(1, true), (1, false), (2, true), (2, false)].map(|(k, b)| beside(k, b)).to_vec(),
+        rest: None,
+    }
+}
+
+/// Octants towards larger x; the others lead away from the second room.
+const OCTANTS: [u8; 4] = [1, 3, 5, 7];
+
+fn boxes_of(network: &BoxNetwork) -> [Box3; 2] {
+    let _ = network;
+    let (cells, _) = rooms();
+    [cells[0], cells[1]]
+}
+
+fn lines() -> [BoxLine; 2] {
+    [
+        BoxLine::through(2, [0.5, 4.5, 1.0], [0.625, 3.0, 1.125]),
+        BoxLine::through(1, [8.5, 3.0, 1.0], [8.625, 4.5, 1.125]),
+    ]
+}
+
+fn proofs() -> BoxProofs {
+    let network = network();
+    let walls = [WALL];
+    let mut maker = BoxMaker::new(&network, &walls);
+    assert!(lines().into_iter().all(|line| maker.take_line(line, 1)));
+    assert!(!maker.take_line(lines()[0], 1), "it proves nothing new");
+    let [first, second] = boxes_of(&network);
+    assert!(maker.take_boxes([&first, &second], OCTANTS.map(|octant| (octant, past(0))).to_vec()));
+    assert_eq!((maker.visible().len(), maker.hidden().len()), (2, 1));
+    maker.finish()
+}
+
+#[test]
+fn whole_tables_are_proven() {
+    let proven = proofs().check(&network()).unwrap();
+    assert_eq!(proven.hidden.iter().collect::<Vec<_>>(), [[0, 1]]);
+    assert_eq!(proven.visible.iter().collect::<Vec<_>>(), [[0, 2], [1, 2]]);
+    assert_eq!(proven.n_open(), 0);
+    let bytes = proofs().to_bytes();
+    assert_eq!(BoxProofs::from_bytes(&bytes), Ok(proofs()));
+    assert_eq!(kind_of(&bytes), Ok(Kind::Space));
+    assert!((0..bytes.len()).all(|n| BoxProofs::from_bytes(&bytes[..n]).is_err()));
+}
+
+fn refused(change: impl FnOnce(&mut BoxProofs)) -> Refusal {
+    let mut proofs = proofs();
+    change(&mut proofs);
+    proofs.check(&network()).unwrap_err()
+}
+
+/// The impostors, one for each thing that can be wrong.
+/// A change of the ways past a blocker, or of a sum.
+type Change<'a> = &'a dyn Fn(&mut Vec<(Way, Branch)>, &mut Option<Sum>);
+
+#[test]
+fn impostors_are_refused() {
+    let through_a_wall = BoxLine::through(0, [1.0, 1.0, 1.0], [8.0, 2.0, 1.5]);
+    assert_eq!(refused(|p| p.lines.push(through_a_wall)), Refusal::Line { index: 2, cell: 0 });
+    assert_eq!(refused(|p| p.lines[0].cell = 7), Refusal::Line { index: 0, cell: 7 });
+    assert_eq!(refused(|p| p.checksum ^= 1), Refusal::OtherTable);
+    let name = |b: Box3| network().name(&b).unwrap();
+    let blocker = |b: Box3| refused(|p| p.blockers[0] = name(b));
+    let why = |why| Refusal::Blocker { index: 0, why };
+    assert_eq!(blocker([[4.0, 0.0, 0.0], [4.0, 5.0, 2.0]]), why(NoWall::Cell(2)));
+    assert_eq!(blocker([[0.0, 4.0, 0.0], [4.0, 4.0, 2.0]]), why(NoWall::Portal(0)));
+    assert_eq!(blocker([[0.0, 0.0, 0.0], [4.0, 4.0, 2.0]]), why(NoWall::Shape));
+    assert_eq!(blocker([[4.0, 0.0, 0.0], [4.0, 0.0, 2.0]]), why(NoWall::Shape));
+    // A wall, but not one that is in the way; and none at all.
+    let wrong = Refusal::Boxes { index: 0 };
+    assert_eq!(blocker([[0.0, 0.0, 0.0], [0.0, 4.0, 2.0]]), wrong);
+    assert_eq!(blocker([[9.0, 0.0, 0.0], [9.0, 4.0, 2.0]]), wrong);
+    assert_eq!(refused(|p| p.blockers.clear()), wrong);
+    // Other boxes: with the corridor there are lines.
+    let both = name([[0.0, 0.0, 0.0], [9.0, 5.0, 2.0]]);
+    assert_eq!(refused(|p| p.boxes[0].boxes[0] = both), wrong);
+    assert_eq!(refused(|p| p.boxes[0].boxes.swap(0, 1)), wrong);
+    for k in 0..4 {
+        assert_eq!(refused(|p| drop(p.boxes[0].octants.remove(k))), wrong, "octant {k}");
+        let ways = |p: &mut BoxProofs, change: Change<'_>| {
+            if let Branch::Past { ways, rest, .. } = &mut p.boxes[0].octants[k].1 {
+                change(ways, rest);
+            }
+        };
+        for way in 0..4 {
+            assert_eq!(refused(|p| ways(p, &|ways, _| drop(ways.remove(way)))), wrong);
+            let sum = |p: &mut BoxProofs, change: &dyn Fn(&mut Sum)| {
+                ways(p, &|ways, _| {
+                    if let Branch::Empty(sum) = &mut ways[way].1 {
+                        change(sum);
+                    }
+                });
+            };
+            for at in 0..2 {
+                assert_eq!(refused(|p| sum(p, &|sum| sum[at].1 = 0.into())), wrong);
+                assert_eq!(refused(|p| sum(p, &|sum| sum[at].1 = (-1).into())), wrong);
+                assert_eq!(refused(|p| sum(p, &|sum| sum[at].1 = 2.into())), wrong);
+                assert_eq!(refused(|p| sum(p, &|sum| drop(sum.remove(at)))), wrong);
+            }
+            assert_eq!(refused(|p| sum(p, &|sum| sum.clear())), wrong);
+            assert_eq!(refused(|p| sum(p, &|sum| sum[0].0 = Claim::Taken { depth: 1, part: 0 })), wrong);
+            assert_eq!(refused(|p| sum(p, &|sum| sum[0].0 = Claim::Taken { depth: 0, part: 1 })), wrong);
+            assert_eq!(refused(|p| sum(p, &|sum| sum[1].0 = Claim::Box { second: true, enter: 0, leave: 0 })), wrong);
+            // The reverse of a way that was not dealt with.
+            let (other, _) = beside(1, true);
+            assert_eq!(refused(|p| sum(p, &|sum| sum[0].0 = Claim::Reversed { depth: 0, way: other })), wrong);
+        }
+        // A rest has to be shown.
+        assert_eq!(refused(|p| ways(p, &|_, rest| *rest = Some(Vec::new()))), wrong);
+    }
+}
+
+#[test]
+fn makers_take_nothing_wrong() {
+    let network = network();
+    let [first, second] = boxes_of(&network);
+    let walls = [[[0.0, 4.0, 0.0], [4.0, 4.0, 2.0]], [[9.0, 0.0, 0.0], [9.0, 4.0, 2.0]], WALL];
+    let mut maker = BoxMaker::new(&network, &walls);
+    let all = |blocker| OCTANTS.map(|octant| (octant, past(blocker))).to_vec();
+    assert!((0..2).all(|blocker| !maker.take_boxes([&first, &second], all(blocker))) && maker.hidden().is_empty());
+    assert!(!maker.take_boxes([&second, &first], all(2)) && !maker.take_boxes([&first, &second], Vec::new()));
+    assert!(maker.take_boxes([&first, &second], all(2)));
+    assert_eq!(maker.finish().blockers.len(), 1);
+}
+
+type Ways = Vec<(Way, Branch)>;
+
+/// What is taken comes back from bytes: nothing else is taken, true or not.
+#[test]
+fn makers_take_nothing_that_bytes_cannot_hold() {
+    let network = network();
+    let [first, second] = boxes_of(&network);
+    let walls = [WALL];
+    let all = || OCTANTS.map(|octant| (octant, past(0))).to_vec();
+    let taken = |octants: Vec<(u8, Branch)>| {
+        let mut maker = BoxMaker::new(&network, &walls);
+        let taken = maker.take_boxes([&first, &second], octants);
+        let proofs = maker.finish();
+        assert_eq!(BoxProofs::from_bytes(&proofs.to_bytes()), Ok(proofs));
+        taken
+    };
+    assert!(taken(all()));
+    // Two branches for one octant, of which the second holds; an octant that is none.
+    assert!(!taken([vec![(1, Branch::Empty(Vec::new()))], all()].concat()));
+    assert!(!taken([vec![(8, past(0))], all()].concat()));
+    // Ways and claims that are too many, and a tree that is too deep.
+    let with = |change: &dyn Fn(&mut Ways)| {
+        let mut octants = all();
+        if let Branch::Past { ways, .. } = &mut octants[0].1 {
+            change(ways);
+        }
+        taken(octants)
+    };
+    assert!(
+        with(&|ways| ways.extend(vec![ways[0].clone(); 96])) && !with(&|ways| ways.extend(vec![ways[0].clone(); 97]))
+    );
+    let longer = |n: usize| {
+        with(&move |ways| {
+            if let Branch::Empty(sum) = &mut ways[0].1 {
+                *sum = (0..n).flat_map(|_| sum.clone()).collect();
+            }
+        })
+    };
+    assert!(longer(127) && !longer(128));
+    let deep = |n: usize| {
+        let one = |inner: Branch, depth: u32| {
+            let mut outer = past_at(depth);
+            if let Branch::Past { ways, .. } = &mut outer {
+                ways.insert(0, (Way::InFirst, inner));
+            }
+            outer
+        };
+        let mut octants = all();
+        octants[0].1 = (0..n as u32).rev().fold(past_at(n as u32), one);
+        taken(octants)
+    };
+    assert!(deep(199) && !deep(200));
+}
+
+/// As [`past`], behind so many others.
+fn past_at(depth: u32) -> Branch {
+    let mut branch = past(0);
+    if let Branch::Past { ways, .. } = &mut branch {
+        for (_, branch) in ways {
+            if let Branch::Empty(sum) = branch {
+                sum[0].0 = Claim::Taken { depth, part: 0 };
+            }
+        }
+    }
+    branch
+}
+
+#[test]
+fn networks_that_are_none_are_refused() {
+    let with = |change: &dyn Fn(&mut Vec<Box3>, &mut Vec<BoxPortal>)| {
+        let (mut cells, mut portals) = rooms();
+        change(&mut cells, &mut portals);
+        BoxNetwork::new(&cells, &portals).unwrap_err()
+    };
+    assert_eq!(with(&|c, _| c[1][1][2] = 0.0), BoxNetworkError::Cell(1));
+    assert_eq!(with(&|c, _| c[1][0][2] = f64::NEG_INFINITY), BoxNetworkError::Cell(1));
+    assert_eq!(with(&|_, p| p[0].cells = [2, 2]), BoxNetworkError::Cells(0));
+    assert_eq!(with(&|_, p| p[0].cells = [0, 3]), BoxNetworkError::Cells(0));
+    assert_eq!(with(&|_, p| p[0].axis = 0), BoxNetworkError::OffWall { portal: 0, cell: 0 });
+    assert_eq!(with(&|_, p| p[0].axis = 7), BoxNetworkError::OffWall { portal: 0, cell: 0 });
+    assert_eq!(with(&|_, p| p[0].forward = false), BoxNetworkError::OffWall { portal: 0, cell: 0 });
+    assert_eq!(with(&|_, p| p[0].extent[1][2] = 2.5), BoxNetworkError::OffWall { portal: 0, cell: 0 });
+    assert_eq!(with(&|_, p| p[0].cells[1] = 1), BoxNetworkError::OffWall { portal: 0, cell: 1 });
+}
+
+/// The same frame with a right checksum around another body.
+fn with_body(bytes: &[u8], change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    let mut other = bytes[..bytes.len() - 4].to_vec();
+    change(&mut other);
+    let checksum = crc32fast::hash(&other);
+    other.extend(checksum.to_le_bytes());
+    other
+}
+
+proptest! {
+    /// Whatever bytes are changed under a right checksum, they are refused, or what they prove is true.
+    #[test]
+    fn nothing_wrong_is_proven_by_changed_bytes(changes in prop::collection::vec((13usize..400, any::<u8>()), 1..4)) {
+        let bytes = with_body(&proofs().to_bytes(), |body| {
+            for &(at, byte) in &changes {
+                if let Some(old) = body.get_mut(at) {
+                    *old = byte;
+                }
+            }
+        });
+        if let Ok(proven) = BoxProofs::from_bytes(&bytes).map(|read| read.check(&network())) {
+            let is_true = proven.is_ok_and(|p| !p.visible.has(0, 1) && p.hidden.iter().all(|pair| pair == [0, 1]));
+            prop_assert!(is_true || BoxProofs::from_bytes(&bytes).is_ok_and(|read| read.check(&network()).is_err()));
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! Proofs of tables of plans: lines for what is visible, walks for what is hidden.
+
+use super::CertifyOptions;
+use crate::chords::SplitMix;
+use crate::search::ones;
+use sightlines_cells::{CellGraph, CellId, Exit, Planar};
+use sightlines_certificates::Pairs;
+use sightlines_certificates::plan::{
+    LineForm, NetworkError, PlanBlock, PlanGuide, PlanLine, PlanMaker, PlanNetwork, PlanPortal, PlanProofs, PlanStep,
+};
+use sightlines_geometry::{Adaptive, Point2, Portal2, check_coordinate};
+use sightlines_pvs::BitMatrix;
+use sightlines_sightline::{Certificate, Funnel, FunnelUndo, Witness};
+
+/// Lines are taken in rounds: at first only those that prove at least so many new pairs.
+const ROUNDS: [usize; 3] = [32, 6, 1];
+
+/// Doors that a line between two single cells is sought through, one after the other. Pairs farther apart are left to lines that are
+/// shot, or open.
+const MOST_DOORS: usize = 1500;
+
+/// Proves what `rows` says of the cells of `graph`: which see each other (symmetric, with the diagonal set). Pairs that
+/// it finds no proof of, because they are wrong or take too much effort, are left open.
+///
+/// Cost: about that of the search for the rows, and some more for each pair that few lines join.
+///
+/// # Errors
+/// [`NetworkError`] for a graph that is not well formed, or one of too large coordinates.
+///
+/// # Panics
+/// If there is not a row for each cell.
+pub fn certify_plan(
+    graph: &CellGraph<Planar>,
+    rows: &BitMatrix,
+    options: &CertifyOptions,
+) -> Result<PlanProofs, NetworkError> {
+    assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
+    let network = plan_network(graph)?;
+    let mut maker = PlanMaker::new(&network);
+    shoot(graph, &mut maker, options.chords);
+    for cell in graph.cell_ids() {
+        Seeker::new(graph, rows, &mut maker, options.most_steps).seek(cell);
+    }
+    for a in 0..graph.n_cells() {
+        for b in rows.iter_ones(a).filter(|&b| b > a) {
+            maker.leave_open(a as u32, b as u32);
+        }
+    }
+    let mut order: Vec<u32> = (0..graph.n_cells() as u32).collect();
+    order.sort_by_key(|&cell| (rows.count_row(cell as usize), cell));
+    let mut left = options.most_steps_in_all;
+    for cell in order {
+        let mut guide = Guide::new(graph, options.most_steps.min(left));
+        maker.prove_hidden(cell, &mut guide, options.most_steps.min(left));
+        left -= guide.n_steps.min(left);
+    }
+    Ok(maker.finish())
+}
+
+/// The graph as proofs know it.
+///
+/// # Errors
+/// [`NetworkError`] for a graph that is not well formed, or one of too large coordinates.
+pub fn plan_network(graph: &CellGraph<Planar>) -> Result<PlanNetwork, NetworkError> {
+    let point = |p: Point2| [p.x, p.y];
+    let cells: Vec<Vec<[f64; 2]>> =
+        graph.cells().iter().map(|cell| cell.polygon.iter().map(|&p| point(p)).collect()).collect();
+    let portals: Vec<PlanPortal> = graph
+        .portals()
+        .iter()
+        .map(|p| PlanPortal {
+            cells: p.cells.map(|cell| cell.0),
+            sides: p.sides,
+            left: point(p.shape.left),
+            right: point(p.shape.right),
+        })
+        .collect();
+    PlanNetwork::new(&cells, &portals)
+}
+
+/// A coordinate in four bytes if it can be, rounded.
+fn short(x: f64) -> f64 {
+    check_coordinate(f64::from(x as f32)).unwrap_or(x)
+}
+
+/// Lines through random points of portals, those that prove most first.
+fn shoot(graph: &CellGraph<Planar>, maker: &mut PlanMaker<'_>, per_portal: u32) {
+    let mut random = SplitMix(0x7072_6F6F_6673_0001);
+    let bounds = graph.cells().iter().flat_map(|c| &c.polygon).map(|p| [p.x, p.y]);
+    let bounds = sightlines_geometry::Aabb::<2>::around(bounds);
+    let extent = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
+    let mut lines = Vec::new();
+    for portal in graph.portals() {
+        let (left, right) = (portal.shape.left, portal.shape.right);
+        for _ in 0..per_portal {
+            let p = right + (left - right) * random.unit();
+            let q = p + Point2::new(random.unit() - 0.5, random.unit() - 0.5) * extent;
+            lines.push((portal.cells[0].0, [p, q].map(|p| [short(p.x), short(p.y)]), [p, q].map(|p| [p.x, p.y])));
+        }
+    }
+    for at_least in ROUNDS {
+        lines.retain(|&(cell, rounded, exact)| {
+            // Whether it leaves the cell or enters it does not matter, and where four bytes miss the portal, eight may not.
+            ![rounded, exact].into_iter().any(|[p, q]| maker.take_line(PlanLine::through(cell, p, q), at_least))
+        });
+    }
+}
+
+/// Which cells reach in front of a portal: errs towards reaching.
+fn front(portal: Portal2, bounds: &sightlines_geometry::Aabb<2>) -> bool {
+    sightlines_sightline::Stabber::in_front(&Funnel::new(Adaptive), portal, bounds)
+}
+
+/// Seeks lines to cells that are known to be seen, from one cell.
+struct Seeker<'a, 'm, 'n> {
+    graph: &'a CellGraph<Planar>,
+    rows: &'a BitMatrix,
+    maker: &'m mut PlanMaker<'n>,
+    funnel: Funnel<Adaptive>,
+    doors: Vec<Portal2>,
+    left: u64,
+}
+
+impl<'a, 'm, 'n> Seeker<'a, 'm, 'n> {
+    fn new(graph: &'a CellGraph<Planar>, rows: &'a BitMatrix, maker: &'m mut PlanMaker<'n>, most_steps: u64) -> Self {
+        Self { graph, rows, maker, funnel: Funnel::new(Adaptive), doors: Vec::new(), left: most_steps }
+    }
+
+    /// Finds a line to each cell of a greater number that no line joins it with yet.
+    fn seek(&mut self, from: CellId) {
+        let missing: Vec<u64> = missing(self.rows, self.maker.visible(), from);
+        if missing.iter().all(|word| *word == 0) {
+            return;
+        }
+        let graph = self.graph;
+        for exit in graph.exits(from) {
+            let door = graph.crossing(exit);
+            self.funnel.start(door);
+            self.doors.push(door);
+            self.enter(from, exit, &missing);
+            self.doors.pop();
+        }
+    }
+
+    /// Goes on behind an exit; `wanted` may hold what is found by now.
+    fn enter(&mut self, from: CellId, entered_by: &Exit, wanted: &[u64]) {
+        let (graph, here) = (self.graph, entered_by.to);
+        if self.left == 0 || self.doors.len() > MOST_DOORS {
+            return;
+        }
+        self.left -= 1;
+        let is_wanted = wanted[here.idx() / 64] >> (here.idx() % 64) & 1 == 1;
+        if is_wanted && !self.maker.visible().has(from.0, here.0) {
+            self.take(from);
+        }
+        let door = self.doors[self.doors.len() - 1];
+        let known = self.maker.visible().row(from.0);
+        let rows = self.rows.row(here.idx());
+        let mut wanted: Vec<u64> = (0..wanted.len()).map(|i| wanted[i] & !known[i] & rows[i]).collect();
+        for (i, word) in wanted.iter_mut().enumerate() {
+            let behind = ones(*word).filter(|b| !front(door, &graph.cells()[i * 64 + b].bounds()));
+            *word &= !behind.fold(0u64, |out, b| out | 1 << b);
+        }
+        for exit in graph.exits(here) {
+            if wanted.iter().all(|word| *word == 0) {
+                return;
+            }
+            if exit.side == entered_by.entry_side {
+                continue;
+            }
+            let door = graph.crossing(exit);
+            let Some(undo) = self.funnel.push(door) else { continue };
+            self.doors.push(door);
+            self.enter(from, exit, &wanted);
+            self.doors.pop();
+            self.funnel.undo(undo);
+            let known = self.maker.visible().row(from.0);
+            wanted.iter_mut().zip(known).for_each(|(word, known)| *word &= !known);
+        }
+    }
+
+    /// Hands on a line through all doors: in four bytes, in eight, or in whole numbers.
+    fn take(&mut self, from: CellId) {
+        let witness = self.funnel.witness();
+        if let Some([p, q]) = witness.rounded(&self.doors) {
+            for [p, q] in [[p, q].map(|p| [short(p.x), short(p.y)]), [p, q].map(|p| [p.x, p.y])] {
+                if self.maker.take_line(PlanLine::through(from.0, p, q), 1) {
+                    return;
+                }
+            }
+        }
+        self.maker.take_line(PlanLine { cell: from.0, form: whole(&witness) }, 1);
+    }
+}
+
+/// The cells of greater numbers that a cell sees and no line joins it with.
+fn missing(rows: &BitMatrix, visible: &Pairs, from: CellId) -> Vec<u64> {
+    let words = rows.row(from.idx()).iter().zip(visible.row(from.0));
+    let mut missing: Vec<u64> = words.map(|(sees, proven)| sees & !proven).collect();
+    for (i, word) in missing.iter_mut().enumerate() {
+        match (from.idx() / 64).cmp(&i) {
+            std::cmp::Ordering::Greater => *word = 0,
+            std::cmp::Ordering::Equal => *word &= !(u64::MAX >> (63 - from.idx() % 64)),
+            std::cmp::Ordering::Less => {}
+        }
+    }
+    missing
+}
+
+/// A line in whole numbers.
+fn whole(witness: &Witness) -> LineForm {
+    let [a, b, c] = witness.coefficients();
+    let common = a.denom() * b.denom() * c.denom();
+    LineForm::Whole(Box::new([a, b, c].map(|x| x.numer() * (&common / x.denom()))))
+}
+
+/// The funnel, and why it is closed where it is.
+struct Guide<'a> {
+    graph: &'a CellGraph<Planar>,
+    funnel: Funnel<Adaptive>,
+    undos: Vec<FunnelUndo>,
+    n_steps: u64,
+    most_steps: u64,
+}
+
+impl<'a> Guide<'a> {
+    fn new(graph: &'a CellGraph<Planar>, most_steps: u64) -> Self {
+        Self { graph, funnel: Funnel::new(Adaptive), undos: Vec::new(), n_steps: 0, most_steps }
+    }
+
+    fn door(&self, gate: u32) -> Portal2 {
+        let shape = self.graph.portals()[gate as usize / 2].shape;
+        if gate.is_multiple_of(2) { shape } else { shape.reversed() }
+    }
+
+    /// Ends of few gates that no line separates: most often of the gates that hold the limit of the funnel that the
+    /// new gate is beyond, else of any.
+    fn block(&self, chain: &[u32], gate: u32) -> Option<PlanBlock> {
+        let doors: Vec<Portal2> = chain.iter().chain([&gate]).map(|&g| self.door(g)).collect();
+        let last = chain.len();
+        let holding = |left: Point2, right: Point2| {
+            let l = doors[..last].iter().rposition(|d| d.left == left)?;
+            let r = doors[..last].iter().rposition(|d| d.right == right)?;
+            let mut few = vec![l, r, last];
+            few.sort_unstable();
+            few.dedup();
+            Some(few)
+        };
+        let (l0, r0) = self.funnel.clockwise_limit();
+        let (r1, l1) = self.funnel.counter_clockwise_limit();
+        let choices = [holding(l0, r0), holding(l1, r1), Some((0..doors.len()).collect())];
+        choices.into_iter().flatten().find_map(|few| {
+            let of: Vec<Portal2> = few.iter().map(|&k| doors[k]).collect();
+            let found = Certificate::find(&of)?;
+            let back = |ends: &[sightlines_sightline::End]| {
+                ends.iter().map(|end| (last - few[end.portal]) as u32).collect::<Vec<u32>>()
+            };
+            Some(PlanBlock { lefts: back(&found.lefts), rights: back(&found.rights) })
+        })
+    }
+}
+
+impl PlanGuide for Guide<'_> {
+    fn start(&mut self, gate: u32) {
+        self.undos.clear();
+        self.funnel.start(self.door(gate));
+    }
+
+    fn cross(&mut self, chain: &[u32], gate: u32) -> PlanStep {
+        self.n_steps += 1;
+        if self.n_steps > self.most_steps {
+            return PlanStep::GiveUp;
+        }
+        match self.funnel.push(self.door(gate)) {
+            Some(undo) => {
+                self.undos.push(undo);
+                PlanStep::Open
+            }
+            None => self.block(chain, gate).map_or(PlanStep::GiveUp, PlanStep::Blocked),
+        }
+    }
+
+    fn back(&mut self) {
+        if let Some(undo) = self.undos.pop() {
+            self.funnel.undo(undo);
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! Proofs of tables of scenes in space: lines for what is visible, pairs of boxes for what is hidden.
+
+use super::CertifyOptions;
+use crate::chords::SplitMix;
+use crate::space::{Marks, halves_first, on_threads, opaque_without_solid};
+use rayon::prelude::*;
+use sightlines_cells::{Axial, CellGraph};
+use sightlines_certificates::space::{
+    Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch as Proof, Claim, Sum, Way,
+};
+use sightlines_geometry::{Aabb, BoxTree, check_coordinate};
+use sightlines_pvs::BitMatrix;
+use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Contradiction, Shaft, Sight, Target, WayPast};
+
+/// Lines are taken in rounds: at first only those that prove at least so many new pairs.
+const ROUNDS: [usize; 3] = [64, 8, 1];
+
+/// Linear programs spent on a pair of groups; one that takes more is halved.
+const GROUP_BUDGET: u32 = 64;
+
+/// Linear programs spent on a pair of single cells that is hidden: as many as the search spends.
+const CELL_BUDGET: u64 = 2000;
+
+/// Linear programs spent on a line between two cells. A pair that takes more is left open, which hides nothing; most such pairs are
+/// only assumed to see each other.
+const LINE_BUDGET: u64 = 100;
+
+/// Lines beside one that is found, which are tried where that one touches an edge of a portal.
+const MOST_TRIED: u32 = 24;
+
+/// Proves what `rows` says of the cells of `graph`: which see each other (symmetric, with the diagonal set). Pairs that
+/// it finds no proof of, because they are wrong, only assumed, or too thin for doubles, are left open.
+///
+/// Cost: some times that of the search for the rows: each contradiction is put in whole numbers, and what is visible needs a line
+/// of its own or with others.
+///
+/// # Errors
+/// [`BoxNetworkError`] for a graph that is not well formed.
+///
+/// # Panics
+/// If there is not a row for each cell.
+pub fn certify_space(
+    graph: &CellGraph<Axial>,
+    rows: &BitMatrix,
+    options: &CertifyOptions,
+) -> Result<BoxProofs, BoxNetworkError> {
+    assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
+    let network = space_network(graph)?;
+    let blockers = Blockers::new(opaque_without_solid(graph));
+    let rectangles: Vec<Box3> = blockers.rectangles().iter().map(corners).collect();
+    let mut maker = BoxMaker::new(&network, &rectangles);
+    shoot(graph, &mut maker, options.chords);
+    if graph.n_cells() == 0 {
+        return Ok(maker.finish());
+    }
+    let search = Search::new(graph, rows, &blockers, options);
+    Ok(search.run(maker, options.threads, options.most_steps_in_all))
+}
+
+/// The graph as proofs know it.
+///
+/// # Errors
+/// [`BoxNetworkError`] for a graph that is not well formed.
+pub fn space_network(graph: &CellGraph<Axial>) -> Result<BoxNetwork, BoxNetworkError> {
+    let cells: Vec<Box3> = graph.cells().iter().map(|cell| corners(&cell.bounds)).collect();
+    let portals: Vec<BoxPortal> = graph
+        .portals()
+        .iter()
+        .map(|p| BoxPortal {
+            cells: p.cells.map(|cell| cell.0),
+            extent: corners(&p.shape.extent),
+            axis: p.shape.axis,
+            forward: p.shape.forward,
+        })
+        .collect();
+    BoxNetwork::new(&cells, &portals)
+}
+
+fn corners(b: &Aabb<3>) -> Box3 {
+    [b.min, b.max]
+}
+
+/// A coordinate in four bytes if it can be, rounded.
+fn short(x: f64) -> f64 {
+    check_coordinate(f64::from(x as f32)).unwrap_or(x)
+}
+
+/// A coordinate that proofs take; tiny ones are zero.
+fn valid(x: f64) -> f64 {
+    check_coordinate(x).unwrap_or(0.0)
+}
+
+/// Hands on a line: in four bytes a coordinate, else in eight.
+fn take(maker: &mut BoxMaker<'_>, cell: u32, [p, q]: [[f64; 3]; 2], at_least: usize) -> bool {
+    maker.take_line(BoxLine::through(cell, p.map(short), q.map(short)), at_least)
+        || maker.take_line(BoxLine::through(cell, p.map(valid), q.map(valid)), at_least)
+}
+
+/// Lines through random points of portals, those that prove most first.
+fn shoot(graph: &CellGraph<Axial>, maker: &mut BoxMaker<'_>, per_portal: u32) {
+    let mut random = SplitMix(0x7072_6F6F_6673_0002);
+    let all = Aabb::<3>::around(graph.cells().iter().flat_map(|c| [c.bounds.min, c.bounds.max]));
+    let mut lines = Vec::new();
+    for portal in graph.portals() {
+        let extent = &portal.shape.extent;
+        for k in 0..per_portal {
+            let p = [0, 1, 2].map(|k| extent.min[k] + (extent.max[k] - extent.min[k]) * random.unit());
+            // Rooms are wide and low: half of the lines are level, but for a little.
+            let step = [0, 1, 2].map(|axis| {
+                let size = all.max[axis] - all.min[axis];
+                (random.unit() - 0.5) * size * if k.is_multiple_of(2) { 1.0 } else { 1.5 - 0.7 * axis as f64 }
+            });
+            let q = [0, 1, 2].map(|k| p[k] + step[k]);
+            lines.push((portal.cells[0].0, [p, q]));
+        }
+    }
+    for at_least in ROUNDS {
+        lines.retain(|&(cell, points)| !take(maker, cell, points, at_least));
+    }
+}
+
+/// The search for proofs, from pairs of groups to pairs of cells.
+struct Search<'a> {
+    graph: &'a CellGraph<Axial>,
+    blockers: &'a Blockers,
+    tree: BoxTree<3>,
+    /// The cell at each place of the tree.
+    cell_at: Vec<u32>,
+    /// Places by places: which see each other.
+    sees: Marks,
+    /// Linear programs for a pair of cells that is hidden, and for one that is not.
+    budgets: [u32; 2],
+}
+
+/// Two nodes of the tree of cells.
+type Pair = [u32; 2];
+
+/// What was found of two boxes: that they are hidden from each other.
+type Found = ([Aabb<3>; 2], BlockedProof);
+
+/// Pairs of groups are halved on one thread until there are so many. It does not depend on the number of threads.
+const N_TASKS: usize = 2048;
+
+impl<'a> Search<'a> {
+    fn new(graph: &'a CellGraph<Axial>, rows: &BitMatrix, blockers: &'a Blockers, options: &CertifyOptions) -> Self {
+        let boxes: Vec<Aabb<3>> = graph.cells().iter().map(|cell| cell.bounds).collect();
+        let tree = BoxTree::build(&boxes, 1);
+        let cell_at = tree.order().to_vec();
+        let mut place = vec![0; cell_at.len()];
+        cell_at.iter().enumerate().for_each(|(at, &cell)| place[cell as usize] = at);
+        let sees = Marks::new(cell_at.len(), cell_at.len());
+        for (row, &cell) in cell_at.iter().enumerate() {
+            for other in rows.iter_ones(cell as usize) {
+                sees.set(row, place[other]);
+            }
+        }
+        let budgets = [CELL_BUDGET, LINE_BUDGET].map(|budget| budget.min(options.most_steps) as u32);
+        Self { graph, blockers, tree, cell_at, sees, budgets }
+    }
+
+    fn run(&self, mut maker: BoxMaker<'_>, threads: usize, most_programs: u64) -> BoxProofs {
+        let (mut tasks, mut found) = (vec![[0u32, 0u32]], Vec::new());
+        let mut shaft = Shaft::new(self.blockers);
+        while !tasks.is_empty() && tasks.len() < N_TASKS {
+            let mut smaller = Vec::new();
+            tasks.iter().for_each(|&pair| self.hide(pair, &mut shaft, &mut found, &mut smaller));
+            tasks = smaller;
+        }
+        let share = most_programs / tasks.len().max(1) as u64;
+        let work = |shaft: &mut Shaft<'a>, task: Pair| {
+            let (mut found, mut stack) = (Vec::new(), vec![task]);
+            let before = shaft.counters().n_programs;
+            while let Some(pair) = stack.pop() {
+                if shaft.counters().n_programs - before >= share {
+                    break;
+                }
+                self.hide(pair, shaft, &mut found, &mut stack);
+            }
+            found
+        };
+        let all: Vec<Vec<Found>> = on_threads(threads, |_| {
+            tasks.into_par_iter().with_max_len(1).map_init(|| Shaft::new(self.blockers), work).collect()
+        });
+        for ([a, b], proof) in found.into_iter().chain(all.into_iter().flatten()) {
+            let _ = maker.take_boxes([&corners(&a), &corners(&b)], translated(&proof));
+        }
+        self.seek_all(&mut maker, &mut shaft);
+        maker.finish()
+    }
+
+    /// Proves two groups to be hidden from each other, or hands on smaller ones.
+    fn hide(&self, [a, b]: Pair, shaft: &mut Shaft<'a>, found: &mut Vec<Found>, smaller: &mut Vec<Pair>) {
+        let (na, nb) = (self.tree.nodes()[a as usize], self.tree.nodes()[b as usize]);
+        if a == b {
+            if !na.is_leaf() {
+                let [left, right] = self.tree.children(a);
+                smaller.extend([[left, left], [left, right], [right, right]]);
+            }
+            return;
+        }
+        let (rows, cols) = ([na.start as usize, na.end as usize], [nb.start as usize, nb.end as usize]);
+        if self.sees.all(rows, cols) {
+            return;
+        }
+        let is_leaf = na.is_leaf() && nb.is_leaf();
+        if !self.sees.any(rows, cols) {
+            let budget = if is_leaf { self.budgets[0] } else { GROUP_BUDGET.min(self.budgets[0]) };
+            if let Some(proof) = self.blocked([&na.bounds, &nb.bounds], shaft, budget, is_leaf) {
+                found.push(([na.bounds, nb.bounds], proof));
+                return;
+            }
+        }
+        if is_leaf {
+            return;
+        }
+        if halves_first(&self.tree, [a, b]) {
+            smaller.extend(self.tree.children(a).map(|a| [a, b]));
+        } else {
+            smaller.extend(self.tree.children(b).map(|b| [a, b]));
+        }
+    }
+
+    /// A proof that two boxes are hidden from each other.
+    fn blocked(
+        &self,
+        [a, b]: [&Aabb<3>; 2],
+        shaft: &mut Shaft<'a>,
+        budget: u32,
+        is_leaf: bool,
+    ) -> Option<BlockedProof> {
+        let apart = (0..3).any(|k| a.max[k] <= b.min[k] || b.max[k] <= a.min[k]);
+        // Cells are known to be hidden; of groups that is not known, and to decide about them is quicker than to prove.
+        let worth_it = apart && (is_leaf || shaft.decide(a, b, Target::Inside, budget) == Sight::Blocked);
+        if worth_it { shaft.certify(a, b, Target::Inside, budget) } else { None }
+    }
+
+    /// Finds lines between all cells that see each other and that no line joins yet.
+    fn seek_all(&self, maker: &mut BoxMaker<'_>, shaft: &mut Shaft<'a>) {
+        let mut random = SplitMix(0x7072_6F6F_6673_0003);
+        for a in 0..self.cell_at.len() {
+            for b in self.sees.ones(a).filter(|&b| b > a) {
+                self.seek([a, b], maker, shaft, &mut random);
+            }
+        }
+    }
+
+    /// Finds a line between two cells, by their places, if none joins them yet.
+    fn seek(&self, places: [usize; 2], maker: &mut BoxMaker<'_>, shaft: &mut Shaft<'a>, random: &mut SplitMix) {
+        let cells = places.map(|place| self.cell_at[place]);
+        if maker.visible().has(cells[0], cells[1]) {
+            return;
+        }
+        let [a, b] = cells.map(|cell| self.graph.cells()[cell as usize].bounds);
+        let apart = (0..3).any(|k| a.max[k] <= b.min[k] || b.max[k] <= a.min[k]);
+        if !apart {
+            return;
+        }
+        let Sight::Open(line) = shaft.decide(&a, &b, Target::Inside, self.budgets[1]) else { return };
+        let [p, q] = line.points();
+        // A line that is free may pass the common edge of two portals. Lines next to it do not.
+        let mut width = 0.25;
+        for k in 0..=MOST_TRIED {
+            let mut beside = |p: [f64; 3], b: &Aabb<3>| {
+                [0, 1, 2].map(|i| {
+                    let to = b.min[i] + (b.max[i] - b.min[i]) * random.unit();
+                    if k == 0 { p[i] } else { p[i] + (to - p[i]) * width }
+                })
+            };
+            let points = [beside(p, &a), beside(q, &b)];
+            let _ = take(maker, cells[0], points, 1);
+            if maker.visible().has(cells[0], cells[1]) {
+                return;
+            }
+            width *= 0.5;
+        }
+    }
+}
+
+/// A proof in the words of the proofs' format.
+fn translated(proof: &BlockedProof) -> Vec<(u8, Proof)> {
+    let octant = |signs: &[bool; 3]| (0..3).fold(0u8, |bits, k| bits | u8::from(signs[k]) << k);
+    proof.octants.iter().map(|(signs, branch)| (octant(signs), branch_of(branch))).collect()
+}
+
+fn branch_of(branch: &Branch) -> Proof {
+    match branch {
+        Branch::Empty(terms) => Proof::Empty(sum_of(terms)),
+        Branch::Past { rectangle, ways, rest } => Proof::Past {
+            blocker: *rectangle,
+            ways: ways.iter().map(|(way, branch)| (way_of(*way), branch_of(branch))).collect(),
+            rest: rest.as_ref().map(sum_of),
+        },
+    }
+}
+
+fn way_of(way: WayPast) -> Way {
+    match way {
+        WayPast::Beside { axis, entering } => Way::Beside { axis, before: entering },
+        WayPast::Before => Way::InFirst,
+        WayPast::After => Way::InSecond,
+    }
+}
+
+fn sum_of(terms: &Contradiction) -> Sum {
+    let claim = |row: &BranchRow| match *row {
+        BranchRow::End { second, early, late } => Claim::Box { second, enter: early, leave: late },
+        BranchRow::Taken { depth, row } => Claim::Taken { depth: depth as u32, part: row },
+        BranchRow::NotTaken { depth, way } => Claim::Reversed { depth: depth as u32, way: way_of(way) },
+    };
+    terms.iter().map(|(row, multiplier)| (claim(row), multiplier.clone())).collect()
+}

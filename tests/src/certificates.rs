@@ -1,0 +1,72 @@
+//! Proofs of small tables for fuzzing: whatever is read from broken bytes is refused by the checker, or true.
+
+use sightlines::bake::{BakeOptions, SceneBakeOptions, bake_plan, bake_scene, certify_table};
+use sightlines::certificates::plan::PlanProofs;
+use sightlines::certificates::space::BoxProofs;
+use sightlines::certificates::{Kind, kind_of};
+use sightlines::pvs::{CellId, Table};
+use sightlines::scenes::{self, TowerOptions, tower};
+use sightlines::stabtree::CertifyOptions;
+use sightlines::verify::{boxes_of, plan_of};
+use std::sync::OnceLock;
+
+/// Tables, and proofs of them as bytes; made once.
+fn proven() -> &'static [(Table, Vec<u8>)] {
+    static PROVEN: OnceLock<Vec<(Table, Vec<u8>)>> = OnceLock::new();
+    PROVEN.get_or_init(|| {
+        let plans = scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1));
+        let plans = plans.filter_map(|plan| bake_plan(&plan, &BakeOptions::default()).ok().map(|baked| baked.table));
+        let storey = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() };
+        let storey = tower(storey).ok();
+        let storey = storey.and_then(|scene| bake_scene(&scene, &SceneBakeOptions::default()).ok());
+        let proofs = |table: Table| {
+            let made = certify_table(&table, &CertifyOptions::default()).expect("the table has cells and portals");
+            (table, made.proofs.to_bytes())
+        };
+        plans.chain(storey.map(|baked| baked.table)).map(proofs).collect()
+    })
+}
+
+/// Proofs to break.
+pub fn seeds() -> Vec<Vec<u8>> {
+    proven().iter().map(|(_, bytes)| bytes.clone()).collect()
+}
+
+/// Reads bytes as they are and under a right checksum; what is read is written again the same way, and proves nothing wrong of
+/// any table. Returns whether something was read.
+///
+/// # Panics
+/// If that is not so.
+pub fn check(bytes: &[u8]) -> bool {
+    let mut sealed = bytes.to_vec();
+    if let Some(end) = bytes.len().checked_sub(4) {
+        let checksum = crc32fast::hash(&sealed[..end]);
+        sealed[end..].copy_from_slice(&checksum.to_le_bytes());
+    }
+    [bytes, &sealed].into_iter().filter(|bytes| check_one(bytes)).count() > 0
+}
+
+fn check_one(bytes: &[u8]) -> bool {
+    let proven = match kind_of(bytes) {
+        Ok(Kind::Plan) => {
+            let Ok(proofs) = PlanProofs::from_bytes(bytes) else { return false };
+            assert_eq!(PlanProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
+            let of = |table: &Table| proofs.check(&plan_of(table).ok()?).ok();
+            proven().iter().map(|(table, _)| (table, of(table))).collect::<Vec<_>>()
+        }
+        Ok(Kind::Space) => {
+            let Ok(proofs) = BoxProofs::from_bytes(bytes) else { return false };
+            assert_eq!(BoxProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
+            let of = |table: &Table| proofs.check(&boxes_of(table).ok()?).ok();
+            proven().iter().map(|(table, _)| (table, of(table))).collect()
+        }
+        _ => return false,
+    };
+    for (table, proven) in proven {
+        let Some(proven) = proven else { continue };
+        let sees = |[a, b]: [u32; 2]| table.sees(CellId(a), CellId(b));
+        assert!(proven.visible.iter().all(sees), "something hidden is proven to be visible");
+        assert!(!proven.hidden.iter().any(sees), "something visible is proven to be hidden");
+    }
+    true
+}
