@@ -27,7 +27,9 @@ pub struct Outlook {
     /// For each cell the objects that touch it, as places in `objects`.
     pub(crate) first_object: Vec<u32>,
     pub(crate) cell_objects: Vec<u32>,
-    /// Objects that touch no cell that the root sees.
+    /// Cells without any portal, but the root: no way leads there, so only their boxes can be asked about.
+    pub(crate) apart_cells: Vec<u32>,
+    /// Objects that touch no cell that the root sees; all of them if the root has no portal.
     pub(crate) loose_objects: Vec<u32>,
     pub(crate) first_mirror: Vec<u32>,
     pub(crate) mirrors: Vec<LocalMirror>,
@@ -86,6 +88,7 @@ impl Outlook {
             object_bounds,
             first_object: vec![0],
             cell_objects: Vec::new(),
+            apart_cells: Vec::new(),
             loose_objects: Vec::new(),
             first_mirror: vec![0],
             mirrors: Vec::new(),
@@ -105,7 +108,9 @@ impl Outlook {
     /// Gathers the ways, objects and mirrors of the cell in place `k`.
     fn gather<S: CellSource + ?Sized>(&mut self, source: &S, k: usize) -> Result<(), S::Error> {
         let cell = self.cells[k];
+        let mut has_portal = false;
         source.ways(cell, &mut |way: Way<'_>| {
+            has_portal = true;
             let Ok(to) = self.cells.binary_search(&way.to) else { return };
             let first_corner = self.corners.len() as u32;
             self.corners.extend_from_slice(way.corners);
@@ -118,6 +123,9 @@ impl Outlook {
             self.ways.push(LocalWay { to: to as u32, portal: way.portal, first_corner, n_corners, front });
         })?;
         self.first_way.push(self.ways.len() as u32);
+        if !has_portal {
+            self.apart_cells.push(k as u32);
+        }
 
         let mut touching = Vec::new();
         source.objects_of(cell, &mut touching)?;
@@ -136,7 +144,15 @@ impl Outlook {
         Ok(())
     }
 
+    /// A cell without portals is a box from elsewhere: boxes leave gaps, in which an object that touches one of them may be seen although
+    /// that one is not.
     fn find_loose_objects(&mut self) {
+        let n_apart = self.apart_cells.len();
+        self.apart_cells.retain(|&cell| cell != self.root);
+        if self.apart_cells.len() < n_apart {
+            self.loose_objects = (0..self.objects.len() as u32).collect();
+            return;
+        }
         let mut touches = vec![false; self.objects.len()];
         self.cell_objects.iter().for_each(|&o| touches[o as usize] = true);
         self.loose_objects = (0u32..).zip(&touches).filter(|(_, touches)| !**touches).map(|(o, _)| o).collect();
@@ -172,6 +188,7 @@ impl Outlook {
             + list(&self.object_bounds)
             + list(&self.first_object)
             + list(&self.cell_objects)
+            + list(&self.apart_cells)
             + list(&self.loose_objects)
             + list(&self.first_mirror)
             + list(&self.mirrors)

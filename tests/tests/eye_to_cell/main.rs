@@ -12,4 +12,5 @@ mod nonsense;
 mod picture;
 mod plan_families;
 mod plans;
+mod regions;
 mod scenes;

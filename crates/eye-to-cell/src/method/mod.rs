@@ -39,6 +39,9 @@ pub trait EyeToCell {
 
 /// The methods of the literature, each no more than the one before.
 ///
+/// Cells without any portal, such as boxes that were given instead of cut, are asked about by their boxes by all methods but the zeroth, and
+/// what is seen from such a cell by the objects' boxes: no sequence of portals leads there, and none is needed.
+///
 /// Source: Teller and Séquin, "Visibility Preprocessing for Interactive Walkthroughs", SIGGRAPH 1991, section
 /// "eye-to-cell visibility"; the names are from there. Portals are crossed only from the side that the eye is on,
 /// which is ours.
@@ -87,6 +90,7 @@ impl EyeToCell for Method {
                 Self::IncidentPortals => reach::incident(&mut query),
                 Self::Exact => exact::exact(&mut query),
             }
+            query.keep_apart_cells();
             query.keep_loose_objects();
         }
     }

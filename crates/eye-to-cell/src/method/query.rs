@@ -98,6 +98,15 @@ impl<'a> Query<'a> {
         }
     }
 
+    /// Keeps those cells that no portal leads to, as far as the view may meet them.
+    pub(super) fn keep_apart_cells(&mut self) {
+        for &cell in &self.outlook.apart_cells {
+            if self.cell_in_view(cell) {
+                self.keep(cell);
+            }
+        }
+    }
+
     /// Keeps those objects that touch no cell, as far as the view may meet them.
     pub(super) fn keep_loose_objects(&mut self) {
         for &object in &self.outlook.loose_objects {

@@ -1,0 +1,275 @@
+//! What was looked at, and what was found.
+
+use crate::options::VerifyOptions;
+use sightlines_geometry::Point3;
+use sightlines_pvs::CellId;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Something that is not as the table says.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Violation {
+    /// Two cells that see each other, hidden from each other in the table: the segment is free, and goes from inside of the first to inside of the second. In the table
+    /// of a portal file, which has no places, it is part of a line that passes portals from the one to the other.
+    HiddenCell {
+        /// The two cells.
+        cells: [CellId; 2],
+        /// From the first to the second, in scene units; z is 0 in a plane.
+        segment: [Point3; 2],
+    },
+    /// An object that a cell sees, hidden from it in the table: the segment goes from inside of the cell to the object, and nothing is before it.
+    HiddenObject {
+        /// The cell.
+        cell: CellId,
+        /// The object.
+        object: u32,
+        /// From the cell to the object, in space to just behind it.
+        segment: [Point3; 2],
+    },
+    /// Two neighbours, joined by a portal, that are hidden from each other.
+    HiddenNeighbour {
+        /// The two cells.
+        cells: [CellId; 2],
+        /// The portal.
+        portal: usize,
+    },
+    /// Two cells whose insides overlap.
+    Overlap {
+        /// The two cells.
+        cells: [CellId; 2],
+    },
+    /// A cell that is not convex, or has no inside.
+    NotConvex {
+        /// The cell.
+        cell: CellId,
+    },
+    /// A cell of a plan that reaches out of the box around the scene.
+    OutOfScene {
+        /// The cell.
+        cell: CellId,
+    },
+    /// A point inside of a cell that the table does not find in it.
+    NotFound {
+        /// The cell.
+        cell: CellId,
+        /// The point.
+        point: Point3,
+    },
+    /// A portal that is not on the borders of both of its cells.
+    OffBorder {
+        /// The portal.
+        portal: usize,
+        /// The cell.
+        cell: CellId,
+    },
+    /// A portal that is not one of the file that the table was made from.
+    UnlikePortal {
+        /// The portal.
+        portal: usize,
+    },
+    /// Numbers of cells, portals or objects that are not those of the scene.
+    Count {
+        /// Of what.
+        what: &'static str,
+        /// In the table.
+        table: usize,
+        /// In the scene.
+        scene: usize,
+    },
+    /// An object with another name than in the scene.
+    ObjectName {
+        /// The object.
+        object: u32,
+    },
+    /// An object with another box, or another number of polygons, than in the scene.
+    ObjectBox {
+        /// The object.
+        object: u32,
+    },
+    /// An object that touches a cell, and is not listed there.
+    UnlistedObject {
+        /// The cell.
+        cell: CellId,
+        /// The object.
+        object: u32,
+    },
+}
+
+impl Violation {
+    /// The kind, as one word with dashes.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::HiddenCell { .. } => "hidden-cell",
+            Self::HiddenObject { .. } => "hidden-object",
+            Self::HiddenNeighbour { .. } => "hidden-neighbour",
+            Self::Overlap { .. } => "overlap",
+            Self::NotConvex { .. } => "not-convex",
+            Self::OutOfScene { .. } => "out-of-scene",
+            Self::NotFound { .. } => "not-found",
+            Self::OffBorder { .. } => "off-border",
+            Self::UnlikePortal { .. } => "unlike-portal",
+            Self::Count { .. } => "count",
+            Self::ObjectName { .. } => "object-name",
+            Self::ObjectBox { .. } => "object-box",
+            Self::UnlistedObject { .. } => "unlisted-object",
+        }
+    }
+
+    /// The cells concerned.
+    pub fn cells(&self) -> Vec<CellId> {
+        match *self {
+            Self::HiddenCell { cells, .. } | Self::HiddenNeighbour { cells, .. } | Self::Overlap { cells } => {
+                cells.to_vec()
+            }
+            Self::HiddenObject { cell, .. }
+            | Self::NotConvex { cell }
+            | Self::OutOfScene { cell }
+            | Self::NotFound { cell, .. }
+            | Self::OffBorder { cell, .. }
+            | Self::UnlistedObject { cell, .. } => vec![cell],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The object concerned.
+    pub const fn object(&self) -> Option<u32> {
+        match *self {
+            Self::HiddenObject { object, .. }
+            | Self::ObjectName { object }
+            | Self::ObjectBox { object }
+            | Self::UnlistedObject { object, .. } => Some(object),
+            _ => None,
+        }
+    }
+
+    /// The segment that shows it.
+    pub const fn segment(&self) -> Option<[Point3; 2]> {
+        match *self {
+            Self::HiddenCell { segment, .. } | Self::HiddenObject { segment, .. } => Some(segment),
+            _ => None,
+        }
+    }
+}
+
+/// Coordinates in full: read again, they are the same numbers.
+struct Full<'a>(&'a Point3);
+
+impl fmt::Display for Full<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "({}, {}, {})", self.0[0], self.0[1], self.0[2])
+    }
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::HiddenCell { cells: [a, b], segment: [p, q] } => {
+                write!(
+                    f,
+                    "cells {a} and {b} are hidden from each other, but nothing is between {} and {}",
+                    Full(p),
+                    Full(q)
+                )
+            }
+            Self::HiddenObject { cell, object, segment: [p, q] } => {
+                write!(
+                    f,
+                    "object {object} is hidden from cell {cell}, but is seen from {} towards {}",
+                    Full(p),
+                    Full(q)
+                )
+            }
+            Self::HiddenNeighbour { cells: [a, b], portal } => {
+                write!(f, "cells {a} and {b} are hidden from each other, but joined by portal {portal}")
+            }
+            Self::Overlap { cells: [a, b] } => write!(f, "cells {a} and {b} overlap"),
+            Self::NotConvex { cell } => write!(f, "cell {cell} is not convex, or has no inside"),
+            Self::OutOfScene { cell } => write!(f, "cell {cell} reaches out of the box around the scene"),
+            Self::NotFound { cell, point } => write!(f, "cell {cell} is not found at {}, which is inside", Full(point)),
+            Self::OffBorder { portal, cell } => write!(f, "portal {portal} is not on the border of cell {cell}"),
+            Self::UnlikePortal { portal } => write!(f, "portal {portal} is none of the scene"),
+            Self::Count { what, table, scene } => write!(f, "the table has {table} {what}, the scene {scene}"),
+            Self::ObjectName { object } => write!(f, "object {object} has another name in the scene"),
+            Self::ObjectBox { object } => write!(f, "object {object} has another extent in the scene"),
+            Self::UnlistedObject { cell, object } => {
+                write!(f, "object {object} touches cell {cell}, which does not list it")
+            }
+        }
+    }
+}
+
+/// Of what the table shows, how much rays were seen to reach: a hint how tight it is. What no ray reached may be seen all the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Confirmed {
+    /// Pairs that the table shows.
+    pub visible: u64,
+    /// Of these, pairs that a ray joined.
+    pub confirmed: u64,
+    /// Pairs that the table hides.
+    pub hidden: u64,
+    /// Of these, pairs that rays were aimed at.
+    pub aimed: u64,
+}
+
+impl Confirmed {
+    /// The share of the visible pairs that were confirmed; 1 if there are none.
+    pub fn share(&self) -> f64 {
+        if self.visible == 0 { 1.0 } else { self.confirmed as f64 / self.visible as f64 }
+    }
+}
+
+/// What is not tight, or was not looked at: nothing that a table must not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Remarks {
+    /// Portals of plans that an opaque line crosses or runs along: more is shown there, such as where walls were left out by `--tau` or are not followed.
+    pub portals_in_walls: u64,
+    /// Objects that are listed in cells which they do not touch.
+    pub listed_apart: u64,
+    /// Cells from which no ray was shot: too thin to have a place, or without a portal where only portals are known.
+    pub cells_without_places: u64,
+}
+
+/// What was looked at, and what was found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Findings {
+    /// Cells, portals and objects whose structure was looked at.
+    pub n_cells: usize,
+    /// Portals.
+    pub n_portals: usize,
+    /// Objects.
+    pub n_objects: usize,
+    /// Random rays.
+    pub n_rays: u64,
+    /// Unordered pairs of different cells.
+    pub cells: Confirmed,
+    /// Pairs of a cell and an object.
+    pub objects: Confirmed,
+    /// What is no violation.
+    pub remarks: Remarks,
+    /// Why no rays were shot, if none were.
+    pub no_rays: Option<&'static str>,
+    /// All violations, those of one kind after the other, the first [`VerifyOptions::MOST_VIOLATIONS`] of each.
+    pub violations: Vec<Violation>,
+    /// Number of violations that were found, also of those that are not told.
+    pub n_violations: usize,
+    /// The same for each kind ([`Violation::kind`]).
+    pub by_kind: BTreeMap<&'static str, usize>,
+}
+
+impl Findings {
+    /// Whether nothing was found that a true table must not have.
+    pub const fn is_true(&self) -> bool {
+        self.n_violations == 0
+    }
+
+    /// Adds a violation, unless there are enough of its kind.
+    pub(crate) fn add(&mut self, violation: Violation) {
+        self.n_violations += 1;
+        let of_kind = self.by_kind.entry(violation.kind()).or_default();
+        *of_kind += 1;
+        if *of_kind <= VerifyOptions::MOST_VIOLATIONS {
+            self.violations.push(violation);
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Is a table true to its scene? Structure, rays against the real geometry, proofs.
+//!
+//! Owns: the checks of a table ([`verify`]) against what is really there ([`Truth`]), and what they find
+//! ([`Findings`]) as [`Violation`]s with the segment that shows them; the comparison of a table with its proofs ([`check_proofs`]), and
+//! of its walls with the scene ([`check_walls_of_plan`], [`check_walls_in_space`]).
+//! Does not know: how tables are made (no code is shared with cutting, seeing or baking), files, pictures.
+//! Invariants: a violation that names a segment is proven, by exact signs or by margins that are wider than
+//! what the scene leaves open; so a true table has none. The same table, scene and options give the same findings, with any
+//! number of threads. Rays that find nothing prove nothing.
+
+pub mod exact;
+mod findings;
+mod options;
+mod proofs;
+mod rays;
+mod real;
+mod structure;
+mod truth;
+mod walls;
+
+pub use findings::{Confirmed, Findings, Remarks, Violation};
+pub use options::VerifyOptions;
+pub use proofs::{ProofError, ProofFindings, ProofViolation, boxes_of, check_proofs, plan_of};
+pub use rays::{Sight, Target};
+pub use truth::{Truth, VerifyError, WorldChild, WorldFace, WorldNode, WorldTree};
+pub use walls::{WallFindings, check_walls_in_space, check_walls_of_plan};
+
+use sightlines_pvs::Table;
+
+/// Checks a table against what is really there.
+///
+/// First its structure, then random rays, then rays aimed at what the table hides, most suspicious first. Of violations the
+/// first [`VerifyOptions::MOST_VIOLATIONS`] of each kind are told, and no more rays are shot once there are so many.
+///
+/// # Errors
+/// [`VerifyError`] for a table that cannot be of such a scene: of another dimension, or another kind.
+///
+/// Cost: O(size of table and scene * log) for the structure; each ray visits what is near it.
+pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions) -> Result<Findings, VerifyError> {
+    truth.check_kind(table)?;
+    let mut findings = structure::check(table, truth);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
+    pool.install(|| rays::check(table, truth, options, &mut findings));
+    Ok(findings)
+}
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

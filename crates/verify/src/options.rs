@@ -1,0 +1,27 @@
+//! How much to look at.
+
+/// How much to look at, and with which rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VerifyOptions {
+    /// Rays in random directions from random places.
+    pub rays: u64,
+    /// Hidden pairs, of cells or of a cell and an object, that rays are aimed at; all of them if there are no more.
+    pub pairs: u64,
+    /// Rays that are aimed at each of these pairs; the most suspicious ones get eight times as many.
+    pub tries: u32,
+    /// What the random numbers begin with.
+    pub seed: u64,
+    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    pub threads: usize,
+}
+
+impl VerifyOptions {
+    /// Violations of one kind that are told; beyond, they are counted, and no more rays are shot.
+    pub const MOST_VIOLATIONS: usize = 1000;
+}
+
+impl Default for VerifyOptions {
+    fn default() -> Self {
+        Self { rays: 100_000, pairs: 10_000, tries: 32, seed: 1, threads: 0 }
+    }
+}

@@ -1,0 +1,208 @@
+//! Proofs that came with a table, checked against its cells, portals and rows.
+//!
+//! The proofs are checked by `sightlines-certificates`, which knows no tables: what it proves of cells and portals is compared
+//! here with what the table says. Whether cells and portals are those of the scene is what the structure's check is for.
+
+use sightlines_certificates::plan::{NetworkError, PlanNetwork, PlanPortal, PlanProofs};
+use sightlines_certificates::space::{BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs};
+use sightlines_certificates::{Kind, Proven, ReadError, Refusal, kind_of};
+use sightlines_pvs::{CellId, Table};
+use std::fmt;
+
+/// Why proofs cannot be compared with a table.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProofError {
+    /// The bytes are no proofs.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Proofs for another kind of table.
+    #[error("the proofs are for {proofs}, and the table is {table}")]
+    Kind {
+        /// What they are for.
+        proofs: &'static str,
+        /// What the table is of.
+        table: &'static str,
+    },
+    /// The table was stripped of its portals, or never had any.
+    #[error("proofs speak of cells and portals, and the table does not have them")]
+    NoGraph,
+    /// A portal without the corners that it should have.
+    #[error("portal {0} of the table is no rectangle across an axis")]
+    Portal(usize),
+    /// Cells or portals of a plan that nothing can be proven about.
+    #[error("the table: {0}")]
+    Plan(#[from] NetworkError),
+    /// Cells or portals of a scene in space that nothing can be proven about.
+    #[error("the table: {0}")]
+    Space(#[from] BoxNetworkError),
+}
+
+/// Something that the proofs show not to be as the table says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ProofViolation {
+    /// The proofs are of other cells, or one of them does not hold.
+    Refused(Refusal),
+    /// Cells that are hidden from each other in the table, and a checked line joins them.
+    Joined([CellId; 2]),
+    /// Cells that see each other in the table, and it is proven that no line joins them.
+    Apart([CellId; 2]),
+}
+
+impl fmt::Display for ProofViolation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Refused(refusal) => write!(f, "the proofs do not hold: {refusal}"),
+            Self::Joined([a, b]) => {
+                write!(f, "cells {a} and {b} are hidden from each other, but a proven line joins them")
+            }
+            Self::Apart([a, b]) => {
+                write!(f, "cells {a} and {b} see each other, but it is proven that no line joins them")
+            }
+        }
+    }
+}
+
+/// What proofs say about a table; counts are of unordered pairs of different cells.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ProofFindings {
+    /// Pairs that the table shows and a line joins.
+    pub n_visible: u64,
+    /// Pairs that the table hides, and that are proven to be hidden.
+    pub n_hidden: u64,
+    /// Pairs that the table shows, without a proof: of cells that are too thin, or that are only assumed to see each other. No violation, as
+    /// showing too much hides nothing.
+    pub n_unproven_visible: u64,
+    /// Pairs that the table hides, without a proof: nothing is known to be wrong, and nothing is certain.
+    pub n_unproven_hidden: u64,
+    /// The first of those, [`ProofFindings::MOST_LISTED`] at most.
+    pub unproven_hidden: Vec<[CellId; 2]>,
+    /// Number of violations.
+    pub n_violations: u64,
+    /// The first of them, [`ProofFindings::MOST_LISTED`] at most.
+    pub violations: Vec<ProofViolation>,
+}
+
+impl ProofFindings {
+    /// Pairs and violations that are listed; beyond, they are counted.
+    pub const MOST_LISTED: usize = 1000;
+
+    /// Whether nothing speaks against the table; if `strict`, also whether everything that it hides is proven to be hidden.
+    pub const fn is_true(&self, strict: bool) -> bool {
+        self.n_violations == 0 && (!strict || self.n_unproven_hidden == 0)
+    }
+
+    fn add(&mut self, violation: ProofViolation) {
+        self.n_violations += 1;
+        if self.violations.len() < Self::MOST_LISTED {
+            self.violations.push(violation);
+        }
+    }
+
+    fn compared(table: &Table, proven: &Proven) -> Self {
+        let mut findings = Self::default();
+        let n = table.n_cells() as u32;
+        for a in 0..n {
+            for b in a + 1..n {
+                let pair = [CellId(a), CellId(b)];
+                match (table.sees(pair[0], pair[1]), proven.visible.has(a, b), proven.hidden.has(a, b)) {
+                    (true, true, false) => findings.n_visible += 1,
+                    (false, false, true) => findings.n_hidden += 1,
+                    (true, _, true) => findings.add(ProofViolation::Apart(pair)),
+                    (false, true, _) => findings.add(ProofViolation::Joined(pair)),
+                    (true, false, false) => findings.n_unproven_visible += 1,
+                    (false, false, false) => {
+                        findings.n_unproven_hidden += 1;
+                        if findings.unproven_hidden.len() < Self::MOST_LISTED {
+                            findings.unproven_hidden.push(pair);
+                        }
+                    }
+                }
+            }
+        }
+        findings
+    }
+}
+
+/// Checks all proofs, and compares what they prove with a table. Exact.
+///
+/// Cost: as for [`PlanProofs::check`] and [`BoxProofs::check`], and O(cells²).
+///
+/// # Errors
+/// [`ProofError`] for bytes that are no proofs of such a table. Proofs that do not hold are a violation, not an error.
+pub fn check_proofs(table: &Table, bytes: &[u8]) -> Result<ProofFindings, ProofError> {
+    let kind = kind_of(bytes)?;
+    let proven = match kind {
+        Kind::Plan => PlanProofs::from_bytes(bytes)?.check(&plan_of(table)?),
+        Kind::Space => BoxProofs::from_bytes(bytes)?.check(&boxes_of(table)?),
+        Kind::Convex => return Err(ProofError::Kind { proofs: "a Quake map", table: "of another kind" }),
+    };
+    Ok(match proven {
+        Ok(proven) => ProofFindings::compared(table, &proven),
+        Err(refusal) => {
+            let mut findings = ProofFindings::default();
+            findings.add(ProofViolation::Refused(refusal));
+            findings
+        }
+    })
+}
+
+/// The cells and portals of a table of a plan, as proofs know them.
+///
+/// # Errors
+/// [`ProofError`] for other tables, stripped ones, and those whose cells and portals do not fit together.
+pub fn plan_of(table: &Table) -> Result<PlanNetwork, ProofError> {
+    if table.dimension() != 2 {
+        return Err(ProofError::Kind { proofs: "a plan", table: "of a scene in space" });
+    }
+    if table.cells().iter().any(|cell| cell.polygon.is_empty()) {
+        return Err(ProofError::NoGraph);
+    }
+    let cells: Vec<Vec<[f64; 2]>> = table.cells().iter().map(|cell| cell.polygon.clone()).collect();
+    let portal = |p: &sightlines_pvs::PortalRecord| {
+        let [[lx, ly, _], [rx, ry, _]] = p.points[..] else { return None };
+        Some(PlanPortal { cells: p.cells.map(|cell| cell.0), sides: p.sides, left: [lx, ly], right: [rx, ry] })
+    };
+    let portals: Option<Vec<PlanPortal>> = table.portals().iter().map(portal).collect();
+    Ok(PlanNetwork::new(&cells, &portals.ok_or(ProofError::NoGraph)?)?)
+}
+
+/// The cells and portals of a table of a scene in space, as proofs know them.
+///
+/// # Errors
+/// [`ProofError`] for other tables, stripped ones, those of regions, and those whose cells and portals do not fit together.
+pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
+    if table.dimension() != 3 {
+        return Err(ProofError::Kind { proofs: "a scene in space", table: "of a plan" });
+    }
+    if is_stripped(table) {
+        return Err(ProofError::NoGraph);
+    }
+    let cells: Vec<[[f64; 3]; 2]> = table.cells().iter().map(|cell| [cell.min, cell.max]).collect();
+    let mut portals = Vec::with_capacity(table.portals().len());
+    for (index, p) in table.portals().iter().enumerate() {
+        let mut extent = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for point in &p.points {
+            for k in 0..3 {
+                extent[0][k] = extent[0][k].min(point[k]);
+                extent[1][k] = extent[1][k].max(point[k]);
+            }
+        }
+        let axis = u8::try_from(p.sides[0] / 2).ok().filter(|axis| *axis < 3).ok_or(ProofError::Portal(index))?;
+        // Four different corners of the rectangle around them are that rectangle.
+        let corner = |point: &[f64; 3]| (0..3).all(|k| point[k] == extent[0][k] || point[k] == extent[1][k]);
+        let differ = (0..4).all(|i| (0..i).all(|j| p.points.get(i) != p.points.get(j)));
+        if p.points.len() != 4 || !p.points.iter().all(corner) || !differ {
+            return Err(ProofError::Portal(index));
+        }
+        portals.push(BoxPortal { cells: p.cells.map(|cell| cell.0), extent, axis, forward: p.sides[0] % 2 == 1 });
+    }
+    Ok(BoxNetwork::new(&cells, &portals)?)
+}
+
+/// Whether the portals of a table in space are missing: cells that see each other are joined by some.
+fn is_stripped(table: &Table) -> bool {
+    let cells = || (0..table.n_cells() as u32).map(CellId);
+    table.portals().is_empty() && cells().any(|cell| table.visible(cell).any(|other| other != cell))
+}

@@ -1,0 +1,158 @@
+//! Rays against the real geometry: random ones, then ones that are aimed at what the table hides.
+
+mod seen;
+mod suspects;
+
+use crate::findings::{Findings, Violation};
+use crate::options::VerifyOptions;
+use crate::real::{MapWorld, PlanWorld, PortalWorld, Reality, SolidWorld};
+use crate::truth::Truth;
+use rayon::prelude::*;
+use seen::{Seen, Tally};
+use sightlines_geometry::{Point3, Random};
+use sightlines_pvs::{CellId, Table};
+use std::collections::BTreeMap;
+
+/// What is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Target {
+    /// A cell.
+    Cell(CellId),
+    /// An object.
+    Object(u32),
+}
+
+/// A segment from inside of a cell to something that is seen, in scene units; z is 0 in a plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// The cell.
+    pub from: CellId,
+    /// What is seen.
+    pub target: Target,
+    /// From a place in the cell to one in or on the target, or just behind it.
+    pub segment: [Point3; 2],
+}
+
+/// Rays that one thread shoots in a row; violations are counted after every [`BATCH`] of them.
+const CHUNK: u64 = 256;
+const BATCH: u64 = 64;
+
+/// Shoots rays, and adds to the findings what they found.
+pub(crate) fn check(table: &Table, truth: &Truth<'_>, options: &VerifyOptions, findings: &mut Findings) {
+    if table.n_cells() == 0 {
+        findings.no_rays = Some("the table has no cells");
+        return;
+    }
+    if findings.by_kind.contains_key("count") {
+        findings.no_rays = Some("the table is not of this scene");
+        return;
+    }
+    match truth {
+        Truth::Plan(plan) => match PlanWorld::new(table, plan) {
+            Some(world) => shoot_all(&world, table, options, findings),
+            None => findings.no_rays = Some("the table was stripped of the outlines of its cells"),
+        },
+        Truth::Scene(scene) => shoot_all(&SolidWorld::new(table, scene), table, options, findings),
+        Truth::Portals(graph) => shoot_all(&PortalWorld::new(graph), table, options, findings),
+        Truth::World(graph, tree) => shoot_all(&MapWorld::new(table, graph, tree), table, options, findings),
+    }
+}
+
+fn shoot_all<R: Reality>(world: &R, table: &Table, options: &VerifyOptions, findings: &mut Findings) {
+    let seen = Seen::of(table);
+    let tally = Tally::new(table);
+    let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
+    let n_chunks = options.rays.div_ceil(CHUNK);
+    let mut chunk = 0;
+    while chunk < n_chunks && hidden.len() < VerifyOptions::MOST_VIOLATIONS {
+        let end = (chunk + BATCH).min(n_chunks);
+        let shoot = |k: u64| {
+            let n = CHUNK.min(options.rays - k * CHUNK);
+            shoot_chunk(world, &seen, &tally, table.n_cells(), n, mixed(options.seed, k))
+        };
+        let found: Vec<_> = (chunk..end).into_par_iter().map(shoot).collect();
+        for (sights, n_rays) in found {
+            findings.n_rays += n_rays;
+            // Of several for a pair the first ray counts.
+            sights.into_iter().for_each(|s| {
+                hidden.entry(key(&s)).or_insert(s);
+            });
+        }
+        chunk = end;
+    }
+    let suspects = suspects::most(world, table, &seen, options.pairs);
+    if hidden.len() < VerifyOptions::MOST_VIOLATIONS {
+        let aim = |s: &suspects::Suspect| {
+            let mut random = Random::new(mixed(options.seed, s.hash));
+            let tries = if s.is_surrounded { options.tries.saturating_mul(8) } else { options.tries };
+            world.aim(table, s.from.0, s.target, tries, &mut random)
+        };
+        let found: Vec<_> = suspects.par_iter().map(aim).collect();
+        found.into_iter().flatten().for_each(|s| {
+            hidden.entry(key(&s)).or_insert(s);
+        });
+        let of_cells = suspects.iter().filter(|s| matches!(s.target, Target::Cell(_))).count() as u64;
+        (findings.cells.aimed, findings.objects.aimed) = (of_cells, suspects.len() as u64 - of_cells);
+    }
+    tally.write(&seen, findings);
+    findings.remarks.cells_without_places = (0..table.n_cells() as u32)
+        .into_par_iter()
+        .filter(|&cell| {
+            let mut random = Random::new(mixed(options.seed, u64::from(cell)));
+            (0..4).all(|_| world.shoot(cell, &mut random, &mut |_| {}).is_none())
+        })
+        .count() as u64;
+    for ((from, target), sight) in hidden {
+        let segment = sight.segment;
+        findings.add(match target {
+            Target::Cell(to) => Violation::HiddenCell { cells: [from, to], segment },
+            Target::Object(object) => Violation::HiddenObject { cell: from, object, segment },
+        });
+    }
+}
+
+/// A pair of cells, whichever of them is looked from, or of a cell and an object.
+fn key(s: &Sight) -> (CellId, Target) {
+    match s.target {
+        Target::Cell(to) if to < s.from => (to, Target::Cell(s.from)),
+        target => (s.from, target),
+    }
+}
+
+/// Shoots some rays; returns what they see that is hidden, and how many were shot.
+fn shoot_chunk<R: Reality>(
+    world: &R,
+    seen: &Seen,
+    tally: &Tally,
+    n_cells: usize,
+    n: u64,
+    seed: u64,
+) -> (Vec<Sight>, u64) {
+    let mut random = Random::new(seed);
+    let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
+    let mut n_rays = 0;
+    for _ in 0..n {
+        let from = random.below(n_cells) as u32;
+        let shot = world.shoot(from, &mut random, &mut |s: Sight| {
+            let key = key(&s);
+            if s.target == Target::Cell(s.from) {
+                return;
+            }
+            if seen.has(key.0, key.1) {
+                // What was confirmed before need not be again; in which order changes nothing.
+                if !tally.has(key.0, key.1) && world.proves(&s) {
+                    tally.confirm(key.0, key.1);
+                }
+            } else if !hidden.contains_key(&key) && world.proves(&s) {
+                hidden.insert(key, s);
+            }
+        });
+        n_rays += u64::from(shot.is_some());
+    }
+    (hidden.into_values().collect(), n_rays)
+}
+
+/// A seed for a part of the work.
+fn mixed(seed: u64, part: u64) -> u64 {
+    Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ part).bits()
+}

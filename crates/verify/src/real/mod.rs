@@ -1,0 +1,117 @@
+//! What is really there, ready for rays. Doubles propose segments; what [`Reality::proves`] says alone counts.
+
+mod climb;
+mod convex;
+pub(crate) mod plan;
+mod solid;
+mod world;
+
+pub(crate) use convex::PortalWorld;
+pub(crate) use plan::PlanWorld;
+pub(crate) use solid::SolidWorld;
+pub(crate) use world::MapWorld;
+
+use crate::rays::{Sight, Target};
+use sightlines_geometry::{Aabb, Random};
+use sightlines_pvs::Table;
+
+/// A scene with the cells of a table in it.
+pub(crate) trait Reality: Sync {
+    /// A ray in a random direction from a random place inside of a cell; `visit` is told what may be seen along it, as
+    /// proposals. `None` if no place was found.
+    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()>;
+
+    /// Whether a sight is one: certainly, or the answer is no.
+    fn proves(&self, sight: &Sight) -> bool;
+
+    /// Looks for a sight from a cell to a cell or an object, with about so many rays; what is found is proven.
+    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<Sight>;
+
+    /// The cells next to each cell, ascending.
+    fn neighbours(&self) -> &[Vec<u32>];
+}
+
+/// From 0 to 1, and as likely near an end as in the middle, however near.
+pub(crate) fn extreme(random: &mut Random) -> f64 {
+    let x = random.unit();
+    match random.below(4) {
+        0 | 1 => x,
+        end => {
+            // Smaller by a random power of two, down to a few units in the last place.
+            let near = x * 2f64.powi(-(random.below(50) as i32));
+            if end == 2 { near } else { 1.0 - near }
+        }
+    }
+}
+
+/// The part of the line `p + t d` in a box, as a range of `t` within the given one; rounded. `None` if there is none.
+pub(crate) fn clip<const D: usize>(
+    p: [f64; D],
+    d: [f64; D],
+    b: &Aabb<D>,
+    within: [f64; 2],
+    slack: f64,
+) -> Option<[f64; 2]> {
+    let [mut low, mut high] = within;
+    for k in 0..D {
+        let (min, max) = (b.min[k] - slack, b.max[k] + slack);
+        if d[k] == 0.0 {
+            if p[k] < min || p[k] > max {
+                return None;
+            }
+            continue;
+        }
+        let (s, t) = ((min - p[k]) / d[k], (max - p[k]) / d[k]);
+        low = low.max(s.min(t));
+        high = high.min(s.max(t));
+    }
+    (low <= high).then_some([low, high])
+}
+
+/// The cells next to each cell: joined by a portal, or, in tables without portals, with boxes that touch.
+pub(crate) fn neighbours_of(table: &Table) -> Vec<Vec<u32>> {
+    let mut next = vec![Vec::new(); table.n_cells()];
+    for portal in table.portals() {
+        let [a, b] = portal.cells;
+        next[a.idx()].push(b.0);
+        next[b.idx()].push(a.0);
+    }
+    if table.portals().is_empty() {
+        let mut pending = Vec::new();
+        for (id, cell) in table.cells().iter().enumerate() {
+            table.for_each_touching(cell.min, cell.max, &mut pending, |other| {
+                next[id].push(other.0);
+                true
+            });
+        }
+    }
+    for (id, list) in next.iter_mut().enumerate() {
+        list.sort_unstable();
+        list.dedup();
+        list.retain(|&other| other as usize != id);
+    }
+    next
+}
+
+/// The largest magnitude of some coordinates; 1 if there is none.
+pub(crate) fn scale_of(points: impl IntoIterator<Item = f64>) -> f64 {
+    let largest = points.into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+pub(crate) fn sub<const D: usize>(a: [f64; D], b: [f64; D]) -> [f64; D] {
+    std::array::from_fn(|k| a[k] - b[k])
+}
+
+/// The point `p + t d`.
+pub(crate) fn at<const D: usize>(p: [f64; D], d: [f64; D], t: f64) -> [f64; D] {
+    std::array::from_fn(|k| p[k] + t * d[k])
+}
+
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn length(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}

@@ -1,0 +1,266 @@
+//! Scenes in space: every triangle stops sight.
+
+use super::climb::climb;
+use super::{Reality, at, clip, extreme, length, neighbours_of, scale_of, sub};
+use crate::exact::{segment_and_triangle_apart, segment_crosses_triangle, snapped};
+use crate::rays::{Sight, Target};
+use sightlines_cells::{CellId, Scene};
+use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
+use sightlines_pvs::Table;
+use std::cell::Cell;
+
+/// A scene with the cells of a table.
+#[derive(Debug)]
+pub(crate) struct SolidWorld {
+    triangles: Vec<[Point3; 3]>,
+    object_of: Vec<u32>,
+    /// The triangles of each object, as a range.
+    of_object: Vec<[u32; 2]>,
+    tree: BoxTree<3>,
+    cells: Vec<Aabb<3>>,
+    cell_tree: BoxTree<3>,
+    next: Vec<Vec<u32>>,
+    /// Around boxes in rounded questions.
+    slack: f64,
+    size: f64,
+    /// Whether cells may reach into solid matter, and the table says nothing of eyes there.
+    only_in_air: bool,
+}
+
+impl SolidWorld {
+    pub(crate) fn new(table: &Table, scene: &Scene) -> Self {
+        let (mut triangles, mut object_of, mut of_object) = (Vec::new(), Vec::new(), Vec::new());
+        for (object, o) in (0u32..).zip(scene.objects()) {
+            let first = triangles.len() as u32;
+            triangles.extend(o.corners());
+            object_of.resize(triangles.len(), object);
+            of_object.push([first, triangles.len() as u32]);
+        }
+        let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
+        let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
+        let all = boxes.iter().chain(&cells).fold(Aabb::EMPTY, |all: Aabb<3>, b| all.with(b.min).with(b.max));
+        let scale = if all.is_empty() { 1.0 } else { scale_of(all.min.into_iter().chain(all.max)) };
+        let method = table.info_value("method").unwrap_or_default();
+        Self {
+            tree: BoxTree::build(&boxes, 4),
+            cell_tree: BoxTree::build(&cells, 4),
+            triangles,
+            object_of,
+            of_object,
+            cells,
+            next: neighbours_of(table),
+            slack: scale * 2f64.powi(-40),
+            size: if all.is_empty() { 0.0 } else { length(sub(all.max, all.min)) },
+            only_in_air: ["voxels", "shafts"].iter().any(|m| method.contains(m)),
+        }
+    }
+
+    fn is_inside(&self, cell: u32, p: Point3) -> bool {
+        let b = &self.cells[cell as usize];
+        (0..3).all(|k| b.min[k] < p[k] && p[k] < b.max[k])
+    }
+
+    /// A random point strictly inside of a cell, `None` if doubles have none.
+    fn place(&self, cell: u32, random: &mut Random) -> Option<Point3> {
+        let b = &self.cells[cell as usize];
+        (0..8).find_map(|_| {
+            let p = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) * extreme(random));
+            Some(snapped(p)).filter(|&p| self.is_inside(cell, p))
+        })
+    }
+
+    /// Visits the triangles near the segment from `p` to `p + limit d`, until the limit is lowered below them.
+    fn near(&self, p: Point3, d: Point3, limit: &Cell<f64>, each: impl FnMut(u32)) {
+        self.tree.visit(|b| clip(p, d, b, [0.0, limit.get()], self.slack).is_some(), each);
+    }
+
+    /// The first triangle that a ray meets, and where, as a multiple of its direction; rounded.
+    fn hit(&self, p: Point3, d: Point3, far: f64) -> (f64, Option<u32>) {
+        let limit = Cell::new(far);
+        let mut first = None;
+        self.near(p, d, &limit, |i| {
+            if let Some(t) = meet(p, d, &self.triangles[i as usize])
+                && t < limit.get()
+            {
+                limit.set(t);
+                first = Some(i);
+            }
+        });
+        (limit.get(), first)
+    }
+
+    /// How little is in the way of a segment: the shares before the first and behind the last thing.
+    fn openness(&self, [p, q]: [Point3; 2]) -> f64 {
+        let d = sub(q, p);
+        match self.hit(p, d, 1.0) {
+            (_, None) => 1.0,
+            (before, Some(_)) => {
+                let (behind, _) = self.hit(q, sub(p, q), 1.0);
+                (before + behind).min(1.0 - f64::EPSILON)
+            }
+        }
+    }
+
+    /// Whether nothing touches the closed segment but triangles of one object, of which it crosses one properly; or
+    /// nothing at all, if there is no such object. Exact.
+    fn is_free(&self, p: Point3, q: Point3, but: Option<u32>) -> bool {
+        let d = sub(q, p);
+        let limit = Cell::new(1.0);
+        let (mut free, mut crosses) = (true, but.is_none());
+        self.near(p, d, &limit, |i| {
+            let triangle = &self.triangles[i as usize];
+            if !free {
+                return;
+            }
+            if but == Some(self.object_of[i as usize]) {
+                crosses |= segment_crosses_triangle(p, q, triangle);
+            } else if !segment_and_triangle_apart(p, q, triangle) {
+                free = false;
+                limit.set(f64::NEG_INFINITY);
+            }
+        });
+        free && crosses
+    }
+
+    /// Whether a point may be an eye: not if the first thing in some direction shows its back, where the table does not
+    /// speak of eyes inside of things.
+    fn is_in_air(&self, p: Point3) -> bool {
+        const DIRECTIONS: [Point3; 4] =
+            [[0.62, 0.53, 0.58], [-0.71, 0.41, 0.57], [0.33, -0.82, -0.47], [-0.51, -0.45, -0.73]];
+        !self.only_in_air
+            || DIRECTIONS.iter().all(|&d| match self.hit(p, d, 2.0 * self.size) {
+                (_, Some(i)) => {
+                    let [a, b, c] = self.triangles[i as usize];
+                    sightlines_geometry::orient3d(a, b, c, p) > 0.0
+                }
+                _ => true,
+            })
+    }
+
+    fn sight(from: u32, target: Target, segment: [Point3; 2]) -> Sight {
+        Sight { from: CellId(from), target, segment: segment.map(snapped) }
+    }
+
+    /// From a point to just behind where a ray meets something.
+    fn just_behind(p: Point3, d: Point3, t: f64) -> [Point3; 2] {
+        [p, at(p, d, t * (1.0 + 2f64.powi(-40)))]
+    }
+
+    fn on_object(&self, object: u32, random: &mut Random) -> Option<Point3> {
+        let [first, end] = self.of_object[object as usize];
+        let triangle = &self.triangles[first as usize..end as usize];
+        if triangle.is_empty() {
+            return None;
+        }
+        let [a, b, c] = triangle[random.below(triangle.len())];
+        let (u, v) = (extreme(random), extreme(random));
+        let (u, v) = (u.min(v), 1.0 - u.max(v));
+        Some(std::array::from_fn(|k| a[k] + (b[k] - a[k]) * u + (c[k] - a[k]) * v))
+    }
+
+    fn aim_at_object(&self, from: u32, object: u32, tries: u32, random: &mut Random) -> Option<Sight> {
+        for _ in 0..tries {
+            let (p, q) = (self.place(from, random)?, self.on_object(object, random)?);
+            let d = sub(q, p);
+            let (t, first) = self.hit(p, d, 1.0 + 2f64.powi(-20));
+            if first.is_some_and(|i| self.object_of[i as usize] == object) {
+                let sight = Self::sight(from, Target::Object(object), Self::just_behind(p, d, t));
+                if self.proves(&sight) {
+                    return Some(sight);
+                }
+            }
+        }
+        None
+    }
+
+    fn aim_at_cell(&self, table: &Table, from: u32, to: u32, tries: u32, random: &mut Random) -> Option<Sight> {
+        let boxes = [&self.cells[from as usize], &self.cells[to as usize]];
+        let is_good = |segment| self.proves(&Self::sight(from, Target::Cell(CellId(to)), segment));
+        // A few beginnings, each moved for a while.
+        let n_starts = (tries / 16).max(1);
+        for _ in 0..n_starts {
+            let start = [self.place(from, random)?, self.start_in(table, from, to, random)?];
+            let found = climb(start, boxes, tries / n_starts, random, |s| self.openness(s), is_good);
+            if let Some(segment) = found {
+                return Some(Self::sight(from, Target::Cell(CellId(to)), segment));
+            }
+        }
+        None
+    }
+
+    /// A point of a cell to begin with: often one just behind a portal that leads into it from a cell that is seen.
+    fn start_in(&self, table: &Table, from: u32, to: u32, random: &mut Random) -> Option<Point3> {
+        let seen: Vec<u32> =
+            self.next[to as usize].iter().copied().filter(|&c| table.sees(CellId(from), CellId(c))).collect();
+        if seen.is_empty() || random.below(2) == 0 {
+            return self.place(to, random);
+        }
+        // Where the two cells touch.
+        let (a, b) = (&self.cells[seen[random.below(seen.len())] as usize], &self.cells[to as usize]);
+        let p = std::array::from_fn(|k| {
+            let (low, high) = (a.min[k].max(b.min[k]), a.max[k].min(b.max[k]));
+            let x = low + (high - low) * extreme(random);
+            let inwards = (0.5 * (b.min[k] + b.max[k]) - x) * 2f64.powi(-(random.below(20) as i32));
+            x + inwards
+        });
+        Some(snapped(p)).filter(|&p| self.is_inside(to, p)).or_else(|| self.place(to, random))
+    }
+}
+
+/// Where a ray meets a triangle, as a multiple of its direction; rounded.
+///
+/// # Source
+/// Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", Journal of Graphics Tools 2(1), 1997.
+fn meet(p: Point3, d: Point3, [a, b, c]: &[Point3; 3]) -> Option<f64> {
+    let cross =
+        |u: Point3, v: Point3| [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let (e, f, o) = (sub(*b, *a), sub(*c, *a), sub(p, *a));
+    let n = cross(d, f);
+    let det = super::dot(e, n);
+    let m = cross(o, e);
+    let (u, v, t) = (super::dot(o, n) / det, super::dot(d, m) / det, super::dot(f, m) / det);
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0).then_some(t)
+}
+
+impl Reality for SolidWorld {
+    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
+        let p = self.place(from, random)?;
+        let d = random.direction();
+        let (far, first) = self.hit(p, d, 2.0 * self.size);
+        self.cell_tree.visit(
+            |b| clip(p, d, b, [0.0, far], self.slack).is_some(),
+            |cell| {
+                if let Some([s, t]) = clip(p, d, &self.cells[cell as usize], [0.0, far], 0.0) {
+                    visit(Self::sight(from, Target::Cell(CellId(cell)), [p, at(p, d, 0.5 * (s + t))]));
+                }
+            },
+        );
+        if let Some(i) = first {
+            let target = Target::Object(self.object_of[i as usize]);
+            visit(Self::sight(from, target, Self::just_behind(p, d, far)));
+        }
+        Some(())
+    }
+
+    fn proves(&self, sight: &Sight) -> bool {
+        let [p, q] = sight.segment;
+        if p == q || !self.is_inside(sight.from.0, p) || !self.is_in_air(p) {
+            return false;
+        }
+        match sight.target {
+            Target::Cell(cell) => self.is_inside(cell.0, q) && self.is_free(p, q, None),
+            Target::Object(object) => self.is_free(p, q, Some(object)),
+        }
+    }
+
+    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<Sight> {
+        match target {
+            Target::Cell(to) => self.aim_at_cell(table, from, to.0, tries, random),
+            Target::Object(object) => self.aim_at_object(from, object, tries, random),
+        }
+    }
+
+    fn neighbours(&self) -> &[Vec<u32>] {
+        &self.next
+    }
+}

@@ -1,0 +1,55 @@
+//! Is the table put together as one of such a scene has to be? What the format promises (symmetry, the diagonal, ids) is
+//! checked by whoever reads it (`pvs`); here it is compared with the scene.
+
+mod objects;
+mod planar;
+mod spatial;
+mod world;
+
+pub(crate) use planar::ends;
+
+use crate::findings::{Findings, Violation};
+use crate::truth::Truth;
+use sightlines_pvs::Table;
+
+/// Checks all that needs no rays.
+pub(crate) fn check(table: &Table, truth: &Truth<'_>) -> Findings {
+    let mut findings = Findings {
+        n_cells: table.n_cells(),
+        n_portals: table.portals().len(),
+        n_objects: table.objects().len(),
+        ..Findings::default()
+    };
+    neighbours(table, &mut findings);
+    match truth {
+        Truth::Plan(plan) => {
+            planar::check(table, plan, &mut findings);
+            objects::of_plan(table, plan, &mut findings);
+        }
+        Truth::Scene(scene) => {
+            spatial::check(table, &mut findings);
+            objects::of_scene(table, scene, &mut findings);
+        }
+        Truth::Portals(graph) => world::portals(table, graph, &mut findings),
+        Truth::World(graph, tree) => {
+            world::portals(table, graph, &mut findings);
+            world::faces(table, tree, &mut findings);
+        }
+    }
+    findings
+}
+
+/// Cells joined by a portal see each other: so does every line through it.
+fn neighbours(table: &Table, findings: &mut Findings) {
+    for (portal, record) in table.portals().iter().enumerate() {
+        let [a, b] = record.cells;
+        if !table.sees(a, b) {
+            findings.add(Violation::HiddenNeighbour { cells: [a, b], portal });
+        }
+    }
+}
+
+/// The middle of some points, rounded.
+pub(crate) fn middle<const D: usize>(points: &[[f64; D]]) -> [f64; D] {
+    std::array::from_fn(|k| points.iter().map(|p| p[k] / points.len() as f64).sum())
+}

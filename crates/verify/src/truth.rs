@@ -1,0 +1,118 @@
+//! What is really there.
+
+use sightlines_cells::{CellGraph, Convex, Plan, Scene};
+use sightlines_geometry::Point3;
+use sightlines_pvs::Table;
+
+/// The scene that a table is to be true to.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub enum Truth<'a> {
+    /// A plan: opaque lines stop sight.
+    Plan(&'a Plan),
+    /// A scene in space: every triangle stops sight, from both sides.
+    Scene(&'a Scene),
+    /// The portals of a Quake map: a line sees on through portals, in their order along it.
+    Portals(&'a CellGraph<Convex>),
+    /// A Quake map with its portals: also, nothing is seen through what is solid, and from cluster to cluster only where the
+    /// portal file joins the two.
+    World(&'a CellGraph<Convex>, &'a WorldTree),
+}
+
+/// What is on a side of a plane of a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WorldChild {
+    /// Another plane, after this one.
+    Node(u32),
+    /// A leaf of a cluster.
+    Cluster(u32),
+    /// Something solid, or a leaf that is in no cluster.
+    Solid,
+}
+
+/// A plane of a map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WorldNode {
+    /// Its normal, of unit length but for rounding.
+    pub normal: Point3,
+    /// The plane is where `normal · p == distance`, in scene units.
+    pub distance: f64,
+    /// What is above it, where `normal · p` is larger, and below.
+    pub children: [WorldChild; 2],
+}
+
+/// A face of a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorldFace {
+    /// What a table calls it.
+    pub name: String,
+    /// Its corners in turn, in scene units.
+    pub corners: Vec<Point3>,
+}
+
+/// The tree of planes that a map was cut along, with its faces.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct WorldTree {
+    /// Planes, each before those under it; the first is the root. Empty if nothing is cut.
+    pub nodes: Vec<WorldNode>,
+    /// The faces of the world.
+    pub faces: Vec<WorldFace>,
+    /// For each cluster the faces that its leafs list, ascending.
+    pub listed: Vec<Vec<u32>>,
+}
+
+/// Why a table cannot be of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum VerifyError {
+    /// A table of the plane and a scene in space, or the reverse.
+    #[error("the table has {table} dimensions, the scene {scene}")]
+    Dimension {
+        /// Of the table.
+        table: u8,
+        /// Of the scene.
+        scene: u8,
+    },
+    /// A table of a Quake map and another scene in space, or the reverse.
+    #[error("the table is {table}, but the scene is {scene}")]
+    Kind {
+        /// What the table is of.
+        table: &'static str,
+        /// What the scene is.
+        scene: &'static str,
+    },
+    /// A table of a map of which only the portals were given, or the reverse.
+    #[error("the table {0}")]
+    Places(&'static str),
+}
+
+/// The key and the values under which tables say that they are of a Quake map.
+const SOURCE: &str = "source";
+const OF_PORTALS: &str = "portal file";
+const OF_MAP: &str = "Quake map";
+
+impl Truth<'_> {
+    const fn dimension(&self) -> u8 {
+        if matches!(self, Self::Plan(_)) { 2 } else { 3 }
+    }
+
+    /// Refuses a table that cannot be of such a scene.
+    pub(crate) fn check_kind(&self, table: &Table) -> Result<(), VerifyError> {
+        if table.dimension() != self.dimension() {
+            return Err(VerifyError::Dimension { table: table.dimension(), scene: self.dimension() });
+        }
+        let source = table.info_value(SOURCE).unwrap_or_default();
+        let (of_portals, of_map) = (source.starts_with(OF_PORTALS), source.starts_with(OF_MAP));
+        let of_clusters = of_portals || of_map;
+        match self {
+            Self::Portals(_) | Self::World(..) if !of_clusters => {
+                Err(VerifyError::Kind { table: "of no Quake map", scene: "one" })
+            }
+            Self::Scene(_) if of_clusters => Err(VerifyError::Kind { table: "of a Quake map", scene: "none" }),
+            Self::World(..) if of_portals => {
+                Err(VerifyError::Places("was made of a portal file alone: give that file, not the map"))
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Proofs of tables, checked against the tables: every pair of cells that is told wrongly is caught.
+
+use sightlines_bake::{BakeOptions, CertifyError, SceneBakeOptions, bake_plan, bake_scene, certify_table};
+use sightlines_cells::{Plan, Scene};
+use sightlines_pvs::{CellId, Table, TableParts};
+use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
+use sightlines_stabtree::CertifyOptions;
+use sightlines_testkit::{draw, small_grid_plan};
+use sightlines_verify::{
+    ProofError, ProofFindings, ProofViolation, check_proofs, check_walls_in_space, check_walls_of_plan,
+};
+
+fn proofs_of(table: &Table) -> Vec<u8> {
+    certify_table(table, &CertifyOptions::default()).expect("the table has cells and portals").proofs.to_bytes()
+}
+
+fn flipped(table: &Table, a: u32, b: u32) -> Table {
+    let mut parts: TableParts = table.parts().clone();
+    let bit = !table.sees(CellId(a), CellId(b));
+    parts.rows.set(a as usize, b as usize, bit);
+    parts.rows.set(b as usize, a as usize, bit);
+    Table::new(parts).expect("a table with a wrong pair is a table")
+}
+
+/// Proves a table whole, then each table with one wrong pair wrong; returns how many pairs are visible and hidden.
+fn assert_every_flip_is_caught(table: &Table) -> [u64; 2] {
+    let bytes = proofs_of(table);
+    let found = check_proofs(table, &bytes).expect("proofs of the table");
+    let n = table.n_cells() as u64;
+    let all = n * n.saturating_sub(1) / 2;
+    let whole = ProofFindings { n_visible: found.n_visible, n_hidden: all - found.n_visible, ..Default::default() };
+    assert_eq!(found, whole, "all pairs are proven, and nothing else is found");
+    assert!(found.is_true(true));
+    let mut n_caught = 0;
+    for a in 0..n as u32 {
+        for b in a + 1..n as u32 {
+            let other = flipped(table, a, b);
+            let found = check_proofs(&other, &bytes).expect("proofs of a table with these cells");
+            let pair = [CellId(a), CellId(b)];
+            let expected =
+                if table.sees(pair[0], pair[1]) { ProofViolation::Joined(pair) } else { ProofViolation::Apart(pair) };
+            assert_eq!(found.violations, [expected]);
+            assert!(found.n_violations == 1 && !found.is_true(false));
+            n_caught += 1;
+        }
+    }
+    assert_eq!(n_caught, all);
+    [found.n_visible, found.n_hidden]
+}
+
+fn baked(plan: &Plan) -> Option<Table> {
+    bake_plan(plan, &BakeOptions { threads: 1, ..BakeOptions::default() }).ok().map(|baked| baked.table)
+}
+
+#[test]
+fn every_flipped_pair_of_an_office_is_caught() {
+    let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();
+    let [visible, hidden] = assert_every_flip_is_caught(&baked(&plan).unwrap());
+    assert!(visible > 20 && hidden > 20, "{visible} {hidden}");
+}
+
+#[test]
+fn every_flipped_pair_of_small_plans_is_caught() {
+    let mut sum = [0, 0];
+    for plan in draw(&small_grid_plan(3..12), 24) {
+        if let Some(table) = baked(&plan) {
+            let [visible, hidden] = assert_every_flip_is_caught(&table);
+            sum = [sum[0] + visible, sum[1] + hidden];
+        }
+    }
+    assert!(sum[0] > 100 && sum[1] > 50, "{sum:?}");
+}
+
+/// A storey of a few rooms.
+fn rooms() -> Scene {
+    let small = TowerOptions { seed: 3, floors: 1, rooms_x: 2, rooms_y: 2, ..TowerOptions::default() };
+    tower(TowerOptions { furniture: 0, windows: false, ..small }).unwrap()
+}
+
+fn storey() -> Table {
+    bake_scene(&rooms(), &SceneBakeOptions { threads: 1, ..SceneBakeOptions::default() }).unwrap().table
+}
+
+#[test]
+fn every_flipped_pair_of_a_storey_is_caught() {
+    let [visible, hidden] = assert_every_flip_is_caught(&storey());
+    assert!(visible > 20 && hidden > 20, "{visible} {hidden}");
+}
+
+/// Proofs of another table, or of none, are told apart from wrong ones.
+#[test]
+fn proofs_of_something_else_are_refused() {
+    let plan = |seed| {
+        let plan = office(OfficeOptions { seed, rooms_x: 4, rooms_y: 2, ..OfficeOptions::default() }).unwrap();
+        baked(&plan).unwrap()
+    };
+    let (table, other, space) = (plan(1), plan(2), storey());
+    let found = check_proofs(&table, &proofs_of(&other)).unwrap();
+    assert!(!found.is_true(false) && matches!(found.violations[..], [ProofViolation::Refused(_)]), "{found:?}");
+    let error = |table: &Table, bytes: &[u8]| check_proofs(table, bytes).unwrap_err();
+    assert!(matches!(error(&space, &proofs_of(&table)), ProofError::Kind { .. }));
+    assert!(matches!(error(&table, &proofs_of(&space)), ProofError::Kind { .. }));
+    assert!(matches!(error(&table, b"SLPVS"), ProofError::Read(_)));
+    assert_eq!(error(&table.strip_geometry(), &proofs_of(&table)), ProofError::NoGraph);
+    let stripped = certify_table(&table.strip_geometry(), &CertifyOptions::default());
+    assert_eq!(stripped.unwrap_err(), CertifyError::NoGraph);
+}
+
+/// Without effort nothing much is proven; that is said, and only the strict call it wrong.
+#[test]
+fn what_is_not_proven_is_counted() {
+    let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();
+    for table in [baked(&plan).unwrap(), storey()] {
+        let options = CertifyOptions { most_steps: 0, most_steps_in_all: 0, chords: 0, ..CertifyOptions::default() };
+        let bytes = certify_table(&table, &options).unwrap().proofs.to_bytes();
+        let found = check_proofs(&table, &bytes).unwrap();
+        assert!(found.is_true(false) && !found.is_true(true), "{found:?}");
+        assert!(found.n_unproven_hidden > 0 && found.n_violations == 0 && !found.unproven_hidden.is_empty());
+    }
+}
+
+/// What proofs take for walls is covered by the plan; without any one of its lines that the cells touch, it is not.
+#[test]
+fn walls_of_plans_are_those_of_the_plan() {
+    let plan = office(OfficeOptions { seed: 5, rooms_x: 4, rooms_y: 3, ..OfficeOptions::default() }).unwrap();
+    let table = baked(&plan).unwrap();
+    let found = check_walls_of_plan(&table, &plan);
+    assert!(found.n_bare == 0 && found.bare.is_empty() && found.n_walls > 20, "{found:?}");
+    let mut n_noticed = 0;
+    for k in 0..plan.lines().len() {
+        let mut lines = plan.lines().to_vec();
+        lines.remove(k);
+        let other = Plan::new(lines, Vec::new()).unwrap();
+        n_noticed += usize::from(check_walls_of_plan(&table, &other).n_bare > 0);
+    }
+    // Lines on the outer border are not missed.
+    assert!(n_noticed + 8 >= plan.lines().len() && n_noticed > 4, "{n_noticed} of {}", plan.lines().len());
+    for plan in draw(&small_grid_plan(3..12), 24) {
+        if let Some(table) = bake_plan(&plan, &BakeOptions { threads: 1, ..BakeOptions::default() })
+            .ok()
+            .filter(|baked| baked.summary.n_rounded_crossings == 0)
+        {
+            let found = check_walls_of_plan(&table.table, &plan);
+            assert_eq!(found.n_bare, 0, "{found:?}");
+        }
+    }
+}
+
+/// The same in space, without each object.
+#[test]
+fn walls_in_space_are_those_of_the_scene() {
+    let (scene, table) = (rooms(), storey());
+    let found = check_walls_in_space(&table, &scene);
+    assert!(found.n_bare == 0 && found.n_walls > 50, "{found:?}");
+    let mut n_noticed = 0;
+    for k in 0..scene.objects().len() {
+        let mut objects = scene.objects().to_vec();
+        objects.remove(k);
+        let other = Scene::new(objects).unwrap();
+        let found = check_walls_in_space(&table, &other);
+        n_noticed += usize::from(found.n_bare > 0 && !found.bare.is_empty());
+    }
+    assert!(n_noticed > 2, "{n_noticed} of {}", scene.objects().len());
+}

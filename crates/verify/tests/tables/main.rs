@@ -1,0 +1,6 @@
+//! True tables of every kind have no violations; tables with one pair hidden that is seen have.
+
+mod common;
+mod flips;
+mod impostors;
+mod structure;
