@@ -16,6 +16,7 @@ use crate::commands::{
     reject::RejectArgs,
     render::RenderArgs,
     simplify::SimplifyArgs,
+    verify::VerifyArgs,
     vis::VisArgs,
     walk::WalkArgs,
 };
@@ -25,7 +26,7 @@ use clap::{Parser, Subcommand};
 #[derive(Debug, Parser)]
 #[command(name = "sightlines", version, about, long_about = None)]
 #[command(after_help = "Exit codes: 0 done; 1 the answer is no (query, draw: a point outside every cell; \
-                        explain: hidden); 2 bad input or usage.")]
+                        explain: hidden; verify: a violation); 2 bad input or usage.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -47,6 +48,9 @@ pub(crate) enum Command {
     Reject(RejectArgs),
     /// Write the visibility of a map of Quake or Quake II, and leave all else as it is
     Vis(VisArgs),
+    /// Check a table against the scene that it was built from: structure, and rays against the real geometry; exit code 1 if anything
+    /// is not as the table says
+    Verify(VerifyArgs),
     /// Say which cells and objects may be seen from a point, or from there in a direction
     Query(QueryArgs),
     /// Follow a viewer through a scene, and measure what each method to find what he sees leaves to draw, and costs

@@ -4,7 +4,7 @@ use crate::commands::render::RenderError;
 use crate::commands::walk::{Found, PathError, UnlikeLevels};
 use sightlines::bake::quake::StateError;
 use sightlines::bake::region::GridError;
-use sightlines::bake::{BakeError, PrtBakeError, RegionBakeError, RejectError, StabBakeError};
+use sightlines::bake::{BakeError, CertifyError, PrtBakeError, RegionBakeError, RejectError, StabBakeError};
 use sightlines::eye_to_cell::{Method, ViewError};
 use sightlines::formats::quake::VisibilityError;
 use sightlines::formats::scene::{RewriteError, SceneWriteError};
@@ -15,6 +15,7 @@ use sightlines::pvs::DecodeError;
 use sightlines::report::{DrawError, PngError};
 use sightlines::scenes::SceneError;
 use sightlines::simplify::{SimplifyError, ViewsError};
+use sightlines::verify::{ProofError, VerifyError};
 use std::io;
 use std::path::PathBuf;
 
@@ -75,6 +76,15 @@ pub(crate) enum CliError {
     /// A portal file, or the map that it is of, cannot be baked.
     #[error("{}: {source}", path.display())]
     BakePrt { path: PathBuf, source: PrtBakeError },
+    /// A table cannot have proofs.
+    #[error("{}: {source}", path.display())]
+    Certify { path: PathBuf, source: CertifyError },
+    /// Proofs cannot be compared with a table.
+    #[error("{}: {source} (the table is {})", path.display(), table.display())]
+    Proofs { path: PathBuf, table: PathBuf, source: ProofError },
+    /// Strictness without proofs.
+    #[error("{}: --strict is for tables with proofs, and there are none: no --proofs, and no {}", path.display(), beside.display())]
+    NoProofs { path: PathBuf, beside: PathBuf },
     /// A table cannot have stab trees.
     #[error("{}: {source}", path.display())]
     Stab { path: PathBuf, source: StabBakeError },
@@ -136,6 +146,9 @@ pub(crate) enum CliError {
     #[error("{}: a floor plan of a scene in space needs --height (cells reach from {low} to {high}), --eye or --cell; \
              without, there is --isometric", path.display())]
     WhichHeight { path: PathBuf, low: f64, high: f64 },
+    /// A table that cannot be of the scene that it is to be checked against.
+    #[error("{}: is no table of {}: {source}", table.display(), scene.display())]
+    Verify { table: PathBuf, scene: PathBuf, source: VerifyError },
     /// A scene cannot be generated.
     #[error(transparent)]
     Generate(#[from] SceneError),

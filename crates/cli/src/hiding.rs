@@ -33,10 +33,10 @@ pub(crate) struct BufferArgs {
     measure: MeasureArg,
     /// multifocal: planes on each side of a cell; 0 for none
     #[arg(long, value_name = "N", default_value_t = Layout::default().n_levels, value_parser = clap::value_parser!(u32).range(0..=256))]
-    planes: u32,
+    pub(crate) planes: u32,
     /// multifocal: texels along the longer side of a plane
     #[arg(long, value_name = "N", default_value_t = Layout::default().texels, value_parser = clap::value_parser!(u32).range(1..=8192))]
-    texels: u32,
+    pub(crate) texels: u32,
     /// multifocal: the most surfaces that are drawn on each side of a cell; those that seem to hide most
     #[arg(long, value_name = "N", default_value_t = 500)]
     occluders: u32,
@@ -45,7 +45,7 @@ pub(crate) struct BufferArgs {
     no_carry: bool,
     /// multifocal: how many sides of triangles are looked at to find a surface between a cell and an object; 0 for none
     #[arg(long, value_name = "N", default_value_t = SheetMethod::DEFAULT_LIMIT as u32)]
-    sheets: u32,
+    pub(crate) sheets: u32,
     /// multifocal: who draws the buffers
     #[arg(long, value_name = "WHO", default_value = "cpu")]
     backend: Backend,

@@ -58,6 +58,7 @@ fn run(arguments: &Arguments) -> Result<Answer, CliError> {
         Command::Build(args) => commands::build::run(args, show_progress, arguments.verbose > 0),
         Command::Reject(args) => commands::reject::run(args, show_progress),
         Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0),
+        Command::Verify(args) => commands::verify::run(args),
         Command::Query(args) => commands::query::run(args),
         Command::Walk(args) => commands::walk::run(args, show_progress),
         Command::Pack(args) => commands::pack::pack(args),

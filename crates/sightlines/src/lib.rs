@@ -14,6 +14,8 @@ pub use sightlines_area_light as area_light;
 pub use sightlines_bake as bake;
 #[cfg(feature = "cells")]
 pub use sightlines_cells as cells;
+#[cfg(feature = "certificates")]
+pub use sightlines_certificates as certificates;
 #[cfg(feature = "eye-to-cell")]
 pub use sightlines_eye_to_cell as eye_to_cell;
 #[cfg(feature = "formats")]
@@ -46,6 +48,8 @@ pub use sightlines_simplify as simplify;
 pub use sightlines_stabtree as stabtree;
 #[cfg(feature = "triangulation")]
 pub use sightlines_triangulation as triangulation;
+#[cfg(feature = "verify")]
+pub use sightlines_verify as verify;
 #[cfg(feature = "visible-surface")]
 pub use sightlines_visible_surface as visible_surface;
 #[cfg(feature = "walkthrough")]

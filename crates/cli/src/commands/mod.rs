@@ -15,5 +15,6 @@ pub(crate) mod query;
 pub(crate) mod reject;
 pub(crate) mod render;
 pub(crate) mod simplify;
+pub(crate) mod verify;
 pub(crate) mod vis;
 pub(crate) mod walk;

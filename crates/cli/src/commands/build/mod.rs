@@ -1,5 +1,7 @@
 //! `build`: from a plan, a scene in space, a portal file or a Quake map to its table.
 
+mod auto;
+mod certify;
 pub(crate) mod facts;
 mod options;
 pub(crate) mod plan;
@@ -17,6 +19,7 @@ use crate::error::CliError;
 use crate::input::{self, Input};
 use crate::output;
 use serde::Serialize;
+use sightlines::pvs::Table;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -45,21 +48,33 @@ pub(crate) struct BuildArgs {
     /// times as large; without trees the exact method finds the same cells
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, value_parser = clap::value_parser!(u32).range(1..))]
     stab_trees: Option<Option<u32>>,
+    #[command(flatten)]
+    certify: certify::CertifyArgs,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }
 
 pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
-    let BuildArgs { input: path, output: out, bake, region, .. } = args;
+    let BuildArgs { input: path, output: out, bake, .. } = args;
     output::refuse_same(path, out)?;
+    args.certify.check(path, out)?;
     let input = input::read(path, args.map.as_deref())?;
+    let chosen = args.region.is_auto().then(|| auto::Chosen::of(&input, &args.region));
+    let (auto, region) = match &chosen {
+        Some((auto, region)) => (Some(auto), region),
+        None => (None, &args.region),
+    };
     if !matches!(input, Input::Map(_)) {
         refuse(path, &[("--prt", args.prt.is_some())], "Quake maps", "none")?;
+    }
+    if matches!(input, Input::Portals(_) | Input::Map(_)) {
+        refuse(path, &[("--certify", args.certify.is_given())], "plans and scenes in space", "a Quake map")?;
     }
     if !matches!(input, Input::Scene(_)) {
         refuse(path, &region.of_space(), "scenes in space", "none")?;
     }
+    let proofs_of = |table: &Table| args.certify.write(path, out, table, bake.threads);
     let stab_of = |table| stab::add(path, table, args.stab_trees, bake.threads, show_progress);
     match input {
         Input::Plan(file) => {
@@ -67,9 +82,16 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
             let stab;
             (baked.table, stab) = stab_of(baked.table)?;
             output::save(out, &baked.table.to_bytes())?;
-            output::print(args.json, &With { outcome: plan::Outcome::new(out, file.map, &baked), stab })?;
+            let (proofs, outcome) = (proofs_of(&baked.table)?, plan::Outcome::new(out, file.map, &baked));
+            output::print(args.json, &With { auto, outcome, stab, proofs })?;
         }
         Input::Scene(file) if region.is_given() => {
+            refuse(
+                path,
+                &[("--certify", args.certify.is_given())],
+                "scenes by sightlines alone",
+                "one by another method, or of boxes",
+            )?;
             if region.has_boxes() {
                 refuse(
                     path,
@@ -88,14 +110,16 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
                 None => None,
             };
             output::save(out, &baked.table.to_bytes())?;
-            output::print(args.json, &With { outcome: region::Outcome::new(out, &file, region, &baked), stab })?;
+            let outcome = region::Outcome::new(out, &file, region, &baked);
+            output::print(args.json, &With { auto, outcome, stab, proofs: None })?;
         }
         Input::Scene(file) => {
             let mut baked = space::bake(path, &file, bake, show_progress)?;
             let stab;
             (baked.table, stab) = stab_of(baked.table)?;
             output::save(out, &baked.table.to_bytes())?;
-            output::print(args.json, &With { outcome: space::Outcome::new(out, &file, bake, &baked), stab })?;
+            let (proofs, outcome) = (proofs_of(&baked.table)?, space::Outcome::new(out, &file, bake, &baked));
+            output::print(args.json, &With { auto, outcome, stab, proofs })?;
         }
         Input::Portals(prt) => {
             let mut baked = portals::bake(path, &prt, bake, show_progress)?;
@@ -104,7 +128,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
             let bytes = baked.table.to_bytes();
             output::save(out, &bytes)?;
             let outcome = portals::Outcome::new(out, &prt, bake, &baked, bytes.len()).verbose(verbose);
-            output::print(args.json, &With { outcome, stab })?;
+            output::print(args.json, &With { auto, outcome, stab, proofs: None })?;
         }
         Input::Map(bsp) => {
             let portals = quake::Portals::read(path, args.prt.as_deref(), out)?;
@@ -114,24 +138,31 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
             let bytes = baked.table.to_bytes();
             output::save(out, &bytes)?;
             let outcome = quake::Outcome::new(out, &bsp, &portals, bake, &baked, bytes.len()).verbose(verbose);
-            output::print(args.json, &With { outcome, stab })?;
+            output::print(args.json, &With { auto, outcome, stab, proofs: None })?;
         }
     }
     Ok(Answer::Yes)
 }
 
-/// What was built, and the stab trees with it.
+/// What was built, and the stab trees and proofs with it.
 #[derive(Debug, Serialize)]
-struct With<T> {
+struct With<'a, T> {
+    /// What `--method auto` chose.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    auto: Option<&'a auto::Chosen>,
     #[serde(flatten)]
     outcome: T,
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<stab::Added>,
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    proofs: Option<certify::Certified>,
 }
 
-impl<T: fmt::Display> fmt::Display for With<T> {
+impl<T: fmt::Display> fmt::Display for With<'_, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.auto.iter().try_for_each(|auto| write!(f, "{auto}"))?;
         write!(f, "{}", self.outcome)?;
-        self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))
+        self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
+        self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))
     }
 }

@@ -9,6 +9,7 @@ use crate::hiding::{BufferArgs, Hiding, Maker};
 use crate::output::{bytes, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
+use sightlines::bake::auto::SceneChoice;
 use sightlines::bake::region::grid;
 use sightlines::bake::{BakedRegions, CellsFrom, RegionBakeOptions, bake_regions};
 use sightlines::formats::SceneFile;
@@ -22,7 +23,8 @@ use std::path::Path;
 pub(crate) struct RegionArgs {
     /// Scenes in space only: sightlines through the portals between cells, which is the default; multifocal: what is
     /// hidden from all of a cell by any surfaces, axis-aligned or not; both, which hides what either does; shafts or
-    /// voxels, older methods to compare with
+    /// voxels, older methods to compare with. auto, for any input, measures it, asks sightlines and what else it
+    /// needs, and says why
     #[arg(long, value_name = "HOW")]
     method: Option<Method>,
     #[command(flatten)]
@@ -40,6 +42,7 @@ pub(crate) struct RegionArgs {
 /// Who says what is hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Method {
+    Auto,
     Sightlines,
     Multifocal,
     Both,
@@ -58,6 +61,22 @@ fn counts(text: &str) -> Result<[u32; 3], String> {
 }
 
 impl RegionArgs {
+    /// Whether the method is to be chosen.
+    pub(super) fn is_auto(&self) -> bool {
+        self.method == Some(Method::Auto)
+    }
+
+    /// What a choice stands for. What is not asked keeps its arguments, which mean nothing then.
+    pub(super) fn chosen(&self, choice: &SceneChoice) -> Self {
+        let mut chosen = self.clone();
+        chosen.method = Some(if choice.asks_a_method() { Method::Both } else { Method::Sightlines });
+        (chosen.buffers.planes, chosen.buffers.texels) = (choice.planes, choice.texels);
+        if !choice.sheets {
+            chosen.buffers.sheets = 0;
+        }
+        chosen
+    }
+
     /// Whether anything but sightlines through a k-d tree is asked for.
     pub(super) fn is_given(&self) -> bool {
         self.method.is_some_and(|m| m != Method::Sightlines) || self.has_boxes()
@@ -70,7 +89,11 @@ impl RegionArgs {
 
     /// Options that mean something for scenes in space only.
     pub(super) fn of_space(&self) -> [(&'static str, bool); 3] {
-        [("--method", self.method.is_some()), ("--cells", self.cells.is_given()), ("--grid", self.grid.is_some())]
+        [
+            ("--method", self.method.is_some() && !self.is_auto()),
+            ("--cells", self.cells.is_given()),
+            ("--grid", self.grid.is_some()),
+        ]
     }
 }
 
@@ -97,7 +120,7 @@ pub(super) fn bake(
     };
     let method = region.method.unwrap_or(Method::Sightlines);
     let hiding = match method {
-        Method::Sightlines => None,
+        Method::Auto | Method::Sightlines => None,
         Method::Multifocal | Method::Both => Some(Hiding::Buffers),
         Method::Shafts => Some(Hiding::Shafts),
         Method::Voxels => Some(Hiding::Voxels),
@@ -109,7 +132,7 @@ pub(super) fn bake(
     let options = RegionBakeOptions {
         cells: &cells,
         method: maker.is_some().then_some(&make),
-        sightlines: matches!(method, Method::Sightlines | Method::Both),
+        sightlines: matches!(method, Method::Auto | Method::Sightlines | Method::Both),
         split: Split { depth: region.split, ..Split::default() },
         cut,
         portals: args.portal_mode(),

@@ -41,7 +41,7 @@ pub(super) fn draw(args: &DrawArgs, table: &Table) -> Result<String, CliError> {
     } else {
         let height = args.height.or_else(|| height_of(table, view, up));
         let height = height.ok_or_else(|| nowhere(args, table, up))?;
-        slice_svg(table, &SliceOptions { view, up, height, size: args.size })
+        slice_svg(table, &SliceOptions { view, up, height, size: args.size, ..SliceOptions::default() })
     };
     drawn.map_err(|source| CliError::Draw { path: path.clone(), source })
 }

@@ -1,10 +1,9 @@
 //! The from-region methods as arguments.
 
-use sightlines::area_light::AnyOf;
 use sightlines::from_region::ViewShafts;
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, patches};
-use sightlines::multifocal::{Chosen, FromRegion, Layout, Multifocal};
+use sightlines::multifocal::{Chosen, FromRegion, Layout, Multifocal, Together};
 use sightlines::multifocal_cpu::Fast;
 use std::sync::Arc;
 
@@ -23,8 +22,8 @@ pub(super) enum Kind {
 }
 
 /// What any of these methods hides.
-pub(super) fn made(kinds: &[Kind], triangles: &[[Point3; 3]], scene: Aabb<3>) -> AnyOf {
-    let one = |&kind: &Kind| -> Box<dyn FromRegion> {
+pub(super) fn made(kinds: &[Kind], triangles: &[[Point3; 3]], scene: Aabb<3>) -> Together {
+    let one = |&kind: &Kind| -> Box<dyn FromRegion + Send> {
         let occluders = || patches(triangles, &PatchOptions::default());
         match kind {
             Kind::Sheets => Box::new(SheetMethod::new(triangles)),
@@ -41,5 +40,5 @@ pub(super) fn made(kinds: &[Kind], triangles: &[[Point3; 3]], scene: Aabb<3>) ->
             unlike.push(*kind)
         }
     });
-    AnyOf::new(unlike.iter().map(one).collect())
+    Together::about_pieces(unlike.iter().map(one).collect())
 }

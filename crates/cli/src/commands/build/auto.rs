@@ -1,0 +1,67 @@
+//! `--method auto`: what is asked is chosen by what the input is like, and why is said.
+
+use super::region::RegionArgs;
+use crate::input::Input;
+use serde::Serialize;
+use sightlines::bake::auto::{SceneChoice, SceneFacts};
+use std::fmt;
+
+/// What was chosen, and why.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Chosen {
+    method: String,
+    reasons: Vec<String>,
+    /// What a scene in space was measured to be like.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    facts: Option<Facts>,
+}
+
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Facts {
+    n_triangles: usize,
+    n_objects: usize,
+    axial_share: f64,
+    loose_share: f64,
+    openness: f64,
+    object_size: f64,
+}
+
+impl Chosen {
+    /// Chooses for an input; the arguments that this stands for come with it.
+    pub(super) fn of(input: &Input, given: &RegionArgs) -> (Self, RegionArgs) {
+        let plain = |method: &str, reason: &str| {
+            let (method, reasons) = (method.to_owned(), vec![reason.to_owned()]);
+            (Self { method, reasons, facts: None }, given.clone())
+        };
+        match input {
+            Input::Scene(file) => {
+                let f = SceneFacts::of(&file.scene);
+                let choice = SceneChoice::of(&f, given.has_boxes());
+                let facts = Facts {
+                    n_triangles: f.n_triangles,
+                    n_objects: f.n_objects,
+                    axial_share: f.axial,
+                    loose_share: f.loose,
+                    openness: f.openness,
+                    object_size: f.object_size,
+                };
+                let region = given.chosen(&choice);
+                (Self { method: choice.to_string(), reasons: choice.reasons, facts: Some(facts) }, region)
+            }
+            Input::Plan(_) => plain(
+                "sightlines",
+                "a plan is solved in the plane, exactly; its walls' directions and groups say how it is cut",
+            ),
+            Input::Portals(_) | Input::Map(_) => {
+                plain("sightlines", "cells and portals are given, convex and in any direction: beams, then sequences")
+            }
+        }
+    }
+}
+
+impl fmt::Display for Chosen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "chosen         {}", self.method)?;
+        self.reasons.iter().try_for_each(|reason| writeln!(f, "               {reason}"))
+    }
+}

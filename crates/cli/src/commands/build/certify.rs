@@ -1,0 +1,75 @@
+//! Proofs that are to be written beside a table.
+
+use crate::error::CliError;
+use crate::output::{self, bytes, seconds};
+use serde::Serialize;
+use sightlines::bake::certify_table;
+use sightlines::pvs::Table;
+use sightlines::stabtree::CertifyOptions;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Whether proofs are written, and where.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub(super) struct CertifyArgs {
+    /// Write proofs too, beside the table with the ending .cert, or into FILE: a line for what is visible, a reason for what is
+    /// hidden, which `verify` checks without any of the code that built the table. May take ten times as long as the table. Not
+    /// for Quake maps (see `vis --certify`), nor for scenes by another method than sightlines
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
+    certify: Option<Option<PathBuf>>,
+}
+
+impl CertifyArgs {
+    /// Whether proofs are wanted.
+    pub(super) fn is_given(&self) -> bool {
+        self.certify.is_some()
+    }
+
+    /// Refuses a file of proofs that is the input or the table.
+    pub(super) fn check(&self, input: &Path, table: &Path) -> Result<(), CliError> {
+        let Some(file) = self.file(table) else { return Ok(()) };
+        output::refuse_same(input, &file)?;
+        if file == table { Err(CliError::SameFile(file)) } else { Ok(()) }
+    }
+
+    fn file(&self, table: &Path) -> Option<PathBuf> {
+        let given = self.certify.as_ref()?;
+        Some(given.clone().unwrap_or_else(|| table.with_extension("cert")))
+    }
+
+    /// Finds and writes proofs of `table`, made from `path` and written to `out`, if they are wanted.
+    pub(super) fn write(
+        &self,
+        path: &Path,
+        out: &Path,
+        table: &Table,
+        threads: usize,
+    ) -> Result<Option<Certified>, CliError> {
+        let Some(file) = self.file(out) else { return Ok(None) };
+        let made = certify_table(table, &CertifyOptions { threads, ..CertifyOptions::default() });
+        let made = made.map_err(|source| CliError::Certify { path: path.to_owned(), source })?;
+        let content = made.proofs.to_bytes();
+        output::save(&file, &content)?;
+        let n_bytes = content.len();
+        Ok(Some(Certified {
+            proofs: file.display().to_string(),
+            n_proof_bytes: n_bytes,
+            certify_seconds: made.time.as_secs_f64(),
+        }))
+    }
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+pub(super) struct Certified {
+    proofs: String,
+    n_proof_bytes: usize,
+    certify_seconds: f64,
+}
+
+impl fmt::Display for Certified {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = std::time::Duration::try_from_secs_f64(self.certify_seconds).unwrap_or_default();
+        writeln!(f, "proofs         {}, {}, in {}", self.proofs, bytes(self.n_proof_bytes as u64), seconds(time))
+    }
+}

@@ -1,0 +1,37 @@
+//! The picture of the first ray that shows a violation.
+
+use crate::commands::draw::space::up_of;
+use crate::commands::draw::{draw_plan, save_picture};
+use crate::error::CliError;
+use sightlines::geometry::Point2;
+use sightlines::pvs::Table;
+use sightlines::report::{DrawOptions, SliceOptions, View, slice_svg};
+use sightlines::verify::{Findings, Violation};
+use std::path::{Path, PathBuf};
+
+/// Draws what the table says that the cell sees, and the ray that says otherwise. `None`, and no picture, if no violation has a
+/// ray.
+pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path) -> Result<Option<PathBuf>, CliError> {
+    let shown = findings.violations.iter().find_map(|v| Some((v, v.segment()?)));
+    let Some((violation, segment)) = shown else { return Ok(None) };
+    let cells = violation.cells();
+    let svg = if table.dimension() == 2 {
+        let target = if let Violation::HiddenCell { cells: [_, to], .. } = violation { Some(*to) } else { None };
+        let line = Some(segment.map(|[x, y, _]| Point2::new(x, y)));
+        let options = DrawOptions { view: View::Cell(cells[0]), target, line, ..DrawOptions::default() };
+        draw_plan(source, table, &options)?
+    } else {
+        let up = up_of(table);
+        let options = SliceOptions {
+            view: View::Cell(cells[0]),
+            up,
+            height: segment[0][up.axis()],
+            line: Some(segment),
+            ..SliceOptions::default()
+        };
+        slice_svg(table, &options)
+            .map_err(|source_error| CliError::Draw { path: source.to_owned(), source: source_error })?
+    };
+    save_picture(&svg, out)?;
+    Ok(Some(out.to_owned()))
+}

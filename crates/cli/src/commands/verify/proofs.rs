@@ -1,0 +1,163 @@
+//! Proofs that `build --certify` wrote, checked against their table.
+
+use super::outcome::Outcome;
+use crate::error::CliError;
+use crate::output::{bytes, count, seconds};
+use serde::Serialize;
+use sightlines::pvs::Table;
+use sightlines::verify::{ProofFindings, Truth, WallFindings, check_proofs, check_walls_in_space, check_walls_of_plan};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Which proofs are checked.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub(super) struct ProofArgs {
+    /// The proofs that `build --certify` wrote with the table; the file of the table's name that ends in .cert, if there is one and
+    /// nothing else is given
+    #[arg(long, value_name = "FILE.cert")]
+    proofs: Option<PathBuf>,
+    /// With proofs: a hidden pair without one is a violation too, and so is a wall of a cell that nothing in the scene covers
+    #[arg(long)]
+    strict: bool,
+}
+
+/// Pairs and violations that people are shown.
+const SHOWN: usize = 5;
+/// Pairs and violations that JSON lists.
+const LISTED: usize = 1000;
+
+/// What the proofs say.
+#[derive(Debug, Serialize)]
+pub(super) struct ProofOutcome {
+    file: String,
+    n_bytes: usize,
+    /// Whether nothing speaks against the table, and if that was asked for, everything hidden is proven.
+    pub(super) is_true: bool,
+    /// Pairs that the table shows and a line joins.
+    n_visible: u64,
+    /// Pairs that the table hides and that are proven.
+    n_hidden: u64,
+    /// Pairs that the table shows without a proof.
+    n_unproven_visible: u64,
+    /// Pairs that the table hides without a proof.
+    n_unproven_hidden: u64,
+    unproven_hidden: Vec<[u32; 2]>,
+    n_violations: u64,
+    violations: Vec<String>,
+    /// Parts of borders of cells that are no portals: what the proofs take for walls.
+    n_walls: u64,
+    /// Of these, parts that nothing in the scene covers exactly.
+    n_bare_walls: u64,
+    /// Where: the cell, and a point.
+    bare_walls: Vec<(u32, [f64; 3])>,
+    seconds: f64,
+}
+
+/// Checks the proofs of a table; `None` if none are given and none are beside it.
+///
+/// # Errors
+/// [`CliError`] if `--strict` has nothing to be strict about, for files that cannot be read, and for proofs of another kind of table.
+pub(super) fn check(
+    args: &ProofArgs,
+    path: &Path,
+    table: &Table,
+    truth: &Truth<'_>,
+) -> Result<Option<ProofOutcome>, CliError> {
+    let beside = path.with_extension("cert");
+    let file = match &args.proofs {
+        Some(file) => file.clone(),
+        None if beside.is_file() => beside,
+        None if args.strict => return Err(CliError::NoProofs { path: path.to_owned(), beside }),
+        None => return Ok(None),
+    };
+    let content = std::fs::read(&file).map_err(|source| CliError::Open { path: file.clone(), source })?;
+    let start = Instant::now();
+    let found = check_proofs(table, &content);
+    let found = found.map_err(|source| CliError::Proofs { path: file.clone(), table: path.to_owned(), source })?;
+    let walls = match truth {
+        Truth::Plan(plan) => check_walls_of_plan(table, plan),
+        Truth::Scene(scene) => check_walls_in_space(table, scene),
+        _ => WallFindings::default(),
+    };
+    Ok(Some(ProofOutcome::new(&file, content.len(), &found, &walls, args.strict, start.elapsed())))
+}
+
+impl ProofOutcome {
+    fn new(
+        file: &Path,
+        n_bytes: usize,
+        found: &ProofFindings,
+        walls: &WallFindings,
+        strict: bool,
+        time: Duration,
+    ) -> Self {
+        let pairs = found.unproven_hidden.iter().take(LISTED);
+        Self {
+            file: file.display().to_string(),
+            n_bytes,
+            is_true: found.is_true(strict) && !(strict && walls.n_bare > 0),
+            n_visible: found.n_visible,
+            n_hidden: found.n_hidden,
+            n_unproven_visible: found.n_unproven_visible,
+            n_unproven_hidden: found.n_unproven_hidden,
+            unproven_hidden: pairs.map(|pair| pair.map(|cell| cell.0)).collect(),
+            n_violations: found.n_violations,
+            violations: found.violations.iter().take(LISTED).map(ToString::to_string).collect(),
+            n_walls: walls.n_walls,
+            n_bare_walls: walls.n_bare,
+            bare_walls: walls.bare.iter().map(|(cell, point)| (cell.0, *point)).collect(),
+            seconds: time.as_secs_f64(),
+        }
+    }
+}
+
+impl fmt::Display for ProofOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = seconds(Duration::try_from_secs_f64(self.seconds).unwrap_or_default());
+        writeln!(f, "proofs         {}, {}, checked in {time}", self.file, bytes(self.n_bytes as u64))?;
+        let [shown, hidden] =
+            [(self.n_visible, "visible"), (self.n_hidden, "hidden")].map(|(n, what)| count(n, &format!("{what} pair")));
+        writeln!(f, "               {shown} and {hidden} proven")?;
+        for (n, what) in [(self.n_unproven_visible, "visible"), (self.n_unproven_hidden, "hidden")] {
+            if n > 0 {
+                writeln!(f, "unproven       {}", count(n, &format!("{what} pair")))?;
+            }
+        }
+        let pairs = self.unproven_hidden.iter().take(SHOWN).map(|[a, b]| format!("{a} and {b}"));
+        let pairs: Vec<String> = pairs.collect();
+        if !pairs.is_empty() {
+            writeln!(f, "               hidden without a proof: {}", pairs.join(", "))?;
+        }
+        if self.n_walls > 0 {
+            let backed = count(self.n_walls - self.n_bare_walls, "wall");
+            writeln!(f, "walls          {backed} of {} covered by the scene", self.n_walls)?;
+        }
+        for (cell, [x, y, z]) in self.bare_walls.iter().take(SHOWN) {
+            writeln!(f, "               not covered: of cell {cell}, at ({x}, {y}, {z})")?;
+        }
+        for text in self.violations.iter().take(SHOWN) {
+            writeln!(f, "violation      {text}")?;
+        }
+        match self.n_violations {
+            0 => writeln!(f, "proofs say     nothing that is not as the table says"),
+            n => writeln!(f, "proofs say     {}", count(n, "violation")),
+        }
+    }
+}
+
+/// What was found, with what the proofs say.
+#[derive(Debug, Serialize)]
+pub(super) struct With {
+    #[serde(flatten)]
+    pub(super) outcome: Outcome,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) proofs: Option<ProofOutcome>,
+}
+
+impl fmt::Display for With {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))?;
+        write!(f, "{}", self.outcome)
+    }
+}
