@@ -2,7 +2,7 @@
 
 use crate::gpu::Wish;
 use crate::step::{self, Failure, cargo, root};
-use crate::{tally, tidy};
+use crate::{lab, tally, tidy};
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -67,15 +67,22 @@ fn demo() -> Result<(), Failure> {
 /// * `gpu`: which device the tests on one are run on
 pub(crate) fn ci(gpu: Wish) -> Result<(), Failure> {
     type Step = (&'static str, fn() -> Result<(), Failure>);
-    let steps: [Step; 5] =
-        [("tidy", tidy::tidy), ("docs", docs), ("alone", alone), ("demo", demo), ("benches", benches_once)];
+    let steps: [Step; 7] = [
+        ("tidy", tidy::tidy),
+        ("docs", docs),
+        ("alone", alone),
+        ("demo", demo),
+        ("benches", benches_once),
+        ("stability", lab::quick_stability),
+        ("charts", lab::quick_charts),
+    ];
     let mut times = Vec::new();
     for (name, step) in steps {
         timed(name, &mut times, step)?;
     }
     let tally = timed("test", &mut times, || tally::test(gpu))?;
     for (name, time) in times {
-        println!("{name:>8} {:6.1} s", time.as_secs_f64());
+        println!("{name:>9} {:6.1} s", time.as_secs_f64());
     }
     tally.conclude()
 }

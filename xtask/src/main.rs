@@ -7,6 +7,7 @@ mod debian;
 mod freedoom;
 mod gate;
 mod gpu;
+mod lab;
 mod step;
 mod tally;
 mod tidy;
@@ -51,6 +52,18 @@ enum Task {
         /// Part of a bench's name.
         filter: Option<String>,
     },
+    /// Measures speed against accuracy and draws the charts; `-- --help` has the options.
+    Chart {
+        /// Options of the program behind it, such as `--quick`, `--only NAME`, `--draw`, `--out DIR`.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
+        options: Vec<String>,
+    },
+    /// Pushes methods to where they fail, and draws how often they do; `-- --help` has the options.
+    Stability {
+        /// Options of the program behind it, such as `--quick`, `--only NAME`, `--draw`, `--out DIR`.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
+        options: Vec<String>,
+    },
     /// Builds the documentation; a warning is an error.
     Docs,
     /// Checks formatting, lints, file lengths, and that nothing is left unfinished.
@@ -92,6 +105,8 @@ fn run(task: Task) -> Result<(), Failure> {
             let filter = filter.iter().flat_map(|f| ["--", f]);
             step::run(cargo().args(["bench", "-p", "sightlines-benches"]).args(filter))
         }
+        Task::Chart { options } => lab::run("chart", &options),
+        Task::Stability { options } => lab::run("stability", &options),
         Task::Docs => gate::docs(),
         Task::Tidy => tidy::tidy(),
         Task::Alone => gate::alone(),
@@ -132,6 +147,11 @@ mod tests {
             panic!("fuzz is a task");
         };
         assert_eq!((seconds, target.as_deref(), list), (Some(5), Some("wad"), false));
+        let Task::Stability { options } = Cli::parse_from(["xtask", "stability", "--quick", "--only", "scale"]).task
+        else {
+            panic!("the stability lab is a task");
+        };
+        assert_eq!(options, ["--quick", "--only", "scale"]);
         let gpu = |words: &[&str]| match Cli::parse_from(words).task {
             Task::Test { gpu } | Task::Ci { gpu } => gpu,
             other => panic!("{other:?}"),

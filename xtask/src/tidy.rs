@@ -29,7 +29,7 @@ pub(crate) fn tidy() -> Result<(), Failure> {
 
 fn texts() -> Result<(), Failure> {
     let mut files = Vec::new();
-    for folder in ["crates", "shaders", "tests", "benches", "xtask"] {
+    for folder in ["crates", "shaders", "tests", "benches", "lab", "xtask"] {
         collect(&root().join(folder), &mut files)?;
     }
     files.sort();
