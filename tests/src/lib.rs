@@ -1,5 +1,6 @@
 //! What tests across crates share: where real data is, and what was seen there.
 
+pub mod certificates;
 mod numbers;
 pub mod quake_bytes;
 pub mod scenes;
@@ -7,6 +8,10 @@ pub mod simplified;
 pub mod surfaces;
 pub mod volumes;
 pub mod world_files;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/guides/rust-engine.md")]
+struct GuideDoctests;
 
 pub use scenes::{CellWitness, scene_folders, scene_witness};
 

@@ -25,6 +25,7 @@ use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
 use sightlines_packed::{PackOptions, Packed, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
+use sightlines_tests::certificates;
 use sightlines_tests::simplified::SmallMesh;
 use sightlines_tests::surfaces::SmallShot;
 use sightlines_tests::volumes::SmallWorld;
@@ -43,7 +44,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 18] = [
+const TARGETS: [Target; 19] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
@@ -61,6 +62,7 @@ const TARGETS: [Target; 18] = [
     Target { name: "prt", seeds: prts, check: check_prt },
     Target { name: "bsp", seeds: maps, check: check_map },
     Target { name: "vis-state", seeds: vis_states, check: check_vis_state },
+    Target { name: "certificates", seeds: certificates::seeds, check: certificates::check },
     Target { name: "garbage", seeds: garbage, check: check_anything },
 ];
 
@@ -451,7 +453,8 @@ fn check_map(bytes: &[u8]) -> bool {
 
 fn check_anything(bytes: &[u8]) -> bool {
     let text = check_prt(bytes) | check_map(bytes) | check_vis_state(bytes);
-    text | check_reject(bytes)
+    text | certificates::check(bytes)
+        | check_reject(bytes)
         | check_bake(bytes)
         | check_pvs(bytes)
         | check_packed(bytes)

@@ -1,0 +1,195 @@
+//! What `--method auto` chooses for each scene, against every fixed choice: time, and pairs of a cell and an object that are reported.
+//!
+//! Real scenes are those of the folder that `SIGHTLINES_DATA` names, seen from some of their own view cells. Ends with 1 if the choice
+//! reports a pair more than the default. Times are of one thread, preparations included.
+
+use clap::Parser;
+use sightlines::bake::auto::{SceneChoice, SceneFacts};
+use sightlines::bake::{CellsFrom, PortalMode, RegionBakeOptions, bake_regions};
+use sightlines::cells::Scene;
+use sightlines::formats::ViewCells;
+use sightlines::formats::scene::read_scene;
+use sightlines::formats::view_cells::ViewCell;
+use sightlines::formats::view_cells::read_view_cells;
+use sightlines::geometry::Aabb;
+use sightlines::kdtree::SceneOptions;
+use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
+use sightlines::multifocal::{Chosen, FromRegion, Layout, Multifocal, Split, Together};
+use sightlines::multifocal_cpu::Fast;
+use sightlines::scenes::city::{CityOptions, city, city_crossings};
+use sightlines::scenes::{TowerOptions, tower, tower_rooms};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// What is chosen for a scene, against every fixed choice.
+#[derive(Debug, Clone, Parser)]
+struct Args {
+    /// Runs only if this bench's name contains it.
+    filter: Option<String>,
+    /// Real scenes, and for each the file of its cells.
+    #[arg(long, value_delimiter = ',', default_values_t = [
+        "duplex:cells_rooms", "office_a:cells_rooms", "whale_large:cells_walk", "whale_tall:cells_rooms", "delft:cells_street",
+        "sponza:cells_walk", "pandora:cells_walk",
+    ].map(str::to_owned))]
+    scenes: Vec<String>,
+    /// Cells of each scene, at most.
+    #[arg(long, default_value_t = 24)]
+    cells: usize,
+    /// A small city and a small tower only.
+    #[arg(long)]
+    test: bool,
+    /// Given by cargo.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+struct Case {
+    name: String,
+    scene: Scene,
+    cells: ViewCells,
+}
+
+fn of_boxes(boxes: Vec<Aabb<3>>) -> ViewCells {
+    ViewCells { cells: (0..).zip(boxes).map(|(i, bounds): (u32, _)| ViewCell { id: i.to_string(), bounds }).collect() }
+}
+
+fn some(mut cells: ViewCells, n: usize) -> ViewCells {
+    let step = cells.cells.len().div_ceil(n.max(1)).max(1);
+    cells.cells = cells.cells.into_iter().step_by(step).collect();
+    cells
+}
+
+fn generated(args: &Args) -> Vec<Case> {
+    let blocks = if args.test { 3 } else { 6 };
+    let options = CityOptions { blocks_x: blocks, blocks_z: blocks, ..CityOptions::default() };
+    let boxes = city_crossings(options).expect("in range");
+    let streets = Case { name: "city".to_owned(), scene: city(options).expect("in range"), cells: of_boxes(boxes) };
+    let options = TowerOptions { floors: if args.test { 1 } else { 2 }, ..TowerOptions::default() };
+    let boxes = tower_rooms(options).expect("in range").into_iter().map(|room| room.bounds).collect();
+    let rooms = Case { name: "tower".to_owned(), scene: tower(options).expect("in range"), cells: of_boxes(boxes) };
+    vec![streets, rooms]
+}
+
+fn real(args: &Args) -> Vec<Case> {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
+        eprintln!("!! SIGHTLINES_DATA is not set: real scenes are left out");
+        return Vec::new();
+    };
+    let case = |named: &String| {
+        let (name, cells) = named.split_once(':').expect("a scene and its cells, with a colon between");
+        let folder = Path::new(&data).join("scenes").join(name);
+        let scene = read_scene(folder.join(format!("{name}.glb"))).expect("the scene can be read").scene;
+        let cells = read_view_cells(folder.join(format!("{cells}.json"))).expect("the cells can be read");
+        Case { name: name.to_owned(), scene, cells }
+    };
+    args.scenes.iter().map(case).collect()
+}
+
+/// Planes and texels of buffers, if any; and whether sheets.
+type Method = Option<(u32, u32, bool)>;
+
+struct Found {
+    name: String,
+    reported: u64,
+    time: Duration,
+}
+
+fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instant) -> Found {
+    let triangles = || case.scene.objects().iter().flat_map(|o| o.corners()).collect::<Vec<_>>();
+    let shared = method.map(|(planes, texels, sheets)| {
+        let triangles = triangles();
+        let occluders = if planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
+        let layout = Layout { n_levels: planes, texels, ..Layout::default() };
+        (Arc::new(Chosen::new(occluders, 500)), layout, sheets.then(|| Arc::new(Sheets::new(&triangles))))
+    });
+    let bounds = case.scene.bounds();
+    let make = || -> Box<dyn FromRegion + Send> {
+        let (chosen, layout, sheets) = shared.as_ref().expect("only asked if there is a method");
+        let mut methods: Vec<Box<dyn FromRegion + Send>> = Vec::new();
+        if layout.n_levels > 0 {
+            methods.push(Box::new(Multifocal::new(Fast::new(), Arc::clone(chosen), bounds, *layout)));
+        }
+        methods.extend(
+            sheets.iter().map(|s| -> Box<dyn FromRegion + Send> { Box::new(SheetMethod::shared(Arc::clone(s))) }),
+        );
+        Box::new(Together::new(methods))
+    };
+    let cells = CellsFrom::Boxes(case.cells.clone());
+    let options = RegionBakeOptions {
+        cells: &cells,
+        method: shared.is_some().then_some(&make),
+        sightlines,
+        split: Split::default(),
+        cut: SceneOptions::default(),
+        portals: PortalMode::Exact,
+        threads: 1,
+        progress: None,
+    };
+    let baked = bake_regions(&case.scene, &options).expect("the scene can be baked");
+    Found { name: name.to_owned(), reported: baked.n_objects_seen, time: start.elapsed() }
+}
+
+/// Prints the rows of a case; whether the choice is no looser than the default.
+fn rows(case: &Case) -> bool {
+    let standard = Layout::default();
+    let full = Some((standard.n_levels, standard.texels, true));
+    let fixed: [(&str, bool, Method); 4] = [
+        ("sightlines (default)", true, None),
+        ("multifocal", false, full),
+        ("both", true, full),
+        ("sheets", false, Some((0, standard.texels, true))),
+    ];
+    let fixed = fixed.map(|(name, sightlines, method)| bake(case, name, sightlines, method, Instant::now()));
+    let start = Instant::now();
+    let facts = SceneFacts::of(&case.scene);
+    let choice = SceneChoice::of(&facts, true);
+    let method = choice.asks_a_method().then_some((choice.planes, choice.texels, choice.sheets));
+    let auto = bake(case, &format!("auto: {choice}"), true, method, start);
+    let as_tight = fixed.iter().filter(|f| f.reported <= auto.reported).map(|f| f.time).min();
+    let all = (case.cells.cells.len() * case.scene.objects().len()) as f64;
+    for found in fixed.iter().chain([&auto]) {
+        let against = match as_tight {
+            Some(best) if found.name == auto.name => format!("{:.2}", auto.time.as_secs_f64() / best.as_secs_f64()),
+            None if found.name == auto.name => "none is as tight".to_owned(),
+            _ => String::new(),
+        };
+        println!(
+            "| {} | {} | {} | {:.2} | {:.2} | {:.2} | {} | {} | {:.1} % | {:.2} | {against} |",
+            case.name,
+            case.scene.n_triangles(),
+            case.cells.cells.len(),
+            facts.axial,
+            facts.loose,
+            facts.openness,
+            found.name,
+            found.reported,
+            100.0 * found.reported as f64 / all,
+            found.time.as_secs_f64(),
+        );
+    }
+    auto.reported <= fixed[0].reported
+}
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    if args.filter.as_ref().is_some_and(|filter| !"auto".contains(filter.as_str())) {
+        return ExitCode::SUCCESS;
+    }
+    let mut cases = generated(&args);
+    if !args.test {
+        cases.extend(real(&args));
+    }
+    cases.iter_mut().for_each(|case| case.cells = some(case.cells.clone(), if args.test { 3 } else { args.cells }));
+    println!(
+        "| scene | triangles | cells | axial | loose | open | method | pairs | reported | s | against the fastest fixed one as tight |"
+    );
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: |");
+    let looser: Vec<&str> = cases.iter().filter(|case| !rows(case)).map(|case| &*case.name).collect();
+    if looser.is_empty() {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("looser than the default: {}", looser.join(", "));
+    ExitCode::FAILURE
+}
