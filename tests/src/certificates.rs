@@ -1,13 +1,16 @@
 //! Proofs of small tables for fuzzing: whatever is read from broken bytes is refused by the checker, or true.
 
-use sightlines::bake::{BakeOptions, SceneBakeOptions, bake_plan, bake_scene, certify_table};
+use sightlines::bake::{BakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, certify_table};
+use sightlines::certificates::convex::ConvexProofs;
 use sightlines::certificates::plan::PlanProofs;
 use sightlines::certificates::space::BoxProofs;
 use sightlines::certificates::{Kind, kind_of};
+use sightlines::formats::Prt;
 use sightlines::pvs::{CellId, Table};
+use sightlines::scenes::world::{BspWorldOptions, bsp_world, corridor};
 use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::CertifyOptions;
-use sightlines::verify::{boxes_of, plan_of};
+use sightlines::verify::{boxes_of, convex_of, plan_of};
 use std::sync::OnceLock;
 
 /// Tables, and proofs of them as bytes; made once.
@@ -23,7 +26,16 @@ fn proven() -> &'static [(Table, Vec<u8>)] {
             let made = certify_table(&table, &CertifyOptions::default()).expect("the table has cells and portals");
             (table, made.proofs.to_bytes())
         };
-        plans.chain(storey.map(|baked| baked.table)).map(proofs).collect()
+        let leafs = BspWorldOptions { seed: 3, leafs: 12, solid_percent: 45, tilted_percent: 60 };
+        let worlds = bsp_world(leafs).into_iter().chain(corridor(7, [1, 2], 7));
+        let maps = worlds.filter_map(|world| {
+            let mut prt = Prt::new(world.graph.n_cells() as u32).ok()?;
+            for portal in world.graph.portals() {
+                prt.push_portal(portal.cells.map(|cell| cell.0), portal.shape.corners()).ok()?;
+            }
+            bake_prt(&prt, PrtOptions::default()).ok().map(|baked| baked.table)
+        });
+        plans.chain(storey.map(|baked| baked.table)).chain(maps).map(proofs).collect()
     })
 }
 
@@ -60,7 +72,13 @@ fn check_one(bytes: &[u8]) -> bool {
             let of = |table: &Table| proofs.check(&boxes_of(table).ok()?).ok();
             proven().iter().map(|(table, _)| (table, of(table))).collect()
         }
-        _ => return false,
+        Ok(Kind::Convex) => {
+            let Ok(proofs) = ConvexProofs::from_bytes(bytes) else { return false };
+            assert_eq!(ConvexProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
+            let of = |table: &Table| proofs.check(&convex_of(table).ok()?).ok();
+            proven().iter().map(|(table, _)| (table, of(table))).collect()
+        }
+        Err(_) => return false,
     };
     for (table, proven) in proven {
         let Some(proven) = proven else { continue };

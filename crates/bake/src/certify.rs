@@ -1,10 +1,11 @@
 //! Proofs for a finished table.
 
 use crate::{axial_graph_of, convex_graph_of, graph_of};
+use sightlines_certificates::convex::{ConvexNetworkError, ConvexProofs};
 use sightlines_certificates::plan::{NetworkError, PlanProofs};
 use sightlines_certificates::space::{BoxNetworkError, BoxProofs};
 use sightlines_pvs::Table;
-use sightlines_stabtree::{CertifyOptions, certify_plan, certify_space};
+use sightlines_stabtree::{CertifyOptions, certify_convex, certify_plan, certify_space};
 use std::time::{Duration, Instant};
 
 /// Why a table cannot have proofs.
@@ -14,15 +15,15 @@ pub enum CertifyError {
     /// The table does not have the cells and portals that it was made from.
     #[error("proofs need the cells and portals that the table was made from, and it does not have them")]
     NoGraph,
-    /// A table of a Quake map, or of a portal file.
-    #[error("tables of Quake maps have no proofs")]
-    Convex,
     /// Cells or portals of a plan that nothing can be proven about.
     #[error(transparent)]
     Plan(#[from] NetworkError),
     /// Cells or portals of a scene in space that nothing can be proven about.
     #[error(transparent)]
     Space(#[from] BoxNetworkError),
+    /// Cells or portals of a Quake map that nothing can be proven about.
+    #[error(transparent)]
+    Convex(#[from] ConvexNetworkError),
 }
 
 /// Proofs of a table, of the kind that it is.
@@ -33,6 +34,8 @@ pub enum Proofs {
     Plan(PlanProofs),
     /// Of a scene in space.
     Space(BoxProofs),
+    /// Of a Quake map, or of a portal file.
+    Convex(ConvexProofs),
 }
 
 impl Proofs {
@@ -41,6 +44,7 @@ impl Proofs {
         match self {
             Self::Plan(proofs) => proofs.to_bytes(),
             Self::Space(proofs) => proofs.to_bytes(),
+            Self::Convex(proofs) => proofs.to_bytes(),
         }
     }
 }
@@ -58,7 +62,7 @@ pub struct Certified {
 /// have a proof is for the checker to say.
 ///
 /// # Errors
-/// [`CertifyError`] for tables of regions and of Quake maps, and those whose portals were stripped.
+/// [`CertifyError`] for tables of regions, and those whose portals were stripped.
 pub fn certify_table(table: &Table, options: &CertifyOptions) -> Result<Certified, CertifyError> {
     let start = Instant::now();
     let rows = &table.parts().rows;
@@ -66,8 +70,8 @@ pub fn certify_table(table: &Table, options: &CertifyOptions) -> Result<Certifie
         Proofs::Plan(certify_plan(&graph, rows, options)?)
     } else if let Some(graph) = axial_graph_of(table) {
         Proofs::Space(certify_space(&graph, rows, options)?)
-    } else if convex_graph_of(table).is_some() {
-        return Err(CertifyError::Convex);
+    } else if let Some(graph) = convex_graph_of(table) {
+        Proofs::Convex(certify_convex(&graph, rows, options)?)
     } else {
         return Err(CertifyError::NoGraph);
     };

@@ -1,6 +1,7 @@
 //! Exact arithmetic on doubles: a double is a whole number times a power of two, and so are sums and products.
 
 use num_bigint::{BigInt, Sign};
+use num_traits::ToPrimitive;
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -32,12 +33,19 @@ impl Dyadic {
             0x7ff => (0, 0),
             _ => (fraction | 1 << 52, field - 1075),
         };
-        let mantissa = BigInt::from(mantissa);
-        Self { mantissa: if x < 0.0 { -mantissa } else { mantissa }, exponent }
+        // An odd mantissa, which is short for short numbers; of 0 the exponent means nothing.
+        let zeros = mantissa.trailing_zeros() % 64;
+        let mantissa = BigInt::from(mantissa >> zeros);
+        Self { mantissa: if x < 0.0 { -mantissa } else { mantissa }, exponent: exponent + zeros as i32 }
     }
 
     pub(crate) fn whole(mantissa: BigInt) -> Self {
         Self { mantissa, exponent: 0 }
+    }
+
+    /// A double within 2^-51 of itself; for sums of few products of two coordinates, which no double is too small or large for.
+    pub(crate) fn rounded(&self) -> f64 {
+        self.mantissa.to_f64().unwrap_or(0.0) * 2f64.powi(self.exponent)
     }
 
     pub(crate) fn sign(&self) -> Ordering {
@@ -48,12 +56,20 @@ impl Dyadic {
         }
     }
 
+    pub(crate) fn magnitude(&self) -> Self {
+        Self { mantissa: self.mantissa.magnitude().clone().into(), exponent: self.exponent }
+    }
+
     fn with_exponent(&self, exponent: i32) -> BigInt {
         &self.mantissa << (self.exponent - exponent).max(0) as usize
     }
 
     fn together(&self, other: &Self, combine: impl FnOnce(BigInt, BigInt) -> BigInt) -> Self {
-        let exponent = self.exponent.min(other.exponent);
+        let exponent = match [self, other].map(|x| x.mantissa.sign()) {
+            [_, Sign::NoSign] => self.exponent,
+            [Sign::NoSign, _] => other.exponent,
+            _ => self.exponent.min(other.exponent),
+        };
         Self { mantissa: combine(self.with_exponent(exponent), other.with_exponent(exponent)), exponent }
     }
 }

@@ -1,14 +1,15 @@
 //! Proofs of whole tables: a witness for what is visible, a certificate for what is hidden.
 //!
 //! Owns: the proofs as data, their bytes, and a checker that shares no code with the solvers that find them:
-//! [`plan`] for polygons of the plane, [`space`] for boxes. Who finds proofs hands them to a maker here, which checks each of
-//! them at once.
+//! [`plan`] for polygons of the plane, [`space`] for boxes, [`convex`] for cells joined by polygons in space. Who finds
+//! proofs hands them to a maker here, which checks each of them at once.
 //! Does not know: cells' graphs, searching, tables, files.
 //! Invariants: decisions are signs of exact numbers; no step of a proof rests on a later one; what is read from bytes
 //! never takes more memory than a few times its size, and a few bits for each pair of cells of the network it is checked against.
 
 mod bits;
 mod bytes;
+pub mod convex;
 mod exact;
 mod graph;
 mod pairs;

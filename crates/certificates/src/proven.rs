@@ -38,14 +38,22 @@ pub enum Refusal {
         /// The cell.
         cell: u32,
     },
+    /// A line in space that does not pass its gate.
+    #[error("line {index} does not pass portal {}", gate / 2)]
+    Gate {
+        /// Which line.
+        index: usize,
+        /// The gate: twice the number of a portal, and 1 more for the way back.
+        gate: u32,
+    },
     /// An unproven pair that is none.
     #[error("unproven pair {index} is no pair of cells")]
     Pair {
         /// Which.
         index: usize,
     },
-    /// A walk from a cell that does not exist.
-    #[error("walk {walk} begins in cell {from}, which does not exist")]
+    /// A walk from a cell that does not exist, or to one.
+    #[error("walk {walk}, from cell {from}, is between cells that do not exist")]
     Source {
         /// Which walk.
         walk: usize,

@@ -14,6 +14,10 @@
 //! If no chain enters a candidate, all candidates are hidden from the source, and from then on count as proven. Each
 //! step rests on earlier ones only.
 //!
+//! Where cells are known by their portals alone ([`Fronts::IS_ORDERED`]), nothing says that they are convex. There a cell may be
+//! met again, though no gate may; a chain ends at a gate that cannot follow one of its gates; and gates are blocked in one
+//! order only.
+//!
 //! # Who decides
 //! At a gate that neither rule ends, a [`Director`] says whether the chain goes on or is blocked, and by which gates.
 //! Who checks reads that from the proofs; who makes proofs asks a solver. Blocked gates are remembered with the last of
@@ -31,7 +35,8 @@ const MOST_KEPT: usize = 64;
 pub(crate) enum Crossing {
     /// The chain goes on behind it.
     Open,
-    /// No open set of lines passes these gates of the chain and the new one; ascending, without the new one.
+    /// No open set of lines passes these gates of the chain and the new one; without the new one, in the order of the chain where that
+    /// counts, else ascending.
     Blocked(Vec<u32>),
 }
 
@@ -53,8 +58,17 @@ pub(crate) trait Director {
 
 /// Which cells reach in front of a gate.
 pub(crate) trait Fronts {
-    /// A bit for each cell: `false` only for cells that lie wholly behind the gate or beside it on its line or plane.
+    /// Whether cells may be met again, gates are asked whether they may follow others, and the order of blocked gates counts.
+    const IS_ORDERED: bool = false;
+
+    /// A bit for each cell: `false` only for cells that no line enters after it passed the gate, as those that lie wholly behind it or
+    /// beside it on its line or plane.
     fn row(&mut self, gate: u32) -> &[u64];
+
+    /// Whether lines may pass a gate after all those of a chain; `false` only if none does.
+    fn may_follow(&mut self, _chain: &[u32], _gate: u32) -> bool {
+        true
+    }
 }
 
 /// Why a walk ended early.
@@ -90,7 +104,8 @@ pub(crate) struct Walk<'a, F> {
     /// What `blocked` was before this walk, where it is another now.
     before: Vec<(u32, Vec<Rc<[u32]>>)>,
     is_changed: Vec<bool>,
-    on_chain: Vec<bool>,
+    /// The place of each gate in the chain, from 1; 0 for gates that are not in it.
+    places: Vec<u32>,
     is_met: Vec<bool>,
     chain: Vec<u32>,
     frames: Vec<Frame>,
@@ -107,7 +122,7 @@ impl<'a, F: Fronts> Walk<'a, F> {
             blocked: vec![Vec::new(); gates.len()],
             before: Vec::new(),
             is_changed: vec![false; gates.len()],
-            on_chain: vec![false; gates.len()],
+            places: vec![0; gates.len()],
             is_met: vec![false; gates.n_cells()],
             chain: Vec::new(),
             frames: Vec::new(),
@@ -134,7 +149,7 @@ impl<'a, F: Fronts> Walk<'a, F> {
     ) -> Result<(), Ended<D::Stop>> {
         let end = self.follow(source, candidates, director, most_steps);
         for gate in self.chain.drain(..) {
-            self.on_chain[gate as usize] = false;
+            self.places[gate as usize] = 0;
         }
         for frame in self.frames.drain(..) {
             self.is_met[frame.cell as usize] = false;
@@ -188,7 +203,9 @@ impl<'a, F: Fronts> Walk<'a, F> {
                 frame.next += 1;
                 let (entry_side, own) = (frame.entry_side, frame.candidates);
                 let Gate { cells: [_, to], sides: [side, _] } = self.gates.gate(gate);
-                if side == entry_side || self.is_met[to as usize] || self.is_blocked(gate) {
+                let is_again = if F::IS_ORDERED { self.places[gate as usize] > 0 } else { self.is_met[to as usize] };
+                if side == entry_side || is_again || !self.fronts.may_follow(&self.chain, gate) || self.is_blocked(gate)
+                {
                     continue;
                 }
                 let Some(left) = self.left(gate, own) else { continue };
@@ -224,7 +241,7 @@ impl<'a, F: Fronts> Walk<'a, F> {
         let own = &self.arena[candidates[0]..candidates[1]];
         let word = own.binary_search_by_key(&(cell / 64), |(i, _)| *i);
         self.chain.push(gate);
-        self.on_chain[gate as usize] = true;
+        self.places[gate as usize] = self.chain.len() as u32;
         self.is_met[cell as usize] = true;
         let exits = self.gates.exit_range(cell);
         self.frames.push(Frame { cell, entry_side, next: exits.start, end: exits.end, candidates });
@@ -237,7 +254,7 @@ impl<'a, F: Fronts> Walk<'a, F> {
             self.arena.truncate(frame.candidates[0]);
         }
         if let Some(gate) = self.chain.pop() {
-            self.on_chain[gate as usize] = false;
+            self.places[gate as usize] = 0;
             // What is left of a chain of one gate is no chain.
             if !self.chain.is_empty() {
                 director.back();
@@ -247,9 +264,15 @@ impl<'a, F: Fronts> Walk<'a, F> {
 
     /// Whether the chain with this gate is known to be blocked.
     fn is_blocked(&mut self, gate: u32) -> bool {
-        let on_chain = &self.on_chain;
-        let lists = &self.blocked[gate as usize];
-        let Some(k) = lists.iter().position(|list| list.iter().all(|&g| on_chain[g as usize])) else { return false };
+        let places = &self.places;
+        let is_on_chain = |list: &Rc<[u32]>| {
+            let mut last = 0;
+            list.iter().all(|&g| {
+                let place = places[g as usize];
+                place > if F::IS_ORDERED { std::mem::replace(&mut last, place) } else { 0 }
+            })
+        };
+        let Some(k) = self.blocked[gate as usize].iter().position(is_on_chain) else { return false };
         if k > 0 {
             self.note_change(gate);
             self.blocked[gate as usize][..=k].rotate_right(1);

@@ -7,8 +7,8 @@
 //! [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
 //! [`StabTree`] (every stabbable portal sequence out of one cell), [`stab_trees`] (those out of all cells, in one graph,
 //! up to a limit), [`explain`](fn@explain),
-//! [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none), [`certify_plan`] and
-//! [`certify_space`] (proofs of all rows of a table).
+//! [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none), [`certify_plan`],
+//! [`certify_space`] and [`certify_convex`] (proofs of all rows of a table).
 //! Does not know: files, tables, how cells were cut. The search over sequences is generic over the
 //! [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
 //! Invariants: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and
@@ -28,7 +28,7 @@ pub use certify::{CertifyOptions, certify_plan, certify_space, plan_network, spa
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
     BlockedConvex, Blocking, ByPolygons, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,
-    ConvexSearch, ConvexState, MOST_EXPLAINED, SeenThroughPortals, explain_convex,
+    ConvexSearch, ConvexState, MOST_EXPLAINED, SeenThroughPortals, certify_convex, convex_network, explain_convex,
 };
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;

@@ -1,20 +1,25 @@
-//! Proofs of whole tables against the searches that made the tables, on random plans and boxes: everything is proven, and
+//! Proofs of whole tables against the searches that made the tables, on random plans, boxes and convex worlds: everything is proven, and
 //! wrong rows are not.
 
 mod boxes;
 
 use boxes::{cut, faces, objects};
 use proptest::prelude::*;
-use sightlines_cells::{Axial, CellGraph, Planar};
+use sightlines_cells::{Axial, CellGraph, Convex, Planar};
 use sightlines_certificates::Proven;
+use sightlines_certificates::convex::ConvexProofs;
 use sightlines_certificates::plan::PlanProofs;
 use sightlines_certificates::space::BoxProofs;
 use sightlines_pvs::BitMatrix;
+use sightlines_scenes::world::{
+    BspWorldOptions, QuakeLikeOptions, World, bsp_world, corridor, quake_like, world_families,
+};
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_stabtree::{
-    CertifyOptions, Known, SearchOptions, Zones, certify_plan, certify_space, plan_network, see_plan, see_space,
-    space_network,
+    CertifyOptions, ConvexOptions, ConvexSearch, Known, SearchOptions, SeenThroughPortals, Zones, certify_convex,
+    certify_plan, certify_space, convex_network, plan_network, see_plan, see_space, space_network,
 };
+use sightlines_testkit::convex::seen_by_rays;
 use sightlines_testkit::{axial_plan, small_grid_plan};
 
 fn search() -> SearchOptions<'static> {
@@ -170,4 +175,111 @@ fn proofs_are_the_same_each_time() {
     let rows = rows_of_plan(&cut.graph);
     let made = || certify_plan(&cut.graph, &rows, &CertifyOptions::default()).unwrap().to_bytes();
     assert_eq!(made(), made());
+}
+
+fn searched(graph: &CellGraph<Convex>) -> SeenThroughPortals {
+    let mut search = ConvexSearch::new(graph, ConvexOptions { threads: 1, ..ConvexOptions::default() });
+    while search.advance() {}
+    search.finish()
+}
+
+fn proven_convex(graph: &CellGraph<Convex>, rows: &BitMatrix, options: &CertifyOptions) -> Proven {
+    let made = certify_convex(graph, rows, options).expect("the graph is good");
+    let read = ConvexProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
+    assert_eq!(read, made);
+    read.check(&convex_network(graph).expect("the graph is good")).expect("proofs hold")
+}
+
+/// Asserts that all pairs are proven to be as the search says, but for those that it could not decide, which may be proven
+/// to be hidden or left open; returns how many are visible, hidden and undecided.
+fn assert_world_is_proven(name: &str, graph: &CellGraph<Convex>) -> [u64; 3] {
+    let seen = searched(graph);
+    let proven = proven_convex(graph, &seen.cells, &CertifyOptions::default());
+    for a in 0..graph.n_cells() as u32 {
+        for b in a + 1..graph.n_cells() as u32 {
+            let sees = seen.cells.get(a as usize, b as usize);
+            let told = (proven.visible.has(a, b), proven.hidden.has(a, b));
+            let is_open = told == (false, false) && seen.undecided.contains(&[a, b]);
+            assert!(told == (sees, !sees) || is_open, "{name}: cells {a} and {b}: {sees} {told:?}");
+        }
+    }
+    [proven.visible.len(), proven.hidden.len(), proven.n_open()]
+}
+
+fn leafs(seed: u64, tilted_percent: u32) -> World {
+    bsp_world(BspWorldOptions { seed, leafs: 30, solid_percent: 45, tilted_percent })
+        .expect("options within their ranges")
+}
+
+/// Tight and sound: everything that is decided is proven, as the search decided it.
+#[test]
+fn worlds_are_proven_whole() {
+    let mut sum = [0; 3];
+    let mut add = |name: &str, world: &World| {
+        let counts = assert_world_is_proven(name, &world.graph);
+        sum.iter_mut().zip(counts).for_each(|(sum, n)| *sum += n);
+    };
+    for (name, world) in world_families() {
+        add(name, &world);
+    }
+    for seed in 0..4 {
+        add("tilted", &leafs(seed, 60));
+        add("axial", &leafs(seed, 0));
+        add("far", &leafs(seed, 60).moved([1e6, -1e6, 1e6]));
+        add("noise", &leafs(seed, 60).jittered(seed, 1e-13));
+    }
+    for k in 1..3 {
+        let options = QuakeLikeOptions { seed: 1, rooms_x: k, rooms_y: k, floors: k };
+        add("level", &quake_like(options).expect("few rooms"));
+    }
+    assert!(sum[0] > 4000 && sum[1] > 4000 && sum[2] * 100 < sum[0], "{sum:?}");
+}
+
+/// Lines shot through solid leafs follow no portals: what they show is never proven to be hidden.
+#[test]
+fn nothing_that_lines_show_is_proven_hidden() {
+    let mut n_seen = 0;
+    for seed in 0..4 {
+        let world = leafs(seed, 60);
+        // Rows that hide everything: whatever can be proven of them is tried.
+        let rows = BitMatrix::identity(world.graph.n_cells());
+        let proven = proven_convex(&world.graph, &rows, &CertifyOptions::default());
+        for [a, b] in seen_by_rays(&world, 2000, seed).pairs {
+            assert!(!proven.hidden.has(a, b), "seed {seed}: {a} {b}");
+            n_seen += 1;
+        }
+    }
+    assert!(n_seen > 200, "{n_seen}");
+}
+
+/// The impostors: rows with a pair that is wrong, each one in turn. That pair stays open, or its truth is proven; nothing wrong is.
+#[test]
+fn wrong_rows_of_worlds_are_not_proven() {
+    let bent = corridor(9, [1, 2], 7).expect("a short corridor");
+    for graph in [&bent.graph, &leafs(3, 60).graph] {
+        let rows = searched(graph).cells;
+        let n = graph.n_cells();
+        for k in (0..n * (n - 1)).step_by(n * (n - 1) / 24 + 1) {
+            let (a, b) = ((k / (n - 1)) as u32, (k % (n - 1) + usize::from(k % (n - 1) >= k / (n - 1))) as u32);
+            let proven = proven_convex(graph, &flipped(&rows, a, b), &CertifyOptions::default());
+            assert_nothing_wrong(&rows, &proven);
+        }
+    }
+}
+
+/// Too little effort leaves pairs open, and what is proven is still right; the same effort gives the same bytes.
+#[test]
+fn effort_for_worlds_has_a_limit() {
+    let level = quake_like(QuakeLikeOptions { seed: 1, rooms_x: 2, rooms_y: 2, floors: 1 }).expect("few rooms");
+    let rows = searched(&level.graph).cells;
+    let mut open = Vec::new();
+    for most_steps in [0, 4000, 20_000_000] {
+        let options = CertifyOptions { most_steps, ..CertifyOptions::default() };
+        let proven = proven_convex(&level.graph, &rows, &options);
+        assert_nothing_wrong(&rows, &proven);
+        open.push(proven.n_open());
+        let made = || certify_convex(&level.graph, &rows, &options).expect("the graph is good").to_bytes();
+        assert_eq!(made(), made());
+    }
+    assert!(open[0] > open[1] && open[1] > open[2] && open[2] == 0, "{open:?}");
 }

@@ -3,6 +3,7 @@
 //! The proofs are checked by `sightlines-certificates`, which knows no tables: what it proves of cells and portals is compared
 //! here with what the table says. Whether cells and portals are those of the scene is what the structure's check is for.
 
+use sightlines_certificates::convex::{ConvexNetwork, ConvexNetworkError, ConvexPortal, ConvexProofs};
 use sightlines_certificates::plan::{NetworkError, PlanNetwork, PlanPortal, PlanProofs};
 use sightlines_certificates::space::{BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs};
 use sightlines_certificates::{Kind, Proven, ReadError, Refusal, kind_of};
@@ -36,6 +37,9 @@ pub enum ProofError {
     /// Cells or portals of a scene in space that nothing can be proven about.
     #[error("the table: {0}")]
     Space(#[from] BoxNetworkError),
+    /// Cells or portals of a Quake map that nothing can be proven about.
+    #[error("the table: {0}")]
+    Convex(#[from] ConvexNetworkError),
 }
 
 /// Something that the proofs show not to be as the table says.
@@ -127,7 +131,7 @@ impl ProofFindings {
 
 /// Checks all proofs, and compares what they prove with a table. Exact.
 ///
-/// Cost: as for [`PlanProofs::check`] and [`BoxProofs::check`], and O(cells²).
+/// Cost: as for [`PlanProofs::check`], [`BoxProofs::check`] and [`ConvexProofs::check`], and O(cells²).
 ///
 /// # Errors
 /// [`ProofError`] for bytes that are no proofs of such a table. Proofs that do not hold are a violation, not an error.
@@ -136,7 +140,7 @@ pub fn check_proofs(table: &Table, bytes: &[u8]) -> Result<ProofFindings, ProofE
     let proven = match kind {
         Kind::Plan => PlanProofs::from_bytes(bytes)?.check(&plan_of(table)?),
         Kind::Space => BoxProofs::from_bytes(bytes)?.check(&boxes_of(table)?),
-        Kind::Convex => return Err(ProofError::Kind { proofs: "a Quake map", table: "of another kind" }),
+        Kind::Convex => ConvexProofs::from_bytes(bytes)?.check(&convex_of(table)?),
     };
     Ok(match proven {
         Ok(proven) => ProofFindings::compared(table, &proven),
@@ -176,6 +180,9 @@ pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
     if table.dimension() != 3 {
         return Err(ProofError::Kind { proofs: "a scene in space", table: "of a plan" });
     }
+    if crate::truth::is_of_clusters(table) {
+        return Err(ProofError::Kind { proofs: "a scene in space", table: "of a Quake map" });
+    }
     if is_stripped(table) {
         return Err(ProofError::NoGraph);
     }
@@ -199,6 +206,27 @@ pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
         portals.push(BoxPortal { cells: p.cells.map(|cell| cell.0), extent, axis, forward: p.sides[0] % 2 == 1 });
     }
     Ok(BoxNetwork::new(&cells, &portals)?)
+}
+
+/// The cells and portals of a table of a Quake map, as proofs know them: with corners that count as on a portal's plane within
+/// [`ConvexNetwork::OF_FILES`], as they do for the search.
+///
+/// # Errors
+/// [`ProofError`] for other tables, stripped ones, and those with portals that are no polygons.
+pub fn convex_of(table: &Table) -> Result<ConvexNetwork, ProofError> {
+    if table.dimension() != 3 || !crate::truth::is_of_clusters(table) {
+        return Err(ProofError::Kind { proofs: "a Quake map", table: "of another kind" });
+    }
+    if is_stripped(table) {
+        return Err(ProofError::NoGraph);
+    }
+    // Tables have them counter-clockwise as seen from the first cell, which is about the direction into it.
+    let portal = |p: &sightlines_pvs::PortalRecord| ConvexPortal {
+        cells: p.cells.map(|cell| cell.0),
+        corners: p.points.iter().rev().copied().collect(),
+    };
+    let portals: Vec<ConvexPortal> = table.portals().iter().map(portal).collect();
+    Ok(ConvexNetwork::new(table.n_cells(), &portals, ConvexNetwork::OF_FILES)?)
 }
 
 /// Whether the portals of a table in space are missing: cells that see each other are joined by some.

@@ -91,6 +91,17 @@ const SOURCE: &str = "source";
 const OF_PORTALS: &str = "portal file";
 const OF_MAP: &str = "Quake map";
 
+/// Whether a table says that it is of a portal file, and of a map with its portals.
+fn source_of(table: &Table) -> [bool; 2] {
+    let source = table.info_value(SOURCE).unwrap_or_default();
+    [OF_PORTALS, OF_MAP].map(|of| source.starts_with(of))
+}
+
+/// Whether a table says that its cells are the clusters of a map.
+pub(crate) fn is_of_clusters(table: &Table) -> bool {
+    source_of(table).contains(&true)
+}
+
 impl Truth<'_> {
     const fn dimension(&self) -> u8 {
         if matches!(self, Self::Plan(_)) { 2 } else { 3 }
@@ -101,8 +112,7 @@ impl Truth<'_> {
         if table.dimension() != self.dimension() {
             return Err(VerifyError::Dimension { table: table.dimension(), scene: self.dimension() });
         }
-        let source = table.info_value(SOURCE).unwrap_or_default();
-        let (of_portals, of_map) = (source.starts_with(OF_PORTALS), source.starts_with(OF_MAP));
+        let [of_portals, of_map] = source_of(table);
         let of_clusters = of_portals || of_map;
         match self {
             Self::Portals(_) | Self::World(..) if !of_clusters => {

@@ -1,13 +1,19 @@
 //! Proofs of tables, checked against the tables: every pair of cells that is told wrongly is caught.
 
-use sightlines_bake::{BakeOptions, CertifyError, SceneBakeOptions, bake_plan, bake_scene, certify_table};
+use sightlines_bake::{
+    BakeOptions, CertifyError, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, certify_table,
+};
 use sightlines_cells::{Plan, Scene};
+use sightlines_certificates::convex::ConvexProofs;
+use sightlines_formats::quake::Prt;
+use sightlines_formats::quake::prt::parse_prt;
 use sightlines_pvs::{CellId, Table, TableParts};
+use sightlines_scenes::world::{BspWorldOptions, QuakeLikeOptions, World, bsp_world, corridor, quake_like};
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines_stabtree::CertifyOptions;
 use sightlines_testkit::{draw, small_grid_plan};
 use sightlines_verify::{
-    ProofError, ProofFindings, ProofViolation, check_proofs, check_walls_in_space, check_walls_of_plan,
+    ProofError, ProofFindings, ProofViolation, check_proofs, check_walls_in_space, check_walls_of_plan, convex_of,
 };
 
 fn proofs_of(table: &Table) -> Vec<u8> {
@@ -87,6 +93,35 @@ fn every_flipped_pair_of_a_storey_is_caught() {
     assert!(visible > 20 && hidden > 20, "{visible} {hidden}");
 }
 
+/// The table of a world's portals, as a portal file has them; `None` where a pair is undecided.
+fn table_of(world: &World) -> Option<Table> {
+    let mut prt = Prt::new(world.graph.n_cells() as u32).expect("some cells");
+    for portal in world.graph.portals() {
+        prt.push_portal(portal.cells.map(|cell| cell.0), portal.shape.corners()).expect("a polygon");
+    }
+    let baked = bake_prt(&prt, PrtOptions::default()).expect("portals between cells");
+    baked.clusters.seen.undecided.is_empty().then_some(baked.table)
+}
+
+fn level() -> Table {
+    let options = QuakeLikeOptions { seed: 1, rooms_x: 2, rooms_y: 1, floors: 1 };
+    table_of(&quake_like(options).expect("few rooms")).expect("nothing is undecided")
+}
+
+#[test]
+fn every_flipped_pair_of_maps_is_caught() {
+    let mut sum = [0, 0];
+    let bent = [([1, 2], 7), ([3, 1], 9), ([1, 0], 5)];
+    let bent = bent.map(|(bends, width)| corridor(9, bends, width).expect("a short corridor"));
+    let leafs = |seed| bsp_world(BspWorldOptions { seed, leafs: 16, solid_percent: 45, tilted_percent: 60 });
+    let worlds = bent.into_iter().chain((0..6).map(|seed| leafs(seed).expect("options within their ranges")));
+    for table in worlds.filter_map(|world| table_of(&world)).chain([level()]) {
+        let [visible, hidden] = assert_every_flip_is_caught(&table);
+        sum = [sum[0] + visible, sum[1] + hidden];
+    }
+    assert!(sum[0] > 150 && sum[1] > 80, "{sum:?}");
+}
+
 /// Proofs of another table, or of none, are told apart from wrong ones.
 #[test]
 fn proofs_of_something_else_are_refused() {
@@ -100,6 +135,11 @@ fn proofs_of_something_else_are_refused() {
     let error = |table: &Table, bytes: &[u8]| check_proofs(table, bytes).unwrap_err();
     assert!(matches!(error(&space, &proofs_of(&table)), ProofError::Kind { .. }));
     assert!(matches!(error(&table, &proofs_of(&space)), ProofError::Kind { .. }));
+    let map = level();
+    for (table, bytes) in [(&map, proofs_of(&table)), (&map, proofs_of(&space)), (&space, proofs_of(&map))] {
+        assert!(matches!(error(table, &bytes), ProofError::Kind { .. }));
+    }
+    assert_eq!(error(&map.strip_geometry(), &proofs_of(&map)), ProofError::NoGraph);
     assert!(matches!(error(&table, b"SLPVS"), ProofError::Read(_)));
     assert_eq!(error(&table.strip_geometry(), &proofs_of(&table)), ProofError::NoGraph);
     let stripped = certify_table(&table.strip_geometry(), &CertifyOptions::default());
@@ -110,7 +150,7 @@ fn proofs_of_something_else_are_refused() {
 #[test]
 fn what_is_not_proven_is_counted() {
     let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();
-    for table in [baked(&plan).unwrap(), storey()] {
+    for table in [baked(&plan).unwrap(), storey(), level()] {
         let options = CertifyOptions { most_steps: 0, most_steps_in_all: 0, chords: 0, ..CertifyOptions::default() };
         let bytes = certify_table(&table, &options).unwrap().proofs.to_bytes();
         let found = check_proofs(&table, &bytes).unwrap();
@@ -161,4 +201,40 @@ fn walls_in_space_are_those_of_the_scene() {
         n_noticed += usize::from(found.n_bare > 0 && !found.bare.is_empty());
     }
     assert!(n_noticed > 2, "{n_noticed} of {}", scene.objects().len());
+}
+
+/// A real map: nearly every pair is proven, nothing that the witness table shows is proven to be hidden, and wrong pairs are caught. The
+/// sibling on generated maps is [`every_flipped_pair_of_maps_is_caught`].
+#[test]
+fn a_real_map_is_proven() {
+    let Some(folder) = std::env::var_os("SIGHTLINES_DATA").map(std::path::PathBuf::from) else {
+        eprintln!("SKIPPED a_real_map_is_proven: SIGHTLINES_DATA is not set");
+        return;
+    };
+    let read = |name: &str| std::fs::read(folder.join("quake").join(name)).expect("a file of e1m7");
+    let prt = parse_prt(&read("e1m7.prt")).expect("portals");
+    let table = bake_prt(&prt, PrtOptions::default()).expect("clusters").table;
+    let bytes = proofs_of(&table);
+    let found = check_proofs(&table, &bytes).expect("proofs of the table");
+    assert!(found.is_true(false), "{found:?}");
+    assert!(found.n_unproven_hidden <= 10 && found.n_unproven_visible <= 30, "{found:?}");
+    let n = table.n_cells() as u32;
+    let proven = ConvexProofs::from_bytes(&bytes).unwrap().check(&convex_of(&table).unwrap()).unwrap();
+    let words: Vec<u64> =
+        read("e1m7.seen.bin").chunks_exact(8).map(|b| u64::from_le_bytes(b.try_into().unwrap())).collect();
+    assert_eq!(words[0], u64::from(n));
+    let witnessed =
+        |a: u32, b: u32| words[1 + a as usize * n.div_ceil(64) as usize + b as usize / 64] >> (b % 64) & 1 == 1;
+    let pairs = || (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b))).filter(|&(a, b)| witnessed(a, b));
+    assert!(pairs().count() > 1000 && pairs().all(|(a, b)| !proven.hidden.has(a, b)));
+    let mut n_caught = [0, 0];
+    for (a, b) in (0..n).map(|a| (a, (a * 7 + 3) % n)).filter(|(a, b)| a < b).step_by(16) {
+        let shown = table.sees(CellId(a), CellId(b));
+        if proven.visible.has(a, b) || proven.hidden.has(a, b) {
+            let found = check_proofs(&flipped(&table, a, b), &bytes).expect("proofs of a table with these cells");
+            assert_eq!(found.n_violations, 1, "{a} {b}");
+            n_caught[usize::from(shown)] += 1;
+        }
+    }
+    assert!(n_caught.into_iter().all(|n| n > 0), "{n_caught:?}");
 }

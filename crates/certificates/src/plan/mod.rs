@@ -17,6 +17,8 @@ pub use line::{LineForm, PlanLine};
 pub use make::{PlanGuide, PlanMaker, PlanStep};
 pub use network::{NetworkError, PlanNetwork, PlanPortal, Point};
 
+pub(crate) use bytes::{read_pairs, write_pairs};
+
 use crate::bits::Bits;
 use crate::pairs::Pairs;
 use crate::proven::{Proven, Refusal};
@@ -123,7 +125,7 @@ fn seen_along(lines: &[PlanLine], network: &PlanNetwork) -> Result<Pairs, Refusa
 }
 
 /// The cells that `source` is still to be proven not to see: neither seen, nor left unproven, nor proven hidden.
-fn candidates(source: u32, known: [&Pairs; 3]) -> Vec<u64> {
+pub(crate) fn candidates(source: u32, known: [&Pairs; 3]) -> Vec<u64> {
     let n = known[0].n_cells();
     let mut row = vec![u64::MAX; n.div_ceil(64)];
     if let Some(last) = row.last_mut().filter(|_| !n.is_multiple_of(64)) {

@@ -15,11 +15,13 @@ pub struct CertifyOptions {
     /// Lines shot through each portal, before lines are searched for single pairs.
     pub chords: u32,
     /// Gates looked at from one cell, after which no more is proven of it; for boxes in space, linear programs for a pair
-    /// of single cells.
+    /// of single cells. For convex cells a question about a sequence counts for a thousand, and a walk that is too long is tried
+    /// again with half as many targets and half as many questions, four times at most.
     pub most_steps: u64,
     /// The same for all cells together.
     pub most_steps_in_all: u64,
-    /// Number of threads; 0 for one for each core. Changes nothing but the time; plans are proven on one.
+    /// Number of threads; 0 for one for each core. Changes nothing but the time; plans and convex cells are
+    /// proven on one.
     pub threads: usize,
 }
 

@@ -19,6 +19,7 @@
 mod batch;
 mod beams;
 mod bound;
+mod certify;
 mod cut;
 mod explain;
 mod follow;
@@ -29,6 +30,7 @@ mod state;
 mod vector;
 mod wanted;
 
+pub use certify::{certify_convex, convex_network};
 pub use explain::{
     BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexGate, MOST_EXPLAINED, explain_convex,
 };

@@ -1,0 +1,261 @@
+//! Why no line passes some gates one after the other: a plane, or sums of sides of edges.
+
+use super::network::ConvexNetwork;
+use super::vector::{Exact, Point, cross, dot, exact, minus, plus, rough, times, turn};
+use crate::exact::{Dyadic, is_coordinate};
+use std::cmp::Ordering;
+
+/// How deeply parts of lines may be cut.
+pub(super) const MOST_DEPTH: u32 = 24;
+/// Corners that a part of a gate's hull may have.
+const MOST_CORNERS: usize = 96;
+
+/// Why no line passes gates of a chain.
+///
+/// Gates are counted from the end of the chain: 0 is the gate that it comes to, which must be among them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ConvexBlock {
+    /// A plane.
+    Plane(ConvexPlane),
+    /// Sums.
+    Sums(ConvexSums),
+}
+
+/// A plane that has a gate on one side, a later one on the other and a still later one, the last, on the first side. Corners may lie
+/// on the plane.
+///
+/// A line that passes in order has points of their hulls one after the other, so the plane's linear form, which along the line
+/// goes steadily, is zero on all of it: the line lies on the plane. Seen along the line the plane is a line through the viewed
+/// point, with all corners of a gate on one side, round which its edges cannot turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ConvexPlane {
+    /// The first two gates that it stands between, earlier one first; the third is the last one.
+    pub stops: [u32; 2],
+    /// Gate and number of an edge that lies on the plane; any of the chain.
+    pub edge: [u32; 2],
+    /// Gate and number of a corner that lies on it.
+    pub corner: [u32; 2],
+}
+
+/// Lines from the hull of a gate to the hull of a later one, in parts for each of which sides of edges, times positive numbers, add up
+/// to nothing positive: of a line that passes each side is positive.
+///
+/// The sum is linear in the point of the one hull and in that of the other, so it is nowhere larger than at some pair of
+/// their corners.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvexSums {
+    /// The two gates, the earlier one first.
+    pub ends: [u32; 2],
+    /// Parts, each cut before what it is cut into.
+    pub tree: ConvexTree,
+}
+
+/// All lines of a part.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ConvexTree {
+    /// None passes, by this sum.
+    Sum(Vec<ConvexTerm>),
+    /// Cut in two.
+    Cut(Box<ConvexCut>),
+}
+
+/// Lines cut in two by a plane, by where they meet a gate's hull.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvexCut {
+    /// Whether it cuts the hull of the later gate.
+    pub later: bool,
+    /// `a x + b y + c z + d = 0`.
+    pub plane: [f64; 4],
+    /// The lines where that is negative or zero, and those where it is positive or zero.
+    pub parts: [ConvexTree; 2],
+}
+
+/// An edge of a gate, and what its side is multiplied by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConvexTerm {
+    /// The gate.
+    pub gate: u32,
+    /// The number of the edge.
+    pub edge: u32,
+    /// Positive.
+    pub times: f64,
+}
+
+/// A corner of a part: exact, times a positive number that comes last.
+type Corner = (Exact, Dyadic);
+
+impl ConvexBlock {
+    /// Whether it shows that no line passes a chain of gates and then another. Exact.
+    ///
+    /// # Panics
+    /// If the network has no such gates.
+    pub fn holds(&self, network: &ConvexNetwork, chain: &[u32], gate: u32) -> bool {
+        self.gates(network, chain, gate).is_some()
+    }
+
+    /// The gates of the chain that it speaks of, in its order, without the new one; `None` if it proves nothing. Exact.
+    pub(super) fn gates(&self, network: &ConvexNetwork, chain: &[u32], gate: u32) -> Option<Vec<u32>> {
+        let of = |back: u32| match back {
+            0 => Some(gate),
+            back => chain.len().checked_sub(back as usize).map(|k| chain[k]),
+        };
+        let mut named = match self {
+            Self::Plane(plane) => {
+                plane.holds(network, of)?;
+                vec![plane.stops[0], plane.stops[1], 0]
+            }
+            Self::Sums(sums) => {
+                let [s, t] = sums.ends;
+                let (first, last) = (of(s).filter(|_| s > t)?, of(t)?);
+                let part = |gate: u32| Part::of(network.corners(gate));
+                let mut named = vec![s, t];
+                refutes(network, &of, &sums.tree, [&part(first), &part(last)], MOST_DEPTH, &mut named)?;
+                named
+            }
+        };
+        // The earliest is the one that is most far back.
+        named.sort_unstable_by(|a, b| b.cmp(a));
+        named.dedup();
+        (named.pop() == Some(0)).then_some(())?;
+        named.into_iter().map(of).collect()
+    }
+}
+
+impl ConvexPlane {
+    fn holds(&self, network: &ConvexNetwork, of: impl Fn(u32) -> Option<u32>) -> Option<()> {
+        let [i, j] = self.stops;
+        let [e, f] = network.edge(of(self.edge[0])?, self.edge[1])?;
+        let [c, _] = network.edge(of(self.corner[0])?, self.corner[1])?;
+        let from = exact(e);
+        let normal = cross(&minus(&exact(f), &from), &minus(&exact(c), &from));
+        let is_plane = normal.iter().any(|x| x.sign() != Ordering::Equal);
+        let beside = |gate: u32, out: Ordering| network.corners(gate).iter().all(|&p| turn(e, f, c, p) != out);
+        let gates = [of(i)?, of(j)?, of(0)?];
+        let stops = |[x, y]: [Ordering; 2]| beside(gates[0], x) && beside(gates[1], y) && beside(gates[2], x);
+        let (above, below) = (Ordering::Greater, Ordering::Less);
+        (i > j && j > 0 && is_plane && (stops([above, below]) || stops([below, above]))).then_some(())
+    }
+}
+
+/// The hull of a gate's corners, or a part of it.
+enum Part {
+    Whole(Vec<Point>),
+    Cut(Vec<Corner>),
+}
+
+impl Part {
+    fn of(corners: &[Point]) -> Self {
+        Self::Whole(corners.to_vec())
+    }
+
+    fn corners(&self) -> Vec<Corner> {
+        match self {
+            Self::Whole(points) => points.iter().map(|&p| (exact(p), Dyadic::new(1.0))).collect(),
+            Self::Cut(corners) => corners.clone(),
+        }
+    }
+
+    /// The hulls on both sides of a plane.
+    fn cut(&self, plane: [f64; 4]) -> Option<[Self; 2]> {
+        if !plane.iter().all(|x| is_coordinate(*x)) {
+            return None;
+        }
+        let (normal, offset) = (exact([plane[0], plane[1], plane[2]]), Dyadic::new(plane[3]));
+        let corners = self.corners();
+        let height = |(p, w): &Corner| &dot(&normal, p) + &(&offset * w);
+        let heights: Vec<Dyadic> = corners.iter().map(height).collect();
+        let mut parts = [Vec::new(), Vec::new()];
+        for (corner, height) in corners.iter().zip(&heights) {
+            if height.sign() != Ordering::Greater {
+                parts[0].push(corner.clone());
+            }
+            if height.sign() != Ordering::Less {
+                parts[1].push(corner.clone());
+            }
+        }
+        // The plane meets the hull in the hull of where it meets the ways between corners.
+        for ((p, v), low) in corners.iter().zip(&heights).filter(|(_, h)| h.sign() == Ordering::Less) {
+            for ((q, w), high) in corners.iter().zip(&heights).filter(|(_, h)| h.sign() == Ordering::Greater) {
+                let low = &-low;
+                let corner = (plus(&times(p, high), &times(q, low)), &(v * high) + &(w * low));
+                parts.iter_mut().for_each(|part| part.push(corner.clone()));
+                if parts.iter().any(|part| part.len() > MOST_CORNERS) {
+                    return None;
+                }
+            }
+        }
+        Some(parts.map(Self::Cut))
+    }
+}
+
+/// Whether no line from the one part to the other passes, by a tree of sums; gathers the gates that it speaks of.
+fn refutes(
+    network: &ConvexNetwork,
+    of: &impl Fn(u32) -> Option<u32>,
+    tree: &ConvexTree,
+    [first, last]: [&Part; 2],
+    depth: u32,
+    named: &mut Vec<u32>,
+) -> Option<()> {
+    match tree {
+        ConvexTree::Sum(terms) => {
+            let mut edges = Vec::with_capacity(terms.len());
+            for term in terms {
+                let is_positive = term.times > 0.0 && is_coordinate(term.times);
+                edges.push((network.edge(of(term.gate)?, term.edge)?, is_positive.then_some(term.times)?));
+                named.push(term.gate);
+            }
+            (!edges.is_empty() && is_never_positive(&edges, first, last)).then_some(())
+        }
+        ConvexTree::Cut(cut) => {
+            let depth = depth.checked_sub(1)?;
+            let parts = if cut.later { last } else { first }.cut(cut.plane)?;
+            for (part, tree) in parts.iter().zip(&cut.parts) {
+                let ends = if cut.later { [first, part] } else { [part, last] };
+                refutes(network, of, tree, ends, depth, named)?;
+            }
+            Some(())
+        }
+    }
+}
+
+/// Whether a sum of sides is nowhere positive for lines from the one part to the other.
+fn is_never_positive(edges: &[([Point; 2], f64)], first: &Part, last: &Part) -> bool {
+    // The side of the edge from e to f is (f - e) · ((q - e) × (r - e)), which is (f - e) · (q × r) + (e × f) · (r - q).
+    let mut sums = None;
+    let mut exactly = |q: &Corner, r: &Corner| {
+        let (along, moment) = sums.get_or_insert_with(|| {
+            let zero = || exact([0.0; 3]);
+            edges.iter().fold((zero(), zero()), |(along, moment), &([e, f], times_)| {
+                let (e, f, x) = (exact(e), exact(f), Dyadic::new(times_));
+                (plus(&along, &times(&minus(&f, &e), &x)), plus(&moment, &times(&cross(&e, &f), &x)))
+            })
+        });
+        let step = minus(&times(&r.0, &q.1), &times(&q.0, &r.1));
+        (&dot(along, &cross(&q.0, &r.0)) + &dot(moment, &step)).sign() != Ordering::Greater
+    };
+    if let (Part::Whole(qs), Part::Whole(rs)) = (first, last) {
+        return qs.iter().all(|&q| {
+            rs.iter().all(|&r| {
+                let (value, wrong) = roughly(edges, q, r);
+                value + wrong <= 0.0
+                    || (value <= wrong && exactly(&(exact(q), Dyadic::new(1.0)), &(exact(r), Dyadic::new(1.0))))
+            })
+        });
+    }
+    let (qs, rs) = (first.corners(), last.corners());
+    qs.iter().all(|q| rs.iter().all(|r| exactly(q, r)))
+}
+
+/// A sum in doubles, and a bound on its error: those of the sides, and of adding them up.
+fn roughly(edges: &[([Point; 2], f64)], q: Point, r: Point) -> (f64, f64) {
+    let (mut value, mut wrong, mut size) = (0.0, 0.0, 0.0);
+    for &([e, f], times) in edges {
+        let (side, off) = rough(e, f, q, r);
+        value += times * side;
+        wrong += times * off;
+        size += (times * side).abs();
+    }
+    // Each addition and product rounds by 2^-53 of no more than the sum of magnitudes; the bounds' own rounding is far below twice.
+    (value, 2.0 * (wrong + size * (edges.len() as f64 + 2.0) * f64::EPSILON))
+}

@@ -1,0 +1,259 @@
+//! Proofs of tables of maps: lines for what is visible, walks for what is hidden.
+
+use super::beams::BeamTracer;
+use super::bound;
+use super::gates::Gates;
+use super::pairs::{SequenceTracer, Sight};
+use super::vector::{Point3, add, cross, dot, scale};
+use crate::certify::CertifyOptions;
+use crate::chords::SplitMix;
+use sightlines_cells::{CellGraph, Convex, Portal3};
+use sightlines_certificates::convex::{
+    ConvexBlock, ConvexCut, ConvexGuide, ConvexLine, ConvexMaker, ConvexNetwork, ConvexNetworkError, ConvexPlane,
+    ConvexPortal, ConvexProofs, ConvexStep, ConvexSums, ConvexTerm, ConvexTree,
+};
+use sightlines_geometry::check_coordinate;
+use sightlines_pvs::BitMatrix;
+use sightlines_sightline::convex::{Block, BoxProof, ConvexCertificate, ConvexNode, PlaneProof};
+use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
+
+/// Lines are taken in rounds: at first only those that prove at least so many new pairs.
+const ROUNDS: [usize; 3] = [32, 6, 1];
+/// Steps that a question about a sequence counts for: it takes as much longer than what is a step in plans.
+const STEPS_EACH: u64 = 1000;
+/// Walks that are too long are tried again with half of their targets, so many times.
+const MOST_HALVINGS: u32 = 4;
+/// The largest of whole multipliers, tried one after the other: small ones take less bytes, and leave less of what is to spare.
+const MULTIPLIERS: [f64; 3] = [120.0, 16_000.0, 2_000_000.0];
+
+/// Proves what `rows` says of the cells of `graph`: which see each other (symmetric, with the diagonal set). Pairs that
+/// it finds no proof of, because they are wrong, undecided or take too much effort, are left open.
+///
+/// Cost: about that of the search for the rows for what is visible, and for what is hidden a question for each gate to which a
+/// chain of gates leads that has a line; through open space these are many.
+///
+/// # Errors
+/// [`ConvexNetworkError`] for a graph that is not well formed.
+///
+/// # Panics
+/// If there is not a row for each cell.
+pub fn certify_convex(
+    graph: &CellGraph<Convex>,
+    rows: &BitMatrix,
+    options: &CertifyOptions,
+) -> Result<ConvexProofs, ConvexNetworkError> {
+    assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
+    let network = convex_network(graph)?;
+    let gates = Gates::new(graph);
+    let mut maker = ConvexMaker::new(&network);
+    shoot(&gates, &mut maker, options.chords);
+    if options.most_steps > 0 {
+        seek(&gates, rows, &mut maker);
+    }
+    for a in 0..graph.n_cells() {
+        for b in rows.iter_ones(a).filter(|&b| b > a) {
+            maker.leave_open(a as u32, b as u32);
+        }
+    }
+    let mut order: Vec<u32> = (0..graph.n_cells() as u32).collect();
+    order.sort_by_key(|&cell| (rows.count_row(cell as usize), cell));
+    let mut guide = Guide::new(&gates, &network);
+    let mut left = options.most_steps_in_all / STEPS_EACH;
+    for source in order {
+        let most = options.most_steps / STEPS_EACH;
+        let mut waiting = vec![(maker.left(source), 0)];
+        while let Some((targets, n_halvings)) = waiting.pop() {
+            guide.left = (most >> n_halvings).min(left);
+            let before = guide.left;
+            // All that is left is not listed.
+            let listed = if n_halvings == 0 { &[][..] } else { &targets[..] };
+            let is_proven = maker.prove_hidden(source, listed, &mut guide, options.most_steps);
+            left -= before - guide.left;
+            if !is_proven && targets.len() > 1 && n_halvings < MOST_HALVINGS && left > 0 {
+                let (low, high) = targets.split_at(targets.len() / 2);
+                waiting.extend([(high.to_vec(), n_halvings + 1), (low.to_vec(), n_halvings + 1)]);
+            }
+        }
+    }
+    Ok(maker.finish())
+}
+
+/// The graph as proofs know it.
+///
+/// # Errors
+/// [`ConvexNetworkError`] for a graph that is not well formed.
+pub fn convex_network(graph: &CellGraph<Convex>) -> Result<ConvexNetwork, ConvexNetworkError> {
+    let portal = |p: &sightlines_cells::Portal<Convex>| ConvexPortal {
+        cells: p.cells.map(|cell| cell.0),
+        corners: p.shape.corners().to_vec(),
+    };
+    let portals: Vec<ConvexPortal> = graph.portals().iter().map(portal).collect();
+    ConvexNetwork::new(graph.n_cells(), &portals, ConvexNetwork::OF_FILES)
+}
+
+/// A line through a gate with coordinates of four bytes, and with those of eight. It depends on the line which of them passes.
+fn lines(gate: u32, points: [Point3; 2]) -> [ConvexLine; 2] {
+    let short = |x: f64| check_coordinate(f64::from(x as f32)).unwrap_or(x);
+    let [a, b] = points;
+    [ConvexLine::through(gate, a.map(short), b.map(short)), ConvexLine::through(gate, a, b)]
+}
+
+/// Lines through random points of portals, those that prove most first.
+fn shoot(gates: &Gates, maker: &mut ConvexMaker<'_>, per_portal: u32) {
+    let mut random = SplitMix(0x7072_6F6F_6673_0002);
+    let mut shot = Vec::new();
+    for gate in (0..gates.len() as u32).step_by(2) {
+        for _ in 0..per_portal {
+            let (mut sum, mut weights) = ([0.0; 3], 0.0);
+            for corner in gates.shape(gate).corners() {
+                let weight = random.unit();
+                sum = add(sum, scale(*corner, weight));
+                weights += weight;
+            }
+            let from = scale(sum, 1.0 / weights);
+            let way: Point3 = std::array::from_fn(|_| random.unit() - 0.5);
+            let normal = gates.get(gate).normal;
+            let is_back = dot(way, normal) < 0.0;
+            shot.push(lines(gate ^ u32::from(is_back), [from, add(from, scale(way, 1024.0))]));
+        }
+    }
+    for at_least in ROUNDS {
+        shot.retain(|both| !both.iter().any(|line| maker.take_line(*line, at_least)));
+    }
+}
+
+/// Lines to cells that are seen, and that no line was found to yet: by beams, then by sequences.
+fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
+    let mut through = BitMatrix::new(gates.len(), gates.n_cells());
+    for gate in 0..gates.len() {
+        through.row_mut(gate).copy_from_slice(&bound::seen_through(gates, gate as u32));
+    }
+    let mut stabber = ConvexStabber::new(StabLimits::default());
+    let mut take = |chain: &[u32], maker: &mut ConvexMaker<'_>| {
+        let cells = || chain.iter().map(|&g| gates.get(g).from).chain(chain.last().map(|&g| gates.get(g).to));
+        if cells().all(|a| cells().all(|b| a == b || maker.visible().has(a, b))) {
+            return;
+        }
+        let shapes: Vec<&Portal3> = chain.iter().map(|&gate| gates.shape(gate)).collect();
+        if let Stabbing3::Visible(line) = stabber.stab(&shapes, None) {
+            let _ = lines(chain[0], [line.a, line.b]).into_iter().any(|line| maker.take_line(line, 1));
+        }
+    };
+    let mut beams = BeamTracer::new(gates);
+    for gate in 0..gates.len() as u32 {
+        let from = gates.get(gate).from;
+        let in_doubt = rows.row(from as usize).iter().zip(maker.visible().row(from)).map(|(row, known)| row & !known);
+        let mut in_doubt: Vec<u64> = in_doubt.collect();
+        in_doubt[from as usize / 64] &= !(1 << (from % 64));
+        let traced = beams.trace(gates, gate, in_doubt, &through);
+        traced.chains.iter().for_each(|chain| take(chain, maker));
+    }
+    let mut sequences = SequenceTracer::new(gates);
+    for a in 0..gates.n_cells() as u32 {
+        for b in rows.iter_ones(a as usize).map(|b| b as u32).filter(|&b| b > a) {
+            if !maker.visible().has(a, b)
+                && let Sight::Visible(chain) = sequences.decide(gates, [a, b], &through)
+            {
+                take(&chain, maker);
+            }
+        }
+    }
+}
+
+/// Asks for a line through each chain, and for the reason why there is none.
+struct Guide<'a> {
+    gates: &'a Gates,
+    network: &'a ConvexNetwork,
+    stabber: ConvexStabber,
+    /// For each gate of the chain, a line up to there, if one is known.
+    lines: Vec<Option<Line3>>,
+    /// Questions that may still be asked.
+    left: u64,
+}
+
+impl<'a> Guide<'a> {
+    fn new(gates: &'a Gates, network: &'a ConvexNetwork) -> Self {
+        Self { gates, network, stabber: ConvexStabber::new(StabLimits::default()), lines: Vec::new(), left: 0 }
+    }
+
+    /// What a proof says, in a form that the checker accepts.
+    fn block(&self, proof: &ConvexCertificate, chain: &[u32], gate: u32) -> Option<ConvexBlock> {
+        let last = chain.len();
+        let back = |place: usize| (last - place) as u32;
+        match proof {
+            ConvexCertificate::Plane(PlaneProof { edge, corner, stops }) => {
+                let at = |(place, k): (usize, usize)| [back(place), k as u32];
+                let stops = [back(stops[0]), back(stops[1])];
+                let block = ConvexBlock::Plane(ConvexPlane { stops, edge: at(*edge), corner: at(*corner) });
+                Some(block).filter(|block| block.holds(self.network, chain, gate))
+            }
+            ConvexCertificate::Boxes(proof) => MULTIPLIERS.into_iter().map(Some).chain([None]).find_map(|most| {
+                let tree = tree(proof, 0, &back, most)?;
+                let block = ConvexBlock::Sums(ConvexSums { ends: proof.portals.map(back), tree });
+                Some(block).filter(|block| block.holds(self.network, chain, gate))
+            }),
+            _ => None,
+        }
+    }
+}
+
+impl ConvexGuide for Guide<'_> {
+    fn start(&mut self, _gate: u32) {
+        self.lines.clear();
+        self.lines.push(None);
+    }
+
+    fn cross(&mut self, chain: &[u32], gate: u32) -> ConvexStep {
+        if self.left == 0 {
+            return ConvexStep::GiveUp;
+        }
+        self.left -= 1;
+        let shapes: Vec<&Portal3> = chain.iter().chain([&gate]).map(|&g| self.gates.shape(g)).collect();
+        let hint = self.lines.last().copied().flatten();
+        let line = match self.stabber.stab(&shapes, hint.as_ref()) {
+            Stabbing3::Visible(line) => Some(line),
+            Stabbing3::Hidden(proof) => match self.block(&proof, chain, gate) {
+                Some(block) => return ConvexStep::Blocked(block),
+                None => None,
+            },
+            Stabbing3::Undecided => None,
+        };
+        self.lines.push(line);
+        ConvexStep::Open
+    }
+
+    fn back(&mut self) {
+        self.lines.pop();
+    }
+}
+
+/// The boxes of a proof from a node on. Multipliers are whole numbers up to `most`, or as they are.
+fn tree(proof: &BoxProof, node: usize, back: &impl Fn(usize) -> u32, most: Option<f64>) -> Option<ConvexTree> {
+    match proof.nodes.get(node)? {
+        ConvexNode::Leaf(terms) => {
+            let largest = terms.iter().map(|t| t.multiplier).fold(0.0, f64::max);
+            let times = |x: f64| most.map_or(x, |most| (x / largest * most).round());
+            let term = |t: &sightlines_sightline::convex::ConvexTerm| ConvexTerm {
+                gate: back(t.portal),
+                edge: t.edge as u32,
+                times: times(t.multiplier),
+            };
+            Some(ConvexTree::Sum(terms.iter().map(term).filter(|term| term.times > 0.0).collect()))
+        }
+        ConvexNode::Split { axis, at, parts } => {
+            let (end, k) = (usize::from(axis / 2), usize::from(axis % 2));
+            let [low, high] = *parts;
+            let parts = [tree(proof, low, back, most)?, tree(proof, high, back, most)?];
+            let plane = plane_across(&proof.blocks[end], k, *at);
+            Some(ConvexTree::Cut(Box::new(ConvexCut { later: end == 1, plane, parts })))
+        }
+    }
+}
+
+/// The plane on which a coordinate of a block is `at`, rounded.
+fn plane_across(block: &Block, k: usize, at: f64) -> [f64; 4] {
+    let (a, b) = (block.edges[(k + 1) % 3], block.edges[(k + 2) % 3]);
+    let normal = cross(a, b);
+    let normal = scale(normal, 1.0 / dot(normal, block.edges[k]));
+    [normal[0], normal[1], normal[2], -dot(normal, block.corner) - at].map(|x| check_coordinate(x).unwrap_or(0.0))
+}
