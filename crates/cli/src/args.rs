@@ -24,18 +24,24 @@ use clap::{Parser, Subcommand};
 
 /// Exact, conservative visibility: which cells of a scene can see each other.
 #[derive(Debug, Parser)]
-#[command(name = "sightlines", version, about, long_about = None)]
+#[command(name = "sightlines", version, long_about = None, disable_help_flag = true, disable_version_flag = true)]
 #[command(after_help = "Exit codes: 0 done; 1 the answer is no (query, draw: a point outside every cell; \
                         explain: hidden; verify: a violation); 2 bad input or usage.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
     /// Say more on standard error (twice: still more)
-    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    #[arg(short, long, help_heading = "General", global = true, action = clap::ArgAction::Count)]
     pub(crate) verbose: u8,
     /// Show no progress and no warnings
-    #[arg(short, long, global = true)]
+    #[arg(short, long, help_heading = "General", global = true)]
     pub(crate) quiet: bool,
+    /// Print help; with -h in short
+    #[arg(short, long, help_heading = "General", global = true, action = clap::ArgAction::Help)]
+    help: Option<bool>,
+    /// Print version
+    #[arg(short = 'V', long, help_heading = "General", action = clap::ArgAction::Version)]
+    version: Option<bool>,
 }
 
 /// What to do.
@@ -48,8 +54,8 @@ pub(crate) enum Command {
     Reject(RejectArgs),
     /// Write the visibility of a map of Quake or Quake II, and leave all else as it is
     Vis(VisArgs),
-    /// Check a table against the scene that it was built from: structure, and rays against the real geometry; exit code 1 if anything
-    /// is not as the table says
+    /// Check a table against the scene that it was built from, or what a map of Quake or Doom itself says of who sees whom: structure,
+    /// and rays against the real geometry; exit code 1 if anything is not as is said
     Verify(VerifyArgs),
     /// Say which cells and objects may be seen from a point, or from there in a direction
     Query(QueryArgs),

@@ -7,6 +7,7 @@ use sightlines::bake::region::GridError;
 use sightlines::bake::{BakeError, CertifyError, PrtBakeError, RegionBakeError, RejectError, StabBakeError};
 use sightlines::eye_to_cell::{Method, ViewError};
 use sightlines::formats::quake::VisibilityError;
+use sightlines::formats::reject::RejectLengthError;
 use sightlines::formats::scene::{RewriteError, SceneWriteError};
 use sightlines::formats::{ReadError, WriteError};
 use sightlines::multifocal::{BackendError, JobError, PlaneError, VolumeError};
@@ -17,7 +18,7 @@ use sightlines::scenes::SceneError;
 use sightlines::simplify::{SimplifyError, ViewsError};
 use sightlines::verify::{ProofError, VerifyError};
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a command failed; exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -62,7 +63,7 @@ pub(crate) enum CliError {
     #[error("{}: {option} is for {meant}, and this is {found}", path.display())]
     Option { path: PathBuf, option: &'static str, meant: &'static str, found: &'static str },
     /// A plan or a scene cannot be baked.
-    #[error("{}: {}{source}", path.display(), map.as_ref().map_or(String::new(), |name| format!("map {name}: ")))]
+    #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
     Bake { path: PathBuf, map: Option<String>, source: BakeError },
     /// A scene cannot be baked by what is hidden from its cells.
     #[error("{}: {source}", path.display())]
@@ -92,8 +93,17 @@ pub(crate) enum CliError {
     #[error("{}: does not go with {}: {source}", prt.display(), bsp.display())]
     OtherMap { prt: PathBuf, bsp: PathBuf, source: Box<VisibilityError> },
     /// A Quake map where its portals are needed, without a portal file beside it.
-    #[error("{}: a Quake map does not have its portals, and there is no .prt beside it: name one with --prt", .0.display())]
+    #[error("{}: a map does not have its portals, and there is no {} beside it: qbsp writes that file with the map, unless the map leaks; \
+             one elsewhere is named with --prt FILE.prt", .0.display(), name_with(.0, "prt"))]
     MapWithoutPortals(PathBuf),
+    /// A portal file where the map is needed that it is of.
+    #[error("{}: these are the portals of a map, and the map itself is needed: {command} {} --prt {}", path.display(),
+            path.with_extension("bsp").display(), path.display())]
+    PortalsForMap { path: PathBuf, command: &'static str },
+    /// What a table is built from, where the table is needed.
+    #[error("{}: is {found}, not a table: build one first: sightlines build {}{} -o {}", path.display(), path.display(),
+            if *found == SOME_WAD { " --map NAME" } else { "" }, path.with_extension("pvs").display())]
+    NotTable { path: PathBuf, found: &'static str },
     /// A table that does not know where its cells are.
     #[error("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())]
     NoPlaces { path: PathBuf, what: &'static str },
@@ -149,6 +159,21 @@ pub(crate) enum CliError {
     /// A table that cannot be of the scene that it is to be checked against.
     #[error("{}: is no table of {}: {source}", table.display(), scene.display())]
     Verify { table: PathBuf, scene: PathBuf, source: VerifyError },
+    /// A map without visibility of its own.
+    #[error("{}: {}there is no {what} to check, or an empty one; {command} writes it", path.display(), of_map(map.as_ref()))]
+    NoOwn { path: PathBuf, map: Option<String>, what: &'static str, command: &'static str },
+    /// The own visibility of a map cannot be read.
+    #[error("{}: {source}", path.display())]
+    OwnVisibility { path: PathBuf, source: Box<VisibilityError> },
+    /// The REJECT lump of a map has another length than its sectors need.
+    #[error("{}: map {map}: {source}", path.display())]
+    OwnLength { path: PathBuf, map: String, source: RejectLengthError },
+    /// The REJECT lump of another map.
+    #[error("{}: is no map of {}: it has {} sectors, not {}", path.display(), scene.display(), n_sectors[0], n_sectors[1])]
+    OwnSectors { path: PathBuf, scene: PathBuf, n_sectors: [u32; 2] },
+    /// The own visibility of a map, and a scene of another kind.
+    #[error("{}: is a map, whose own visibility is checked against {needed}; {} is none", path.display(), scene.display())]
+    OwnScene { path: PathBuf, scene: PathBuf, needed: &'static str },
     /// A scene cannot be generated.
     #[error(transparent)]
     Generate(#[from] SceneError),
@@ -167,9 +192,9 @@ pub(crate) enum CliError {
     /// A picture that is always PNG, and is not called so.
     #[error("{}: the picture is written as PNG; give a name that ends in .png", .0.display())]
     NotPng(PathBuf),
-    /// Two pictures for one file.
-    #[error("{}: two pictures would be written to this file", .0.display())]
-    TwoPictures(PathBuf),
+    /// Two outputs for one file.
+    #[error("{}: two outputs would be written to this file", .0.display())]
+    TwoOutputs(PathBuf),
     /// A box that is no volume of viewpoints.
     #[error("--volume: {0}")]
     Volume(#[from] VolumeError),
@@ -221,6 +246,19 @@ pub(crate) enum CliError {
     /// Standard output cannot be written.
     #[error("standard output: {0}")]
     Print(io::Error),
+}
+
+/// Names the map of a file, if it has one.
+fn of_map(map: Option<&String>) -> String {
+    map.map_or(String::new(), |name| format!("map {name}: "))
+}
+
+/// A WAD, as [`CliError::NotTable`] calls it.
+pub(crate) const SOME_WAD: &str = "a WAD";
+
+/// The name of a file, without its folder, with another ending.
+fn name_with(path: &Path, ending: &str) -> String {
+    path.with_extension(ending).file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn list(names: &[String]) -> String {

@@ -67,7 +67,7 @@ impl Drop for NewFolder {
 }
 
 /// A hidden name in the same folder.
-fn beside(target: &Path, what: &str) -> Option<PathBuf> {
+pub(crate) fn beside(target: &Path, what: &str) -> Option<PathBuf> {
     let mut name = std::ffi::OsString::from(".");
     name.push(target.file_name()?);
     name.push(format!(".{}.{what}", std::process::id()));

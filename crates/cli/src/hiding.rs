@@ -27,6 +27,7 @@ pub(crate) enum Hiding {
 
 /// How multifocal buffers and sheets are made.
 #[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Multifocal buffers")]
 pub(crate) struct BufferArgs {
     /// multifocal: what buffers compare
     #[arg(long, value_name = "WHAT", default_value = "height")]

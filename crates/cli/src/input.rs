@@ -1,6 +1,6 @@
 //! Files to read, told apart by their content.
 
-use crate::error::CliError;
+use crate::error::{CliError, SOME_WAD};
 use sightlines::bake::graph_of;
 use sightlines::bake::quake::is_of_clusters;
 use sightlines::cells::{CellGraph, Plan, Planar};
@@ -83,8 +83,23 @@ pub(crate) fn table(path: &Path) -> Result<Table, CliError> {
     }
     if bytes == format::MAGIC {
         file.read_to_end(&mut bytes).map_err(open)?;
+    } else {
+        refuse_source(path)?;
     }
     Table::from_bytes(&bytes).map_err(|source| CliError::Table { path: path.to_owned(), source })
+}
+
+/// Refuses what tables are built from, where a table is needed.
+pub(crate) fn refuse_source(path: &Path) -> Result<(), CliError> {
+    let found = match kind_of(path)? {
+        None | Some(Kind::Table | Kind::Packed) => return Ok(()),
+        Some(Kind::Wad) => SOME_WAD,
+        Some(Kind::Json) => "JSON, such as a floor plan",
+        Some(Kind::Scene) => "a scene",
+        Some(Kind::Prt) => "a portal file",
+        Some(Kind::Bsp) => "a Quake map",
+    };
+    Err(CliError::NotTable { path: path.to_owned(), found })
 }
 
 /// Whether a table is of a portal file, with its map or without: its cells are joined by convex portals, and nobody knows
@@ -133,7 +148,7 @@ const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Q
 /// Reads what is to be built: a map of a WAD, a GeoJSON file, a scene in space, a portal file, or a Quake map.
 pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, CliError> {
     match (kind_of(path)?, map) {
-        (Some(Kind::Wad), map) => Ok(Input::Plan(doom(path, map)?)),
+        (Some(Kind::Wad), map) => Ok(Input::Plan(plan_of_map(path, map)?)),
         (Some(Kind::Json | Kind::Scene | Kind::Prt | Kind::Bsp), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
         (Some(Kind::Json), None) => Ok(Input::Plan(plan(path)?)),
         (Some(Kind::Scene), None) => Ok(Input::Scene(occluders(path)?)),
@@ -165,12 +180,17 @@ pub(crate) fn plan(path: &Path) -> Result<PlanFile, CliError> {
     Ok(PlanFile { plan: geojson::read_plan(path)?, map: None })
 }
 
-fn doom(path: &Path, name: Option<&str>) -> Result<PlanFile, CliError> {
+/// Reads a map of a WAD; its only one, if none is named.
+pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap, CliError> {
     let wad = Wad::read(path)?;
     let maps = list_maps(&wad);
     let lumps = choose(path, &maps, name)?;
-    let map = DoomMap::parse(&wad, lumps).map_err(|error| ReadError::new(path, error))?;
-    let name = lumps.name().to_string();
+    Ok(DoomMap::parse(&wad, lumps).map_err(|error| ReadError::new(path, error))?)
+}
+
+fn plan_of_map(path: &Path, name: Option<&str>) -> Result<PlanFile, CliError> {
+    let map = doom(path, name)?;
+    let name = map.name().to_string();
     let bake = |error: sightlines::cells::PlanError| CliError::Bake {
         path: path.to_owned(),
         map: Some(name.clone()),

@@ -1,10 +1,12 @@
 //! Results: standard output, and files that appear whole.
 
 use crate::error::CliError;
+use crate::folder::beside;
 use serde::Serialize;
-use sightlines::formats::atomic_write;
+use sightlines::formats::{WriteError, atomic_write};
 use std::fmt;
-use std::io::{BufWriter, Write};
+use std::fs::{self, OpenOptions};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 /// Prints a result: as one line of JSON if `json`, otherwise as it is displayed.
@@ -40,6 +42,53 @@ pub(crate) fn refuse_same(input: &Path, output: &Path) -> Result<(), CliError> {
         _ => false,
     };
     if same { Err(CliError::SameFile(output.to_owned())) } else { Ok(()) }
+}
+
+/// Refuses outputs, before anything is read or computed, that would fail at the end: one that is an input, two that are one file, and
+/// one that cannot be written. Leaves nothing behind.
+pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<(), CliError> {
+    for (k, output) in outputs.iter().enumerate() {
+        inputs.iter().try_for_each(|input| refuse_same(input, output))?;
+        if outputs[..k].iter().any(|other| is_one_file(other, output)) {
+            return Err(CliError::TwoOutputs((*output).to_owned()));
+        }
+        check_writable(output)?;
+    }
+    Ok(())
+}
+
+/// Whether two names are one file. What is no file, such as `/dev/null`, may be written to twice.
+fn is_one_file(a: &Path, b: &Path) -> bool {
+    let is_special = fs::metadata(a).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    (a == b && !is_special) || refuse_same(a, b).is_err()
+}
+
+/// Refuses an output that cannot be written: its folder is not there or refuses new files, or a folder has its name.
+///
+/// A file is written beside its place and renamed, so an empty one is put there and taken away. What changes until the output is written
+/// is told then.
+pub(crate) fn check_writable(path: &Path) -> Result<(), CliError> {
+    let try_beside = || -> io::Result<()> {
+        let target = match fs::metadata(path) {
+            Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+            Ok(found) if found.is_file() => fs::canonicalize(path)?,
+            // Pipes and terminals are written to as they are; to open some would wait for a reader.
+            Ok(_) => return Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
+            Err(error) => return Err(error),
+        };
+        let beside = beside(&target, "check").ok_or(io::ErrorKind::InvalidInput)?;
+        match OpenOptions::new().write(true).create_new(true).open(&beside) {
+            Ok(file) => {
+                drop(file);
+                fs::remove_file(&beside)
+            }
+            // Left by a run that was killed; a file could be made there.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+            Err(error) => Err(error),
+        }
+    };
+    Ok(try_beside().map_err(|source| WriteError { path: path.to_owned(), source })?)
 }
 
 /// A share as a percentage, with as many digits as small shares need.
@@ -78,6 +127,26 @@ pub(crate) fn count(n: impl Into<u64>, noun: &str) -> String {
 mod tests {
     use super::*;
     use std::time::Duration;
+
+    #[test]
+    fn what_cannot_be_written_is_refused_and_nothing_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("in"), "in").unwrap();
+        let names = || fs::read_dir(folder.path()).unwrap().count();
+        let refused = |path: &Path| check(&[&at("in")], &[path]).unwrap_err().to_string();
+        assert!(check(&[&at("in")], &[&at("new"), &at("other")]).is_ok());
+        assert!(refused(&at("in")).ends_with("the output would replace the input"));
+        for bad in [at("no/new"), at("in/new"), folder.path().to_owned(), at("..")] {
+            assert!(refused(&bad).contains(": cannot be written: "), "{}", bad.display());
+        }
+        for twice in [at("new"), at("in")] {
+            let error = check(&[], &[&twice, &twice]).unwrap_err().to_string();
+            assert!(error.ends_with("two outputs would be written to this file"), "{error}");
+        }
+        assert_eq!(names(), 1);
+        assert!(check_writable(Path::new("/dev/null")).is_ok());
+    }
 
     #[test]
     fn numbers_are_rounded_for_the_eye() {

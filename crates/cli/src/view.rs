@@ -51,14 +51,14 @@ pub(crate) struct UnknownMethods(#[from] UnknownMethod);
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(crate) struct LensArgs {
     /// The angle of view in degrees, above 0 and at most 360; in space that of the picture's width; 75 if not given
-    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Viewer", value_name = "DEGREES", value_parser = degrees, allow_hyphen_values = true)]
     fov: Option<f64>,
     /// Scenes in space only: width by height of the picture; 4/3 if not given
-    #[arg(long, value_name = "W/H", value_parser = aspect, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Viewer", value_name = "W/H", value_parser = aspect, allow_hyphen_values = true)]
     aspect: Option<f64>,
     /// Scenes in space only: what is up in the picture, an axis or a vector, if not the axis that the table names (y if
     /// it names none)
-    #[arg(long, value_name = "AXIS|X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Viewer", value_name = "AXIS|X,Y,Z", allow_hyphen_values = true)]
     up: Option<Up>,
 }
 

@@ -3,7 +3,7 @@
 mod common;
 
 use common::Folder;
-use common::quake::row_of_leafs;
+use common::quake::{rooms, row_of_leafs};
 use serde_json::{Value, json};
 use sightlines::formats::quake::BspFormat;
 use sightlines::pvs::{CellId, Table};
@@ -57,6 +57,64 @@ fn scenes_in_space_are_proven() {
     build_and_flip(&Folder::with_tower(), "tower.glb", &[], 3, 2);
 }
 
+/// Rooms in rows, with windows between them at places that differ.
+#[test]
+fn quake_maps_are_proven() {
+    let folder = Folder::new();
+    folder.write("map.prt", &rooms(4, 3).prt);
+    prove_and_flip(&folder, "map.prt");
+    let map = row_of_leafs(BspFormat::ALL[0]);
+    folder.write("row.bsp", &map.bsp);
+    folder.write("row.prt", &map.prt);
+    folder.run(&["build", "row.bsp", "-o", "t.pvs", "--certify"]).expect(0);
+    let out = folder.run(&["verify", "t.pvs", "row.bsp", "--strict"]).expect(0).out;
+    assert!(out.contains("\n               6 visible pairs and 0 hidden pairs proven\n"), "{out}");
+}
+
+/// As [`build_and_flip`], but no walls are looked for in a map.
+fn prove_and_flip(folder: &Folder, scene: &str) {
+    let built = folder.run(&["build", scene, "-o", "t.pvs", "--certify", "--json"]).expect(0).json();
+    assert_eq!((&built["proofs"], &built["n_proof_bytes"]), (&json!("t.cert"), &json!(folder.read("t.cert").len())));
+    let few = ["--rays", "0", "--pairs", "0", "--json"];
+    let good = folder.run(&[&["verify", "t.pvs", scene, "--strict"][..], &few].concat()).expect(0).json();
+    let proofs = &good["proofs"];
+    let unproven = ["n_violations", "n_unproven_hidden", "n_unproven_visible"].map(|key| proofs[key].as_u64());
+    assert_eq!(unproven, [Some(0); 3], "{proofs}");
+    assert!(proofs["n_hidden"].as_u64() > Some(10) && proofs["n_visible"].as_u64() > Some(10), "{proofs}");
+    let n = Table::from_bytes(&folder.read("t.pvs")).expect("a sound table").n_cells() as u32;
+    for [a, b] in (0..n).map(|a| [a, (a * 5 + 1) % n]).filter(|[a, b]| a < b) {
+        flip(folder, a, b);
+        let args = [&["verify", "flipped.pvs", scene, "--proofs", "t.cert"][..], &few].concat();
+        let told = &folder.run(&args).expect(1).json()["proofs"]["violations"];
+        assert_eq!(told.as_array().map(Vec::len), Some(1), "{told}");
+        assert!(told[0].as_str().is_some_and(|text| text.starts_with(&format!("cells {a} and {b} "))), "{told}");
+    }
+}
+
+/// Proofs beside a table that was built again are not held against it, unless they are asked for.
+#[test]
+fn stale_proofs_are_told_apart() {
+    let folder = Folder::with_office();
+    folder.run(&["build", "office.geojson", "-o", "t.pvs", "--certify"]).expect(0);
+    let map = rooms(4, 3);
+    folder.write("map.prt", &map.prt);
+    folder.run(&["build", "map.prt", "-o", "t.pvs"]).expect(0);
+    let verify = ["verify", "t.pvs", "map.prt", "--rays", "0", "--pairs", "0"];
+    let out = folder.run(&verify).expect(0).out;
+    assert!(out.contains("t.cert is stale: ") && out.contains("build the table with --certify again"), "{out}");
+    let json = folder.run(&[&verify[..], &["--strict", "--json"]].concat()).expect(1).json();
+    assert_eq!((&json["proofs"]["is_stale"], &json["proofs"]["is_true"]), (&json!(true), &json!(false)));
+    let error = folder.refused(&[&verify[..], &["--proofs", "t.cert"]].concat());
+    assert!(error.contains("the proofs are for a plan"), "{error}");
+    // Of the same kind.
+    folder.write("other.prt", &rooms(3, 3).prt);
+    folder.run(&["build", "other.prt", "-o", "t.pvs", "--certify"]).expect(0);
+    folder.run(&["build", "map.prt", "-o", "t.pvs"]).expect(0);
+    assert!(folder.run(&verify).expect(0).out.contains("t.cert is stale: "));
+    let bad = folder.run(&[&verify[..], &["--proofs", "t.cert", "--json"]].concat()).expect(1).json();
+    assert_eq!((&bad["proofs"]["is_stale"], &bad["proofs"]["n_violations"]), (&json!(false), &json!(1)));
+}
+
 #[test]
 fn people_are_told() {
     let folder = Folder::with_office();
@@ -78,13 +136,6 @@ fn what_cannot_be_proven_or_checked_is_refused() {
     let grid = ["build", "tower.glb", "--grid", "3,1,3", "-o", "t.pvs", "--certify"];
     let error = folder.refused(&grid);
     assert!(error.contains("--certify is for scenes by sightlines alone"), "{error}");
-    let map = row_of_leafs(BspFormat::ALL[0]);
-    folder.write("map.bsp", &map.bsp);
-    folder.write("map.prt", &map.prt);
-    for input in ["map.bsp", "map.prt"] {
-        let error = folder.refused(&["build", input, "-o", "t.pvs", "--certify"]);
-        assert!(error.contains("--certify is for plans and scenes in space"), "{error}");
-    }
     assert!(!folder.path("t.pvs").exists() && !folder.path("t.cert").exists());
     let error = folder.refused(&["build", "tower.glb", "-o", "t.pvs", "--certify=tower.glb"]);
     assert!(error.contains("tower.glb"), "{error}");

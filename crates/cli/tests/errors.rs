@@ -56,12 +56,47 @@ fn files_of_the_wrong_kind_are_named() {
         "noise: neither a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
     );
     assert!(folder.refused(&["reject", "office.geojson", "-o", "out.wad"]).starts_with("office.geojson: "));
-    assert_eq!(folder.refused(&["export", "maps.wad"]), "maps.wad: byte 0: this is no visibility table");
     assert_eq!(
         folder.refused(&["query", "noise.pvs", "--eye", "0,0"]),
         "noise.pvs: byte 0: this is no visibility table"
     );
     assert!(!folder.path("out.pvs").exists() && !folder.path("out.wad").exists());
+}
+
+/// Who has no table yet is told how to make one, by every command that needs one.
+#[test]
+fn scenes_instead_of_tables_are_named_with_what_to_do() {
+    let folder = Folder::with_tower();
+    folder.write("plan.geojson", common::maze_text(1));
+    folder.write("maps.wad", wad(&["MAP01"]));
+    folder.write("map.prt", common::quake::rooms(2, 2).prt);
+    folder.write("map.bsp", common::quake::rooms(2, 2).bsp);
+    let of_scene = |args: &[&str], file: &str| {
+        let error = folder.refused(args);
+        let table = std::path::Path::new(file).with_extension("pvs");
+        let named = if file == "maps.wad" { " --map NAME" } else { "" };
+        let what = format!(", not a table: build one first: sightlines build {file}{named} -o {}", table.display());
+        assert!(error.starts_with(&format!("{file}: is ")) && error.ends_with(&what), "{args:?}: {error}");
+    };
+    for file in ["tower.glb", "plan.geojson", "maps.wad", "map.prt", "map.bsp"] {
+        of_scene(&["query", file, "--eye", "1,1,1"], file);
+        of_scene(&["walk", file, "--random", "5"], file);
+        of_scene(&["draw", file, "-o", "out.svg"], file);
+        of_scene(&["export", file], file);
+        of_scene(&["pack", file, "-o", "out.pvz"], file);
+        of_scene(&["unpack", file, "-o", "out.pvs"], file);
+        // Portal files are explained themselves.
+        if file != "map.prt" {
+            of_scene(&["explain", file, "0", "1"], file);
+        }
+    }
+    of_scene(&["verify", "tower.glb", "tower.glb"], "tower.glb");
+    of_scene(&["levels", "tower.glb", "--table", "tower.glb", "-o", "lod"], "tower.glb");
+    // What is no scene either is called what it is.
+    folder.write("noise", [7u8; 100]);
+    assert_eq!(folder.refused(&["export", "noise"]), "noise: byte 0: this is no visibility table");
+    let scenes = ["map.bsp", "map.prt", "maps.wad", "noise", "plan.geojson", "tower.glb", "tower.pvs"];
+    assert_eq!(folder.names(), scenes);
 }
 
 /// A table that was cut, or has a byte changed, is refused with the place.

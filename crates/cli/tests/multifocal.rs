@@ -233,7 +233,7 @@ fn bad_input_is_refused_in_one_line() {
     );
     assert_eq!(
         refused("one.obj", "z=9", &["-o", "a.png", "--voronoi", "a.png"]),
-        "a.png: two pictures would be written to this file"
+        "a.png: two outputs would be written to this file"
     );
     let missing = refused("none.obj", "z=9", &out);
     assert!(missing.starts_with("none.obj: "), "{missing}");

@@ -154,6 +154,39 @@ fn people_are_told_what_was_checked() {
     assert!(!folder.path("none.svg").exists());
 }
 
+/// Who asks for no rays and has no proofs is told that nothing but the structure was looked at.
+#[test]
+fn what_was_not_checked_is_told() {
+    let folder = Folder::with_office();
+    let none = ["verify", "office.pvs", "office.geojson", "--rays", "0", "--pairs", "0"];
+    let told = folder.run(&none).expect(0).out;
+    assert!(told.contains("rays           none\n") && told.contains("only the structure was checked"), "{told}");
+    assert!(!told.contains("nothing found"), "{told}");
+    let checked = |args: &[&str]| {
+        let told = folder.run(&[&["verify", "--json", "office.pvs", "office.geojson"], args].concat()).expect(0).json();
+        let list = ["random_rays", "aimed_rays", "proofs"].map(|what| told["checked"][what].as_bool().expect("said"));
+        (list, told["is_true"].as_bool())
+    };
+    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]), ([false; 3], Some(true)));
+    assert_eq!(checked(&["--rays", "100", "--pairs", "0"]).0, [true, false, false]);
+    assert_eq!(checked(&["--rays", "0", "--pairs", "5"]).0, [false, true, false]);
+    for some in [["--rays", "0"], ["--pairs", "0"]] {
+        let told = folder.run(&[&["verify", "office.pvs", "office.geojson"][..], &some].concat()).expect(0).out;
+        assert!(told.contains("nothing found that is not as the table says"), "{told}");
+    }
+    // Proofs are something.
+    folder.run(&["build", "office.geojson", "-o", "office.pvs", "--certify"]).expect(0);
+    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]), ([false, false, true], Some(true)));
+    // Those of another table are nothing.
+    folder.run(&["build", "office.geojson", "-o", "office.pvs", "--subdivide", "triangulation"]).expect(0);
+    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]).0, [false; 3]);
+    folder.run(&["build", "office.geojson", "-o", "office.pvs"]).expect(0);
+    // A pair that is wrong and not looked at goes unnoticed, which is why it has to be said.
+    flip(&folder, "office.pvs", "wrong.pvs", 3);
+    let told = folder.run(&["verify", "wrong.pvs", "office.geojson", "--rays", "0", "--pairs", "0"]).expect(0).out;
+    assert!(told.contains("only the structure was checked"), "{told}");
+}
+
 #[test]
 fn rays_in_space_are_drawn_on_the_floor_where_they_begin() {
     let folder = Folder::with_tower();

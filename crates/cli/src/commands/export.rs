@@ -14,21 +14,21 @@ pub(crate) struct ExportArgs {
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
     /// Where to write; standard output if not given
-    #[arg(short, long, value_name = "OUT.json")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.json")]
     output: Option<PathBuf>,
 }
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Answer, CliError> {
+    if let Some(path) = &args.output {
+        output::check(&[&args.table], &[path])?;
+    }
     let table = input::table(&args.table)?;
     match &args.output {
         None => output::stdout(|out| {
             write_json(&table, &mut *out)?;
             writeln!(out)
         })?,
-        Some(path) => {
-            output::refuse_same(&args.table, path)?;
-            output::save(path, (export_json(&table) + "\n").as_bytes())?;
-        }
+        Some(path) => output::save(path, (export_json(&table) + "\n").as_bytes())?,
     }
     Ok(Answer::Yes)
 }

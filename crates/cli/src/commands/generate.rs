@@ -27,32 +27,33 @@ enum What {
 /// Arguments of `generate tower`.
 #[derive(Debug, clap::Args)]
 struct TowerArgs {
-    /// The scene to write
-    #[arg(short, long, value_name = "OUT.glb")]
-    output: PathBuf,
     /// Another seed gives another tower
-    #[arg(long, value_name = "N", default_value_t = TowerOptions::default().seed)]
+    #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().seed)]
     seed: u64,
     /// Floors, from 1 to 256; a higher tower has the same lower floors
-    #[arg(long, value_name = "N", default_value_t = TowerOptions::default().floors)]
+    #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().floors)]
     floors: u32,
     /// Room places side by side, from 1 to 128
-    #[arg(long, value_name = "N", default_value_t = TowerOptions::default().rooms_x)]
+    #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().rooms_x)]
     rooms_x: u32,
     /// Rows of rooms, from 1 to 128
-    #[arg(long, value_name = "N", default_value_t = TowerOptions::default().rooms_y)]
+    #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().rooms_y)]
     rooms_y: u32,
     /// Furniture: 0 for none, up to 3 for the finest
-    #[arg(long, value_name = "LEVEL", default_value_t = TowerOptions::default().furniture)]
+    #[arg(long, help_heading = "Tower", value_name = "LEVEL", default_value_t = TowerOptions::default().furniture)]
     furniture: u32,
     /// Leave out the windows
-    #[arg(long)]
+    #[arg(long, help_heading = "Tower")]
     no_windows: bool,
     /// Thickness of walls: 0, 0.25 or 0.5
-    #[arg(long, value_name = "UNITS", default_value_t = TowerOptions::default().wall_thickness, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Tower", value_name = "UNITS")]
+    #[arg(default_value_t = TowerOptions::default().wall_thickness, allow_hyphen_values = true)]
     wall_thickness: f64,
+    /// The scene to write
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.glb")]
+    output: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -62,6 +63,7 @@ pub(crate) fn run(args: &GenerateArgs) -> Result<Answer, CliError> {
     if !is_glb {
         return Err(CliError::NotGlb { path: args.output.clone() });
     }
+    output::check(&[], &[&args.output])?;
     let options = TowerOptions {
         seed: args.seed,
         floors: args.floors,

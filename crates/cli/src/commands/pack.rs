@@ -20,14 +20,14 @@ pub(crate) struct PackArgs {
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
     /// The packed table to write
-    #[arg(short, long, value_name = "OUT.pvz")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.pvz")]
     output: PathBuf,
     /// The most bytes that the file may have: cells are merged in what they see until it fits, so that more is visible,
     /// and nothing less. Without it nothing is lost
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, help_heading = "Output", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_bytes: Option<u64>,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -38,15 +38,15 @@ pub(crate) struct UnpackArgs {
     #[arg(value_name = "FILE.pvz")]
     packed: PathBuf,
     /// The table to write
-    #[arg(short, long, value_name = "OUT.pvs")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     output: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
 pub(crate) fn pack(args: &PackArgs) -> Result<Answer, CliError> {
-    output::refuse_same(&args.table, &args.output)?;
+    output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
     let (packed, report) = pack_report(&table, &PackOptions { max_bytes: args.max_bytes })
         .map_err(|source| CliError::Pack { path: args.table.clone(), source })?;
@@ -73,7 +73,8 @@ pub(crate) fn pack(args: &PackArgs) -> Result<Answer, CliError> {
 }
 
 pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer, CliError> {
-    output::refuse_same(&args.packed, &args.output)?;
+    output::check(&[&args.packed], &[&args.output])?;
+    input::refuse_source(&args.packed)?;
     let packed = tables::packed(&args.packed, CACHE)?;
     let table = packed.to_table().map_err(|source| CliError::Packed { path: args.packed.clone(), source })?;
     let plain = table.to_bytes();

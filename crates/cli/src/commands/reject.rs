@@ -17,24 +17,26 @@ pub(crate) struct RejectArgs {
     /// The WAD to read
     #[arg(value_name = "IN.wad")]
     input: PathBuf,
-    /// The WAD to write; may be the one that was read
-    #[arg(short, long, value_name = "OUT.wad")]
-    output: PathBuf,
     /// Do only this map; may be given several times
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Vec<String>,
     /// Replace tables with effects made by hand too (not symmetric, or a sector rejected from itself)
-    #[arg(long)]
+    #[arg(long, help_heading = "Method")]
     force: bool,
     /// Number of threads; 0 for one for each core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
     threads: usize,
+    /// The WAD to write; may be the one that was read
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.wad")]
+    output: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
 pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, CliError> {
+    // It may be the WAD that is read.
+    output::check(&[], &[&args.output])?;
     let wad = Wad::read(&args.input)?;
     let bar = Bar::new("which sectors see which", show_progress);
     let progress = |done, all| bar.set(done, all);

@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct CertifyArgs {
     /// Write proofs too, beside the table with the ending .cert, or into FILE: a line for what is visible, a reason for what is
-    /// hidden, which `verify` checks without any of the code that built the table. May take ten times as long as the table. Not
-    /// for Quake maps (see `vis --certify`), nor for scenes by another method than sightlines
+    /// hidden, which `verify` checks without any of the code that built the table. May take ten times as long as the table, and for large
+    /// Quake maps much longer: what takes too long is left without a proof. Not for scenes by another method than sightlines
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     certify: Option<Option<PathBuf>>,
 }
@@ -28,7 +28,7 @@ impl CertifyArgs {
     /// Refuses a file of proofs that is the input or the table.
     pub(super) fn check(&self, input: &Path, table: &Path) -> Result<(), CliError> {
         let Some(file) = self.file(table) else { return Ok(()) };
-        output::refuse_same(input, &file)?;
+        output::check(&[input], &[&file])?;
         if file == table { Err(CliError::SameFile(file)) } else { Ok(()) }
     }
 

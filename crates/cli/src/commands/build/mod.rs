@@ -29,35 +29,36 @@ pub(crate) struct BuildArgs {
     /// A WAD, a floor plan as GeoJSON, a scene in space as GLB, glTF or OBJ, a Quake map, or its portal file alone
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// The table to write
-    #[arg(short, long, value_name = "OUT.pvs")]
-    output: PathBuf,
     /// Which map of the WAD; not needed if there is only one
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Option<String>,
     /// Quake maps only: the portal file, as the compiler wrote it; beside the map if not given
-    #[arg(long, value_name = "MAP.prt")]
+    #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
     #[command(flatten)]
     bake: BakeArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Method")]
     region: region::RegionArgs,
+    /// The table to write
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
+    output: PathBuf,
     /// Keep stab trees in the table: for each cell the sequences of portals out of it that a sightline passes. A tree
     /// has at most N nodes and is cut beyond, which shows more and hides nothing; without N 65536 for plans, 16384
     /// for scenes in space, 4096 for Quake maps and portal files. May take much longer than the table and make it several
     /// times as large; without trees the exact method finds the same cells
-    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, help_heading = "Output", value_name = "N", num_args = 0..=1, require_equals = true)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     stab_trees: Option<Option<u32>>,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Output")]
     certify: certify::CertifyArgs,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
 pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
     let BuildArgs { input: path, output: out, bake, .. } = args;
-    output::refuse_same(path, out)?;
+    output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
     let input = input::read(path, args.map.as_deref())?;
     let chosen = args.region.is_auto().then(|| auto::Chosen::of(&input, &args.region));
@@ -67,9 +68,6 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     };
     if !matches!(input, Input::Map(_)) {
         refuse(path, &[("--prt", args.prt.is_some())], "Quake maps", "none")?;
-    }
-    if matches!(input, Input::Portals(_) | Input::Map(_)) {
-        refuse(path, &[("--certify", args.certify.is_given())], "plans and scenes in space", "a Quake map")?;
     }
     if !matches!(input, Input::Scene(_)) {
         refuse(path, &region.of_space(), "scenes in space", "none")?;
@@ -127,8 +125,9 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
             (baked.table, stab) = stab_of(baked.table)?;
             let bytes = baked.table.to_bytes();
             output::save(out, &bytes)?;
+            let proofs = proofs_of(&baked.table)?;
             let outcome = portals::Outcome::new(out, &prt, bake, &baked, bytes.len()).verbose(verbose);
-            output::print(args.json, &With { auto, outcome, stab, proofs: None })?;
+            output::print(args.json, &With { auto, outcome, stab, proofs })?;
         }
         Input::Map(bsp) => {
             let portals = quake::Portals::read(path, args.prt.as_deref(), out)?;
@@ -137,8 +136,9 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
             (baked.table, stab) = stab_of(baked.table)?;
             let bytes = baked.table.to_bytes();
             output::save(out, &bytes)?;
+            let proofs = proofs_of(&baked.table)?;
             let outcome = quake::Outcome::new(out, &bsp, &portals, bake, &baked, bytes.len()).verbose(verbose);
-            output::print(args.json, &With { auto, outcome, stab, proofs: None })?;
+            output::print(args.json, &With { auto, outcome, stab, proofs })?;
         }
     }
     Ok(Answer::Yes)

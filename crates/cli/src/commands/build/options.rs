@@ -11,35 +11,35 @@ use std::path::Path;
 pub(crate) struct BakeArgs {
     /// Plans only: how to cut into cells: kd (walls along the axes only), triangulation, or auto, which is
     /// the default
-    #[arg(long, value_name = "HOW")]
+    #[arg(long, help_heading = "Cells", value_name = "HOW")]
     pub(super) subdivide: Option<Subdivide>,
     /// For k-d trees: split along walls only where they cover at least this share of a cell, 0 to 1; with 0,
     /// the default, no wall is left out
-    #[arg(long, value_name = "X", value_parser = share, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Cells", value_name = "X", value_parser = share, allow_hyphen_values = true)]
     tau: Option<f64>,
     /// Scenes in space only: the box where a viewer can be, in scene units; the scene's box if not given
-    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Cells", value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     view_region: Option<Region>,
     /// Scenes in space only: things smaller than this in every direction, in scene units, are seen but hide
     /// nothing; chosen from the scene if not given
-    #[arg(long, value_name = "SIZE", value_parser = size, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Cells", value_name = "SIZE", value_parser = size, allow_hyphen_values = true)]
     detail_below: Option<f64>,
     /// Scenes in space only: look through the exact openings between cells, which is the default, or
     /// through one rectangle around each, which shows more
-    #[arg(long, value_name = "HOW")]
+    #[arg(long, help_heading = "Method", value_name = "HOW")]
     portals: Option<Portals>,
     /// Scenes in space only: give up beyond so many cells; 65536 if not given
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, help_heading = "Cells", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_cells: Option<u32>,
     /// Scenes in space only: keep the insides of walls and other solid things as cells, for eyes that get
     /// into them
-    #[arg(long)]
+    #[arg(long, help_heading = "Cells")]
     keep_solid: bool,
     /// Portal files only: only the first, coarse bound: quick, and shows much that is hidden
-    #[arg(long)]
+    #[arg(long, help_heading = "Method")]
     pub(super) fast: bool,
     /// Number of threads; 0 for one for each core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
     pub(super) threads: usize,
 }
 

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub(super) struct ViewCellsArgs {
     /// Scenes in space only: the boxes where viewers can be, as JSON, instead of cells that are cut:
     /// {"cells":[{"id":"hall","min":[0,0,0],"max":[4,2.5,6]}]}
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, help_heading = "Cells", value_name = "FILE.json")]
     cells: Option<PathBuf>,
 }
 

@@ -18,14 +18,14 @@ pub(crate) struct DemoArgs {
     /// What to generate: an office floor as a plan, or a small furnished tower in space
     #[arg(value_name = "SCENE", value_enum, default_value_t = Example::Office)]
     example: Example,
-    /// The folder for the scene, the table and the pictures; files of the same names are replaced
-    #[arg(long, value_name = "FOLDER", default_value = "sightlines-demo")]
-    out: PathBuf,
     /// Another seed gives another scene
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, help_heading = "Input", value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// The folder for the scene, the table and the pictures; files of the same names are replaced
+    #[arg(long, help_heading = "Output", value_name = "FOLDER", default_value = "sightlines-demo")]
+    out: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 

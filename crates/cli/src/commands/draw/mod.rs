@@ -18,29 +18,29 @@ pub(crate) struct DrawArgs {
     /// The table
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
-    /// The picture to write
-    #[arg(short, long, value_name = "OUT.svg|OUT.png")]
-    output: PathBuf,
     /// Show what this cell sees
-    #[arg(long, value_name = "N", conflicts_with = "eye")]
+    #[arg(long, help_heading = "Viewer", value_name = "N", conflicts_with = "eye")]
     cell: Option<u32>,
     /// Show what a viewer at this point sees; exit code 1, and no picture, if that is outside every cell
-    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Viewer", value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     eye: Option<Point>,
     /// Scenes in space only: draw the floor plan at this height in scene units; that of the eye or of the
     /// middle of the cell if not given. With --isometric: leave out what is above
-    #[arg(long, value_name = "Y", value_parser = height, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Picture", value_name = "Y", value_parser = height, allow_hyphen_values = true)]
     height: Option<f64>,
     /// Scenes in space only: draw the cells as boxes, as seen from the positive side of all axes
-    #[arg(long)]
+    #[arg(long, help_heading = "Picture")]
     isometric: bool,
     /// Scenes in space only: which axis points up, if not the one that the table names (y if it names none)
-    #[arg(long, value_name = "AXIS")]
+    #[arg(long, help_heading = "Picture", value_name = "AXIS")]
     up: Option<space::UpAxis>,
     /// The longer side of the picture in pixels
-    #[arg(long, value_name = "PX", default_value_t = 1600)]
+    #[arg(long, help_heading = "Picture", value_name = "PX", default_value_t = 1600)]
     #[arg(value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIZE)..=i64::from(MAX_SIZE)))]
     size: u32,
+    /// The picture to write
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
+    output: PathBuf,
 }
 
 fn height(text: &str) -> Result<f64, String> {
@@ -84,7 +84,7 @@ pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<(), CliError> {
 
 pub(crate) fn run(args: &DrawArgs) -> Result<Answer, CliError> {
     PictureKind::of(&args.output)?;
-    output::refuse_same(&args.table, &args.output)?;
+    output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
     input::refuse_without_places(&table, &args.table, "there is nothing to draw")?;
     if let Some(eye) = &args.eye

@@ -40,30 +40,30 @@ pub(crate) struct ExplainArgs {
     /// What is looked for: a cell's id, or a point X,Y; exit code 1 if it is hidden
     #[arg(value_name = "B", allow_hyphen_values = true)]
     to: Place,
-    /// Draw the line, or what blocks it; of plans
-    #[arg(long, value_name = "OUT.svg|OUT.png")]
-    draw: Option<PathBuf>,
-    /// If hidden: how many of the blocked ways or sequences to show, or of the walls in space
-    #[arg(long, value_name = "N", default_value_t = 3)]
-    proofs: usize,
     /// In plans: give up after so many cells on the way [default: 20000000]
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = "Method", value_name = "N")]
     max_visits: Option<u64>,
     /// In space: give up after so many linear programs [default: 20000]
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = "Method", value_name = "N")]
     max_programs: Option<u32>,
     /// Of portal files: give up after so many questions about sequences of portals [default: 100000]
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = "Method", value_name = "N")]
     max_questions: Option<u64>,
+    /// Draw the line, or what blocks it; of plans
+    #[arg(long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
+    draw: Option<PathBuf>,
+    /// If hidden: how many of the blocked ways or sequences to show, or of the walls in space
+    #[arg(long, help_heading = "Output", value_name = "N", default_value_t = 3)]
+    proofs: usize,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
 pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
     if let Some(out) = &args.draw {
         PictureKind::of(out)?;
-        output::refuse_same(&args.table, out)?;
+        output::check(&[&args.table], &[out])?;
     }
     if input::kind_of(&args.table)? == Some(Kind::Prt) {
         args.refuse_meaningless(Of::Portals, "a portal file")?;

@@ -26,7 +26,7 @@ pub(crate) struct InfoArgs {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 

@@ -32,18 +32,18 @@ pub(crate) struct LevelsArgs {
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     /// The table of the scene, with boxes as cells
-    #[arg(long, value_name = "FILE.pvs")]
+    #[arg(long, help_heading = "Input", value_name = "FILE.pvs")]
     table: PathBuf,
     #[command(flatten)]
     how: HowArgs,
     /// Bytes that the triangles of all levels may take together, textures not counted
-    #[arg(long, value_name = "BYTES", default_value_t = LevelOptions::default().memory)]
+    #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = LevelOptions::default().memory)]
     memory: u64,
     /// The folder to write: a new one, or one that only holds levels, which are replaced
-    #[arg(short, long, value_name = "FOLDER")]
+    #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
     output: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -54,11 +54,11 @@ fn is_ours(name: &str) -> bool {
 }
 
 pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, CliError> {
+    // What cannot be written is told before the work is done.
+    let folder = NewFolder::new(&args.output, is_ours)?;
     let ReadScene { file, source } = read(&args.scene)?;
     let scene = &file.scene;
     let table = input::table(&args.table)?;
-    // What cannot be written is told before the work is done.
-    let folder = NewFolder::new(&args.output, is_ours)?;
     let (method, maker) = args.how.maker(&args.scene, scene)?;
     let make = || -> Box<dyn FromRegion + Send> { maker.as_ref().expect("only called if there is one").make() };
     let make: MakeMethod<'_> = &make;

@@ -38,30 +38,39 @@ pub(crate) struct LightArgs {
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     /// The light: a box, its lower corner, then its upper one; flat for a rectangle, one point for a lamp without size
-    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Light", value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     light: Region,
     #[command(flatten)]
     eye: EyeArgs,
     /// How umbrae are found; several, separated by commas, are asked one after the other
-    #[arg(long, value_name = "NAME[,NAME...]", value_enum, value_delimiter = ',', default_value = "sheets")]
+    #[arg(
+        long,
+        help_heading = "Method",
+        value_name = "NAME[,NAME...]",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "sheets"
+    )]
     method: Vec<Kind>,
     /// How often a face is halved at most
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_DEPTH)))]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 10)]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_DEPTH)))]
     depth: u32,
     /// Pieces whose longest edge is no longer are not halved, in scene units
-    #[arg(long, value_name = "LENGTH", default_value_t = 0.0)]
+    #[arg(long, help_heading = "Method", value_name = "LENGTH", default_value_t = 0.0)]
     min_size: f64,
     /// Rays for each pixel in doubt
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_RAYS)))]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 64)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_RAYS)))]
     rays: u32,
     /// Draw the share of the light in grey, not what is proven
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     grey: bool,
     /// The picture to write
-    #[arg(short, long, value_name = "OUT.png")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.png")]
     output: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -69,7 +78,7 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer, CliError> {
     if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
         return Err(CliError::NotPng(args.output.clone()));
     }
-    output::refuse_same(&args.scene, &args.output)?;
+    output::check(&[&args.scene], &[&args.output])?;
     if input::kind_of(&args.scene)? != Some(FileKind::Scene) {
         return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
     }

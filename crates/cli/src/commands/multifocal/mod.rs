@@ -34,36 +34,36 @@ pub(crate) struct MultifocalArgs {
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     /// Where eyes may be: a box, its lower corner, then its upper one
-    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Viewer", value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     volume: Region,
     /// The plane behind the scene that eyes look at, such as z=20, and a window on it along the two axes that follow
     /// (for y these are z and x); the shadow of the scene's box if not given, or its sides where it is beside the volume
-    #[arg(long, value_name = "AXIS=AT[:U0,V0,U1,V1]", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Picture", value_name = "AXIS=AT[:U0,V0,U1,V1]", allow_hyphen_values = true)]
     plane: PlaneArg,
     /// Texels along the longer side of the window, about as many along the other as make them square; or along both
-    #[arg(long, value_name = "N|WxH", default_value = "256")]
+    #[arg(long, help_heading = "Picture", value_name = "N|WxH", default_value = "256")]
     texels: Texels,
     /// What values are: distances to the texel, with or without what no eye sees there; heights above the plane, of
     /// corners or of what eyes see
-    #[arg(long, value_enum, default_value_t = MeasureArg::Height)]
+    #[arg(long, help_heading = "Method", value_enum, default_value_t = MeasureArg::Height)]
     measure: MeasureArg,
     /// Who fills the buffer. What cannot be done by one is done by the next: gpu, cpu, reference (slow)
-    #[arg(long, value_enum, default_value_t = backend::Kind::Cpu)]
+    #[arg(long, help_heading = "Method", value_enum, default_value_t = backend::Kind::Cpu)]
     backend: backend::Kind,
     /// Let each triangle hide by itself, as in the slides, instead of putting neighbours together that hide more
-    #[arg(long)]
+    #[arg(long, help_heading = "Method")]
     triangles: bool,
     /// The picture of the buffer to write
-    #[arg(short, long, value_name = "OUT.png")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.png")]
     output: PathBuf,
     /// Also write a map of the features (vertices, edges, faces) that are nearest to the texels
-    #[arg(long, value_name = "OUT.png")]
+    #[arg(long, help_heading = "Output", value_name = "OUT.png")]
     voronoi: Option<PathBuf>,
     /// Also write the distances of the texels to what is nearest: black for 0, white for the largest
-    #[arg(long, value_name = "OUT.png")]
+    #[arg(long, help_heading = "Output", value_name = "OUT.png")]
     distance: Option<PathBuf>,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -110,18 +110,12 @@ fn outputs(args: &MultifocalArgs) -> impl Iterator<Item = &PathBuf> {
     [Some(&args.output), args.voronoi.as_ref(), args.distance.as_ref()].into_iter().flatten()
 }
 
-/// Refuses names of pictures that are no PNG, that name the same file twice, or the scene.
+/// Refuses names of pictures that are no PNG, that name the same file twice, or the scene, and files that cannot be written.
 fn check_outputs(args: &MultifocalArgs) -> Result<(), CliError> {
-    for (i, path) in outputs(args).enumerate() {
-        if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-            return Err(CliError::NotPng(path.clone()));
-        }
-        if outputs(args).take(i).any(|other| other == path) {
-            return Err(CliError::TwoPictures(path.clone()));
-        }
-        output::refuse_same(&args.scene, path)?;
+    if let Some(path) = outputs(args).find(|path| !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"))) {
+        return Err(CliError::NotPng(path.clone()));
     }
-    Ok(())
+    output::check(&[&args.scene], &outputs(args).map(PathBuf::as_path).collect::<Vec<_>>())
 }
 
 /// What hides: patches, or each triangle that has an area.

@@ -26,12 +26,12 @@ pub(crate) struct QueryArgs {
     #[arg(value_name = "FILE")]
     table: PathBuf,
     /// Where the viewer is, in scene units; exit code 1 if that is outside every cell, where everything may be seen
-    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Viewer", value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     eye: Point,
     #[command(flatten)]
     sight: SightArgs,
     /// Print the result as JSON; `cell` is null outside every cell
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 

@@ -24,20 +24,20 @@ const RUNS: usize = 9;
 #[derive(Debug, clap::Args)]
 pub(super) struct SightArgs {
     /// Where the viewer looks; all round if not given
-    #[arg(long, value_name = "DX,DY[,DZ]", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Viewer", value_name = "DX,DY[,DZ]", allow_hyphen_values = true)]
     dir: Option<Point>,
     #[command(flatten)]
     lens: LensArgs,
     /// How to find what is seen: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each no more
     /// than the one before), or all of them. exact if any option says how the viewer looks; without one, what
     /// the viewer's cell sees
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, help_heading = "Method", value_name = "NAME")]
     method: Option<Methods>,
     /// Portals that are closed
-    #[arg(long, value_name = "P,P,...", value_delimiter = ',')]
+    #[arg(long, help_heading = "Method", value_name = "P,P,...", value_delimiter = ',')]
     closed: Vec<u32>,
     /// Also list what is seen in mirrors, up to so many one after the other
-    #[arg(long, value_name = "N", value_parser = crate::view::bounces)]
+    #[arg(long, help_heading = "Method", value_name = "N", value_parser = crate::view::bounces)]
     bounces: Option<usize>,
 }
 

@@ -21,7 +21,7 @@ use outcome::{Outcome, Row};
 use sightlines::formats::scene::read_scene;
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
 use sightlines::visible_surface::{Camera, Chosen, Comparison, DepthFormat, Faces, NOTHING, Shot, compare};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The most pixels of a sheet: 400 MB of colours.
 const MOST_PIXELS: u64 = 1 << 27;
@@ -29,6 +29,7 @@ const MOST_PIXELS: u64 = 1 << 27;
 /// Arguments of `render`.
 #[derive(Debug, clap::Args)]
 #[command(
+    group = clap::ArgGroup::new("drawn by").args(["method", "compare"]).required(true).multiple(true),
     after_help = "Each face has a colour of its own, so that pictures can be compared pixel by pixel; what is dark is \
                   nothing. All methods but the painter's and rounded z-buffers are exact: a pixel shows the face that the \
                   ray through its centre meets first, without rounding, and of faces at one depth the one that comes first in \
@@ -42,29 +43,30 @@ pub(crate) struct RenderArgs {
     scene: PathBuf,
     #[command(flatten)]
     eye: EyeArgs,
-    /// How to find what is seen; several, separated by commas, with --compare
-    #[arg(long, value_name = "NAME[,NAME...]", value_enum, value_delimiter = ',', required_unless_present = "compare")]
+    /// How to find what is seen; this or --compare is needed. Several, separated by commas, with --compare
+    #[arg(long, help_heading = "Method", value_name = "NAME[,NAME...]", value_enum, value_delimiter = ',')]
     method: Vec<Kind>,
-    /// Draw by all methods, or those of --method and the ray caster, in one sheet, and count the pixels that are not as the ray caster's
-    #[arg(long)]
+    /// Draw by all methods, or those of --method and the ray caster, side by side in one sheet, and count the pixels that are not as
+    /// the ray caster's
+    #[arg(long, help_heading = "Method")]
     compare: bool,
     /// What the z-buffer keeps; exact if not given, with --compare all
-    #[arg(long, value_name = "FORMAT", value_enum)]
+    #[arg(long, help_heading = "Method", value_name = "FORMAT", value_enum)]
     depth: Option<Depth>,
     /// What to leave out before anything is drawn, in this order; separated by commas
-    #[arg(long, value_name = "WAY[,WAY...]", value_enum, value_delimiter = ',')]
+    #[arg(long, help_heading = "Method", value_name = "WAY[,WAY...]", value_enum, value_delimiter = ',')]
     cull: Vec<Cull>,
     /// For --cull pvs: a table of the scene, plain or packed
-    #[arg(long, value_name = "FILE.pvs")]
+    #[arg(long, help_heading = "Method", value_name = "FILE.pvs")]
     table: Option<PathBuf>,
     /// Colour objects instead of faces
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     by_object: bool,
     /// The picture to write
-    #[arg(short, long, value_name = "OUT.png")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.png")]
     output: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -126,9 +128,8 @@ fn check(args: &RenderArgs) -> Result<(), CliError> {
     if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
         return Err(CliError::NotPng(args.output.clone()));
     }
-    for path in std::iter::once(&args.scene).chain(&args.table) {
-        output::refuse_same(path, &args.output)?;
-    }
+    let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.table).map(PathBuf::as_path).collect();
+    output::check(&inputs, &[&args.output])?;
     let has_buffer = args.method.contains(&Kind::Zbuffer) || args.method.is_empty();
     match (args.cull.contains(&Cull::Pvs), &args.table) {
         (true, None) => Err(RenderError::NoTable.into()),

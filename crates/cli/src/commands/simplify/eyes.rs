@@ -14,6 +14,7 @@ pub(super) struct EyesArgs {
     /// Where eyes may be: a box, its lower corner, then its upper one; may be given several times
     #[arg(
         long,
+        help_heading = "Viewer",
         value_name = "X0,Y0,Z0,X1,Y1,Z1",
         allow_hyphen_values = true,
         required_unless_present = "table",
@@ -21,10 +22,10 @@ pub(super) struct EyesArgs {
     )]
     volume: Vec<Region>,
     /// A table of the scene: eyes are in its cells of --cell, and what it hides from them is hidden
-    #[arg(long, value_name = "FILE.pvs", requires = "cell")]
+    #[arg(long, help_heading = "Viewer", value_name = "FILE.pvs", requires = "cell")]
     pub(super) table: Option<PathBuf>,
     /// The cells of the table, by number, separated by commas
-    #[arg(long, value_name = "N[,N...]", value_delimiter = ',', requires = "table")]
+    #[arg(long, help_heading = "Viewer", value_name = "N[,N...]", value_delimiter = ',', requires = "table")]
     cell: Vec<u32>,
 }
 

@@ -37,16 +37,17 @@ pub(crate) struct SimplifyArgs {
     #[command(flatten)]
     how: HowArgs,
     /// At least so many boxes are made of those where eyes are, as small boxes give better bounds
-    #[arg(long, value_name = "N", default_value_t = SimplifyOptions::default().n_parts as u32, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    #[arg(long, help_heading = "Viewer", value_name = "N", default_value_t = SimplifyOptions::default().n_parts as u32)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
     parts: u32,
     /// The scene to write; it may be the one that is read
-    #[arg(short, long, value_name = "OUT.glb")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.glb")]
     output: PathBuf,
     /// Also count by fresh rays what has changed, over all eyes and for the worst one
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     report: bool,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -54,25 +55,26 @@ pub(crate) struct SimplifyArgs {
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct HowArgs {
     /// The share of the sphere of directions in which another face may be seen, 0 to 1; 0 takes away only what is hidden
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Method", value_name = "SHARE", default_value_t = 0.0, value_parser = share, allow_hyphen_values = true)]
     budget: f64,
     /// The share of the budget that is kept for moving corners instead of leaving triangles out, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value_t = SimplifyOptions::default().collapse, value_parser = share, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Method", value_name = "SHARE", default_value_t = SimplifyOptions::default().collapse)]
+    #[arg(value_parser = share, allow_hyphen_values = true)]
     collapse: f64,
     /// Also merge triangles of an object that lie in one plane, exactly: no surface changes; what is interpolated over triangles, such as texture
     /// coordinates, stays the same only where it is linear
-    #[arg(long)]
+    #[arg(long, help_heading = "Method")]
     flat: bool,
     /// Take scenes with mirrors as if there were none; else they are refused, as mirrors show what is hidden
-    #[arg(long)]
+    #[arg(long, help_heading = "Method")]
     ignore_mirrors: bool,
     /// What proves triangles hidden, besides a table
-    #[arg(long, value_name = "HOW", value_enum, default_value_t = Method::Multifocal)]
+    #[arg(long, help_heading = "Method", value_name = "HOW", value_enum, default_value_t = Method::Multifocal)]
     method: Method,
     #[command(flatten)]
     buffers: BufferArgs,
     /// Number of threads; 0 for one for each core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
     threads: usize,
 }
 
@@ -126,6 +128,7 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Cl
     if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb")) {
         return Err(CliError::NotGlb { path: args.output.clone() });
     }
+    output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
     let ReadScene { file, source } = read(&args.scene)?;
     let scene = &file.scene;
     let (table, views) = args.eyes.read()?;

@@ -2,15 +2,17 @@
 
 mod drawing;
 mod outcome;
+mod own;
 mod proofs;
 mod truth;
 
 use crate::Answer;
+use crate::commands::build::refuse;
 use crate::commands::draw::PictureKind;
 use crate::error::CliError;
 use crate::input::{self, Kind};
 use crate::{output, tables};
-use outcome::Outcome;
+use outcome::{Outcome, Violations};
 use sightlines::pvs::Table;
 use sightlines::verify::{VerifyOptions, verify};
 use std::path::{Path, PathBuf};
@@ -19,41 +21,41 @@ use std::time::Instant;
 /// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct VerifyArgs {
-    /// The table, plain or packed
-    #[arg(value_name = "FILE.pvs")]
+    /// The table, plain or packed; or a Quake map or a WAD, whose own visibility or REJECT is checked, whoever wrote it
+    #[arg(value_name = "FILE.pvs|MAP.bsp|FILE.wad")]
     table: PathBuf,
     /// What it was built from: a WAD, a floor plan as GeoJSON, a scene in space as GLB, glTF or OBJ, a Quake map, or its
     /// portal file alone
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     /// Which map of the WAD; not needed if there is only one
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Option<String>,
     /// Quake maps only: the portal file; beside the map if not given
-    #[arg(long, value_name = "MAP.prt")]
+    #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
     /// Rays in random directions from random places
-    #[arg(long, value_name = "N", default_value_t = VerifyOptions::default().rays)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().rays)]
     rays: u64,
     /// Hidden pairs, of cells or of a cell and an object, that rays are aimed at, the most suspicious first
-    #[arg(long, value_name = "N", default_value_t = VerifyOptions::default().pairs)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().pairs)]
     pairs: u64,
     /// Rays aimed at each of these pairs; eight times as many at those with nothing but visible pairs around
-    #[arg(long, value_name = "N", default_value_t = VerifyOptions::default().tries)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().tries)]
     tries: u32,
     /// What the random numbers begin with; the same seed gives the same answer
-    #[arg(long, value_name = "N", default_value_t = VerifyOptions::default().seed)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().seed)]
     seed: u64,
     /// Number of threads; 0 for one for each core. Changes nothing but the time
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
     threads: usize,
-    /// Draw the first ray that shows a violation, on the plan or on the floor where it begins
-    #[arg(long, value_name = "OUT.svg|OUT.png")]
-    draw: Option<PathBuf>,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Proofs")]
     proofs: proofs::ProofArgs,
+    /// Draw the first ray that shows a violation, on the plan or on the floor where it begins
+    #[arg(long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
+    draw: Option<PathBuf>,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -63,28 +65,42 @@ const CACHE: usize = 64 << 20;
 pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, CliError> {
     if let Some(picture) = &args.draw {
         PictureKind::of(picture)?;
-        output::refuse_same(&args.table, picture)?;
-        output::refuse_same(&args.scene, picture)?;
+        output::check(&[&args.table, &args.scene], &[picture])?;
     }
-    let table = read_table(&args.table)?;
+    let own = own::read(&args.table, &args.scene, args.map.as_deref(), args.prt.as_deref())?;
+    let table = match &own {
+        Some(own) => &own.table,
+        None => &read_table(&args.table)?,
+    };
     let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref())?;
-    if args.draw.is_some() {
-        input::refuse_without_places(&table, &args.table, "no ray can be drawn")?;
+    let scene = if own.is_some() { scene.without_objects() } else { scene };
+    if own.is_some() {
+        let found = "a map with its own";
+        refuse(&args.table, &[("--proofs or --strict", args.proofs.is_given())], "tables", found)?;
+        refuse(&args.table, &[("--draw", args.draw.is_some() && table.dimension() == 3)], "tables and WADs", found)?;
+    } else if args.draw.is_some() {
+        input::refuse_without_places(table, &args.table, "no ray can be drawn")?;
     }
     let VerifyArgs { rays, pairs, tries, seed, threads, .. } = *args;
     let start = Instant::now();
-    let findings = verify(&table, &scene.truth(), &VerifyOptions { rays, pairs, tries, seed, threads });
+    let findings = verify(table, &scene.truth(), &VerifyOptions { rays, pairs, tries, seed, threads });
     let findings =
         findings.map_err(|source| CliError::Verify { table: args.table.clone(), scene: args.scene.clone(), source })?;
     let time = start.elapsed();
     // All that may be refused comes before a file is written.
-    let proofs = proofs::check(&args.proofs, &args.table, &table, &scene.truth())?;
+    let proofs = match own {
+        Some(_) => None,
+        None => proofs::check(&args.proofs, &args.table, table, &scene.truth())?,
+    };
     let drawn = match &args.draw {
-        Some(out) => drawing::draw(&args.table, &table, &findings, out)?,
+        Some(out) => drawing::draw(&args.table, table, &findings, out)?,
         None => None,
     };
-    let is_true = findings.is_true() && proofs.as_ref().is_none_or(|proofs| proofs.is_true);
-    let outcome = Outcome::new(&args.table, &args.scene, &findings, is_true, time, drawn);
+    let violations = own.as_ref().map_or_else(|| Violations::from(&findings), |own| own.violations(&findings));
+    let about = own.as_ref().map(|own| own.about.clone());
+    let files = [args.table.as_path(), &args.scene];
+    let outcome = Outcome::new(files, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
+    let is_true = outcome.is_true();
     output::print(args.json, &proofs::With { outcome, proofs })?;
     Ok(if is_true { Answer::Yes } else { Answer::No })
 }

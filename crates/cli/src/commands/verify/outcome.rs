@@ -1,8 +1,10 @@
 //! What `verify` says.
 
+use super::own::About;
+use super::proofs::ProofOutcome;
 use crate::output::{count, percent, seconds};
 use serde::Serialize;
-use sightlines::verify::{Confirmed, Findings, Remarks, Violation};
+use sightlines::verify::{Confirmed, Findings, Remarks, VerifyOptions, Violation};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -19,6 +21,11 @@ pub(super) struct Outcome {
     n_portals: usize,
     n_objects: usize,
     n_rays: u64,
+    /// What else than the structure was looked at.
+    checked: Checked,
+    /// The lump that was checked, of a map's own visibility.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    own: Option<About>,
     /// Why no rays were shot.
     #[serde(skip_serializing_if = "Option::is_none")]
     no_rays: Option<&'static str>,
@@ -28,11 +35,27 @@ pub(super) struct Outcome {
     n_listed_apart: u64,
     n_cells_without_places: u64,
     n_violations: usize,
+    /// Whether there were so many that no more rays were shot.
+    has_more_violations: bool,
     n_violations_by_kind: BTreeMap<&'static str, usize>,
     violations: Vec<Told>,
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<String>,
     seconds: f64,
+}
+
+/// What was looked at beside the structure of the table. Without any of these nothing is known of who sees whom.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Checked {
+    random_rays: bool,
+    aimed_rays: bool,
+    proofs: bool,
+}
+
+impl Checked {
+    fn has_any(self) -> bool {
+        self.random_rays || self.aimed_rays || self.proofs
+    }
 }
 
 /// Pairs that the table shows and hides, and what rays did with them.
@@ -59,10 +82,13 @@ impl From<Confirmed> for Pairs {
 }
 
 /// A violation.
-#[derive(Debug, Serialize)]
-struct Told {
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Told {
     kind: &'static str,
     cells: Vec<u32>,
+    /// What the cells are in the map, of a map's own visibility.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    names: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     object: Option<u32>,
     /// From where to where the ray goes, in scene units.
@@ -71,22 +97,80 @@ struct Told {
     text: String,
 }
 
+impl Told {
+    /// A violation that needs no ray.
+    pub(super) fn of_sides(kind: &'static str, names: Vec<String>, text: String) -> Self {
+        Self { kind, cells: Vec::new(), names, object: None, segment: None, text }
+    }
+
+    /// The same in other words.
+    pub(super) fn of(self, names: Vec<String>, text: String) -> Self {
+        Self { names, text, ..self }
+    }
+
+    /// Whether a segment shows it.
+    pub(super) fn has_ray(&self) -> bool {
+        self.segment.is_some()
+    }
+}
+
+/// All violations that are told.
+#[derive(Debug, Default)]
+pub(super) struct Violations {
+    n: usize,
+    /// Whether there may be more.
+    has_more: bool,
+    by_kind: BTreeMap<&'static str, usize>,
+    told: Vec<Told>,
+}
+
+impl Violations {
+    /// What was found, in other words, and perhaps less often.
+    pub(super) fn retold(found: &Findings, told: Vec<Told>) -> Self {
+        let mut by_kind = BTreeMap::new();
+        told.iter().for_each(|v| *by_kind.entry(v.kind).or_default() += 1);
+        Self { n: told.len(), has_more: has_more(found), by_kind, told }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.n == 0
+    }
+}
+
+impl From<&Findings> for Violations {
+    fn from(found: &Findings) -> Self {
+        let told = found.violations.iter().map(Told::from).collect();
+        Self { n: found.n_violations, has_more: has_more(found), by_kind: found.by_kind.clone(), told }
+    }
+}
+
+/// Whether rays found so much that no more were shot.
+fn has_more(found: &Findings) -> bool {
+    found.by_kind.values().any(|&n| n >= VerifyOptions::MOST_VIOLATIONS)
+}
+
 impl From<&Violation> for Told {
     fn from(v: &Violation) -> Self {
         let cells = v.cells().into_iter().map(|cell| cell.0).collect();
-        Self { kind: v.kind(), cells, object: v.object(), segment: v.segment(), text: v.to_string() }
+        Self { kind: v.kind(), cells, names: Vec::new(), object: v.object(), segment: v.segment(), text: v.to_string() }
     }
 }
 
 impl Outcome {
     pub(super) fn new(
-        table: &Path,
-        scene: &Path,
+        [table, scene]: [&Path; 2],
         found: &Findings,
-        is_true: bool,
+        violations: Violations,
+        own: Option<About>,
+        proofs: Option<&ProofOutcome>,
         time: Duration,
-        picture: Option<PathBuf>,
     ) -> Self {
+        let is_true = violations.is_empty() && proofs.is_none_or(|proofs| proofs.is_true);
+        let checked = Checked {
+            random_rays: found.n_rays > 0,
+            aimed_rays: found.cells.aimed + found.objects.aimed > 0,
+            proofs: proofs.is_some_and(|proofs| !proofs.is_stale),
+        };
         let Remarks { portals_in_walls, listed_apart, cells_without_places } = found.remarks;
         Self {
             table: table.display().to_string(),
@@ -96,18 +180,31 @@ impl Outcome {
             n_portals: found.n_portals,
             n_objects: found.n_objects,
             n_rays: found.n_rays,
+            checked,
+            own,
             no_rays: found.no_rays,
             cells: found.cells.into(),
             objects: found.objects.into(),
             n_portals_in_walls: portals_in_walls,
             n_listed_apart: listed_apart,
             n_cells_without_places: cells_without_places,
-            n_violations: found.n_violations,
-            n_violations_by_kind: found.by_kind.clone(),
-            violations: found.violations.iter().map(Told::from).collect(),
-            picture: picture.map(|p| p.display().to_string()),
+            n_violations: violations.n,
+            has_more_violations: violations.has_more,
+            n_violations_by_kind: violations.by_kind,
+            violations: violations.told,
+            picture: None,
             seconds: time.as_secs_f64(),
         }
+    }
+
+    /// The same with a picture, if one was drawn.
+    pub(super) fn with_picture(self, picture: Option<PathBuf>) -> Self {
+        Self { picture: picture.map(|p| p.display().to_string()), ..self }
+    }
+
+    /// Whether nothing was found that a true table must not have.
+    pub(super) fn is_true(&self) -> bool {
+        self.is_true
     }
 
     fn pairs(f: &mut fmt::Formatter<'_>, what: &str, p: &Pairs) -> fmt::Result {
@@ -125,9 +222,11 @@ impl fmt::Display for Outcome {
         writeln!(f, "checked        {} against {}", self.table, self.scene)?;
         let things = [(self.n_cells, "cell"), (self.n_portals, "portal"), (self.n_objects, "object")];
         let things = things.map(|(n, noun)| count(n as u64, noun)).join(", ");
+        self.own.iter().try_for_each(|own| write!(f, "{own}"))?;
         writeln!(f, "structure      {things}")?;
         match self.no_rays {
             Some(why) => writeln!(f, "rays           none: {why}")?,
+            None if !self.checked.random_rays && !self.checked.aimed_rays => writeln!(f, "rays           none")?,
             None => {
                 writeln!(f, "rays           {} in random directions", self.n_rays)?;
                 Self::pairs(f, "cells", &self.cells)?;
@@ -160,8 +259,16 @@ impl fmt::Display for Outcome {
         }
         writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))?;
         match self.n_violations {
+            0 if self.is_true && !self.checked.has_any() => {
+                writeln!(
+                    f,
+                    "result         only the structure was checked, and is sound: no ray was shot and no proof was there, so nothing"
+                )?;
+                writeln!(f, "               is known of whether what the table hides is hidden")
+            }
             0 if self.is_true => writeln!(f, "result         nothing found that is not as the table says"),
             0 => writeln!(f, "result         nothing found by structure and rays, but see what the proofs say"),
+            n if self.has_more_violations => writeln!(f, "result         at least {}", count(n as u64, "violation")),
             n => writeln!(f, "result         {}", count(n as u64, "violation")),
         }
     }

@@ -4,8 +4,12 @@ use super::outcome::Outcome;
 use crate::error::CliError;
 use crate::output::{bytes, count, seconds};
 use serde::Serialize;
+use sightlines::certificates::Refusal;
 use sightlines::pvs::Table;
-use sightlines::verify::{ProofFindings, Truth, WallFindings, check_proofs, check_walls_in_space, check_walls_of_plan};
+use sightlines::verify::{
+    ProofError, ProofFindings, ProofViolation, Truth, WallFindings, check_proofs, check_walls_in_space,
+    check_walls_of_plan,
+};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -22,6 +26,13 @@ pub(super) struct ProofArgs {
     strict: bool,
 }
 
+impl ProofArgs {
+    /// Whether proofs are asked for.
+    pub(super) fn is_given(&self) -> bool {
+        self.proofs.is_some() || self.strict
+    }
+}
+
 /// Pairs and violations that people are shown.
 const SHOWN: usize = 5;
 /// Pairs and violations that JSON lists.
@@ -32,6 +43,8 @@ const LISTED: usize = 1000;
 pub(super) struct ProofOutcome {
     file: String,
     n_bytes: usize,
+    /// Whether they were found beside the table and are of another one, with other cells or portals: then nothing was checked.
+    pub(super) is_stale: bool,
     /// Whether nothing speaks against the table, and if that was asked for, everything hidden is proven.
     pub(super) is_true: bool,
     /// Pairs that the table shows and a line joins.
@@ -65,6 +78,7 @@ pub(super) fn check(
     truth: &Truth<'_>,
 ) -> Result<Option<ProofOutcome>, CliError> {
     let beside = path.with_extension("cert");
+    let is_asked_for = args.proofs.is_some();
     let file = match &args.proofs {
         Some(file) => file.clone(),
         None if beside.is_file() => beside,
@@ -74,6 +88,22 @@ pub(super) fn check(
     let content = std::fs::read(&file).map_err(|source| CliError::Open { path: file.clone(), source })?;
     let start = Instant::now();
     let found = check_proofs(table, &content);
+    let is_of_other = match &found {
+        Ok(found) => found.violations.contains(&ProofViolation::Refused(Refusal::OtherTable)),
+        Err(error) => matches!(error, ProofError::Kind { .. }),
+    };
+    // Nobody said that they are of this table; most likely it was built again without.
+    if is_of_other && !is_asked_for {
+        let nothing = ProofOutcome::new(
+            &file,
+            content.len(),
+            &ProofFindings::default(),
+            &WallFindings::default(),
+            args.strict,
+            start.elapsed(),
+        );
+        return Ok(Some(ProofOutcome { is_stale: true, is_true: !args.strict, ..nothing }));
+    }
     let found = found.map_err(|source| CliError::Proofs { path: file.clone(), table: path.to_owned(), source })?;
     let walls = match truth {
         Truth::Plan(plan) => check_walls_of_plan(table, plan),
@@ -96,6 +126,7 @@ impl ProofOutcome {
         Self {
             file: file.display().to_string(),
             n_bytes,
+            is_stale: false,
             is_true: found.is_true(strict) && !(strict && walls.n_bare > 0),
             n_visible: found.n_visible,
             n_hidden: found.n_hidden,
@@ -114,6 +145,14 @@ impl ProofOutcome {
 
 impl fmt::Display for ProofOutcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_stale {
+            writeln!(
+                f,
+                "proofs         {} is stale: it is about other cells or portals than the table has",
+                self.file
+            )?;
+            return writeln!(f, "               not checked; build the table with --certify again, or remove the file");
+        }
         let time = seconds(Duration::try_from_secs_f64(self.seconds).unwrap_or_default());
         writeln!(f, "proofs         {}, {}, checked in {time}", self.file, bytes(self.n_bytes as u64))?;
         let [shown, hidden] =

@@ -47,6 +47,20 @@ impl Real {
         })
     }
 
+    /// The same without what is seen in it, for a table that says nothing of objects.
+    pub(super) fn without_objects(self) -> Self {
+        match self {
+            Self::Plan(plan) => {
+                Self::Plan(Plan::new(plan.lines().to_vec(), Vec::new()).expect("the lines are those of a plan"))
+            }
+            Self::Map(graph, tree) => {
+                let listed = vec![Vec::new(); tree.listed.len()];
+                Self::Map(graph, WorldTree { faces: Vec::new(), listed, ..tree })
+            }
+            other => other,
+        }
+    }
+
     pub(super) fn truth(&self) -> Truth<'_> {
         match self {
             Self::Plan(plan) => Truth::Plan(plan),

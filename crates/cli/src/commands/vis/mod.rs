@@ -8,6 +8,7 @@ pub(crate) use outcome::{Clusters, format_name};
 
 use crate::Answer;
 use crate::error::CliError;
+use crate::input::{self, Kind};
 use crate::output;
 use crate::progress::{Bar, ShareBar};
 use certify::certify;
@@ -17,9 +18,8 @@ use sightlines::bake::quake::StateKey;
 use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{VisibilityError, graph_of_prt, prt, read_bsp};
-use sightlines::formats::{Prt, ReadError, WriteError};
+use sightlines::formats::{Prt, ReadError};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
-use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -30,44 +30,48 @@ pub(crate) struct VisArgs {
     #[arg(value_name = "MAP.bsp")]
     map: PathBuf,
     /// Its portal file, as the compiler wrote it; beside the map if not given
-    #[arg(long, value_name = "MAP.prt")]
+    #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
-    /// Where to write; the map itself if not given
-    #[arg(short, long, value_name = "OUT.bsp")]
-    output: Option<PathBuf>,
     /// Only the first, coarse bound: quick, and shows much that is hidden
-    #[arg(long)]
+    #[arg(long, help_heading = "Method")]
     fast: bool,
     /// Number of threads; 0 for one for each core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
     threads: usize,
     /// Go on where an earlier run with the same portals and options was stopped
-    #[arg(long)]
+    #[arg(long, help_heading = "Going on")]
     resume: bool,
     /// Where a run keeps how far it came; beside the output, as .vis-state, if not given
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = "Going on", value_name = "FILE")]
     state: Option<PathBuf>,
     /// Seconds between two savings of the state
-    #[arg(long, hide = true, value_name = "SECONDS", default_value_t = 30)]
+    #[arg(long, help_heading = "Going on", hide = true, value_name = "SECONDS", default_value_t = 30)]
     save_every: u64,
     /// Prove so many of the visible pairs and as many of the hidden ones, and check the proofs independently
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = "Method", value_name = "N")]
     certify: Option<usize>,
+    /// Where to write; the map itself if not given
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.bsp")]
+    output: Option<PathBuf>,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
 pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
     let start = Instant::now();
+    if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(Kind::Prt) {
+        return Err(CliError::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
+    }
     let prt_path = args.prt.clone().unwrap_or_else(|| args.map.with_extension("prt"));
     let out = args.output.as_ref().unwrap_or(&args.map);
     let state_path = args.state.clone().unwrap_or_else(|| out.with_extension("vis-state"));
-    for other in [&prt_path, &state_path] {
-        output::refuse_same(other, out)?;
-    }
-    check_folder(out)?;
+    // The map may be replaced. A state that cannot be written is told when it has to be: the search goes on without.
+    output::check(&[&prt_path, &state_path], &[out])?;
     let bsp = read_bsp(&args.map)?;
+    if args.prt.is_none() && !prt_path.exists() {
+        return Err(CliError::MapWithoutPortals(args.map.clone()));
+    }
     let (prt, text) = read_portals(&prt_path)?;
     let other_map =
         |source| CliError::OtherMap { prt: prt_path.clone(), bsp: args.map.clone(), source: Box::new(source) };
@@ -108,14 +112,6 @@ fn read_portals(path: &Path) -> Result<(Prt, Vec<u8>), CliError> {
     let text = std::fs::read(path).map_err(|error| ReadError::new(path, error))?;
     let prt = prt::parse_prt(&text).map_err(|error| ReadError::new(path, error))?;
     Ok((prt, text))
-}
-
-/// Says before hours of search that the folder of the output is not there.
-fn check_folder(out: &Path) -> Result<(), CliError> {
-    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let found = std::fs::metadata(folder)
-        .and_then(|found| if found.is_dir() { Ok(()) } else { Err(io::ErrorKind::NotADirectory.into()) });
-    Ok(found.map_err(|source| WriteError { path: out.to_owned(), source })?)
 }
 
 /// Puts the name of the file before what is wrong with it.

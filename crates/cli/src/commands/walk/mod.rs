@@ -30,43 +30,49 @@ pub(crate) struct WalkArgs {
     #[arg(value_name = "FILE")]
     table: PathBuf,
     /// The walk as JSON: {"frames": [{"eye": [x, y, z], "dir": [x, y, z]}, ...]}; two numbers each in a plane
-    #[arg(long, value_name = "FILE.json", required_unless_present = "random", conflicts_with = "random")]
+    #[arg(
+        long,
+        help_heading = "Walk",
+        value_name = "FILE.json",
+        required_unless_present = "random",
+        conflicts_with = "random"
+    )]
     path: Option<PathBuf>,
     /// A walk of so many frames without a goal, from cell to cell, that now and then begins anew elsewhere
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, help_heading = "Walk", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     random: Option<u32>,
     /// Another seed gives another random walk
-    #[arg(long, value_name = "S", default_value_t = 1, conflicts_with = "path")]
+    #[arg(long, help_heading = "Walk", value_name = "S", default_value_t = 1, conflicts_with = "path")]
     seed: u64,
     /// The way from frame to frame of a random walk, in scene units; a 400th of the scene's diagonal if not given
-    #[arg(long, value_name = "UNITS", value_parser = step, allow_hyphen_values = true, conflicts_with = "path")]
+    #[arg(long, help_heading = "Walk", value_name = "UNITS", value_parser = step, allow_hyphen_values = true, conflicts_with = "path")]
     step: Option<f64>,
     #[command(flatten)]
     lens: LensArgs,
     /// How to find what is seen: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each no
     /// more than the one before), or all; cell-to-cell is always there to compare with
-    #[arg(long, value_name = "NAME", default_value = "all")]
+    #[arg(long, help_heading = "Method", value_name = "NAME", default_value = "all")]
     method: Methods,
     /// The most bytes that may be kept of what is prepared ahead; of a packed table, as many again of its blocks
-    #[arg(long, value_name = "BYTES", default_value_t = WalkOptions::default().budget)]
+    #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = WalkOptions::default().budget)]
     budget: usize,
     /// Also follow lines into mirrors, up to so many one after the other
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = crate::view::bounces)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::view::bounces)]
     bounces: usize,
     /// Frames a second in the pass that does not wait for what is prepared ahead; as many as possible if not given
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, help_heading = "Method", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     fps: Option<u32>,
     /// A folder that `sightlines levels` wrote for this table: also count the triangles that are drawn with its levels
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, help_heading = "Method", value_name = "FOLDER")]
     levels: Option<PathBuf>,
     /// A chart to write
-    #[arg(short, long, value_name = "CHART.svg")]
+    #[arg(short, long, help_heading = "Output", value_name = "CHART.svg")]
     output: Option<PathBuf>,
     /// The numbers to write, a line for each method
-    #[arg(long, value_name = "OUT.csv")]
+    #[arg(long, help_heading = "Output", value_name = "OUT.csv")]
     csv: Option<PathBuf>,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -78,9 +84,8 @@ fn step(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer, CliError> {
-    for out in [&args.output, &args.csv].into_iter().flatten() {
-        output::refuse_same(&args.table, out)?;
-    }
+    let outputs: Vec<&Path> = [&args.output, &args.csv].into_iter().flatten().map(PathBuf::as_path).collect();
+    output::check(&[&args.table], &outputs)?;
     match tables::open(&args.table, args.budget)? {
         Opened::Plain(cells) => walk(&cells, args, show_progress),
         Opened::Packed(cells) => walk(&cells, args, show_progress),
