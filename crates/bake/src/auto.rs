@@ -151,9 +151,6 @@ pub fn choose(scene: &Scene, given_cells: bool) -> (SceneFacts, SceneChoice) {
 
 impl SceneChoice {
     /// Chooses by what the scene is like.
-    ///
-    /// Given cells may be large and astride of walls, so that sightlines from them pass nearly everywhere; and they are few, so that
-    /// asking sheets about each costs little. A k-d tree has thousands of cells.
     fn of(facts: &SceneFacts, given_cells: bool) -> Result<Self, Missing> {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let standard = Layout::default();
@@ -163,14 +160,10 @@ impl SceneChoice {
             choice
                 .reasons
                 .push(format!("{axial} of the area is perpendicular to an axis: sightlines know these walls"));
-            if !given_cells {
-                return Ok(choice);
-            }
-            choice.reasons.push("cells are given: sheets are asked first, from each as a whole".to_owned());
-        } else {
-            let slanted = percent(1.0 - facts.axial);
-            choice.reasons.push(format!("{slanted} of the area is slanted: sheets know it, besides sightlines"));
+            return Ok(choice);
         }
+        let slanted = percent(1.0 - facts.axial);
+        choice.reasons.push(format!("{slanted} of the area is slanted: sheets know it, besides sightlines"));
         choice.sheets = true;
         if !given_cells && facts.openness.ok_or(Missing::Openness)? >= OPEN {
             let open = percent(facts.openness.unwrap_or(0.0));
@@ -287,8 +280,7 @@ mod tests {
         assert_eq!(screens.to_string(), "sightlines and sheets and buffers of 9 planes with 32 texels");
         let rooms = choose(SceneFacts { axial: 0.2, openness: Some(0.0), ..room }, true);
         assert_eq!(rooms.to_string(), "sightlines and sheets");
-        let given = choose(SceneFacts { loose: Some(0.1), ..room }, true);
-        assert!(given.sheets && given.planes == 0 && given.reasons.len() == 3, "{given:?}");
+        assert_eq!(choose(room, true), choice);
         assert_eq!([0.5, 0.04, 0.02, 0.001].map(texels), [32, 64, 128, 256]);
         assert!([&choice, &slanted, &screens].iter().all(|c| !c.reasons.is_empty()));
     }
@@ -299,12 +291,12 @@ mod tests {
         let quick =
             SceneFacts { n_triangles: 1, n_objects: 1, axial: 0.95, loose: None, openness: None, object_size: 0.1 };
         let slanted = SceneFacts { axial: 0.2, ..quick };
-        assert!(SceneChoice::of(&quick, false).is_ok());
-        assert_eq!(SceneChoice::of(&quick, true), Err(Missing::Loose));
-        assert!(SceneChoice::of(&SceneFacts { loose: Some(0.1), ..quick }, true).is_ok());
-        assert_eq!(SceneChoice::of(&SceneFacts { loose: Some(0.9), ..quick }, true), Err(Missing::Openness));
+        assert!(SceneChoice::of(&quick, false).is_ok() && SceneChoice::of(&quick, true).is_ok());
         assert_eq!(SceneChoice::of(&slanted, false), Err(Missing::Openness));
-        let room = Scene::new(vec![block([0.0; 3], [8.0, 6.0, 3.0], false)]).expect("a scene");
+        assert_eq!(SceneChoice::of(&slanted, true), Err(Missing::Loose));
+        assert!(SceneChoice::of(&SceneFacts { loose: Some(0.1), ..slanted }, true).is_ok());
+        assert_eq!(SceneChoice::of(&SceneFacts { loose: Some(0.9), ..slanted }, true), Err(Missing::Openness));
+        let room = Scene::new(vec![block([0.0; 3], [8.0, 6.0, 3.0], true)]).expect("a scene");
         let (facts, choice) = choose(&room, true);
         assert!(facts.loose == Some(0.0) && facts.openness.is_none() && choice.sheets, "{facts:?}");
     }
