@@ -31,7 +31,7 @@ struct Args {
     /// Real scenes, and for each the file of its cells.
     #[arg(long, value_delimiter = ',', default_values_t = [
         "duplex:cells_rooms", "office_a:cells_rooms", "whale_large:cells_walk", "whale_tall:cells_rooms", "delft:cells_street",
-        "sponza:cells_walk", "pandora:cells_walk",
+        "sponza:cells_walk", "pandora:cells_walk", "castle:cells_walk",
     ].map(str::to_owned))]
     scenes: Vec<String>,
     /// Cells of each scene, at most.
