@@ -4,7 +4,7 @@
 //! reports a pair more than the default. Times are of one thread, preparations included.
 
 use clap::Parser;
-use sightlines::bake::auto::{SceneChoice, SceneFacts};
+use sightlines::bake::auto::choose;
 use sightlines::bake::{CellsFrom, PortalMode, RegionBakeOptions, bake_regions};
 use sightlines::cells::Scene;
 use sightlines::formats::ViewCells;
@@ -31,12 +31,15 @@ struct Args {
     /// Real scenes, and for each the file of its cells.
     #[arg(long, value_delimiter = ',', default_values_t = [
         "duplex:cells_rooms", "office_a:cells_rooms", "whale_large:cells_walk", "whale_tall:cells_rooms", "delft:cells_street",
-        "sponza:cells_walk", "pandora:cells_walk",
+        "sponza:cells_walk", "pandora:cells_walk", "castle:cells_walk",
     ].map(str::to_owned))]
     scenes: Vec<String>,
     /// Cells of each scene, at most.
     #[arg(long, default_value_t = 24)]
     cells: usize,
+    /// The cells of a k-d tree instead. Fixed choices with buffers, which take longer than auto's in any case, are left out.
+    #[arg(long)]
+    kd: bool,
     /// A small city and a small tower only.
     #[arg(long)]
     test: bool,
@@ -48,17 +51,26 @@ struct Args {
 struct Case {
     name: String,
     scene: Scene,
-    cells: ViewCells,
+    cells: CellsFrom,
 }
 
-fn of_boxes(boxes: Vec<Aabb<3>>) -> ViewCells {
-    ViewCells { cells: (0..).zip(boxes).map(|(i, bounds): (u32, _)| ViewCell { id: i.to_string(), bounds }).collect() }
+impl Case {
+    fn is_given(&self) -> bool {
+        matches!(self.cells, CellsFrom::Boxes(_))
+    }
 }
 
-fn some(mut cells: ViewCells, n: usize) -> ViewCells {
-    let step = cells.cells.len().div_ceil(n.max(1)).max(1);
-    cells.cells = cells.cells.into_iter().step_by(step).collect();
-    cells
+fn of_boxes(boxes: Vec<Aabb<3>>) -> CellsFrom {
+    let cells = (0..).zip(boxes).map(|(i, bounds): (u32, _)| ViewCell { id: i.to_string(), bounds }).collect();
+    CellsFrom::Boxes(ViewCells { cells })
+}
+
+/// At most `n` of the cells that are given.
+fn some(cells: &mut CellsFrom, n: usize) {
+    if let CellsFrom::Boxes(ViewCells { cells }) = cells {
+        let step = cells.len().div_ceil(n.max(1)).max(1);
+        *cells = std::mem::take(cells).into_iter().step_by(step).collect();
+    }
 }
 
 fn generated(args: &Args) -> Vec<Case> {
@@ -82,7 +94,7 @@ fn real(args: &Args) -> Vec<Case> {
         let folder = Path::new(&data).join("scenes").join(name);
         let scene = read_scene(folder.join(format!("{name}.glb"))).expect("the scene can be read").scene;
         let cells = read_view_cells(folder.join(format!("{cells}.json"))).expect("the cells can be read");
-        Case { name: name.to_owned(), scene, cells }
+        Case { name: name.to_owned(), scene, cells: CellsFrom::Boxes(cells) }
     };
     args.scenes.iter().map(case).collect()
 }
@@ -92,6 +104,7 @@ type Method = Option<(u32, u32, bool)>;
 
 struct Found {
     name: String,
+    n_cells: usize,
     reported: u64,
     time: Duration,
 }
@@ -116,9 +129,8 @@ fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instan
         );
         Box::new(Together::new(methods))
     };
-    let cells = CellsFrom::Boxes(case.cells.clone());
     let options = RegionBakeOptions {
-        cells: &cells,
+        cells: &case.cells,
         method: shared.is_some().then_some(&make),
         sightlines,
         split: Split::default(),
@@ -128,27 +140,31 @@ fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instan
         progress: None,
     };
     let baked = bake_regions(&case.scene, &options).expect("the scene can be baked");
-    Found { name: name.to_owned(), reported: baked.n_objects_seen, time: start.elapsed() }
+    let n_cells = baked.table.n_cells();
+    Found { name: name.to_owned(), n_cells, reported: baked.n_objects_seen, time: start.elapsed() }
 }
 
 /// Prints the rows of a case; whether the choice is no looser than the default.
 fn rows(case: &Case) -> bool {
     let standard = Layout::default();
     let full = Some((standard.n_levels, standard.texels, true));
-    let fixed: [(&str, bool, Method); 4] = [
-        ("sightlines (default)", true, None),
-        ("multifocal", false, full),
-        ("both", true, full),
-        ("sheets", false, Some((0, standard.texels, true))),
-    ];
-    let fixed = fixed.map(|(name, sightlines, method)| bake(case, name, sightlines, method, Instant::now()));
+    let sheets = Some((0, standard.texels, true));
+    let mut fixed: Vec<(&str, bool, Method)> =
+        vec![("sightlines (default)", true, None), ("sheets", false, sheets), ("sightlines and sheets", true, sheets)];
+    if case.is_given() {
+        fixed.extend([("multifocal", false, full), ("both", true, full)]);
+    }
+    let fixed: Vec<Found> = fixed
+        .into_iter()
+        .map(|(name, sightlines, method)| bake(case, name, sightlines, method, Instant::now()))
+        .collect();
     let start = Instant::now();
-    let facts = SceneFacts::of(&case.scene);
-    let choice = SceneChoice::of(&facts, true);
+    let (facts, choice) = choose(&case.scene, case.is_given());
     let method = choice.asks_a_method().then_some((choice.planes, choice.texels, choice.sheets));
     let auto = bake(case, &format!("auto: {choice}"), true, method, start);
     let as_tight = fixed.iter().filter(|f| f.reported <= auto.reported).map(|f| f.time).min();
-    let all = (case.cells.cells.len() * case.scene.objects().len()) as f64;
+    let all = (auto.n_cells * case.scene.objects().len()) as f64;
+    let measured = |fact: Option<f64>| fact.map_or_else(|| "-".to_owned(), |x| format!("{x:.2}"));
     for found in fixed.iter().chain([&auto]) {
         let against = match as_tight {
             Some(best) if found.name == auto.name => format!("{:.2}", auto.time.as_secs_f64() / best.as_secs_f64()),
@@ -156,13 +172,13 @@ fn rows(case: &Case) -> bool {
             _ => String::new(),
         };
         println!(
-            "| {} | {} | {} | {:.2} | {:.2} | {:.2} | {} | {} | {:.1} % | {:.2} | {against} |",
+            "| {} | {} | {} | {:.2} | {} | {} | {} | {} | {:.1} % | {:.3} | {against} |",
             case.name,
             case.scene.n_triangles(),
-            case.cells.cells.len(),
+            auto.n_cells,
             facts.axial,
-            facts.loose,
-            facts.openness,
+            measured(facts.loose),
+            measured(facts.openness),
             found.name,
             found.reported,
             100.0 * found.reported as f64 / all,
@@ -181,7 +197,12 @@ fn main() -> ExitCode {
     if !args.test {
         cases.extend(real(&args));
     }
-    cases.iter_mut().for_each(|case| case.cells = some(case.cells.clone(), if args.test { 3 } else { args.cells }));
+    for case in &mut cases {
+        some(&mut case.cells, if args.test { 3 } else { args.cells });
+        if args.kd {
+            case.cells = CellsFrom::KdTree;
+        }
+    }
     println!(
         "| scene | triangles | cells | axial | loose | open | method | pairs | reported | s | against the fastest fixed one as tight |"
     );

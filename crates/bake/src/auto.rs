@@ -20,9 +20,11 @@ pub struct SceneFacts {
     pub axial: f64,
     /// The share of flat pieces that stand alone, such as screens and signs: surfaces that hang together with nothing that lies in
     /// another plane.
-    pub loose: f64,
+    /// Measured only where it matters, as it takes longer.
+    pub loose: Option<f64>,
     /// The share of rays from anywhere in the scene's box that leave it without meeting anything: 0 for rooms, nearly 1 for a plain.
-    pub openness: f64,
+    /// Measured only where it matters.
+    pub openness: Option<f64>,
     /// The longest side of the object in the middle, by that side, as a share of the scene's longest side.
     pub object_size: f64,
 }
@@ -31,12 +33,10 @@ pub struct SceneFacts {
 const N_RAYS: u32 = 4096;
 
 impl SceneFacts {
-    /// Measures a scene. The same scene gives the same facts. O(n log n) of triangles.
-    pub fn of(scene: &Scene) -> Self {
-        let triangles: Vec<Vec<[Point3; 3]>> = scene.objects().iter().map(|o| o.corners().collect()).collect();
+    /// Measures what is quickly measured: everything but `loose` and `openness`. O(n) of triangles.
+    fn quick(scene: &Scene) -> Self {
         let flat = |t: &[Point3; 3]| (0..3).any(|k| t[0][k] == t[1][k] && t[1][k] == t[2][k]);
-        let all: Vec<[Point3; 3]> = triangles.iter().flatten().copied().collect();
-        let area = |t: &[Point3; 3]| length(normal(*t)) / 2.0;
+        let all: Vec<[Point3; 3]> = triangles_of(scene);
         let total: f64 = all.iter().map(area).sum();
         let share = |part: f64| if total > 0.0 { (part / total).min(1.0) } else { 0.0 };
         let longest = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
@@ -45,20 +45,29 @@ impl SceneFacts {
         let (whole, middle) = (longest(&scene.bounds()), sizes.get(sizes.len() / 2).copied().unwrap_or(0.0));
         Self {
             n_triangles: all.len(),
-            n_objects: triangles.len(),
+            n_objects: scene.objects().len(),
             axial: share(all.iter().filter(|t| flat(t)).map(area).fold(0.0, |sum, area| sum + area)),
-            loose: share(loose_area(&all)),
-            openness: openness(scene, &triangles),
+            loose: None,
+            openness: None,
             object_size: if whole > 0.0 { middle / whole } else { 0.0 },
         }
     }
 }
 
-/// The area of surfaces that lie in one plane, of all that hang together by edges.
-fn loose_area(triangles: &[[Point3; 3]]) -> f64 {
+fn triangles_of(scene: &Scene) -> Vec<[Point3; 3]> {
+    scene.objects().iter().flat_map(|o| o.corners()).collect()
+}
+
+fn area(t: &[Point3; 3]) -> f64 {
+    length(normal(*t)) / 2.0
+}
+
+/// The share of surfaces that lie in one plane, of the area of all that hang together by edges.
+fn loose_share(triangles: &[[Point3; 3]]) -> f64 {
+    let total: f64 = triangles.iter().map(area).sum();
     let mesh = Mesh::weld(triangles);
     let n = mesh.triangles().len();
-    let mut area = 0.0;
+    let mut loose = 0.0;
     let mut done = vec![false; n];
     for first in 0..n as u32 {
         let (mut stack, mut flat, mut here) = (vec![first], true, 0.0);
@@ -70,19 +79,20 @@ fn loose_area(triangles: &[[Point3; 3]]) -> f64 {
             let corners = mesh.corners(t);
             let [a, b, c] = plane;
             flat = flat && corners.iter().all(|&p| sightlines_geometry::orient3d(a, b, c, p) == 0.0);
-            here += length(normal(corners)) / 2.0;
+            here += area(&corners);
             let near = mesh.outline_edges(t).iter().flat_map(|&edge| mesh.triangles_at(edge));
             stack.extend(near.filter(|&&other| !done[other as usize]));
         }
         if flat {
-            area += here;
+            loose += here;
         }
     }
-    area
+    if total > 0.0 { (loose / total).min(1.0) } else { 0.0 }
 }
 
-fn openness(scene: &Scene, triangles: &[Vec<[Point3; 3]>]) -> f64 {
-    let witness = Witness::new(triangles.iter().map(Vec::as_slice));
+fn openness(scene: &Scene) -> f64 {
+    let triangles = triangles_of(scene);
+    let witness = Witness::new([&triangles[..]]);
     let mut random = Random::new(0);
     let bounds = scene.bounds();
     let leaves = |_: &u32| {
@@ -118,12 +128,30 @@ pub struct SceneChoice {
     pub reasons: Vec<String>,
 }
 
+/// A fact that a choice depends on, and that is not measured yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Missing {
+    Loose,
+    Openness,
+}
+
+/// Measures a scene as far as that matters, and chooses. The same scene gives the same choice. O(n log n) of triangles.
+///
+/// * `given_cells`: whether cells are boxes that were given, and not those of a k-d tree
+pub fn choose(scene: &Scene, given_cells: bool) -> (SceneFacts, SceneChoice) {
+    let mut facts = SceneFacts::quick(scene);
+    loop {
+        match SceneChoice::of(&facts, given_cells) {
+            Ok(choice) => return (facts, choice),
+            Err(Missing::Loose) => facts.loose = Some(loose_share(&triangles_of(scene))),
+            Err(Missing::Openness) => facts.openness = Some(openness(scene)),
+        }
+    }
+}
+
 impl SceneChoice {
     /// Chooses by what the scene is like.
-    ///
-    /// * `given_cells`: whether cells are boxes that were given. They may be large and astride of walls, so that sightlines between them pass nearly
-    ///   everywhere; and they are few, so that asking sheets about each costs little. A k-d tree has thousands of cells.
-    pub fn of(facts: &SceneFacts, given_cells: bool) -> Self {
+    fn of(facts: &SceneFacts, given_cells: bool) -> Result<Self, Missing> {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let standard = Layout::default();
         let mut choice = Self { sheets: false, planes: 0, texels: standard.texels, reasons: Vec::new() };
@@ -132,36 +160,38 @@ impl SceneChoice {
             choice
                 .reasons
                 .push(format!("{axial} of the area is perpendicular to an axis: sightlines know these walls"));
-            if !given_cells {
-                return choice;
-            }
-            choice.reasons.push("cells are given: sheets are asked as well, from each as a whole".to_owned());
-        } else {
-            let slanted = percent(1.0 - facts.axial);
-            choice.reasons.push(format!("{slanted} of the area is slanted: sheets know it, besides sightlines"));
+            return Ok(choice);
         }
+        let slanted = percent(1.0 - facts.axial);
+        choice.reasons.push(format!("{slanted} of the area is slanted: sheets know it, besides sightlines"));
         choice.sheets = true;
-        let (loose, open) = (percent(facts.loose), percent(facts.openness));
-        if facts.openness >= OPEN && !given_cells {
+        if !given_cells && facts.openness.ok_or(Missing::Openness)? >= OPEN {
+            let open = percent(facts.openness.unwrap_or(0.0));
             choice.reasons.push(format!(
                 "{open} of rays leave: in the open a k-d tree has few cells, and boxes of your own tell more"
             ));
         }
-        if facts.loose >= LOOSE && facts.openness >= ROOMS {
-            choice.planes = standard.n_levels;
-            choice.texels = texels(facts.object_size);
-            let texels = choice.texels;
-            choice
-                .reasons
-                .push(format!("{loose} of the area stands alone, {open} of rays leave: buffers put pieces together"));
-            choice.reasons.push(format!(
-                "an object in the middle is {} of the scene: {texels} texels",
-                percent(facts.object_size)
-            ));
-        } else {
-            choice.reasons.push(format!("{loose} of the area stands alone, {open} of rays leave: no buffers"));
+        let loose = facts.loose.ok_or(Missing::Loose)?;
+        if loose < LOOSE {
+            choice.reasons.push(format!("{} of the area stands alone: no buffers", percent(loose)));
+            return Ok(choice);
         }
+        let openness = facts.openness.ok_or(Missing::Openness)?;
+        let (loose, open) = (percent(loose), percent(openness));
+        if openness < ROOMS {
+            choice.reasons.push(format!("{loose} of the area stands alone, {open} of rays leave: no buffers"));
+            return Ok(choice);
+        }
+        choice.planes = standard.n_levels;
+        choice.texels = texels(facts.object_size);
+        let texels = choice.texels;
         choice
+            .reasons
+            .push(format!("{loose} of the area stands alone, {open} of rays leave: buffers put pieces together"));
+        choice
+            .reasons
+            .push(format!("an object in the middle is {} of the scene: {texels} texels", percent(facts.object_size)));
+        Ok(choice)
     }
 
     /// Whether anything but sightlines is asked.
@@ -206,42 +236,68 @@ mod tests {
         object((0..8).map(|i| turn(corner(i))).collect(), triangles)
     }
 
-    fn facts(objects: Vec<SceneObject>) -> SceneFacts {
-        SceneFacts::of(&Scene::new(objects).expect("a scene"))
+    fn facts(objects: Vec<SceneObject>) -> (SceneFacts, f64, f64) {
+        let scene = Scene::new(objects).expect("a scene");
+        (SceneFacts::quick(&scene), loose_share(&triangles_of(&scene)), openness(&scene))
     }
 
     #[test]
     fn facts_are_what_they_say() {
-        let room = facts(vec![block([0.0; 3], [8.0, 6.0, 3.0], false), block([2.0; 3], [3.0; 3], false)]);
-        assert_eq!((room.axial, room.loose, room.openness), (1.0, 0.0, 0.0));
+        let (room, loose, openness) =
+            facts(vec![block([0.0; 3], [8.0, 6.0, 3.0], false), block([2.0; 3], [3.0; 3], false)]);
+        assert_eq!((room.axial, loose, openness), (1.0, 0.0, 0.0));
         assert_eq!((room.n_triangles, room.n_objects, room.object_size), (24, 2, 1.0));
         // The top and bottom of a block that is turned about z stay axial: 2 * 2 of 2 * 2 + 4 * 2 * 5 square units.
-        let turned = facts(vec![block([0.0; 3], [2.0, 1.0, 5.0], true)]);
-        assert!((turned.axial - 4.0 / 34.0).abs() < 1e-12 && turned.loose == 0.0, "{turned:?}");
+        let (turned, loose, _) = facts(vec![block([0.0; 3], [2.0, 1.0, 5.0], true)]);
+        assert!((turned.axial - 4.0 / 34.0).abs() < 1e-12 && loose == 0.0, "{turned:?}");
         let screen = |x: f64| {
             object(
                 vec![[x, 0.0, 0.0], [x + 1.0, 2.0, 0.0], [x, 0.0, 3.0], [x + 1.0, 2.0, 3.0]],
                 vec![[0, 1, 2], [1, 3, 2]],
             )
         };
-        let screens = facts((0..4).map(|i| screen(f64::from(i))).collect());
-        assert!(screens.loose > 0.999 && screens.axial == 0.0, "{screens:?}");
-        assert!(screens.openness > 0.2 && screens.openness < 0.9, "{screens:?}");
+        let (screens, loose, openness) = facts((0..4).map(|i| screen(f64::from(i))).collect());
+        assert!(loose > 0.999 && screens.axial == 0.0, "{screens:?}");
+        assert!(openness > 0.2 && openness < 0.9, "{openness}");
     }
 
     #[test]
     fn choices_follow_the_facts() {
-        let room =
-            SceneFacts { n_triangles: 1, n_objects: 1, axial: 0.95, loose: 0.9, openness: 0.9, object_size: 0.1 };
-        let choice = SceneChoice::of(&room, false);
+        let room = SceneFacts {
+            n_triangles: 1,
+            n_objects: 1,
+            axial: 0.95,
+            loose: Some(0.9),
+            openness: Some(0.9),
+            object_size: 0.1,
+        };
+        let choose = |facts: SceneFacts, given: bool| SceneChoice::of(&facts, given).expect("all is measured");
+        let choice = choose(room, false);
         assert!(!choice.asks_a_method() && choice.to_string() == "sightlines", "{choice:?}");
-        let slanted = SceneChoice::of(&SceneFacts { axial: 0.2, loose: 0.1, ..room }, false);
+        let slanted = choose(SceneFacts { axial: 0.2, loose: Some(0.1), ..room }, false);
         assert_eq!(slanted.to_string(), "sightlines and sheets");
-        let screens = SceneChoice::of(&SceneFacts { axial: 0.2, ..room }, false);
+        let screens = choose(SceneFacts { axial: 0.2, ..room }, false);
         assert_eq!(screens.to_string(), "sightlines and sheets and buffers of 9 planes with 32 texels");
-        let given = SceneChoice::of(&SceneFacts { loose: 0.1, ..room }, true);
-        assert!(given.sheets && given.planes == 0 && given.reasons.len() == 3, "{given:?}");
+        let rooms = choose(SceneFacts { axial: 0.2, openness: Some(0.0), ..room }, true);
+        assert_eq!(rooms.to_string(), "sightlines and sheets");
+        assert_eq!(choose(room, true), choice);
         assert_eq!([0.5, 0.04, 0.02, 0.001].map(texels), [32, 64, 128, 256]);
         assert!([&choice, &slanted, &screens].iter().all(|c| !c.reasons.is_empty()));
+    }
+
+    /// What takes longer is measured only if a choice depends on it.
+    #[test]
+    fn no_more_is_measured_than_matters() {
+        let quick =
+            SceneFacts { n_triangles: 1, n_objects: 1, axial: 0.95, loose: None, openness: None, object_size: 0.1 };
+        let slanted = SceneFacts { axial: 0.2, ..quick };
+        assert!(SceneChoice::of(&quick, false).is_ok() && SceneChoice::of(&quick, true).is_ok());
+        assert_eq!(SceneChoice::of(&slanted, false), Err(Missing::Openness));
+        assert_eq!(SceneChoice::of(&slanted, true), Err(Missing::Loose));
+        assert!(SceneChoice::of(&SceneFacts { loose: Some(0.1), ..slanted }, true).is_ok());
+        assert_eq!(SceneChoice::of(&SceneFacts { loose: Some(0.9), ..slanted }, true), Err(Missing::Openness));
+        let room = Scene::new(vec![block([0.0; 3], [8.0, 6.0, 3.0], true)]).expect("a scene");
+        let (facts, choice) = choose(&room, true);
+        assert!(facts.loose == Some(0.0) && facts.openness.is_none() && choice.sheets, "{facts:?}");
     }
 }

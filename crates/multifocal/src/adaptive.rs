@@ -59,15 +59,37 @@ pub fn see(
     visible: &mut [bool],
     also: &mut dyn FnMut(&mut dyn Umbra),
 ) -> Result<Effort, BackendError> {
-    let mut effort = Effort { n_volumes: 1, ..Effort::default() };
     let mut seen = vec![false; occludees.len()];
-    witness.see(volume, split.n_rays, visible, &mut seen);
+    see_and_note(method, occludees, witness, volume, split, visible, &mut seen, also)
+}
+
+/// The same as [`see`](fn@see), and notes in `seen` which objects rays were seen to hit: nothing proves those hidden, so nobody else has to be
+/// asked about them.
+///
+/// # Errors
+/// [`BackendError`], from the method.
+///
+/// # Panics
+/// If `visible` or `seen` is shorter than the objects.
+#[expect(clippy::too_many_arguments, reason = "those of `see`, and one more")]
+pub fn see_and_note(
+    method: &mut dyn FromRegion,
+    occludees: &Occludees,
+    witness: &Witness,
+    volume: &Volume,
+    split: &Split,
+    visible: &mut [bool],
+    seen: &mut [bool],
+    also: &mut dyn FnMut(&mut dyn Umbra),
+) -> Result<Effort, BackendError> {
+    let mut effort = Effort { n_volumes: 1, ..Effort::default() };
+    witness.see(volume, split.n_rays, visible, seen);
     let mut umbra = method.umbra(volume)?;
     also(&mut *umbra);
     let mut search = Search { occludees, witness, split, effort: &mut effort };
-    search.ask(&mut *umbra, &seen, visible);
+    search.ask(&mut *umbra, seen, visible);
     drop(umbra);
-    search.see_parts(method, volume, 0, &mut seen, visible)?;
+    search.see_parts(method, volume, 0, seen, visible)?;
     Ok(effort)
 }
 

@@ -3,7 +3,7 @@
 //!
 //! Owns: [`visible_zones`] (which cells, or groups of cells, see each other, by portal sequences),
 //! [`see_space`] (the same for boxes in space, and for objects, by what stands between them), [`LiveSpace`] (that answer
-//! kept up to date while walls and objects change),
+//! kept up to date while walls and objects change), [`see_from_boxes`] (what boxes see that are no cells),
 //! [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
 //! [`StabTree`] (every stabbable portal sequence out of one cell), [`stab_trees`] (those out of all cells, in one graph,
 //! up to a limit), [`explain`](fn@explain),
@@ -33,7 +33,10 @@ pub use convex::{
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
 pub use search::{Known, Progress, SearchOptions, SearchSummary, Seen, visible_zones};
-pub use space::{LiveSpace, SeenInSpace, SpaceExplanation, SpaceUpdate, explain_space, see_space};
+pub use space::{
+    AskedOfBoxes, LiveSpace, SeenFromBoxes, SeenInSpace, SpaceExplanation, SpaceUpdate, explain_space, see_from_boxes,
+    see_space,
+};
 pub use tree::{
     ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of, portal_of,
     stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,

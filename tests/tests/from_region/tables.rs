@@ -4,6 +4,9 @@ use crate::common::{around, shipped, triangles};
 use sightlines::bake::region::grid;
 use sightlines::bake::{BakedRegions, CellsFrom, PortalMode, RegionBakeOptions, bake_regions};
 use sightlines::cells::Scene;
+use sightlines::formats::ViewCells;
+use sightlines::formats::scene::read_scene;
+use sightlines::formats::view_cells::ViewCell;
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::{FromRegion, Split};
@@ -11,6 +14,8 @@ use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::city::{CityOptions, city, city_crossings};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines_testkit::RayScene;
+use sightlines_tests::data_folder;
+use sightlines_tests::scenes::scene_witness;
 
 /// Who is asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,6 +117,44 @@ fn both_methods_hide_what_either_hides() {
         assert_eq!(both.0, common(&lines.0, &region.0), "objects");
         assert_eq!(both.1, common(&lines.1, &region.1), "cells");
         println!("{} {} {}", lines.0.len(), region.0.len(), both.0.len());
+    }
+}
+
+/// Invariant: on real scenes, sightlines from given cells show all that was seen from them, and hide a good part of the rest where
+/// walls are perpendicular to an axis.
+#[test]
+fn real_cells_show_what_was_seen() {
+    let Some(data) = data_folder("SIGHTLINES_DATA") else { return };
+    // The least share of what was not seen that has to be hidden, in percent: about nine tenths of what it was.
+    let scenes: [(&str, usize); 6] =
+        [("duplex", 80), ("office_a", 90), ("whale_large", 70), ("pandora", 37), ("sponza", 45), ("delft", 0)];
+    for (name, least) in scenes {
+        let folder = data.join("scenes").join(name);
+        let scene = read_scene(folder.join(format!("{name}.glb"))).unwrap_or_else(|e| panic!("{e}")).scene;
+        let witnesses = scene_witness(&folder);
+        let named = witnesses.iter().map(|w| ViewCell { id: w.id.clone(), bounds: Aabb { min: w.min, max: w.max } });
+        let cells = CellsFrom::Boxes(ViewCells { cells: named.collect() });
+        let start = std::time::Instant::now();
+        let baked = bake(&scene, &cells, By::Sightlines, 0, 2);
+        let time = start.elapsed();
+        let rays = RayScene::new(&scene);
+        let (mut n_seen, mut n_hidden) = (0, 0);
+        for (id, witness) in (0u32..).zip(&witnesses) {
+            let listed = baked.table.visible_objects(CellId(id));
+            let eye = Aabb { min: witness.min, max: witness.max };
+            for object in rays.witness_objects(eye, u64::from(id), 1000).iter().chain(&witness.objects) {
+                assert!(listed.binary_search(object).is_ok(), "{name}: {} sees object {object}", witness.id);
+            }
+            n_seen += witness.objects.len();
+            n_hidden += scene.objects().len() - listed.len();
+        }
+        let n_unseen = witnesses.len() * scene.objects().len() - n_seen;
+        println!(
+            "{name}: {} cells in {time:?}, {n_seen} seen, {n_hidden} of {n_unseen} unseen hidden, {} assumed",
+            witnesses.len(),
+            baked.n_assumed
+        );
+        assert!(n_seen > 100 && n_hidden * 100 >= least * n_unseen, "{name}: {n_hidden} of {n_unseen} hidden");
     }
 }
 

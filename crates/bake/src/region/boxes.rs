@@ -3,7 +3,8 @@
 use sightlines_formats::ViewCells;
 use sightlines_formats::view_cells::ViewCell;
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{BitMatrix, CellId, Table};
+use sightlines_pvs::BitMatrix;
+use sightlines_stabtree::{AskedOfBoxes, SeenFromBoxes};
 
 /// No cells along an axis of a grid, or more than a table should have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -37,29 +38,34 @@ pub fn grid(region: &Aabb<3>, n: [u32; 3]) -> Result<ViewCells, GridError> {
     Ok(ViewCells { cells })
 }
 
-/// What boxes see of each other and of objects, if each sees what the cells of `table` that it touches see. A box that
-/// touches no cell sees everything.
-pub(super) fn seen_by_touched(boxes: &[Aabb<3>], table: &Table, n_objects: usize) -> (BitMatrix, BitMatrix) {
-    let meet = |a: &Aabb<3>, b: &Aabb<3>| (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k]);
-    let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
-    let touched = |b: &Aabb<3>| -> Vec<usize> { (0..cells.len()).filter(|&c| meet(b, &cells[c])).collect() };
-    let touched: Vec<Vec<usize>> = boxes.iter().map(touched).collect();
-    let (mut rows, mut objects) = (BitMatrix::identity(boxes.len()), BitMatrix::new(boxes.len(), n_objects));
-    for (a, of_a) in touched.iter().enumerate() {
-        let mut sees = vec![of_a.is_empty(); cells.len()];
-        for &c in of_a {
-            table.visible(CellId(c as u32)).for_each(|seen| sees[seen.idx()] = true);
-            table.visible_objects(CellId(c as u32)).into_iter().for_each(|o| objects.set(a, o as usize, true));
-        }
-        for (b, of_b) in touched.iter().enumerate() {
-            if of_a.is_empty() || of_b.is_empty() || of_b.iter().any(|&c| sees[c]) {
-                rows.set(a, b, true);
-                rows.set(b, a, true);
-            }
-        }
-        if of_a.is_empty() {
-            (0..n_objects).for_each(|o| objects.set(a, o, true));
+/// Clears in matrices of boxes and of objects what was in doubt and turned out to be hidden.
+pub(super) fn clear_hidden(of: [&mut BitMatrix; 2], doubt: &AskedOfBoxes, answer: &SeenFromBoxes) {
+    let [rows, objects] = of;
+    let pairs = [(rows, &doubt.boxes, &answer.boxes), (objects, &doubt.objects, &answer.objects)];
+    for (matrix, doubt, answer) in pairs {
+        for row in 0..doubt.n_rows() {
+            let words = matrix.row_mut(row).iter_mut().zip(doubt.row(row)).zip(answer.row(row));
+            words.for_each(|((word, doubt), answer)| *word &= !doubt | answer);
         }
     }
-    (rows, objects)
+}
+
+/// What is visible and neither proven so nor touching.
+pub(super) fn in_doubt(
+    rows: &BitMatrix,
+    objects: &BitMatrix,
+    proven: &AskedOfBoxes,
+    touching: &[Vec<u32>],
+) -> AskedOfBoxes {
+    let mut doubt = AskedOfBoxes { boxes: rows.clone(), objects: objects.clone() };
+    for row in 0..rows.n_rows() {
+        let less = |matrix: &mut BitMatrix, known: &BitMatrix| {
+            matrix.row_mut(row).iter_mut().zip(known.row(row)).for_each(|(word, known)| *word &= !known);
+        };
+        less(&mut doubt.boxes, &proven.boxes);
+        less(&mut doubt.objects, &proven.objects);
+        doubt.boxes.set(row, row, false);
+        touching[row].iter().for_each(|&o| doubt.objects.set(row, o as usize, false));
+    }
+    doubt
 }

@@ -1,8 +1,9 @@
 //! Baking a scene by what is hidden from whole volumes: view cells as volumes, objects as occludees.
 //!
 //! A from-region method ([`FromRegion`]) says for each cell which objects are hidden from all of it, and which other
-//! cells. The sightlines of [`bake_scene`] say the same in another way; what either calls hidden is hidden, so the two
-//! can be put together.
+//! cells. Sightlines say the same in another way, of the cells of a k-d tree ([`bake_scene`]) or of given boxes
+//! ([`see_from_boxes`]); what either calls hidden is hidden, so the two can be put together. Of given boxes the method is asked first, and
+//! sightlines only where neither it nor a ray has told.
 
 mod boxes;
 mod see;
@@ -11,14 +12,14 @@ pub use boxes::{GridError, grid};
 
 use crate::mirrors;
 use crate::plan::BakeError;
-use crate::scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene, portal_record};
+use crate::scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene, loosened, portal_record};
 use sightlines_cells::Scene;
 use sightlines_formats::ViewCells;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{PortalForm, SceneOptions, SceneSubdivision, subdivide_scene};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Split, Volume, VolumeError, Witness};
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, Table, TableError, TableParts};
-use sightlines_stabtree::Progress;
+use sightlines_stabtree::{AskedOfBoxes, Progress, SearchOptions, SeenFromBoxes, see_from_boxes};
 use std::fmt;
 use std::time::{Duration, Instant};
 
@@ -97,8 +98,8 @@ impl From<TableError> for RegionBakeError {
 pub struct BakedRegions {
     /// The table.
     pub table: Table,
-    /// What sightlines did, if they were asked; its table is that of the k-d tree's cells.
-    pub sightlines: Option<BakedScene>,
+    /// Pairs that count as visible because it would have taken sightlines too much effort to decide about them.
+    pub n_assumed: u64,
     /// Name of the method, if one was asked.
     pub method: Option<String>,
     /// What it did.
@@ -131,39 +132,47 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let triangles: Vec<Vec<[Point3; 3]>> = scene.objects().iter().map(|o| o.corners().collect()).collect();
     let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(t.iter().flatten().copied())).collect();
     let by_sightlines = options.sightlines || options.method.is_none();
-    let baked = if by_sightlines { Some(by_portals(scene, options)?) } else { None };
-    let (mut parts, known) = match (options.cells, &baked) {
-        (CellsFrom::KdTree, Some(baked)) => {
-            let parts = baked.table.parts().clone();
-            let cells = parts.cells.iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
-            let objects = parts.objects_seen.clone().expect("scenes in space say what objects are seen");
-            let rows = parts.rows.clone();
-            (parts, Start { cells, rows, objects })
+    let mut n_assumed = 0;
+    let (mut parts, known) = match options.cells {
+        CellsFrom::KdTree if by_sightlines => {
+            let baked = by_portals(scene, options)?;
+            n_assumed = baked.n_assumed;
+            kd_known(baked.table.parts().clone())
         }
-        (CellsFrom::KdTree, None) => {
+        CellsFrom::KdTree => {
             let cut = subdivide_scene(scene, &SceneOptions { portals: PortalForm::Exact, ..options.cut })
                 .map_err(BakeError::from)?;
             kd_parts(scene, &cut, boxes.len())
         }
-        (CellsFrom::Boxes(cells), baked) => box_parts(cells, baked.as_ref(), boxes.len()),
+        CellsFrom::Boxes(cells) => box_parts(cells, boxes.len()),
     };
     let volumes = volumes(&known.cells)?;
     let touching = see::touching(&known.cells, &boxes);
-    let (rows, objects, effort, method) = match options.method {
+    let n = known.cells.len();
+    let mut proven = AskedOfBoxes { boxes: BitMatrix::identity(n), objects: BitMatrix::new(n, boxes.len()) };
+    let (mut rows, mut objects, effort, method) = match options.method {
         Some(make) => {
             let method = make().name();
             let witness = Witness::new(triangles.iter().map(|t| &t[..]));
             let occludees = Occludees::new(triangles);
             let scene = see::Scene { occludees: &occludees, witness: &witness, volumes: &volumes };
             let seen = see::see(&scene, make, options, known.rows, known.objects)?;
+            proven = seen.proven;
             (seen.rows, seen.objects, seen.effort, Some(method))
         }
         None => (known.rows, known.objects, Effort::default(), None),
     };
-    let mut objects = objects;
+    if by_sightlines && matches!(options.cells, CellsFrom::Boxes(_)) {
+        let doubt = boxes::in_doubt(&rows, &objects, &proven, &touching);
+        // Where no doubt is left the scene need not be cut.
+        if doubt.boxes.count_ones() + doubt.objects.count_ones() > 0 {
+            let answer = past_walls(scene, options, &known.cells, &boxes, &doubt)?;
+            n_assumed = answer.n_assumed;
+            boxes::clear_hidden([&mut rows, &mut objects], &doubt, &answer);
+        }
+    }
     see::add(&mut objects, &touching);
-    let n = rows.n_rows() as u64;
-    let (n_visible_pairs, n_objects_seen) = ((rows.count_ones() - n) / 2, objects.count_ones());
+    let (n_visible_pairs, n_objects_seen) = ((rows.count_ones() - n as u64) / 2, objects.count_ones());
     parts.rows = rows;
     parts.cell_objects = touching;
     parts.objects_seen = Some(objects);
@@ -183,24 +192,35 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     parts.info.push(("method".to_owned(), format!("{by}{text}")));
     parts.info.sort();
     let table = Table::new(parts)?;
-    let time = start.elapsed();
-    Ok(BakedRegions { table, sightlines: baked, method, effort, n_visible_pairs, n_objects_seen, time })
+    Ok(BakedRegions { table, n_assumed, method, effort, n_visible_pairs, n_objects_seen, time: start.elapsed() })
 }
 
-/// The table of the k-d tree's cells. For boxes that may lie anywhere, with the insides of solid things, out to the
-/// farthest box.
+/// The table of the k-d tree's cells.
 fn by_portals(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedScene, BakeError> {
-    let mut cut = options.cut;
-    if let CellsFrom::Boxes(boxes) = options.cells {
-        cut.keep_solid = true;
-        let corners = boxes.cells.iter().flat_map(|b| [b.bounds.min, b.bounds.max]);
-        let all = Aabb::around(corners.chain([scene.bounds().min, scene.bounds().max]));
-        cut.view_region = Some(all);
-    }
-    bake_scene(
-        scene,
-        &SceneBakeOptions { cut, portals: options.portals, threads: options.threads, progress: options.progress },
-    )
+    let RegionBakeOptions { cut, portals, threads, progress, .. } = *options;
+    bake_scene(scene, &SceneBakeOptions { cut, portals, threads, progress })
+}
+
+/// What sightlines say of boxes that may lie anywhere, with the insides of solid things, out to the farthest box.
+fn past_walls(
+    scene: &Scene,
+    options: &RegionBakeOptions<'_>,
+    cells: &[Aabb<3>],
+    objects: &[Aabb<3>],
+    doubt: &AskedOfBoxes,
+) -> Result<SeenFromBoxes, BakeError> {
+    let ends = [scene.bounds().min, scene.bounds().max].into_iter().chain(cells.iter().flat_map(|b| [b.min, b.max]));
+    let cut = SceneOptions {
+        portals: PortalForm::Exact,
+        keep_solid: true,
+        view_region: Some(Aabb::around(ends)),
+        ..options.cut
+    };
+    let cut = subdivide_scene(scene, &cut)?;
+    let loose = (options.portals == PortalMode::Bounding).then(|| loosened(&cut.graph));
+    let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
+    let graph = loose.as_ref().unwrap_or(&cut.graph);
+    Ok(see_from_boxes(graph, &cut.left_out(), cells, objects, doubt, &search))
 }
 
 fn volumes(cells: &[Aabb<3>]) -> Result<Vec<Volume>, RegionBakeError> {
@@ -218,6 +238,14 @@ fn ones(n_rows: usize, n_cols: usize) -> BitMatrix {
     let mut all = BitMatrix::new(n_rows, n_cols);
     (0..n_rows).for_each(|row| (0..n_cols).for_each(|col| all.set(row, col, true)));
     all
+}
+
+/// The cells of a k-d tree, with what sightlines leave visible.
+fn kd_known(parts: TableParts) -> (TableParts, Start) {
+    let cells = parts.cells.iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
+    let objects = parts.objects_seen.clone().expect("scenes in space say what objects are seen");
+    let rows = parts.rows.clone();
+    (parts, Start { cells, rows, objects })
 }
 
 /// The cells of a k-d tree, of which everything may see everything.
@@ -244,8 +272,8 @@ fn cell_record(b: &Aabb<3>) -> CellRecord {
     CellRecord { min: b.min, max: b.max, group: None, polygon: Vec::new() }
 }
 
-/// Boxes from elsewhere. With a table of the k-d tree's cells, each sees what the cells that it touches see.
-fn box_parts(boxes: &ViewCells, baked: Option<&BakedScene>, n_objects: usize) -> (TableParts, Start) {
+/// Boxes from elsewhere, of which everything may see everything.
+fn box_parts(boxes: &ViewCells, n_objects: usize) -> (TableParts, Start) {
     let cells: Vec<Aabb<3>> = boxes.cells.iter().map(|b| b.bounds).collect();
     let bounds: Vec<_> = cells.iter().map(|b| (b.min, b.max)).collect();
     let parts = TableParts {
@@ -256,9 +284,5 @@ fn box_parts(boxes: &ViewCells, baked: Option<&BakedScene>, n_objects: usize) ->
         ..TableParts::empty(3)
     };
     let n = cells.len();
-    let (rows, objects) = match baked {
-        Some(baked) => boxes::seen_by_touched(&cells, &baked.table, n_objects),
-        None => (ones(n, n), ones(n, n_objects)),
-    };
-    (parts, Start { cells, rows, objects })
+    (parts, Start { cells, rows: ones(n, n), objects: ones(n, n_objects) })
 }

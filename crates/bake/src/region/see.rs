@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Umbra, Volume, Witness, adaptive};
 use sightlines_pvs::BitMatrix;
+use sightlines_stabtree::AskedOfBoxes;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rays to a cell before the method is asked: most pairs of cells that see each other do so in many ways.
@@ -17,10 +18,11 @@ pub(super) struct Scene<'a> {
     pub(super) volumes: &'a [Volume],
 }
 
-/// What is left visible.
+/// What is left visible, and what of it a ray proves to be.
 pub(super) struct Seen {
     pub(super) rows: BitMatrix,
     pub(super) objects: BitMatrix,
+    pub(super) proven: AskedOfBoxes,
     pub(super) effort: Effort,
 }
 
@@ -28,6 +30,8 @@ pub(super) struct Seen {
 struct Row {
     cells: Vec<bool>,
     objects: Vec<bool>,
+    /// Cells that a ray reaches, and objects.
+    proven: [Vec<bool>; 2],
     effort: Effort,
 }
 
@@ -52,6 +56,7 @@ pub(super) fn see(
     let found: Vec<Row> =
         pool.install(|| (0..n).into_par_iter().map_init(make, one).collect::<Result<_, BackendError>>())?;
     let mut effort = Effort::default();
+    let mut proven = AskedOfBoxes { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, scene.occludees.len()) };
     for (a, row) in found.iter().enumerate() {
         effort = effort + row.effort;
         for (b, visible) in row.cells.iter().enumerate() {
@@ -62,8 +67,14 @@ pub(super) fn see(
             }
         }
         row.objects.iter().enumerate().filter(|(_, visible)| !**visible).for_each(|(o, _)| objects.set(a, o, false));
+        let [cells, things] = &row.proven;
+        for b in (0..n).filter(|&b| cells[b]) {
+            proven.boxes.set(a, b, true);
+            proven.boxes.set(b, a, true);
+        }
+        (0..things.len()).filter(|&o| things[o]).for_each(|o| proven.objects.set(a, o, true));
     }
-    Ok(Seen { rows, objects, effort })
+    Ok(Seen { rows, objects, proven, effort })
 }
 
 fn see_from(
@@ -77,15 +88,27 @@ fn see_from(
     let volume = &scene.volumes[cell];
     let mut of_objects: Vec<bool> = (0..scene.occludees.len()).map(|o| objects.get(cell, o)).collect();
     let mut of_cells: Vec<bool> = (0..scene.volumes.len()).map(|c| rows.get(cell, c)).collect();
+    let mut proven = [vec![false; of_cells.len()], vec![false; of_objects.len()]];
+    let [cells_reached, objects_reached] = &mut proven;
     let mut see_cells = |umbra: &mut dyn Umbra| {
         for (other, visible) in of_cells.iter_mut().enumerate().filter(|(_, visible)| **visible) {
             let target = scene.volumes[other].bounds();
-            *visible = scene.witness.sees(volume, target, RAYS_TO_A_CELL) || !umbra.hides(target);
+            cells_reached[other] = scene.witness.sees(volume, target, RAYS_TO_A_CELL);
+            *visible = cells_reached[other] || !umbra.hides(target);
         }
     };
     let (occludees, witness, split) = (scene.occludees, scene.witness, &options.split);
-    let effort = adaptive::see(method, occludees, witness, volume, split, &mut of_objects, &mut see_cells)?;
-    Ok(Row { cells: of_cells, objects: of_objects, effort })
+    let effort = adaptive::see_and_note(
+        method,
+        occludees,
+        witness,
+        volume,
+        split,
+        &mut of_objects,
+        objects_reached,
+        &mut see_cells,
+    )?;
+    Ok(Row { cells: of_cells, objects: of_objects, proven, effort })
 }
 
 /// For each cell the objects whose boxes meet it, ascending; touching counts.

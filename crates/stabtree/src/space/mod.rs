@@ -12,6 +12,7 @@
 //! decided exactly, but for [`slivers`]. So the answer does not depend on how cells are grouped, nor on the order of work.
 
 mod explain;
+mod eyes;
 mod grid;
 mod live;
 mod notes;
@@ -21,6 +22,7 @@ mod pairs;
 mod slivers;
 
 pub use explain::{SpaceExplanation, explain_space};
+pub use eyes::{AskedOfBoxes, SeenFromBoxes, see_from_boxes};
 pub use live::{LiveSpace, SpaceUpdate};
 
 use crate::search::{Known, SearchOptions};

@@ -12,7 +12,7 @@ use sightlines_pvs::BitMatrix;
 /// A cell thinner than this share of the longest side of the box around all cells is a sliver. What is
 /// said of slivers is sound whatever this is; doubles resolve 2^-52 of the box, and programs lose some
 /// twenty bits of them.
-const THIN: f64 = 1.0 / (1u64 << 32) as f64;
+pub(super) const THIN: f64 = 1.0 / (1u64 << 32) as f64;
 
 /// Which cells are slivers.
 pub(super) fn find(extents: &[Aabb<3>]) -> Vec<bool> {

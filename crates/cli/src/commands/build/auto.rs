@@ -3,7 +3,7 @@
 use super::region::RegionArgs;
 use crate::input::Input;
 use serde::Serialize;
-use sightlines::bake::auto::{SceneChoice, SceneFacts};
+use sightlines::bake::auto::choose;
 use std::fmt;
 
 /// What was chosen, and why.
@@ -21,8 +21,11 @@ struct Facts {
     n_triangles: usize,
     n_objects: usize,
     axial_share: f64,
-    loose_share: f64,
-    openness: f64,
+    /// What did not matter was not measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    loose_share: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    openness: Option<f64>,
     object_size: f64,
 }
 
@@ -35,8 +38,7 @@ impl Chosen {
         };
         match input {
             Input::Scene(file) => {
-                let f = SceneFacts::of(&file.scene);
-                let choice = SceneChoice::of(&f, given.has_boxes());
+                let (f, choice) = choose(&file.scene, given.has_boxes());
                 let facts = Facts {
                     n_triangles: f.n_triangles,
                     n_objects: f.n_objects,

@@ -9,6 +9,11 @@ use sightlines_geometry::{Aabb, AxialDoor};
 /// Times closer than this share of themselves may be equal: twice the error of a time.
 const SAME_TIME: f64 = 8.0 * f64::EPSILON;
 
+/// Whether one time is certainly before another.
+fn apart(early: f64, late: f64) -> bool {
+    late - early > SAME_TIME * (early.abs() + late.abs())
+}
+
 /// A line that was checked to lead from one box to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeLine {
@@ -90,9 +95,15 @@ impl FreeSpan {
         // As nothing cuts the box, the whole of it lies on one side of each end.
         let middle = enter + (leave - enter) / 2.0;
         let [before, behind] = self.times;
-        let apart = |early: f64, late: f64| late - early > SAME_TIME * (early.abs() + late.abs());
         let inside = (before.is_infinite() || apart(before, middle)) && (behind.is_infinite() || apart(middle, behind));
         inside && apart(enter, leave) && self.free.passes(bounds)
+    }
+
+    /// Whether the free part certainly passes some of the inside of a box; rectangles may cut it.
+    pub fn passes_some_of(&self, bounds: &Aabb<3>) -> bool {
+        let [enter, leave] = self.free.ray.span(bounds);
+        let [before, behind] = self.times;
+        apart(enter.max(before), leave.min(behind)) && self.free.passes(bounds)
     }
 
     /// Whether the free part, with its ends, meets a closed box in more than its edges. Exact.
