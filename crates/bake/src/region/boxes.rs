@@ -58,14 +58,14 @@ pub(super) fn in_doubt(
     touching: &[Vec<u32>],
 ) -> AskedOfBoxes {
     let mut doubt = AskedOfBoxes { boxes: rows.clone(), objects: objects.clone() };
-    for row in 0..rows.n_rows() {
+    for (row, touched) in touching.iter().enumerate() {
         let less = |matrix: &mut BitMatrix, known: &BitMatrix| {
             matrix.row_mut(row).iter_mut().zip(known.row(row)).for_each(|(word, known)| *word &= !known);
         };
         less(&mut doubt.boxes, &proven.boxes);
         less(&mut doubt.objects, &proven.objects);
         doubt.boxes.set(row, row, false);
-        touching[row].iter().for_each(|&o| doubt.objects.set(row, o as usize, false));
+        touched.iter().for_each(|&o| doubt.objects.set(row, o as usize, false));
     }
     doubt
 }
