@@ -1,16 +1,25 @@
 //! The hot paths, each with the count of what cannot be left out.
 
 use crate::rates::{Rates, least};
-use sightlines::bake::{BakeOptions, SceneBakeOptions, bake_plan, bake_scene};
+use sightlines::bake::{
+    BakeOptions, CellsFrom, PortalMode, RegionBakeOptions, SceneBakeOptions, bake_plan, bake_regions, bake_scene,
+    see_groups,
+};
+use sightlines::cells::Scene;
 use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View};
+use sightlines::formats::ViewCells;
+use sightlines::formats::view_cells::ViewCell;
 use sightlines::geometry::{Aabb, Adaptive, AxialDoor, Point3, Portal3};
-use sightlines::multifocal::{Job, Measure, MultifocalBackend, Occluder, Plane, Volume};
+use sightlines::kdtree::SceneOptions;
+use sightlines::multifocal::{Job, Measure, MultifocalBackend, Occluder, Plane, Split, Volume};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::packed::{PackOptions, Packed, pack};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::surfaces::{self, SurfaceOptions};
-use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
+use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
+use sightlines::scenes::{OfficeOptions, TowerOptions, doom_like, office, tower, tower_rooms};
 use sightlines::sightline::{AxialStabber, ConvexStabber, Funnel, StabLimits, Stabber, Stabbing3};
+use sightlines::stabtree::{ConvexOptions, ConvexSearch, SearchOptions};
 use sightlines::visible_surface::{Camera, Chosen, DepthFormat, Faces, RayCaster, Shot, VisibleSurface, ZBuffer};
 use sightlines::walkthrough::wander;
 use sightlines_benches::{corridors, graph};
@@ -45,6 +54,9 @@ pub(crate) fn all(short: bool) -> Vec<Measured> {
         Box::new(move |rates| zbuffer(rates, short)),
         Box::new(move |rates| raycaster(rates, short)),
         Box::new(move |rates| plan_table(rates, short)),
+        Box::new(move |rates| reject(rates, short)),
+        Box::new(move |rates| vis(rates, short)),
+        Box::new(move |rates| given_cells(rates, &scene, options)),
     ]
 }
 
@@ -290,5 +302,70 @@ fn plan_table(rates: &Rates, short: bool) -> Path {
         seconds,
         bound: pairs as f64 * rates.orient2,
         counts: "an orientation for each visible pair".to_owned(),
+    }
+}
+
+/// The REJECT table of a map: as for a plan, of sectors.
+fn reject(rates: &Rates, short: bool) -> Path {
+    let plan = doom_like(1, if short { 4 } else { 16 }).expect("in range");
+    let n = plan.n_groups();
+    let options = SearchOptions { threads: 1, ..SearchOptions::default() };
+    let (seen, _) = see_groups(&plan, n, &options).expect("a map can be baked");
+    let seconds = least(|| drop(black_box(see_groups(&plan, n, &options))));
+    let pairs = (seen.count_ones() - u64::from(n)) / 2;
+    Path {
+        name: "the REJECT table of a map",
+        of: format!("{n} sectors, {pairs} visible pairs"),
+        seconds,
+        bound: pairs as f64 * rates.orient2,
+        counts: "an orientation for each visible pair".to_owned(),
+    }
+}
+
+/// What Quake's `vis` does: of each visible pair that is not of neighbours some line passes a portal, on the right side of three edges at least.
+fn vis(rates: &Rates, short: bool) -> Path {
+    let side = if short { 1 } else { 2 };
+    let world = quake_like(QuakeLikeOptions { seed: 1, rooms_x: side, rooms_y: side, floors: 2 }).expect("few rooms");
+    let search = |graph| {
+        let mut search = ConvexSearch::new(graph, ConvexOptions { threads: 1, ..ConvexOptions::default() });
+        while search.advance() {}
+        search.finish()
+    };
+    let n = world.graph.n_cells();
+    let pairs = (search(&world.graph).cells.count_ones() - n as u64) / 2;
+    let seconds = least(|| drop(black_box(search(&world.graph))));
+    Path {
+        name: "the visibility of a Quake level",
+        of: format!("{n} leafs, {} portals, {pairs} visible pairs", world.graph.portals().len()),
+        seconds,
+        bound: pairs as f64 * 3.0 * rates.orient3,
+        counts: "3 orientations for each visible pair".to_owned(),
+    }
+}
+
+/// What given rooms see: of each visible pair some line is free, so it is compared with a wall at least, along three axes.
+fn given_cells(rates: &Rates, scene: &Scene, options: TowerOptions) -> Path {
+    let rooms = tower_rooms(options).expect("in range");
+    let cells = (0u32..).zip(&rooms).map(|(i, room)| ViewCell { id: i.to_string(), bounds: room.bounds }).collect();
+    let cells = CellsFrom::Boxes(ViewCells { cells });
+    let options = RegionBakeOptions {
+        cells: &cells,
+        method: None,
+        sightlines: true,
+        split: Split::default(),
+        cut: SceneOptions::default(),
+        portals: PortalMode::Exact,
+        threads: 1,
+        progress: None,
+    };
+    let baked = bake_regions(scene, &options).expect("a tower can be baked");
+    let seconds = least(|| drop(black_box(bake_regions(scene, &options))));
+    let pairs = baked.n_objects_seen + baked.n_visible_pairs;
+    Path {
+        name: "what given rooms see",
+        of: format!("{} rooms, {} objects, {pairs} visible pairs", rooms.len(), scene.objects().len()),
+        seconds,
+        bound: pairs as f64 * 3.0 * rates.orient2 / 2.0,
+        counts: "3 comparisons of half an orientation for each visible pair".to_owned(),
     }
 }

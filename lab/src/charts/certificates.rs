@@ -3,17 +3,23 @@
 use super::plot::{Panel, Point, Series};
 use super::row::Row;
 use super::{ChartError, Family, Settings};
-use sightlines::bake::{BakeOptions, SceneBakeOptions, bake_plan, bake_scene, certify_table};
+use sightlines::bake::{BakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, certify_table};
+use sightlines::formats::Prt;
+use sightlines::formats::quake::read_prt;
 use sightlines::pvs::Table;
+use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
-use sightlines::stabtree::CertifyOptions;
+use sightlines::stabtree::{CertifyOptions, ConvexOptions};
 use sightlines::verify::check_proofs;
+use sightlines_tests::world_files::prt_of_world;
 
 const NAME: &str = "certificates";
 /// The steps, each a row.
 const STEPS: [&str; 3] = ["bake", "prove", "check"];
 /// The kinds of tables.
-const KINDS: [&str; 2] = ["office plans", "towers"];
+const KINDS: [&str; 3] = ["office plans", "towers", "Quake levels"];
+/// Real maps, beside levels that are generated.
+const MAPS: [&str; 2] = ["e1m7", "dm3"];
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
@@ -55,6 +61,23 @@ impl Family for Certificates {
             };
             one(settings, KINDS[1], &format!("{floors} floors"), bake, &mut rows)?;
         }
+        let levels: &[u32] = settings.pick(&[1], &[1, 2]);
+        for &side in levels {
+            let options = QuakeLikeOptions { seed: 1, rooms_x: side, rooms_y: side, floors: side };
+            let world = quake_like(options).map_err(|e| ChartError::measure(NAME, "a level", e))?;
+            one(
+                settings,
+                KINDS[2],
+                &format!("{side} x {side} x {side} rooms"),
+                || level(&prt_of_world(&world)),
+                &mut rows,
+            )?;
+        }
+        for map in settings.data.iter().flat_map(|data| MAPS.map(|map| data.join("quake").join(map))) {
+            let name = map.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let prt = read_prt(map.with_extension("prt")).map_err(|e| ChartError::measure(NAME, &name, e))?;
+            one(settings, KINDS[2], &name, || level(&prt), &mut rows)?;
+        }
         Ok(rows)
     }
 
@@ -81,6 +104,12 @@ impl Family for Certificates {
         };
         KINDS.iter().flat_map(both).collect()
     }
+}
+
+/// The table of a portal file, by one thread.
+fn level(prt: &Prt) -> Result<Table, Failure> {
+    let search = ConvexOptions { threads: 1, ..ConvexOptions::default() };
+    Ok(bake_prt(prt, PrtOptions { search, ..PrtOptions::default() })?.table)
 }
 
 fn one(
@@ -137,5 +166,9 @@ mod tests {
         assert!(rows.iter().all(|r| r.reported == r.truth && r.truth > Some(20) && r.seconds > Some(0.0)), "{rows:?}");
         assert!(rows[0].bytes > Some(0) && rows[1].bytes > Some(0));
         assert_eq!(Certificates.panels(&rows).iter().flat_map(|p| &p.series).map(|s| s.points.len()).sum::<usize>(), 5);
+        let options = QuakeLikeOptions { seed: 1, rooms_x: 1, rooms_y: 1, floors: 1 };
+        let prt = prt_of_world(&quake_like(options).unwrap());
+        one(&settings, KINDS[2], "a room", || level(&prt), &mut rows).unwrap();
+        assert!(rows[3..].iter().all(|r| r.scene == "Quake levels" && r.reported == r.truth), "{rows:?}");
     }
 }
