@@ -3,7 +3,8 @@
 //! A from-region method ([`FromRegion`]) says for each cell which objects are hidden from all of it, and which other
 //! cells. Sightlines say the same in another way, of the cells of a k-d tree ([`bake_scene`]) or of given boxes
 //! ([`see_from_boxes`]); what either calls hidden is hidden, so the two can be put together. Of given boxes the method is asked first, and
-//! sightlines only where neither it nor a ray has told.
+//! sightlines only where neither it nor a ray has told. Rays are traced in doubles: what one seems to reach through the crack
+//! between two surfaces is left visible.
 
 mod boxes;
 mod see;
