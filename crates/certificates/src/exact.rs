@@ -56,6 +56,11 @@ impl Dyadic {
         }
     }
 
+    /// Whether it has no more bits than so many, nor an exponent of more than 64 times as much.
+    pub(crate) fn has_bits(&self, most: u64) -> bool {
+        self.mantissa.bits() <= most && u64::from(self.exponent.unsigned_abs()) <= 64 * most
+    }
+
     pub(crate) fn magnitude(&self) -> Self {
         Self { mantissa: self.mantissa.magnitude().clone().into(), exponent: self.exponent }
     }

@@ -376,3 +376,70 @@ fn lines_pass_portals_one_after_the_other() {
     portals[1].corners.iter_mut().for_each(|c| c[0] = 16.0);
     assert_eq!(ConvexNetwork::new(4, &portals, 0.0).unwrap().follow(&along), [0, 1, 2]);
 }
+
+/// A square across the x axis.
+fn square(x: f64, cells: [u32; 2], half: f64) -> ConvexPortal {
+    let corners = vec![[x, -half, -half], [x, half, -half], [x, half, half], [x, -half, half]];
+    ConvexPortal { cells, corners }
+}
+
+/// However long a portal is along its plane: what lies clearly behind it follows it, and no walk leaves that out.
+#[test]
+fn long_portals_are_no_thicker() {
+    for (x, half) in [(40.0, 2f64.powi(50)), (1e-7, 1e7)] {
+        let portals = [square(0.0, [0, 1], half), square(x, [1, 2], 1.0)];
+        let network = ConvexNetwork::new(3, &portals, ConvexNetwork::OF_FILES).unwrap();
+        let line = ConvexLine::through(0, [-1.0, 0.1, 0.2], [x + 1.0, 0.2, 0.1]);
+        let checksum = network.checksum();
+        let seen = ConvexProofs { checksum, lines: vec![line], ..ConvexProofs::default() };
+        assert!(seen.check(&network).unwrap().visible.has(0, 2));
+        let walks = vec![ConvexWalk::new(0, vec![2], &[], vec![])];
+        let hidden = ConvexProofs { checksum, walks, ..ConvexProofs::default() };
+        assert!(hidden.check(&network).is_err(), "{x} {half}");
+    }
+    // What is taken for granted: 2^-50 of the coordinates is rounding.
+    let portals = [square(1.0, [0, 1], 1.0), square(1.0 + 2f64.powi(-50), [1, 2], 1.0)];
+    let network = ConvexNetwork::new(3, &portals, ConvexNetwork::OF_FILES).unwrap();
+    assert!(!network.may_follow(0, 2) && ConvexNetwork::new(3, &portals, 0.0).unwrap().may_follow(0, 2));
+}
+
+/// An edge from a corner to itself has no side, so it would block everything.
+#[test]
+fn edges_have_lengths() {
+    let mut portal = square(0.0, [0, 1], 1.0);
+    portal.corners.insert(1, portal.corners[0]);
+    assert_eq!(ConvexNetwork::new(2, &[portal], 0.0).unwrap_err(), ConvexNetworkError::NoPolygon(0));
+}
+
+/// Cuts through corners that come of cuts, again and again, each of which nearly doubles the digits: a proof of a kilobyte is refused
+/// before that takes long.
+#[test]
+fn corners_of_very_many_digits_are_refused() {
+    let triangle = |x: f64, cells| ConvexPortal { cells, corners: vec![[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]] };
+    let network = ConvexNetwork::new(3, &[triangle(0.0, [0, 1]), triangle(5.0, [1, 2])], 0.0).unwrap();
+    let sum = || ConvexTree::Sum(vec![ConvexTerm { gate: 1, edge: 0, times: 1.0 }]);
+    // The newest corner is cut off each time: a corner, and how often its digits were doubled.
+    let mut corners: Vec<([f64; 2], u64)> = vec![([0.0, 0.0], 1), ([1.0, 0.0], 1), ([0.0, 1.0], 1)];
+    let mut planes = Vec::new();
+    for _ in 0..24 {
+        corners.sort_by_key(|corner| corner.1);
+        let [a, b, newest] = [0, 1, 2].map(|k| corners[k]);
+        let half = |p: [f64; 2]| [0, 1].map(|k| (p[k] + newest.0[k]) / 2.0);
+        let (m, n) = (half(a.0), half(b.0));
+        let normal = [(m[1] - n[1]) * 1.0000000011, n[0] - m[0]];
+        let offset = -(normal[0] * m[0] + normal[1] * m[1]);
+        let is_ahead = normal[0] * newest.0[0] + normal[1] * newest.0[1] + offset > 0.0;
+        let sign = if is_ahead { -0.7310585786300049 } else { 0.7310585786300049 };
+        planes.push([0.0, normal[0] * sign, normal[1] * sign, offset * sign]);
+        corners = vec![newest, (m, newest.1 + a.1), (n, newest.1 + b.1)];
+    }
+    let tree = |depth: usize| {
+        planes[..depth].iter().rev().fold(sum(), |tree, &plane| {
+            ConvexTree::Cut(Box::new(ConvexCut { later: false, plane, parts: [tree, sum()] }))
+        })
+    };
+    // The sum proves nothing either; but with all cuts made exactly, this would take minutes to find out.
+    let holds =
+        |depth: usize| ConvexBlock::Sums(ConvexSums { ends: [1, 0], tree: tree(depth) }).holds(&network, &[0], 2);
+    assert!(!holds(24));
+}

@@ -27,7 +27,7 @@ fn seen(graph: &CellGraph<Axial>, solid: &[Aabb<3>], eyes: &[Aabb<3>], things: &
         let options = SearchOptions { threads, ..SearchOptions::default() };
         see_from_boxes(graph, solid, eyes, things, &asked, &options)
     });
-    assert_eq!(one, three);
+    assert_eq!((&one.boxes, &one.objects), (&three.boxes, &three.objects));
     one
 }
 
@@ -145,7 +145,7 @@ fn boxes_see_what_the_cells_in_them_see() {
     let config = ProptestConfig::with_source_file(file!());
     let cases = u64::from(config.cases);
     let mut runner = proptest::test_runner::TestRunner::new(config);
-    let out = || prop::collection::vec(prop::bool::weighted(0.03), 1..9);
+    let out = || prop::collection::vec(prop::bool::weighted(0.08), 1..9);
     let result = runner.run(&(faces(24), out(), eyes(), objects()), |(faces, out, eyes, objects)| {
         // Objects are in the cube, as beyond it nothing is known.
         let is_in = |b: &Aabb<3>| (0..3).all(|k| b.min[k] >= 0.0 && b.max[k] <= f64::from(SIDE));

@@ -9,6 +9,9 @@ use std::cmp::Ordering;
 pub(super) const MOST_DEPTH: u32 = 24;
 /// Corners that a part of a gate's hull may have.
 const MOST_CORNERS: usize = 96;
+/// Bits that a coordinate of such a corner may have. Each cut through corners that come of cuts nearly doubles them, so this is what bounds
+/// the time that a proof takes for its size.
+const MOST_BITS: u64 = 1 << 14;
 
 /// Why no line passes gates of a chain.
 ///
@@ -178,6 +181,9 @@ impl Part {
             for ((q, w), high) in corners.iter().zip(&heights).filter(|(_, h)| h.sign() == Ordering::Greater) {
                 let low = &-low;
                 let corner = (plus(&times(p, high), &times(q, low)), &(v * high) + &(w * low));
+                if !corner.0.iter().chain([&corner.1]).all(|x| x.has_bits(MOST_BITS)) {
+                    return None;
+                }
                 parts.iter_mut().for_each(|part| part.push(corner.clone()));
                 if parts.iter().any(|part| part.len() > MOST_CORNERS) {
                     return None;

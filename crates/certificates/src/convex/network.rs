@@ -46,8 +46,8 @@ pub enum ConvexNetworkError {
 ///
 /// # What is taken for granted
 /// Corners of files are rounded, but portals are meant to lie on planes that the map was cut by, and a line crosses a plane once. So
-/// corners count as on a portal's plane that are off it by no more than the *flatness* times the largest coordinate of the
-/// two portals, measured along a normal whose components' magnitudes have the sum 1. With a flatness of 0 nothing is taken for granted.
+/// corners count as on a portal's plane that are off it by no more than rounding each coordinate by the *flatness* times the
+/// largest one of the two portals on its axis can move them along the normal. With a flatness of 0 nothing is taken for granted.
 #[derive(Debug, Clone)]
 pub struct ConvexNetwork {
     pub(super) gates: Gates,
@@ -62,11 +62,10 @@ pub struct ConvexNetwork {
 #[derive(Debug, Clone)]
 struct Plane {
     normal: Exact,
-    /// The normal in doubles, within 2^-51 of itself in each component, and the sum of its magnitudes.
+    /// The normal in doubles, within 2^-51 of itself in each component.
     rounded: Point,
-    size: f64,
-    /// The largest magnitude of a coordinate of a corner.
-    largest: f64,
+    /// The largest magnitude of a coordinate of a corner, on each axis.
+    largest: Point,
     /// The least and the largest product of the rounded normal with a corner, in doubles.
     range: [f64; 2],
 }
@@ -162,16 +161,19 @@ impl ConvexNetwork {
         } else {
             plane.range[1] - corners.fold(f64::INFINITY, f64::min)
         };
-        let largest = plane.largest.max(other.largest);
-        let allowed = self.flatness * largest * plane.size;
+        let largest = [0, 1, 2].map(|k| plane.largest[k].max(other.largest[k]));
+        // No product of the normal with a corner is larger.
+        let reach: f64 = (0..3).map(|k| plane.rounded[k].abs() * largest[k]).sum();
+        let allowed = self.flatness * reach;
         // Normals are within 2^-51 of their components' magnitudes, products with them too; two products' sums round by less than
-        // 2^-51 of the largest coordinate times the size each. Asked for is 2^-47, for all that and the rounding of the bound.
-        let wrong = plane.size * largest * 2f64.powi(-47);
+        // 2^-51 of the reach each. Asked for is 2^-47, for all that and the rounding of the bound.
+        let wrong = reach * 2f64.powi(-47);
         if (rise - allowed).abs() > wrong {
             return rise > allowed;
         }
-        let size = plane.normal.iter().fold(Dyadic::new(0.0), |sum, x| &sum + &x.magnitude());
-        let allowed = &(&Dyadic::new(self.flatness) * &Dyadic::new(largest)) * &size;
+        let products = plane.normal.iter().zip(largest).map(|(x, largest)| &x.magnitude() * &Dyadic::new(largest));
+        let reach = products.fold(Dyadic::new(0.0), |sum, x| &sum + &x);
+        let allowed = &Dyadic::new(self.flatness) * &reach;
         let [low, high] = [from, to].map(|g| self.corners(g).iter().map(|&p| dot(&plane.normal, &exact(p))));
         let high: Vec<Dyadic> = high.collect();
         low.into_iter().any(|low| high.iter().any(|high| (&(high - &low) - &allowed).sign() == Ordering::Greater))
@@ -224,9 +226,12 @@ impl ConvexNetwork {
 }
 
 impl Plane {
-    /// `None` for corners that go round nothing.
+    /// `None` for corners that go round nothing, and for edges without length, which every line has on a side that is neither.
     fn of(corners: &[Point]) -> Option<Self> {
         let first = exact(*corners.first()?);
+        if (0..corners.len()).any(|k| corners[k] == corners[(k + 1) % corners.len()]) {
+            return None;
+        }
         let from: Vec<Exact> = corners.iter().map(|&p| minus(&exact(p), &first)).collect();
         let zero = times(&first, &Dyadic::new(0.0));
         let normal = from.windows(2).fold(zero, |sum, pair| plus(&sum, &cross(&pair[0], &pair[1])));
@@ -237,8 +242,8 @@ impl Plane {
         let along = |p: &Point| rounded[0] * p[0] + rounded[1] * p[1] + rounded[2] * p[2];
         let low = corners.iter().map(along).fold(f64::INFINITY, f64::min);
         let high = corners.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
-        let largest = corners.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        Some(Self { normal, rounded, size: rounded.iter().map(|x| x.abs()).sum(), largest, range: [low, high] })
+        let largest = [0, 1, 2].map(|k| corners.iter().fold(0.0, |m: f64, p| m.max(p[k].abs())));
+        Some(Self { normal, rounded, largest, range: [low, high] })
     }
 }
 

@@ -3,19 +3,21 @@
 //! Such a box may lie anywhere among the cells, with walls inside of it. They do not count: an eye is between any of them and
 //! the side by which a line leaves the box, so what is asked is what stands between the box and a target ([`Shaft`]). That is exact: a line that is
 //! free from where it leaves the box on is seen by eyes just before that place, and what an eye in the box sees is
-//! seen along a line that is free from there on. Groups of targets are asked about first, then their halves.
+//! seen along a line that is free from there on. Groups of targets are asked about first, then their halves; what shares a cell with the box
+//! is seen, and what lies on a line that was found is.
 
+use super::grid::Marks;
 use super::objects::touch;
 use super::opaque::opaque_rectangles;
 use super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
 use super::slivers::THIN;
 use super::{components, on_threads};
-use crate::search::SearchOptions;
+use crate::search::{SearchOptions, ones};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Blockers, Shaft, ShaftCounters, Sight, Target};
+use sightlines_sightline::{Blockers, FreeLine, Shaft, ShaftCounters, Sight, Target};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// What is asked about boxes: pairs of boxes, which has to be symmetric, and of a box and an object.
@@ -37,9 +39,9 @@ pub struct SeenFromBoxes {
     /// Opaque rectangles that the walls were put together to.
     pub n_blockers: usize,
     /// Pairs that count as visible because it would have taken too much effort, or more digits than doubles have,
-    /// to decide about them.
+    /// to decide about them. Like `counters`, it varies with threads, as a line for another pair may prove such a pair visible first.
     pub n_assumed: u64,
-    /// What it took.
+    /// What it took. With several threads the counts vary from run to run; the answer does not.
     pub counters: ShaftCounters,
 }
 
@@ -56,7 +58,8 @@ pub struct SeenFromBoxes {
 /// * `asked`: the pairs that are of interest.
 ///
 /// Exact, but for thin boxes, which may see more, and pairs that take thousands of linear programs, which count as
-/// visible. The same for any number of threads. Cost: O(log n) questions for each box and what it sees.
+/// visible. The same pairs for any number of threads. Cost: O(log n) questions for each hidden group; what is visible is mostly found in the
+/// same cell, or on lines found before. Memory: four bits for each pair.
 ///
 /// # Panics
 /// If a matrix of `asked` is not about as many boxes and objects.
@@ -75,41 +78,133 @@ pub fn see_from_boxes(
     let thick: Vec<Aabb<3>> = boxes.iter().map(|b| places.thickened(b)).collect();
     let of_boxes = Targets::new(&thick, boxes, Target::Inside, &places);
     let of_objects = Targets::new(objects, objects, Target::Surface, &places);
+    let known = Known {
+        boxes: Marks::new(boxes.len(), boxes.len()),
+        objects: Marks::new(boxes.len(), objects.len()),
+        of_boxes: &of_boxes,
+        of_objects: &of_objects,
+        blockers: &blockers,
+    };
     let done = AtomicUsize::new(0);
     let one = |shaft: &mut Shaft<'_>, eye: usize| {
         let before = shaft.counters();
-        let mut from = Eye { own: &boxes[eye], thick: &thick[eye], places: &places, shaft, n_assumed: 0 };
+        let mut from = Eye { own: &boxes[eye], thick: &thick[eye], id: eye, known: &known, shaft, n_assumed: 0 };
         // Who sees whom is asked once, of the lower number.
         let later = asked.boxes.iter_ones(eye).filter(|&other| other > eye);
-        let boxes = from.seen(&of_boxes, later, &blockers);
-        let objects = from.seen(&of_objects, asked.objects.iter_ones(eye), &blockers);
+        from.settle_all(Kind::Box, &places, later);
+        from.settle_all(Kind::Object, &places, asked.objects.iter_ones(eye));
         let n_assumed = from.n_assumed;
         options.progress.iter().for_each(|progress| progress(done.fetch_add(1, Relaxed) + 1, thick.len()));
-        (boxes, objects, n_assumed, shaft.counters() - before)
+        (n_assumed, shaft.counters() - before)
     };
-    let found: Vec<_> = on_threads(options.threads, |_| {
+    let found: Vec<(u64, ShaftCounters)> = on_threads(options.threads, |_| {
+        known.mark_within(graph, &places);
         (0..boxes.len()).into_par_iter().with_max_len(1).map_init(|| Shaft::new(&blockers), one).collect()
     });
     let mut answer = SeenFromBoxes {
-        boxes: BitMatrix::new(boxes.len(), boxes.len()),
-        objects: BitMatrix::new(boxes.len(), objects.len()),
+        boxes: asked.boxes.clone(),
+        objects: asked.objects.clone(),
         n_blockers: blockers.len(),
-        n_assumed: 0,
-        counters: ShaftCounters::default(),
+        n_assumed: found.iter().map(|found| found.0).sum(),
+        counters: found.iter().fold(ShaftCounters::default(), |sum, found| sum + found.1),
     };
-    for (eye, (boxes, objects, n_assumed, counters)) in found.into_iter().enumerate() {
-        for other in boxes {
-            answer.boxes.set(eye, other, true);
-            answer.boxes.set(other, eye, true);
+    for eye in 0..boxes.len() {
+        for (matrix, marks) in [(&mut answer.boxes, &known.boxes), (&mut answer.objects, &known.objects)] {
+            let hidden: Vec<usize> = matrix.iter_ones(eye).filter(|&other| !marks.get(eye, other)).collect();
+            hidden.into_iter().for_each(|other| matrix.set(eye, other, false));
         }
-        objects.into_iter().for_each(|object| answer.objects.set(eye, object, true));
-        if asked.boxes.get(eye, eye) {
-            answer.boxes.set(eye, eye, true);
-        }
-        answer.n_assumed += n_assumed;
-        answer.counters = answer.counters + counters;
+        // A box sees itself, if that was asked.
+        answer.boxes.set(eye, eye, asked.boxes.get(eye, eye));
     }
     answer
+}
+
+/// What is known to be seen: it only grows, and all threads see it.
+struct Known<'a> {
+    boxes: Marks,
+    objects: Marks,
+    of_boxes: &'a Targets<'a>,
+    of_objects: &'a Targets<'a>,
+    blockers: &'a Blockers,
+}
+
+/// What is asked about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Box,
+    Object,
+}
+
+impl Known<'_> {
+    /// Marks what lies in one cell: nothing is between two places in it.
+    fn mark_within(&self, graph: &CellGraph<Axial>, places: &Places) {
+        // A box of eyes shares some of the inside of the cell; an object may be flat along an axis, but not in the cell's border.
+        let shares = |b: &Aabb<3>, cell: &Aabb<3>| (0..3).all(|k| b.min[k] < cell.max[k] && cell.min[k] < b.max[k]);
+        (0..graph.n_cells()).into_par_iter().for_each(|cell| {
+            let bounds = &places.extents[cell];
+            let within = |targets: &Targets<'_>| {
+                let mut row = vec![0u64; targets.boxes.len().div_ceil(64)];
+                targets.tree.visit(
+                    |node| shares(node, bounds),
+                    |i| {
+                        if shares(&targets.boxes[i as usize], bounds) && targets.can_be_reached(i as usize) {
+                            row[i as usize / 64] |= 1 << (i % 64);
+                        }
+                    },
+                );
+                row
+            };
+            let boxes = within(self.of_boxes);
+            if boxes.iter().all(|word| *word == 0) {
+                return;
+            }
+            let objects = within(self.of_objects);
+            for eye in boxes.iter().enumerate().flat_map(|(i, word)| ones(*word).map(move |bit| i * 64 + bit)) {
+                self.boxes.set_all(eye, &boxes);
+                self.objects.set_all(eye, &objects);
+            }
+        });
+    }
+
+    fn marks(&self, kind: Kind) -> &Marks {
+        match kind {
+            Kind::Box => &self.boxes,
+            Kind::Object => &self.objects,
+        }
+    }
+
+    /// Marks that a box sees something of a kind.
+    fn see(&self, kind: Kind, eye: usize, other: usize) {
+        self.marks(kind).set(eye, other);
+        if kind == Kind::Box {
+            self.boxes.set(other, eye);
+        }
+    }
+
+    /// Marks all boxes that a free line passes as seeing each other, and the objects on it.
+    fn follow(&self, line: &FreeLine, [from, to]: [&Aabb<3>; 2]) {
+        let span = line.span(from, to, self.blockers);
+        let mut passed: Vec<usize> = Vec::new();
+        self.of_boxes.tree.visit(
+            |node| span.may_meet(node),
+            |i| {
+                if span.passes_some_of(&self.of_boxes.boxes[i as usize]) {
+                    passed.push(i as usize);
+                }
+            },
+        );
+        for (k, &a) in passed.iter().enumerate() {
+            passed[..k].iter().for_each(|&b| self.see(Kind::Box, a, b));
+        }
+        self.of_objects.tree.visit(
+            |node| span.may_meet(node),
+            |i| {
+                if span.meets(&self.of_objects.boxes[i as usize]) {
+                    passed.iter().for_each(|&eye| self.see(Kind::Object, eye, i as usize));
+                }
+            },
+        );
+    }
 }
 
 /// Where boxes lie among the cells.
@@ -201,92 +296,71 @@ impl<'a> Targets<'a> {
 struct Eye<'a, 's, 'b> {
     own: &'a Aabb<3>,
     thick: &'a Aabb<3>,
-    places: &'a Places,
+    id: usize,
+    known: &'a Known<'a>,
     shaft: &'s mut Shaft<'b>,
     n_assumed: u64,
 }
 
-/// What is known of a target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum State {
-    NotAsked,
-    InDoubt,
-    Seen,
-}
-
 impl Eye<'_, '_, '_> {
-    /// Those of the targets asked about that may be seen, ascending.
-    fn seen(&mut self, targets: &Targets<'_>, asked: impl Iterator<Item = usize>, blockers: &Blockers) -> Vec<usize> {
-        let mut states = vec![State::NotAsked; targets.boxes.len()];
-        let all = !self.places.holds(self.own);
-        let near = self.places.components(self.own);
-        for i in asked {
-            let at_once = all || targets.outside[i] || touch(self.own, &targets.own[i]);
-            if at_once {
-                states[i] = State::Seen;
-            } else if targets.can_be_reached(i) && targets.components[i].iter().any(|c| near.binary_search(c).is_ok()) {
-                states[i] = State::InDoubt;
+    /// Marks which of the targets asked about may be seen.
+    fn settle_all(&mut self, kind: Kind, places: &Places, asked: impl Iterator<Item = usize>) {
+        let known = self.known;
+        let (targets, marks) = match kind {
+            Kind::Box => (known.of_boxes, &known.boxes),
+            Kind::Object => (known.of_objects, &known.objects),
+        };
+        let mut in_doubt = vec![false; targets.boxes.len()];
+        let all = !places.holds(self.own);
+        let near = places.components(self.own);
+        for i in asked.filter(|&i| !marks.get(self.id, i)) {
+            if all || targets.outside[i] || touch(self.own, &targets.own[i]) {
+                known.see(kind, self.id, i);
+            } else {
+                let is_joined = || targets.components[i].iter().any(|c| near.binary_search(c).is_ok());
+                in_doubt[i] = targets.can_be_reached(i) && is_joined();
             }
         }
         let mut stack = if targets.boxes.is_empty() { Vec::new() } else { vec![0u32] };
         while let Some(n) = stack.pop() {
             let node = &targets.tree.nodes()[n as usize];
             let within = &targets.tree.order()[node.start as usize..node.end as usize];
-            let n_left = within.iter().filter(|&&i| states[i as usize] == State::InDoubt).count();
+            let is_left = |i: u32| in_doubt[i as usize] && !marks.get(self.id, i as usize);
+            let n_left = within.iter().filter(|&&i| is_left(i)).count();
             if n_left == 0 {
                 continue;
             }
             if node.is_leaf() {
-                for &i in within.iter().filter(|&&i| states[i as usize] == State::InDoubt).collect::<Vec<_>>() {
-                    states[i as usize] = self.settle(targets, i as usize);
-                }
+                let left: Vec<u32> = within.iter().copied().filter(|&i| is_left(i)).collect();
+                left.into_iter().for_each(|i| self.settle(kind, targets, i as usize));
                 continue;
             }
             // Of a group of which something is seen it is known that nothing hides it.
-            let none_seen = || within.iter().all(|&i| states[i as usize] != State::Seen);
+            let none_seen = || within.iter().all(|&i| !marks.get(self.id, i as usize));
             if n_left > 1 && apart(self.thick, &node.bounds) && none_seen() {
                 match self.shaft.decide(self.thick, &node.bounds, targets.target, GROUP_BUDGET) {
-                    Sight::Blocked => {
-                        within.iter().for_each(|&i| {
-                            if states[i as usize] == State::InDoubt {
-                                states[i as usize] = State::NotAsked;
-                            }
-                        });
-                        continue;
-                    }
-                    Sight::Open(line) => {
-                        let span = line.span(self.thick, &node.bounds, blockers);
-                        for &i in within.iter().filter(|&&i| span.may_meet(&targets.boxes[i as usize])) {
-                            let b = &targets.boxes[i as usize];
-                            let met = match targets.target {
-                                Target::Inside => span.passes_some_of(b),
-                                Target::Surface => span.meets(b),
-                            };
-                            if met && states[i as usize] == State::InDoubt {
-                                states[i as usize] = State::Seen;
-                            }
-                        }
-                    }
+                    Sight::Blocked => continue,
+                    Sight::Open(line) => known.follow(&line, [self.thick, &node.bounds]),
                     Sight::Undecided => {}
                 }
             }
             stack.extend(targets.tree.children(n));
         }
-        (0..states.len()).filter(|&i| states[i] == State::Seen).collect()
     }
 
-    fn settle(&mut self, targets: &Targets<'_>, i: usize) -> State {
+    fn settle(&mut self, kind: Kind, targets: &Targets<'_>, i: usize) {
         let target = &targets.boxes[i];
-        if !apart(self.thick, target) {
-            return State::Seen;
+        let sight = if apart(self.thick, target) {
+            self.shaft.decide(self.thick, target, targets.target, CELL_BUDGET)
+        } else {
+            // Made thicker, they overlap.
+            return self.known.see(kind, self.id, i);
+        };
+        match sight {
+            Sight::Blocked => return,
+            Sight::Open(line) => self.known.follow(&line, [self.thick, target]),
+            Sight::Undecided => self.n_assumed += 1,
         }
-        match self.shaft.decide(self.thick, target, targets.target, CELL_BUDGET) {
-            Sight::Blocked => State::NotAsked,
-            Sight::Open(_) => State::Seen,
-            Sight::Undecided => {
-                self.n_assumed += 1;
-                State::Seen
-            }
-        }
+        self.known.see(kind, self.id, i);
     }
 }

@@ -20,6 +20,15 @@ impl Marks {
         self.words[row * self.width + col / 64].load(Relaxed) >> (col % 64) & 1 == 1
     }
 
+    /// Sets the bits of a row that are ones in `words`.
+    pub(crate) fn set_all(&self, row: usize, words: &[u64]) {
+        for (own, &bits) in self.words[row * self.width..(row + 1) * self.width].iter().zip(words) {
+            if bits & !own.load(Relaxed) != 0 {
+                own.fetch_or(bits, Relaxed);
+            }
+        }
+    }
+
     /// Sets a bit; whether it was not set. Of several threads that set the same bit one is told so.
     #[inline]
     pub(crate) fn set(&self, row: usize, col: usize) -> bool {
