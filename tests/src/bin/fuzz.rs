@@ -33,8 +33,7 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-#[path = "../../../crates/formats/tests/common/quake.rs"]
-#[expect(unreachable_pub, reason = "it is shared with tests of another crate")]
+#[path = "../../../crates/formats/tests/formats/common/quake.rs"]
 mod quake_files;
 
 /// What is broken and how it is checked; `true` if the broken file was read.

@@ -1,0 +1,9 @@
+//! Tables of plans, maps and scenes, against oracles and full rebuilds.
+
+mod live;
+mod mirrors;
+mod plan;
+mod quake;
+mod reject;
+mod space;
+mod stab;

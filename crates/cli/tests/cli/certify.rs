@@ -1,0 +1,161 @@
+//! `build --certify`, and `verify` with the proofs that it wrote.
+
+use crate::common::Folder;
+use crate::common::quake::{rooms, row_of_leafs};
+use serde_json::{Value, json};
+use sightlines::formats::quake::BspFormat;
+use sightlines::pvs::{CellId, Table};
+
+/// Writes the table of `t.pvs` with another answer for a pair.
+fn flip(folder: &Folder, a: u32, b: u32) {
+    let table = Table::from_bytes(&folder.read("t.pvs")).expect("a sound table");
+    let bit = !table.sees(CellId(a), CellId(b));
+    let mut parts = table.into_parts();
+    parts.rows.set(a as usize, b as usize, bit);
+    parts.rows.set(b as usize, a as usize, bit);
+    folder.write("flipped.pvs", Table::new(parts).expect("symmetric").to_bytes());
+}
+
+/// Invariant: what `build --certify` writes is proven whole, in a way that `verify` finds by itself; each wrong pair is caught by
+/// the proofs alone, whichever way it is wrong.
+fn build_and_flip(folder: &Folder, scene: &str, of_map: &[&str], step: usize, n_undecided: u64) {
+    let built =
+        folder.run(&[&["build", scene, "-o", "t.pvs", "--certify", "--json"], of_map].concat()).expect(0).json();
+    assert_eq!(built["proofs"], "t.cert");
+    assert_eq!(built["n_proof_bytes"], json!(folder.read("t.cert").len()));
+    let few = ["--rays", "0", "--pairs", "0", "--json"];
+    let good = folder.run(&[&["verify", "t.pvs", scene, "--strict"], of_map, &few].concat()).expect(0).json();
+    let proofs = &good["proofs"];
+    assert_eq!((&proofs["n_violations"], &proofs["is_true"]), (&json!(0), &json!(true)), "{proofs}");
+    // A pair that the search could not decide about counts as visible, and has no line.
+    assert_eq!(proofs["n_unproven_hidden"], 0, "{proofs}");
+    assert!(proofs["n_unproven_visible"].as_u64().is_some_and(|n| n <= n_undecided), "{proofs}");
+    assert_eq!(proofs["n_bare_walls"], 0, "{proofs}");
+    assert!(proofs["n_walls"].as_u64() > Some(10) && proofs["n_hidden"].as_u64() > Some(10), "{proofs}");
+    let n = Table::from_bytes(&folder.read("t.pvs")).expect("a sound table").n_cells() as u32;
+    let pairs: Vec<[u32; 2]> = (0..n).flat_map(|a| (a + 1..n).map(move |b| [a, b])).collect();
+    for &[a, b] in pairs.iter().step_by(pairs.len() / step + 1) {
+        flip(folder, a, b);
+        let args = [&["verify", "flipped.pvs", scene, "--proofs", "t.cert"], of_map, &few].concat();
+        let bad = folder.run(&args).expect(1).json();
+        let told: &Value = &bad["proofs"]["violations"];
+        assert_eq!(told.as_array().map(Vec::len), Some(1), "{told}");
+        assert!(told[0].as_str().is_some_and(|text| text.starts_with(&format!("cells {a} and {b} "))), "{told}");
+    }
+}
+
+#[test]
+fn plans_are_proven() {
+    build_and_flip(&Folder::with_office(), "office.geojson", &[], 6, 0);
+    build_and_flip(&Folder::with_wad(), "maps.wad", &["--map", "MAP01"], 3, 0);
+}
+
+#[test]
+fn scenes_in_space_are_proven() {
+    build_and_flip(&Folder::with_tower(), "tower.glb", &[], 3, 2);
+}
+
+/// Rooms in rows, with windows between them at places that differ.
+#[test]
+fn quake_maps_are_proven() {
+    let folder = Folder::new();
+    folder.write("map.prt", &rooms(4, 3).prt);
+    prove_and_flip(&folder, "map.prt");
+    let map = row_of_leafs(BspFormat::ALL[0]);
+    folder.write("row.bsp", &map.bsp);
+    folder.write("row.prt", &map.prt);
+    folder.run(&["build", "row.bsp", "-o", "t.pvs", "--certify"]).expect(0);
+    let out = folder.run(&["verify", "t.pvs", "row.bsp", "--strict"]).expect(0).out;
+    assert!(out.contains("\n               6 visible pairs and 0 hidden pairs proven\n"), "{out}");
+}
+
+/// As [`build_and_flip`], but no walls are looked for in a map.
+fn prove_and_flip(folder: &Folder, scene: &str) {
+    let built = folder.run(&["build", scene, "-o", "t.pvs", "--certify", "--json"]).expect(0).json();
+    assert_eq!((&built["proofs"], &built["n_proof_bytes"]), (&json!("t.cert"), &json!(folder.read("t.cert").len())));
+    let few = ["--rays", "0", "--pairs", "0", "--json"];
+    let good = folder.run(&[&["verify", "t.pvs", scene, "--strict"][..], &few].concat()).expect(0).json();
+    let proofs = &good["proofs"];
+    let unproven = ["n_violations", "n_unproven_hidden", "n_unproven_visible"].map(|key| proofs[key].as_u64());
+    assert_eq!(unproven, [Some(0); 3], "{proofs}");
+    assert!(proofs["n_hidden"].as_u64() > Some(10) && proofs["n_visible"].as_u64() > Some(10), "{proofs}");
+    let n = Table::from_bytes(&folder.read("t.pvs")).expect("a sound table").n_cells() as u32;
+    for [a, b] in (0..n).map(|a| [a, (a * 5 + 1) % n]).filter(|[a, b]| a < b) {
+        flip(folder, a, b);
+        let args = [&["verify", "flipped.pvs", scene, "--proofs", "t.cert"][..], &few].concat();
+        let told = &folder.run(&args).expect(1).json()["proofs"]["violations"];
+        assert_eq!(told.as_array().map(Vec::len), Some(1), "{told}");
+        assert!(told[0].as_str().is_some_and(|text| text.starts_with(&format!("cells {a} and {b} "))), "{told}");
+    }
+}
+
+/// Proofs beside a table that was built again are not held against it, unless they are asked for.
+#[test]
+fn stale_proofs_are_told_apart() {
+    let folder = Folder::with_office();
+    folder.run(&["build", "office.geojson", "-o", "t.pvs", "--certify"]).expect(0);
+    let map = rooms(4, 3);
+    folder.write("map.prt", &map.prt);
+    folder.run(&["build", "map.prt", "-o", "t.pvs"]).expect(0);
+    let verify = ["verify", "t.pvs", "map.prt", "--rays", "0", "--pairs", "0"];
+    let out = folder.run(&verify).expect(0).out;
+    assert!(out.contains("t.cert is stale: ") && out.contains("build the table with --certify again"), "{out}");
+    let json = folder.run(&[&verify[..], &["--strict", "--json"]].concat()).expect(1).json();
+    assert_eq!((&json["proofs"]["is_stale"], &json["proofs"]["is_true"]), (&json!(true), &json!(false)));
+    let error = folder.refused(&[&verify[..], &["--proofs", "t.cert"]].concat());
+    assert!(error.contains("the proofs are for a plan"), "{error}");
+    // Of the same kind.
+    folder.write("other.prt", &rooms(3, 3).prt);
+    folder.run(&["build", "other.prt", "-o", "t.pvs", "--certify"]).expect(0);
+    folder.run(&["build", "map.prt", "-o", "t.pvs"]).expect(0);
+    assert!(folder.run(&verify).expect(0).out.contains("t.cert is stale: "));
+    let bad = folder.run(&[&verify[..], &["--proofs", "t.cert", "--json"]].concat()).expect(1).json();
+    assert_eq!((&bad["proofs"]["is_stale"], &bad["proofs"]["n_violations"]), (&json!(false), &json!(1)));
+}
+
+#[test]
+fn people_are_told() {
+    let folder = Folder::with_office();
+    let out = folder.run(&["build", "office.geojson", "-o", "t.pvs", "--certify=p.bin"]).expect(0).out;
+    assert!(out.contains("\nproofs         p.bin, "), "{out}");
+    assert!(folder.path("p.bin").exists() && !folder.path("t.cert").exists());
+    let out = folder.run(&["verify", "t.pvs", "office.geojson", "--proofs", "p.bin"]).expect(0).out;
+    for line in ["proofs         p.bin, ", "hidden pairs proven\n", "walls          ", "proofs say     nothing"] {
+        assert!(out.contains(line), "{line}: {out}");
+    }
+    // Without proofs nothing is said about them.
+    let out = folder.run(&["verify", "t.pvs", "office.geojson"]).expect(0).out;
+    assert!(!out.contains("proofs"), "{out}");
+}
+
+#[test]
+fn what_cannot_be_proven_or_checked_is_refused() {
+    let folder = Folder::with_tower();
+    let grid = ["build", "tower.glb", "--grid", "3,1,3", "-o", "t.pvs", "--certify"];
+    let error = folder.refused(&grid);
+    assert!(error.contains("--certify is for scenes by sightlines alone"), "{error}");
+    assert!(!folder.path("t.pvs").exists() && !folder.path("t.cert").exists());
+    let error = folder.refused(&["build", "tower.glb", "-o", "t.pvs", "--certify=tower.glb"]);
+    assert!(error.contains("tower.glb"), "{error}");
+    let error = folder.refused(&["build", "tower.glb", "-o", "t.pvs", "--certify=t.pvs"]);
+    assert!(error.contains("t.pvs"), "{error}");
+    folder.run(&["build", "tower.glb", "-o", "t.pvs"]).expect(0);
+    let error = folder.refused(&["verify", "t.pvs", "tower.glb", "--strict"]);
+    assert!(error.contains("--strict is for tables with proofs"), "{error}");
+    let error = folder.refused(&["verify", "t.pvs", "tower.glb", "--proofs", "none.cert"]);
+    assert!(error.contains("none.cert"), "{error}");
+    let error = folder.refused(&["verify", "t.pvs", "tower.glb", "--proofs", "tower.glb"]);
+    assert!(error.contains("these are no proofs of a table"), "{error}");
+}
+
+#[test]
+fn damaged_proofs_are_refused() {
+    let folder = Folder::with_office();
+    folder.run(&["build", "office.geojson", "-o", "t.pvs", "--certify"]).expect(0);
+    let mut bytes = folder.read("t.cert");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    folder.write("t.cert", &bytes);
+    let error = folder.refused(&["verify", "t.pvs", "office.geojson"]);
+    assert!(error.contains("t.cert: byte ") && error.contains("the checksum is wrong"), "{error}");
+}

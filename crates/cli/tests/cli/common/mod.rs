@@ -1,0 +1,156 @@
+//! Runs the built program on generated files.
+
+pub(crate) mod looks;
+pub(crate) mod quake;
+
+use sightlines::formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine};
+use sightlines::formats::geojson;
+use sightlines::formats::wad::{LumpName, WadBuilder, WadKind};
+use sightlines::scenes::{DoomLike, OfficeOptions, maze, office};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// What a run of the program gave.
+pub(crate) struct Run {
+    pub(crate) code: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+impl Run {
+    /// The output, of a run that must have ended with `code`.
+    pub(crate) fn expect(self, code: i32) -> Self {
+        assert_eq!(self.code, code, "stdout: {}\nstderr: {}", self.out, self.err);
+        self
+    }
+
+    pub(crate) fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error} in {}", self.out))
+    }
+}
+
+/// A folder of its own for each test, removed afterwards.
+pub(crate) struct Folder(tempfile::TempDir);
+
+impl Folder {
+    pub(crate) fn new() -> Self {
+        Self(tempfile::tempdir().expect("a folder for temporary files"))
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        std::fs::write(self.path(name), bytes).expect("the folder can be written");
+        self.path(name)
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// The names in the folder, sorted.
+    pub(crate) fn names(&self) -> Vec<String> {
+        names(self.0.path())
+    }
+
+    /// Runs the program in this folder.
+    pub(crate) fn run(&self, args: &[&str]) -> Run {
+        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_sightlines"))
+            .args(args)
+            .current_dir(self.0.path())
+            .output()
+            .expect("the program was built");
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("output is text");
+        let code = status.code().expect("the program ends by itself");
+        let run = Run { code, out: text(stdout), err: text(stderr) };
+        assert!(!run.err.contains("panicked"), "{args:?}: {}", run.err);
+        run
+    }
+
+    /// A run that must fail as bad input: exit code 2, nothing on standard output, one line of error.
+    pub(crate) fn refused(&self, args: &[&str]) -> String {
+        let run = self.run(args).expect(2);
+        assert_eq!((run.out.as_str(), run.err.lines().count()), ("", 1), "{args:?}: {}", run.err);
+        assert!(run.err.starts_with("error: "), "{args:?}: {}", run.err);
+        run.err.trim_end().trim_start_matches("error: ").to_owned()
+    }
+
+    /// `office.geojson` and its table `office.pvs`.
+    pub(crate) fn with_office() -> Self {
+        let folder = Self::new();
+        let plan = office(OfficeOptions { rooms_x: 6, rooms_y: 3, ..OfficeOptions::default() }).expect("an office");
+        folder.write("office.geojson", geojson::write_plan(&plan));
+        folder.run(&["build", "office.geojson", "-o", "office.pvs"]).expect(0);
+        folder
+    }
+
+    /// `tower.glb`, a small tower, and its table `tower.pvs`.
+    pub(crate) fn with_tower() -> Self {
+        let folder = Self::new();
+        let small = ["--floors", "1", "--rooms-x", "2", "--rooms-y", "1", "--furniture", "1"];
+        folder.run(&[&["generate", "tower", "-o", "tower.glb"][..], &small].concat()).expect(0);
+        folder.run(&["build", "tower.glb", "-o", "tower.pvs"]).expect(0);
+        folder
+    }
+
+    /// `maps.wad` with maps MAP01 to MAP03 between other lumps; MAP02 has a REJECT lump made by hand.
+    pub(crate) fn with_wad() -> Self {
+        let folder = Self::new();
+        folder.write("maps.wad", wad(&["MAP01", "MAP02", "MAP03"]));
+        folder
+    }
+}
+
+pub(crate) fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|e| e.expect("an entry").file_name().into_string().expect("a plain name")).collect();
+    names.sort();
+    names
+}
+
+/// A WAD of the maps of these names, with a lump before and one after. The map MAP02, if there is one, has
+/// a REJECT lump that blinds sector 0.
+pub(crate) fn wad(maps: &[&str]) -> Vec<u8> {
+    let mut builder = WadBuilder::new(WadKind::Patch);
+    builder.lump("BEFORE", b"some bytes").expect("a short name");
+    for (seed, name) in (1u64..).zip(maps) {
+        let mut map = doom_map(seed);
+        if *name == "MAP02" {
+            let n = usize::from(map.n_sectors);
+            let mut reject = vec![0; (n * n).div_ceil(8)];
+            reject[0] = 1;
+            map.reject = Some(reject);
+        }
+        map.add_to(&mut builder, LumpName::new(name).expect("a short name")).expect("a small map");
+    }
+    builder.lump("AFTER", b"more bytes").expect("a short name");
+    builder.finish().expect("a small file")
+}
+
+/// A generated map as it would be written, without a REJECT lump.
+pub(crate) fn doom_map(seed: u64) -> DoomMapSource {
+    let generated = DoomLike::generate(seed, 3).expect("a small map");
+    let line = |l: &sightlines::scenes::DoomLikeLine| SourceLine {
+        v1: l.start,
+        v2: l.end,
+        flags: if l.left.is_some() { ML_TWOSIDED } else { 1 },
+        right: Some(l.right),
+        left: l.left,
+    };
+    DoomMapSource {
+        lines: generated.lines.iter().map(line).collect(),
+        vertices: generated.vertices,
+        n_sectors: generated.n_sectors,
+        things: Vec::new(),
+        reject: None,
+        hexen: false,
+    }
+}
+
+/// A maze as GeoJSON.
+pub(crate) fn maze_text(seed: u64) -> String {
+    geojson::write_plan(&maze(seed, 6, 5).expect("a maze"))
+}

@@ -1,0 +1,104 @@
+//! The guides: every command in them works, in order, on input of the kind that they speak of.
+
+use crate::common::Folder;
+use crate::common::quake::row_of_leafs;
+use sightlines::formats::quake::BspFormat;
+use std::path::{Path, PathBuf};
+
+/// A block of a guide between fences: what stands behind the opening fence, and the lines.
+fn blocks(guide: &str) -> Vec<(String, String)> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(String, String)> = None;
+    for line in guide.lines() {
+        match (line.strip_prefix("```"), &mut open) {
+            (Some(_), Some(_)) => blocks.extend(open.take()),
+            (Some(kind), None) => open = Some((kind.trim().to_owned(), String::new())),
+            (None, Some((_, text))) => {
+                text.push_str(line);
+                text.push('\n');
+            }
+            (None, None) => {}
+        }
+    }
+    assert!(open.is_none(), "a block is not closed");
+    blocks
+}
+
+fn guide(name: &str) -> String {
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guides").join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Runs the commands of a guide in a folder that has what it starts from; how many there were. Files that a guide shows are written first.
+fn follow(folder: &Folder, name: &str) -> usize {
+    let mut n_commands = 0;
+    for (kind, text) in blocks(&guide(name)) {
+        if let Some(file) = kind.strip_prefix("json ") {
+            folder.write(file, &text);
+        }
+        if kind != "sh" {
+            continue;
+        }
+        for line in text.lines().filter(|line| !line.trim().is_empty()) {
+            let mut words = line.split_whitespace();
+            assert_eq!(words.next(), Some("sightlines"), "{name}: {line}");
+            let args: Vec<&str> = words.collect();
+            let run = folder.run(&args);
+            // What is asked may be answered with no: two cells that do not see each other.
+            let may_say_no = args[0] == "explain";
+            assert!(
+                run.code == 0 || may_say_no && run.code == 1,
+                "{name}: {line}: exit code {}: {}",
+                run.code,
+                run.err
+            );
+            n_commands += 1;
+        }
+    }
+    n_commands
+}
+
+#[test]
+fn the_guide_for_engines_works() {
+    let folder = Folder::new();
+    assert!(follow(&folder, "rust-engine.md") >= 7);
+    // The picture of the README is the one that the guide makes, but for its size.
+    let drawn = folder.run(&["draw", "level.pvs", "--eye", "9,1.7,5", "--size", "900", "-o", "small.svg"]);
+    drawn.expect(0);
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures/floor.svg");
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::write(&kept, folder.read("small.svg")).expect("the picture can be written");
+    }
+    assert!(folder.read("small.svg") == std::fs::read(kept).expect("the picture is there"), "BLESS=1 draws it anew");
+}
+
+#[test]
+fn the_guide_for_quake_works() {
+    let (folder, map) = (Folder::new(), row_of_leafs(BspFormat::Bsp29));
+    folder.write("map.bsp", &map.bsp);
+    folder.write("map.prt", &map.prt);
+    assert!(follow(&folder, "quake.md") >= 6);
+}
+
+#[test]
+fn the_guide_for_doom_works() {
+    assert!(follow(&Folder::with_wad(), "doom.md") >= 5);
+}
+
+#[test]
+fn the_guide_for_floor_plans_works() {
+    assert!(follow(&Folder::new(), "floor-plans.md") >= 6);
+}
+
+#[test]
+fn the_guide_for_teaching_works() {
+    assert!(follow(&Folder::new(), "teaching.md") >= 7);
+}
+
+/// The impostor: a command that fails is noticed.
+#[test]
+#[should_panic(expected = "exit code 2")]
+fn commands_that_fail_are_noticed() {
+    // The guide starts from files that this folder does not have.
+    follow(&Folder::new(), "doom.md");
+}

@@ -1,0 +1,56 @@
+//! `light`: what the picture shows is what is printed, more depth decides more, and what cannot be drawn is refused in one line.
+
+use crate::common::Folder;
+use serde_json::Value;
+
+/// A floor, and a board over it.
+const BOARD: &str = "v -8 0 -8\nv -8 0 8\nv 8 0 8\nv 8 0 -8\nf 1 2 3\nf 1 3 4\nv -2 3 -2\nv -2 3 2\nv 2 3 2\nv 2 3 -2\n\
+                     o board\nf 5 6 7\nf 5 7 8\n";
+const VIEW: [&str; 6] = ["--eye", "0.1,2.5,9", "--look-at", "0,0.2,0", "--size", "96x72"];
+
+fn light(folder: &Folder, more: &[&str]) -> Value {
+    let args =
+        [&["light", "board.obj", "--light", "-1,8,-1,1,8,1", "-o", "out.png", "--json"][..], &VIEW, more].concat();
+    folder.run(&args).expect(0).json()
+}
+
+fn number(told: &Value, key: &str) -> f64 {
+    told[key].as_f64().unwrap_or_else(|| panic!("{key}: {told}"))
+}
+
+fn with_board() -> Folder {
+    let folder = Folder::new();
+    folder.write("board.obj", BOARD);
+    folder
+}
+
+#[test]
+fn more_halves_decide_more() {
+    let folder = with_board();
+    let told = [2, 6, 10].map(|depth: u32| light(&folder, &["--depth", &depth.to_string()]));
+    let doubt = told.each_ref().map(|t| number(t, "pixels_in_doubt"));
+    assert!(doubt[0] > doubt[1] && doubt[1] > doubt[2] && doubt[2] > 0.0, "{doubt:?}");
+    assert!(number(&told[2], "pixels_umbra") > 50.0 && number(&told[2], "pixels_lit") > 1000.0, "{}", told[2]);
+    assert!(number(&told[2], "rays") < 0.5 * number(&told[2], "rays_else"));
+    // The share of the light is the same to the eye whatever is proven: pictures of shares differ by what rays estimate.
+    let grey = ["2", "10"].map(|depth| {
+        light(&folder, &["--depth", depth, "--grey", "--rays", "256"]);
+        image::load_from_memory(&folder.read("out.png")).expect("a picture").into_rgb8()
+    });
+    let [a, b] = grey.each_ref().map(|g| g.pixels().map(|p| i32::from(p.0[0])).collect::<Vec<_>>());
+    let far = a.iter().zip(&b).filter(|(a, b)| (*a - *b).abs() > 64).count();
+    assert!(far * 100 < a.len(), "{far}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let folder = with_board();
+    let run = |args: &[&str]| folder.run(&[&["light", "board.obj"][..], args, &VIEW].concat()).expect(2);
+    run(&["--light", "1,8,-1,-1,8,1", "-o", "out.png"]);
+    run(&["--light", "NaN,8,-1,1,8,1", "-o", "out.png"]);
+    run(&["--light", "-1,8,-1,1,8,1", "-o", "out.jpg"]);
+    run(&["--light", "-1,8,-1,1,8,1", "--depth", "99", "-o", "out.png"]);
+    run(&["--light", "-1,8,-1,1,8,1", "--method", "guess", "-o", "out.png"]);
+    folder.run(&[&["light", "none.obj", "--light", "0,8,0,1,8,1", "-o", "out.png"][..], &VIEW].concat()).expect(2);
+    assert_eq!(folder.names(), ["board.obj"]);
+}

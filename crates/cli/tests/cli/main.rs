@@ -1,0 +1,30 @@
+//! The program, run as a user runs it.
+
+mod auto;
+mod cell_names;
+mod certify;
+mod common;
+mod errors;
+mod explain_portals;
+mod far;
+mod guides;
+mod help;
+mod light;
+mod maps;
+mod multifocal;
+mod outputs;
+mod own;
+mod pack;
+mod region;
+mod reject;
+mod render;
+mod simplify;
+mod space;
+mod space_errors;
+mod stab_trees;
+mod tables;
+mod verify;
+mod vis;
+mod vis_errors;
+mod vis_real;
+mod walk;

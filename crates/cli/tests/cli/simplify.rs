@@ -1,0 +1,275 @@
+//! `simplify` and `levels`: scenes with fewer triangles, what they may be used for, and what is refused.
+
+use crate::common::{Folder, names};
+use serde_json::{Value, json};
+use sightlines::cells::Scene;
+use sightlines::formats::levels::read_levels_index;
+use sightlines::formats::scene::{parse_glb, read_scene};
+use std::collections::BTreeSet;
+
+/// A box in the small tower.
+const VOLUME: &str = "1,0.5,1,2,1.5,2";
+
+/// The triangles of all objects, by name, with the bits of their corners.
+fn triangles(scene: &Scene) -> BTreeSet<(String, [[u64; 3]; 3])> {
+    let of = |o: &sightlines::cells::SceneObject| -> Vec<_> {
+        o.corners().map(|t| (o.name.clone(), t.map(|p| p.map(f64::to_bits)))).collect()
+    };
+    scene.objects().iter().flat_map(of).collect()
+}
+
+fn simplified(folder: &Folder, out: &str, more: &[&str]) -> Value {
+    let args = ["simplify", "tower.glb", "-o", out, "--json", "-q"];
+    folder.run(&[&args[..], more].concat()).expect(0).json()
+}
+
+#[test]
+fn what_is_hidden_goes_and_the_rest_stays() {
+    let folder = Folder::with_tower();
+    let told = simplified(&folder, "o.glb", &["--volume", VOLUME, "--report"]);
+    let n = |key: &str| told[key].as_u64().unwrap_or_else(|| panic!("{key}: {told}"));
+    assert_eq!(n("n_before"), n("n_hidden") + n("n_left"));
+    assert!(n("n_hidden") > 0 && n("n_left") > 0, "{told}");
+    assert_eq!((&told["bound"], &told["occluder"], &told["method"]), (&json!(0.0), &json!(true), &json!("multifocal")));
+    assert_eq!(
+        (&told["report"]["changed"], &told["report"]["worst"], &told["report"]["estimate"]),
+        (&json!(0.0), &json!(0.0), &json!(0.0))
+    );
+    assert_eq!(told["report"]["n_rays"], json!(1_000_000));
+    let [before, after] = ["tower.glb", "o.glb"].map(|name| read_scene(folder.path(name)).unwrap());
+    assert_eq!(after.info.simplified.map(|s| s.occluder), Some(true));
+    assert_eq!(after.info.n_triangles as u64, n("n_left"));
+    assert!(triangles(&after.scene).is_subset(&triangles(&before.scene)));
+    // It lies inside of the original, so it may be built from; from there nothing more is hidden.
+    folder.run(&["build", "o.glb", "-o", "o.pvs", "-q"]).expect(0);
+    let again = folder.run(&["simplify", "o.glb", "--volume", VOLUME, "-o", "o.glb", "--json", "-q"]).expect(0).json();
+    assert_eq!(again["n_before"], told["n_left"]);
+
+    // The same bytes with any number of threads; nothing else is left behind.
+    for (out, threads) in [("a.glb", "1"), ("b.glb", "3")] {
+        simplified(&folder, out, &["--volume", VOLUME, "--budget", "0.001", "--threads", threads]);
+    }
+    assert!(folder.read("a.glb") == folder.read("b.glb"));
+    assert_eq!(folder.names(), ["a.glb", "b.glb", "o.glb", "o.pvs", "tower.glb", "tower.pvs"]);
+
+    // More eyes see more, and less is hidden by nobody.
+    let both = simplified(&folder, "c.glb", &["--volume", VOLUME, "--volume", "4,0.5,1,5,1.5,2"]);
+    assert!(both["n_left"].as_u64() >= told["n_left"].as_u64());
+    let nobody = simplified(&folder, "c.glb", &["--volume", VOLUME, "--method", "none"]);
+    assert_eq!((&nobody["n_hidden"], &nobody["n_left"]), (&json!(0), &told["n_before"]));
+    let text = folder.run(&["simplify", "tower.glb", "--volume", VOLUME, "-o", "c.glb", "--report"]).expect(0).out;
+    for line in [
+        "eyes           in a box; hidden by multifocal\n",
+        "promised       0.0 %",
+        "measured       0.0 % of 1000000 rays",
+        "lies inside of the original",
+    ] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+}
+
+#[test]
+fn budgets_are_kept_and_moved_scenes_hide_nothing() {
+    let folder = Folder::with_tower();
+    let told = simplified(&folder, "m.glb", &["--volume", VOLUME, "--budget", "0.02", "--collapse", "1", "--report"]);
+    let share = |key: &str| told[key].as_f64().unwrap();
+    assert!(share("bound") <= 0.02 && told["report"]["changed"].as_f64().unwrap() <= share("bound"), "{told}");
+    let hidden = simplified(&folder, "h.glb", &["--volume", VOLUME]);
+    assert!(told["n_left"].as_u64() < hidden["n_left"].as_u64());
+    assert!(told["n_new"].as_u64() > Some(0), "{told}");
+    assert_eq!(told["occluder"], json!(false));
+    assert_eq!(read_scene(folder.path("m.glb")).unwrap().info.simplified.map(|s| s.occluder), Some(false));
+    let says = "m.glb: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the \
+                original that it was made from";
+    for args in [
+        &["build", "m.glb", "-o", "m.pvs"][..],
+        &["build", "m.glb", "-o", "m.pvs", "--method", "multifocal", "--grid", "1,1,1"],
+        &["multifocal", "m.glb", "--volume", VOLUME, "--plane", "z=20", "-o", "m.png"],
+        &[
+            "render",
+            "m.glb",
+            "--eye",
+            "1,1,1",
+            "--look-at",
+            "2,1,2",
+            "--method",
+            "raycast",
+            "--cull",
+            "pvs",
+            "--table",
+            "tower.pvs",
+            "-o",
+            "m.png",
+        ],
+        &["simplify", "m.glb", "--volume", VOLUME, "-o", "n.glb"],
+        &["levels", "m.glb", "--table", "tower.pvs", "-o", "n"],
+    ] {
+        assert_eq!(folder.refused(args), says, "{args:?}");
+    }
+    // Looked at it may be.
+    let look = [
+        "render",
+        "m.glb",
+        "--eye",
+        "1,1,1",
+        "--look-at",
+        "2,1,2",
+        "--method",
+        "raycast",
+        "--size",
+        "16x16",
+        "-o",
+        "m.png",
+    ];
+    folder.run(&look).expect(0);
+    folder.run(&["info", "m.glb"]).expect(0);
+}
+
+#[test]
+fn cells_of_a_table_are_views_too() {
+    let folder = Folder::with_tower();
+    let cells = ["--table", "tower.pvs", "--cell", "0,1"];
+    let by_table = simplified(&folder, "t.glb", &[&cells[..], &["--method", "none", "--report"]].concat());
+    assert!(by_table["n_hidden"].as_u64() > Some(0), "{by_table}");
+    assert_eq!(by_table["report"]["changed"], json!(0.0));
+    let by_both = simplified(&folder, "t.glb", &cells);
+    assert!(by_both["n_hidden"].as_u64() >= by_table["n_hidden"].as_u64());
+}
+
+#[test]
+fn objs_lose_their_materials_and_nothing_else() {
+    let folder = Folder::new();
+    // A wall with a square behind it, and one before it.
+    let obj = "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nv 0 0 -1\nv 1 0 -1\nv 0 1 -1\nv 0 0 1\nv 1 0 1\nv 0 1 1\n\
+               o wall\nusemtl red\nf 1 2 3 4\no behind\nf 5 6 7\no before-mirror\nf 8 9 10\n";
+    folder.write("s.obj", obj);
+    let args = ["simplify", "s.obj", "--volume", "-0.5,-0.5,4,0.5,0.5,5", "-o", "s.glb"];
+    assert!(folder.run(&args).expect(2).err.contains("the scene has mirrors (1)"));
+    let run = folder.run(&[&args[..], &["--ignore-mirrors"]].concat()).expect(0);
+    assert!(run.err.contains("s.obj: of an OBJ, triangles and names are kept; materials are not"), "{}", run.err);
+    let after = read_scene(folder.path("s.glb")).unwrap();
+    let names: Vec<&str> = after.scene.objects().iter().map(|o| o.name.as_str()).collect();
+    assert_eq!((names, after.scene.mirrors(), after.info.n_triangles), (vec!["wall", "before-mirror"], &[1][..], 3));
+    // What single precision cannot hold is refused, not rounded.
+    folder.write("d.obj", obj.replace("-9", "-9.1"));
+    let args = ["simplify", "d.obj", "--volume", "-0.5,-0.5,4,0.5,0.5,5", "-o", "d.glb", "-q", "--ignore-mirrors"];
+    let error = folder.run(&args).expect(2).err;
+    assert!(error.contains("d.obj: object 0, vertex 0: -9.1 is not a number of single precision"), "{error}");
+    assert!(!folder.path("d.glb").exists());
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let folder = Folder::with_tower();
+    folder.run(&["generate", "tower", "-o", "other.glb", "--floors", "2"]).expect(0);
+    folder.write("word.glb", "word");
+    let refused = |args: &[&str], what: &str| {
+        let run = folder.run(&[args, &["-q"]].concat()).expect(2);
+        assert!(run.err.contains(what), "{args:?}: {}", run.err);
+        assert!(run.out.is_empty());
+    };
+    let of = |more: &[&str], what: &str| refused(&[&["simplify", "tower.glb", "-o", "no.glb"], more].concat(), what);
+    of(&["--volume", "2,0,0,1,1,1"], "the lower corner is above the upper one: 2 is more than 1");
+    of(&["--volume", "0,0,0,1,1,NaN"], "not a finite number");
+    for budget in ["-0.1", "1.5", "NaN", "x"] {
+        of(&["--volume", VOLUME, "--budget", budget], "not a number from 0 to 1");
+    }
+    of(&[], "--volume");
+    of(&["--table", "tower.pvs"], "--cell");
+    of(&["--volume", VOLUME, "--table", "tower.pvs", "--cell", "0"], "cannot be used with");
+    of(&["--table", "tower.pvs", "--cell", "99999"], "tower.pvs: the table has no cell 99999; it has ");
+    of(&["--table", "none.pvs", "--cell", "0"], "none.pvs: ");
+    of(&["--volume", VOLUME, "--texels", "8192", "--planes", "256"], "bytes for each thread");
+    refused(
+        &["simplify", "other.glb", "-o", "no.glb", "--table", "tower.pvs", "--cell", "0"],
+        "tower.pvs: the table is of another scene: ",
+    );
+    refused(&["simplify", "tower.glb", "-o", "no.obj", "--volume", VOLUME], "give a name that ends in .glb");
+    refused(&["simplify", "tower.pvs", "-o", "no.glb", "--volume", VOLUME], "tower.pvs: neither a GLB nor");
+    refused(&["simplify", "word.glb", "-o", "no.glb", "--volume", VOLUME], "word.glb: the glTF text cannot be read");
+    refused(&["simplify", "tower.glb", "-o", "no/such/o.glb", "--volume", VOLUME], "no/such/o.glb: cannot be written");
+    let levels = |more: &[&str], what: &str| {
+        refused(&[&["levels", "tower.glb", "-o", "no", "--method", "none"], more].concat(), what)
+    };
+    levels(&[], "--table");
+    levels(&["--table", "tower.pvs", "--memory", "10"], "10 bytes are too few: a level for all cells takes ");
+    levels(&["--table", "tower.pvs", "--budget", "2"], "not a number from 0 to 1");
+    refused(&["levels", "other.glb", "-o", "no", "--table", "tower.pvs"], "tower.pvs: the table is of another scene: ");
+    refused(&["levels", "tower.glb", "-o", "tower.glb", "--table", "tower.pvs"], "tower.glb: cannot be made");
+    std::fs::create_dir(folder.path("full")).unwrap();
+    folder.write("full/letter.txt", "dear");
+    refused(
+        &["levels", "tower.glb", "-o", "full", "--table", "tower.pvs"],
+        "the folder has \"letter.txt\" in it, which is no level",
+    );
+    assert_eq!(folder.names(), ["full", "other.glb", "tower.glb", "tower.pvs", "word.glb"]);
+}
+
+#[test]
+fn levels_are_written_and_walked_with() {
+    let folder = Folder::with_tower();
+    let args = [
+        "levels",
+        "tower.glb",
+        "--table",
+        "tower.pvs",
+        "--budget",
+        "0.001",
+        "--collapse",
+        "0",
+        "--method",
+        "none",
+        "--json",
+        "-q",
+    ];
+    let told = folder.run(&[&args[..], &["-o", "l"]].concat()).expect(0).json();
+    let index = read_levels_index(folder.path("l/index.json")).unwrap();
+    let n_cells = folder.run(&["info", "tower.pvs", "--json"]).expect(0).json()["n_cells"].as_u64().unwrap();
+    assert_eq!((index.cells.len() as u64, index.budget), (n_cells, 0.001));
+    assert_eq!(told["n_levels"], json!(index.levels.len()));
+    let scene = read_scene(folder.path("tower.glb")).unwrap();
+    assert_eq!(index.n_triangles as usize, scene.info.n_triangles);
+    let mut files: Vec<String> = index.levels.iter().map(|level| level.file.clone()).collect();
+    files.insert(0, "index.json".to_owned());
+    files.sort();
+    assert_eq!(names(&folder.path("l")), files);
+    for level in &index.levels {
+        assert!(level.bound <= 0.001 && level.n_triangles < index.n_triangles);
+        let read = parse_glb(&folder.read(&format!("l/{}", level.file)), None).unwrap();
+        assert_eq!(read.info.n_triangles as u64, level.n_triangles);
+        assert_eq!(read.info.simplified.map(|s| s.occluder), Some(level.occluder));
+    }
+    // The same bytes again, over what is there, by another number of threads.
+    folder.run(&[&args[..], &["-o", "m", "--threads", "3"]].concat()).expect(0);
+    folder.run(&[&args[..], &["-o", "m", "--threads", "1"]].concat()).expect(0);
+    for file in &files {
+        assert!(folder.read(&format!("l/{file}")) == folder.read(&format!("m/{file}")), "{file}");
+    }
+    // Less memory makes fewer levels, and a folder of levels is replaced as a whole.
+    let bytes: u64 = index.levels.iter().map(|level| level.n_bytes).sum();
+    let half = (bytes / 2).to_string();
+    folder.run(&[&args[..], &["-o", "m", "--memory", &half]].concat()).expect(0);
+    let less = read_levels_index(folder.path("m/index.json")).unwrap();
+    assert!(less.levels.len() < index.levels.len());
+    assert_eq!(names(&folder.path("m")).len(), less.levels.len() + 1);
+    assert!(less.levels.iter().map(|level| level.n_bytes).sum::<u64>() <= bytes / 2);
+
+    let walk = ["walk", "tower.pvs", "--random", "60", "--method", "cell-to-cell", "--levels"];
+    let walked = folder.run(&[&walk[..], &["l", "--json"]].concat()).expect(0).json();
+    let drawn = &walked["levels"];
+    assert_eq!(drawn["without"], json!(index.n_triangles));
+    assert!(drawn["with_mean"].as_f64().unwrap() < index.n_triangles as f64, "{drawn}");
+    assert!(drawn["n_with_level"].as_u64() > Some(0), "{drawn}");
+    let text = folder.run(&[&walk[..], &["l"]].concat()).expect(0).out;
+    assert!(text.contains("with levels on average"), "{text}");
+    // Levels of another table, and none.
+    folder.run(&["generate", "tower", "-o", "other.glb", "--floors", "2"]).expect(0);
+    folder.run(&["build", "other.glb", "-o", "other.pvs", "-q"]).expect(0);
+    let error = folder.refused(&["walk", "other.pvs", "--random", "9", "--levels", "l"]);
+    assert!(error.starts_with("l/index.json: the levels are for another table: the index has "), "{error}");
+    let error = folder.refused(&["walk", "tower.pvs", "--random", "9", "--levels", "none"]);
+    assert!(error.starts_with("none/index.json: "), "{error}");
+    folder.write("l/index.json", "{\"sightlines_levels\": 1,\n \"triangles\": x}");
+    let error = folder.refused(&["walk", "tower.pvs", "--random", "9", "--levels", "l"]);
+    assert_eq!(error, "l/index.json: line 2 column 15: expected value");
+}

@@ -1,0 +1,66 @@
+//! Stab trees of tables: `build --stab-trees`, and what `info` says of them.
+
+use crate::common::Folder;
+use serde_json::Value;
+use sightlines::bake::{StabOptions, with_stab_trees};
+use sightlines::pvs::Table;
+
+fn table(folder: &Folder, name: &str) -> Table {
+    Table::from_bytes(&folder.read(name)).expect("a sound table")
+}
+
+#[test]
+fn build_adds_stab_trees_and_info_counts_them() {
+    let folder = Folder::with_office();
+    let plain = table(&folder, "office.pvs");
+    let built = folder.run(&["build", "office.geojson", "-o", "trees.pvs", "--stab-trees", "--json"]).expect(0).json();
+    let with = table(&folder, "trees.pvs");
+    let expected = with_stab_trees(plain.clone(), &StabOptions::default()).expect("a table with portals");
+    assert!(with == expected.table, "the same trees as by the library, and nothing else is new");
+    let trees = with.stab().expect("trees were asked for");
+    assert_eq!(built["stab"]["n_sequences"], trees.n_sequences() as u64);
+    assert_eq!(built["stab"]["n_stab_nodes"], trees.n_nodes());
+    assert_eq!(built["stab"]["max_nodes"], expected.max_nodes);
+    assert_eq!(built["n_bytes"], folder.read("trees.pvs").len());
+    let grown = folder.read("trees.pvs").len() - folder.read("office.pvs").len();
+    let info = folder.run(&["info", "trees.pvs", "--json"]).expect(0).json();
+    assert_eq!(
+        (&info["stab"]["n_stab_bytes"], &info["stab"]["n_stab_edges"]),
+        (&grown.into(), &trees.n_edges().into())
+    );
+    let told = folder.run(&["info", "trees.pvs"]).expect(0).out;
+    let line = format!("\nstab trees     {} sequences in {} nodes", trees.n_sequences(), trees.n_nodes());
+    assert!(told.contains(&line) && told.contains(" bytes a sequence\n"), "{told}");
+    // The twin: a table without trees does not speak of them.
+    assert_eq!(folder.run(&["info", "office.pvs", "--json"]).expect(0).json()["stab"], Value::Null);
+    assert!(!folder.run(&["info", "office.pvs"]).expect(0).out.contains("stab"));
+}
+
+/// Invariant: a limit cuts trees, whatever the number of threads, and it is told.
+#[test]
+fn limits_cut_trees() {
+    let folder = Folder::with_office();
+    let build = |out: &str, more: &[&str]| {
+        let args = [&["build", "office.geojson", "-o", out], more].concat();
+        let told = folder.run(&args).expect(0).out;
+        (folder.read(out), told)
+    };
+    let (one, told) = build("one.pvs", &["--stab-trees=5", "--threads", "1"]);
+    assert!(told.contains("\ncut trees      ") && told.contains(" at 5 nodes each\n"), "{told}");
+    assert!(one == build("two.pvs", &["--threads", "2", "--stab-trees=5"]).0, "threads change nothing");
+    let (whole, told) = build("whole.pvs", &["--stab-trees"]);
+    assert!(one != whole && !told.contains("cut trees"), "{told}");
+    for wrong in ["--stab-trees=0", "--stab-trees=-1", "--stab-trees=x", "--stab-trees="] {
+        let run = folder.run(&["build", "office.geojson", "-o", "no.pvs", wrong]).expect(2);
+        assert!(run.err.contains("--stab-trees"), "{}", run.err);
+    }
+}
+
+/// The numbers that the help names are those that are taken.
+#[test]
+fn help_names_the_limits() {
+    let folder = Folder::with_office();
+    let help = folder.run(&["build", "--help"]).expect(0).out.split_whitespace().collect::<Vec<_>>().join(" ");
+    let plan = sightlines::bake::most_nodes(&table(&folder, "office.pvs")).expect("a table with portals");
+    assert!(help.contains(&format!("without N {plan} for plans, 16384 for scenes in space, 4096 for")), "{help}");
+}

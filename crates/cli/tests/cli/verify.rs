@@ -1,0 +1,245 @@
+//! Checking tables against their scenes.
+
+use crate::common::quake::{Map, rooms, row_of_leafs};
+use crate::common::{Folder, wad};
+use serde_json::Value;
+use sightlines::formats::quake::BspFormat;
+use sightlines::geometry::Random;
+use sightlines::pvs::{CellId, Table};
+
+/// A pair of cells that see each other and share no portal, hidden from each other; the pair.
+fn flip(folder: &Folder, from: &str, to: &str, seed: u64) -> [u32; 2] {
+    let table = Table::from_bytes(&folder.read(from)).expect("a sound table");
+    let n = table.n_cells() as u32;
+    let joined = |a: u32, b: u32| table.portals().iter().any(|p| [[a, b], [b, a]].contains(&p.cells.map(|c| c.0)));
+    let pairs = (0..n).flat_map(|a| (a + 1..n).map(move |b| [a, b]));
+    let seen: Vec<[u32; 2]> = pairs.filter(|&[a, b]| table.sees(CellId(a), CellId(b)) && !joined(a, b)).collect();
+    let [a, b] = seen[Random::new(seed).below(seen.len())];
+    let mut parts = table.into_parts();
+    parts.rows.set(a as usize, b as usize, false);
+    parts.rows.set(b as usize, a as usize, false);
+    folder.write(to, Table::new(parts).expect("symmetric").to_bytes());
+    [a, b]
+}
+
+fn verify(folder: &Folder, args: &[&str], code: i32) -> Value {
+    folder.run(&[&["verify", "--json", "--rays", "5000", "--pairs", "2000"], args].concat()).expect(code).json()
+}
+
+/// Invariant: what `build` writes is true to what it was built from; with one pair flipped it is not, and the pair is named.
+fn build_and_flip(folder: &Folder, scene: &str, options: &[&str], of_map: &[&str]) {
+    folder.run(&[&["build", scene, "-o", "t.pvs"][..], of_map, options].concat()).expect(0);
+    let good = verify(folder, &[&["t.pvs", scene], of_map].concat(), 0);
+    assert_eq!((&good["is_true"], &good["n_violations"]), (&Value::Bool(true), &Value::from(0)), "{scene} {options:?}");
+    let n_rays = good["n_rays"].as_u64().expect("a count");
+    assert!(n_rays > 2_500 && good["cells"]["n_confirmed"].as_u64() > Some(0), "{scene}: {n_rays} rays");
+    let pair = flip(folder, "t.pvs", "flipped.pvs", 1);
+    let bad = verify(folder, &[&["flipped.pvs", scene], of_map].concat(), 1);
+    let of_cells: Vec<&Value> =
+        bad["violations"].as_array().expect("a list").iter().filter(|v| v["kind"] == "hidden-cell").collect();
+    assert_eq!(of_cells.len(), 1, "{scene} {options:?}: {bad}");
+    assert_eq!(of_cells[0]["cells"], Value::from(pair.to_vec()), "{scene} {options:?}");
+    assert!(of_cells[0]["segment"][1][2].is_f64());
+}
+
+#[test]
+fn plans_are_checked() {
+    let folder = Folder::with_office();
+    for how in ["kd", "triangulation"] {
+        build_and_flip(&folder, "office.geojson", &["--subdivide", how], &[]);
+    }
+    build_and_flip(&folder, "office.geojson", &["--stab-trees"], &[]);
+}
+
+#[test]
+fn maps_of_a_wad_are_checked() {
+    let folder = Folder::with_wad();
+    build_and_flip(&folder, "maps.wad", &[], &["--map", "MAP01"]);
+    // The table of another map is noticed, whatever else.
+    folder.run(&["build", "maps.wad", "--map", "MAP03", "-o", "3.pvs"]).expect(0);
+    assert_eq!(verify(&folder, &["3.pvs", "maps.wad", "--map", "MAP01"], 1)["is_true"], false);
+    let error = folder.refused(&["verify", "3.pvs", "maps.wad"]);
+    assert!(error.contains("there are 3 maps in the file"), "{error}");
+}
+
+#[test]
+fn scenes_in_space_are_checked() {
+    let folder = Folder::with_tower();
+    build_and_flip(&folder, "tower.glb", &[], &[]);
+    let small = ["--method", "multifocal", "--grid", "3,1,3", "--planes", "2", "--texels", "32", "--occluders", "30"];
+    build_and_flip(&folder, "tower.glb", &small, &[]);
+    build_and_flip(&folder, "tower.glb", &["--grid", "3,1,3"], &[]);
+}
+
+fn written(map: &Map) -> Folder {
+    let folder = Folder::new();
+    folder.write("map.bsp", &map.bsp);
+    folder.write("map.prt", &map.prt);
+    folder
+}
+
+#[test]
+fn quake_maps_are_checked() {
+    for format in BspFormat::ALL {
+        let folder = written(&row_of_leafs(format));
+        folder.run(&["build", "map.bsp", "-o", "t.pvs"]).expect(0);
+        let good = verify(&folder, &["t.pvs", "map.bsp"], 0);
+        assert_eq!(good["is_true"], true, "{format:?}");
+        // A table that knows no places, and the map of which it is not told.
+        folder.run(&["build", "map.prt", "-o", "p.pvs"]).expect(0);
+        let error = folder.refused(&["verify", "p.pvs", "map.bsp"]);
+        assert_eq!(
+            error,
+            "p.pvs: is no table of map.bsp: the table was made of a portal file alone: give that file, not the map"
+        );
+    }
+    let folder = written(&rooms(4, 4));
+    build_and_flip(&folder, "map.prt", &[], &[]);
+}
+
+#[test]
+fn packed_tables_are_checked() {
+    let folder = Folder::with_office();
+    folder.run(&["pack", "office.pvs", "-o", "office.pvz"]).expect(0);
+    assert_eq!(verify(&folder, &["office.pvz", "office.geojson"], 0)["is_true"], true);
+    flip(&folder, "office.pvs", "wrong.pvs", 5);
+    folder.run(&["pack", "wrong.pvs", "-o", "wrong.pvz"]).expect(0);
+    assert_eq!(verify(&folder, &["wrong.pvz", "office.geojson"], 1)["is_true"], false);
+}
+
+/// Invariant: the same seed gives the same answer, whatever the number of threads; the time apart.
+#[test]
+fn answers_are_the_same_with_any_number_of_threads() {
+    let folder = Folder::with_office();
+    flip(&folder, "office.pvs", "wrong.pvs", 9);
+    for (table, code) in [("office.pvs", 0), ("wrong.pvs", 1)] {
+        let with = |threads: &str, seed: &str| {
+            let mut told = verify(&folder, &[table, "office.geojson", "--threads", threads, "--seed", seed], code);
+            told["seconds"] = Value::Null;
+            told
+        };
+        assert_eq!(with("1", "7"), with("3", "7"), "{table}");
+        assert_ne!(with("1", "7"), with("1", "8"), "{table}: another seed, other rays");
+    }
+}
+
+#[test]
+fn people_are_told_what_was_checked() {
+    let folder = Folder::with_office();
+    let told = folder.run(&["verify", "office.pvs", "office.geojson", "--rays", "2000"]).expect(0).out;
+    for line in [
+        "checked        office.pvs against office.geojson\n",
+        "rays           2000 in random",
+        "result         nothing found",
+    ] {
+        assert!(told.contains(line), "{told}");
+    }
+    let [a, b] = flip(&folder, "office.pvs", "wrong.pvs", 2);
+    for picture in ["ray.svg", "ray.png"] {
+        let told = folder.run(&["verify", "wrong.pvs", "office.geojson", "--draw", picture]).expect(1).out;
+        assert!(
+            told.contains(&format!(
+                "hidden-cell: cells {a} and {b} are hidden from each other, but nothing is between ("
+            )),
+            "{told}"
+        );
+        assert!(told.contains(&format!("picture        {picture}\n")), "{told}");
+    }
+    assert!(folder.read("ray.png").starts_with(b"\x89PNG"));
+    assert!(String::from_utf8(folder.read("ray.svg")).expect("text").contains("<svg"));
+    // Nothing is drawn where nothing was found.
+    folder.run(&["verify", "office.pvs", "office.geojson", "--draw", "none.svg"]).expect(0);
+    assert!(!folder.path("none.svg").exists());
+}
+
+/// Who asks for no rays and has no proofs is told that nothing but the structure was looked at.
+#[test]
+fn what_was_not_checked_is_told() {
+    let folder = Folder::with_office();
+    let none = ["verify", "office.pvs", "office.geojson", "--rays", "0", "--pairs", "0"];
+    let told = folder.run(&none).expect(0).out;
+    assert!(told.contains("rays           none\n") && told.contains("only the structure was checked"), "{told}");
+    assert!(!told.contains("nothing found"), "{told}");
+    let checked = |args: &[&str]| {
+        let told = folder.run(&[&["verify", "--json", "office.pvs", "office.geojson"], args].concat()).expect(0).json();
+        let list = ["random_rays", "aimed_rays", "proofs"].map(|what| told["checked"][what].as_bool().expect("said"));
+        (list, told["is_true"].as_bool())
+    };
+    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]), ([false; 3], Some(true)));
+    assert_eq!(checked(&["--rays", "100", "--pairs", "0"]).0, [true, false, false]);
+    assert_eq!(checked(&["--rays", "0", "--pairs", "5"]).0, [false, true, false]);
+    for some in [["--rays", "0"], ["--pairs", "0"]] {
+        let told = folder.run(&[&["verify", "office.pvs", "office.geojson"][..], &some].concat()).expect(0).out;
+        assert!(told.contains("nothing found that is not as the table says"), "{told}");
+    }
+    // Proofs are something.
+    folder.run(&["build", "office.geojson", "-o", "office.pvs", "--certify"]).expect(0);
+    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]), ([false, false, true], Some(true)));
+    // Those of another table are nothing.
+    folder.run(&["build", "office.geojson", "-o", "office.pvs", "--subdivide", "triangulation"]).expect(0);
+    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]).0, [false; 3]);
+    folder.run(&["build", "office.geojson", "-o", "office.pvs"]).expect(0);
+    // A pair that is wrong and not looked at goes unnoticed, which is why it has to be said.
+    flip(&folder, "office.pvs", "wrong.pvs", 3);
+    let told = folder.run(&["verify", "wrong.pvs", "office.geojson", "--rays", "0", "--pairs", "0"]).expect(0).out;
+    assert!(told.contains("only the structure was checked"), "{told}");
+}
+
+#[test]
+fn rays_in_space_are_drawn_on_the_floor_where_they_begin() {
+    let folder = Folder::with_tower();
+    // Not every pair is found: some are seen through slits only.
+    flip(&folder, "tower.pvs", "wrong.pvs", 1);
+    folder.run(&["verify", "wrong.pvs", "tower.glb", "--draw", "ray.svg"]).expect(1);
+    assert!(String::from_utf8(folder.read("ray.svg")).expect("text").contains("at height"));
+}
+
+#[test]
+fn what_cannot_be_checked_is_refused() {
+    let folder = Folder::with_tower();
+    folder.write("maze.geojson", crate::common::maze_text(3));
+    folder.write("junk.pvs", b"junk");
+    folder.write("map.wad", wad(&["MAP01"]));
+    let refused = |args: &[&str]| folder.refused(&[&["verify"], args].concat());
+    let error = refused(&["tower.pvs", "maze.geojson"]);
+    assert_eq!(error, "tower.pvs: is no table of maze.geojson: the table has 3 dimensions, the scene 2");
+    assert!(refused(&["tower.glb", "tower.glb"]).starts_with("tower.glb: "));
+    assert!(refused(&["junk.pvs", "tower.glb"]).starts_with("junk.pvs: "));
+    assert!(refused(&["none.pvs", "tower.glb"]).starts_with("none.pvs: "));
+    assert!(refused(&["tower.pvs", "none.glb"]).starts_with("none.glb: "));
+    assert!(refused(&["tower.pvs", "tower.glb", "--map", "MAP01"]).starts_with("tower.glb: --map is for WADs"));
+    assert!(refused(&["tower.pvs", "tower.glb", "--prt", "x.prt"]).contains("--prt is for Quake maps"));
+    assert!(refused(&["tower.pvs", "tower.glb", "--draw", "x.jpg"]).contains("ends in .svg or .png"));
+    folder.write("map.prt", rooms(2, 2).prt);
+    folder.run(&["build", "map.prt", "-o", "p.pvs"]).expect(0);
+    assert!(refused(&["p.pvs", "map.prt", "--draw", "x.svg"]).contains("does not say where its cells are"));
+    assert_eq!(
+        refused(&["tower.pvs", "map.prt"]),
+        "tower.pvs: is no table of map.prt: the table is of no Quake map, but the scene is one"
+    );
+    assert_eq!(
+        refused(&["p.pvs", "tower.glb"]),
+        "p.pvs: is no table of tower.glb: the table is of a Quake map, but the scene is none"
+    );
+}
+
+/// Invariant: tables of real scenes are true to them.
+#[test]
+fn real_tables_are_true() {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA").map(std::path::PathBuf::from) else {
+        eprintln!("SKIPPED real_tables_are_true: SIGHTLINES_DATA is not set");
+        return;
+    };
+    assert!(data.is_dir(), "SIGHTLINES_DATA names no folder: {}", data.display());
+    let folder = Folder::new();
+    let scenes =
+        ["plans/duplex_1.geojson", "plans/mlstruct_fp_test_0.geojson", "doom/freedoom1_E1M1.wad", "quake/e1m1.bsp"];
+    for scene in scenes {
+        let scene = data.join(scene).display().to_string();
+        folder.run(&["build", &scene, "-o", "t.pvs", "--quiet"]).expect(0);
+        let told = verify(&folder, &["t.pvs", &scene], 0);
+        assert!(told["cells"]["n_confirmed"].as_u64() > Some(100), "{scene}: {}", told["cells"]);
+        flip(&folder, "t.pvs", "flipped.pvs", 4);
+        assert_eq!(verify(&folder, &["flipped.pvs", &scene], 1)["is_true"], false, "{scene}");
+    }
+}

@@ -1,0 +1,291 @@
+//! Visibility of Quake maps through the command line.
+
+use crate::common::quake::{Map, Portals, rooms, small_maps};
+use crate::common::{Folder, Run};
+use serde_json::{Value, json};
+use sightlines::bake::quake::state::{encode, is_state};
+use sightlines::bake::quake::{StateKey, convex_graph_of};
+use sightlines::formats::quake::visibility::{VisibilityLump, read_visibility};
+use sightlines::formats::quake::{Bsp, BspFormat, graph_of_prt, prt::parse_prt};
+use sightlines::pvs::{BitMatrix, CellId, Table};
+use sightlines::stabtree::{ConvexOptions, ConvexSearch};
+
+/// What a map of the folder says that its clusters see.
+fn seen(folder: &Folder, name: &str, portals: &Portals) -> BitMatrix {
+    let bsp = Bsp::parse(folder.read(name)).expect("a sound map");
+    let leafs = parse_prt(portals.as_bytes()).expect("sound portals").leaf_clusters();
+    read_visibility(&bsp, &leafs).expect("sound visibility").expect("visibility was written")
+}
+
+fn with(maps: &Map) -> Folder {
+    let folder = Folder::new();
+    folder.write("map.bsp", &maps.bsp);
+    folder.write("map.prt", &maps.prt);
+    folder
+}
+
+/// Every format with every dialect that goes with it: the table of the portals and the map say the same, and
+/// nothing else of the map has changed.
+#[test]
+fn maps_get_what_the_table_of_their_portals_says() {
+    let mut n_maps = 0;
+    for map in small_maps().into_iter().chain([rooms(5, 4)]) {
+        let folder = with(&map);
+        let told = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--json"]).expect(0).json();
+        folder.run(&["build", "map.prt", "-o", "map.pvs"]).expect(0);
+        let table = Table::from_bytes(&folder.read("map.pvs")).expect("a sound table");
+        let seen = seen(&folder, "out.bsp", &map.prt);
+        for cell in (0..table.n_cells() as u32).map(CellId) {
+            let row: Vec<usize> = table.visible(cell).map(|other| other.idx()).collect();
+            assert_eq!(row, seen.iter_ones(cell.idx()).collect::<Vec<_>>(), "{}", map.name);
+        }
+        assert!(convex_graph_of(&table).is_some());
+        let n_pairs = (seen.count_ones() - seen.n_rows() as u64) / 2;
+        assert_eq!((&told["n_visible_pairs"], &told["n_clusters"]), (&json!(n_pairs), &json!(seen.n_rows())));
+        assert_eq!(crate::common::quake::difference(&map.bsp, &folder.read("out.bsp")), None, "{}", map.name);
+        assert_eq!(folder.read("map.bsp"), map.bsp);
+        assert_eq!(folder.names(), ["map.bsp", "map.prt", "map.pvs", "out.bsp"], "no state stays behind");
+        n_maps += 1;
+    }
+    assert!(n_maps > 10, "{n_maps}");
+}
+
+/// The impostor of the comparison above: a lump that lacks a pair.
+#[test]
+fn a_missing_pair_would_be_found() {
+    let map = rooms(3, 2);
+    let folder = with(&map);
+    folder.run(&["vis", "map.bsp", "-o", "out.bsp"]).expect(0);
+    let right = seen(&folder, "out.bsp", &map.prt);
+    let bsp = Bsp::parse(folder.read("out.bsp")).unwrap();
+    let leafs = parse_prt(map.prt.as_bytes()).unwrap().leaf_clusters();
+    let mut less = right.clone();
+    less.set(0, 0, false);
+    let lump: VisibilityLump = sightlines::formats::quake::visibility::lump(&bsp, &leafs, &less).unwrap();
+    folder.write("less.bsp", bsp.with_visibility(&lump).unwrap());
+    assert_ne!(seen(&folder, "less.bsp", &map.prt), right);
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    for fast in [false, true] {
+        let folder = with(&rooms(6, 5));
+        let vis = |threads: &str| -> (Vec<u8>, Value) {
+            let fast = if fast { &["--fast"][..] } else { &[] };
+            let args = [&["vis", "map.bsp", "-o", "out.bsp", "--json", "--threads", threads][..], fast].concat();
+            let told = folder.run(&args).expect(0).json();
+            assert_eq!(told["fast"], json!(fast.len() == 1));
+            (folder.read("out.bsp"), told["counters"].clone())
+        };
+        let one = vis("1");
+        assert!(one == vis("2") && one == vis("8") && one == vis("0"));
+        assert!(one.1.as_object().is_some_and(|counters| !counters.is_empty()));
+    }
+}
+
+/// Without options the map is replaced, by the portals beside it; visibility that is there is replaced too.
+#[test]
+fn a_map_is_replaced() {
+    let map = rooms(4, 3);
+    let folder = with(&map);
+    folder.run(&["vis", "map.bsp", "-o", "out.bsp"]).expect(0);
+    let told = folder.run(&["vis", "map.bsp"]).expect(0).out;
+    assert!(told.starts_with("wrote map.bsp, ") && told.contains("\nclusters       12\n"), "{told}");
+    let line = |start: &str| told.lines().any(|line| line.starts_with(start));
+    assert!(["portals  ", "visible pairs  ", "undecided  ", "effort  ", "time  "].into_iter().all(line), "{told}");
+    assert!(folder.read("map.bsp") == folder.read("out.bsp") && folder.read("map.bsp") != map.bsp);
+    // Again, over another visibility: everything sees everything.
+    let bsp = Bsp::parse(folder.read("map.bsp")).unwrap();
+    let leafs = parse_prt(map.prt.as_bytes()).unwrap().leaf_clusters();
+    let mut all = BitMatrix::identity(12);
+    (0..12).for_each(|a| (0..12).for_each(|b| all.set(a, b, true)));
+    let lump = sightlines::formats::quake::visibility::lump(&bsp, &leafs, &all).unwrap();
+    folder.write("map.bsp", bsp.with_visibility(&lump).unwrap());
+    folder.run(&["vis", "map.bsp", "--quiet"]).expect(0);
+    let after = seen(&folder, "map.bsp", &map.prt);
+    assert_eq!(after, seen(&folder, "out.bsp", &map.prt));
+    assert_eq!(folder.names(), ["map.bsp", "map.prt", "out.bsp"]);
+}
+
+#[test]
+fn files_are_told_by_their_content() {
+    let map = rooms(3, 3);
+    let folder = with(&map);
+    folder.write("portals", &map.prt);
+    folder.write("map", &map.bsp);
+    let told = folder.run(&["info", "portals", "--json"]).expect(0).json();
+    assert_eq!((&told["kind"], &told["n_clusters"], &told["n_portals"]), (&json!("portals"), &json!(9), &json!(12)));
+    let told = folder.run(&["info", "map", "--json"]).expect(0).json();
+    assert_eq!((&told["visibility"], &told["n_seen_pairs"]), (&json!("none"), &Value::Null));
+    folder.run(&["vis", "map", "--prt", "portals", "-o", "done"]).expect(0);
+    let told = folder.run(&["info", "done", "--json"]).expect(0).json();
+    let n_seen = seen(&folder, "done", &map.prt).count_ones() - 9;
+    assert_eq!((&told["visibility"], &told["n_seen_pairs"]), (&json!("there"), &json!(n_seen)));
+    for format in BspFormat::ALL {
+        folder.write("map", small_maps().into_iter().find(|map| map.format == format).unwrap().bsp);
+        let told = folder.run(&["info", "map"]).expect(0).out;
+        assert!(told.starts_with("map: Quake") && told.contains("\nvisibility  "), "{told}");
+    }
+    // CRLF is whitespace.
+    folder.write("crlf", map.prt.replace('\n', "\r\n"));
+    folder.run(&["vis", "map.bsp", "--prt", "crlf", "-o", "out"]).expect(0);
+    assert_eq!(folder.read("out"), folder.read("done"));
+}
+
+/// A table of portals has no places, so whatever needs one refuses it.
+#[test]
+fn tables_of_portals_answer_what_they_can() {
+    let folder = with(&rooms(3, 2));
+    let told = folder.run(&["build", "map.prt", "-o", "map.pvs"]).expect(0).out;
+    assert!(told.starts_with("wrote map.pvs, ") && told.contains("\nclusters       6\n"), "{told}");
+    let told = folder.run(&["info", "map.pvs"]).expect(0).out;
+    assert!(told.contains("\nsource         portal file PRT1\n") && !told.contains("volume"), "{told}");
+    let told = folder.run(&["info", "map.pvs", "--json"]).expect(0).json();
+    assert_eq!((&told["mean_floor_share"], &told["n_portals"]), (&Value::Null, &json!(7)));
+    assert_eq!(folder.run(&["export", "map.pvs"]).expect(0).json()["cells"].as_array().map(Vec::len), Some(6));
+    for args in [&["query", "map.pvs", "--eye", "1,2,3"][..], &["draw", "map.pvs", "-o", "out.svg", "--isometric"]] {
+        let error = folder.refused(args);
+        let start = "map.pvs: the table is of a portal file, which does not say where its cells are: ";
+        assert!(error.starts_with(start), "{error}");
+    }
+    for (args, text) in [
+        (&["--tau", "0.5"][..], "map.prt: --tau is for plans and scenes in space, and this is a portal file"),
+        (&["--subdivide", "kd"], "map.prt: --subdivide is for plans, and this is a portal file"),
+        (&["--keep-solid"], "map.prt: --keep-solid is for scenes in space, and this is a portal file"),
+        (&["--map", "E1M1"], "map.prt: --map is for WADs, and this is none"),
+    ] {
+        assert_eq!(folder.refused(&[&["build", "map.prt", "-o", "out.pvs"][..], args].concat()), text);
+    }
+    assert_eq!(folder.names(), ["map.bsp", "map.prt", "map.pvs"]);
+    let folder = Folder::with_office();
+    let error = folder.refused(&["build", "office.geojson", "-o", "out.pvs", "--fast"]);
+    assert_eq!(error, "office.geojson: --fast is for portal files, and this is a plan");
+}
+
+/// The state of a search of the portals that has come `n_steps` far.
+fn state(map: &Map, text: &str, fast: bool, n_steps: usize) -> Vec<u8> {
+    let graph = graph_of_prt(&parse_prt(map.prt.as_bytes()).unwrap());
+    let mut search = ConvexSearch::new(&graph, ConvexOptions { fast, threads: 1 });
+    for _ in 0..n_steps {
+        if !search.advance() {
+            break;
+        }
+    }
+    encode(&StateKey::new(text.as_bytes(), fast), search.state())
+}
+
+fn vis(folder: &Folder, more: &[&str]) -> Run {
+    folder.run(&[&["vis", "map.bsp", "-o", "out.bsp", "--json"][..], more].concat())
+}
+
+#[test]
+fn a_run_goes_on_where_another_stopped() {
+    let map = rooms(6, 4);
+    let folder = with(&map);
+    let whole = vis(&folder, &[]).expect(0).json();
+    let bytes = folder.read("out.bsp");
+    for n_steps in [0, 1, 2, 5, 1000] {
+        folder.write("out.vis-state", state(&map, &map.prt, false, n_steps));
+        let told = vis(&folder, &["--resume", "--threads", "2"]).expect(0).json();
+        assert_eq!((&told["resumed"], &told["counters"]), (&json!(true), &whole["counters"]), "{n_steps} steps");
+        assert_eq!(folder.read("out.bsp"), bytes);
+        assert_eq!(folder.names(), ["map.bsp", "map.prt", "out.bsp"], "the state is gone");
+    }
+    // Nothing to go on from is no error, but said.
+    let run = vis(&folder, &["--resume", "--state", "other"]).expect(0);
+    assert!(run.err.contains("other: there is no state to go on from") && run.json()["resumed"] == json!(false));
+    assert_eq!(folder.read("out.bsp"), bytes);
+}
+
+/// A state that the run writes itself is one that can be resumed, and not read unless asked for.
+#[test]
+fn a_state_is_written_and_only_read_when_asked_for() {
+    let map = rooms(6, 4);
+    let folder = with(&map);
+    vis(&folder, &[]).expect(0);
+    let bytes = folder.read("out.bsp");
+    folder.write("out.vis-state", state(&map, "another text", true, 1));
+    assert_eq!(vis(&folder, &[]).expect(0).json()["resumed"], json!(false));
+    assert!(folder.read("out.bsp") == bytes && !folder.names().contains(&"out.vis-state".to_owned()));
+    // The folder of the output is no folder, so the state is all that is written, after every step.
+    folder.write("states", "");
+    let error = folder.refused(&["vis", "map.bsp", "-o", "states/out.bsp", "--state", "kept", "--save-every", "0"]);
+    assert!(error.starts_with("states/out.bsp: cannot be written: "), "{error}");
+    assert!(!folder.names().contains(&"kept".to_owned()), "that is found before the search");
+    let run = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--state", "no/state", "--save-every", "0"]).expect(0);
+    assert!(run.err.contains("no/state: cannot be written") && run.err.contains("cannot be resumed"), "{}", run.err);
+    assert_eq!(folder.read("out.bsp"), bytes, "a state that cannot be kept is no reason to stop");
+}
+
+#[test]
+fn stale_states_are_refused_by_name() {
+    let map = rooms(5, 3);
+    let folder = with(&map);
+    folder.write("out.bsp", "precious");
+    let sound = state(&map, &map.prt, false, 1);
+    assert!(is_state(&sound));
+    let mut flipped = sound.clone();
+    flipped[sound.len() / 2] ^= 4;
+    let mut newer = sound.clone();
+    newer[8] = 200;
+    let other = rooms(4, 3);
+    for (bytes, what) in [
+        (state(&map, &map.prt.replace('\n', "\r\n"), false, 1), "another portal file, or the file has changed since"),
+        (state(&map, &map.prt, true, 1), "the state is of a fast search, which this is not"),
+        (state(&other, &other.prt, false, 1), "another portal file"),
+        (state(&other, &map.prt, false, 1), "it is for another number of cells"),
+        (flipped, "the state is damaged"),
+        (newer, "the state is of version 200"),
+        (sound[..sound.len() - 3].to_vec(), "it is cut off"),
+        (sound[..20].to_vec(), "it is cut off"),
+    ] {
+        folder.write("out.vis-state", &bytes);
+        let error = folder.refused(&["vis", "map.bsp", "-o", "out.bsp", "--resume"]);
+        let end = "; without --resume the search begins anew";
+        assert!(error.starts_with("out.vis-state: ") && error.contains(what) && error.ends_with(end), "{error}");
+        assert_eq!((folder.read("out.bsp"), folder.read("out.vis-state")), (b"precious".to_vec(), bytes));
+    }
+    // What is no state at all is not overwritten either.
+    for more in [&[][..], &["--resume"]] {
+        for name in ["map.bsp", "map.prt", "out.bsp"] {
+            let before = folder.read(name);
+            let error = folder.refused(&[&["vis", "map.bsp", "-o", "new.bsp", "--state", name][..], more].concat());
+            assert!(error.starts_with(name) && error.contains("would be overwritten"), "{error}");
+            assert_eq!(folder.read(name), before);
+        }
+    }
+}
+
+/// Killed again and again while it writes its state after every step, and taken up again each time, a run ends with
+/// the same bytes; what is there of the output until then is the old file.
+#[cfg(unix)]
+#[test]
+fn a_killed_run_loses_nothing() {
+    let map = rooms(12, 10);
+    let folder = with(&map);
+    vis(&folder, &[]).expect(0);
+    let bytes = folder.read("out.bsp");
+    let args = ["vis", "map.bsp", "-o", "again.bsp", "--resume", "--save-every", "0", "--quiet"];
+    folder.write("again.bsp", "precious");
+    let mut n_killed = 0;
+    for wait in (0..40).map(|k| std::time::Duration::from_millis(2 * k)) {
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_sightlines"))
+            .args(args)
+            .current_dir(folder.path("."))
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(wait);
+        child.kill().unwrap();
+        let ended = child.wait().unwrap().code() == Some(0);
+        let now = folder.read("again.bsp");
+        assert!(now == bytes || (!ended && now == b"precious"), "the output is the old file or the new one");
+        n_killed += usize::from(!ended);
+        if ended {
+            break;
+        }
+    }
+    assert!(n_killed > 0);
+    folder.run(&args).expect(0);
+    assert_eq!(folder.read("again.bsp"), bytes);
+}

@@ -1,0 +1,14 @@
+//! Readers and writers of maps and scenes, on small, random, broken and real files.
+
+mod common;
+mod maps;
+mod mutations;
+mod quake_bsp;
+mod quake_prt;
+mod quake_real;
+mod quake_world;
+mod real;
+mod rewrite;
+mod scene_mutations;
+mod scene_oracles;
+mod scenes;

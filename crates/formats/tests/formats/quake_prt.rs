@@ -1,0 +1,349 @@
+//! Portal files: what is read, what is refused and where, and that hostile ones are refused at once.
+
+use crate::common::quake::{SMALL_PRTS, check_prt};
+use proptest::prelude::*;
+use sightlines_formats::quake::prt::{LeafList, Prt, PrtDialect, PrtErrorKind, parse_prt, write_prt};
+use sightlines_formats::quake::{LeafError, MAX_CLUSTERS, read_prt};
+use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
+use std::time::{Duration, Instant};
+
+/// The text of the error, which must come at once.
+fn refused(text: &[u8]) -> String {
+    let start = Instant::now();
+    let error = parse_prt(text).expect_err("a portal file that is wrong");
+    assert!(start.elapsed() < Duration::from_secs(2), "{error} took {:?}", start.elapsed());
+    error.to_string()
+}
+
+const PORTAL: &str = "3 0 1 (0 0 0) (1 0 0) (0 1 0)\n";
+
+#[test]
+fn dialects_are_read() {
+    let [plain, lists, numbers] = SMALL_PRTS.map(|text| parse_prt(text.as_bytes()).unwrap());
+    assert_eq!([&plain, &lists, &numbers].map(|p| p.dialect()), PrtDialect::ALL);
+    for prt in [&plain, &lists, &numbers] {
+        assert_eq!((prt.n_clusters(), prt.n_portals()), (3, 2));
+        let portals: Vec<_> = prt.portals().collect();
+        assert_eq!(portals[0].clusters, [0, 1]);
+        assert_eq!(portals[0].points, [[0., 0., 0.], [0., 8., 0.], [0., 8., 8.], [0., 0., 8.]]);
+        assert_eq!(portals[1].clusters, [2, 1]);
+        assert_eq!(portals[1].points, [[64., 0., 0.], [64.25, 0., 9.], [64., 1e-3, 0.5]]);
+    }
+    assert_eq!(plain.listed_leafs(), None);
+    assert_eq!(plain.leaf_clusters().cluster_of_leaf(), [0, 1, 2]);
+    assert_eq!(lists.listed_leafs().unwrap().cluster_of_leaf(), [1, 2, 0, 1]);
+    assert_eq!(lists.leaf_clusters(), numbers.leaf_clusters());
+    assert_eq!(SMALL_PRTS.map(|text| text.replace("1e-3", "0.001")), [&plain, &lists, &numbers].map(write_prt));
+}
+
+#[test]
+fn whitespace_is_free() {
+    for text in SMALL_PRTS {
+        let prt = parse_prt(text.as_bytes());
+        let same = [
+            text.replace('\n', "\r\n"),
+            text.replace('\n', " \t\x0B\x0C "),
+            text.trim_end().to_owned(),
+            format!("\n\n {text}\n \r\n"),
+            text.replace('(', " ( ").replace(')', " ) "),
+            text.replace(") (", ")("),
+        ];
+        for (k, text) in same.iter().enumerate() {
+            assert_eq!(parse_prt(text.as_bytes()), prt, "variant {k}");
+        }
+    }
+    let crlf = "PRT1\r\n2\r\n1\r\n3 0 1 (0 0 0) (1 0 0) (0 nan 0)\r\n";
+    let error = "line 4, column 26: expected a coordinate of point 2 of portal 0, found \"nan\"";
+    assert_eq!(refused(crlf.as_bytes()), error);
+}
+
+#[test]
+fn hostile_truncated_files_are_refused_where_they_end() {
+    let text = refused(b"PRT1\n2\n2\n3 0 1 (0 0 0) (1 0 0) (0 1 0)\n");
+    assert_eq!(text, "line 5, column 1: expected the number of points of portal 1, found the end of the file");
+    let text = refused(b"PRT1\n2\n1\n3 0 1 (0 0 0) (1 0 0");
+    assert_eq!(text, "line 4, column 21: expected the \")\" behind point 1 of portal 0, found the end of the file");
+    let text = refused(format!("PRT2\n2\n2\n1\n{PORTAL}0 1\n-1\n").as_bytes());
+    assert_eq!(text, "line 8, column 1: expected a leaf of cluster 1 or -1, found the end of the file");
+    let text = refused(format!("PRT1-AM\n2\n1\n3\n{PORTAL}0 1").as_bytes());
+    // There is room for three leafs in the bytes, but not behind the portals.
+    assert_eq!(text, "line 6, column 4: expected the cluster of leaf 2, found the end of the file");
+}
+
+#[test]
+fn hostile_header_only() {
+    for magic in ["PRT1", "PRT2", "PRT1-AM"] {
+        assert!(refused(magic.as_bytes()).ends_with("found the end of the file"), "{magic}");
+        assert!(refused(format!("{magic}\n").as_bytes()).ends_with("found the end of the file"), "{magic}");
+    }
+    assert_eq!(refused(b"PRT1\n7\n9\n"), {
+        "line 4, column 1: expected the number of points of portal 0, found the end of the file"
+    });
+    assert_eq!(refused(b"PRT1\n0\n0\n"), "line 2, column 1: the number of clusters: 0 is not from 1 to 65536");
+    // One room without doors is a map.
+    assert_eq!(parse_prt(b"PRT1 1 0").map(|prt| prt.n_clusters()), Ok(1));
+}
+
+#[test]
+fn hostile_counts_are_not_believed() {
+    assert_eq!(
+        refused(format!("PRT1\n2\n1000000000\n{PORTAL}").as_bytes()),
+        "line 5, column 1: expected the number of points of portal 1, found the end of the file"
+    );
+    assert_eq!(
+        refused(b"PRT1\n1000000000\n0\n"),
+        "line 2, column 1: the number of clusters: 1000000000 is not from 1 to 65536"
+    );
+    assert_eq!(
+        refused(b"PRT2\n4000000000\n1\n0\n0 -1\n"),
+        "line 2, column 1: 4000000000 leafs cannot be listed in the 10 bytes that follow"
+    );
+    assert_eq!(
+        refused(b"PRT1-AM\n1\n0\n4000000000\n0\n"),
+        "line 4, column 1: 4000000000 leafs cannot be listed in the 3 bytes that follow"
+    );
+    let huge = refused(b"PRT1\n2\n99999999999999999999999\n");
+    assert_eq!(huge, "line 3, column 1: the number of portals: 99999999999999999999999 is not from 0 to 4294967295");
+}
+
+#[test]
+fn hostile_windings_of_one_and_two_points() {
+    for n in [0, 1, 2, 65, 1_000_000_000] {
+        let points = "(0 0 0) ".repeat(n.min(65));
+        let text = refused(format!("PRT1\n2\n1\n{n} 0 1 {points}\n").as_bytes());
+        assert_eq!(text, format!("line 4, column 1: the number of points of portal 0: {n} is not from 3 to 64"));
+    }
+    let most = format!("PRT1\n2\n1\n64 0 1 {}\n", "(0 0 1) ".repeat(64));
+    assert_eq!(parse_prt(most.as_bytes()).unwrap().portal(0).points.len(), 64);
+    // Fewer points than announced, and more.
+    let text = refused(format!("PRT1\n2\n2\n{}{PORTAL}", PORTAL.replacen('3', "4", 1)).as_bytes());
+    assert_eq!(text, "line 5, column 1: expected the \"(\" before point 3 of portal 0, found \"3\"");
+    let text = refused(b"PRT1\n2\n2\n3 0 1 (0 0 0) (1 0 0) (0 1 0) (2 2 2)\n3 0 1");
+    assert_eq!(text, "line 4, column 31: expected the number of points of portal 1, found \"(\"");
+}
+
+#[test]
+fn hostile_numbers() {
+    for word in ["nan", "NaN", "inf", "-inf", "infinity", "0x10", "1,5", "--1", "1e", ".", "-", "1_0", "\u{661}"] {
+        let text = refused(format!("PRT1\n2\n1\n3 0 1 (0 {word} 0) (1 0 0) (0 1 0)\n").as_bytes());
+        assert!(text.starts_with("line 4, column 10: expected a coordinate of point 0 of portal 0, found "), "{text}");
+    }
+    for (word, shown) in [("1e999", "inf is"), ("1e300", "1e300 is"), ("-1e61", "-1e61 is")] {
+        let text = refused(format!("PRT1\n2\n1\n3 0 1 (0 0 0) (1 0 {word}) (0 1 0)\n").as_bytes());
+        assert!(text.starts_with(&format!("line 4, column 1: portal 0, point 1: coordinate {shown} ")), "{text}");
+    }
+    let read = |word: &str| parse_prt(PORTAL_WITH.replace('X', word).as_bytes()).unwrap().portal(0).points[0][0];
+    assert_eq!(["+5", "5.", "5e0", "0.5E1"].map(read), [5.0; 4]);
+    assert_eq!(read("104.00000000000003").to_bits(), 104.00000000000003f64.to_bits());
+    // What rounding leaves of zeros.
+    assert_eq!(["-0", "1e-300", "-1e-60"].map(read).map(f64::to_bits), [0; 3]);
+    for word in ["1.0", "0x3", "3a", "+", "-", "(", "\u{663}"] {
+        let text = refused(format!("PRT1\n{word}\n0\n").as_bytes());
+        assert!(text.starts_with("line 2, column 1: expected the number of clusters, found "), "{text}");
+    }
+}
+
+const PORTAL_WITH: &str = "PRT1 2 1 3 0 1 (X 0 0) (1 0 0) (0 1 0)";
+
+#[test]
+fn hostile_leafs_and_clusters_out_of_range() {
+    for (word, found) in [("2", "2"), ("-1", "-1"), ("4294967296", "4294967296")] {
+        let text = refused(PORTAL_WITH.replace("0 1 (X", &format!("0 {word} (5")).as_bytes());
+        assert_eq!(text, format!("line 1, column 14: a cluster of portal 0: {found} is not from 0 to 1"));
+    }
+    let text = refused(PORTAL_WITH.replace("0 1 (X", "1 1 (5").as_bytes());
+    assert_eq!(text, "line 1, column 10: portal 0 joins cluster 1 with itself");
+    let lists = |lists: &str| refused(format!("PRT2\n3\n2\n1\n{PORTAL}{lists}").as_bytes());
+    assert_eq!(lists("0 3 -1\n1 2 -1\n"), "line 6, column 3: a leaf of cluster 0 or -1: 3 is not from 0 to 2");
+    assert_eq!(lists("0 -2 -1\n1 2 -1\n"), "line 6, column 3: a leaf of cluster 0 or -1: -2 is not from 0 to 2");
+    assert_eq!(lists("0 1 -1\n1 2 -1\n"), "line 7, column 1: leaf 1 is in cluster 0 and in cluster 1");
+    assert_eq!(lists("0 -1\n2 -1\n"), "line 8, column 1: leaf 1 is in no cluster");
+    assert_eq!(lists("0 1 2 -1\n-1\n0 -1\n"), "line 8, column 1: expected the end of the file, found \"0\"");
+    let numbers = |list: &str| refused(format!("PRT1-AM\n2\n1\n3\n{PORTAL}{list}").as_bytes());
+    assert_eq!(numbers("0\n2\n1\n"), "line 7, column 1: the cluster of leaf 1: 2 is not from 0 to 1");
+    assert_eq!(numbers("0\n1\n1\n1\n"), "line 9, column 1: expected the end of the file, found \"1\"");
+}
+
+#[test]
+fn hostile_parentheses() {
+    let text = |from: &str, to: &str| refused(PORTAL_WITH.replace('X', "0").replacen(from, to, 1).as_bytes());
+    assert_eq!(text("(0", "0"), "line 1, column 16: expected the \"(\" before point 0 of portal 0, found \"0\"");
+    assert_eq!(text(") (", " ("), "line 1, column 23: expected the \")\" behind point 0 of portal 0, found \"(\"");
+    assert_eq!(text("0 0)", "0 0 0)"), "line 1, column 23: expected the \")\" behind point 0 of portal 0, found \"0\"");
+    assert_eq!(text("0 0)", "0)"), "line 1, column 20: expected a coordinate of point 0 of portal 0, found \")\"");
+    assert_eq!(text("(0", "((0"), "line 1, column 17: expected a coordinate of point 0 of portal 0, found \"(\"");
+}
+
+#[test]
+fn hostile_beginnings_and_ends() {
+    let magic = "line 1, column 1: expected PRT1, PRT2 or PRT1-AM, found ";
+    assert_eq!(refused(b""), format!("{magic}the end of the file"));
+    for (text, found) in [("PRT3\n1\n0\n", "PRT3"), ("prt1\n", "prt1"), ("12\n4\n", "12"), ("\0\0", "\0\0")] {
+        assert_eq!(refused(text.as_bytes()), format!("{magic}{found:?}"));
+    }
+    let long = refused("x".repeat(5_000_000).as_bytes());
+    assert_eq!(long, format!("{magic}\"{}...\"", "x".repeat(40)));
+    assert_eq!(
+        refused(&[b' '; 5_000_000][..]),
+        "line 1, column 5000001: expected PRT1, PRT2 or PRT1-AM, found the end of the file"
+    );
+    for behind in ["x", "0", "-1", "\0", PORTAL] {
+        let text = refused(format!("PRT1\n2\n1\n{PORTAL}{behind}").as_bytes());
+        assert!(text.starts_with("line 5, column 1: expected the end of the file, found "), "{text}");
+    }
+    // The header of another dialect has a number more, and portals too.
+    let other = refused(b"PRT1\n2\n1\n3\n3 0 1 0 (0 0 0) (1 0 0) (0 1 0)\n");
+    assert_eq!(other, "line 5, column 1: a cluster of portal 0: 3 is not from 0 to 1");
+}
+
+#[test]
+fn degenerate_windings_are_kept_and_told() {
+    let told = |points: &str| {
+        let prt = parse_prt(format!("PRT1 2 1 {} 0 1 {points}", points.matches('(').count()).as_bytes()).unwrap();
+        assert_eq!(write_prt(&prt).matches('(').count(), points.matches('(').count());
+        prt.portal(0).is_degenerate()
+    };
+    assert!(told("(1 2 3) (1 2 3) (1 2 3)"));
+    assert!(told("(0 0 0) (1 1 1) (3 3 3) (2 2 2)"));
+    assert!(told("(5 5 5) (5 5 5) (6 5 5) (9 5 5)"));
+    assert!(!told("(5 5 5) (5 5 5) (6 5 5) (9 5 5.000000001)"));
+    assert!(!told("(10000000 0 0) (10000000 0 5) (10000000.000000002 0 9)"));
+}
+
+/// What rounding explains is read, as compilers round: to 17 digits, to six decimals, to whole numbers nearby. More
+/// is refused where it stands.
+#[test]
+fn hostile_portals_that_are_not_flat() {
+    let text = |off: f64| format!("PRT1\n2\n2\n{PORTAL}4 1 0 (0 0 0) (64 0 64) (64 64 {}) (0 64 0)\n", 64.0 + off);
+    let n_read = [0.0, 1e-13, 1e-6, 0.05, -0.2].map(|off| parse_prt(text(off).as_bytes()).is_ok());
+    assert_eq!(n_read, [true; 5]);
+    for off in [2.0, -2.0, 40.0, 1e6] {
+        let error = refused(text(off).as_bytes());
+        let start = "line 5, column 1: portal 1 is not flat: a point is ";
+        assert!(error.starts_with(start) && error.ends_with(" units off the plane of the others"), "{error}");
+    }
+    // Far away, what doubles hold is rounding too.
+    let far = |off: f64| {
+        let x = 2f64.powi(60);
+        let points = [[x, 0.0, 0.0], [x, 2.0 * x, 0.0], [0.0, 2.0 * x, x + off], [0.0, 0.0, x]];
+        Prt::new(2).unwrap().push_portal([0, 1], &points)
+    };
+    assert_eq!(far(1024.0), Ok(()));
+    assert!(matches!(far(2f64.powi(30)), Err(PrtErrorKind::NotFlat { portal: 0, by }) if by > 1e6));
+}
+
+#[test]
+fn portals_are_built_with_the_same_checks() {
+    let square = [[0., 0., 0.], [0., 8., 0.], [0., 8., 8.], [0., 0., 8.]];
+    let mut prt = Prt::new(3).unwrap();
+    prt.push_portal([2, 0], &square).unwrap();
+    let before = prt.clone();
+    let text = |r: Result<(), PrtErrorKind>| r.unwrap_err().to_string();
+    assert_eq!(text(prt.push_portal([0, 1], &square[..2])), "the number of points of portal 1: 2 is not from 3 to 64");
+    assert_eq!(text(prt.push_portal([0, 3], &square)), "a cluster of portal 1: 3 is not from 0 to 2");
+    assert_eq!(text(prt.push_portal([1, 1], &square)), "portal 1 joins cluster 1 with itself");
+    let nan = [[0.0; 3], [1.0; 3], [1.0, f64::NAN, 0.0]];
+    assert_eq!(text(prt.push_portal([0, 1], &nan)), "portal 1, point 2: coordinate NaN is not a finite number");
+    assert_eq!(prt, before);
+    assert!(Prt::new(0).is_err() && Prt::new(MAX_CLUSTERS + 1).is_err() && Prt::new(MAX_CLUSTERS).is_ok());
+    let error = LeafError::Cluster { leaf: 1, cluster: 3, n_clusters: 3 };
+    assert_eq!(prt.with_leafs(LeafList::PerLeaf, vec![0, 3]), Err(PrtErrorKind::Leafs(error)));
+}
+
+#[test]
+fn errors_name_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("room.prt");
+    std::fs::write(&path, "PRT1\n1\n1\n").unwrap();
+    let text = read_prt(&path).unwrap_err().to_string();
+    assert!(
+        text.ends_with(
+            "room.prt: line 4, column 1: expected the number of points of portal 0, found the end of the file"
+        )
+    );
+    std::fs::write(&path, SMALL_PRTS[1]).unwrap();
+    assert_eq!(write_prt(&read_prt(&path).unwrap()), SMALL_PRTS[1].replace("1e-3", "0.001"));
+    assert!(read_prt(folder.path().join("absent.prt")).unwrap_err().to_string().contains("absent.prt: "));
+}
+
+#[test]
+fn every_prefix_and_flipped_bit_is_read_or_refused() {
+    for text in SMALL_PRTS.map(str::as_bytes) {
+        let accepted = (0..text.len()).filter(|&len| check_prt(&text[..len])).count();
+        // Only the space and the line's end behind the last piece may be missing.
+        assert!((1..=2).contains(&accepted), "{accepted} prefixes are read");
+        let flipped = flipped_bits(text).filter(|t| check_prt(t)).count();
+        assert!((text.len() / 2..4 * text.len()).contains(&flipped), "{flipped} flipped files are read");
+    }
+}
+
+#[test]
+fn damaged_files_are_read_or_refused() {
+    let rounds = crate::common::setting("SIGHTLINES_FUZZ_ROUNDS", 20_000);
+    let first = crate::common::setting("SIGHTLINES_FUZZ_SEED", 0);
+    let accepted = (first..first + rounds)
+        .filter(|&number| {
+            let broken = mutate(SMALL_PRTS[number as usize % 3].as_bytes(), &mut SplitMix(number));
+            std::panic::catch_unwind(|| check_prt(&broken)).unwrap_or_else(|_| {
+                panic!("replay with SIGHTLINES_FUZZ_ROUNDS=1 SIGHTLINES_FUZZ_SEED={number}: {broken:?}")
+            })
+        })
+        .count() as u64;
+    assert!((rounds / 100..=rounds * 95 / 100).contains(&accepted) || rounds < 1000, "{accepted} of {rounds} accepted");
+}
+
+/// Portals with coordinates as bits, from a small grid as well.
+fn portals() -> impl Strategy<Value = Prt> {
+    let coordinate = prop_oneof![
+        3 => (-8i32..8).prop_map(f64::from),
+        1 => (-1e6..1e6f64).boxed(),
+        1 => (-1.0..1.0f64, -130i32..166).prop_map(|(x, exponent)| x * 2f64.powi(exponent)),
+    ];
+    let point = [coordinate.clone(), coordinate.clone(), coordinate];
+    let portal = (0..20u32, 1..20u32, proptest::collection::vec(point, 3..9));
+    let leafs = proptest::option::of((any::<bool>(), proptest::collection::vec(0..20u32, 1..60)));
+    (proptest::collection::vec(portal, 0..12), leafs).prop_map(|(portals, leafs)| {
+        let mut prt = Prt::new(20).unwrap();
+        for (a, step, points) in portals {
+            // Points that go round nothing or are on no plane are refused; of them a triangle is left, or nothing.
+            let pair = [a, (a + step) % 20];
+            let refused = |added: &Result<(), PrtErrorKind>| match added {
+                Ok(()) => false,
+                Err(PrtErrorKind::NotConvex { .. } | PrtErrorKind::NotFlat { .. }) => true,
+                Err(error) => panic!("{error}"),
+            };
+            if refused(&prt.push_portal(pair, &points)) {
+                let again = prt.push_portal(pair, &points[..3]);
+                assert!(!matches!(again, Err(PrtErrorKind::NotFlat { .. })), "a triangle is flat: {again:?}");
+            }
+        }
+        match leafs {
+            None => prt,
+            Some((true, leafs)) => prt.with_leafs(LeafList::PerCluster, leafs).unwrap(),
+            Some((false, leafs)) => prt.with_leafs(LeafList::PerLeaf, leafs).unwrap(),
+        }
+    })
+}
+
+proptest! {
+    /// What is written is read as the same, bit for bit, and written as the same.
+    #[test]
+    fn portals_read_as_written(prt in portals()) {
+        let text = write_prt(&prt);
+        let read = parse_prt(text.as_bytes()).unwrap();
+        let bits = |p: &Prt| -> Vec<u64> { p.portals().flat_map(|p| p.points.to_vec()).flatten().map(f64::to_bits).collect() };
+        prop_assert_eq!(bits(&read), bits(&prt));
+        prop_assert_eq!(&read, &prt);
+        prop_assert_eq!(write_prt(&read), text);
+    }
+
+    /// A file that is cut off in front of its last number is refused, at its end.
+    #[test]
+    fn portals_cut_off_are_refused(prt in portals(), at in any::<prop::sample::Index>()) {
+        let text = write_prt(&prt);
+        let last = text.trim_end().rfind(char::is_whitespace).unwrap();
+        let cut = at.index(last);
+        let error = parse_prt(&text.as_bytes()[..cut]).unwrap_err();
+        prop_assert!(error.line <= text[..cut].matches('\n').count() + 1, "{}", error);
+    }
+}

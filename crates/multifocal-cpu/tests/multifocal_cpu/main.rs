@@ -1,0 +1,6 @@
+//! The backend on the processor.
+
+mod common;
+mod conformance;
+mod definition;
+mod fast;

@@ -1,0 +1,6 @@
+//! Occluders out of meshes.
+
+mod mesh_patches;
+mod mesh_real;
+mod mesh_sheets;
+mod meshes;

@@ -1,0 +1,6 @@
+//! Pictures and exports.
+
+mod common;
+mod export;
+mod pictures;
+mod space;

@@ -1,0 +1,5 @@
+//! Stabbing lines of portal sequences, against exact oracles.
+
+mod axial;
+mod convex;
+mod stabbing;

@@ -1,0 +1,11 @@
+//! Searches through portals, their proofs and explanations.
+
+mod boxes;
+mod certify;
+mod explain_convex;
+mod explain_space;
+mod eyes;
+mod live_space;
+mod search;
+mod space;
+mod stab_trees;

@@ -1,0 +1,4 @@
+//! What is noticed in tables, and what is not.
+
+mod certify;
+mod tables;

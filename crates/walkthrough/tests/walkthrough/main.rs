@@ -1,0 +1,4 @@
+//! Walks and movers, frame by frame.
+
+mod moving;
+mod walk;

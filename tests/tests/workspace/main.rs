@@ -1,0 +1,15 @@
+//! Tests across crates.
+
+mod convex_classical;
+mod convex_found;
+mod convex_worlds;
+mod docs;
+mod doom;
+mod eye_to_cell;
+mod from_region;
+mod layers;
+mod oracles;
+mod quake_tables;
+mod scenes;
+mod simplify;
+mod visible_surface;
