@@ -35,7 +35,7 @@ struct Args {
     /// Obscuration thresholds.
     #[arg(long, value_delimiter = ',', default_values_t = [0.0, 0.1, 0.3, 0.6])]
     taus: Vec<f64>,
-    /// Portal modes: bounding, exact, two-level.
+    /// Portal modes: bounding, exact.
     #[arg(long, value_delimiter = ',', default_value = "bounding,exact", value_parser = portals_of)]
     portals: Vec<PortalMode>,
     /// Lines to follow in each scene.

@@ -38,7 +38,7 @@ struct Args {
     /// Obscuration threshold.
     #[arg(long, default_value_t = 0.0)]
     tau: f64,
-    /// Portal mode: bounding, exact, two-level.
+    /// Portal mode: bounding, exact.
     #[arg(long, default_value = "exact", value_parser = portals_of)]
     portals: PortalMode,
     /// Seconds that one bake may take.

@@ -54,7 +54,7 @@ struct Args {
     /// Obscuration threshold.
     #[arg(long, default_value_t = 0.0)]
     tau: f64,
-    /// Portal mode: bounding, exact, two-level.
+    /// Portal mode: bounding, exact.
     #[arg(long, default_value = "exact", value_parser = portals_of)]
     portals: PortalMode,
     /// Reads the table from this file if it exists, or else bakes it and writes it there. It must be one of

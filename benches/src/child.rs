@@ -82,7 +82,6 @@ pub fn portals_name(mode: PortalMode) -> &'static str {
     match mode {
         PortalMode::Bounding => "bounding",
         PortalMode::Exact => "exact",
-        PortalMode::TwoLevel => "two-level",
     }
 }
 
@@ -91,9 +90,9 @@ pub fn portals_name(mode: PortalMode) -> &'static str {
 /// # Errors
 /// What to write instead.
 pub fn portals_of(name: &str) -> Result<PortalMode, String> {
-    let modes = [PortalMode::Bounding, PortalMode::Exact, PortalMode::TwoLevel];
+    let modes = [PortalMode::Bounding, PortalMode::Exact];
     let found = modes.into_iter().find(|m| portals_name(*m) == name);
-    found.ok_or_else(|| "not bounding, exact or two-level".to_owned())
+    found.ok_or_else(|| "neither bounding nor exact".to_owned())
 }
 
 /// If this process was started by [`run`], bakes, answers and ends; else does nothing. To be called first by

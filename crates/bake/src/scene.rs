@@ -4,7 +4,7 @@ use crate::mirrors;
 use crate::plan::BakeError;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Portal, Scene};
 use sightlines_geometry::Aabb;
-use sightlines_kdtree::{PortalForm, SceneOptions, SceneSummary, subdivide_scene};
+use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
 use sightlines_pvs::{CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableError, TableParts};
 use sightlines_sightline::ShaftCounters;
 use sightlines_stabtree::{Known, Progress, SearchOptions, SeenInSpace, see_space};
@@ -18,22 +18,18 @@ pub enum PortalMode {
     /// The exact pieces of each opening.
     #[default]
     Exact,
-    /// First the rectangles, then the exact pieces for what they leave in doubt. The same answer as
-    /// [`PortalMode::Exact`], but that of pairs which it gives up some may be found hidden by the rectangles; that one is quicker, as exact walls
-    /// hide more from the first question on.
-    TwoLevel,
 }
 
 /// How to bake a scene.
 #[derive(Clone, Copy, Default)]
 pub struct SceneBakeOptions<'a> {
-    /// How to cut; its `portals` are not looked at.
+    /// How to cut.
     pub cut: SceneOptions,
     /// Which portals the search goes through, and the table stores.
     pub portals: PortalMode,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Told how many cells of how many are done; twice as many for two levels.
+    /// Told how many cells of how many are done.
     pub progress: Option<Progress<'a>>,
 }
 
@@ -88,32 +84,18 @@ pub struct BakedScene {
 /// [`BakeError::KdTree`] for scenes without room, options out of range, and too many cells.
 pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<BakedScene, BakeError> {
     let start = Instant::now();
-    let cut = subdivide_scene(scene, &SceneOptions { portals: PortalForm::Exact, ..options.cut })?;
+    let cut = subdivide_scene(scene, &options.cut)?;
     let cut_time = start.elapsed();
     let start = Instant::now();
     let boxes: Vec<Aabb<3>> = scene.objects().iter().map(drawn_box).collect();
     let solid = cut.left_out();
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
     let nothing = Known::nothing(cut.graph.n_cells());
-    let see = |graph: &CellGraph<Axial>, known: &Known| see_space(graph, &solid, &boxes, known, &search);
-    let (graph, seen) = match options.portals {
-        PortalMode::Bounding => {
-            let loose = loosened(&cut.graph);
-            let seen = see(&loose, &nothing);
-            (loose, seen)
-        }
-        PortalMode::Exact => {
-            let seen = see(&cut.graph, &nothing);
-            (cut.graph, seen)
-        }
-        PortalMode::TwoLevel => {
-            let wide = see(&loosened(&cut.graph), &nothing);
-            let known = Known { possible: Some((wide.cells, wide.objects)), ..nothing };
-            let mut seen = see(&cut.graph, &known);
-            seen.counters = seen.counters + wide.counters;
-            (cut.graph, seen)
-        }
+    let graph = match options.portals {
+        PortalMode::Bounding => loosened(&cut.graph),
+        PortalMode::Exact => cut.graph,
     };
+    let seen = see_space(&graph, &solid, &boxes, &nothing, &search);
     let see_time = start.elapsed();
     let n_visible_pairs = (seen.cells.count_ones() - graph.n_cells() as u64) / 2;
     let (n_objects_seen, counters) = (seen.objects.count_ones(), seen.counters);
@@ -170,7 +152,7 @@ pub(crate) fn loosened(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
 pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, String)> {
     let portals = match options.portals {
         PortalMode::Bounding => "bounding",
-        PortalMode::Exact | PortalMode::TwoLevel => "exact",
+        PortalMode::Exact => "exact",
     };
     let pair = |k: &str, v: String| (k.to_owned(), v);
     // Ascending keys.

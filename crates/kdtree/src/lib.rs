@@ -50,10 +50,8 @@ pub use build::{Options, bounds_of, subdivide};
 pub use error::{FaceError, KdError};
 pub use face::{AxialFace, AxialPlane, FaceClass, classify, cleaves};
 pub use plan::{PlanFaces, PlanSubdivision, plan_faces, planar_graph, subdivide_plan};
-pub use portals::{AxialPortal, PortalForm};
-pub use scene::{
-    SceneCutter, SceneOptions, SceneSubdivision, SceneSummary, TwoLevelPortal, subdivide_scene, two_level,
-};
+pub use portals::AxialPortal;
+pub use scene::{SceneCutter, SceneOptions, SceneSubdivision, SceneSummary, subdivide_scene};
 pub use scene_faces::{SceneFaces, default_detail_below, scene_faces};
 pub use tree::{AxialCell, AxialNode, AxialTree};
 

@@ -8,20 +8,11 @@ use crate::face::across;
 use crate::ranks::{RankBox, Ranks};
 use crate::region::{Rect, unite};
 use crate::skeleton::{RankNode, Skeleton};
-use sightlines_geometry::Aabb;
 use sightlines_pvs::CellId;
 
-/// Shape of portals where an opening is not a rectangle. In the plane, that is: where two cells share
-/// more than one door.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum PortalForm {
-    /// Disjoint rectangles (in the plane: intervals) that make up the opening exactly.
-    Exact,
-    /// One rectangle around the whole opening, for each pair of cells. Errs towards "visible".
-    Bounding,
-}
-
-/// An opening between two cells: the inside of an interval (`D` = 2) or rectangle (`D` = 3).
+/// An opening between two cells, or a piece of one: the inside of an interval (`D` = 2) or rectangle (`D` = 3).
+///
+/// Where the opening between two cells is no rectangle, several disjoint portals make it up exactly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxialPortal<const D: usize> {
     /// The cells: the one at smaller coordinates of `axis`, then the other.
@@ -110,13 +101,4 @@ fn halves<const D: usize>(mut open: Vec<Rect>, normal: usize, axis: usize, rank:
         is_above
     });
     [below, open]
-}
-
-/// One rectangle for each pair of cells, around all portals between them.
-pub(crate) fn bounding_portals<const D: usize>(exact: &[AxialPortal<D>]) -> Vec<AxialPortal<D>> {
-    let around = |group: &[AxialPortal<D>]| {
-        let Aabb { min, max } = Aabb::around(group.iter().flat_map(|p| [p.min, p.max]));
-        AxialPortal { min, max, ..group[0] }
-    };
-    exact.chunk_by(|p, q| p.cells == q.cells).map(around).collect()
 }

@@ -4,13 +4,12 @@ use crate::build::{Options, subdivide};
 use crate::error::KdError;
 use crate::kept::Kept;
 use crate::matter::{LeftOut, left_out};
-use crate::portals::{AxialPortal, PortalForm, bounding_portals};
+use crate::portals::AxialPortal;
 use crate::scene_faces::{SceneFaces, Survey};
-use crate::tree::{AxialNode, AxialTree};
-use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, Portal, PortalId, Scene};
+use crate::tree::AxialTree;
+use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, Portal, Scene};
 use sightlines_geometry::{Aabb, check_coordinate};
-use sightlines_pvs::{CellId, LocatorNode};
-use std::ops::Range;
+use sightlines_pvs::CellId;
 
 /// How to cut a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,8 +23,6 @@ pub struct SceneOptions {
     /// and divide nothing. 0 keeps everything; none takes
     /// [`default_detail_below`](crate::default_detail_below).
     pub detail_below: Option<f64>,
-    /// Shape of the portals of the graph.
-    pub portals: PortalForm,
     /// Limit for the number of cells, those that are left out included, see [`Options::max_cells`].
     pub max_cells: u32,
     /// Whether the insides of walls and other solid things stay cells.
@@ -37,8 +34,8 @@ const MAX_CELLS: u32 = 1 << 16;
 
 impl Default for SceneOptions {
     fn default() -> Self {
-        let (tau, portals, max_cells) = (Options::default().tau, PortalForm::Exact, MAX_CELLS);
-        Self { view_region: None, tau, detail_below: None, portals, max_cells, keep_solid: false }
+        let (tau, max_cells) = (Options::default().tau, MAX_CELLS);
+        Self { view_region: None, tau, detail_below: None, max_cells, keep_solid: false }
     }
 }
 
@@ -86,35 +83,6 @@ pub struct SceneSubdivision {
     /// For each object whether it was detail.
     pub detail: Vec<bool>,
     cells: Vec<Option<CellId>>,
-    pieces: Vec<AxialDoor>,
-    first_piece: Vec<u32>,
-}
-
-/// A bounding portal and the exact pieces that it is around.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TwoLevelPortal {
-    /// The rectangle around the whole opening between two cells.
-    pub bounding: AxialPortal<3>,
-    /// The pieces, as a range of [`AxialTree::portals`].
-    pub pieces: Range<usize>,
-}
-
-/// For each pair of cells with an opening between them, the rectangle around it and its exact pieces,
-/// by their cells. O(portals).
-///
-/// The bounding rectangle is tested first: what cannot be seen through it cannot be seen through a piece.
-pub fn two_level(tree: &AxialTree<3>) -> Vec<TwoLevelPortal> {
-    let groups = tree.portals().chunk_by(|p, q| p.cells == q.cells);
-    let mut first = 0;
-    let ranges = groups.map(|group| {
-        first += group.len();
-        first - group.len()..first
-    });
-    bounding_portals(tree.portals())
-        .into_iter()
-        .zip(ranges)
-        .map(|(b, pieces)| TwoLevelPortal { bounding: b, pieces })
-        .collect()
 }
 
 /// Cuts the box around `scene` and the view region along the faces of the scene.
@@ -174,7 +142,7 @@ impl SceneCutter {
             true => vec![None; tree.cells().len()],
             false => left_out(scene, &survey, &found, &tree, options.view_region),
         };
-        Ok(SceneSubdivision::assemble(tree, &out, found, options.portals))
+        Ok(SceneSubdivision::assemble(tree, &out, found))
     }
 }
 
@@ -187,24 +155,20 @@ fn root_box(bounds: Aabb<3>, view_region: Option<Aabb<3>>) -> Result<Aabb<3>, Kd
 }
 
 impl SceneSubdivision {
-    fn assemble(tree: AxialTree<3>, out: &[Option<LeftOut>], found: SceneFaces, form: PortalForm) -> Self {
+    fn assemble(tree: AxialTree<3>, out: &[Option<LeftOut>], found: SceneFaces) -> Self {
         let mut next = 0u32..;
         let cells: Vec<Option<CellId>> =
             out.iter().map(|o| if o.is_none() { next.next().map(CellId) } else { None }).collect();
         let boxes = tree.cells().iter().zip(&cells).filter(|(_, id)| id.is_some());
         let boxes = boxes.map(|(cell, _)| BoxCell { bounds: cell.bounds }).collect();
-        let (mut portals, mut pieces, mut first_piece) = (Vec::new(), Vec::new(), vec![0]);
-        let exact = tree.portals().chunk_by(|p, q| form == PortalForm::Bounding && p.cells == q.cells);
-        for group in exact {
-            // Of a portal, both cells are left out or none.
-            let [Some(a), Some(b)] = group[0].cells.map(|c| cells[c.idx()]) else { continue };
-            pieces.extend(group.iter().map(door));
-            first_piece.push(pieces.len() as u32);
-            portals.extend(bounding_portals(group).iter().map(|p| portal(p, [a, b])));
-        }
-        let graph = CellGraph::new(boxes, portals);
+        // Of a portal, both cells are left out or none.
+        let inner = |p: &AxialPortal<3>| match p.cells.map(|c| cells[c.idx()]) {
+            [Some(a), Some(b)] => Some(portal(p, [a, b])),
+            _ => None,
+        };
+        let graph = CellGraph::new(boxes, tree.portals().iter().filter_map(inner).collect());
         let summary = summarise(&tree, out, &found, &graph);
-        Self { tree, graph, summary, detail: found.detail, cells, pieces, first_piece }
+        Self { tree, graph, summary, detail: found.detail, cells }
     }
 
     /// The boxes of the tree's cells that the graph leaves out.
@@ -221,16 +185,6 @@ impl SceneSubdivision {
         self.cells[leaf.idx()]
     }
 
-    /// The exact pieces of a portal of the graph: itself if the graph has [`PortalForm::Exact`], else
-    /// disjoint rectangles inside of it that make up the opening. All are crossed forward.
-    ///
-    /// # Panics
-    /// If the graph has no such portal.
-    pub fn pieces(&self, portal: PortalId) -> &[AxialDoor] {
-        let i = portal.idx();
-        &self.pieces[self.first_piece[i] as usize..self.first_piece[i + 1] as usize]
-    }
-
     /// The one cell of the graph that `p`, in scene units, is counted to; none outside the tree's bounds,
     /// for NaN, and inside of what is left out. On the border between the two it is a cell that is not
     /// left out.
@@ -242,16 +196,6 @@ impl SceneSubdivision {
     /// All closed cells of the graph that contain `p`, in scene units, ascending.
     pub fn locate_all(&self, p: [f64; 3]) -> Vec<CellId> {
         self.tree.locate_all(p).into_iter().filter_map(|leaf| self.cell_of(leaf)).collect()
-    }
-
-    /// The tree for point location at run time: each leaf lists its cell of the graph, or nothing.
-    /// O(nodes).
-    pub fn locator_nodes(&self) -> Vec<LocatorNode> {
-        let node = |node: &AxialNode| match *node {
-            AxialNode::Leaf(leaf) => LocatorNode::Leaf { cells: self.cell_of(leaf).into_iter().collect() },
-            AxialNode::Inner { axis, at, low, high } => LocatorNode::Inner { axis: axis as u8, split: at, low, high },
-        };
-        self.tree.nodes().iter().map(node).collect()
     }
 }
 
@@ -279,11 +223,9 @@ fn summarise(
     }
 }
 
-fn door(portal: &AxialPortal<3>) -> AxialDoor {
-    AxialDoor { extent: Aabb { min: portal.min, max: portal.max }, axis: portal.axis as u8, forward: true }
-}
-
 fn portal(portal: &AxialPortal<3>, cells: [CellId; 2]) -> Portal<Axial> {
     let low_side = 2 * portal.axis as u32;
-    Portal { cells, sides: [low_side + 1, low_side], shape: door(portal) }
+    let extent = Aabb { min: portal.min, max: portal.max };
+    let shape = AxialDoor { extent, axis: portal.axis as u8, forward: true };
+    Portal { cells, sides: [low_side + 1, low_side], shape }
 }

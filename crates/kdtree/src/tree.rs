@@ -1,8 +1,8 @@
 //! The finished subdivision: cells, portals, and which cell a point is in.
 
-use crate::portals::{AxialPortal, PortalForm, bounding_portals};
+use crate::portals::AxialPortal;
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, LocatorNode};
+use sightlines_pvs::CellId;
 
 /// A node of the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,14 +60,6 @@ impl<const D: usize> AxialTree<D> {
         &self.portals
     }
 
-    /// All portals in the form asked for, in the same order. O(portals).
-    pub fn portals_in(&self, form: PortalForm) -> Vec<AxialPortal<D>> {
-        match form {
-            PortalForm::Exact => self.portals.clone(),
-            PortalForm::Bounding => bounding_portals(&self.portals),
-        }
-    }
-
     /// Number of pieces of faces left inside of cells, which hide nothing; 0 if the threshold was 0.
     pub fn n_detail(&self) -> usize {
         self.n_detail
@@ -109,17 +101,5 @@ impl<const D: usize> AxialTree<D> {
             }
         }
         found
-    }
-
-    /// The tree for point location at run time: each leaf lists its own cell. O(nodes).
-    ///
-    /// The run-time table accepts trees of limited depth only. It is also free to make a tree of its own
-    /// from the cells' boxes.
-    pub fn locator_nodes(&self) -> Vec<LocatorNode> {
-        let node = |node: &AxialNode| match *node {
-            AxialNode::Leaf(cell) => LocatorNode::Leaf { cells: vec![cell] },
-            AxialNode::Inner { axis, at, low, high } => LocatorNode::Inner { axis: axis as u8, split: at, low, high },
-        };
-        self.nodes.iter().map(node).collect()
     }
 }

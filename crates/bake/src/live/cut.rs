@@ -26,7 +26,7 @@ impl Cut {
         let solid = cut.left_out();
         let graph = match portals {
             PortalMode::Bounding => loosened(&cut.graph),
-            PortalMode::Exact | PortalMode::TwoLevel => cut.graph,
+            PortalMode::Exact => cut.graph,
         };
         Ok(Self { graph, solid, summary: cut.summary })
     }

@@ -18,7 +18,7 @@ use crate::scene::{PortalMode, SceneBakeOptions, drawn_box, info, scene_table};
 use cut::Cut;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, PortalId, Scene};
 use sightlines_geometry::Aabb;
-use sightlines_kdtree::{PortalForm, SceneCutter, SceneOptions};
+use sightlines_kdtree::{SceneCutter, SceneOptions};
 use sightlines_pvs::Table;
 use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceUpdate};
 use std::time::{Duration, Instant};
@@ -57,14 +57,13 @@ pub struct LiveUpdate {
 }
 
 impl LiveScene {
-    /// Bakes a scene as [`bake_scene`](crate::bake_scene) does, and keeps what updates need. With
-    /// [`PortalMode::TwoLevel`] the exact pieces are asked at once: the answer is the same.
+    /// Bakes a scene as [`bake_scene`](crate::bake_scene) does, and keeps what updates need.
     ///
     /// # Errors
     /// As [`bake_scene`](crate::bake_scene).
     pub fn new(scene: Scene, options: &SceneBakeOptions<'_>) -> Result<Self, BakeError> {
         let (portals, threads) = (options.portals, options.threads);
-        let cutting = SceneOptions { portals: PortalForm::Exact, ..options.cut };
+        let cutting = options.cut;
         let mut cutter = SceneCutter::default();
         let cut = Cut::of(&mut cutter, &scene, &cutting, portals)?;
         let search = SearchOptions { threads, progress: options.progress, ..SearchOptions::default() };

@@ -17,7 +17,7 @@ use crate::scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene, loosene
 use sightlines_cells::Scene;
 use sightlines_formats::ViewCells;
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_kdtree::{PortalForm, SceneOptions, SceneSubdivision, subdivide_scene};
+use sightlines_kdtree::{SceneOptions, SceneSubdivision, subdivide_scene};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Split, Volume, VolumeError, Witness};
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, Table, TableError, TableParts};
 use sightlines_stabtree::{AskedOfBoxes, Progress, SearchOptions, SeenFromBoxes, see_from_boxes};
@@ -141,8 +141,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
             kd_known(baked.table.parts().clone())
         }
         CellsFrom::KdTree => {
-            let cut = subdivide_scene(scene, &SceneOptions { portals: PortalForm::Exact, ..options.cut })
-                .map_err(BakeError::from)?;
+            let cut = subdivide_scene(scene, &options.cut).map_err(BakeError::from)?;
             kd_parts(scene, &cut, boxes.len())
         }
         CellsFrom::Boxes(cells) => box_parts(cells, boxes.len()),
@@ -211,12 +210,7 @@ fn past_walls(
     doubt: &AskedOfBoxes,
 ) -> Result<SeenFromBoxes, BakeError> {
     let ends = [scene.bounds().min, scene.bounds().max].into_iter().chain(cells.iter().flat_map(|b| [b.min, b.max]));
-    let cut = SceneOptions {
-        portals: PortalForm::Exact,
-        keep_solid: true,
-        view_region: Some(Aabb::around(ends)),
-        ..options.cut
-    };
+    let cut = SceneOptions { keep_solid: true, view_region: Some(Aabb::around(ends)), ..options.cut };
     let cut = subdivide_scene(scene, &cut)?;
     let loose = (options.portals == PortalMode::Bounding).then(|| loosened(&cut.graph));
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };

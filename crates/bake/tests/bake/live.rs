@@ -123,7 +123,7 @@ fn live_tables_equal_tables_baked_anew() {
     let config = ProptestConfig::with_source_file(file!());
     let cases = u64::from(config.cases);
     let mut runner = proptest::test_runner::TestRunner::new(config);
-    let mode = prop_oneof![Just(PortalMode::Exact), Just(PortalMode::Bounding), Just(PortalMode::TwoLevel)];
+    let mode = prop_oneof![Just(PortalMode::Exact), Just(PortalMode::Bounding)];
     let strategy = (a_few_boxes(), edits(), mode, 1..3usize);
     let result = runner.run(&strategy, |(scene, edits, portals, threads)| {
         let cut = SceneOptions { detail_below: Some(0.0), ..SceneOptions::default() };

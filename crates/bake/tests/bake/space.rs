@@ -2,10 +2,12 @@
 
 use sightlines_bake::{PortalMode, SceneBakeOptions, axial_graph_of, bake_scene, graph_of};
 use sightlines_cells::{Axial, CellGraph, CellId};
+use sightlines_geometry::Aabb;
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableParts};
 use sightlines_scenes::{TowerOptions, tower};
 use sightlines_sightline::Target;
 use sightlines_stabtree::{SpaceExplanation, explain_space};
+use std::collections::BTreeSet;
 
 const MODES: [PortalMode; 2] = [PortalMode::Exact, PortalMode::Bounding];
 
@@ -17,6 +19,22 @@ fn baked(portals: PortalMode) -> Table {
 
 fn graph(table: &Table) -> CellGraph<Axial> {
     axial_graph_of(table).expect("the table has its geometry")
+}
+
+/// With bounding portals there is one portal for each pair of cells that has any, the smallest rectangle around the
+/// exact ones.
+#[test]
+fn bounding_portals_are_around_the_exact_ones() {
+    let [exact, bounding] = MODES.map(|mode| graph(&baked(mode)));
+    let pairs = |graph: &CellGraph<Axial>| graph.portals().iter().map(|p| p.cells).collect::<BTreeSet<_>>();
+    assert_eq!(pairs(&exact), pairs(&bounding));
+    assert_eq!(pairs(&bounding).len(), bounding.portals().len());
+    assert!(bounding.portals().len() < exact.portals().len(), "some openings have several pieces");
+    for portal in bounding.portals() {
+        let pieces = exact.portals().iter().filter(|p| p.cells == portal.cells);
+        let around = Aabb::around(pieces.flat_map(|p| [p.shape.extent.min, p.shape.extent.max]));
+        assert_eq!(portal.shape.extent, around);
+    }
 }
 
 /// The same table with other portals and rows.

@@ -4,7 +4,7 @@ use crate::common::{SIDE_2D, SIDE_3D, cell_at, centres, cut, faces, grid, unit_w
 use proptest::prelude::*;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{AxialFace, AxialNode, AxialTree, FaceClass, classify};
-use sightlines_pvs::{CellId, Locator};
+use sightlines_pvs::{CellId, Locator, LocatorNode};
 
 /// Volumes add up, no unit cube is in two cells, and the tree finds for each point the cell that
 /// comparing with all cells finds.
@@ -74,7 +74,11 @@ fn check_nodes<const D: usize>(tree: &AxialTree<D>, faces: &[AxialFace<D>]) {
             assert!(faces.iter().any(|f| f.axis == axis && f.at == at), "{axis} at {at} is no face's plane");
         }
     }
-    Locator::from_nodes(&tree.locator_nodes()).expect("a tree");
+    let node = |node: &AxialNode| match *node {
+        AxialNode::Leaf(cell) => LocatorNode::Leaf { cells: vec![cell] },
+        AxialNode::Inner { axis, at, low, high } => LocatorNode::Inner { axis: axis as u8, split: at, low, high },
+    };
+    Locator::from_nodes(&tree.nodes().iter().map(node).collect::<Vec<_>>()).expect("a tree");
 }
 
 fn check_all<const D: usize>(faces: &[AxialFace<D>], n: u32) -> Result<(), TestCaseError> {
