@@ -9,7 +9,7 @@ use sightlines::cells::{CellGraph, CellId, PortalId, Scene, SceneObject};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::scenes::{TowerOptions, tower};
-use sightlines::stabtree::{Known, SearchOptions, SeenInSpace, see_space};
+use sightlines::stabtree::{SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
 use sightlines_benches::chart::{Panel, Series, svg};
 use std::error::Error;
 use std::path::PathBuf;
@@ -219,7 +219,7 @@ fn keep(best: &mut [f64; 5], update: &LiveUpdate, seconds: f64) {
 }
 
 /// Who sees whom in a live scene, found anew with the portals that are closed as walls.
-fn see_closed(live: &LiveScene, threads: usize) -> Result<SeenInSpace, Box<dyn Error>> {
+fn see_closed(live: &LiveScene, threads: usize) -> Result<SpaceVisibility, Box<dyn Error>> {
     let cut = subdivide_scene(live.scene(), &SceneOptions::default())?;
     let closed = live.closed_portals();
     let open = (0u32..).zip(cut.graph.portals()).filter(|(id, _)| !closed.contains(&PortalId(*id)));
@@ -227,11 +227,11 @@ fn see_closed(live: &LiveScene, threads: usize) -> Result<SeenInSpace, Box<dyn E
     let boxes = live.scene().objects().iter().map(|o| Aabb::around(o.corners().flatten()));
     let boxes: Vec<Aabb<3>> = boxes.collect();
     let search = SearchOptions { threads, ..SearchOptions::default() };
-    Ok(see_space(&graph, &cut.left_out(), &boxes, &Known::nothing(graph.n_cells()), &search))
+    Ok(space_visibility(&graph, &cut.left_out(), &boxes, &VisibilityBounds::nothing(graph.n_cells()), &search))
 }
 
 /// Whether a table says what was found.
-fn says(live: &LiveScene, seen: &SeenInSpace) -> bool {
+fn says(live: &LiveScene, seen: &SpaceVisibility) -> bool {
     let cells = (0..live.table().n_cells() as u32).map(CellId);
     cells.into_iter().all(|cell| {
         live.table().visible(cell).map(|c| c.idx()).eq(seen.cells.iter_ones(cell.idx()))

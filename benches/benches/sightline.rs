@@ -6,7 +6,7 @@ use sightlines::cells::Plan;
 use sightlines::geometry::{Adaptive, Orient2d, Portal2};
 use sightlines::scenes;
 use sightlines::sightline::lp::{LpAnswer, stab};
-use sightlines::sightline::{Certificate, Funnel};
+use sightlines::sightline::{Funnel, PlanarCertificate};
 use sightlines_benches::{corridors, graph};
 
 fn main() {
@@ -54,7 +54,7 @@ fn bench_funnel<O: Orient2d>(bencher: Bencher<'_, '_>, scene: &str, orient: O) {
     let mut funnel = Funnel::new(orient);
     let mut undos = Vec::new();
     for doors in &corridors {
-        assert_eq!(run(&mut funnel, doors, &mut undos), Certificate::find(doors).is_none(), "{scene}");
+        assert_eq!(run(&mut funnel, doors, &mut undos), PlanarCertificate::find(doors).is_none(), "{scene}");
     }
     bencher
         .counter(ItemsCount::new(pushes))
@@ -80,7 +80,7 @@ fn lp_reference(bencher: Bencher<'_, '_>, scene: &str) {
     let corridors: Vec<_> = sequences(scene).into_iter().take(50).collect();
     for doors in &corridors {
         let open = matches!(stab(doors), LpAnswer::Open { .. });
-        assert!(!open || Certificate::find(doors).is_none(), "{scene}: the program opens a blocked sequence");
+        assert!(!open || PlanarCertificate::find(doors).is_none(), "{scene}: the program opens a blocked sequence");
     }
     let n = corridors.len();
     bencher.counter(ItemsCount::new(n)).bench_local(move || {

@@ -4,7 +4,7 @@ use crate::mirrors;
 use crate::table::{TableOptions, table_of};
 use sightlines_cells::{CellGraph, Plan, PlanError, Planar};
 use sightlines_pvs::{Table, TableError, TableParts};
-use sightlines_stabtree::{Progress, SearchOptions, Zones, see_plan};
+use sightlines_stabtree::{Progress, SearchOptions, Zones, plan_visibility};
 use sightlines_triangulation::TriangulationError;
 use std::fmt;
 use std::str::FromStr;
@@ -160,7 +160,7 @@ pub fn bake_plan(plan: &Plan, options: &BakeOptions<'_>) -> Result<Baked, BakeEr
     summary.cut_time = start.elapsed();
     let search = SearchOptions { threads: options.threads, chords: options.chords, progress: options.progress };
     let start = Instant::now();
-    let (rows, found) = see_plan(&graph, &Zones::cells(&graph), &search);
+    let (rows, found) = plan_visibility(&graph, &Zones::cells(&graph), &search);
     summary.see_time = start.elapsed();
     summary.n_cells = graph.n_cells();
     summary.n_portals = graph.portals().len();

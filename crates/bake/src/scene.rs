@@ -7,7 +7,7 @@ use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
 use sightlines_pvs::{CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableError, TableParts};
 use sightlines_sightline::ShaftCounters;
-use sightlines_stabtree::{Known, Progress, SearchOptions, SeenInSpace, see_space};
+use sightlines_stabtree::{Progress, SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
 use std::time::{Duration, Instant};
 
 /// Which portals the search goes through.
@@ -90,12 +90,12 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
     let boxes: Vec<Aabb<3>> = scene.objects().iter().map(drawn_box).collect();
     let solid = cut.left_out();
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
-    let nothing = Known::nothing(cut.graph.n_cells());
+    let nothing = VisibilityBounds::nothing(cut.graph.n_cells());
     let graph = match options.portals {
         PortalMode::Bounding => loosened(&cut.graph),
         PortalMode::Exact => cut.graph,
     };
-    let seen = see_space(&graph, &solid, &boxes, &nothing, &search);
+    let seen = space_visibility(&graph, &solid, &boxes, &nothing, &search);
     let see_time = start.elapsed();
     let n_visible_pairs = (seen.cells.count_ones() - graph.n_cells() as u64) / 2;
     let (n_objects_seen, counters) = (seen.objects.count_ones(), seen.counters);
@@ -167,7 +167,7 @@ pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(S
 /// The table of a scene that was cut, when it is known who sees whom.
 pub(crate) fn scene_table(
     graph: &CellGraph<Axial>,
-    seen: SeenInSpace,
+    seen: SpaceVisibility,
     scene: &Scene,
     boxes: &[Aabb<3>],
     info: Vec<(String, String)>,

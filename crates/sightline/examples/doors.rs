@@ -4,14 +4,14 @@
 
 use sightlines_geometry::{Adaptive, Point2, Portal2};
 use sightlines_sightline::lp::{LpAnswer, stab};
-use sightlines_sightline::{Certificate, End, Funnel, SightlineError, Stabbing2, Witness, stabbing_line};
+use sightlines_sightline::{End, Funnel, PlanarCertificate, PlanarWitness, SightlineError, Stabbing2, stabbing_line};
 
 /// A door across a corridor that runs towards +x, from `low` to `high`.
 fn door(x: f64, low: f64, high: f64) -> Portal2 {
     Portal2 { left: Point2::new(x, high), right: Point2::new(x, low) }
 }
 
-fn print_witness(line: &Witness, doors: &[Portal2]) {
+fn print_witness(line: &PlanarWitness, doors: &[Portal2]) {
     let [a, b, c] = line.coefficients();
     println!("  open: the line {a} x + {b} y + {c} = 0 passes every door:");
     for &portal in doors {
@@ -23,7 +23,7 @@ fn print_witness(line: &Witness, doors: &[Portal2]) {
     }
 }
 
-fn print_proof(proof: &Certificate, doors: &[Portal2]) {
+fn print_proof(proof: &PlanarCertificate, doors: &[Portal2]) {
     let name = |end: &End| {
         let portal = doors[end.portal];
         format!("{} of door {}", if end.left { portal.left } else { portal.right }, end.portal)

@@ -7,7 +7,7 @@ use sightlines_geometry::Adaptive;
 use sightlines_pvs::BitMatrix;
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_sightline::Funnel;
-use sightlines_stabtree::{Explanation, SearchOptions, StabTree, Zones, explain, see_plan};
+use sightlines_stabtree::{Explanation, SearchOptions, StabTree, Zones, explain, plan_visibility};
 
 /// Where a cell is.
 fn place(graph: &CellGraph<Planar>, cell: CellId) -> String {
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         office(OfficeOptions { seed: 3, rooms_x: 8, rooms_y: 2, furniture: false, ..OfficeOptions::default() })?;
     let (graph, _) = sightlines_triangulation::subdivide(&floor)?;
     let zones = Zones::cells(&graph);
-    let (seen, summary) = see_plan(&graph, &zones, &SearchOptions::default());
+    let (seen, summary) = plan_visibility(&graph, &zones, &SearchOptions::default());
     let n = graph.n_cells() as u64;
     let n_visible = (seen.count_ones() - n) / 2;
     println!("{n} cells, {} portals: {n_visible} of {} pairs see each other", graph.portals().len(), n * (n - 1) / 2);

@@ -2,7 +2,7 @@
 
 use sightlines_cells::{CellGraph, CellId, Exit, Planar, PortalId, Space};
 use sightlines_geometry::{Adaptive, Portal2};
-use sightlines_sightline::{Certificate, Funnel, Witness};
+use sightlines_sightline::{Funnel, PlanarCertificate, PlanarWitness};
 
 /// A sequence of portals that no open set of lines passes, though one passes all but the last.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -10,7 +10,7 @@ pub struct BlockedSequence {
     /// The portals, in order.
     pub portals: Vec<PortalId>,
     /// Why.
-    pub certificate: Certificate,
+    pub certificate: PlanarCertificate,
 }
 
 /// The answer for two cells.
@@ -25,7 +25,7 @@ pub enum Explanation {
         /// The same portals as who walks through them sees them.
         doors: Vec<Portal2>,
         /// A line through all of them.
-        witness: Box<Witness>,
+        witness: Box<PlanarWitness>,
     },
     /// They do not: every sequence of portals towards the target ends at a blocked one.
     Hidden {
@@ -121,7 +121,7 @@ impl Search<'_> {
     fn note_blocked(&mut self) {
         self.n_blocked += 1;
         if self.blocked.len() < self.max_proofs {
-            let certificate = Certificate::find(&self.doors()).expect("what the funnel blocks has meeting hulls");
+            let certificate = PlanarCertificate::find(&self.doors()).expect("what the funnel blocks has meeting hulls");
             self.blocked.push(BlockedSequence { portals: self.portals(), certificate });
         }
     }

@@ -2,8 +2,8 @@
 //! boxes, driven by what stands between them.
 //!
 //! Owns: [`visible_zones`] (which cells, or groups of cells, see each other, by portal sequences),
-//! [`see_space`] (the same for boxes in space, and for objects, by what stands between them), [`LiveSpace`] (that answer
-//! kept up to date while walls and objects change), [`see_from_boxes`] (what boxes see that are no cells),
+//! [`space_visibility`] (the same for boxes in space, and for objects, by what stands between them), [`LiveSpace`] (that answer
+//! kept up to date while walls and objects change), [`box_visibility`] (what boxes see that are no cells),
 //! [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
 //! [`StabTree`] (every stabbable portal sequence out of one cell), [`stab_trees`] (those out of all cells, in one graph,
 //! up to a limit), [`explain`](fn@explain),
@@ -28,14 +28,14 @@ pub use certify::{CertifyOptions, certify_plan, certify_space, plan_network, spa
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
     BlockedConvex, Blocking, ByPolygons, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,
-    ConvexSearch, ConvexState, MOST_EXPLAINED, SeenThroughPortals, certify_convex, convex_network, explain_convex,
+    ConvexSearch, ConvexState, ConvexVisibility, MOST_EXPLAINED, certify_convex, convex_network, explain_convex,
 };
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
-pub use search::{Known, Progress, SearchOptions, SearchSummary, Seen, visible_zones};
+pub use search::{Progress, SearchOptions, SearchSummary, VisibilityBounds, ZoneVisibility, visible_zones};
 pub use space::{
-    AskedOfBoxes, LiveSpace, SeenFromBoxes, SeenInSpace, SpaceExplanation, SpaceUpdate, explain_space, see_from_boxes,
-    see_space,
+    BoxVisibility, LiveSpace, PairMask, SpaceExplanation, SpaceUpdate, SpaceVisibility, box_visibility, explain_space,
+    space_visibility,
 };
 pub use tree::{
     ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of, portal_of,
@@ -59,8 +59,12 @@ struct ReadmeDoctests;
 /// set of lines leads from a cell of one zone through portals into a cell of the other.
 ///
 /// Cost: see [`visible_zones`].
-pub fn see_plan(graph: &CellGraph<Planar>, zones: &Zones, options: &SearchOptions<'_>) -> (BitMatrix, SearchSummary) {
-    let known = Known { visible: shoot_chords(graph, zones, options.chords), possible: None };
+pub fn plan_visibility(
+    graph: &CellGraph<Planar>,
+    zones: &Zones,
+    options: &SearchOptions<'_>,
+) -> (BitMatrix, SearchSummary) {
+    let known = VisibilityBounds { visible: shoot_chords(graph, zones, options.chords), possible: None };
     let network = Network::planar(graph, zones);
     let seen = match graph.small_grid() {
         Some(grid) => visible_zones(&network, &Funnel::new(grid), &known, options),

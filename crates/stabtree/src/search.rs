@@ -65,7 +65,7 @@ const MAX_FRONT_WORDS: usize = 8 << 20;
 
 /// What is known before a search. It changes no answer, only the cost.
 #[derive(Debug, Clone)]
-pub struct Known {
+pub struct VisibilityBounds {
     /// Zones by zones: pairs that see each other; a subset of the truth, at least the diagonal.
     pub visible: BitMatrix,
     /// Zones by zones, and zones by objects: all pairs but some that do not see each other; supersets of
@@ -73,7 +73,7 @@ pub struct Known {
     pub possible: Option<(BitMatrix, BitMatrix)>,
 }
 
-impl Known {
+impl VisibilityBounds {
     /// Nothing but that every zone sees itself.
     pub fn nothing(n_zones: usize) -> Self {
         Self { visible: BitMatrix::identity(n_zones), possible: None }
@@ -82,7 +82,7 @@ impl Known {
 
 /// The answer of a search.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Seen {
+pub struct ZoneVisibility {
     /// Zones by zones: symmetric, with the diagonal set.
     pub zones: BitMatrix,
     /// Zones by objects: which objects are seen from which zones.
@@ -104,9 +104,9 @@ pub struct Seen {
 pub fn visible_zones<S>(
     network: &Network<S::Portal, S::Bounds>,
     stabber: &S,
-    known: &Known,
+    known: &VisibilityBounds,
     options: &SearchOptions<'_>,
-) -> Seen
+) -> ZoneVisibility
 where
     S: Stabber,
     S::Portal: Sync,
@@ -149,7 +149,7 @@ where
         })
     };
     let (zones, objects) = shared.into_matrices();
-    Seen { zones, objects, summary }
+    ZoneVisibility { zones, objects, summary }
 }
 
 /// A row of ones, with the bits past the last one clear.
@@ -213,7 +213,7 @@ struct Shared<'a, P, B> {
 }
 
 impl<'a, P: Copy, B> Shared<'a, P, B> {
-    fn new<S>(network: &'a Network<P, B>, stabber: &S, known: &Known) -> Self
+    fn new<S>(network: &'a Network<P, B>, stabber: &S, known: &VisibilityBounds) -> Self
     where
         S: Stabber<Portal = P, Bounds = B>,
     {

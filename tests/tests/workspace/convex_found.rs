@@ -5,7 +5,7 @@ use sightlines::formats::quake::graph_of_prt;
 use sightlines::formats::quake::prt::parse_prt;
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::sightline::{Line3, convex};
-use sightlines::stabtree::{ConvexOptions, ConvexSearch, SeenThroughPortals};
+use sightlines::stabtree::{ConvexOptions, ConvexSearch, ConvexVisibility};
 
 /// A cut leaves a speck of a portal; a later beam through the whole of it is not within that speck.
 const WITHIN: &str = "\
@@ -53,7 +53,7 @@ fn graph(text: &str) -> CellGraph<Convex> {
     graph_of_prt(&parse_prt(text.as_bytes()).expect("a portal file"))
 }
 
-fn exact(graph: &CellGraph<Convex>) -> SeenThroughPortals {
+fn exact(graph: &CellGraph<Convex>) -> ConvexVisibility {
     let mut search = ConvexSearch::new(graph, ConvexOptions::default());
     while search.advance() {}
     search.finish()

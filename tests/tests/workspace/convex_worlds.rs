@@ -5,16 +5,16 @@ use sightlines::pvs::{BitMatrix, CellId};
 use sightlines::scenes::world::{
     BspWorldOptions, QuakeLikeOptions, World, bsp_world, corridor, corridor_sees, quake_like, world_families,
 };
-use sightlines::stabtree::{ConvexOptions, ConvexSearch, SeenThroughPortals};
+use sightlines::stabtree::{ConvexOptions, ConvexSearch, ConvexVisibility};
 use sightlines_testkit::convex::{Sight, seen_by_rays, sight_by_solids};
 
-fn search(world: &World, options: ConvexOptions) -> SeenThroughPortals {
+fn search(world: &World, options: ConvexOptions) -> ConvexVisibility {
     let mut search = ConvexSearch::new(&world.graph, options);
     while search.advance() {}
     search.finish()
 }
 
-fn exact(world: &World) -> SeenThroughPortals {
+fn exact(world: &World) -> ConvexVisibility {
     search(world, ConvexOptions::default())
 }
 
@@ -32,7 +32,7 @@ fn sees(cells: &BitMatrix, [a, b]: [u32; 2]) -> bool {
 }
 
 /// What every table has to be: symmetric, with a full diagonal, its undecided pairs visible and in order.
-fn check_table(name: &str, world: &World, seen: &SeenThroughPortals) {
+fn check_table(name: &str, world: &World, seen: &ConvexVisibility) {
     let n = world.graph.n_cells();
     assert_eq!((seen.cells.n_rows(), seen.cells.n_cols()), (n, n), "{name}");
     assert!((0..n).all(|a| seen.cells.get(a, a)), "{name}: a cell sees itself");

@@ -19,7 +19,7 @@ use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::visibility::{check_portals, lump};
 use sightlines_formats::quake::{Bsp, Prt, graph_of_prt};
 use sightlines_pvs::Table;
-use sightlines_stabtree::{ConvexOptions, ConvexSearch, ConvexState, SeenThroughPortals};
+use sightlines_stabtree::{ConvexOptions, ConvexSearch, ConvexState, ConvexVisibility};
 use std::fmt;
 use std::time::{Duration, Instant};
 
@@ -65,7 +65,7 @@ pub struct BakedPrt {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeenClusters {
     /// The answer of the search, and what it did.
-    pub seen: SeenThroughPortals,
+    pub seen: ConvexVisibility,
     /// Portals that the search went through: all of the file but those without area.
     pub n_portals: usize,
     /// Time of the search, of this run.

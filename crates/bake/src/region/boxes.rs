@@ -4,7 +4,7 @@ use sightlines_formats::ViewCells;
 use sightlines_formats::view_cells::ViewCell;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::BitMatrix;
-use sightlines_stabtree::{AskedOfBoxes, SeenFromBoxes};
+use sightlines_stabtree::{BoxVisibility, PairMask};
 
 /// No cells along an axis of a grid, or more than a table should have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -39,7 +39,7 @@ pub fn grid(region: &Aabb<3>, n: [u32; 3]) -> Result<ViewCells, GridError> {
 }
 
 /// Clears in matrices of boxes and of objects what was in doubt and turned out to be hidden.
-pub(super) fn clear_hidden(of: [&mut BitMatrix; 2], doubt: &AskedOfBoxes, answer: &SeenFromBoxes) {
+pub(super) fn clear_hidden(of: [&mut BitMatrix; 2], doubt: &PairMask, answer: &BoxVisibility) {
     let [rows, objects] = of;
     let pairs = [(rows, &doubt.boxes, &answer.boxes), (objects, &doubt.objects, &answer.objects)];
     for (matrix, doubt, answer) in pairs {
@@ -51,13 +51,8 @@ pub(super) fn clear_hidden(of: [&mut BitMatrix; 2], doubt: &AskedOfBoxes, answer
 }
 
 /// What is visible and neither proven so nor touching.
-pub(super) fn in_doubt(
-    rows: &BitMatrix,
-    objects: &BitMatrix,
-    proven: &AskedOfBoxes,
-    touching: &[Vec<u32>],
-) -> AskedOfBoxes {
-    let mut doubt = AskedOfBoxes { boxes: rows.clone(), objects: objects.clone() };
+pub(super) fn in_doubt(rows: &BitMatrix, objects: &BitMatrix, proven: &PairMask, touching: &[Vec<u32>]) -> PairMask {
+    let mut doubt = PairMask { boxes: rows.clone(), objects: objects.clone() };
     for (row, touched) in touching.iter().enumerate() {
         let less = |matrix: &mut BitMatrix, known: &BitMatrix| {
             matrix.row_mut(row).iter_mut().zip(known.row(row)).for_each(|(word, known)| *word &= !known);

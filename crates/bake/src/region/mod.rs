@@ -2,7 +2,7 @@
 //!
 //! A from-region method ([`FromRegion`]) says for each cell which objects are hidden from all of it, and which other
 //! cells. Sightlines say the same in another way, of the cells of a k-d tree ([`bake_scene`]) or of given boxes
-//! ([`see_from_boxes`]); what either calls hidden is hidden, so the two can be put together. Of given boxes the method is asked first, and
+//! ([`box_visibility`]); what either calls hidden is hidden, so the two can be put together. Of given boxes the method is asked first, and
 //! sightlines only where neither it nor a ray has told. Rays are traced in doubles: what one seems to reach through the crack
 //! between two surfaces is left visible.
 
@@ -20,7 +20,7 @@ use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{SceneOptions, SceneSubdivision, subdivide_scene};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Split, Volume, VolumeError, Witness};
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, Table, TableError, TableParts};
-use sightlines_stabtree::{AskedOfBoxes, Progress, SearchOptions, SeenFromBoxes, see_from_boxes};
+use sightlines_stabtree::{BoxVisibility, PairMask, Progress, SearchOptions, box_visibility};
 use std::fmt;
 use std::time::{Duration, Instant};
 
@@ -149,7 +149,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let volumes = volumes(&known.cells)?;
     let touching = see::touching(&known.cells, &boxes);
     let n = known.cells.len();
-    let mut proven = AskedOfBoxes { boxes: BitMatrix::identity(n), objects: BitMatrix::new(n, boxes.len()) };
+    let mut proven = PairMask { boxes: BitMatrix::identity(n), objects: BitMatrix::new(n, boxes.len()) };
     let (mut rows, mut objects, effort, method) = match options.method {
         Some(make) => {
             let method = make().name();
@@ -207,15 +207,15 @@ fn past_walls(
     options: &RegionBakeOptions<'_>,
     cells: &[Aabb<3>],
     objects: &[Aabb<3>],
-    doubt: &AskedOfBoxes,
-) -> Result<SeenFromBoxes, BakeError> {
+    doubt: &PairMask,
+) -> Result<BoxVisibility, BakeError> {
     let ends = [scene.bounds().min, scene.bounds().max].into_iter().chain(cells.iter().flat_map(|b| [b.min, b.max]));
     let cut = SceneOptions { keep_solid: true, view_region: Some(Aabb::around(ends)), ..options.cut };
     let cut = subdivide_scene(scene, &cut)?;
     let loose = (options.portals == PortalMode::Bounding).then(|| loosened(&cut.graph));
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
     let graph = loose.as_ref().unwrap_or(&cut.graph);
-    Ok(see_from_boxes(graph, &cut.left_out(), cells, objects, doubt, &search))
+    Ok(box_visibility(graph, &cut.left_out(), cells, objects, doubt, &search))
 }
 
 fn volumes(cells: &[Aabb<3>]) -> Result<Vec<Volume>, RegionBakeError> {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Umbra, Volume, Witness, adaptive};
 use sightlines_pvs::BitMatrix;
-use sightlines_stabtree::AskedOfBoxes;
+use sightlines_stabtree::PairMask;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rays to a cell before the method is asked: most pairs of cells that see each other do so in many ways.
@@ -22,7 +22,7 @@ pub(super) struct Scene<'a> {
 pub(super) struct Seen {
     pub(super) rows: BitMatrix,
     pub(super) objects: BitMatrix,
-    pub(super) proven: AskedOfBoxes,
+    pub(super) proven: PairMask,
     pub(super) effort: Effort,
 }
 
@@ -56,7 +56,7 @@ pub(super) fn see(
     let found: Vec<Row> =
         pool.install(|| (0..n).into_par_iter().map_init(make, one).collect::<Result<_, BackendError>>())?;
     let mut effort = Effort::default();
-    let mut proven = AskedOfBoxes { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, scene.occludees.len()) };
+    let mut proven = PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, scene.occludees.len()) };
     for (a, row) in found.iter().enumerate() {
         effort = effort + row.effort;
         for (b, visible) in row.cells.iter().enumerate() {

@@ -11,7 +11,7 @@ use sightlines_formats::quake::visibility::{VisibilityError, read_visibility};
 use sightlines_formats::quake::{Bsp, Prt, graph_of_prt, prt::parse_prt};
 use sightlines_pvs::{BitMatrix, Table};
 use sightlines_scenes::{TowerOptions, tower};
-use sightlines_stabtree::{ConvexCounters, ConvexOptions, ConvexSearch, ConvexState, SeenThroughPortals};
+use sightlines_stabtree::{ConvexCounters, ConvexOptions, ConvexSearch, ConvexState, ConvexVisibility};
 use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
 
 #[path = "../../../formats/tests/formats/common/quake.rs"]
@@ -48,7 +48,7 @@ fn grid(columns: u32, rows: u32) -> Prt {
     prt
 }
 
-fn search(prt: &Prt, threads: usize, fast: bool) -> SeenThroughPortals {
+fn search(prt: &Prt, threads: usize, fast: bool) -> ConvexVisibility {
     let search = ConvexOptions { threads, fast };
     bake_prt(prt, PrtOptions { search, ..PrtOptions::default() }).unwrap().clusters.seen
 }

@@ -21,7 +21,7 @@ use std::cmp::Ordering;
 
 /// A way past a rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Way {
+pub enum Bypass {
     /// Beside an edge: the plane is crossed before the extent along an axis is entered, or after it is left.
     Beside {
         /// The axis; not the rectangle's own.
@@ -51,7 +51,7 @@ pub enum Claim {
     Taken {
         /// How many rectangles were gone past before it.
         depth: u32,
-        /// Which comparison: [`Way::Beside`] has one, the others have two, for the two axes after the rectangle's own.
+        /// Which comparison: [`Bypass::Beside`] has one, the others have two, for the two axes after the rectangle's own.
         part: u8,
     },
     /// The reverse of a way beside a rectangle that was dealt with.
@@ -59,7 +59,7 @@ pub enum Claim {
         /// How many rectangles were gone past before it.
         depth: u32,
         /// The way.
-        way: Way,
+        way: Bypass,
     },
 }
 
@@ -76,7 +76,7 @@ pub enum Branch {
         /// Which, among the blockers.
         blocker: u32,
         /// Ways past it, in the order in which they are dealt with.
-        ways: Vec<(Way, Branch)>,
+        ways: Vec<(Bypass, Branch)>,
         /// Why nothing is left after those; `None` if they are all that lines can take.
         rest: Option<Sum>,
     },
@@ -89,8 +89,8 @@ type Event = (usize, f64);
 struct Passage<'a> {
     rectangle: &'a Box3,
     axis: usize,
-    taken: Option<Way>,
-    done: Vec<Way>,
+    taken: Option<Bypass>,
+    done: Vec<Bypass>,
 }
 
 /// The lines of one choice of directions from one box to another.
@@ -126,13 +126,13 @@ impl<'a> Lines<'a> {
     }
 
     /// The comparisons of a way, earlier event first; `None` for a way that no line takes.
-    fn comparisons(&self, rectangle: &Box3, own: usize, way: Way) -> Option<Vec<[Event; 2]>> {
+    fn comparisons(&self, rectangle: &Box3, own: usize, way: Bypass) -> Option<Vec<[Event; 2]>> {
         let at = rectangle[0][own];
         let plane = (own, at);
         let others = [(own + 1) % 3, (own + 2) % 3];
         let [first, second] = self.boxes;
         match way {
-            Way::Beside { axis, before } => {
+            Bypass::Beside { axis, before } => {
                 let axis = usize::from(axis);
                 others.contains(&axis).then(|| {
                     vec![if before {
@@ -142,10 +142,10 @@ impl<'a> Lines<'a> {
                     }]
                 })
             }
-            Way::InFirst => self
+            Bypass::InFirst => self
                 .earlier(own, at, self.leave(first, own).1)
                 .then(|| others.map(|k| [plane, self.leave(first, k)]).to_vec()),
-            Way::InSecond => self
+            Bypass::InSecond => self
                 .earlier(own, self.enter(second, own).1, at)
                 .then(|| others.map(|k| [self.enter(second, k), plane]).to_vec()),
         }
@@ -226,8 +226,8 @@ impl<'a> Lines<'a> {
     /// Whether every way past a rectangle that lines can take was dealt with.
     fn all_are_done(&self, depth: usize) -> bool {
         let Passage { rectangle, axis, done, .. } = &self.path[depth];
-        let beside = (0..3u8).flat_map(|axis| [true, false].map(|before| Way::Beside { axis, before }));
-        let mut ways = beside.chain([Way::InFirst, Way::InSecond]);
+        let beside = (0..3u8).flat_map(|axis| [true, false].map(|before| Bypass::Beside { axis, before }));
+        let mut ways = beside.chain([Bypass::InFirst, Bypass::InSecond]);
         ways.all(|way| done.contains(&way) || self.comparisons(rectangle, *axis, way).is_none())
     }
 }
@@ -250,9 +250,9 @@ mod tests {
         all
     }
 
-    fn ways() -> Vec<Way> {
-        let beside = (0..3u8).flat_map(|axis| [true, false].map(|before| Way::Beside { axis, before }));
-        beside.chain([Way::InFirst, Way::InSecond]).collect()
+    fn ways() -> Vec<Bypass> {
+        let beside = (0..3u8).flat_map(|axis| [true, false].map(|before| Bypass::Beside { axis, before }));
+        beside.chain([Bypass::InFirst, Bypass::InSecond]).collect()
     }
 
     /// Two or three claims that the checker takes for a contradiction.

@@ -3,7 +3,7 @@
 //! After the frame: the checksum of the network (four bytes); lines; blockers; proofs of boxes, each with its octants. Boxes are
 //! six places among the coordinates of the network.
 
-use super::branch::{Branch, Claim, Sum, Way};
+use super::branch::{Branch, Bypass, Claim, Sum};
 use super::network::{BoxLine, BoxName};
 use super::{BoxProof, BoxProofs};
 use crate::bytes::{Kind, ReadError, ReadErrorKind, Reader, Writer, framed, is_narrow, unframed};
@@ -31,7 +31,7 @@ fn branch_can(branch: &Branch, depth: usize) -> bool {
     match branch {
         Branch::Empty(sum) => sum_can(sum),
         Branch::Past { ways, rest, .. } => {
-            let is_way = |way: Way| way_of(code_of(way)) == way;
+            let is_way = |way: Bypass| way_of(code_of(way)) == way;
             depth < DEEPEST
                 && ways.len() <= MOST_WAYS
                 && rest.iter().all(sum_can)
@@ -130,19 +130,19 @@ fn read_name(reader: &mut Reader<'_>) -> Result<BoxName, ReadError> {
 }
 
 /// Six ways beside, by axis and side, and two others.
-fn code_of(way: Way) -> u8 {
+fn code_of(way: Bypass) -> u8 {
     match way {
-        Way::Beside { axis, before } => 2 * (axis % 3) + u8::from(before),
-        Way::InFirst => 6,
-        Way::InSecond => 7,
+        Bypass::Beside { axis, before } => 2 * (axis % 3) + u8::from(before),
+        Bypass::InFirst => 6,
+        Bypass::InSecond => 7,
     }
 }
 
-fn way_of(code: u8) -> Way {
+fn way_of(code: u8) -> Bypass {
     match code {
-        0..=5 => Way::Beside { axis: code / 2, before: code % 2 == 1 },
-        6 => Way::InFirst,
-        _ => Way::InSecond,
+        0..=5 => Bypass::Beside { axis: code / 2, before: code % 2 == 1 },
+        6 => Bypass::InFirst,
+        _ => Bypass::InSecond,
     }
 }
 

@@ -11,7 +11,7 @@ mod bytes;
 mod make;
 mod network;
 
-pub use branch::{Branch, Claim, Sum, Way};
+pub use branch::{Branch, Bypass, Claim, Sum};
 pub use make::BoxMaker;
 pub use network::{Box3, BoxLine, BoxName, BoxNetwork, BoxNetworkError, BoxPortal, Point3};
 

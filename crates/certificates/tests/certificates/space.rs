@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sightlines_certificates::space::{
-    Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch, Claim, Sum, Way,
+    Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch, Bypass, Claim, Sum,
 };
 use sightlines_certificates::{Kind, NoWall, Refusal, kind_of};
 
@@ -32,14 +32,14 @@ fn network() -> BoxNetwork {
 const WALL: Box3 = [[4.0, 0.0, 0.0], [4.0, 4.0, 2.0]];
 
 /// A way beside the wall before it is entered (or after it is left) along an axis, and why no line takes it.
-fn beside(axis: u8, before: bool) -> (Way, Branch) {
+fn beside(axis: u8, before: bool) -> (Bypass, Branch) {
     let taken = (Claim::Taken { depth: 0, part: 0 }, 1.into());
     let reason = if before {
         Claim::Box { second: false, enter: axis, leave: 0 }
     } else {
         Claim::Box { second: true, enter: 0, leave: axis }
     };
-    (Way::Beside { axis, before }, Branch::Empty(vec![taken, (reason, 1.into())]))
+    (Bypass::Beside { axis, before }, Branch::Empty(vec![taken, (reason, 1.into())]))
 }
 
 /// Nothing gets past the wall, whatever the octant.
@@ -99,7 +99,7 @@ fn refused(change: impl FnOnce(&mut BoxProofs)) -> Refusal {
 
 /// The impostors, one for each thing that can be wrong.
 /// A change of the ways past a blocker, or of a sum.
-type Change<'a> = &'a dyn Fn(&mut Vec<(Way, Branch)>, &mut Option<Sum>);
+type Change<'a> = &'a dyn Fn(&mut Vec<(Bypass, Branch)>, &mut Option<Sum>);
 
 #[test]
 fn impostors_are_refused() {
@@ -171,7 +171,7 @@ fn makers_take_nothing_wrong() {
     assert_eq!(maker.finish().blockers.len(), 1);
 }
 
-type Ways = Vec<(Way, Branch)>;
+type Ways = Vec<(Bypass, Branch)>;
 
 /// What is taken comes back from bytes: nothing else is taken, true or not.
 #[test]
@@ -214,7 +214,7 @@ fn makers_take_nothing_that_bytes_cannot_hold() {
         let one = |inner: Branch, depth: u32| {
             let mut outer = past_at(depth);
             if let Branch::Past { ways, .. } = &mut outer {
-                ways.insert(0, (Way::InFirst, inner));
+                ways.insert(0, (Bypass::InFirst, inner));
             }
             outer
         };

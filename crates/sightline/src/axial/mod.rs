@@ -15,7 +15,7 @@
 //!   contradiction.
 //! * If rounding spoiled both, the same program in fractions decides.
 //! * As long as all doors face one axis, the directions along the two others do not depend on each
-//!   other, and two planar [funnels](crate::funnel) decide.
+//!   other, and two planar [funnels](crate::planar::funnel) decide.
 //!
 //! An octant without lines is left out from there on; others are looked at when it is their turn.
 //!

@@ -6,7 +6,7 @@ use super::rows::{
     reaches,
 };
 use super::witness::AxialWitness;
-use crate::funnel::{Funnel, FunnelUndo};
+use crate::planar::{Funnel, FunnelUndo};
 use crate::stabber::Stabber;
 use sightlines_geometry::{Aabb, Adaptive, AxialDoor, Point2, Portal2};
 

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sightlines_geometry::{Adaptive, Point2, Portal2, orient2d};
 use sightlines_sightline::lp::{LpAnswer, stab};
-use sightlines_sightline::{Certificate, Funnel, SightlineError, Stabbing2, stabbing_line};
+use sightlines_sightline::{Funnel, PlanarCertificate, SightlineError, Stabbing2, stabbing_line};
 use sightlines_testkit::{PortalPair, Stab, any_portals, as_portals, corridor, stabbable_brute_force};
 
 /// The funnel's answer to a whole sequence.
@@ -170,5 +170,5 @@ fn slits_of_one_ulp_are_open() {
         Portal2 { left: p(1e3, 0.3), right: p(1e3, 0.1) },
         Portal2 { left: p(1e3, 0.5), right: p(1e3, 0.3) },
     ];
-    assert!(Certificate::find(&blocked).is_some());
+    assert!(PlanarCertificate::find(&blocked).is_some());
 }

@@ -10,7 +10,7 @@ use sightlines_certificates::plan::{
 };
 use sightlines_geometry::{Adaptive, Point2, Portal2, check_coordinate};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Certificate, Funnel, FunnelUndo, Witness};
+use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, PlanarWitness};
 
 /// Lines are taken in rounds: at first only those that prove at least so many new pairs.
 const ROUNDS: [usize; 3] = [32, 6, 1];
@@ -208,7 +208,7 @@ fn missing(rows: &BitMatrix, visible: &Pairs, from: CellId) -> Vec<u64> {
 }
 
 /// A line in whole numbers.
-fn whole(witness: &Witness) -> LineForm {
+fn whole(witness: &PlanarWitness) -> LineForm {
     let [a, b, c] = witness.coefficients();
     let common = a.denom() * b.denom() * c.denom();
     LineForm::Whole(Box::new([a, b, c].map(|x| x.numer() * (&common / x.denom()))))
@@ -251,7 +251,7 @@ impl<'a> Guide<'a> {
         let choices = [holding(l0, r0), holding(l1, r1), Some((0..doors.len()).collect())];
         choices.into_iter().flatten().find_map(|few| {
             let of: Vec<Portal2> = few.iter().map(|&k| doors[k]).collect();
-            let found = Certificate::find(&of)?;
+            let found = PlanarCertificate::find(&of)?;
             let back = |ends: &[sightlines_sightline::End]| {
                 ends.iter().map(|end| (last - few[end.portal]) as u32).collect::<Vec<u32>>()
             };

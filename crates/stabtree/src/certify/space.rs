@@ -2,15 +2,16 @@
 
 use super::CertifyOptions;
 use crate::chords::SplitMix;
-use crate::space::{Marks, halves_first, on_threads, opaque_without_solid};
+use crate::space::{AtomicBitMatrix, halves_first, on_threads, opaque_without_solid};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_certificates::space::{
-    Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch as Proof, Claim, Sum, Way,
+    Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch as Proof,
+    Bypass as ProvenBypass, Claim, Sum,
 };
 use sightlines_geometry::{Aabb, BoxTree, check_coordinate};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Contradiction, Shaft, Sight, Target, WayPast};
+use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, Sight, Target};
 
 /// Lines are taken in rounds: at first only those that prove at least so many new pairs.
 const ROUNDS: [usize; 3] = [64, 8, 1];
@@ -127,7 +128,7 @@ struct Search<'a> {
     /// The cell at each place of the tree.
     cell_at: Vec<u32>,
     /// Places by places: which see each other.
-    sees: Marks,
+    sees: AtomicBitMatrix,
     /// Linear programs for a pair of cells that is hidden, and for one that is not.
     budgets: [u32; 2],
 }
@@ -148,7 +149,7 @@ impl<'a> Search<'a> {
         let cell_at = tree.order().to_vec();
         let mut place = vec![0; cell_at.len()];
         cell_at.iter().enumerate().for_each(|(at, &cell)| place[cell as usize] = at);
-        let sees = Marks::new(cell_at.len(), cell_at.len());
+        let sees = AtomicBitMatrix::new(cell_at.len(), cell_at.len());
         for (row, &cell) in cell_at.iter().enumerate() {
             for other in rows.iter_ones(cell as usize) {
                 sees.set(row, place[other]);
@@ -293,11 +294,11 @@ fn branch_of(branch: &Branch) -> Proof {
     }
 }
 
-fn way_of(way: WayPast) -> Way {
+fn way_of(way: Bypass) -> ProvenBypass {
     match way {
-        WayPast::Beside { axis, entering } => Way::Beside { axis, before: entering },
-        WayPast::Before => Way::InFirst,
-        WayPast::After => Way::InSecond,
+        Bypass::Beside { axis, entering } => ProvenBypass::Beside { axis, before: entering },
+        Bypass::Before => ProvenBypass::InFirst,
+        Bypass::After => ProvenBypass::InSecond,
     }
 }
 

@@ -20,10 +20,10 @@
 //! none, the cell is left to a later stage, which follows sequences of gates one by one.
 
 use super::ConvexCounters;
+use super::cell_set::CellSet;
 use super::cut::{Cutter, Part, Plane, Vertex, is_within, middle};
 use super::gates::{Gate, Gates};
 use super::vector::{add, sub, unit};
-use super::wanted::Wanted;
 use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
@@ -41,7 +41,7 @@ struct Beam {
     /// The beam that it came from; the first is its own.
     parent: u32,
     part: Part,
-    wanted: Wanted,
+    wanted: CellSet,
 }
 
 /// Scratch space for beams; one for each thread.
@@ -60,8 +60,8 @@ pub(super) struct BeamTracer {
     chain: Vec<u32>,
     source: Part,
     part: Part,
-    wanted: Wanted,
-    followed: Wanted,
+    wanted: CellSet,
+    followed: CellSet,
     sequence: Vec<u32>,
 }
 
@@ -89,8 +89,8 @@ impl BeamTracer {
             chain: Vec::new(),
             source: Vec::new(),
             part: Vec::new(),
-            wanted: Wanted::default(),
-            followed: Wanted::default(),
+            wanted: CellSet::default(),
+            followed: CellSet::default(),
             sequence: Vec::new(),
         }
     }
@@ -134,7 +134,7 @@ impl BeamTracer {
     /// Adds the beam of `self.part` and `self.wanted`.
     fn push(&mut self, gate: u32, parent: u32) {
         if self.n_beams_used == self.beams.len() {
-            self.beams.push(Beam { gate: 0, parent: 0, part: Vec::new(), wanted: Wanted::default() });
+            self.beams.push(Beam { gate: 0, parent: 0, part: Vec::new(), wanted: CellSet::default() });
         }
         let beam = &mut self.beams[self.n_beams_used];
         (beam.gate, beam.parent) = (gate, parent);
@@ -202,7 +202,7 @@ impl BeamTracer {
         source: u32,
         beam: u32,
         exit: u32,
-        wanted: &Wanted,
+        wanted: &CellSet,
         in_doubt: &mut [u64],
         through: &BitMatrix,
         traced: &mut Traced,
@@ -312,7 +312,7 @@ impl BeamTracer {
 }
 
 /// Drops the cells whose portals all lie below one of the planes.
-fn drop_hidden(planes: &[Plane], gates: &Gates, eps: f64, wanted: &mut Wanted) {
+fn drop_hidden(planes: &[Plane], gates: &Gates, eps: f64, wanted: &mut CellSet) {
     if !planes.is_empty() {
         wanted.retain(|cell| {
             let [min, max] = &gates.boxes[cell];

@@ -19,6 +19,7 @@
 mod batch;
 mod beams;
 mod bound;
+mod cell_set;
 mod certify;
 mod cut;
 mod explain;
@@ -28,14 +29,13 @@ mod pairs;
 mod sampled;
 mod state;
 mod vector;
-mod wanted;
 
 pub use certify::{certify_convex, convex_network};
 pub use explain::{
     BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexGate, MOST_EXPLAINED, explain_convex,
 };
 pub use follow::ByPolygons;
-pub use state::{ConvexCounters, ConvexOptions, ConvexState, SeenThroughPortals};
+pub use state::{ConvexCounters, ConvexOptions, ConvexState, ConvexVisibility};
 
 pub(crate) use batch::Workers;
 use beams::BeamTracer;
@@ -151,11 +151,11 @@ impl ConvexSearch {
     ///
     /// # Panics
     /// If [`ConvexSearch::advance`] still had something left to do.
-    pub fn finish(self) -> SeenThroughPortals {
+    pub fn finish(self) -> ConvexVisibility {
         let ConvexState { stage, visible, possible, mut undecided, counters, .. } = self.state;
         assert!(stage == N_STAGES, "the search is not done");
         if self.options.fast {
-            return SeenThroughPortals { cells: possible, undecided, counters };
+            return ConvexVisibility { cells: possible, undecided, counters };
         }
         undecided.retain(|&[a, b]| !visible.get(a as usize, b as usize));
         undecided.sort_unstable();
@@ -164,7 +164,7 @@ impl ConvexSearch {
             cells.set(a as usize, b as usize, true);
             cells.set(b as usize, a as usize, true);
         }
-        SeenThroughPortals { cells, undecided, counters }
+        ConvexVisibility { cells, undecided, counters }
     }
 
     fn next_stage(&mut self) {

@@ -59,7 +59,7 @@ pub struct ConvexState {
 
 /// The answer of a search.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SeenThroughPortals {
+pub struct ConvexVisibility {
     /// Which cells see each other; symmetric, diagonal set.
     pub cells: BitMatrix,
     /// Pairs (lower id first, ascending) that count as visible without a line that shows it. Empty for

@@ -52,7 +52,7 @@ const MAX_TRIES: u32 = 10_000;
 /// leads there.
 ///
 /// * `solid`: boxes beside the cells, that no line from a cell gets into, as for
-///   [`see_space`](super::see_space); none will do.
+///   [`space_visibility`](super::space_visibility); none will do.
 /// * `budget`: linear programs after which it gives up.
 ///
 /// Exact. Both a line and a proof were checked by code that shares nothing with what found them.

@@ -11,24 +11,23 @@
 //! its cells is; when something is, nothing follows, and its halves are asked about. Single cells are
 //! decided exactly, but for [`slivers`]. So the answer does not depend on how cells are grouped, nor on the order of work.
 
+mod atomic_bits;
 mod explain;
-mod eyes;
-mod grid;
+mod from_boxes;
 mod live;
-mod notes;
 mod objects;
 mod opaque;
 mod pairs;
 mod slivers;
+mod witness_log;
 
 pub use explain::{SpaceExplanation, explain_space};
-pub use eyes::{AskedOfBoxes, SeenFromBoxes, see_from_boxes};
+pub use from_boxes::{BoxVisibility, PairMask, box_visibility};
 pub use live::{LiveSpace, SpaceUpdate};
 
-use crate::search::{Known, SearchOptions};
-pub(crate) use grid::Marks;
-use live::Doubt;
-use notes::{Hand, Notes};
+use crate::search::{SearchOptions, VisibilityBounds};
+pub(crate) use atomic_bits::AtomicBitMatrix;
+use live::PairsInDoubt;
 use opaque::opaque_rectangles;
 pub(crate) use opaque::opaque_without_solid;
 pub(crate) use pairs::halves_first;
@@ -40,10 +39,11 @@ use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Shaft;
 use sightlines_sightline::{Blockers, ShaftCounters};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use witness_log::{WitnessLog, Worker};
 
 /// The answer for a graph in space.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SeenInSpace {
+pub struct SpaceVisibility {
     /// Cells by cells: symmetric, with the diagonal set.
     pub cells: BitMatrix,
     /// Cells by objects.
@@ -61,7 +61,7 @@ pub struct SeenInSpace {
 }
 
 /// What all threads see. Places count the cells in the order of the tree.
-struct Question<'a> {
+struct SpaceSearch<'a> {
     graph: &'a CellGraph<Axial>,
     boxes: &'a [Aabb<3>],
     blockers: &'a Blockers,
@@ -84,15 +84,15 @@ struct Question<'a> {
     /// For each cell, which cells it hangs together with through portals, as the least of them.
     component: Vec<u32>,
     /// Places by places.
-    cells: Marks,
+    cells: AtomicBitMatrix,
     /// Objects by places: which see it.
-    objects: Marks,
+    objects: AtomicBitMatrix,
     /// Objects by places: which may see it.
-    maybe: Marks,
+    maybe: AtomicBitMatrix,
     /// The only pairs that are asked about, if not all are.
-    doubt: Option<Doubt>,
+    doubt: Option<PairsInDoubt>,
     /// Whether lines are kept for later.
-    noting: bool,
+    logging: bool,
     n_assumed: AtomicU64,
 }
 
@@ -131,28 +131,28 @@ const FEW_TASKS_PER_THREAD: usize = 16;
 ///   by cells and by cells and objects).
 ///
 /// Exact, unless a pair takes thousands of linear programs: such pairs count as visible, and are counted
-/// in [`SeenInSpace::n_assumed`].
+/// in [`SpaceVisibility::n_assumed`].
 ///
 /// Cost: in practice near-linear in the number of cells as long as each sees only those near it; cells
 /// that see each other cost a few bits each. Memory: two bit matrices.
 ///
 /// # Panics
 /// If a matrix of `known` is not about as many cells and objects.
-pub fn see_space(
+pub fn space_visibility(
     graph: &CellGraph<Axial>,
     solid: &[Aabb<3>],
     objects: &[Aabb<3>],
-    known: &Known,
+    known: &VisibilityBounds,
     options: &SearchOptions<'_>,
-) -> SeenInSpace {
+) -> SpaceVisibility {
     let n = graph.n_cells();
     let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == n && m.n_cols() == n_cols;
     let possible_fits = known.possible.iter().all(|(c, o)| fits(c, n) && fits(o, objects.len()));
     assert!(fits(&known.visible, n) && possible_fits, "what is known is about these cells and objects");
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
-    let question = Question::new(graph, objects, &blockers, known);
-    let (counters, _) = on_threads(options.threads, |threads| question.answer(threads, options));
-    question.into_seen(counters)
+    let search = SpaceSearch::new(graph, objects, &blockers, known);
+    let (counters, _) = on_threads(options.threads, |threads| search.answer(threads, options));
+    search.into_seen(counters)
 }
 
 /// Runs something on so many threads, told how many; 0 for one for each core.
@@ -168,8 +168,13 @@ pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T +
     }
 }
 
-impl<'a> Question<'a> {
-    fn new(graph: &'a CellGraph<Axial>, boxes: &'a [Aabb<3>], blockers: &'a Blockers, known: &'a Known) -> Self {
+impl<'a> SpaceSearch<'a> {
+    fn new(
+        graph: &'a CellGraph<Axial>,
+        boxes: &'a [Aabb<3>],
+        blockers: &'a Blockers,
+        known: &'a VisibilityBounds,
+    ) -> Self {
         let extents: Vec<Aabb<3>> = graph.cells().iter().map(|c| c.bounds).collect();
         let slivers = slivers::find(&extents);
         let regular: Vec<u32> = (0u32..).zip(&slivers).filter(|(_, sliver)| !**sliver).map(|(cell, _)| cell).collect();
@@ -200,14 +205,14 @@ impl<'a> Question<'a> {
         };
         let around: Vec<Vec<u32>> = extents.iter().zip(&within_reach).map(lies_in).collect();
         let inner = (0..cell_at.len()).filter(|&at| !around[cell_at[at] as usize].is_empty()).collect();
-        let cells = Marks::new(cell_at.len(), cell_at.len());
+        let cells = AtomicBitMatrix::new(cell_at.len(), cell_at.len());
         for (row, &cell) in cell_at.iter().enumerate() {
             let places = known.visible.iter_ones(cell as usize).map(|col| place[col]).filter(|p| *p != SLIVER);
             for col in places {
                 cells.set(row, col as usize);
             }
         }
-        let [objects, maybe] = [(); 2].map(|()| Marks::new(boxes.len(), cell_at.len()));
+        let [objects, maybe] = [(); 2].map(|()| AtomicBitMatrix::new(boxes.len(), cell_at.len()));
         let possible = known.possible.as_ref();
         Self {
             graph,
@@ -228,7 +233,7 @@ impl<'a> Question<'a> {
             objects,
             maybe,
             doubt: None,
-            noting: false,
+            logging: false,
             n_assumed: AtomicU64::new(0),
         }
     }
@@ -244,17 +249,17 @@ impl<'a> Question<'a> {
             && self.doubt.as_ref().is_none_or(|doubt| doubt.objects.get(object, place))
     }
 
-    fn hand(&self) -> Hand<'a> {
-        Hand { shaft: Shaft::new(self.blockers), notes: self.noting.then(Notes::default) }
+    fn worker(&self) -> Worker<'a> {
+        Worker { shaft: Shaft::new(self.blockers), log: self.logging.then(WitnessLog::default) }
     }
 
     /// Decides all that is asked; returns what it took, and what was noted.
-    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> (ShaftCounters, Notes) {
+    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> (ShaftCounters, WitnessLog) {
         let n = self.cell_at.len();
         if n == 0 {
-            return (ShaftCounters::default(), Notes::default());
+            return (ShaftCounters::default(), WitnessLog::default());
         }
-        let mut first = self.hand();
+        let mut first = self.worker();
         let mut tasks = vec![[0, 0]];
         let per_thread = if self.doubt.is_some() { FEW_TASKS_PER_THREAD } else { TASKS_PER_THREAD };
         while tasks.len() < per_thread * threads {
@@ -271,43 +276,43 @@ impl<'a> Question<'a> {
             options.progress.iter().for_each(|progress| progress(done, all));
         };
         let pairs = tasks.into_par_iter().with_max_len(1).map_init(
-            || self.hand(),
-            |hand, task| {
-                let before = hand.shaft.counters();
+            || self.worker(),
+            |worker, task| {
+                let before = worker.shaft.counters();
                 let mut stack = vec![task];
                 while let Some(pair) = stack.pop() {
-                    self.settle(pair, hand, &mut |p| stack.push(p));
+                    self.settle(pair, worker, &mut |p| stack.push(p));
                 }
                 step();
-                (hand.shaft.counters() - before, hand.take_notes())
+                (worker.shaft.counters() - before, worker.take_log())
             },
         );
-        let pairs: Vec<(ShaftCounters, Notes)> = pairs.collect();
+        let pairs: Vec<(ShaftCounters, WitnessLog)> = pairs.collect();
         let survey = (0..n).into_par_iter().map(|place| {
-            let mut notes = self.noting.then(Notes::default);
-            self.survey_objects(place, notes.as_mut());
-            (ShaftCounters::default(), notes.unwrap_or_default())
+            let mut log = self.logging.then(WitnessLog::default);
+            self.survey_objects(place, log.as_mut());
+            (ShaftCounters::default(), log.unwrap_or_default())
         });
-        let survey: Vec<(ShaftCounters, Notes)> = survey.collect();
+        let survey: Vec<(ShaftCounters, WitnessLog)> = survey.collect();
         let objects = (0..self.boxes.len()).into_par_iter().with_max_len(4).map_init(
-            || (self.hand(), Vec::new()),
-            |(hand, stack), object| {
-                let before = hand.shaft.counters();
-                self.settle_object(object, hand, stack);
+            || (self.worker(), Vec::new()),
+            |(worker, stack), object| {
+                let before = worker.shaft.counters();
+                self.settle_object(object, worker, stack);
                 step();
-                (hand.shaft.counters() - before, hand.take_notes())
+                (worker.shaft.counters() - before, worker.take_log())
             },
         );
-        let objects: Vec<(ShaftCounters, Notes)> = objects.collect();
-        let mut all = (first.shaft.counters(), first.take_notes());
-        for (counters, notes) in pairs.into_iter().chain(survey).chain(objects) {
+        let objects: Vec<(ShaftCounters, WitnessLog)> = objects.collect();
+        let mut all = (first.shaft.counters(), first.take_log());
+        for (counters, log) in pairs.into_iter().chain(survey).chain(objects) {
             all.0 = all.0 + counters;
-            all.1.append(notes);
+            all.1.append(log);
         }
         all
     }
 
-    fn into_seen(self, counters: ShaftCounters) -> SeenInSpace {
+    fn into_seen(self, counters: ShaftCounters) -> SpaceVisibility {
         let n = self.graph.n_cells();
         let mut cells = BitMatrix::identity(n);
         let mut objects = BitMatrix::new(n, self.boxes.len());
@@ -323,6 +328,13 @@ impl<'a> Question<'a> {
         }
         slivers::fill(self.graph, |cell| self.place[cell] == SLIVER, &self.touching, &mut cells, &mut objects);
         let n_assumed = self.n_assumed.into_inner();
-        SeenInSpace { cells, objects, touching: self.touching, n_blockers: self.blockers.len(), n_assumed, counters }
+        SpaceVisibility {
+            cells,
+            objects,
+            touching: self.touching,
+            n_blockers: self.blockers.len(),
+            n_assumed,
+            counters,
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! Which objects a cell sees: those that touch it, and those that a line from it reaches.
 
-use super::Question;
-use super::notes::{FoundFor, Hand, Notes};
+use super::SpaceSearch;
 use super::pairs::{CELL_BUDGET, FEW, GROUP_BUDGET, apart};
+use super::witness_log::{FoundFor, WitnessLog, Worker};
 use sightlines_geometry::Aabb;
 use sightlines_sightline::{Sight, Target};
 use std::sync::atomic::Ordering::Relaxed;
@@ -17,13 +17,13 @@ pub(super) fn within(inner: &Aabb<3>, outer: &Aabb<3>) -> bool {
     outer.contains(inner.min) && outer.contains(inner.max)
 }
 
-impl Question<'_> {
+impl SpaceSearch<'_> {
     /// Marks the objects that the cell at a place certainly sees, and those that it may see, once it is
     /// known which cells it sees.
     ///
     /// A line to an object ends in a cell that the object touches, so only objects that touch a visible
     /// cell, or a sliver behind it, may be seen; those that a visible cell lies in are.
-    pub(super) fn survey_objects(&self, place: usize, mut notes: Option<&mut Notes>) {
+    pub(super) fn survey_objects(&self, place: usize, mut log: Option<&mut WitnessLog>) {
         let own = self.cell_at[place] as usize;
         for &object in &self.touching[own] {
             self.objects.set(object as usize, place);
@@ -31,7 +31,7 @@ impl Question<'_> {
         let mut lies_in = |cell: usize| {
             for &object in &self.around[cell] {
                 if self.objects.set(object as usize, place) {
-                    notes.iter_mut().for_each(|notes| notes.inside.push([object, own as u32]));
+                    log.iter_mut().for_each(|log| log.inside.push([object, own as u32]));
                 }
             }
         };
@@ -61,7 +61,7 @@ impl Question<'_> {
     }
 
     /// Decides which cells see an object: groups of cells first, then their halves.
-    pub(super) fn settle_object(&self, object: usize, hand: &mut Hand<'_>, stack: &mut Vec<u32>) {
+    pub(super) fn settle_object(&self, object: usize, worker: &mut Worker<'_>, stack: &mut Vec<u32>) {
         let (target, row) = (&self.boxes[object], [object, object + 1]);
         stack.clear();
         stack.push(0);
@@ -77,18 +77,18 @@ impl Question<'_> {
             if ask {
                 let budget = if node.is_leaf() { CELL_BUDGET } else { self.group_budget() };
                 let found_for = if node.is_leaf() { FoundFor::Object([object, places[0]]) } else { FoundFor::Groups };
-                match hand.shaft.decide(&node.bounds, target, Target::Surface, budget) {
+                match worker.shaft.decide(&node.bounds, target, Target::Surface, budget) {
                     Sight::Blocked => continue,
-                    Sight::Open(line) => self.follow(&line, [&node.bounds, target], found_for, hand),
+                    Sight::Open(line) => self.follow(&line, [&node.bounds, target], found_for, worker),
                     Sight::Undecided => {
-                        if node.is_leaf() && self.is_object_hidden_in_groups(object, places[0], hand) {
+                        if node.is_leaf() && self.is_object_hidden_in_groups(object, places[0], worker) {
                             continue;
                         }
                         if node.is_leaf() {
                             self.n_assumed.fetch_add(1, Relaxed);
                             self.objects.set(object, places[0]);
                             let pair = [object as u32, self.cell_at[places[0]]];
-                            hand.notes.iter_mut().for_each(|notes| notes.assumed_objects.push(pair));
+                            worker.log.iter_mut().for_each(|log| log.assumed_objects.push(pair));
                         }
                     }
                 }
@@ -101,7 +101,7 @@ impl Question<'_> {
 
     /// Where groups were not all asked, as only some pairs are in doubt: whether one with a cell, by its place, does not see an object. Who
     /// asks about all pairs has asked these, and never came to the cell.
-    fn is_object_hidden_in_groups(&self, object: usize, place: usize, hand: &mut Hand<'_>) -> bool {
+    fn is_object_hidden_in_groups(&self, object: usize, place: usize, worker: &mut Worker<'_>) -> bool {
         if self.doubt.is_none() {
             return false;
         }
@@ -113,7 +113,7 @@ impl Question<'_> {
                 return false;
             }
             let ask = apart(&node.bounds, target);
-            if ask && hand.shaft.decide(&node.bounds, target, Target::Surface, GROUP_BUDGET) == Sight::Blocked {
+            if ask && worker.shaft.decide(&node.bounds, target, Target::Surface, GROUP_BUDGET) == Sight::Blocked {
                 return true;
             }
             let [low, high] = self.tree.children(n);

@@ -1,8 +1,8 @@
 //! Pairs of groups of cells, halved until one hides from the other or they are single cells.
 
-use super::Question;
-use super::live::Doubt;
-use super::notes::{FoundFor, Hand, Line, Proof};
+use super::SpaceSearch;
+use super::live::PairsInDoubt;
+use super::witness_log::{FoundFor, Line, Proof, Worker};
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_sightline::{FreeLine, FreeSpan, Sight, Target};
 use std::sync::atomic::Ordering::Relaxed;
@@ -34,9 +34,9 @@ pub(crate) fn halves_first(tree: &BoxTree<3>, pair: Pair) -> bool {
     b.is_leaf() || (!a.is_leaf() && size(&a.bounds) >= size(&b.bounds))
 }
 
-impl Question<'_> {
+impl SpaceSearch<'_> {
     /// Decides what can be decided of a pair; the rest is handed on as smaller pairs.
-    pub(super) fn settle(&self, [a, b]: Pair, hand: &mut Hand<'_>, smaller: &mut impl FnMut(Pair)) {
+    pub(super) fn settle(&self, [a, b]: Pair, worker: &mut Worker<'_>, smaller: &mut impl FnMut(Pair)) {
         let (na, nb) = (self.tree.nodes()[a as usize], self.tree.nodes()[b as usize]);
         let (rows, cols) = ([na.start as usize, na.end as usize], [nb.start as usize, nb.end as usize]);
         if self.doubt.as_ref().is_some_and(|doubt| !doubt.cells.any_beyond(&self.cells, rows, cols)) {
@@ -53,15 +53,15 @@ impl Question<'_> {
             return;
         }
         if na.is_leaf() && nb.is_leaf() {
-            self.settle_cells([rows[0], cols[0]], [&na.bounds, &nb.bounds], hand);
+            self.settle_cells([rows[0], cols[0]], [&na.bounds, &nb.bounds], worker);
             return;
         }
-        let few = |doubt: &Doubt| doubt.cells.count_beyond(&self.cells, rows, cols, FEW) <= FEW;
+        let few = |doubt: &PairsInDoubt| doubt.cells.count_beyond(&self.cells, rows, cols, FEW) <= FEW;
         let worth_it = self.doubt.as_ref().is_none_or(|doubt| !few(doubt));
         if worth_it && apart(&na.bounds, &nb.bounds) && !self.cells.any(rows, cols) {
-            match hand.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, self.group_budget()) {
+            match worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, self.group_budget()) {
                 Sight::Blocked => return,
-                Sight::Open(line) => self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, hand),
+                Sight::Open(line) => self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, worker),
                 Sight::Undecided => {}
             }
         }
@@ -74,7 +74,7 @@ impl Question<'_> {
 
     /// Where groups were not all asked, as only some pairs are in doubt: whether one of those with two cells, by their places in order,
     /// is hidden from the other. Who asks about all pairs has asked these, and never came to the cells.
-    fn is_hidden_in_groups(&self, [first, second]: [usize; 2], hand: &mut Hand<'_>) -> bool {
+    fn is_hidden_in_groups(&self, [first, second]: [usize; 2], worker: &mut Worker<'_>) -> bool {
         if self.doubt.is_none() {
             return false;
         }
@@ -97,7 +97,7 @@ impl Question<'_> {
                 return false;
             }
             let ask = apart(&na.bounds, &nb.bounds);
-            if ask && hand.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET) == Sight::Blocked {
+            if ask && worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET) == Sight::Blocked {
                 return true;
             }
             if halves_first(&self.tree, [a, b]) {
@@ -113,19 +113,19 @@ impl Question<'_> {
         if self.doubt.is_some() { FEW_BUDGET } else { GROUP_BUDGET }
     }
 
-    fn settle_cells(&self, [a, b]: [usize; 2], bounds: [&Aabb<3>; 2], hand: &mut Hand<'_>) {
+    fn settle_cells(&self, [a, b]: [usize; 2], bounds: [&Aabb<3>; 2], worker: &mut Worker<'_>) {
         if !self.may_see_cell(a, b) {
             return;
         }
-        match hand.shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
+        match worker.shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
             Sight::Blocked => {}
-            Sight::Open(line) => self.follow(&line, bounds, FoundFor::Cells([a, b]), hand),
-            Sight::Undecided if self.is_hidden_in_groups([a, b], hand) => {}
+            Sight::Open(line) => self.follow(&line, bounds, FoundFor::Cells([a, b]), worker),
+            Sight::Undecided if self.is_hidden_in_groups([a, b], worker) => {}
             Sight::Undecided => {
                 self.n_assumed.fetch_add(1, Relaxed);
                 if self.join(a, b) {
-                    let notes = hand.notes.iter_mut();
-                    notes.for_each(|notes| notes.assumed.push([a, b].map(|place| self.cell_at[place])));
+                    let log = worker.log.iter_mut();
+                    log.for_each(|log| log.assumed.push([a, b].map(|place| self.cell_at[place])));
                 }
             }
         }
@@ -140,10 +140,16 @@ impl Question<'_> {
     }
 
     /// Marks everything that a line passes: its cells see each other, and the objects on it.
-    pub(super) fn follow(&self, line: &FreeLine, [from, to]: [&Aabb<3>; 2], found_for: FoundFor, hand: &mut Hand<'_>) {
+    pub(super) fn follow(
+        &self,
+        line: &FreeLine,
+        [from, to]: [&Aabb<3>; 2],
+        found_for: FoundFor,
+        worker: &mut Worker<'_>,
+    ) {
         let span = line.span(from, to, self.blockers);
         let cells = self.cells_on(&span);
-        self.mark(line, span, &cells, found_for, hand);
+        self.mark(line, span, &cells, found_for, worker);
     }
 
     /// The cells, by their places, that the free part of a line certainly passes.
@@ -168,13 +174,13 @@ impl Question<'_> {
         span: FreeSpan,
         cells: &[usize],
         found_for: FoundFor,
-        hand: &mut Hand<'_>,
+        worker: &mut Worker<'_>,
     ) {
-        let noting = hand.notes.is_some();
-        let number = hand.notes.as_ref().map_or(0, |notes| notes.lines.len() as u32);
+        let logging = worker.log.is_some();
+        let number = worker.log.as_ref().map_or(0, |log| log.lines.len() as u32);
         let (mut pairs, mut seen) = (Vec::new(), Vec::new());
         let mut join = |a: usize, b: usize| {
-            if self.join(a, b) && noting {
+            if self.join(a, b) && logging {
                 pairs.push(Proof { pair: [a, b].map(|place| self.cell_at[place]), line: number });
             }
         };
@@ -185,7 +191,7 @@ impl Question<'_> {
             join(a, b);
         }
         let mut see = |object: usize, place: usize| {
-            if self.objects.set(object, place) && noting {
+            if self.objects.set(object, place) && logging {
                 seen.push(Proof { pair: [object as u32, self.cell_at[place]], line: number });
             }
         };
@@ -200,10 +206,10 @@ impl Question<'_> {
         if let FoundFor::Object([object, place]) = found_for {
             see(object, place);
         }
-        if let Some(notes) = hand.notes.as_mut().filter(|_| !pairs.is_empty() || !seen.is_empty()) {
-            notes.lines.push(Line { line: *line, span });
-            notes.cells.append(&mut pairs);
-            notes.objects.append(&mut seen);
+        if let Some(log) = worker.log.as_mut().filter(|_| !pairs.is_empty() || !seen.is_empty()) {
+            log.lines.push(Line { line: *line, span });
+            log.cells.append(&mut pairs);
+            log.objects.append(&mut seen);
         }
     }
 

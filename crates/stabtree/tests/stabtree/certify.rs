@@ -14,8 +14,9 @@ use sightlines_scenes::world::{
 };
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_stabtree::{
-    CertifyOptions, ConvexOptions, ConvexSearch, Known, SearchOptions, SeenThroughPortals, Zones, certify_convex,
-    certify_plan, certify_space, convex_network, plan_network, see_plan, see_space, space_network,
+    CertifyOptions, ConvexOptions, ConvexSearch, ConvexVisibility, SearchOptions, VisibilityBounds, Zones,
+    certify_convex, certify_plan, certify_space, convex_network, plan_network, plan_visibility, space_network,
+    space_visibility,
 };
 use sightlines_testkit::convex::seen_by_rays;
 use sightlines_testkit::{axial_plan, small_grid_plan};
@@ -25,7 +26,7 @@ fn search() -> SearchOptions<'static> {
 }
 
 fn rows_of_plan(graph: &CellGraph<Planar>) -> BitMatrix {
-    see_plan(graph, &Zones::cells(graph), &search()).0
+    plan_visibility(graph, &Zones::cells(graph), &search()).0
 }
 
 /// Proofs for these rows, through their bytes and the checker.
@@ -106,7 +107,7 @@ proptest! {
         out in prop::collection::vec(prop::bool::weighted(0.25), 1..7),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = see_space(&graph, &solid, &objects, &Known::nothing(graph.n_cells()), &search());
+        let seen = space_visibility(&graph, &solid, &objects, &VisibilityBounds::nothing(graph.n_cells()), &search());
         prop_assert_eq!(seen.n_assumed, 0);
         assert_proven(&seen.cells, &proven_space(&graph, &seen.cells));
     }
@@ -118,7 +119,7 @@ proptest! {
         pick in any::<prop::sample::Index>(),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = see_space(&graph, &solid, &[], &Known::nothing(graph.n_cells()), &search());
+        let seen = space_visibility(&graph, &solid, &[], &VisibilityBounds::nothing(graph.n_cells()), &search());
         if graph.n_cells() > 1 {
             let (a, b) = pair(pick, graph.n_cells());
             assert_nothing_wrong(&seen.cells, &proven_space(&graph, &flipped(&seen.cells, a, b)));
@@ -175,7 +176,7 @@ fn proofs_are_the_same_each_time() {
     assert_eq!(made(), made());
 }
 
-fn searched(graph: &CellGraph<Convex>) -> SeenThroughPortals {
+fn searched(graph: &CellGraph<Convex>) -> ConvexVisibility {
     let mut search = ConvexSearch::new(graph, ConvexOptions { threads: 1, ..ConvexOptions::default() });
     while search.advance() {}
     search.finish()

@@ -6,12 +6,12 @@ use sightlines_scenes::world::{
 };
 use sightlines_sightline::{BoxProof, ConvexCertificate, ConvexNode, Line3};
 use sightlines_stabtree::{
-    BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexOptions, ConvexSearch, MOST_EXPLAINED,
-    SeenThroughPortals, explain_convex,
+    BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexOptions, ConvexSearch, ConvexVisibility,
+    MOST_EXPLAINED, explain_convex,
 };
 use sightlines_testkit::convex::seen_by_rays;
 
-fn searched(graph: &CellGraph<Convex>) -> SeenThroughPortals {
+fn searched(graph: &CellGraph<Convex>) -> ConvexVisibility {
     let mut search = ConvexSearch::new(graph, ConvexOptions { threads: 1, ..ConvexOptions::default() });
     while search.advance() {}
     search.finish()

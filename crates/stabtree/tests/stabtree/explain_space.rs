@@ -5,7 +5,7 @@ use sightlines_cells::{Axial, BoxCell, CellGraph, CellId, Portal};
 use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
 use sightlines_sightline::Target;
-use sightlines_stabtree::{Known, SearchOptions, SpaceExplanation, explain_space, see_space};
+use sightlines_stabtree::{SearchOptions, SpaceExplanation, VisibilityBounds, explain_space, space_visibility};
 use sightlines_testkit::draw;
 
 use proptest::prelude::*;
@@ -44,7 +44,7 @@ fn every_pair_is_explained() {
     for faces in draw(&faces(), 150) {
         let graph = cut(&faces);
         let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-        let seen = see_space(&graph, &[], &[], &Known::nothing(graph.n_cells()), &options).cells;
+        let seen = space_visibility(&graph, &[], &[], &VisibilityBounds::nothing(graph.n_cells()), &options).cells;
         for (a, b) in graph.cell_ids().flat_map(|a| graph.cell_ids().map(move |b| (a, b))) {
             let explanation = explain_space(&graph, &[], a, b, 2_000);
             let visible = matches!(explanation, SpaceExplanation::Same | SpaceExplanation::Visible { .. });

@@ -6,7 +6,7 @@ use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::AxialFace;
 use sightlines_pvs::BitMatrix;
-use sightlines_stabtree::{Known, LiveSpace, SearchOptions, SeenInSpace, see_space};
+use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
 use std::cell::Cell;
 
 /// What is there at one time.
@@ -111,11 +111,17 @@ fn options(threads: usize) -> SearchOptions<'static> {
     SearchOptions { threads, ..SearchOptions::default() }
 }
 
-fn anew(state: &State) -> SeenInSpace {
-    see_space(&state.graph, &state.solid, &state.objects, &Known::nothing(state.graph.n_cells()), &options(1))
+fn anew(state: &State) -> SpaceVisibility {
+    space_visibility(
+        &state.graph,
+        &state.solid,
+        &state.objects,
+        &VisibilityBounds::nothing(state.graph.n_cells()),
+        &options(1),
+    )
 }
 
-fn same(a: &SeenInSpace, b: &SeenInSpace) -> bool {
+fn same(a: &SpaceVisibility, b: &SpaceVisibility) -> bool {
     a.cells == b.cells && a.objects == b.objects && a.touching == b.touching && a.n_blockers == b.n_blockers
 }
 
@@ -193,7 +199,7 @@ fn what_an_update_forgets_is_noticed() {
 }
 
 /// What cells with the same bounds saw before; all others are taken from the new answer.
-fn transferred(before: &State, seen: &SeenInSpace, after: &State) -> BitMatrix {
+fn transferred(before: &State, seen: &SpaceVisibility, after: &State) -> BitMatrix {
     let mut cells = anew(after).cells;
     let old = |cell: usize| {
         let bounds = after.graph.cells()[cell].bounds;

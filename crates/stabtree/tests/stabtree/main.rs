@@ -4,7 +4,7 @@ mod boxes;
 mod certify;
 mod explain_convex;
 mod explain_space;
-mod eyes;
+mod from_boxes;
 mod live_space;
 mod search;
 mod space;

@@ -5,9 +5,9 @@ use proptest::prelude::*;
 use sightlines_cells::{CellGraph, Exit, Plan, Planar};
 use sightlines_geometry::{Aabb, Adaptive, Point2, Portal2, orient2d};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Certificate, Funnel, FunnelUndo, Stabber};
+use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, Stabber};
 use sightlines_stabtree::{
-    Explanation, Known, Network, SearchOptions, StabTree, Zones, explain, see_plan, visible_zones,
+    Explanation, Network, SearchOptions, StabTree, VisibilityBounds, Zones, explain, plan_visibility, visible_zones,
 };
 use std::cell::Cell;
 
@@ -52,7 +52,7 @@ impl Stabber for Checked {
         self.doors.push(portal);
         self.pushes += 1;
         let undo = self.funnel.push(portal);
-        let certificate = Certificate::find(&self.doors);
+        let certificate = PlanarCertificate::find(&self.doors);
         assert_eq!(undo.is_some(), certificate.is_none(), "{:?}", self.doors);
         match certificate {
             Some(certificate) => {
@@ -96,7 +96,7 @@ fn enumerate<S: Stabber<Portal = Portal2>>(graph: &CellGraph<Planar>, stabber: &
 
 fn search(graph: &CellGraph<Planar>, threads: usize, chords: u32) -> BitMatrix {
     let options = SearchOptions { threads, chords, progress: None };
-    see_plan(graph, &Zones::cells(graph), &options).0
+    plan_visibility(graph, &Zones::cells(graph), &options).0
 }
 
 proptest! {
@@ -121,11 +121,11 @@ proptest! {
         let zones = Zones::cells(&graph);
         let options = SearchOptions { threads: 1, ..SearchOptions::default() };
         let network = Network::planar(&graph, &zones);
-        let nothing = Known::nothing(graph.n_cells());
+        let nothing = VisibilityBounds::nothing(graph.n_cells());
         let adaptive = visible_zones(&network, &Funnel::new(Adaptive), &nothing, &options);
         prop_assert_eq!(&adaptive.zones, &all);
         // The truth is a valid superset of itself, and of nothing less.
-        let told = Known { possible: Some((all.clone(), BitMatrix::new(graph.n_cells(), 0))), ..nothing };
+        let told = VisibilityBounds { possible: Some((all.clone(), BitMatrix::new(graph.n_cells(), 0))), ..nothing };
         prop_assert_eq!(&visible_zones(&network, &Funnel::new(Adaptive), &told, &options).zones, &all);
     }
 

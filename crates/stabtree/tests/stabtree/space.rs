@@ -8,18 +8,20 @@ use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_kdtree::AxialFace;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::AxialStabber;
-use sightlines_stabtree::{Known, Network, SearchOptions, SeenInSpace, Zones, see_space, visible_zones};
+use sightlines_stabtree::{
+    Network, SearchOptions, SpaceVisibility, VisibilityBounds, Zones, space_visibility, visible_zones,
+};
 use std::cell::Cell;
 
-fn by_pairs(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> SeenInSpace {
+fn by_pairs(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> SpaceVisibility {
     let options = SearchOptions { threads, ..SearchOptions::default() };
-    see_space(graph, solid, objects, &Known::nothing(graph.n_cells()), &options)
+    space_visibility(graph, solid, objects, &VisibilityBounds::nothing(graph.n_cells()), &options)
 }
 
 fn by_sequences(graph: &CellGraph<Axial>, objects: &[Aabb<3>]) -> (BitMatrix, BitMatrix) {
     let network = Network::axial(graph, &Zones::cells(graph), objects);
     let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-    let seen = visible_zones(&network, &AxialStabber::new(), &Known::nothing(graph.n_cells()), &options);
+    let seen = visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(graph.n_cells()), &options);
     (seen.zones, seen.objects)
 }
 

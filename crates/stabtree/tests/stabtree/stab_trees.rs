@@ -9,8 +9,9 @@ use sightlines_pvs::{BitMatrix, StabParts};
 use sightlines_scenes::world::{BspWorldOptions, World, bsp_world, world_families};
 use sightlines_sightline::{AxialStabber, ConvexStabber, Funnel, Line3, StabLimits, Stabbing3};
 use sightlines_stabtree::{
-    ConvexOptions, ConvexSearch, Known, Network, SearchOptions, StabTree, StabTreesOptions, StabTreesSummary, Zones,
-    gate_of, portal_of, see_plan, stab_trees_axial, stab_trees_convex, stab_trees_planar, visible_zones,
+    ConvexOptions, ConvexSearch, Network, SearchOptions, StabTree, StabTreesOptions, StabTreesSummary,
+    VisibilityBounds, Zones, gate_of, plan_visibility, portal_of, stab_trees_axial, stab_trees_convex,
+    stab_trees_planar, visible_zones,
 };
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -154,7 +155,7 @@ fn cut_plan(plan: &Plan) -> CellGraph<Planar> {
 
 fn rows_of_plan(graph: &CellGraph<Planar>) -> BitMatrix {
     let options = SearchOptions { threads: 1, chords: 8, progress: None };
-    see_plan(graph, &Zones::cells(graph), &options).0
+    plan_visibility(graph, &Zones::cells(graph), &options).0
 }
 
 /// The plain trees of all cells; `None` if one is too large to compare.
@@ -237,7 +238,8 @@ fn boxes_unfold_to_plain_trees() {
         let Some(plain) = graph.cell_ids().map(tree).collect::<Option<Vec<_>>>() else { return Ok(()) };
         let network = Network::axial(&graph, &Zones::cells(&graph), &[]);
         let search = SearchOptions { threads: 1, ..SearchOptions::default() };
-        let rows = visible_zones(&network, &AxialStabber::new(), &Known::nothing(graph.n_cells()), &search).zones;
+        let rows =
+            visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(graph.n_cells()), &search).zones;
         compare(&plain, |max_nodes, threads| stab_trees_axial(&graph, &rows, &options(max_nodes, threads)), &counts)
     });
     result.unwrap_or_else(|e| panic!("boxes_unfold_to_plain_trees: {e}"));

@@ -5,7 +5,7 @@ use crate::place::Place;
 use serde::Serialize;
 use sightlines::cells::{CellGraph, CellId, Planar, PortalId};
 use sightlines::geometry::{Point2, Portal2};
-use sightlines::sightline::{Certificate, End, Witness};
+use sightlines::sightline::{End, PlanarCertificate, PlanarWitness};
 use sightlines::stabtree::{BlockedSequence, Explanation};
 use std::fmt;
 
@@ -137,7 +137,7 @@ fn visible(
     from: CellId,
     portals: &[PortalId],
     doors: &[Portal2],
-    witness: &Witness,
+    witness: &PlanarWitness,
 ) -> Reason {
     let [a, b, c] = witness.coefficients().map(ToString::to_string);
     Reason::Visible {
@@ -154,7 +154,7 @@ fn blocked_way(graph: &CellGraph<Planar>, from: CellId, way: &BlockedSequence) -
         let door = walked[end.portal].1;
         Corner { portal: way.portals[end.portal].0, point: pair(if end.left { door.left } else { door.right }) }
     };
-    let Certificate { lefts, rights } = &way.certificate;
+    let PlanarCertificate { lefts, rights } = &way.certificate;
     Way {
         portals: way.portals.iter().map(|p| p.0).collect(),
         lefts: lefts.iter().map(corner).collect(),

@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use sightlines::cells::CellId;
 use sightlines::geometry::{Aabb, AxialDoor};
-use sightlines::sightline::{AxialWitness, BlockedProof, Branch, BranchRow, Contradiction, ProofSize, WayPast};
+use sightlines::sightline::{AxialWitness, BlockedProof, Branch, BranchRow, Bypass, Contradiction, ProofSize};
 use sightlines::stabtree::SpaceExplanation;
 use std::fmt;
 
@@ -148,11 +148,11 @@ fn tree(branch: &Branch) -> Value {
     }
 }
 
-fn way(way: WayPast) -> Value {
+fn way(way: Bypass) -> Value {
     match way {
-        WayPast::Beside { axis, entering } => json!({"beside": axis, "entering": entering}),
-        WayPast::Before => json!("before"),
-        WayPast::After => json!("after"),
+        Bypass::Beside { axis, entering } => json!({"beside": axis, "entering": entering}),
+        Bypass::Before => json!("before"),
+        Bypass::After => json!("after"),
     }
 }
 

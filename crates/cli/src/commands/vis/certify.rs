@@ -5,7 +5,7 @@ use crate::output::count;
 use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::cells::{CellGraph, CellId, Convex};
-use sightlines::stabtree::{ConvexExplainer, ConvexExplanation, MOST_EXPLAINED, SeenThroughPortals};
+use sightlines::stabtree::{ConvexExplainer, ConvexExplanation, ConvexVisibility, MOST_EXPLAINED};
 use std::fmt;
 use std::path::Path;
 
@@ -38,7 +38,7 @@ struct Proven {
 pub(super) fn certify(
     path: &Path,
     graph: &CellGraph<Convex>,
-    seen: &SeenThroughPortals,
+    seen: &ConvexVisibility,
     n: usize,
     fast: bool,
     bar: &Bar,
@@ -84,13 +84,13 @@ pub(super) fn certify(
 }
 
 /// Pairs of different clusters that see each other, lower number first.
-fn visible_pairs(seen: &SeenThroughPortals) -> Vec<[u32; 2]> {
+fn visible_pairs(seen: &ConvexVisibility) -> Vec<[u32; 2]> {
     let row = |a: usize| seen.cells.iter_ones(a).filter(move |&b| b > a).map(move |b| [a as u32, b as u32]);
     (0..seen.cells.n_rows()).flat_map(row).collect()
 }
 
 /// Pairs of clusters that do not see each other, though one is beside a cluster that the other sees.
-fn border_pairs(graph: &CellGraph<Convex>, seen: &SeenThroughPortals) -> Vec<[u32; 2]> {
+fn border_pairs(graph: &CellGraph<Convex>, seen: &ConvexVisibility) -> Vec<[u32; 2]> {
     let mut pairs = Vec::new();
     for portal in graph.portals() {
         let [c, d] = portal.cells.map(|cell| cell.0);
@@ -139,14 +139,14 @@ mod tests {
     const ROOMS: &str = "PRT1\n4\n3\n4 0 1 (8 0 0) (8 1 0) (8 1 1) (8 0 1)\n4 1 2 (16 6 0) (16 7 0) (16 7 1) (16 6 1)\n\
                          4 2 3 (17 0 0) (17 1 0) (17 1 1) (17 0 1)\n";
 
-    fn searched() -> (CellGraph<Convex>, SeenThroughPortals) {
+    fn searched() -> (CellGraph<Convex>, ConvexVisibility) {
         let graph = graph_of_prt(&parse_prt(ROOMS.as_bytes()).unwrap());
         let mut search = ConvexSearch::new(&graph, ConvexOptions { fast: false, threads: 1 });
         while search.advance() {}
         (graph, search.finish())
     }
 
-    fn tried(graph: &CellGraph<Convex>, seen: &SeenThroughPortals, fast: bool) -> Result<Certified, String> {
+    fn tried(graph: &CellGraph<Convex>, seen: &ConvexVisibility, fast: bool) -> Result<Certified, String> {
         let bar = Bar::new("test", false);
         certify(Path::new("a.prt"), graph, seen, 99, fast, &bar).map_err(|error| error.to_string())
     }

@@ -21,7 +21,7 @@ use super::Target;
 
 /// A way past a rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum WayPast {
+pub enum Bypass {
     /// Beside one of its edges.
     Beside {
         /// The axis, not the rectangle's own, along which it is missed.
@@ -52,7 +52,7 @@ pub enum BranchRow {
     Taken {
         /// How many rectangles were gone past before that one.
         depth: usize,
-        /// Which of the way's conditions; [`WayPast::Beside`] has one, the others have two, for the two
+        /// Which of the way's conditions; [`Bypass::Beside`] has one, the others have two, for the two
         /// axes that follow the rectangle's own in cyclic order.
         row: u8,
     },
@@ -61,7 +61,7 @@ pub enum BranchRow {
         /// How many rectangles were gone past before that one.
         depth: usize,
         /// The way.
-        way: WayPast,
+        way: Bypass,
     },
 }
 
@@ -78,7 +78,7 @@ pub enum Branch {
         /// The rectangle, by index.
         rectangle: u32,
         /// Ways past it in the order in which they are dealt with, and why each leads nowhere.
-        ways: Vec<(WayPast, Branch)>,
+        ways: Vec<(Bypass, Branch)>,
         /// Why nothing is left once those ways were dealt with; `None` if they are all there are.
         rest: Option<Contradiction>,
     },
@@ -194,8 +194,8 @@ type Claim = [Place; 2];
 struct Passage<'a> {
     rectangle: &'a Aabb<3>,
     axis: usize,
-    taken: Option<WayPast>,
-    dealt_with: Vec<WayPast>,
+    taken: Option<Bypass>,
+    dealt_with: Vec<Bypass>,
 }
 
 /// The lines of one vector of signs that are left on a branch.
@@ -234,11 +234,11 @@ impl<'a> Lines<'a> {
     }
 
     /// The conditions of a way; `None` if no line goes that way.
-    fn conditions(&self, rectangle: &Aabb<3>, own: usize, way: WayPast) -> Option<Vec<Claim>> {
+    fn conditions(&self, rectangle: &Aabb<3>, own: usize, way: Bypass) -> Option<Vec<Claim>> {
         let plane = (own, rectangle.min[own]);
         let others = [(own + 1) % 3, (own + 2) % 3];
         match way {
-            WayPast::Beside { axis, entering } => {
+            Bypass::Beside { axis, entering } => {
                 let axis = usize::from(axis);
                 let claim = if entering {
                     [plane, self.enters(rectangle, axis)]
@@ -247,11 +247,11 @@ impl<'a> Lines<'a> {
                 };
                 others.contains(&axis).then(|| vec![claim])
             }
-            WayPast::Before => {
+            Bypass::Before => {
                 let may = self.is_before(plane, self.leaves(self.from, own));
                 may.then(|| others.map(|k| [plane, self.leaves(self.from, k)]).to_vec())
             }
-            WayPast::After => {
+            Bypass::After => {
                 let enters = self.enters(self.to, own);
                 let on_surface = self.target == Target::Surface && plane.1 == enters.1;
                 let may = on_surface || self.is_before(enters, plane);
@@ -318,7 +318,7 @@ impl<'a> Lines<'a> {
     }
 
     /// Goes past the last rectangle of the path.
-    fn no_way_leads_on(&mut self, ways: &[(WayPast, Branch)], rest: Option<&Contradiction>) -> bool {
+    fn no_way_leads_on(&mut self, ways: &[(Bypass, Branch)], rest: Option<&Contradiction>) -> bool {
         let last = self.path.len() - 1;
         for (way, branch) in ways {
             self.path[last].taken = Some(*way);
@@ -332,9 +332,9 @@ impl<'a> Lines<'a> {
             return self.exclude_each_other(terms);
         }
         let Passage { rectangle, axis, dealt_with, .. } = &self.path[last];
-        let beside = (0..3u8).flat_map(|k| [true, false].map(|entering| WayPast::Beside { axis: k, entering }));
+        let beside = (0..3u8).flat_map(|k| [true, false].map(|entering| Bypass::Beside { axis: k, entering }));
         beside
-            .chain([WayPast::Before, WayPast::After])
+            .chain([Bypass::Before, Bypass::After])
             .all(|way| dealt_with.contains(&way) || self.conditions(rectangle, *axis, way).is_none())
     }
 }

@@ -6,12 +6,12 @@ use sightlines_geometry::{Aabb, Point2, orient2d};
 
 /// One row, or two that have to hold together.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Way {
+pub(super) struct BypassRows {
     rows: [Row; 2],
     n_rows: usize,
 }
 
-impl Way {
+impl BypassRows {
     fn one(row: Row) -> Self {
         Self { rows: [row; 2], n_rows: 1 }
     }
@@ -80,7 +80,7 @@ impl Ends<'_> {
     /// The ways of a line past a rectangle that is perpendicular to `axis`: beside one of its edges,
     /// across its plane before the first box is left, or after the second is entered. Ways that no line
     /// between the boxes takes may be missing.
-    pub(super) fn ways_past(&self, rectangle: &Aabb<3>, axis: usize, mut take: impl FnMut(Way)) {
+    pub(super) fn ways_past(&self, rectangle: &Aabb<3>, axis: usize, mut take: impl FnMut(BypassRows)) {
         let at = rectangle.min[axis];
         for b in others(axis) {
             let [first, last] = first_and_last(rectangle, self.octant, b);
@@ -88,7 +88,7 @@ impl Ends<'_> {
                 [Row { early: axis, late: b, from: at, to: first }, Row { early: b, late: axis, from: last, to: at }]
             {
                 if self.may_hold(&row) {
-                    take(Way::one(row));
+                    take(BypassRows::one(row));
                 }
             }
         }
@@ -97,7 +97,7 @@ impl Ends<'_> {
         let enters = |k: usize| first_and_last(self.to, self.octant, k)[0];
         if turn * at < turn * leaves(axis) {
             let before = |k: usize| Row { early: axis, late: k, from: at, to: leaves(k) };
-            take(Way { rows: [before(b), before(c)], n_rows: 2 });
+            take(BypassRows { rows: [before(b), before(c)], n_rows: 2 });
         }
         let beyond = match self.target {
             Target::Inside => turn * at > turn * enters(axis),
@@ -105,7 +105,7 @@ impl Ends<'_> {
         };
         if beyond {
             let after = |k: usize| Row { early: k, late: axis, from: enters(k), to: at };
-            take(Way { rows: [after(b), after(c)], n_rows: 2 });
+            take(BypassRows { rows: [after(b), after(c)], n_rows: 2 });
         }
     }
 }

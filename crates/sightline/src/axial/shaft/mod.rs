@@ -30,14 +30,14 @@ mod tests;
 mod trace;
 
 pub use blockers::Blockers;
-pub use certificate::{BlockedProof, Branch, BranchRow, Contradiction, ProofSize, WayPast};
+pub use certificate::{BlockedProof, Branch, BranchRow, Bypass, Contradiction, ProofSize};
 pub use trace::{FreeLine, FreeSpan};
 
 use super::octant::{Decision, FINE, SMALL_FIRST, decide_in_doubles, two_axes};
 use super::proof;
 use super::rows::{Line, Octant, Row, others, sign};
 use super::simplex::{Frame, Tableau};
-use cuts::{Ends, Way};
+use cuts::{BypassRows, Ends};
 use ray::Ray;
 use sightlines_geometry::Aabb;
 
@@ -334,7 +334,7 @@ impl<'a> Shaft<'a> {
     /// Searches the lines that obey the current rows and go past a rectangle; those ways first that are
     /// nearest to a ray that does not.
     fn past(&mut self, ends: &Ends<'_>, frame: &Frame, tableau: Tableau, blocker: u32, ray: &Ray) -> Part {
-        let mut ways: Vec<(f64, Way)> = Vec::with_capacity(6);
+        let mut ways: Vec<(f64, BypassRows)> = Vec::with_capacity(6);
         ends.ways_past(self.blockers.rectangle(blocker), self.blockers.axis(blocker), |way| {
             ways.push((lateness(&way, ray), way));
         });
@@ -445,7 +445,7 @@ fn is_outside(ends: &Ends<'_>, blockers: &Blockers, index: u32, line: &Line) -> 
 }
 
 /// By how much a ray fails to take a way, in time.
-fn lateness(way: &Way, ray: &Ray) -> f64 {
+fn lateness(way: &BypassRows, ray: &Ray) -> f64 {
     let late = |row: &Row| ray.time(row.early, row.from) - ray.time(row.late, row.to);
     way.rows().iter().map(late).fold(f64::NEG_INFINITY, f64::max)
 }

@@ -2,8 +2,8 @@
 
 use super::super::octant::{Decision, SMALL_FIRST, decide};
 use super::super::rows::{Row, first_and_last, others};
-use super::certificate::{BlockedProof, Branch, BranchRow, Contradiction, WayPast};
-use super::cuts::{Ends, Way};
+use super::certificate::{BlockedProof, Branch, BranchRow, Bypass, Contradiction};
+use super::cuts::{BypassRows, Ends};
 use super::ray::Ray;
 use super::{CLEAR_MARGIN, DEEPEST, Frame, Shaft, Tableau, Target};
 use sightlines_geometry::Aabb;
@@ -120,12 +120,12 @@ impl<'s, 'a, 'e> Recorder<'s, 'a, 'e> {
 
     fn past(&mut self, tableau: Tableau, rectangle: u32, ray: &Ray) -> Option<Branch> {
         let depth = self.shaft.passed.len();
-        let mut done: Vec<(WayPast, Branch)> = Vec::new();
+        let mut done: Vec<(Bypass, Branch)> = Vec::new();
         for (way, branch) in self.impossible(rectangle) {
             done.push((way, branch?));
         }
         let axis = self.shaft.blockers.axis(rectangle);
-        let mut ways: Vec<(f64, Way)> = Vec::with_capacity(6);
+        let mut ways: Vec<(f64, BypassRows)> = Vec::with_capacity(6);
         self.ends.ways_past(self.shaft.blockers.rectangle(rectangle), axis, |way| {
             let late = |row: &Row| ray.time(row.early, row.from) - ray.time(row.late, row.to);
             ways.push((way.rows().iter().map(late).fold(f64::NEG_INFINITY, f64::max), way));
@@ -159,7 +159,7 @@ impl<'s, 'a, 'e> Recorder<'s, 'a, 'e> {
 
     /// The ways beside a rectangle that no line between the boxes takes, whatever else is in the way, and
     /// why; `None` for the reason would be a defect.
-    fn impossible(&mut self, rectangle: u32) -> Vec<(WayPast, Option<Branch>)> {
+    fn impossible(&mut self, rectangle: u32) -> Vec<(Bypass, Option<Branch>)> {
         let (octant, depth) = (self.ends.octant, self.shaft.passed.len());
         let (bounds, own) = (self.shaft.blockers.rectangle(rectangle), self.shaft.blockers.axis(rectangle));
         let at = bounds.min[own];
@@ -181,7 +181,7 @@ impl<'s, 'a, 'e> Recorder<'s, 'a, 'e> {
                 Decision::Line(_) | Decision::Fractions(_) => None,
             }
         };
-        never.into_iter().map(|(k, entering, row)| (WayPast::Beside { axis: k as u8, entering }, why(row))).collect()
+        never.into_iter().map(|(k, entering, row)| (Bypass::Beside { axis: k as u8, entering }, why(row))).collect()
     }
 
     fn push(&mut self, row: &Row, name: BranchRow) {
@@ -200,11 +200,11 @@ fn named(terms: &[(usize, num_bigint::BigInt)], names: &[BranchRow]) -> Contradi
 }
 
 /// Which way a set of rows is past a rectangle perpendicular to `axis`.
-fn name_of(way: &Way, axis: usize) -> WayPast {
+fn name_of(way: &BypassRows, axis: usize) -> Bypass {
     match way.rows() {
-        [row] if row.early == axis => WayPast::Beside { axis: row.late as u8, entering: true },
-        [row] => WayPast::Beside { axis: row.early as u8, entering: false },
-        rows if rows.iter().all(|row| row.early == axis) => WayPast::Before,
-        _ => WayPast::After,
+        [row] if row.early == axis => Bypass::Beside { axis: row.late as u8, entering: true },
+        [row] => Bypass::Beside { axis: row.early as u8, entering: false },
+        rows if rows.iter().all(|row| row.early == axis) => Bypass::Before,
+        _ => Bypass::After,
     }
 }

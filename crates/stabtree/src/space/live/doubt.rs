@@ -1,11 +1,11 @@
 //! Which pairs have to be asked about again.
 
-use super::super::Question;
 use super::super::SLIVER;
-use super::super::grid::Marks;
-use super::super::notes::Hand;
+use super::super::SpaceSearch;
+use super::super::atomic_bits::AtomicBitMatrix;
 use super::super::objects::touch;
 use super::super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
+use super::super::witness_log::Worker;
 use super::LiveSpace;
 use super::matching::Matching;
 use sightlines_geometry::{Aabb, BoxTree};
@@ -15,20 +15,20 @@ use std::cell::Cell;
 
 /// The pairs about which nothing is known. All others are visible already, or hidden.
 #[derive(Debug)]
-pub(in super::super) struct Doubt {
+pub(in super::super) struct PairsInDoubt {
     /// Places by places.
-    pub(in super::super) cells: Marks,
+    pub(in super::super) cells: AtomicBitMatrix,
     /// Objects by places.
-    pub(in super::super) objects: Marks,
+    pub(in super::super) objects: AtomicBitMatrix,
     /// Places in doubt about some object that is not new.
     pub(in super::super) rows: Vec<bool>,
     /// New objects, each with the places within whose reach it is.
     pub(in super::super) near_new: Vec<(u32, usize)>,
 }
 
-impl Doubt {
+impl PairsInDoubt {
     pub(super) fn none(n_places: usize, n_objects: usize) -> Self {
-        let [cells, objects] = [n_places, n_objects].map(|n_rows| Marks::new(n_rows, n_places));
+        let [cells, objects] = [n_places, n_objects].map(|n_rows| AtomicBitMatrix::new(n_rows, n_places));
         Self { cells, objects, rows: vec![false; n_places], near_new: Vec::new() }
     }
 
@@ -45,10 +45,10 @@ impl Doubt {
     }
 
     /// Doubts from where an object is seen that was none before. O(places).
-    pub(super) fn new_object(&mut self, object: u32, question: &Question<'_>) {
-        for (place, &cell) in question.cell_at.iter().enumerate() {
+    pub(super) fn new_object(&mut self, object: u32, search: &SpaceSearch<'_>) {
+        for (place, &cell) in search.cell_at.iter().enumerate() {
             self.objects.set(object as usize, place);
-            if question.within_reach[cell as usize].binary_search(&object).is_ok() {
+            if search.within_reach[cell as usize].binary_search(&object).is_ok() {
                 self.near_new.push((object, place));
             }
         }
@@ -59,23 +59,23 @@ impl Doubt {
     ///
     /// If an open set of lines joins a pair that was hidden, each of them met a wall that is none any more; as the
     /// rectangles are few and closed, an open set of them meets the same one.
-    pub(super) fn through(&mut self, opened: &Aabb<3>, seers: &[usize], question: &Question<'_>) {
+    pub(super) fn through(&mut self, opened: &Aabb<3>, seers: &[usize], search: &SpaceSearch<'_>) {
         let axis = (0..3).find(|&k| opened.min[k] == opened.max[k]).unwrap_or(0);
-        let bounds = |place: &usize| &question.graph.cells()[question.cell_at[*place] as usize].bounds;
+        let bounds = |place: &usize| &search.graph.cells()[search.cell_at[*place] as usize].bounds;
         let low: Vec<usize> = seers.iter().copied().filter(|p| bounds(p).min[axis] < opened.max[axis]).collect();
         let high: Vec<usize> = seers.iter().copied().filter(|p| bounds(p).max[axis] > opened.min[axis]).collect();
         for &a in &low {
             high.iter().filter(|b| **b != a).for_each(|&b| self.pair(a, b));
         }
         let near = |seers: &[usize]| {
-            let cells = seers.iter().map(|&place| question.cell_at[place] as usize);
-            let mut near: Vec<u32> = cells.flat_map(|cell| question.within_reach[cell].iter().copied()).collect();
+            let cells = seers.iter().map(|&place| search.cell_at[place] as usize);
+            let mut near: Vec<u32> = cells.flat_map(|cell| search.within_reach[cell].iter().copied()).collect();
             near.sort_unstable();
             near.dedup();
             near
         };
         // A line to an object goes on to it on the other side; slivers, which are thin, are on both.
-        let has_slivers = question.regular.len() < question.graph.n_cells();
+        let has_slivers = search.regular.len() < search.graph.n_cells();
         let sides = if has_slivers { vec![(seers, seers)] } else { vec![(&low[..], &high[..]), (&high, &low)] };
         for (from, to) in sides {
             let near = near(to);
@@ -89,9 +89,15 @@ impl Doubt {
     /// where walls were, and what lies, like themselves, where no cells were.
     ///
     /// A line between two cells that meets no place where a wall was never crosses the border of what was cells.
-    pub(super) fn new_cells(&mut self, question: &Question<'_>, old: &LiveSpace, cells: &Matching, heirs: &[Vec<u32>]) {
-        let is_new = |place: &usize| cells.old_of[question.cell_at[*place] as usize].is_none();
-        let new: Vec<usize> = (0..question.cell_at.len()).filter(is_new).collect();
+    pub(super) fn new_cells(
+        &mut self,
+        search: &SpaceSearch<'_>,
+        old: &LiveSpace,
+        cells: &Matching,
+        heirs: &[Vec<u32>],
+    ) {
+        let is_new = |place: &usize| cells.old_of[search.cell_at[*place] as usize].is_none();
+        let new: Vec<usize> = (0..search.cell_at.len()).filter(is_new).collect();
         if new.is_empty() {
             return;
         }
@@ -99,7 +105,7 @@ impl Doubt {
         let tree = BoxTree::build(&extents, 2);
         let mut new_in: Vec<Vec<usize>> = vec![Vec::new(); extents.len()];
         let overlapped = new.iter().map(|&place| {
-            let bounds = &question.graph.cells()[question.cell_at[place] as usize].bounds;
+            let bounds = &search.graph.cells()[search.cell_at[place] as usize].bounds;
             let mut found = Vec::new();
             tree.visit(|b| !apart(b, bounds), |i| found.extend((!apart(&extents[i as usize], bounds)).then_some(i)));
             found.iter().for_each(|&i| new_in[i as usize].push(place));
@@ -118,11 +124,11 @@ impl Doubt {
             }
             for other in seen.iter_ones(0) {
                 match cells.new_of[other] {
-                    Some(same) => self.pair(place, question.place[same as usize] as usize),
+                    Some(same) => self.pair(place, search.place[same as usize] as usize),
                     None => new_in[other].iter().filter(|p| **p != place).for_each(|&p| self.pair(place, p)),
                 }
             }
-            let bounds = &question.graph.cells()[question.cell_at[place] as usize].bounds;
+            let bounds = &search.graph.cells()[search.cell_at[place] as usize].bounds;
             if is_covered(*bounds, overlapped, &extents) {
                 for object in seen_objects.iter_ones(0) {
                     heirs[object].iter().for_each(|&same| self.object(same, place));
@@ -130,7 +136,7 @@ impl Doubt {
             } else {
                 uncovered.iter().for_each(|&other| self.pair(place, other));
                 uncovered.push(place);
-                (0..question.boxes.len() as u32).for_each(|object| self.object(object, place));
+                (0..search.boxes.len() as u32).for_each(|object| self.object(object, place));
             }
         }
     }
@@ -141,8 +147,13 @@ impl Doubt {
 ///
 /// A line from an old cell to such a rectangle meets a first one; until then nothing is there that was not, so it comes to
 /// that through a cell that the old one saw.
-pub(super) fn candidates(question: &Question<'_>, old: &LiveSpace, cells: &Matching, opened: &[Aabb<3>]) -> Marks {
-    let found = Marks::new(1, question.cell_at.len());
+pub(super) fn candidates(
+    search: &SpaceSearch<'_>,
+    old: &LiveSpace,
+    cells: &Matching,
+    opened: &[Aabb<3>],
+) -> AtomicBitMatrix {
+    let found = AtomicBitMatrix::new(1, search.cell_at.len());
     let mut near = BitMatrix::new(1, old.graph.n_cells());
     let tree = BoxTree::build(opened, 1);
     for (cell, extent) in old.graph.cells().iter().enumerate() {
@@ -152,7 +163,7 @@ pub(super) fn candidates(question: &Question<'_>, old: &LiveSpace, cells: &Match
             or(near.row_mut(0), old.seen.cells.row(cell));
         }
     }
-    for (place, &cell) in question.cell_at.iter().enumerate() {
+    for (place, &cell) in search.cell_at.iter().enumerate() {
         if cells.old_of[cell as usize].is_none_or(|old| near.get(0, old as usize)) {
             found.set(0, place);
         }
@@ -195,9 +206,9 @@ fn is_covered(bounds: Aabb<3>, cells: &[u32], extents: &[Aabb<3>]) -> bool {
     open.is_empty()
 }
 
-impl Question<'_> {
+impl SpaceSearch<'_> {
     /// The places of those candidates that see a flat box, or touch it; perhaps of some more.
-    pub(super) fn seers(&self, target: &Aabb<3>, candidates: &Marks, hand: &mut Hand<'_>) -> Vec<usize> {
+    pub(super) fn seers(&self, target: &Aabb<3>, candidates: &AtomicBitMatrix, worker: &mut Worker<'_>) -> Vec<usize> {
         let mut found = Vec::new();
         let mut stack = vec![0];
         while let Some(n) = stack.pop() {
@@ -207,7 +218,7 @@ impl Question<'_> {
             }
             let budget = if node.is_leaf() { CELL_BUDGET } else { GROUP_BUDGET };
             let sees = touch(&node.bounds, target)
-                || hand.shaft.decide(&node.bounds, target, Target::Surface, budget) != Sight::Blocked;
+                || worker.shaft.decide(&node.bounds, target, Target::Surface, budget) != Sight::Blocked;
             match (sees, node.is_leaf()) {
                 (false, _) => {}
                 (true, true) => found.push(node.start as usize),

@@ -11,21 +11,21 @@
 //! cut are followed once more on both sides of the cut, and those that ended at a wall that is gone, further on; those
 //! that proved what cells see that are gone show much of what the cells see that are there instead.
 //!
-//! The answer is that of [`see_space`](super::see_space): both are exact, but for pairs that are given up
-//! ([`SeenInSpace::n_assumed`]). Such a pair is asked about again with every update, but a pair that was proven to be
+//! The answer is that of [`space_visibility`](super::space_visibility): both are exact, but for pairs that are given up
+//! ([`SpaceVisibility::n_assumed`]). Such a pair is asked about again with every update, but a pair that was proven to be
 //! hidden stays hidden, though a new search, which meets other groups and rectangles, might give it up.
 
 mod change;
 mod doubt;
 mod matching;
 
-pub(super) use doubt::Doubt;
+pub(super) use doubt::PairsInDoubt;
 
-use super::grid::Marks;
-use super::notes::{FoundFor, Hand, Line, Notes, Proof};
+use super::atomic_bits::AtomicBitMatrix;
 use super::opaque::Walls;
-use super::{Question, SeenInSpace, on_threads, slivers};
-use crate::search::{Known, SearchOptions};
+use super::witness_log::{FoundFor, Line, Proof, WitnessLog, Worker};
+use super::{SpaceSearch, SpaceVisibility, on_threads, slivers};
+use crate::search::{SearchOptions, VisibilityBounds};
 use change::Change;
 use matching::{Matching, heirs, same_boxes};
 use rayon::prelude::*;
@@ -45,9 +45,9 @@ const MOST_OPENED: usize = 256;
 pub struct LiveSpace {
     graph: CellGraph<Axial>,
     objects: Vec<Aabb<3>>,
-    seen: SeenInSpace,
+    seen: SpaceVisibility,
     walls: Walls,
-    notes: Notes,
+    log: WitnessLog,
 }
 
 /// What an update did.
@@ -75,15 +75,15 @@ pub struct SpaceUpdate {
 }
 
 impl LiveSpace {
-    /// Finds which cells of a graph see each other and which objects they see, as [`see_space`](super::see_space)
+    /// Finds which cells of a graph see each other and which objects they see, as [`space_visibility`](super::space_visibility)
     /// does, and keeps what an update needs. Arguments, exactness and cost as there.
     pub fn new(graph: CellGraph<Axial>, solid: &[Aabb<3>], objects: Vec<Aabb<3>>, options: &SearchOptions<'_>) -> Self {
-        let (seen, walls, notes) = on_threads(options.threads, |threads| {
+        let (seen, walls, log) = on_threads(options.threads, |threads| {
             let walls = Walls::of(&graph, solid, &Walls::default());
-            let (seen, notes) = anew(&graph, &walls, &objects, threads, options);
-            (seen, walls, notes)
+            let (seen, log) = anew(&graph, &walls, &objects, threads, options);
+            (seen, walls, log)
         });
-        Self { graph, objects, seen, walls, notes }
+        Self { graph, objects, seen, walls, log }
     }
 
     /// The graph that the answer is about.
@@ -92,13 +92,13 @@ impl LiveSpace {
     }
 
     /// The answer.
-    pub const fn seen(&self) -> &SeenInSpace {
+    pub const fn seen(&self) -> &SpaceVisibility {
         &self.seen
     }
 
     /// Number of lines that are kept.
     pub const fn n_lines(&self) -> usize {
-        self.notes.lines.len()
+        self.log.lines.len()
     }
 
     /// Goes over to another graph, other solid boxes and other objects; arguments as for [`Self::new`].
@@ -115,22 +115,22 @@ impl LiveSpace {
         objects: Vec<Aabb<3>>,
         options: &SearchOptions<'_>,
     ) -> SpaceUpdate {
-        let notes = std::mem::take(&mut self.notes);
-        let run = |threads| self.updated(notes, &graph, solid, &objects, threads, options);
-        let (seen, walls, notes, update) = on_threads(options.threads, run);
-        *self = Self { graph, objects, seen, walls, notes };
+        let log = std::mem::take(&mut self.log);
+        let run = |threads| self.updated(log, &graph, solid, &objects, threads, options);
+        let (seen, walls, log, update) = on_threads(options.threads, run);
+        *self = Self { graph, objects, seen, walls, log };
         update
     }
 
     fn updated(
         &self,
-        notes: Notes,
+        log: WitnessLog,
         graph: &CellGraph<Axial>,
         solid: &[Aabb<3>],
         boxes: &[Aabb<3>],
         threads: usize,
         options: &SearchOptions<'_>,
-    ) -> (SeenInSpace, Walls, Notes, SpaceUpdate) {
+    ) -> (SpaceVisibility, Walls, WitnessLog, SpaceUpdate) {
         let walls = Walls::of(graph, solid, &self.walls);
         let same_objects = same_boxes(&self.objects, boxes);
         let cells = self.same_cells(graph);
@@ -142,28 +142,27 @@ impl LiveSpace {
             n_objects_new: same_objects.iter().filter(|old| old.is_none()).count(),
             n_closed: change.closed.len(),
             n_opened: change.opened.len(),
-            n_lines: notes.lines.len(),
+            n_lines: log.lines.len(),
             ..SpaceUpdate::default()
         };
         if n_cells_kept < graph.n_cells() / 2 || change.opened.len() > MOST_OPENED {
-            let (seen, notes) = anew(graph, &walls, boxes, threads, options);
+            let (seen, log) = anew(graph, &walls, boxes, threads, options);
             (update.rebuilt, update.n_lines_cut, update.counters) = (true, update.n_lines, seen.counters);
-            return (seen, walls, notes, update);
+            return (seen, walls, log, update);
         }
         let blockers = Blockers::new(walls.rectangles());
-        let nothing = Known::nothing(graph.n_cells());
-        let mut question = Question::new(graph, boxes, &blockers, &nothing);
-        question.noting = true;
-        let step =
-            Step { question: &question, old: self, cells: &cells, heirs: heirs(&same_objects, self.objects.len()) };
-        let (doubt, mut kept, n_cut) = step.prepare(notes, &change, &same_objects);
+        let nothing = VisibilityBounds::nothing(graph.n_cells());
+        let mut search = SpaceSearch::new(graph, boxes, &blockers, &nothing);
+        search.logging = true;
+        let step = Step { search: &search, old: self, cells: &cells, heirs: heirs(&same_objects, self.objects.len()) };
+        let (doubt, mut kept, n_cut) = step.prepare(log, &change, &same_objects);
         update.n_lines_cut = n_cut;
-        question.doubt = Some(doubt);
-        let (counters, found) = question.answer(threads, options);
+        search.doubt = Some(doubt);
+        let (counters, found) = search.answer(threads, options);
         kept.append(found);
         update.counters = counters;
         kept.compact();
-        (question.into_seen(counters), walls, kept, update)
+        (search.into_seen(counters), walls, kept, update)
     }
 
     /// The cells that have the same bounds and are no slivers.
@@ -181,13 +180,13 @@ fn anew(
     objects: &[Aabb<3>],
     threads: usize,
     options: &SearchOptions<'_>,
-) -> (SeenInSpace, Notes) {
+) -> (SpaceVisibility, WitnessLog) {
     let blockers = Blockers::new(walls.rectangles());
-    let nothing = Known::nothing(graph.n_cells());
-    let mut question = Question::new(graph, objects, &blockers, &nothing);
-    question.noting = true;
-    let (counters, notes) = question.answer(threads, options);
-    (question.into_seen(counters), notes)
+    let nothing = VisibilityBounds::nothing(graph.n_cells());
+    let mut search = SpaceSearch::new(graph, objects, &blockers, &nothing);
+    search.logging = true;
+    let (counters, log) = search.answer(threads, options);
+    (search.into_seen(counters), log)
 }
 
 /// Whether the free part of a line may meet any box of a tree: certain if it says no.
@@ -199,7 +198,7 @@ fn meets_any(line: &Line, tree: &BoxTree<3>) -> bool {
 
 /// From one graph to the next.
 struct Step<'a> {
-    question: &'a Question<'a>,
+    search: &'a SpaceSearch<'a>,
     old: &'a LiveSpace,
     cells: &'a Matching,
     /// For each old object the new ones with the same box.
@@ -208,13 +207,18 @@ struct Step<'a> {
 
 impl Step<'_> {
     /// Marks what old lines still prove; returns what is in doubt, what is noted, and how many lines are cut.
-    fn prepare(&self, mut notes: Notes, change: &Change, same_objects: &[Option<u32>]) -> (Doubt, Notes, usize) {
-        let question = self.question;
-        let mut doubt = Doubt::none(question.cell_at.len(), question.boxes.len());
+    fn prepare(
+        &self,
+        mut log: WitnessLog,
+        change: &Change,
+        same_objects: &[Option<u32>],
+    ) -> (PairsInDoubt, WitnessLog, usize) {
+        let search = self.search;
+        let mut doubt = PairsInDoubt::none(search.cell_at.len(), search.boxes.len());
         let [closed, opened] = [&change.closed, &change.opened].map(|walls| BoxTree::build(walls, 1));
         let new_objects: Vec<u32> =
             (0u32..).zip(same_objects).filter(|(_, old)| old.is_none()).map(|(object, _)| object).collect();
-        let new_boxes: Vec<Aabb<3>> = new_objects.iter().map(|&object| question.boxes[object as usize]).collect();
+        let new_boxes: Vec<Aabb<3>> = new_objects.iter().map(|&object| search.boxes[object as usize]).collect();
         let new_boxes = BoxTree::build(&new_boxes, 1);
         let kind = |line: &Line| match () {
             () if meets_any(line, &closed) => Kind::Cut,
@@ -222,75 +226,75 @@ impl Step<'_> {
             () if meets_any(line, &new_boxes) => Kind::Near,
             () => Kind::Away,
         };
-        let kinds: Vec<Kind> = notes.lines.par_iter().map(kind).collect();
+        let kinds: Vec<Kind> = log.lines.par_iter().map(kind).collect();
         let of_kind = |wanted: Kind| -> Vec<u32> {
             (0u32..).zip(&kinds).filter(|(_, kind)| **kind == wanted).map(|(line, _)| line).collect()
         };
-        let freed: Vec<Line> = of_kind(Kind::Freed).iter().map(|&i| notes.lines[i as usize].clone()).collect();
+        let freed: Vec<Line> = of_kind(Kind::Freed).iter().map(|&i| log.lines[i as usize].clone()).collect();
         let near = of_kind(Kind::Near);
-        let (cut, number) = notes.take_lines(&of_kind(Kind::Cut));
-        let mut again = self.carry_over(&mut notes, &number, &mut doubt);
+        let (cut, number) = log.take_lines(&of_kind(Kind::Cut));
+        let mut again = self.carry_over(&mut log, &number, &mut doubt);
         again.extend(near.iter().filter_map(|&line| number[line as usize]));
         again.sort_unstable();
         again.dedup();
         let is_new = self.is_new(&new_objects);
-        let more = again.par_iter().map(|&line| question.mark_new(line, &notes.lines[line as usize].span, &is_new));
+        let more = again.par_iter().map(|&line| search.mark_new(line, &log.lines[line as usize].span, &is_new));
         let more: Vec<[Vec<Proof>; 2]> = more.collect();
         for [cells, objects] in more {
-            notes.cells.extend(cells);
-            notes.objects.extend(objects);
+            log.cells.extend(cells);
+            log.objects.extend(objects);
         }
         let parts = cut.par_iter().chain(&freed).map_init(
-            || question.hand(),
-            |hand, line| {
-                self.follow_parts(line, hand);
-                hand.take_notes()
+            || search.worker(),
+            |worker, line| {
+                self.follow_parts(line, worker);
+                worker.take_log()
             },
         );
-        let found: Vec<Notes> = parts.collect();
-        found.into_iter().for_each(|found| notes.append(found));
-        let candidates = doubt::candidates(question, self.old, self.cells, &change.opened);
+        let found: Vec<WitnessLog> = parts.collect();
+        found.into_iter().for_each(|found| log.append(found));
+        let candidates = doubt::candidates(search, self.old, self.cells, &change.opened);
         let seers = change
             .opened
             .par_iter()
-            .map_init(|| question.hand(), |hand, opened| question.seers(opened, &candidates, hand));
+            .map_init(|| search.worker(), |worker, opened| search.seers(opened, &candidates, worker));
         let seers: Vec<Vec<usize>> = seers.collect();
         for (opened, seers) in change.opened.iter().zip(&seers) {
-            doubt.through(opened, seers, question);
+            doubt.through(opened, seers, search);
         }
-        doubt.new_cells(question, self.old, self.cells, &self.heirs);
-        new_objects.into_iter().for_each(|object| doubt.new_object(object, question));
-        (doubt, notes, cut.len())
+        doubt.new_cells(search, self.old, self.cells, &self.heirs);
+        new_objects.into_iter().for_each(|object| doubt.new_object(object, search));
+        (doubt, log, cut.len())
     }
 
     /// Which places and objects are new.
     fn is_new(&self, new_objects: &[u32]) -> [Vec<bool>; 2] {
-        let question = self.question;
-        let cells = question.cell_at.iter().map(|&cell| self.cells.old_of[cell as usize].is_none()).collect();
-        let mut objects = vec![false; question.boxes.len()];
+        let search = self.search;
+        let cells = search.cell_at.iter().map(|&cell| self.cells.old_of[cell as usize].is_none()).collect();
+        let mut objects = vec![false; search.boxes.len()];
         new_objects.iter().for_each(|&object| objects[object as usize] = true);
         [cells, objects]
     }
 
     /// The place of an old cell that is still there.
     fn place(&self, cell: u32) -> Option<usize> {
-        self.question.place_of(self.cells.new_of[cell as usize]?)
+        self.search.place_of(self.cells.new_of[cell as usize]?)
     }
 
     /// Marks the pairs of lines that are still there, by their new numbers, and gives them the new ids; the other pairs
     /// are in doubt. Returns lines that proved pairs of cells that are gone: they may pass what is there instead.
-    fn carry_over(&self, notes: &mut Notes, number: &[Option<u32>], doubt: &mut Doubt) -> Vec<u32> {
-        let Doubt { cells, objects, rows, .. } = doubt;
+    fn carry_over(&self, log: &mut WitnessLog, number: &[Option<u32>], doubt: &mut PairsInDoubt) -> Vec<u32> {
+        let PairsInDoubt { cells, objects, rows, .. } = doubt;
         let (of_cells, of_objects) = rayon::join(
-            || self.carry_over_cells(&mut notes.cells, number, cells),
-            || self.carry_over_objects(&mut notes.objects, number, objects, rows),
+            || self.carry_over_cells(&mut log.cells, number, cells),
+            || self.carry_over_objects(&mut log.objects, number, objects, rows),
         );
-        for pair in notes.assumed.drain(..) {
+        for pair in log.assumed.drain(..) {
             if let [Some(a), Some(b)] = pair.map(|cell| self.place(cell)) {
                 doubt.pair(a, b);
             }
         }
-        for [object, cell] in notes.assumed_objects.drain(..).chain(notes.inside.drain(..)) {
+        for [object, cell] in log.assumed_objects.drain(..).chain(log.inside.drain(..)) {
             if let Some(place) = self.place(cell) {
                 self.heirs[object as usize].iter().for_each(|&same| doubt.object(same, place));
             }
@@ -298,8 +302,8 @@ impl Step<'_> {
         [of_cells, of_objects].concat()
     }
 
-    fn carry_over_cells(&self, proofs: &mut Vec<Proof>, number: &[Option<u32>], doubt: &Marks) -> Vec<u32> {
-        let (question, mut again) = (self.question, Vec::new());
+    fn carry_over_cells(&self, proofs: &mut Vec<Proof>, number: &[Option<u32>], doubt: &AtomicBitMatrix) -> Vec<u32> {
+        let (search, mut again) = (self.search, Vec::new());
         proofs.retain_mut(|proof| {
             let line = number[proof.line as usize];
             let [Some(a), Some(b)] = proof.pair.map(|cell| self.place(cell)) else {
@@ -311,8 +315,8 @@ impl Step<'_> {
                 doubt.set(b, a);
                 return false;
             };
-            question.join(a, b);
-            *proof = Proof { pair: [a, b].map(|place| question.cell_at[place]), line };
+            search.join(a, b);
+            *proof = Proof { pair: [a, b].map(|place| search.cell_at[place]), line };
             true
         });
         again
@@ -322,10 +326,10 @@ impl Step<'_> {
         &self,
         proofs: &mut Vec<Proof>,
         number: &[Option<u32>],
-        doubt: &Marks,
+        doubt: &AtomicBitMatrix,
         rows: &mut [bool],
     ) -> Vec<u32> {
-        let (question, mut again, mut more) = (self.question, Vec::new(), Vec::new());
+        let (search, mut again, mut more) = (self.search, Vec::new(), Vec::new());
         proofs.retain_mut(|proof| {
             let [object, cell] = proof.pair;
             let line = number[proof.line as usize];
@@ -340,11 +344,11 @@ impl Step<'_> {
                 rows[place] = true;
                 return false;
             };
-            let of = |object: u32| Proof { pair: [object, question.cell_at[place]], line };
-            question.objects.set(*first as usize, place);
+            let of = |object: u32| Proof { pair: [object, search.cell_at[place]], line };
+            search.objects.set(*first as usize, place);
             *proof = of(*first);
             for &other in others {
-                question.objects.set(other as usize, place);
+                search.objects.set(other as usize, place);
                 more.push(of(other));
             }
             true
@@ -354,15 +358,15 @@ impl Step<'_> {
     }
 
     /// Follows a line from cells on it, as far as it goes from there.
-    fn follow_parts(&self, line: &Line, hand: &mut Hand<'_>) {
-        let question = self.question;
-        let mut left = question.cells_on(&line.span);
+    fn follow_parts(&self, line: &Line, worker: &mut Worker<'_>) {
+        let search = self.search;
+        let mut left = search.cells_on(&line.span);
         while let Some(&place) = left.first() {
-            let bounds = &question.graph.cells()[question.cell_at[place] as usize].bounds;
-            let span = line.line.span(bounds, bounds, question.blockers);
-            let cells = question.cells_on(&span);
+            let bounds = &search.graph.cells()[search.cell_at[place] as usize].bounds;
+            let span = line.line.span(bounds, bounds, search.blockers);
+            let cells = search.cells_on(&span);
             left.retain(|other| *other != place && !cells.contains(other));
-            question.mark(&line.line, span, &cells, FoundFor::Groups, hand);
+            search.mark(&line.line, span, &cells, FoundFor::Groups, worker);
         }
     }
 }

@@ -9,7 +9,7 @@ use sightlines_kdtree::AxialFace;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::AxialStabber;
 use sightlines_stabtree::{
-    AskedOfBoxes, Known, Network, SearchOptions, SeenFromBoxes, Zones, see_from_boxes, visible_zones,
+    BoxVisibility, Network, PairMask, SearchOptions, VisibilityBounds, Zones, box_visibility, visible_zones,
 };
 use std::cell::Cell;
 
@@ -19,11 +19,11 @@ fn all(n_rows: usize, n_cols: usize) -> BitMatrix {
     all
 }
 
-fn seen(graph: &CellGraph<Axial>, solid: &[Aabb<3>], eyes: &[Aabb<3>], things: &[Aabb<3>]) -> SeenFromBoxes {
-    let asked = AskedOfBoxes { boxes: all(eyes.len(), eyes.len()), objects: all(eyes.len(), things.len()) };
+fn seen(graph: &CellGraph<Axial>, solid: &[Aabb<3>], eyes: &[Aabb<3>], things: &[Aabb<3>]) -> BoxVisibility {
+    let asked = PairMask { boxes: all(eyes.len(), eyes.len()), objects: all(eyes.len(), things.len()) };
     let [one, three] = [1, 3].map(|threads| {
         let options = SearchOptions { threads, ..SearchOptions::default() };
-        see_from_boxes(graph, solid, eyes, things, &asked, &options)
+        box_visibility(graph, solid, eyes, things, &asked, &options)
     });
     assert_eq!((&one.boxes, &one.objects), (&three.boxes, &three.objects));
     one
@@ -101,7 +101,7 @@ fn by_cells(graph: &CellGraph<Axial>, eyes: &[Aabb<3>], things: &[Aabb<3>]) -> [
     let fine = cut_along(graph, eyes);
     let network = Network::axial(&fine, &Zones::cells(&fine), things);
     let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-    let found = visible_zones(&network, &AxialStabber::new(), &Known::nothing(fine.n_cells()), &options);
+    let found = visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(fine.n_cells()), &options);
     let within: Vec<Vec<usize>> = eyes
         .iter()
         .map(|eye| {
@@ -197,10 +197,10 @@ fn only_what_is_asked_is_answered() {
     let found = seen(&graph, &[], &eyes, &things);
     assert_eq!([0, 1, 2].map(|b| found.boxes.get(0, b)), [true, true, false]);
     assert_eq!([0, 1].map(|o| found.objects.get(0, o)), [true, false]);
-    let mut asked = AskedOfBoxes { boxes: BitMatrix::new(3, 3), objects: BitMatrix::new(3, 2) };
+    let mut asked = PairMask { boxes: BitMatrix::new(3, 3), objects: BitMatrix::new(3, 2) };
     asked.objects.set(0, 1, true);
     asked.objects.set(1, 0, true);
-    let some = see_from_boxes(&graph, &[], &eyes, &things, &asked, &SearchOptions::default());
+    let some = box_visibility(&graph, &[], &eyes, &things, &asked, &SearchOptions::default());
     assert_eq!((some.boxes.count_ones(), some.objects.count_ones()), (0, 1));
     assert!(some.objects.get(1, 0) && some.counters.n_asked < found.counters.n_asked);
     let beyond = [Aabb { min: [-1.0, 0.25, 0.25], max: [0.5, 0.5, 0.5] }, eyes[2]];

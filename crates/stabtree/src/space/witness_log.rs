@@ -22,7 +22,7 @@ pub(super) struct Proof {
 /// Why pairs count as visible: each visible pair of regular cells, and of an object and a regular cell that it does
 /// not touch, is in one list, once.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Notes {
+pub(super) struct WitnessLog {
     pub(super) lines: Vec<Line>,
     /// Pairs of cells.
     pub(super) cells: Vec<Proof>,
@@ -36,7 +36,7 @@ pub(super) struct Notes {
     pub(super) inside: Vec<[u32; 2]>,
 }
 
-impl Notes {
+impl WitnessLog {
     /// Adds those of another search.
     pub(super) fn append(&mut self, mut other: Self) {
         let first = self.lines.len() as u32;
@@ -93,15 +93,15 @@ pub(super) enum FoundFor {
 
 /// What one thread works with.
 #[derive(Debug)]
-pub(super) struct Hand<'a> {
+pub(super) struct Worker<'a> {
     pub(super) shaft: Shaft<'a>,
     /// What it writes down, if anything.
-    pub(super) notes: Option<Notes>,
+    pub(super) log: Option<WitnessLog>,
 }
 
-impl Hand<'_> {
+impl Worker<'_> {
     /// What was written down since the last time.
-    pub(super) fn take_notes(&mut self) -> Notes {
-        self.notes.as_mut().map(std::mem::take).unwrap_or_default()
+    pub(super) fn take_log(&mut self) -> WitnessLog {
+        self.log.as_mut().map(std::mem::take).unwrap_or_default()
     }
 }

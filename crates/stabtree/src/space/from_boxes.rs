@@ -6,7 +6,7 @@
 //! seen along a line that is free from there on. Groups of targets are asked about first, then their halves; what shares a cell with the box
 //! is seen, and what lies on a line that was found is.
 
-use super::grid::Marks;
+use super::atomic_bits::AtomicBitMatrix;
 use super::objects::touch;
 use super::opaque::opaque_rectangles;
 use super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// What is asked about boxes: pairs of boxes, which has to be symmetric, and of a box and an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct AskedOfBoxes {
+pub struct PairMask {
     /// Boxes by boxes.
     pub boxes: BitMatrix,
     /// Boxes by objects.
@@ -31,7 +31,7 @@ pub struct AskedOfBoxes {
 
 /// The answer for boxes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SeenFromBoxes {
+pub struct BoxVisibility {
     /// Boxes by boxes: of the pairs that were asked, those that see each other. Symmetric.
     pub boxes: BitMatrix,
     /// Boxes by objects: of the pairs that were asked, those of which the box sees the object.
@@ -54,7 +54,7 @@ pub struct SeenFromBoxes {
 ///   open set of lines leads from inside of one to inside of the other without meeting a wall between where it leaves the one and where it
 ///   enters the other, and if they touch. Flat ones, and ones that are thinner than 2^-32 of the scene, are made a
 ///   little thicker.
-/// * `objects`: as for [`see_space`](super::see_space).
+/// * `objects`: as for [`space_visibility`](super::space_visibility).
 /// * `asked`: the pairs that are of interest.
 ///
 /// Exact, but for thin boxes, which may see more, and pairs that take thousands of linear programs, which count as
@@ -63,24 +63,24 @@ pub struct SeenFromBoxes {
 ///
 /// # Panics
 /// If a matrix of `asked` is not about as many boxes and objects.
-pub fn see_from_boxes(
+pub fn box_visibility(
     graph: &CellGraph<Axial>,
     solid: &[Aabb<3>],
     boxes: &[Aabb<3>],
     objects: &[Aabb<3>],
-    asked: &AskedOfBoxes,
+    asked: &PairMask,
     options: &SearchOptions<'_>,
-) -> SeenFromBoxes {
+) -> BoxVisibility {
     let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == boxes.len() && m.n_cols() == n_cols;
     assert!(fits(&asked.boxes, boxes.len()) && fits(&asked.objects, objects.len()), "a row for each box");
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
-    let places = Places::new(graph);
+    let places = CellLocator::new(graph);
     let thick: Vec<Aabb<3>> = boxes.iter().map(|b| places.thickened(b)).collect();
     let of_boxes = Targets::new(&thick, boxes, Target::Inside, &places);
     let of_objects = Targets::new(objects, objects, Target::Surface, &places);
-    let known = Known {
-        boxes: Marks::new(boxes.len(), boxes.len()),
-        objects: Marks::new(boxes.len(), objects.len()),
+    let known = FoundVisible {
+        boxes: AtomicBitMatrix::new(boxes.len(), boxes.len()),
+        objects: AtomicBitMatrix::new(boxes.len(), objects.len()),
         of_boxes: &of_boxes,
         of_objects: &of_objects,
         blockers: &blockers,
@@ -88,7 +88,7 @@ pub fn see_from_boxes(
     let done = AtomicUsize::new(0);
     let one = |shaft: &mut Shaft<'_>, eye: usize| {
         let before = shaft.counters();
-        let mut from = Eye { own: &boxes[eye], thick: &thick[eye], id: eye, known: &known, shaft, n_assumed: 0 };
+        let mut from = BoxSearch { own: &boxes[eye], thick: &thick[eye], id: eye, known: &known, shaft, n_assumed: 0 };
         // Who sees whom is asked once, of the lower number.
         let later = asked.boxes.iter_ones(eye).filter(|&other| other > eye);
         from.settle_all(Kind::Box, &places, later);
@@ -101,7 +101,7 @@ pub fn see_from_boxes(
         known.mark_within(graph, &places);
         (0..boxes.len()).into_par_iter().with_max_len(1).map_init(|| Shaft::new(&blockers), one).collect()
     });
-    let mut answer = SeenFromBoxes {
+    let mut answer = BoxVisibility {
         boxes: asked.boxes.clone(),
         objects: asked.objects.clone(),
         n_blockers: blockers.len(),
@@ -120,9 +120,9 @@ pub fn see_from_boxes(
 }
 
 /// What is known to be seen: it only grows, and all threads see it.
-struct Known<'a> {
-    boxes: Marks,
-    objects: Marks,
+struct FoundVisible<'a> {
+    boxes: AtomicBitMatrix,
+    objects: AtomicBitMatrix,
     of_boxes: &'a Targets<'a>,
     of_objects: &'a Targets<'a>,
     blockers: &'a Blockers,
@@ -135,9 +135,9 @@ enum Kind {
     Object,
 }
 
-impl Known<'_> {
+impl FoundVisible<'_> {
     /// Marks what lies in one cell: nothing is between two places in it.
-    fn mark_within(&self, graph: &CellGraph<Axial>, places: &Places) {
+    fn mark_within(&self, graph: &CellGraph<Axial>, places: &CellLocator) {
         // A box of eyes shares some of the inside of the cell; an object may be flat along an axis, but not in the cell's border.
         let shares = |b: &Aabb<3>, cell: &Aabb<3>| (0..3).all(|k| b.min[k] < cell.max[k] && cell.min[k] < b.max[k]);
         (0..graph.n_cells()).into_par_iter().for_each(|cell| {
@@ -166,7 +166,7 @@ impl Known<'_> {
         });
     }
 
-    fn marks(&self, kind: Kind) -> &Marks {
+    fn marks(&self, kind: Kind) -> &AtomicBitMatrix {
         match kind {
             Kind::Box => &self.boxes,
             Kind::Object => &self.objects,
@@ -208,7 +208,7 @@ impl Known<'_> {
 }
 
 /// Where boxes lie among the cells.
-struct Places {
+struct CellLocator {
     all: Aabb<3>,
     /// Half of how thick a box is made, at least.
     thin: f64,
@@ -218,7 +218,7 @@ struct Places {
     component: Vec<u32>,
 }
 
-impl Places {
+impl CellLocator {
     fn new(graph: &CellGraph<Axial>) -> Self {
         let extents: Vec<Aabb<3>> = graph.cells().iter().map(|c| c.bounds).collect();
         let all = Aabb::<3>::around(extents.iter().flat_map(|b| [b.min, b.max]));
@@ -274,7 +274,7 @@ struct Targets<'a> {
 }
 
 impl<'a> Targets<'a> {
-    fn new(boxes: &'a [Aabb<3>], own: &'a [Aabb<3>], target: Target, places: &Places) -> Self {
+    fn new(boxes: &'a [Aabb<3>], own: &'a [Aabb<3>], target: Target, places: &CellLocator) -> Self {
         Self {
             boxes,
             own,
@@ -293,18 +293,18 @@ impl<'a> Targets<'a> {
 }
 
 /// A box that eyes are in, and its solver.
-struct Eye<'a, 's, 'b> {
+struct BoxSearch<'a, 's, 'b> {
     own: &'a Aabb<3>,
     thick: &'a Aabb<3>,
     id: usize,
-    known: &'a Known<'a>,
+    known: &'a FoundVisible<'a>,
     shaft: &'s mut Shaft<'b>,
     n_assumed: u64,
 }
 
-impl Eye<'_, '_, '_> {
+impl BoxSearch<'_, '_, '_> {
     /// Marks which of the targets asked about may be seen.
-    fn settle_all(&mut self, kind: Kind, places: &Places, asked: impl Iterator<Item = usize>) {
+    fn settle_all(&mut self, kind: Kind, places: &CellLocator, asked: impl Iterator<Item = usize>) {
         let known = self.known;
         let (targets, marks) = match kind {
             Kind::Box => (known.of_boxes, &known.boxes),

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 /// A set of cells: the words of a row of bits from the first to the last that is not zero.
 #[derive(Debug, Default)]
-pub(super) struct Wanted {
+pub(super) struct CellSet {
     start: usize,
     words: Vec<u64>,
 }
 
-impl Wanted {
+impl CellSet {
     pub(super) fn is_empty(&self) -> bool {
         self.words.is_empty()
     }
@@ -119,12 +119,12 @@ mod tests {
         )
     }
 
-    fn cells(wanted: &Wanted) -> BTreeSet<usize> {
+    fn cells(wanted: &CellSet) -> BTreeSet<usize> {
         (0..64 * N_WORDS).filter(|&cell| wanted.has(cell as u32)).collect()
     }
 
-    fn of(row: &[u64]) -> (Wanted, BTreeSet<usize>) {
-        let mut wanted = Wanted::default();
+    fn of(row: &[u64]) -> (CellSet, BTreeSet<usize>) {
+        let mut wanted = CellSet::default();
         wanted.set(row);
         (wanted, ones(row).collect())
     }
@@ -137,7 +137,7 @@ mod tests {
             prop_assert_eq!(cells(&x), xs.clone());
             prop_assert_eq!(x.is_empty(), xs.is_empty());
             prop_assert_eq!(x.meets(&y), !xs.is_disjoint(&ys));
-            let mut common = Wanted::default();
+            let mut common = CellSet::default();
             common.set_common(&x, &b, &c);
             prop_assert_eq!(cells(&common), xs.iter().copied().filter(|k| ys.contains(k) && zs.contains(k)).collect());
             common.set(&a);

@@ -24,8 +24,8 @@
 //! hourglass of Guibas and Hershberger, J. Comput. Syst. Sci. 39, 1989); proof of the two tests in
 //! the project's notes on planar stabbing, restated above.
 
+use super::witness::PlanarWitness;
 use crate::stabber::Stabber;
-use crate::witness::Witness;
 use sightlines_geometry::{Aabb, Orient2d, Point2, Portal2, along};
 
 /// End points, near to far; the live part is `points[front..back]`.
@@ -190,14 +190,14 @@ impl<O: Orient2d> Funnel<O> {
     ///
     /// # Panics
     /// If nothing was started.
-    pub fn witness(&self) -> Witness {
+    pub fn witness(&self) -> PlanarWitness {
         let (left, right) = (self.left.live(), self.right.live());
         let limits = [self.clockwise_limit(), self.counter_clockwise_limit()];
         let edges = [left, right].into_iter().flat_map(|c| c.windows(2).map(|w| (w[0], w[1])));
         if left.len() == 1 && right.len() == 1 {
-            return Witness::across(Portal2 { left: left[0], right: right[0] });
+            return PlanarWitness::across(Portal2 { left: left[0], right: right[0] });
         }
-        Witness::inside(limits.into_iter().chain(edges))
+        PlanarWitness::inside(limits.into_iter().chain(edges))
     }
 }
 

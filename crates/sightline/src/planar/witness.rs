@@ -8,9 +8,9 @@ use std::cmp::Ordering;
 /// A directed line `a x + b y + c = 0` with rational coefficients; points on its left have a positive
 /// value.
 ///
-/// It is checked by evaluating it ([`Witness::passes`]), which shares no code with what found it.
+/// It is checked by evaluating it ([`PlanarWitness::passes`]), which shares no code with what found it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Witness {
+pub struct PlanarWitness {
     a: BigRational,
     b: BigRational,
     c: BigRational,
@@ -21,7 +21,7 @@ fn fraction(x: f64) -> BigRational {
     BigRational::from_float(x).expect("coordinates are finite")
 }
 
-impl Witness {
+impl PlanarWitness {
     /// The directed line from `p` to `q`, which differ.
     pub fn through(p: Point2, q: Point2) -> Self {
         let [px, py, qx, qy] = [p.x, p.y, q.x, q.y].map(fraction);

@@ -26,14 +26,14 @@ impl End {
 
 /// Left and right ends that no line separates: one to three of each, four at most together.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Certificate {
+pub struct PlanarCertificate {
     /// The left ends.
     pub lefts: Vec<End>,
     /// The right ends.
     pub rights: Vec<End>,
 }
 
-impl Certificate {
+impl PlanarCertificate {
     /// The doors it speaks of, ascending. No sequence that contains them is passable.
     pub fn portals(&self) -> Vec<usize> {
         let mut portals: Vec<usize> = self.lefts.iter().chain(&self.rights).map(|e| e.portal).collect();
@@ -170,7 +170,7 @@ mod tests {
             vec![door(0., 0., 1., 0.), door(-1., 1., 0., 0.)],
         ];
         for portals in cases {
-            let certificate = Certificate::find(&portals).expect("blocked");
+            let certificate = PlanarCertificate::find(&portals).expect("blocked");
             assert!(certificate.holds(&portals), "{certificate:?}");
             assert!(certificate.lefts.len() + certificate.rights.len() <= 4);
         }
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn certificates_that_prove_nothing_are_refused() {
         let portals = [door(0., 0., 1., 0.), door(0., 5., 1., 5.)];
-        assert_eq!(Certificate::find(&portals), None);
+        assert_eq!(PlanarCertificate::find(&portals), None);
         let l = |portal| End { portal, left: true };
         let r = |portal| End { portal, left: false };
         for (lefts, rights) in [
@@ -190,7 +190,7 @@ mod tests {
             (vec![r(0)], vec![r(0)]),
             (vec![], vec![]),
         ] {
-            assert!(!Certificate { lefts, rights }.holds(&portals));
+            assert!(!PlanarCertificate { lefts, rights }.holds(&portals));
         }
     }
 }

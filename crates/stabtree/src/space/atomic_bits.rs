@@ -4,12 +4,12 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// A matrix of bits that are only ever set.
 #[derive(Debug)]
-pub(crate) struct Marks {
+pub(crate) struct AtomicBitMatrix {
     width: usize,
     words: Vec<AtomicU64>,
 }
 
-impl Marks {
+impl AtomicBitMatrix {
     pub(crate) fn new(n_rows: usize, n_cols: usize) -> Self {
         let width = n_cols.div_ceil(64);
         Self { width, words: std::iter::repeat_with(AtomicU64::default).take(n_rows * width).collect() }
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn ranges_are_read_as_bits_one_by_one() {
-        let marks = Marks::new(3, 130);
+        let marks = AtomicBitMatrix::new(3, 130);
         let set = [(0, 0), (1, 63), (1, 64), (2, 129), (0, 65)];
         assert!(set.iter().all(|&(r, c)| marks.set(r, c)));
         let ends = [0, 1, 62, 63, 64, 65, 66, 127, 128, 129, 130];
@@ -104,7 +104,7 @@ mod tests {
             }
         }
         assert_eq!(marks.ones(1).collect::<Vec<_>>(), [63, 64]);
-        let other = Marks::new(3, 130);
+        let other = AtomicBitMatrix::new(3, 130);
         assert!([(0, 0), (1, 63)].into_iter().all(|(r, c)| other.set(r, c)) && !other.set(1, 63));
         assert!(marks.any_beyond(&other, [0, 3], [0, 130]) && marks.any_beyond(&other, [1, 2], [63, 65]));
         assert_eq!(marks.count_beyond(&other, [0, 3], [0, 130], 9), 3);

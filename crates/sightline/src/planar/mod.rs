@@ -1,0 +1,62 @@
+//! Lines through doors in the plane: exact, incremental, proven.
+
+mod certificate;
+pub mod funnel;
+mod witness;
+
+pub use certificate::{End, PlanarCertificate};
+pub use funnel::{Funnel, FunnelUndo};
+pub use witness::PlanarWitness;
+
+use crate::SightlineError;
+use sightlines_geometry::{Adaptive, Portal2, check_coordinate};
+
+/// The answer for one sequence.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stabbing2 {
+    /// An open set of lines passes; here is one of them.
+    Visible(PlanarWitness),
+    /// None does; here is why.
+    Blocked(PlanarCertificate),
+}
+
+/// Finds a directed line that passes through every portal of `portals`, in order.
+///
+/// The line keeps each portal's left end strictly on its left and its right end strictly on its right.
+///
+/// * `portals`: doors in one common frame, scene units, in the order in which a line meets them when
+///   it goes through a chain of convex cells.
+/// * Returns a witness line, or a certificate that no such line exists; `None` for no portals at all,
+///   which every line passes.
+///
+/// Exact; O(n) for the decision, O(n²) for a certificate.
+///
+/// # Errors
+/// [`SightlineError`] with the portal's index.
+///
+/// # Source
+/// Teller and Séquin, SIGGRAPH 1991, for the question; for the method see [`funnel`].
+pub fn stabbing_line(portals: &[Portal2]) -> Result<Option<Stabbing2>, SightlineError> {
+    for (i, p) in portals.iter().enumerate() {
+        if [p.left.x, p.left.y, p.right.x, p.right.y].into_iter().any(|x| check_coordinate(x).is_err()) {
+            return Err(SightlineError::NotFinite(i));
+        }
+        if p.left == p.right {
+            return Err(SightlineError::ZeroLength(i));
+        }
+    }
+    let Some((first, rest)) = portals.split_first() else { return Ok(None) };
+    let mut funnel = Funnel::new(Adaptive);
+    funnel.start(*first);
+    if rest.iter().all(|p| funnel.push(*p).is_some()) {
+        let witness = funnel.witness();
+        if portals.iter().all(|&p| witness.passes(p)) {
+            return Ok(Some(Stabbing2::Visible(witness)));
+        }
+    }
+    // The funnel trusts the order of portals. Sequences that no chain of cells made may break it, so
+    // "blocked" is said only with a certificate.
+    let separating = || PlanarWitness::separating(portals).expect("hulls that do not meet are separated by a line");
+    let proof = PlanarCertificate::find(portals).map_or_else(|| Stabbing2::Visible(separating()), Stabbing2::Blocked);
+    Ok(Some(proof))
+}
