@@ -90,12 +90,3 @@ pub(crate) enum Command {
     /// Generate an office floor or a small tower, build its table, sum it up and draw it
     Demo(DemoArgs),
 }
-
-/// Number of threads that a command may ask for; 0 stands for one for each core.
-pub(crate) fn threads(text: &str) -> Result<usize, String> {
-    const MOST: usize = 1024;
-    match text.parse::<usize>() {
-        Ok(n) if n <= MOST => Ok(n),
-        _ => Err(format!("not a whole number from 0 to {MOST}")),
-    }
-}

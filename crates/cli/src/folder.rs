@@ -1,6 +1,6 @@
 //! A folder of results that appears whole or not at all.
 
-use crate::error::CliError;
+use crate::error::OutputError;
 use sightlines::formats::atomic_write;
 use std::fs;
 use std::io;
@@ -15,8 +15,8 @@ pub(crate) struct NewFolder {
 
 impl NewFolder {
     /// Begins a folder that will replace what is at `target`, if that is nothing, or a folder of files whose names are `ours`.
-    pub(crate) fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self, CliError> {
-        let failed = |source| CliError::Folder { path: target.to_owned(), source };
+    pub(crate) fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self, OutputError> {
+        let failed = |source| OutputError::Folder { path: target.to_owned(), source };
         // A name with a dot or a slash at its end has a place all the same.
         let target = match target.canonicalize() {
             Ok(found) => found,
@@ -28,7 +28,7 @@ impl NewFolder {
                 let entry = entry.map_err(failed)?;
                 let name = entry.file_name().to_string_lossy().into_owned();
                 if !ours(&name) || !entry.file_type().map_err(failed)?.is_file() {
-                    return Err(CliError::NotLevels { path: target, name });
+                    return Err(OutputError::NotLevels { path: target, name });
                 }
             }
         }
@@ -38,13 +38,13 @@ impl NewFolder {
     }
 
     /// Writes a file into it.
-    pub(crate) fn save(&self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
+    pub(crate) fn save(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
         Ok(atomic_write(self.beside.join(name), bytes)?)
     }
 
     /// Puts it in its place.
-    pub(crate) fn finish(self) -> Result<(), CliError> {
-        let failed = |source| CliError::Folder { path: self.target.clone(), source };
+    pub(crate) fn finish(self) -> Result<(), OutputError> {
+        let failed = |source| OutputError::Folder { path: self.target.clone(), source };
         if !self.target.exists() {
             return fs::rename(&self.beside, &self.target).map_err(failed);
         }

@@ -1,6 +1,5 @@
 //! What is hidden from whole volumes, by which method, as arguments.
 
-use crate::error::CliError;
 use crate::measure::MeasureArg;
 use sightlines::cells::Scene;
 use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
@@ -11,7 +10,7 @@ use sightlines::multifocal::{
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines::multifocal_gpu::{Gpu, GpuBackend, Way, WithFallback};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A method that says what is hidden from a volume.
@@ -52,6 +51,14 @@ pub(crate) struct BufferArgs {
     backend: Backend,
 }
 
+/// Why multifocal buffers are not made.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum BuffersError {
+    /// Buffers too large to be kept.
+    #[error("{}: {planes} planes on each side with {texels} texels along a side take up to {bytes} bytes for each thread; {most} are allowed", path.display())]
+    Buffers { path: PathBuf, planes: u32, texels: u32, bytes: u64, most: u64 },
+}
+
 /// The most bytes of the buffers around one cell.
 const MOST_BYTES: u64 = 1 << 31;
 
@@ -68,13 +75,13 @@ enum Backend {
 
 impl BufferArgs {
     /// Refuses buffers that would not fit into the memory of most machines.
-    pub(crate) fn check_memory(&self, path: &Path) -> Result<(), CliError> {
+    pub(crate) fn check_memory(&self, path: &Path) -> Result<(), BuffersError> {
         let bytes = 6 * u64::from(self.planes) * u64::from(self.texels).pow(2) * size_of::<u32>() as u64;
         if bytes <= MOST_BYTES {
             return Ok(());
         }
         let (planes, texels) = (self.planes, self.texels);
-        Err(CliError::Buffers { path: path.to_owned(), planes, texels, bytes, most: MOST_BYTES })
+        Err(BuffersError::Buffers { path: path.to_owned(), planes, texels, bytes, most: MOST_BYTES })
     }
 
     fn layout(&self) -> Layout {

@@ -1,6 +1,6 @@
 //! Files to read, told apart by their content.
 
-use crate::error::{CliError, SOME_WAD};
+use crate::error::{InputError, SOME_WAD};
 use sightlines::bake::graph_of;
 use sightlines::bake::quake::is_of_clusters;
 use sightlines::cells::{CellGraph, Plan, Planar};
@@ -32,8 +32,8 @@ pub(crate) enum Kind {
 }
 
 /// Tells what a file is by its first bytes; if they say nothing, by the end of its name.
-pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>, CliError> {
-    let open = |source| CliError::Open { path: path.to_owned(), source };
+pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>, InputError> {
+    let open = |source| InputError::Open { path: path.to_owned(), source };
     let mut start = Vec::new();
     File::open(path).and_then(|file| file.take(64).read_to_end(&mut start)).map_err(open)?;
     let name = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
@@ -72,25 +72,25 @@ fn kind_of_bytes(start: &[u8]) -> Option<Kind> {
 }
 
 /// Reads a table.
-pub(crate) fn table(path: &Path) -> Result<Table, CliError> {
-    let open = |source| CliError::Open { path: path.to_owned(), source };
+pub(crate) fn table(path: &Path) -> Result<Table, InputError> {
+    let open = |source| InputError::Open { path: path.to_owned(), source };
     let mut bytes = Vec::new();
     let mut file = File::open(path).map_err(open)?;
     // What is no table is refused before the rest of a large file is read.
     file.by_ref().take(format::MAGIC.len() as u64).read_to_end(&mut bytes).map_err(open)?;
     if bytes == packed::format::MAGIC {
-        return Err(CliError::IsPacked { path: path.to_owned() });
+        return Err(InputError::IsPacked { path: path.to_owned() });
     }
     if bytes == format::MAGIC {
         file.read_to_end(&mut bytes).map_err(open)?;
     } else {
         refuse_source(path)?;
     }
-    Table::from_bytes(&bytes).map_err(|source| CliError::Table { path: path.to_owned(), source })
+    Table::from_bytes(&bytes).map_err(|source| InputError::Table { path: path.to_owned(), source })
 }
 
 /// Refuses what tables are built from, where a table is needed.
-pub(crate) fn refuse_source(path: &Path) -> Result<(), CliError> {
+pub(crate) fn refuse_source(path: &Path) -> Result<(), InputError> {
     let found = match kind_of(path)? {
         None | Some(Kind::Table | Kind::Packed) => return Ok(()),
         Some(Kind::Wad) => SOME_WAD,
@@ -99,7 +99,7 @@ pub(crate) fn refuse_source(path: &Path) -> Result<(), CliError> {
         Some(Kind::Prt) => "a portal file",
         Some(Kind::Bsp) => "a Quake map",
     };
-    Err(CliError::NotTable { path: path.to_owned(), found })
+    Err(InputError::NotTable { path: path.to_owned(), found })
 }
 
 /// Whether a table is of a portal file, with its map or without: its cells are joined by convex portals, and nobody knows
@@ -109,17 +109,17 @@ pub(crate) fn is_of_portals(table: &Table) -> bool {
 }
 
 /// Refuses a table that does not know where its cells are; `what` says what cannot be done for that.
-pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static str) -> Result<(), CliError> {
+pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static str) -> Result<(), InputError> {
     if is_of_portals(table) && table.planes().is_none() {
-        Err(CliError::NoPlaces { path: path.to_owned(), what })
+        Err(InputError::NoPlaces { path: path.to_owned(), what })
     } else {
         Ok(())
     }
 }
 
 /// The cell graph that a table holds.
-pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, CliError> {
-    graph_of(table).ok_or_else(|| CliError::Stripped(path.to_owned()))
+pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, InputError> {
+    graph_of(table).ok_or_else(|| InputError::Stripped(path.to_owned()))
 }
 
 /// What is to be built.
@@ -146,72 +146,95 @@ pub(crate) struct PlanFile {
 const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
 
 /// Reads what is to be built: a map of a WAD, a GeoJSON file, a scene in space, a portal file, or a Quake map.
-pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, CliError> {
+pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, InputError> {
     match (kind_of(path)?, map) {
         (Some(Kind::Wad), map) => Ok(Input::Plan(plan_of_map(path, map)?)),
-        (Some(Kind::Json | Kind::Scene | Kind::Prt | Kind::Bsp), Some(_)) => Err(CliError::MapOfPlan(path.to_owned())),
+        (Some(Kind::Json | Kind::Scene | Kind::Prt | Kind::Bsp), Some(_)) => {
+            Err(InputError::MapOfPlan(path.to_owned()))
+        }
         (Some(Kind::Json), None) => Ok(Input::Plan(plan(path)?)),
         (Some(Kind::Scene), None) => Ok(Input::Scene(occluders(path)?)),
         (Some(Kind::Prt), None) => Ok(Input::Portals(read_prt(path)?)),
         (Some(Kind::Bsp), None) => Ok(Input::Map(read_bsp(path)?)),
         (Some(Kind::Table | Kind::Packed) | None, _) => {
-            Err(CliError::Kind { path: path.to_owned(), expected: BUILDABLE })
+            Err(InputError::Kind { path: path.to_owned(), expected: BUILDABLE })
         }
     }
 }
 
+/// Refuses a file that is no scene in space.
+pub(crate) fn check_is_scene(path: &Path) -> Result<(), InputError> {
+    match kind_of(path)? {
+        Some(Kind::Scene) => Ok(()),
+        _ => Err(InputError::Kind { path: path.to_owned(), expected: "a GLB nor a glTF nor an OBJ scene" }),
+    }
+}
+
 /// Reads a scene that is to hide something, and refuses one that might hide what can be seen.
-pub(crate) fn occluders(path: &Path) -> Result<SceneFile, CliError> {
+pub(crate) fn occluders(path: &Path) -> Result<SceneFile, InputError> {
     let file = read_scene(path)?;
     check_occluder(path, &file)?;
     Ok(file)
 }
 
 /// Refuses a scene whose triangles were moved by simplification.
-pub(crate) fn check_occluder(path: &Path, file: &SceneFile) -> Result<(), CliError> {
+pub(crate) fn check_occluder(path: &Path, file: &SceneFile) -> Result<(), InputError> {
     match file.info.simplified {
-        Some(Simplified { occluder: false }) => Err(CliError::NoOccluder(path.to_owned())),
+        Some(Simplified { occluder: false }) => Err(InputError::NoOccluder(path.to_owned())),
         _ => Ok(()),
     }
 }
 
 /// Reads a plan in a GeoJSON file.
-pub(crate) fn plan(path: &Path) -> Result<PlanFile, CliError> {
+pub(crate) fn plan(path: &Path) -> Result<PlanFile, InputError> {
     Ok(PlanFile { plan: geojson::read_plan(path)?, map: None })
 }
 
 /// Reads a map of a WAD; its only one, if none is named.
-pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap, CliError> {
+pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap, InputError> {
     let wad = Wad::read(path)?;
     let maps = list_maps(&wad);
     let lumps = choose(path, &maps, name)?;
     Ok(DoomMap::parse(&wad, lumps).map_err(|error| ReadError::new(path, error))?)
 }
 
-fn plan_of_map(path: &Path, name: Option<&str>) -> Result<PlanFile, CliError> {
+fn plan_of_map(path: &Path, name: Option<&str>) -> Result<PlanFile, InputError> {
     let map = doom(path, name)?;
     let name = map.name().to_string();
-    let bake = |error: sightlines::cells::PlanError| CliError::Bake {
+    let bake = |error: sightlines::cells::PlanError| InputError::Plan {
         path: path.to_owned(),
         map: Some(name.clone()),
-        source: error.into(),
+        source: error,
     };
     Ok(PlanFile { plan: map.plan().map_err(bake)?, map: Some(name) })
 }
 
 /// The map of that name, which is the last one if there are several, as in the engine; or the only one.
-fn choose<'m>(path: &Path, maps: &'m [MapLumps], name: Option<&str>) -> Result<&'m MapLumps, CliError> {
+fn choose<'m>(path: &Path, maps: &'m [MapLumps], name: Option<&str>) -> Result<&'m MapLumps, InputError> {
     let path = || path.to_owned();
     let names = || maps.iter().map(|map| map.name().to_string()).collect();
     match (maps, name) {
-        ([], _) => Err(CliError::NoMaps(path())),
-        (_, Some(name)) => maps.iter().rfind(|map| map.name().is(name)).ok_or_else(|| CliError::NoSuchMap {
+        ([], _) => Err(InputError::NoMaps(path())),
+        (_, Some(name)) => maps.iter().rfind(|map| map.name().is(name)).ok_or_else(|| InputError::NoSuchMap {
             path: path(),
             name: name.to_owned(),
             names: names(),
         }),
         ([map], None) => Ok(map),
-        (_, None) => Err(CliError::WhichMap { path: path(), names: names() }),
+        (_, None) => Err(InputError::WhichMap { path: path(), names: names() }),
+    }
+}
+
+/// Refuses the first option that was given though it is meant for something else.
+pub(crate) fn refuse(
+    path: &Path,
+    given: &[(&'static str, bool)],
+    meant: &'static str,
+    found: &'static str,
+) -> Result<(), InputError> {
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => Err(InputError::Option { path: path.to_owned(), option, meant, found }),
+        None => Ok(()),
     }
 }
 

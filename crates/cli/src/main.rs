@@ -6,24 +6,32 @@
 //! whole or not at all, and not if anything failed; a closed pipe is no error.
 
 mod args;
+mod clusters;
 mod commands;
 mod error;
+mod eye;
+mod facts;
 mod folder;
+mod glb;
 mod hiding;
 mod input;
 mod measure;
 mod memory;
+mod numbers;
 mod output;
+mod picture;
 mod place;
 mod progress;
 mod region;
+mod simplification;
 mod tables;
 mod view;
 
 use args::{Arguments, Command};
 use clap::Parser;
-use error::CliError;
-use std::io::{IsTerminal, Write};
+use error::StdoutError;
+use std::error::Error;
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 use tracing_subscriber::filter::LevelFilter;
 
@@ -42,8 +50,7 @@ fn main() -> ExitCode {
     match run(&arguments) {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::FAILURE,
-        // Who closed the pipe has read enough.
-        Err(CliError::Print(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) if is_closed_pipe(&*error) => ExitCode::SUCCESS,
         Err(error) => {
             // Nothing is left to do if standard error is closed too.
             let _ = writeln!(std::io::stderr(), "error: {error}");
@@ -52,28 +59,37 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Answer, CliError> {
+/// Runs a command. Each has its own error; all that is needed here is its text, and whether a pipe was closed.
+fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
     let show_progress = !arguments.quiet;
-    match &arguments.command {
-        Command::Build(args) => commands::build::run(args, show_progress, arguments.verbose > 0),
-        Command::Reject(args) => commands::reject::run(args, show_progress),
-        Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0),
-        Command::Verify(args) => commands::verify::run(args),
-        Command::Query(args) => commands::query::run(args),
-        Command::Walk(args) => commands::walk::run(args, show_progress),
-        Command::Pack(args) => commands::pack::pack(args),
-        Command::Unpack(args) => commands::pack::unpack(args),
-        Command::Export(args) => commands::export::run(args),
-        Command::Explain(args) => commands::explain::run(args),
-        Command::Draw(args) => commands::draw::run(args),
-        Command::Multifocal(args) => commands::multifocal::run(args),
-        Command::Render(args) => commands::render::run(args, show_progress),
-        Command::Light(args) => commands::light::run(args),
-        Command::Simplify(args) => commands::simplify::run(args, show_progress),
-        Command::Levels(args) => commands::levels::run(args, show_progress),
-        Command::Info(args) => commands::info::run(args),
-        Command::Generate(args) => commands::generate::run(args),
-        Command::Demo(args) => commands::demo::run(args, show_progress),
+    Ok(match &arguments.command {
+        Command::Build(args) => commands::build::run(args, show_progress, arguments.verbose > 0)?,
+        Command::Reject(args) => commands::reject::run(args, show_progress)?,
+        Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0)?,
+        Command::Verify(args) => commands::verify::run(args)?,
+        Command::Query(args) => commands::query::run(args)?,
+        Command::Walk(args) => commands::walk::run(args, show_progress)?,
+        Command::Pack(args) => commands::pack::pack(args)?,
+        Command::Unpack(args) => commands::pack::unpack(args)?,
+        Command::Export(args) => commands::export::run(args)?,
+        Command::Explain(args) => commands::explain::run(args)?,
+        Command::Draw(args) => commands::draw::run(args)?,
+        Command::Multifocal(args) => commands::multifocal::run(args)?,
+        Command::Render(args) => commands::render::run(args, show_progress)?,
+        Command::Light(args) => commands::light::run(args)?,
+        Command::Simplify(args) => commands::simplify::run(args, show_progress)?,
+        Command::Levels(args) => commands::levels::run(args, show_progress)?,
+        Command::Info(args) => commands::info::run(args)?,
+        Command::Generate(args) => commands::generate::run(args)?,
+        Command::Demo(args) => commands::demo::run(args, show_progress)?,
+    })
+}
+
+/// Whether standard output was closed by its reader, who has read enough.
+fn is_closed_pipe(error: &(dyn Error + 'static)) -> bool {
+    match error.downcast_ref::<StdoutError>() {
+        Some(error) => error.0.kind() == ErrorKind::BrokenPipe,
+        None => error.source().is_some_and(is_closed_pipe),
     }
 }
 

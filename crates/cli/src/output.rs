@@ -1,6 +1,6 @@
 //! Results: standard output, and files that appear whole.
 
-use crate::error::CliError;
+use crate::error::{OutputError, StdoutError};
 use crate::folder::beside;
 use serde::Serialize;
 use sightlines::formats::{WriteError, atomic_write};
@@ -10,7 +10,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 /// Prints a result: as one line of JSON if `json`, otherwise as it is displayed.
-pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Result<(), CliError> {
+pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Result<(), OutputError> {
     stdout(|out| {
         if json {
             serde_json::to_writer(&mut *out, result)?;
@@ -24,33 +24,33 @@ pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Res
 /// Lets `write` write to standard output.
 pub(crate) fn stdout(
     write: impl FnOnce(&mut BufWriter<std::io::StdoutLock<'static>>) -> std::io::Result<()>,
-) -> Result<(), CliError> {
+) -> Result<(), OutputError> {
     let mut out = BufWriter::new(std::io::stdout().lock());
-    write(&mut out).and_then(|()| out.flush()).map_err(CliError::Print)
+    write(&mut out).and_then(|()| out.flush()).map_err(|error| OutputError::Print(StdoutError(error)))
 }
 
 /// Writes a file as a whole.
-pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     tracing::debug!("writing {} bytes to {}", bytes.len(), path.display());
     Ok(atomic_write(path, bytes)?)
 }
 
 /// Refuses an output that is the input: a slip that would destroy what the output is made from.
-pub(crate) fn refuse_same(input: &Path, output: &Path) -> Result<(), CliError> {
+pub(crate) fn refuse_same(input: &Path, output: &Path) -> Result<(), OutputError> {
     let same = match (input.canonicalize(), output.canonicalize()) {
         (Ok(a), Ok(b)) => a == b && a.is_file(),
         _ => false,
     };
-    if same { Err(CliError::SameFile(output.to_owned())) } else { Ok(()) }
+    if same { Err(OutputError::SameFile(output.to_owned())) } else { Ok(()) }
 }
 
 /// Refuses outputs, before anything is read or computed, that would fail at the end: one that is an input, two that are one file, and
 /// one that cannot be written. Leaves nothing behind.
-pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<(), CliError> {
+pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<(), OutputError> {
     for (k, output) in outputs.iter().enumerate() {
         inputs.iter().try_for_each(|input| refuse_same(input, output))?;
         if outputs[..k].iter().any(|other| is_one_file(other, output)) {
-            return Err(CliError::TwoOutputs((*output).to_owned()));
+            return Err(OutputError::TwoOutputs((*output).to_owned()));
         }
         check_writable(output)?;
     }
@@ -67,7 +67,7 @@ fn is_one_file(a: &Path, b: &Path) -> bool {
 ///
 /// A file is written beside its place and renamed, so an empty one is put there and taken away. What changes until the output is written
 /// is told then.
-pub(crate) fn check_writable(path: &Path) -> Result<(), CliError> {
+pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
     let try_beside = || -> io::Result<()> {
         let target = match fs::metadata(path) {
             Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),

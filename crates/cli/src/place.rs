@@ -1,10 +1,20 @@
 //! Points and cells as arguments.
 
-use crate::error::CliError;
 use sightlines::geometry::{Point2, check_coordinate};
 use sightlines::pvs::{CellId, Table};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
+
+/// Why a table has no such cell or point.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum LookupError {
+    /// A cell that the table does not have.
+    #[error("{}: there is no cell {cell}: the table has {n_cells} cells", path.display())]
+    NoSuchCell { path: PathBuf, cell: u32, n_cells: usize },
+    /// A point with the wrong number of coordinates.
+    #[error("{}: the table has {dimension} dimensions, but the point has {found} coordinates", path.display())]
+    Dimension { path: PathBuf, dimension: u8, found: usize },
+}
 
 /// A point: two or three comma-separated numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,40 +55,40 @@ impl std::fmt::Display for Point {
 
 impl Point {
     /// The coordinates, if they are as many as the table has dimensions.
-    pub(crate) fn of(&self, table: &Table, path: &Path) -> Result<&[f64], CliError> {
+    pub(crate) fn of(&self, table: &Table, path: &Path) -> Result<&[f64], LookupError> {
         self.coordinates(table.dimension(), path)
     }
 
     /// The coordinates, if they are as many as `dimension`.
-    pub(crate) fn coordinates(&self, dimension: u8, path: &Path) -> Result<&[f64], CliError> {
+    pub(crate) fn coordinates(&self, dimension: u8, path: &Path) -> Result<&[f64], LookupError> {
         let found = self.0.len();
         if usize::from(dimension) == found {
             Ok(&self.0)
         } else {
-            Err(CliError::Dimension { path: path.to_owned(), dimension, found })
+            Err(LookupError::Dimension { path: path.to_owned(), dimension, found })
         }
     }
 
     /// The point in the plane, if it is one.
-    pub(crate) fn planar(&self, table: &Table, path: &Path) -> Result<Point2, CliError> {
+    pub(crate) fn planar(&self, table: &Table, path: &Path) -> Result<Point2, LookupError> {
         let coordinates = self.of(table, path)?;
         Ok(Point2::new(coordinates[0], coordinates[1]))
     }
 
     /// The point in space, if it is one.
-    pub(crate) fn spatial(&self, table: &Table, path: &Path) -> Result<[f64; 3], CliError> {
+    pub(crate) fn spatial(&self, table: &Table, path: &Path) -> Result<[f64; 3], LookupError> {
         let coordinates = self.of(table, path)?;
         Ok([coordinates[0], coordinates[1], coordinates[2]])
     }
 }
 
 /// Checks that a table has a cell.
-pub(crate) fn cell(id: u32, table: &Table, path: &Path) -> Result<CellId, CliError> {
+pub(crate) fn cell(id: u32, table: &Table, path: &Path) -> Result<CellId, LookupError> {
     let n_cells = table.n_cells();
     if (id as usize) < n_cells {
         Ok(CellId(id))
     } else {
-        Err(CliError::NoSuchCell { path: path.to_owned(), cell: id, n_cells })
+        Err(LookupError::NoSuchCell { path: path.to_owned(), cell: id, n_cells })
     }
 }
 
@@ -111,7 +121,7 @@ pub(crate) enum PlaceError {
 
 impl Place {
     /// The cells meant; none for a point outside every cell.
-    pub(crate) fn cells(&self, table: &Table, path: &Path) -> Result<Vec<CellId>, CliError> {
+    pub(crate) fn cells(&self, table: &Table, path: &Path) -> Result<Vec<CellId>, LookupError> {
         match self {
             Self::Cell(id) => Ok(vec![cell(*id, table, path)?]),
             Self::Point(point) => Ok(table.locate(point.of(table, path)?)),

@@ -1,6 +1,6 @@
 //! Tables of both kinds, plain and packed, as the commands ask them that follow a viewer.
 
-use crate::error::CliError;
+use crate::error::InputError;
 use crate::input::{self, Kind};
 use sightlines::bake::quake::{SOURCE_KEY, SOURCE_MAP, SOURCE_PRT};
 use sightlines::eye_to_cell::{CellSource, TableCells};
@@ -20,7 +20,7 @@ pub(crate) enum Opened {
 }
 
 /// Opens a table. Of a packed one, at most `cache_bytes` of unpacked blocks are kept.
-pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened, CliError> {
+pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened, InputError> {
     if input::kind_of(path)? == Some(Kind::Packed) {
         return Ok(Opened::Packed(PackedCells::new(packed(path, cache_bytes)?)));
     }
@@ -28,15 +28,15 @@ pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened, CliError> 
 }
 
 /// Opens a packed table.
-pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>, CliError> {
-    let file = File::open(path).map_err(|source| CliError::Open { path: path.to_owned(), source })?;
-    Packed::open(file, cache_bytes).map_err(|source| CliError::Packed { path: path.to_owned(), source })
+pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>, InputError> {
+    let file = File::open(path).map_err(|source| InputError::Open { path: path.to_owned(), source })?;
+    Packed::open(file, cache_bytes).map_err(|source| InputError::Packed { path: path.to_owned(), source })
 }
 
 /// A table of either kind. Clones share it.
 pub(crate) trait Cells: CellSource<Error: Send + 'static> + Resident + Clone + Send + 'static {
     /// What went wrong, with the file's name.
-    fn fail(path: &Path, error: Self::Error) -> CliError;
+    fn fail(path: &Path, error: Self::Error) -> InputError;
 
     /// The value of a key that the table's maker left.
     fn info_value(&self, key: &str) -> Option<&str>;
@@ -57,10 +57,10 @@ pub(crate) trait Cells: CellSource<Error: Send + 'static> + Resident + Clone + S
     fn bytes_in_memory(&self) -> Option<(usize, usize)>;
 
     /// Refuses a table that does not know where its cells are.
-    fn refuse_without_places(&self, path: &Path) -> Result<(), CliError> {
+    fn refuse_without_places(&self, path: &Path) -> Result<(), InputError> {
         let of_portals = |source: &str| source.starts_with(SOURCE_PRT) || source.starts_with(SOURCE_MAP);
         if self.info_value(SOURCE_KEY).is_some_and(of_portals) && !self.has_planes() {
-            return Err(CliError::NoPlaces { path: path.to_owned(), what: "no cell can be found at a point" });
+            return Err(InputError::NoPlaces { path: path.to_owned(), what: "no cell can be found at a point" });
         }
         Ok(())
     }
@@ -77,7 +77,7 @@ pub(crate) trait Cells: CellSource<Error: Send + 'static> + Resident + Clone + S
 }
 
 impl Cells for TableCells<Arc<Table>> {
-    fn fail(_: &Path, error: Infallible) -> CliError {
+    fn fail(_: &Path, error: Infallible) -> InputError {
         match error {}
     }
 
@@ -111,8 +111,8 @@ impl Cells for TableCells<Arc<Table>> {
 }
 
 impl Cells for PackedCells<File> {
-    fn fail(path: &Path, source: PackedError) -> CliError {
-        CliError::Packed { path: path.to_owned(), source }
+    fn fail(path: &Path, source: PackedError) -> InputError {
+        InputError::Packed { path: path.to_owned(), source }
     }
 
     fn info_value(&self, key: &str) -> Option<&str> {

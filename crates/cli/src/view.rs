@@ -1,7 +1,7 @@
 //! How a viewer looks, as arguments: by which method, and through which lens.
 
-use crate::commands::build::refuse;
-use crate::error::CliError;
+use crate::error::InputError;
+use crate::input::refuse;
 use crate::tables::Cells;
 use sightlines::eye_to_cell::{Method, UnknownMethod, View, ViewError};
 use sightlines::formats::scene::Axis;
@@ -69,7 +69,7 @@ impl LensArgs {
     }
 
     /// The lens for a table; refuses what means nothing in a plane.
-    pub(crate) fn lens(&self, cells: &impl Cells, path: &Path) -> Result<Lens, CliError> {
+    pub(crate) fn lens(&self, cells: &impl Cells, path: &Path) -> Result<Lens, InputError> {
         let fov = self.fov.unwrap_or(FOV);
         if cells.n_dimensions() == 2 {
             let given = [("--aspect", self.aspect.is_some()), ("--up", self.up.is_some())];

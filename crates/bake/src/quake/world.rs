@@ -9,7 +9,7 @@ use planes::ClusterTree;
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::bsp::{BspTree, WorldFaces};
 use sightlines_formats::quake::visibility::check_portals;
-use sightlines_formats::quake::{Bsp, BspFormat, Prt};
+use sightlines_formats::quake::{Bsp, Prt};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellRecord, Locator, ObjectRecord, Table};
 
@@ -81,19 +81,9 @@ pub fn bake_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<BakedMa
     };
     parts.cell_objects = lists.of_clusters;
     parts.planes = planes.into_planes();
-    let source = format!("{SOURCE_MAP} {} with {}", format_name(bsp.format()), prt.dialect());
+    let source = format!("{SOURCE_MAP} {} with {}", bsp.format().name(), prt.dialect());
     parts.info.iter_mut().filter(|(key, _)| key == SOURCE_KEY).for_each(|(_, value)| value.clone_from(&source));
     Ok(BakedMap { table: Table::new(parts)?, clusters, world })
-}
-
-/// A format as people name it.
-const fn format_name(format: BspFormat) -> &'static str {
-    match format {
-        BspFormat::Bsp29 => "BSP 29",
-        BspFormat::Bsp2 => "BSP2",
-        BspFormat::Bsp2Psb => "2PSB",
-        BspFormat::Quake2 => "IBSP 38",
-    }
 }
 
 /// The cluster of each leaf of the map; `None` for what is solid, and for leafs of doors and the like.

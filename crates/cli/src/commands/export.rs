@@ -1,11 +1,23 @@
 //! `export`: a table as JSON.
 
 use crate::Answer;
-use crate::error::CliError;
+use crate::error::InputError;
+use crate::error::OutputError;
 use crate::{input, output};
 use sightlines::report::{export_json, write_json};
 use std::io::Write;
 use std::path::PathBuf;
+
+/// Why `export` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// An input that is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
 
 /// Arguments of `export`.
 #[derive(Debug, clap::Args)]
@@ -18,7 +30,7 @@ pub(crate) struct ExportArgs {
     output: Option<PathBuf>,
 }
 
-pub(crate) fn run(args: &ExportArgs) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &ExportArgs) -> Result<Answer, Error> {
     if let Some(path) = &args.output {
         output::check(&[&args.table], &[path])?;
     }

@@ -1,14 +1,28 @@
 //! `generate`: scenes to try things on.
 
 use crate::Answer;
-use crate::error::CliError;
+use crate::error::OutputError;
+use crate::glb::{self, GlbError, save_glb};
 use crate::output::{self, bytes, count};
 use serde::Serialize;
-use sightlines::cells::Scene;
-use sightlines::formats::scene::write_glb;
+use sightlines::scenes::SceneError;
 use sightlines::scenes::{TowerOptions, tower, tower_rooms};
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+/// Why `generate` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A scene that cannot be written as GLB.
+    #[error(transparent)]
+    Glb(#[from] GlbError),
+    /// A scene cannot be generated.
+    #[error(transparent)]
+    Generate(#[from] SceneError),
+}
 
 /// Arguments of `generate`.
 #[derive(Debug, clap::Args)]
@@ -57,12 +71,9 @@ struct TowerArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &GenerateArgs) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &GenerateArgs) -> Result<Answer, Error> {
     let What::Tower(args) = &args.what;
-    let is_glb = args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"));
-    if !is_glb {
-        return Err(CliError::NotGlb { path: args.output.clone() });
-    }
+    glb::check_name(&args.output)?;
     output::check(&[], &[&args.output])?;
     let options = TowerOptions {
         seed: args.seed,
@@ -86,13 +97,6 @@ pub(crate) fn run(args: &GenerateArgs) -> Result<Answer, CliError> {
     };
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
-}
-
-/// Writes a scene as GLB; how many bytes it has.
-pub(crate) fn save_glb(path: &Path, scene: &Scene) -> Result<usize, CliError> {
-    let glb = write_glb(scene).map_err(|source| CliError::Glb { path: path.to_owned(), source })?;
-    output::save(path, &glb)?;
-    Ok(glb.len())
 }
 
 /// What was written.

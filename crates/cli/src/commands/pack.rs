@@ -1,10 +1,12 @@
 //! `pack` and `unpack`: tables as small files for programs that read them piece by piece, and back.
 
 use crate::Answer;
-use crate::error::CliError;
+use crate::error::InputError;
+use crate::error::OutputError;
 use crate::output::{self, bytes, count, percent};
 use crate::{input, tables};
 use serde::Serialize;
+use sightlines::packed::PackError;
 use sightlines::packed::{PackOptions, Packed, pack_report};
 use sightlines::pvs::Table;
 use std::fmt;
@@ -12,6 +14,20 @@ use std::path::PathBuf;
 
 /// Bytes of blocks that are kept while a table is unpacked: each is asked for many times in a row.
 const CACHE: usize = 64 << 20;
+
+/// Why `pack` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// An input that is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A table cannot be packed.
+    #[error("{}: {source}", path.display())]
+    Pack { path: PathBuf, source: PackError },
+}
 
 /// Arguments of `pack`.
 #[derive(Debug, clap::Args)]
@@ -45,11 +61,11 @@ pub(crate) struct UnpackArgs {
     json: bool,
 }
 
-pub(crate) fn pack(args: &PackArgs) -> Result<Answer, CliError> {
+pub(crate) fn pack(args: &PackArgs) -> Result<Answer, Error> {
     output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
     let (packed, report) = pack_report(&table, &PackOptions { max_bytes: args.max_bytes })
-        .map_err(|source| CliError::Pack { path: args.table.clone(), source })?;
+        .map_err(|source| Error::Pack { path: args.table.clone(), source })?;
     let n_visible = table.parts().rows.count_ones();
     let n_packed_bytes = packed.len() as u64;
     let mut outcome = Outcome {
@@ -63,7 +79,7 @@ pub(crate) fn pack(args: &PackArgs) -> Result<Answer, CliError> {
         over_estimation: 1.0,
     };
     if report.n_merges > 0 {
-        let fail = |source| CliError::Packed { path: args.output.clone(), source };
+        let fail = |source| InputError::Packed { path: args.output.clone(), source };
         let back: Table = Packed::open(packed.clone(), CACHE).and_then(|p| p.to_table()).map_err(fail)?;
         outcome.over_estimation = back.parts().rows.count_ones() as f64 / n_visible.max(1) as f64;
     }
@@ -72,11 +88,11 @@ pub(crate) fn pack(args: &PackArgs) -> Result<Answer, CliError> {
     Ok(Answer::Yes)
 }
 
-pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer, CliError> {
+pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer, Error> {
     output::check(&[&args.packed], &[&args.output])?;
     input::refuse_source(&args.packed)?;
     let packed = tables::packed(&args.packed, CACHE)?;
-    let table = packed.to_table().map_err(|source| CliError::Packed { path: args.packed.clone(), source })?;
+    let table = packed.to_table().map_err(|source| InputError::Packed { path: args.packed.clone(), source })?;
     let plain = table.to_bytes();
     output::save(&args.output, &plain)?;
     let out = args.output.display().to_string();

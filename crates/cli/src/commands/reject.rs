@@ -1,15 +1,31 @@
 //! `reject`: the REJECT lumps of a WAD.
 
 use crate::Answer;
-use crate::error::CliError;
+use crate::error::OutputError;
 use crate::output::{self, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
+use sightlines::bake::RejectError;
 use sightlines::bake::{MapOutcome, MapStatus, RejectOptions, reject_wad};
+use sightlines::formats::ReadError;
 use sightlines::formats::Wad;
 use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
+
+/// Why `reject` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// A WAD, a plan or a scene cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The REJECT lumps of a WAD cannot be built.
+    #[error("{}: {source}", path.display())]
+    Reject { path: PathBuf, source: RejectError },
+}
 
 /// Arguments of `reject`.
 #[derive(Debug, clap::Args)]
@@ -24,7 +40,7 @@ pub(crate) struct RejectArgs {
     #[arg(long, help_heading = "Method")]
     force: bool,
     /// Number of threads; 0 for one for each core
-    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
     /// The WAD to write; may be the one that was read
     #[arg(short, long, help_heading = "Output", value_name = "OUT.wad")]
@@ -34,7 +50,7 @@ pub(crate) struct RejectArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Error> {
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let wad = Wad::read(&args.input)?;
@@ -44,7 +60,7 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, CliE
         RejectOptions { maps: args.map.clone(), force: args.force, threads: args.threads, progress: Some(&progress) };
     let outcome = reject_wad(&wad, &options);
     drop(bar);
-    let outcome = outcome.map_err(|source| CliError::Reject { path: args.input.clone(), source })?;
+    let outcome = outcome.map_err(|source| Error::Reject { path: args.input.clone(), source })?;
     output::save(&args.output, &outcome.bytes)?;
     let maps = outcome.maps.iter().map(Map::from).collect();
     output::print(args.json, &Outcome { out: args.output.display().to_string(), maps })?;

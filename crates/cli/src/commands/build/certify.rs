@@ -1,6 +1,7 @@
 //! Proofs that are to be written beside a table.
 
-use crate::error::CliError;
+use super::Error;
+use crate::error::OutputError;
 use crate::output::{self, bytes, seconds};
 use serde::Serialize;
 use sightlines::bake::certify_table;
@@ -26,10 +27,10 @@ impl CertifyArgs {
     }
 
     /// Refuses a file of proofs that is the input or the table.
-    pub(super) fn check(&self, input: &Path, table: &Path) -> Result<(), CliError> {
+    pub(super) fn check(&self, input: &Path, table: &Path) -> Result<(), Error> {
         let Some(file) = self.file(table) else { return Ok(()) };
         output::check(&[input], &[&file])?;
-        if file == table { Err(CliError::SameFile(file)) } else { Ok(()) }
+        if file == table { Err(OutputError::SameFile(file).into()) } else { Ok(()) }
     }
 
     fn file(&self, table: &Path) -> Option<PathBuf> {
@@ -44,10 +45,10 @@ impl CertifyArgs {
         out: &Path,
         table: &Table,
         threads: usize,
-    ) -> Result<Option<Certified>, CliError> {
+    ) -> Result<Option<Certified>, Error> {
         let Some(file) = self.file(out) else { return Ok(None) };
         let made = certify_table(table, &CertifyOptions { threads, ..CertifyOptions::default() });
-        let made = made.map_err(|source| CliError::Certify { path: path.to_owned(), source })?;
+        let made = made.map_err(|source| Error::Certify { path: path.to_owned(), source })?;
         let content = made.proofs.to_bytes();
         output::save(&file, &content)?;
         let n_bytes = content.len();

@@ -2,21 +2,21 @@
 
 mod auto;
 mod certify;
-pub(crate) mod facts;
+mod error;
 mod options;
 pub(crate) mod plan;
 mod portals;
 mod quake;
 mod region;
 pub(crate) mod space;
-pub(crate) mod stab;
+mod stab;
 mod view_cells;
 
-pub(crate) use options::{BakeArgs, refuse};
+pub(crate) use error::Error;
+pub(crate) use options::BakeArgs;
 
 use crate::Answer;
-use crate::error::CliError;
-use crate::input::{self, Input};
+use crate::input::{self, Input, refuse};
 use crate::output;
 use serde::Serialize;
 use sightlines::pvs::Table;
@@ -56,7 +56,7 @@ pub(crate) struct BuildArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
     let BuildArgs { input: path, output: out, bake, .. } = args;
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;

@@ -1,6 +1,8 @@
 //! How to bake, as arguments. Options that mean nothing for what is baked are refused, not ignored.
 
-use crate::error::CliError;
+use crate::error::InputError;
+use crate::input::refuse;
+use crate::numbers::share;
 use crate::region::Region;
 use sightlines::bake::{PortalMode, Subdivide};
 use sightlines::kdtree::SceneOptions;
@@ -39,7 +41,7 @@ pub(crate) struct BakeArgs {
     #[arg(long, help_heading = "Method")]
     pub(super) fast: bool,
     /// Number of threads; 0 for one for each core
-    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(super) threads: usize,
 }
 
@@ -48,13 +50,6 @@ pub(crate) struct BakeArgs {
 pub(super) enum Portals {
     Exact,
     Bounding,
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
-        _ => Err("not a number from 0 to 1".to_owned()),
-    }
 }
 
 fn size(text: &str) -> Result<f64, String> {
@@ -103,36 +98,23 @@ impl BakeArgs {
     }
 
     /// Refuses what means nothing for a plan.
-    pub(super) fn check_for_plan(&self, path: &Path) -> Result<(), CliError> {
+    pub(super) fn check_for_plan(&self, path: &Path) -> Result<(), InputError> {
         refuse(path, &self.of_space(), "scenes in space", "a plan")?;
         refuse(path, &[("--fast", self.fast)], "portal files", "a plan")
     }
 
     /// Refuses what means nothing for a scene in space.
-    pub(super) fn check_for_space(&self, path: &Path) -> Result<(), CliError> {
+    pub(super) fn check_for_space(&self, path: &Path) -> Result<(), InputError> {
         refuse(path, &[("--subdivide", self.subdivide.is_some())], "plans", "a scene in space")?;
         refuse(path, &[("--fast", self.fast)], "portal files", "a scene in space")
     }
 
     /// Refuses what means nothing for a portal file, whose cells are cut already.
-    pub(super) fn check_for_portals(&self, path: &Path) -> Result<(), CliError> {
+    pub(super) fn check_for_portals(&self, path: &Path) -> Result<(), InputError> {
         let found = "a portal file";
         refuse(path, &[("--subdivide", self.subdivide.is_some())], "plans", found)?;
         refuse(path, &[("--tau", self.tau.is_some())], "plans and scenes in space", found)?;
         refuse(path, &self.of_space(), "scenes in space", found)
-    }
-}
-
-/// Refuses the first option that was given though it is meant for something else.
-pub(crate) fn refuse(
-    path: &Path,
-    given: &[(&'static str, bool)],
-    meant: &'static str,
-    found: &'static str,
-) -> Result<(), CliError> {
-    match given.iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => Err(CliError::Option { path: path.to_owned(), option, meant, found }),
-        None => Ok(()),
     }
 }
 

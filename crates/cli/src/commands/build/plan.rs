@@ -1,8 +1,8 @@
 //! From a plan to its table.
 
 use super::BakeArgs;
-use super::facts::{Facts, times};
-use crate::error::CliError;
+use super::Error;
+use crate::facts::{Facts, times};
 use crate::input::PlanFile;
 use crate::output::{bytes, count};
 use crate::progress::Bar;
@@ -13,7 +13,7 @@ use std::fmt;
 use std::path::Path;
 
 /// Builds the table of a plan that came from `path`.
-pub(crate) fn bake(path: &Path, file: &PlanFile, args: &BakeArgs, show_progress: bool) -> Result<Baked, CliError> {
+pub(crate) fn bake(path: &Path, file: &PlanFile, args: &BakeArgs, show_progress: bool) -> Result<Baked, Error> {
     args.check_for_plan(path)?;
     let bar = Bar::new("who sees whom", show_progress);
     let progress = |done, all| bar.set(done, all);
@@ -26,7 +26,7 @@ pub(crate) fn bake(path: &Path, file: &PlanFile, args: &BakeArgs, show_progress:
     };
     let baked = bake_plan(&file.plan, &options);
     drop(bar);
-    let baked = baked.map_err(|source| CliError::Bake { path: path.to_owned(), map: file.map.clone(), source })?;
+    let baked = baked.map_err(|source| Error::Bake { path: path.to_owned(), map: file.map.clone(), source })?;
     warn(path, &baked.summary);
     Ok(baked)
 }

@@ -1,8 +1,8 @@
 //! From a portal file to the table of its clusters.
 
 use super::BakeArgs;
-use crate::commands::vis::Clusters;
-use crate::error::CliError;
+use super::Error;
+use crate::clusters::Clusters;
 use crate::output::bytes;
 use crate::progress::ShareBar;
 use serde::Serialize;
@@ -13,10 +13,10 @@ use std::fmt;
 use std::path::Path;
 
 /// Builds the table of the clusters of a portal file that came from `path`.
-pub(crate) fn bake(path: &Path, prt: &Prt, args: &BakeArgs, show_progress: bool) -> Result<BakedPrt, CliError> {
+pub(crate) fn bake(path: &Path, prt: &Prt, args: &BakeArgs, show_progress: bool) -> Result<BakedPrt, Error> {
     args.check_for_portals(path)?;
     let baked = with_progress(args, show_progress, |options| bake_prt(prt, options));
-    baked.map_err(|source| CliError::BakePrt { path: path.to_owned(), source })
+    baked.map_err(|source| Error::BakePrt { path: path.to_owned(), source })
 }
 
 /// Runs a search with the options of the command, and shows how far it is.

@@ -1,9 +1,10 @@
 //! From a Quake map with its portal file to the table of its clusters, which knows where they are.
 
 use super::BakeArgs;
+use super::Error;
 use super::portals::{with_progress, write_method};
-use crate::commands::vis::{Clusters, format_name};
-use crate::error::CliError;
+use crate::clusters::Clusters;
+use crate::error::InputError;
 use crate::output::{self, bytes, count};
 use serde::Serialize;
 use sightlines::bake::PrtBakeError;
@@ -22,10 +23,10 @@ pub(crate) struct Portals {
 
 impl Portals {
     /// Reads the portal file that was named, or the one beside the map.
-    pub(crate) fn read(map: &Path, named: Option<&Path>, out: &Path) -> Result<Self, CliError> {
+    pub(crate) fn read(map: &Path, named: Option<&Path>, out: &Path) -> Result<Self, Error> {
         let path = named.map_or_else(|| map.with_extension("prt"), Path::to_owned);
         if named.is_none() && !path.exists() {
-            return Err(CliError::MapWithoutPortals(map.to_owned()));
+            return Err(InputError::MapWithoutPortals(map.to_owned()).into());
         }
         output::refuse_same(&path, out)?;
         let prt = read_prt(&path)?;
@@ -40,17 +41,17 @@ pub(crate) fn bake(
     portals: &Portals,
     args: &BakeArgs,
     show_progress: bool,
-) -> Result<BakedMap, CliError> {
+) -> Result<BakedMap, Error> {
     args.check_for_portals(path)?;
     let baked = with_progress(args, show_progress, |options| bake_map(bsp, &portals.prt, options));
     baked.map_err(|source| match source {
-        PrtBakeError::Bsp(_) => CliError::BakePrt { path: path.to_owned(), source },
+        PrtBakeError::Bsp(_) => Error::BakePrt { path: path.to_owned(), source },
         PrtBakeError::Visibility(
             source @ (VisibilityError::Leafs { .. }
             | VisibilityError::Clusters { .. }
             | VisibilityError::OtherMap { .. }),
-        ) => CliError::OtherMap { prt: portals.path.clone(), bsp: path.to_owned(), source: Box::new(source) },
-        source => CliError::BakePrt { path: portals.path.clone(), source },
+        ) => InputError::OtherMap { prt: portals.path.clone(), bsp: path.to_owned(), source: Box::new(source) }.into(),
+        source => Error::BakePrt { path: portals.path.clone(), source },
     })
 }
 
@@ -92,7 +93,7 @@ impl Outcome {
         let WorldSummary { n_faces, n_unlisted_faces, n_listed, n_reaching, n_planes, slack, .. } = baked.world;
         Self {
             out: out.display().to_string(),
-            format: format_name(bsp.format()),
+            format: bsp.format().name(),
             portal_format: portals.prt.dialect().magic(),
             fast: args.fast,
             clusters: Clusters::new(&baked.clusters),

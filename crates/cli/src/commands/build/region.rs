@@ -1,10 +1,10 @@
 //! From a scene in space to its table by what is hidden from whole cells.
 
 use super::BakeArgs;
-use super::facts::Facts;
-use super::space::{Stated, informed};
+use super::Error;
+use super::space::informed;
 use super::view_cells::ViewCellsArgs;
-use crate::error::CliError;
+use crate::facts::{Facts, Stated};
 use crate::hiding::{BufferArgs, Hiding, Maker};
 use crate::output::{bytes, count, percent, seconds};
 use crate::progress::Bar;
@@ -104,16 +104,16 @@ pub(super) fn bake(
     args: &BakeArgs,
     region: &RegionArgs,
     show_progress: bool,
-) -> Result<BakedRegions, CliError> {
+) -> Result<BakedRegions, Error> {
     args.check_for_space(path)?;
     region.buffers.check_memory(path)?;
-    let failed = |source| CliError::BakeRegion { path: path.to_owned(), source };
+    let failed = |source| Error::BakeRegion { path: path.to_owned(), source };
     let cut = args.cut();
     let cells = match (region.cells.read()?, region.grid) {
         (Some(cells), _) => CellsFrom::Boxes(cells),
         (None, Some(n)) => {
             let around = cut.view_region.unwrap_or_else(|| file.scene.bounds());
-            let cells = grid(&around, n).map_err(|source| CliError::Grid { path: path.to_owned(), source })?;
+            let cells = grid(&around, n).map_err(|source| Error::Grid { path: path.to_owned(), source })?;
             CellsFrom::Boxes(cells)
         }
         (None, None) => CellsFrom::KdTree,

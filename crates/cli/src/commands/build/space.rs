@@ -1,27 +1,22 @@
 //! From a scene in space to its table.
 
 use super::BakeArgs;
-use super::facts::{Facts, times};
-use crate::error::CliError;
+use super::Error;
+use crate::facts::{Facts, Stated, axis, times};
 use crate::output::{bytes, count, percent};
 use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
 use sightlines::cells::SceneObject;
 use sightlines::formats::SceneFile;
-use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
+use sightlines::formats::scene::{LengthUnit, SceneInfo};
 use sightlines::pvs::Table;
 use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
 use std::path::Path;
 
 /// Builds the table of a scene that came from `path`. The table says which way is up, and the unit.
-pub(crate) fn bake(
-    path: &Path,
-    file: &SceneFile,
-    args: &BakeArgs,
-    show_progress: bool,
-) -> Result<BakedScene, CliError> {
+pub(crate) fn bake(path: &Path, file: &SceneFile, args: &BakeArgs, show_progress: bool) -> Result<BakedScene, Error> {
     args.check_for_space(path)?;
     let bar = Bar::new("who sees whom", show_progress);
     let progress = |done, all| bar.set(done, all);
@@ -33,7 +28,7 @@ pub(crate) fn bake(
     };
     let baked = bake_scene(&file.scene, &options);
     drop(bar);
-    let failed = |source| CliError::Bake { path: path.to_owned(), map: None, source };
+    let failed = |source| Error::Bake { path: path.to_owned(), map: None, source };
     let baked = baked.map_err(failed)?;
     warn(path, &baked);
     let table = informed(baked.table, &file.info).map_err(|error| failed(error.into()))?;
@@ -60,48 +55,6 @@ pub(super) fn informed(table: Table, said: &SceneInfo) -> Result<Table, sightlin
     }
     parts.info.sort();
     Table::new(parts)
-}
-
-/// The name of an axis.
-pub(crate) fn axis(axis: Axis) -> &'static str {
-    match axis {
-        Axis::X => "x",
-        Axis::Y => "y",
-        Axis::Z => "z",
-    }
-}
-
-/// What a file says about its scene, for people: format, axis, unit.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(crate) struct Stated {
-    format: &'static str,
-    up: &'static str,
-    up_is_assumed: bool,
-    /// Null if the file does not say.
-    unit: Option<&'static str>,
-}
-
-impl Stated {
-    pub(crate) fn new(info: &SceneInfo) -> Self {
-        let format = match info.format {
-            SceneFormat::Gltf => "glTF",
-            SceneFormat::Obj => "OBJ",
-            _ => "unknown",
-        };
-        let unit = (info.unit == LengthUnit::Metre).then_some("metre");
-        Self { format, up: axis(info.up), up_is_assumed: info.up_is_assumed, unit }
-    }
-}
-
-impl fmt::Display for Stated {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let assumed = if self.up_is_assumed { " (assumed)" } else { "" };
-        write!(f, "{} in 3D, {} up{assumed}, ", self.format, self.up)?;
-        match self.unit {
-            Some(unit) => write!(f, "in {unit}s"),
-            None => f.write_str("unit unknown"),
-        }
-    }
 }
 
 /// What was built. Of the triangles, each is either axis-aligned or hides nothing; those that are detail are

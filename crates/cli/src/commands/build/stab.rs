@@ -1,7 +1,8 @@
 //! Stab trees that a table is to have, and what those of a table are.
 
-use crate::error::CliError;
-use crate::output::{bytes, percent, seconds};
+use super::Error;
+use crate::facts::StabFacts;
+use crate::output::{percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::{BakedStab, StabOptions, with_stab_trees};
@@ -16,14 +17,14 @@ pub(super) fn add(
     wanted: Option<Option<u32>>,
     threads: usize,
     show_progress: bool,
-) -> Result<(Table, Option<Added>), CliError> {
+) -> Result<(Table, Option<Added>), Error> {
     let Some(max_nodes) = wanted else { return Ok((table, None)) };
     let bar = Bar::new("stab trees", show_progress);
     let progress = |done, all| bar.set(done, all);
     let max_nodes = max_nodes.map(|n| n as usize);
     let baked = with_stab_trees(table, &StabOptions { max_nodes, threads, progress: Some(&progress) });
     drop(bar);
-    let baked = baked.map_err(|source| CliError::Stab { path: path.to_owned(), source })?;
+    let baked = baked.map_err(|source| Error::Stab { path: path.to_owned(), source })?;
     let added = Added::new(&baked);
     Ok((baked.table, Some(added)))
 }
@@ -72,42 +73,5 @@ impl fmt::Display for Added {
         }
         let time = std::time::Duration::try_from_secs_f64(self.stab_seconds).unwrap_or_default();
         writeln!(f, "stab time      {}", seconds(time))
-    }
-}
-
-/// What the stab trees of a table are.
-#[derive(Debug, Clone, Copy, Default, Serialize)]
-pub(crate) struct StabFacts {
-    /// Sequences of portals, of all cells.
-    n_sequences: u64,
-    /// Nodes, each for all sequences that go on alike.
-    n_stab_nodes: usize,
-    n_stab_edges: u64,
-    /// What the table would be smaller without.
-    n_stab_bytes: usize,
-}
-
-impl StabFacts {
-    /// Of a table that has stab trees. Writes the table to memory twice.
-    pub(crate) fn of(table: &Table) -> Option<Self> {
-        let trees = table.stab()?;
-        let mut parts = table.parts().clone();
-        parts.stab = None;
-        let without = Table::new(parts).map_or(0, |table| table.to_bytes().len());
-        Some(Self {
-            n_sequences: u64::try_from(trees.n_sequences()).unwrap_or(u64::MAX),
-            n_stab_nodes: trees.n_nodes(),
-            n_stab_edges: trees.n_edges(),
-            n_stab_bytes: table.to_bytes().len().saturating_sub(without),
-        })
-    }
-}
-
-impl fmt::Display for StabFacts {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [nodes, edges] = [self.n_stab_nodes as u64, self.n_stab_edges];
-        let each = self.n_stab_bytes as f64 / self.n_sequences.max(1) as f64;
-        writeln!(f, "stab trees     {} sequences in {nodes} nodes with {edges} edges", self.n_sequences)?;
-        writeln!(f, "               {}, {each:.3} bytes a sequence", bytes(self.n_stab_bytes as u64))
     }
 }

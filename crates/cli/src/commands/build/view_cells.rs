@@ -1,6 +1,6 @@
 //! View cells from a file, as an argument.
 
-use crate::error::CliError;
+use super::Error;
 use sightlines::formats::ViewCells;
 use sightlines::formats::view_cells::read_view_cells;
 use std::path::PathBuf;
@@ -23,8 +23,8 @@ impl ViewCellsArgs {
     /// The view cells of the file, if one was given.
     ///
     /// # Errors
-    /// [`CliError::Read`] with the file's name and the place in it.
-    pub(super) fn read(&self) -> Result<Option<ViewCells>, CliError> {
+    /// [`Error::Read`] with the file's name and the place in it.
+    pub(super) fn read(&self) -> Result<Option<ViewCells>, Error> {
         Ok(self.cells.as_ref().map(read_view_cells).transpose()?)
     }
 }

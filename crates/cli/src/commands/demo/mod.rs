@@ -1,12 +1,14 @@
 //! `demo`: the whole road on a generated scene.
 
+mod error;
 mod office;
 mod tower;
 
 use crate::Answer;
-use crate::error::CliError;
+use crate::error::OutputError;
 use crate::memory;
 use crate::output::bytes;
+use error::Error;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -36,9 +38,9 @@ enum Example {
     Tower,
 }
 
-pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error> {
     let folder = &args.out;
-    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder { path: folder.clone(), source })?;
+    std::fs::create_dir_all(folder).map_err(|source| OutputError::Folder { path: folder.clone(), source })?;
     match args.example {
         Example::Office => office::run(args, show_progress),
         Example::Tower => tower::run(args, show_progress),

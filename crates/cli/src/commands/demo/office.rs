@@ -1,12 +1,12 @@
 //! The demo in the plane: an office floor.
 
+use super::Error;
 use super::{DemoArgs, Done};
 use crate::Answer;
 use crate::commands::build::{BakeArgs, plan};
-use crate::commands::draw::{draw_plan, save_picture};
-use crate::error::CliError;
 use crate::input;
 use crate::output::{self, bytes, percent};
+use crate::picture::{draw_plan, save_picture};
 use serde::Serialize;
 use sightlines::formats::geojson;
 use sightlines::pvs::{CellId, Table};
@@ -15,7 +15,7 @@ use sightlines::scenes::{OfficeOptions, office};
 use std::fmt;
 use std::time::Instant;
 
-pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error> {
     let start = Instant::now();
     let folder = &args.out;
     let office = office(OfficeOptions { seed: args.seed, ..OfficeOptions::default() })

@@ -1,12 +1,13 @@
 //! The demo in space: a small furnished tower.
 
+use super::Error;
 use super::{DemoArgs, Done};
 use crate::Answer;
 use crate::commands::build::{BakeArgs, space};
-use crate::commands::draw::{save_picture, space as draw};
-use crate::commands::generate::save_glb;
-use crate::error::CliError;
+use crate::glb::save_glb;
 use crate::output::{self, bytes, percent};
+use crate::picture::PictureError;
+use crate::picture::{self, save_picture};
 use serde::Serialize;
 use sightlines::formats::scene::read_scene;
 use sightlines::pvs::{CellId, Table};
@@ -16,7 +17,7 @@ use std::fmt;
 use std::path::Path;
 use std::time::Instant;
 
-pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error> {
     let start = Instant::now();
     let options = TowerOptions { seed: args.seed, floors: 2, rooms_x: 3, rooms_y: 1, ..TowerOptions::default() };
     let [scene_path, table_path] = ["tower.glb", "tower.pvs"].map(|name| args.out.join(name));
@@ -45,19 +46,19 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, CliErr
 
 /// The cells, and what the largest of those that see less than half of the cells sees: a floor plan at its
 /// height, and the boxes.
-fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>, CliError> {
-    let up = draw::up_of(table);
+fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>, Error> {
+    let up = picture::up_of(table);
     let viewer = viewer(table);
     let view = viewer.map_or(View::Plan, View::Cell);
     let below = |view| IsometricOptions { view, up, ..IsometricOptions::default() };
     let mut drawn =
         vec![("cells", isometric_svg(table, &below(View::Plan))), ("seen", isometric_svg(table, &below(view)))];
     if let Some(cell) = viewer {
-        let height = draw::middle(table, cell, up);
+        let height = picture::middle(table, cell, up);
         drawn.push(("floor", slice_svg(table, &SliceOptions { view, up, height, ..SliceOptions::default() })));
     }
     let named = |(name, svg): (&'static str, Result<String, _>)| {
-        Ok((name, svg.map_err(|source| CliError::Draw { path: path.to_owned(), source })?))
+        Ok((name, svg.map_err(|source| PictureError::Draw { path: path.to_owned(), source })?))
     };
     drawn.into_iter().map(named).collect()
 }

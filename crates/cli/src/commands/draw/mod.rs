@@ -2,15 +2,17 @@
 
 pub(crate) mod space;
 
+mod error;
 use crate::Answer;
-use crate::commands::build::refuse;
-use crate::error::CliError;
+use crate::input::refuse;
+use crate::picture::{PictureKind, draw_plan, save_picture};
 use crate::place::{self, Point};
 use crate::{input, output};
+use error::Error;
 use sightlines::geometry::check_coordinate;
 use sightlines::pvs::Table;
-use sightlines::report::{DrawOptions, MAX_SIZE, MIN_SIZE, View, plan_svg, svg_to_png};
-use std::path::{Path, PathBuf};
+use sightlines::report::{DrawOptions, MAX_SIZE, MIN_SIZE, View};
+use std::path::PathBuf;
 
 /// Arguments of `draw`.
 #[derive(Debug, clap::Args)]
@@ -48,41 +50,7 @@ fn height(text: &str) -> Result<f64, String> {
     check_coordinate(height).map_err(|error| error.to_string())
 }
 
-/// The kinds of pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PictureKind {
-    Svg,
-    Png,
-}
-
-impl PictureKind {
-    /// Tells the kind of a picture by the end of its name.
-    pub(crate) fn of(path: &Path) -> Result<Self, CliError> {
-        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("svg") => Ok(Self::Svg),
-            Some("png") => Ok(Self::Png),
-            _ => Err(CliError::PictureKind(path.to_owned())),
-        }
-    }
-}
-
-/// The picture of a plan's table that came from `source`.
-pub(crate) fn draw_plan(source: &Path, table: &Table, options: &DrawOptions) -> Result<String, CliError> {
-    plan_svg(table, options).map_err(|error| CliError::Draw { path: source.to_owned(), source: error })
-}
-
-/// Writes a picture in the kind that the file's name says.
-pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<(), CliError> {
-    match PictureKind::of(out)? {
-        PictureKind::Svg => output::save(out, svg.as_bytes()),
-        PictureKind::Png => {
-            let png = svg_to_png(svg).map_err(|error| CliError::Png { path: out.to_owned(), source: error })?;
-            output::save(out, &png)
-        }
-    }
-}
-
-pub(crate) fn run(args: &DrawArgs) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
     PictureKind::of(&args.output)?;
     output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
@@ -98,7 +66,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer, CliError> {
     Ok(Answer::Yes)
 }
 
-fn plan(args: &DrawArgs, table: &Table) -> Result<String, CliError> {
+fn plan(args: &DrawArgs, table: &Table) -> Result<String, Error> {
     let given = [("--height", args.height.is_some()), ("--isometric", args.isometric), ("--up", args.up.is_some())];
     refuse(&args.table, &given, "scenes in space", "the table of a plan")?;
     let view = match (args.cell, &args.eye) {
@@ -106,5 +74,5 @@ fn plan(args: &DrawArgs, table: &Table) -> Result<String, CliError> {
         (None, Some(eye)) => View::Eye(eye.planar(table, &args.table)?),
         (None, None) => View::Plan,
     };
-    draw_plan(&args.table, table, &DrawOptions { view, size: args.size, ..DrawOptions::default() })
+    Ok(draw_plan(&args.table, table, &DrawOptions { view, size: args.size, ..DrawOptions::default() })?)
 }

@@ -1,7 +1,9 @@
 //! Pictures of tables in space.
 
 use super::DrawArgs;
-use crate::error::CliError;
+use super::Error;
+use crate::picture::PictureError;
+use crate::picture::{middle, up_of};
 use crate::place;
 use sightlines::pvs::Table;
 use sightlines::report::{IsometricOptions, SliceOptions, Up, View, isometric_svg, slice_svg};
@@ -14,17 +16,8 @@ pub(super) enum UpAxis {
     Z,
 }
 
-/// Which way is up in a table: what it says, or y.
-pub(crate) fn up_of(table: &Table) -> Up {
-    match table.info_value("up") {
-        Some("x") => Up::X,
-        Some("z") => Up::Z,
-        _ => Up::Y,
-    }
-}
-
 /// The picture that is asked for.
-pub(super) fn draw(args: &DrawArgs, table: &Table) -> Result<String, CliError> {
+pub(super) fn draw(args: &DrawArgs, table: &Table) -> Result<String, Error> {
     let path = &args.table;
     let up = args.up.map_or(up_of(table), |axis| match axis {
         UpAxis::X => Up::X,
@@ -43,7 +36,7 @@ pub(super) fn draw(args: &DrawArgs, table: &Table) -> Result<String, CliError> {
         let height = height.ok_or_else(|| nowhere(args, table, up))?;
         slice_svg(table, &SliceOptions { view, up, height, size: args.size, ..SliceOptions::default() })
     };
-    drawn.map_err(|source| CliError::Draw { path: path.clone(), source })
+    Ok(drawn.map_err(|source| PictureError::Draw { path: path.clone(), source })?)
 }
 
 /// The height of whoever looks.
@@ -55,14 +48,8 @@ fn height_of(table: &Table, view: View<[f64; 3]>, up: Up) -> Option<f64> {
     }
 }
 
-/// The height of the middle of a cell.
-pub(crate) fn middle(table: &Table, id: sightlines::pvs::CellId, up: Up) -> f64 {
-    let cell = &table.cells()[id.idx()];
-    0.5 * cell.min[up.axis()] + 0.5 * cell.max[up.axis()]
-}
-
-fn nowhere(args: &DrawArgs, table: &Table, up: Up) -> CliError {
+fn nowhere(args: &DrawArgs, table: &Table, up: Up) -> Error {
     let low = table.cells().iter().map(|cell| cell.min[up.axis()]).fold(f64::INFINITY, f64::min);
     let high = table.cells().iter().map(|cell| cell.max[up.axis()]).fold(f64::NEG_INFINITY, f64::max);
-    CliError::WhichHeight { path: args.table.clone(), low, high }
+    Error::WhichHeight { path: args.table.clone(), low, high }
 }

@@ -1,7 +1,7 @@
 //! The answer of `explain` for clusters of a portal file, for people and for programs.
 
+use super::Error;
 use crate::Answer;
-use crate::error::CliError;
 use crate::output::{self, count};
 use crate::place::Place;
 use serde::Serialize;
@@ -26,12 +26,12 @@ pub(super) struct Asked<'a> {
 
 impl Asked<'_> {
     /// Explains and prints; `listed` is what a table says of two cells.
-    pub(super) fn answer(&self, listed: impl Fn(CellId, CellId) -> Option<bool>) -> Result<Answer, CliError> {
+    pub(super) fn answer(&self, listed: impl Fn(CellId, CellId) -> Option<bool>) -> Result<Answer, Error> {
         let n_clusters = self.graph.n_cells();
         let cluster = |place: &Place| match *place {
             Place::Cell(id) if (id as usize) < n_clusters => Ok(CellId(id)),
-            Place::Cell(cluster) => Err(CliError::NoSuchCluster { path: self.path.to_owned(), cluster, n_clusters }),
-            Place::Point(_) => Err(CliError::NoPoints(self.path.to_owned())),
+            Place::Cell(cluster) => Err(Error::NoSuchCluster { path: self.path.to_owned(), cluster, n_clusters }),
+            Place::Point(_) => Err(Error::NoPoints(self.path.to_owned())),
         };
         let (from, to) = (cluster(self.places[0])?, cluster(self.places[1])?);
         let explanation = explain_convex(self.graph, from, to, self.limit);

@@ -2,17 +2,19 @@
 
 mod answer;
 mod convex;
+mod error;
 mod line;
 mod space;
 
 use crate::Answer;
-use crate::commands::draw::{PictureKind, draw_plan, save_picture};
-use crate::error::CliError;
+use crate::error::InputError;
 use crate::input::Kind;
+use crate::picture::{PictureKind, draw_plan, save_picture};
 use crate::place::Place;
 use crate::{input, output};
 use answer::{Outside, Told};
 use convex::Asked;
+use error::Error;
 use sightlines::bake::{axial_graph_of, convex_graph_of};
 use sightlines::cells::{CellGraph, Convex, Planar};
 use sightlines::formats::quake::{graph_of_prt, read_prt};
@@ -60,7 +62,7 @@ pub(crate) struct ExplainArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
     if let Some(out) = &args.draw {
         PictureKind::of(out)?;
         output::check(&[&args.table], &[out])?;
@@ -75,7 +77,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
         let is_placed = table.planes().is_some();
         let found = if is_placed { "the table of a Quake map" } else { "the table of a portal file" };
         args.refuse_meaningless(Of::Portals, found)?;
-        let graph = convex_graph_of(&table).ok_or_else(|| CliError::Stripped(args.table.clone()))?;
+        let graph = convex_graph_of(&table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
         let listed = |a, b| Some(table.sees(a, b));
         if !is_placed {
             return args.asked(&graph).answer(listed);
@@ -96,7 +98,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, CliError> {
 
 impl ExplainArgs {
     /// Refuses options that say nothing about such a file.
-    fn refuse_meaningless(&self, of: Of, found: &'static str) -> Result<(), CliError> {
+    fn refuse_meaningless(&self, of: Of, found: &'static str) -> Result<(), Error> {
         let given = [
             (self.draw.is_some(), "--draw", Of::Plan, "plans"),
             (self.max_visits.is_some(), "--max-visits", Of::Plan, "plans"),
@@ -104,13 +106,15 @@ impl ExplainArgs {
             (self.max_questions.is_some(), "--max-questions", Of::Portals, "portal files"),
         ];
         match given.into_iter().find(|&(is_given, _, meant, _)| is_given && meant != of) {
-            Some((_, option, _, meant)) => Err(CliError::Option { path: self.table.clone(), option, meant, found }),
+            Some((_, option, _, meant)) => {
+                Err(InputError::Option { path: self.table.clone(), option, meant, found }.into())
+            }
             None => Ok(()),
         }
     }
 
     /// The cells that are asked about; none, which is said, if a point is outside every cell.
-    fn pair(&self, table: &Table) -> Result<Option<(CellId, CellId)>, CliError> {
+    fn pair(&self, table: &Table) -> Result<Option<(CellId, CellId)>, Error> {
         let from = self.from.cells(table, &self.table)?;
         let to = self.to.cells(table, &self.table)?;
         for (place, cells) in [(&self.from, &from), (&self.to, &to)] {
@@ -142,8 +146,8 @@ enum Of {
     Portals,
 }
 
-fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, CliError> {
-    let graph = axial_graph_of(table).ok_or_else(|| CliError::Stripped(args.table.clone()))?;
+fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {
+    let graph = axial_graph_of(table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
     // The table does not tell what was left out beside its cells, and no answer depends on that.
     let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
     let told = ToldInSpace::new([a, b], explanation, table.sees(a, b), args.proofs);
@@ -151,7 +155,7 @@ fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Resu
     Ok(if told.is_visible() { Answer::Yes } else { Answer::No })
 }
 
-fn in_plan(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, CliError> {
+fn in_plan(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {
     let graph = input::graph(table, &args.table)?;
     let explanation = explain(&graph, a, b, args.proofs, args.max_visits.unwrap_or(MAX_VISITS));
     let told = Told::new(&graph, [a, b], &explanation, table.sees(a, b));

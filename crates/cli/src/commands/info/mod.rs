@@ -7,16 +7,31 @@ mod scene;
 mod wad;
 
 use crate::Answer;
-use crate::commands::build::facts::Facts;
-use crate::commands::build::stab::StabFacts;
-use crate::error::CliError;
+use crate::error::InputError;
+use crate::error::OutputError;
+use crate::facts::{Facts, StabFacts};
 use crate::input::{self, Kind};
 use crate::output::{self, bytes};
 use serde::Serialize;
+use sightlines::formats::ReadError;
 use sightlines::pvs::Table;
 use sightlines::report::Summary;
 use std::fmt;
 use std::path::{Path, PathBuf};
+
+/// Why `info` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// An input that is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A WAD, a plan or a scene cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
 
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
@@ -30,7 +45,7 @@ pub(crate) struct InfoArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &InfoArgs) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &InfoArgs) -> Result<Answer, Error> {
     let path = &args.file;
     match input::kind_of(path)? {
         Some(Kind::Table) => output::print(args.json, &TableInfo::new(path, &input::table(path)?))?,
@@ -42,7 +57,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer, CliError> {
         Some(Kind::Bsp) => output::print(args.json, &quake::BspInfo::read(path)?)?,
         None => {
             let expected = "a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
-            return Err(CliError::Kind { path: path.clone(), expected });
+            return Err(InputError::Kind { path: path.clone(), expected }.into());
         }
     }
     Ok(Answer::Yes)

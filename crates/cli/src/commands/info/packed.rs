@@ -1,7 +1,8 @@
 //! What a packed table holds, without unpacking it.
 
+use super::Error;
 use super::as_map;
-use crate::error::CliError;
+use crate::error::InputError;
 use crate::output::{bytes, percent};
 use crate::tables;
 use serde::Serialize;
@@ -64,14 +65,14 @@ const PARTS: [(&str, &str); 19] = [
 ];
 
 impl PackedInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+    pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let packed = tables::packed(path, 0)?;
         let part = |part: sightlines::packed::PartSize| {
             let name = part.id.to_string();
             let what = PARTS.iter().find(|(known, _)| *known == name).map_or("unknown", |(_, what)| what);
             Part { name, what, n_bytes: part.bytes, resident: part.resident }
         };
-        let open = |source| CliError::Open { path: path.to_owned(), source };
+        let open = |source| InputError::Open { path: path.to_owned(), source };
         Ok(Self {
             file: path.display().to_string(),
             kind: "packed",

@@ -1,6 +1,6 @@
 //! What a GeoJSON plan holds.
 
-use crate::error::CliError;
+use super::Error;
 use serde::Serialize;
 use sightlines::formats::geojson;
 use std::fmt;
@@ -23,7 +23,7 @@ pub(super) struct PlanInfo {
 }
 
 impl PlanInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+    pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let plan = geojson::read_plan(path)?;
         let n_walls = plan.lines().iter().filter(|line| line.opaque).count();
         let bounds = Some(plan.bounds()).filter(|bounds| !bounds.is_empty());

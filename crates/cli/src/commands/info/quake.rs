@@ -1,7 +1,6 @@
 //! What a Quake map or its portal file holds.
 
-use crate::commands::vis::format_name;
-use crate::error::CliError;
+use super::Error;
 use crate::output::{count, percent};
 use serde::Serialize;
 use sightlines::formats::Bsp;
@@ -27,7 +26,7 @@ pub(super) struct PrtInfo {
 }
 
 impl PrtInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+    pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let prt = read_prt(path)?;
         let mut is_closed = vec![true; prt.n_clusters() as usize];
         prt.portals().flat_map(|portal| portal.clusters).for_each(|cluster| is_closed[cluster as usize] = false);
@@ -90,13 +89,13 @@ pub(super) struct BspInfo {
 }
 
 impl BspInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+    pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let bsp = read_bsp(path)?;
         let has_clusters = bsp.format().has_clusters();
         let mut info = Self {
             file: path.display().to_string(),
             kind: "bsp",
-            format: format_name(bsp.format()),
+            format: bsp.format().name(),
             n_leafs: bsp.leafs().len(),
             n_visible_leafs: bsp.n_visible_leafs(),
             n_clusters: has_clusters.then(|| bsp.n_clusters()),

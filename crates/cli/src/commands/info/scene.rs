@@ -1,7 +1,7 @@
 //! What a scene in space holds.
 
-use crate::commands::build::space::Stated;
-use crate::error::CliError;
+use super::Error;
+use crate::facts::Stated;
 use serde::Serialize;
 use sightlines::formats::scene::read_scene;
 use std::fmt;
@@ -24,7 +24,7 @@ pub(super) struct SceneInfo {
 }
 
 impl SceneInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+    pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let file = read_scene(path)?;
         let bounds = file.scene.bounds();
         Ok(Self {

@@ -3,12 +3,13 @@
 mod outcome;
 
 use crate::Answer;
-use crate::commands::simplify::{HowArgs, ReadScene, read, written};
-use crate::error::CliError;
+use crate::error::InputError;
+use crate::error::OutputError;
 use crate::folder::NewFolder;
 use crate::input;
 use crate::output;
 use crate::progress::Bar;
+use crate::simplification::{HowArgs, ReadScene, SimplificationError, read, written};
 use outcome::Outcome;
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
 use sightlines::multifocal::FromRegion;
@@ -18,6 +19,20 @@ use std::time::Instant;
 
 /// Rays that weigh faces for each level: they only choose what is collapsed first, and there are many levels.
 const N_RAYS: u64 = 1 << 12;
+
+/// Why `levels` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// An input that is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A scene that cannot be simplified.
+    #[error(transparent)]
+    Simplification(#[from] SimplificationError),
+}
 
 /// Arguments of `levels`.
 #[derive(Debug, clap::Args)]
@@ -53,7 +68,7 @@ fn is_ours(name: &str) -> bool {
     name == INDEX_NAME || number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
 }
 
-pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Error> {
     // What cannot be written is told before the work is done.
     let folder = NewFolder::new(&args.output, is_ours)?;
     let ReadScene { file, source } = read(&args.scene)?;
@@ -72,7 +87,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, CliE
     let made = levels(scene, &table, &by, &options).map_err(|source| {
         let of_table = matches!(source, SimplifyError::OtherScene(_) | SimplifyError::Views(_));
         let path = if of_table { &args.table } else { &args.scene };
-        CliError::Simplify { path: path.clone(), source }
+        SimplificationError::Simplify { path: path.clone(), source }
     })?;
     drop(bar);
     let mut index = LevelsIndex {

@@ -1,16 +1,17 @@
 //! `light`: the soft shadows of an area light, with rays only where nothing is proven.
 
+mod error;
 mod method;
 mod outcome;
 
 use crate::Answer;
-use crate::commands::render::RenderError;
-use crate::commands::render::eye::EyeArgs;
-use crate::error::CliError;
-use crate::input::{self, Kind as FileKind};
+use crate::eye::EyeArgs;
+use crate::input;
 use crate::output;
+use crate::picture::{self, PictureError};
 use crate::region::Region;
 use crate::view::Up;
+use error::Error;
 use method::{Kind, made};
 use outcome::Outcome;
 use sightlines::area_light::{Options, Shade, Shadows, Sides, shown};
@@ -74,18 +75,13 @@ pub(crate) struct LightArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &LightArgs) -> Result<Answer, CliError> {
-    if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(CliError::NotPng(args.output.clone()));
-    }
+pub(crate) fn run(args: &LightArgs) -> Result<Answer, Error> {
+    picture::check_png_name(&args.output)?;
     output::check(&[&args.scene], &[&args.output])?;
-    if input::kind_of(&args.scene)? != Some(FileKind::Scene) {
-        return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
-    }
+    input::check_is_scene(&args.scene)?;
     // All of it casts shadows.
     let file = input::occluders(&args.scene)?;
-    let faces =
-        Faces::of_scene(&file.scene).map_err(|source| RenderError::Faces { path: args.scene.clone(), source })?;
+    let faces = Faces::of_scene(&file.scene).map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
     let light = Volume::new(args.light.0)?;
     let camera = args.eye.camera(args.eye.up(Up::axis(file.info.up)))?;
     let shot = Shot { faces: &faces, camera: &camera, chosen: &Chosen::all(&faces) };
@@ -98,7 +94,7 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer, CliError> {
     let shadows = Shadows::new(&faces);
     let lighting = shadows
         .classify(&chosen, &light, &mut method, &options)
-        .map_err(|source| CliError::Backend { path: args.scene.clone(), source })?;
+        .map_err(|source| Error::Backend { path: args.scene.clone(), source })?;
     let decided = start.elapsed();
     let start = Instant::now();
     let picture = shadows.picture(&lighting, &camera, &image, args.rays);
@@ -106,7 +102,7 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer, CliError> {
 
     let pixels: Vec<LightPixel> = picture.shades.iter().map(|&shade| pixel(shade)).collect();
     let png = light_png(picture.size, &pixels, args.grey);
-    let png = png.map_err(|source| CliError::Png { path: args.output.clone(), source })?;
+    let png = png.map_err(|source| PictureError::Png { path: args.output.clone(), source })?;
     let (counts, rays) = Outcome::counts(&picture);
     let outcome = Outcome {
         scene: args.scene.display().to_string(),

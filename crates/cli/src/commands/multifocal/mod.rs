@@ -1,15 +1,17 @@
 //! `multifocal`: the multifocal buffer of a scene on one plane as a picture, and the fields beside it.
 
 mod backend;
+mod error;
 mod outcome;
 mod target;
 
 use crate::Answer;
-use crate::error::CliError;
-use crate::input::{self, Kind};
+use crate::input;
 use crate::measure::MeasureArg;
 use crate::output;
+use crate::picture::{self, PictureError};
 use crate::region::Region;
+use error::Error;
 use outcome::{FieldInfo, Outcome};
 use sightlines::geometry::Point3;
 use sightlines::multifocal::mesh::{PatchOptions, patches};
@@ -67,20 +69,18 @@ pub(crate) struct MultifocalArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, Error> {
     check_outputs(args)?;
-    if input::kind_of(&args.scene)? != Some(Kind::Scene) {
-        return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
-    }
+    input::check_is_scene(&args.scene)?;
     let scene = input::occluders(&args.scene)?.scene;
     let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|object| object.corners()).collect();
     let volume = Volume::new(args.volume.0)?;
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
     let occluders = occluders(&triangles, args.triangles);
     let job = Job::new(volume, vec![plane], &occluders, args.measure.measure(), false)
-        .map_err(|source| CliError::Job { plane: args.plane.to_string(), source })?;
+        .map_err(|source| Error::Job { plane: args.plane.to_string(), source })?;
     let (by, buffer) =
-        backend::fill(args.backend, &job).map_err(|source| CliError::Backend { path: args.scene.clone(), source })?;
+        backend::fill(args.backend, &job).map_err(|source| Error::Backend { path: args.scene.clone(), source })?;
     let fields = (args.voronoi.is_some() || args.distance.is_some()).then(|| {
         let features = Features::new(triangles.iter().copied());
         let field = Field::new(&features, &plane);
@@ -111,11 +111,9 @@ fn outputs(args: &MultifocalArgs) -> impl Iterator<Item = &PathBuf> {
 }
 
 /// Refuses names of pictures that are no PNG, that name the same file twice, or the scene, and files that cannot be written.
-fn check_outputs(args: &MultifocalArgs) -> Result<(), CliError> {
-    if let Some(path) = outputs(args).find(|path| !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"))) {
-        return Err(CliError::NotPng(path.clone()));
-    }
-    output::check(&[&args.scene], &outputs(args).map(PathBuf::as_path).collect::<Vec<_>>())
+fn check_outputs(args: &MultifocalArgs) -> Result<(), Error> {
+    outputs(args).try_for_each(|path| picture::check_png_name(path))?;
+    Ok(output::check(&[&args.scene], &outputs(args).map(PathBuf::as_path).collect::<Vec<_>>())?)
 }
 
 /// What hides: patches, or each triangle that has an area.
@@ -138,7 +136,7 @@ fn write(
     plane: &Plane,
     buffer: &Buffer,
     fields: Option<&(Features, Field)>,
-) -> Result<(), CliError> {
+) -> Result<(), Error> {
     let texels = plane.texels();
     let mut pictures: Vec<(&Path, Result<Vec<u8>, PngError>)> =
         vec![(&args.output, buffer_png(texels, buffer.values(), white(buffer)))];
@@ -154,8 +152,8 @@ fn write(
     }
     let drawn = |(path, png): (&'_ Path, Result<Vec<u8>, PngError>)| match png {
         Ok(png) => Ok((path.to_owned(), png)),
-        Err(source) => Err(CliError::Png { path: path.to_owned(), source }),
+        Err(source) => Err(PictureError::Png { path: path.to_owned(), source }),
     };
     let drawn: Vec<(PathBuf, Vec<u8>)> = pictures.into_iter().map(drawn).collect::<Result<_, _>>()?;
-    drawn.iter().try_for_each(|(path, png)| output::save(path, png))
+    Ok(drawn.iter().try_for_each(|(path, png)| output::save(path, png))?)
 }

@@ -1,13 +1,14 @@
 //! `query`: what may be seen from a point.
 
+mod error;
 mod sight;
 
 use crate::Answer;
-use crate::error::CliError;
 use crate::output::{self, count};
 use crate::place::Point;
 use crate::tables::{self, Cells, Opened};
 use crate::view::lifted;
+use error::Error;
 use serde::Serialize;
 use sight::SightArgs;
 use sightlines::pvs::CellId;
@@ -35,14 +36,14 @@ pub(crate) struct QueryArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &QueryArgs) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &QueryArgs) -> Result<Answer, Error> {
     match tables::open(&args.table, CACHE)? {
         Opened::Plain(cells) => ask(&cells, args),
         Opened::Packed(cells) => ask(&cells, args),
     }
 }
 
-fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer, CliError> {
+fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer, Error> {
     let path = &args.table;
     cells.refuse_without_places(path)?;
     let eye = args.eye.coordinates(cells.n_dimensions(), path)?;

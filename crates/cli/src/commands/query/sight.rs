@@ -1,7 +1,7 @@
 //! What is seen from a point by a method: in a direction, with doors closed, in mirrors.
 
+use super::Error;
 use super::{Object, Place, ids, named, write_seen};
-use crate::error::CliError;
 use crate::output::count;
 use crate::place::Point;
 use crate::tables::Cells;
@@ -49,22 +49,22 @@ impl SightArgs {
     }
 
     /// The view of an eye.
-    fn view<C: Cells>(&self, cells: &C, path: &Path, eye: &[f64]) -> Result<(View, Option<f64>), CliError> {
+    fn view<C: Cells>(&self, cells: &C, path: &Path, eye: &[f64]) -> Result<(View, Option<f64>), Error> {
         let lens = self.lens.lens(cells, path)?;
         let Some(dir) = &self.dir else {
-            let view = View::all_round(lifted(eye)).map_err(|source| CliError::View { option: "--eye", source })?;
-            return if self.lens.is_given() { Err(CliError::LensWithoutDirection) } else { Ok((view, None)) };
+            let view = View::all_round(lifted(eye)).map_err(|source| Error::View { option: "--eye", source })?;
+            return if self.lens.is_given() { Err(Error::LensWithoutDirection) } else { Ok((view, None)) };
         };
         let dir = lifted(dir.coordinates(cells.n_dimensions(), path)?);
         let view = lens.view(Stand { eye: lifted(eye), dir });
-        Ok((view.map_err(|source| CliError::View { option: "--dir", source })?, Some(lens.fov)))
+        Ok((view.map_err(|source| Error::View { option: "--dir", source })?, Some(lens.fov)))
     }
 
-    fn doors(&self, n_portals: usize, path: &Path) -> Result<Doors, CliError> {
+    fn doors(&self, n_portals: usize, path: &Path) -> Result<Doors, Error> {
         let mut doors = Doors::all_open();
         for &portal in &self.closed {
             if portal as usize >= n_portals {
-                return Err(CliError::NoSuchPortal { path: path.to_owned(), portal, n_portals });
+                return Err(Error::NoSuchPortal { path: path.to_owned(), portal, n_portals });
             }
             doors.close(portal);
         }
@@ -79,7 +79,7 @@ pub(super) fn look<C: Cells>(
     eye: &[f64],
     at: &[CellId],
     args: &SightArgs,
-) -> Result<Sight, CliError> {
+) -> Result<Sight, Error> {
     let (view, fov) = args.view(cells, path, eye)?;
     let doors = args.doors(cells.n_portals(), path)?;
     let all = args.method == Some(Methods::All);

@@ -1,7 +1,6 @@
 //! What is left out before anything is drawn.
 
-use super::RenderError;
-use crate::error::CliError;
+use super::Error;
 use crate::tables::{self, Cells, Opened};
 use sightlines::cells::Scene;
 use sightlines::geometry::{Aabb, Point3};
@@ -73,29 +72,18 @@ pub(super) fn leave_out(
 
 /// Which objects of a scene a table has as seen from a point; `None`, and a warning, if that is outside every cell, where
 /// everything may be seen.
-pub(super) fn seen_by_table(
-    table: &Path,
-    path: &Path,
-    scene: &Scene,
-    eye: Point3,
-) -> Result<Option<Vec<bool>>, CliError> {
+pub(super) fn seen_by_table(table: &Path, path: &Path, scene: &Scene, eye: Point3) -> Result<Option<Vec<bool>>, Error> {
     match tables::open(table, CACHE)? {
         Opened::Plain(cells) => ask(&cells, table, path, scene, eye),
         Opened::Packed(cells) => ask(&cells, table, path, scene, eye),
     }
 }
 
-fn ask<C: Cells>(
-    cells: &C,
-    table: &Path,
-    path: &Path,
-    scene: &Scene,
-    eye: Point3,
-) -> Result<Option<Vec<bool>>, CliError> {
+fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point3) -> Result<Option<Vec<bool>>, Error> {
     cells.refuse_without_places(table)?;
     let fail = |error| C::fail(table, error);
     if let Some(unlike) = unlike(cells, scene).map_err(fail)? {
-        return Err(RenderError::OtherScene { table: table.to_owned(), scene: path.to_owned(), unlike }.into());
+        return Err(Error::OtherScene { table: table.to_owned(), scene: path.to_owned(), unlike });
     }
     let mut at = Vec::new();
     Resident::locate(cells, eye, &mut Vec::new(), &mut at);

@@ -1,15 +1,32 @@
-//! What can go wrong beyond files.
+//! Why `render` fails.
 
 use super::cull::Unlike;
-use sightlines::visible_surface::{CameraError, FacesError};
+use crate::error::InputError;
+use crate::error::OutputError;
+use crate::eye::EyeError;
+use crate::picture::PictureError;
+use sightlines::formats::ReadError;
+use sightlines::visible_surface::FacesError;
 use std::path::PathBuf;
 
-/// Why nothing is drawn.
+/// Why `render` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum RenderError {
+pub(crate) enum Error {
+    /// An input that is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A WAD, a plan or a scene cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A picture that cannot be drawn or written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
     /// An eye that sees nothing.
-    #[error("{option}: {source}")]
-    Camera { option: &'static str, source: CameraError },
+    #[error(transparent)]
+    Eye(#[from] EyeError),
     /// A scene that is too large.
     #[error("{}: {source}", path.display())]
     Faces { path: PathBuf, source: FacesError },

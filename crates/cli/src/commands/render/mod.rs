@@ -2,20 +2,18 @@
 
 mod cull;
 mod error;
-pub(crate) mod eye;
 mod method;
 mod outcome;
 
-pub(crate) use error::RenderError;
-
 use crate::Answer;
-use crate::error::CliError;
-use crate::input::{self, Kind as FileKind};
+use crate::eye::EyeArgs;
+use crate::input;
 use crate::output;
+use crate::picture::{self, PictureError};
 use crate::progress::Bar;
 use crate::view::Up;
 use cull::{Cull, leave_out, seen_by_table};
-use eye::EyeArgs;
+use error::Error;
 use method::{Depth, Drawn, Kind, Readied, Ready, compared, format_of};
 use outcome::{Outcome, Row};
 use sightlines::formats::scene::read_scene;
@@ -70,17 +68,14 @@ pub(crate) struct RenderArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, Error> {
     check(args)?;
-    if input::kind_of(&args.scene)? != Some(FileKind::Scene) {
-        return Err(CliError::Kind { path: args.scene.clone(), expected: "a GLB nor a glTF nor an OBJ scene" });
-    }
+    input::check_is_scene(&args.scene)?;
     let file = read_scene(&args.scene)?;
     if args.cull.contains(&Cull::Pvs) {
         input::check_occluder(&args.scene, &file)?;
     }
-    let faces =
-        Faces::of_scene(&file.scene).map_err(|source| RenderError::Faces { path: args.scene.clone(), source })?;
+    let faces = Faces::of_scene(&file.scene).map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
     let up = args.eye.up(Up::axis(file.info.up));
     let camera = args.eye.camera(up)?;
     let methods = methods(args, &camera)?;
@@ -101,7 +96,7 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, CliE
         (vec![Row::new(&drawn, None)], png)
     };
     drop(bar);
-    let png = png.map_err(|source| CliError::Png { path: args.output.clone(), source })?;
+    let png = png.map_err(|source| PictureError::Png { path: args.output.clone(), source })?;
     let outcome = Outcome {
         scene: args.scene.display().to_string(),
         n_objects: file.scene.objects().len(),
@@ -124,24 +119,22 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, CliE
 }
 
 /// Refuses options that do not go together, and outputs that would replace what is read.
-fn check(args: &RenderArgs) -> Result<(), CliError> {
-    if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(CliError::NotPng(args.output.clone()));
-    }
+fn check(args: &RenderArgs) -> Result<(), Error> {
+    picture::check_png_name(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.table).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
     let has_buffer = args.method.contains(&Kind::Zbuffer) || args.method.is_empty();
     match (args.cull.contains(&Cull::Pvs), &args.table) {
-        (true, None) => Err(RenderError::NoTable.into()),
-        (false, Some(_)) => Err(RenderError::NoCulling.into()),
-        _ if args.method.len() > 1 && !args.compare => Err(RenderError::ManyMethods.into()),
-        _ if args.depth.is_some() && !has_buffer => Err(RenderError::NoBuffer.into()),
+        (true, None) => Err(Error::NoTable),
+        (false, Some(_)) => Err(Error::NoCulling),
+        _ if args.method.len() > 1 && !args.compare => Err(Error::ManyMethods),
+        _ if args.depth.is_some() && !has_buffer => Err(Error::NoBuffer),
         _ => Ok(()),
     }
 }
 
 /// The methods that are drawn. With `--compare` the ray caster is one of them, and their sheet is not too large.
-fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)>, RenderError> {
+fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)>, Error> {
     if !args.compare {
         return Ok(args.method.iter().map(|&kind| (kind, format_of(args.depth))).collect());
     }
@@ -149,7 +142,7 @@ fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)
     let (n, size) = (methods.len(), camera.size());
     match sheet_size(size, n) {
         Some([w, h]) if u64::from(w) * u64::from(h) <= MOST_PIXELS => Ok(methods),
-        _ => Err(RenderError::Sheet { n, size, most: MOST_PIXELS }),
+        _ => Err(Error::Sheet { n, size, most: MOST_PIXELS }),
     }
 }
 

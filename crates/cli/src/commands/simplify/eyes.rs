@@ -1,6 +1,6 @@
 //! Where eyes are: boxes, or cells of a table.
 
-use crate::error::CliError;
+use super::Error;
 use crate::input;
 use crate::region::Region;
 use sightlines::multifocal::Volume;
@@ -31,7 +31,7 @@ pub(super) struct EyesArgs {
 
 impl EyesArgs {
     /// The table, if there is one, and the places.
-    pub(super) fn read(&self) -> Result<(Option<Table>, Views), CliError> {
+    pub(super) fn read(&self) -> Result<(Option<Table>, Views), Error> {
         let Some(path) = &self.table else {
             let volumes = self.volume.iter().map(|region| Volume::new(region.0)).collect::<Result<Vec<_>, _>>()?;
             let views = Views::new(volumes).expect("the arguments have a volume");
@@ -39,7 +39,7 @@ impl EyesArgs {
         };
         let table = input::table(path)?;
         let cells: Vec<CellId> = self.cell.iter().copied().map(CellId).collect();
-        let failed = |source| CliError::Views { path: path.clone(), source };
+        let failed = |source| Error::Views { path: path.clone(), source };
         let views = Views::of_cells(&table, &cells).map_err(failed)?;
         Ok((Some(table), views))
     }

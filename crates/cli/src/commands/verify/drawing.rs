@@ -1,8 +1,9 @@
 //! The picture of the first ray that shows a violation.
 
-use crate::commands::draw::space::up_of;
-use crate::commands::draw::{draw_plan, save_picture};
-use crate::error::CliError;
+use super::Error;
+use crate::picture::PictureError;
+use crate::picture::up_of;
+use crate::picture::{draw_plan, save_picture};
 use sightlines::geometry::Point2;
 use sightlines::pvs::Table;
 use sightlines::report::{DrawOptions, SliceOptions, View, slice_svg};
@@ -11,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Draws what the table says that the cell sees, and the ray that says otherwise. `None`, and no picture, if no violation has a
 /// ray.
-pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path) -> Result<Option<PathBuf>, CliError> {
+pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path) -> Result<Option<PathBuf>, Error> {
     let shown = findings.violations.iter().find_map(|v| Some((v, v.segment()?)));
     let Some((violation, segment)) = shown else { return Ok(None) };
     let cells = violation.cells();
@@ -30,7 +31,7 @@ pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path
             ..SliceOptions::default()
         };
         slice_svg(table, &options)
-            .map_err(|source_error| CliError::Draw { path: source.to_owned(), source: source_error })?
+            .map_err(|source_error| PictureError::Draw { path: source.to_owned(), source: source_error })?
     };
     save_picture(&svg, out)?;
     Ok(Some(out.to_owned()))

@@ -1,17 +1,19 @@
 //! `verify`: is a table true to its scene?
 
 mod drawing;
+mod error;
 mod outcome;
 mod own;
 mod proofs;
 mod truth;
 
 use crate::Answer;
-use crate::commands::build::refuse;
-use crate::commands::draw::PictureKind;
-use crate::error::CliError;
+use crate::error::InputError;
+use crate::input::refuse;
 use crate::input::{self, Kind};
+use crate::picture::PictureKind;
 use crate::{output, tables};
+use error::Error;
 use outcome::{Outcome, Violations};
 use sightlines::pvs::Table;
 use sightlines::verify::{VerifyOptions, verify};
@@ -47,7 +49,7 @@ pub(crate) struct VerifyArgs {
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().seed)]
     seed: u64,
     /// Number of threads; 0 for one for each core. Changes nothing but the time
-    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
     #[command(flatten, next_help_heading = "Proofs")]
     proofs: proofs::ProofArgs,
@@ -62,7 +64,7 @@ pub(crate) struct VerifyArgs {
 /// Bytes of blocks of a packed table that are kept while it is unpacked.
 const CACHE: usize = 64 << 20;
 
-pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, Error> {
     if let Some(picture) = &args.draw {
         PictureKind::of(picture)?;
         output::check(&[&args.table, &args.scene], &[picture])?;
@@ -85,7 +87,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, CliError> {
     let start = Instant::now();
     let findings = verify(table, &scene.truth(), &VerifyOptions { rays, pairs, tries, seed, threads });
     let findings =
-        findings.map_err(|source| CliError::Verify { table: args.table.clone(), scene: args.scene.clone(), source })?;
+        findings.map_err(|source| Error::Verify { table: args.table.clone(), scene: args.scene.clone(), source })?;
     let time = start.elapsed();
     // All that may be refused comes before a file is written.
     let proofs = match own {
@@ -106,10 +108,10 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, CliError> {
 }
 
 /// Reads a table of either kind.
-fn read_table(path: &Path) -> Result<Table, CliError> {
+fn read_table(path: &Path) -> Result<Table, InputError> {
     if input::kind_of(path)? != Some(Kind::Packed) {
         return input::table(path);
     }
-    let failed = |source| CliError::Packed { path: path.to_owned(), source };
+    let failed = |source| InputError::Packed { path: path.to_owned(), source };
     tables::packed(path, CACHE)?.to_table().map_err(failed)
 }

@@ -1,7 +1,8 @@
 //! Proofs that `build --certify` wrote, checked against their table.
 
+use super::Error;
 use super::outcome::Outcome;
-use crate::error::CliError;
+use crate::error::InputError;
 use crate::output::{bytes, count, seconds};
 use serde::Serialize;
 use sightlines::certificates::Refusal;
@@ -70,22 +71,22 @@ pub(super) struct ProofOutcome {
 /// Checks the proofs of a table; `None` if none are given and none are beside it.
 ///
 /// # Errors
-/// [`CliError`] if `--strict` has nothing to be strict about, for files that cannot be read, and for proofs of another kind of table.
+/// [`Error`] if `--strict` has nothing to be strict about, for files that cannot be read, and for proofs of another kind of table.
 pub(super) fn check(
     args: &ProofArgs,
     path: &Path,
     table: &Table,
     truth: &Truth<'_>,
-) -> Result<Option<ProofOutcome>, CliError> {
+) -> Result<Option<ProofOutcome>, Error> {
     let beside = path.with_extension("cert");
     let is_asked_for = args.proofs.is_some();
     let file = match &args.proofs {
         Some(file) => file.clone(),
         None if beside.is_file() => beside,
-        None if args.strict => return Err(CliError::NoProofs { path: path.to_owned(), beside }),
+        None if args.strict => return Err(Error::NoProofs { path: path.to_owned(), beside }),
         None => return Ok(None),
     };
-    let content = std::fs::read(&file).map_err(|source| CliError::Open { path: file.clone(), source })?;
+    let content = std::fs::read(&file).map_err(|source| InputError::Open { path: file.clone(), source })?;
     let start = Instant::now();
     let found = check_proofs(table, &content);
     let is_of_other = match &found {
@@ -104,7 +105,7 @@ pub(super) fn check(
         );
         return Ok(Some(ProofOutcome { is_stale: true, is_true: !args.strict, ..nothing }));
     }
-    let found = found.map_err(|source| CliError::Proofs { path: file.clone(), table: path.to_owned(), source })?;
+    let found = found.map_err(|source| Error::Proofs { path: file.clone(), table: path.to_owned(), source })?;
     let walls = match truth {
         Truth::Plan(plan) => check_walls_of_plan(table, plan),
         Truth::Scene(scene) => check_walls_in_space(table, scene),

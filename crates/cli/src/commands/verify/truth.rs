@@ -1,7 +1,8 @@
 //! The scene of a table, as it is checked against.
 
-use crate::commands::build::refuse;
-use crate::error::CliError;
+use super::Error;
+use crate::error::InputError;
+use crate::input::refuse;
 use crate::input::{self, Input};
 use sightlines::bake::PrtBakeError;
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
@@ -22,7 +23,7 @@ pub(super) enum Real {
 
 impl Real {
     /// Reads a scene of any kind; of a map also its portals.
-    pub(super) fn read(path: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Self, CliError> {
+    pub(super) fn read(path: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Self, Error> {
         let input = input::read(path, map)?;
         if !matches!(input, Input::Map(_)) {
             refuse(path, &[("--prt", prt.is_some())], "Quake maps", "none")?;
@@ -34,14 +35,17 @@ impl Real {
             Input::Map(bsp) => {
                 let named = prt.map_or_else(|| path.with_extension("prt"), Path::to_owned);
                 if prt.is_none() && !named.exists() {
-                    return Err(CliError::MapWithoutPortals(path.to_owned()));
+                    return Err(InputError::MapWithoutPortals(path.to_owned()).into());
                 }
                 let portals = read_prt(&named)?;
-                let other_map =
-                    |source| CliError::OtherMap { prt: named.clone(), bsp: path.to_owned(), source: Box::new(source) };
+                let other_map = |source| InputError::OtherMap {
+                    prt: named.clone(),
+                    bsp: path.to_owned(),
+                    source: Box::new(source),
+                };
                 check_portals(&bsp, &portals).map_err(other_map)?;
                 let broken =
-                    |error: BspError| CliError::BakePrt { path: path.to_owned(), source: PrtBakeError::Bsp(error) };
+                    |error: BspError| Error::BakePrt { path: path.to_owned(), source: PrtBakeError::Bsp(error) };
                 Self::Map(graph_of_prt(&portals), world(&bsp, &portals).map_err(broken)?)
             }
         })

@@ -1,6 +1,6 @@
 //! Proofs for some of the pairs of a table, before it is written.
 
-use crate::error::CliError;
+use super::Error;
 use crate::output::count;
 use crate::progress::Bar;
 use serde::Serialize;
@@ -42,7 +42,7 @@ pub(super) fn certify(
     n: usize,
     fast: bool,
     bar: &Bar,
-) -> Result<Certified, CliError> {
+) -> Result<Certified, Error> {
     let explainer = ConvexExplainer::new(graph);
     let (visible, hidden) = (spread(visible_pairs(seen), n), spread(border_pairs(graph, seen), n));
     let mut certified = Certified::default();
@@ -56,7 +56,7 @@ pub(super) fn certify(
         proven.n_picked += 1;
         let wrong = |found| {
             let listed = if listed { "visible" } else { "hidden" };
-            Err(CliError::Contradiction { path: path.to_owned(), pair, listed, found })
+            Err(Error::Contradiction { path: path.to_owned(), pair, listed, found })
         };
         let shown = match explanation {
             ConvexExplanation::TooMany { .. } => {

@@ -1,17 +1,17 @@
 //! `vis`: the visibility of a Quake map.
 
 mod certify;
+mod error;
 mod outcome;
 mod saved;
 
-pub(crate) use outcome::{Clusters, format_name};
-
 use crate::Answer;
-use crate::error::CliError;
+use crate::error::InputError;
 use crate::input::{self, Kind};
 use crate::output;
 use crate::progress::{Bar, ShareBar};
 use certify::certify;
+use error::Error;
 use outcome::Outcome;
 use saved::Saved;
 use sightlines::bake::quake::StateKey;
@@ -36,7 +36,7 @@ pub(crate) struct VisArgs {
     #[arg(long, help_heading = "Method")]
     fast: bool,
     /// Number of threads; 0 for one for each core
-    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::args::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
     /// Go on where an earlier run with the same portals and options was stopped
     #[arg(long, help_heading = "Going on")]
@@ -58,10 +58,10 @@ pub(crate) struct VisArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
     let start = Instant::now();
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(Kind::Prt) {
-        return Err(CliError::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
+        return Err(Error::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
     }
     let prt_path = args.prt.clone().unwrap_or_else(|| args.map.with_extension("prt"));
     let out = args.output.as_ref().unwrap_or(&args.map);
@@ -70,11 +70,11 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
     output::check(&[&prt_path, &state_path], &[out])?;
     let bsp = read_bsp(&args.map)?;
     if args.prt.is_none() && !prt_path.exists() {
-        return Err(CliError::MapWithoutPortals(args.map.clone()));
+        return Err(InputError::MapWithoutPortals(args.map.clone()).into());
     }
     let (prt, text) = read_portals(&prt_path)?;
     let other_map =
-        |source| CliError::OtherMap { prt: prt_path.clone(), bsp: args.map.clone(), source: Box::new(source) };
+        |source| InputError::OtherMap { prt: prt_path.clone(), bsp: args.map.clone(), source: Box::new(source) };
     check_portals(&bsp, &prt).map_err(other_map)?;
 
     let key = StateKey::new(&text, args.fast);
@@ -108,17 +108,17 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
 }
 
 /// The portals, and the bytes of their file.
-fn read_portals(path: &Path) -> Result<(Prt, Vec<u8>), CliError> {
+fn read_portals(path: &Path) -> Result<(Prt, Vec<u8>), Error> {
     let text = std::fs::read(path).map_err(|error| ReadError::new(path, error))?;
     let prt = prt::parse_prt(&text).map_err(|error| ReadError::new(path, error))?;
     Ok((prt, text))
 }
 
 /// Puts the name of the file before what is wrong with it.
-fn explained(source: PrtBakeError, args: &VisArgs, prt: &Path, saved: &Saved) -> CliError {
-    let about = |path: &Path, source| CliError::BakePrt { path: path.to_owned(), source };
+fn explained(source: PrtBakeError, args: &VisArgs, prt: &Path, saved: &Saved) -> Error {
+    let about = |path: &Path, source| Error::BakePrt { path: path.to_owned(), source };
     match source {
-        PrtBakeError::State(source) => CliError::State { path: saved.path().to_owned(), source },
+        PrtBakeError::State(source) => Error::State { path: saved.path().to_owned(), source },
         PrtBakeError::Bsp(_) | PrtBakeError::Visibility(VisibilityError::Bsp(_) | VisibilityError::TooLarge { .. }) => {
             about(&args.map, source)
         }

@@ -1,6 +1,7 @@
 //! The state of a search in a file: how far it came, for a run that goes on after this one was stopped.
 
-use crate::error::CliError;
+use super::Error;
+use crate::error::InputError;
 use sightlines::bake::quake::{StateKey, state};
 use sightlines::cells::{CellGraph, Convex};
 use sightlines::formats::atomic_write;
@@ -36,21 +37,21 @@ impl Saved {
         key: StateKey,
         graph: &CellGraph<Convex>,
         resume: bool,
-    ) -> Result<(Self, Option<ConvexState>), CliError> {
-        let open = |source| CliError::Open { path: path.clone(), source };
+    ) -> Result<(Self, Option<ConvexState>), Error> {
+        let open = |source| InputError::Open { path: path.clone(), source };
         let state = match File::open(&path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-            Err(error) => return Err(open(error)),
+            Err(error) => return Err(open(error).into()),
             Ok(mut file) => {
                 let mut bytes = Vec::new();
                 file.by_ref().take(state::MAGIC.len() as u64).read_to_end(&mut bytes).map_err(open)?;
                 if !state::is_state(&bytes) {
-                    return Err(CliError::NotState(path));
+                    return Err(Error::NotState(path));
                 }
                 if resume {
                     file.read_to_end(&mut bytes).map_err(open)?;
                     let decoded = state::decode(&key, graph, &bytes);
-                    Some(decoded.map_err(|source| CliError::State { path: path.clone(), source })?)
+                    Some(decoded.map_err(|source| Error::State { path: path.clone(), source })?)
                 } else {
                     None
                 }

@@ -1,6 +1,6 @@
 //! What is drawn along a walk with the levels of a folder, and without.
 
-use crate::error::CliError;
+use super::Error;
 use crate::output::percent;
 use crate::tables::Cells;
 use serde::Serialize;
@@ -34,10 +34,10 @@ pub(super) struct Drawn {
 }
 
 /// Counts the triangles of each frame.
-pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[View]) -> Result<Drawn, CliError> {
+pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[View]) -> Result<Drawn, Error> {
     let path = folder.join(INDEX_NAME);
     let index = read_levels_index(&path)?;
-    let unlike = |source| CliError::LevelsOf { path: path.clone(), source };
+    let unlike = |source| Error::LevelsOf { path: path.clone(), source };
     let [table, _] = cells.counts();
     if index.cells.len() != table {
         return Err(unlike(UnlikeLevels::Count { levels: index.cells.len(), path: file.to_owned(), table }));

@@ -1,23 +1,21 @@
 //! `walk`: what each method leaves to draw along a walk, and what it costs.
 
+mod error;
 mod levels;
 mod measure;
 mod nesting;
 mod outcome;
 mod path;
 
-pub(crate) use levels::UnlikeLevels;
-pub(crate) use nesting::Found;
-pub(crate) use path::PathError;
-
 use crate::Answer;
-use crate::error::CliError;
 use crate::output;
 use crate::progress::Bar;
 use crate::tables::{self, Cells, Opened};
 use crate::view::{LensArgs, Methods};
+use error::Error;
 use measure::Walk;
 use outcome::Outcome;
+use path::PathError;
 use sightlines::eye_to_cell::{CellSource, Method, View};
 use sightlines::report::walk_svg;
 use sightlines::walkthrough::{Stand, WalkOptions, wander};
@@ -83,7 +81,7 @@ fn step(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer, CliError> {
+pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer, Error> {
     let outputs: Vec<&Path> = [&args.output, &args.csv].into_iter().flatten().map(PathBuf::as_path).collect();
     output::check(&[&args.table], &outputs)?;
     match tables::open(&args.table, args.budget)? {
@@ -92,7 +90,7 @@ pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer, CliErr
     }
 }
 
-fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Answer, CliError> {
+fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Answer, Error> {
     let file = &args.table;
     cells.refuse_without_places(file)?;
     let lens = args.lens.lens(cells, file)?;
@@ -106,7 +104,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
         }
     };
     if stands.is_empty() {
-        return Err(CliError::NoWay(file.clone()));
+        return Err(Error::NoWay(file.clone()));
     }
     let view = |(k, stand): (usize, &Stand)| {
         lens.view(*stand).map_err(|error| refused(args.path.as_deref().unwrap_or(file), k, error))
@@ -136,8 +134,8 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
 }
 
 /// A view that is none, in a frame.
-fn refused(path: &Path, frame: usize, source: sightlines::eye_to_cell::ViewError) -> CliError {
-    CliError::Path { path: path.to_owned(), source: PathError::View { frame, source } }
+fn refused(path: &Path, frame: usize, source: sightlines::eye_to_cell::ViewError) -> Error {
+    Error::Path { path: path.to_owned(), source: PathError::View { frame, source } }
 }
 
 /// A 400th of the diagonal of the box around all cells.

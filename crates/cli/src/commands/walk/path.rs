@@ -1,6 +1,7 @@
 //! Walks in files.
 
-use crate::error::CliError;
+use super::Error;
+use crate::error::InputError;
 use serde::Deserialize;
 use sightlines::eye_to_cell::ViewError;
 use sightlines::geometry::{CoordinateError, check_coordinate};
@@ -39,9 +40,9 @@ struct FrameText {
 }
 
 /// Reads a walk for a table with so many dimensions.
-pub(super) fn read(path: &Path, dimension: u8) -> Result<Vec<Stand>, CliError> {
-    let bytes = std::fs::read(path).map_err(|source| CliError::Open { path: path.to_owned(), source })?;
-    parse(&bytes, dimension).map_err(|source| CliError::Path { path: path.to_owned(), source })
+pub(super) fn read(path: &Path, dimension: u8) -> Result<Vec<Stand>, Error> {
+    let bytes = std::fs::read(path).map_err(|source| InputError::Open { path: path.to_owned(), source })?;
+    parse(&bytes, dimension).map_err(|source| Error::Path { path: path.to_owned(), source })
 }
 
 fn parse(bytes: &[u8], dimension: u8) -> Result<Vec<Stand>, PathError> {

@@ -94,6 +94,16 @@ impl BspFormat {
         }
     }
 
+    /// Its name, as users know it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bsp29 => "BSP 29",
+            Self::Bsp2 => "BSP2",
+            Self::Bsp2Psb => "2PSB",
+            Self::Quake2 => "IBSP 38",
+        }
+    }
+
     /// What its lumps hold, in the order of the directory.
     pub const fn lump_names(self) -> &'static [&'static str] {
         match self {

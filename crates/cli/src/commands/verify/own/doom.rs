@@ -1,7 +1,7 @@
 //! The REJECT lump of a Doom map.
 
 use super::{About, Own, Side, hidden_pairs};
-use crate::error::CliError;
+use crate::commands::verify::Error;
 use crate::input::{self, Kind};
 use sightlines::bake::{BakeError, TableOptions, table_of};
 use sightlines::formats::{DoomMap, RejectTable};
@@ -12,20 +12,19 @@ use std::path::Path;
 /// Reads the lump of a map. Its sectors are cut into cells along the lines of the scene, so that rays have places to begin at.
 ///
 /// Where lines disagree about the sector of a cell, it is hidden only if it is whichever of them is meant.
-pub(super) fn read(path: &Path, scene: &Path, name: Option<&str>) -> Result<Own, CliError> {
+pub(super) fn read(path: &Path, scene: &Path, name: Option<&str>) -> Result<Own, Error> {
     if input::kind_of(scene)? != Some(Kind::Wad) {
         let (path, scene) = (path.to_owned(), scene.to_owned());
-        return Err(CliError::OwnScene { path, scene, needed: "a WAD with the map" });
+        return Err(Error::OwnScene { path, scene, needed: "a WAD with the map" });
     }
     let [map, real] = [input::doom(path, name)?, input::doom(scene, name)?];
     let name = || Some(map.name().to_string());
     if map.n_sectors() != real.n_sectors() {
         let n_sectors = [map.n_sectors(), real.n_sectors()];
-        return Err(CliError::OwnSectors { path: path.to_owned(), scene: scene.to_owned(), n_sectors });
+        return Err(Error::OwnSectors { path: path.to_owned(), scene: scene.to_owned(), n_sectors });
     }
     let (reject, n_bytes) = reject_of(path, &map)?;
-    let failed =
-        |source: BakeError| CliError::Bake { path: scene.to_owned(), map: Some(real.name().to_string()), source };
+    let failed = |source: BakeError| Error::Bake { path: scene.to_owned(), map: Some(real.name().to_string()), source };
     let plan = real.plan().map_err(|error| failed(error.into()))?;
     let (graph, _) = subdivide(&plan).map_err(|error| failed(error.into()))?;
     let groups: Vec<&[u32]> = graph.cells().iter().map(|cell| cell.groups.as_slice()).collect();
@@ -64,15 +63,15 @@ pub(super) fn read(path: &Path, scene: &Path, name: Option<&str>) -> Result<Own,
     };
     let side_of = groups.iter().map(|list| list.first().copied()).collect();
     let table = table_of(&graph, rows, TableOptions::default());
-    let table = table.map_err(|source| CliError::Bake { path: path.to_owned(), map: name(), source: source.into() })?;
+    let table = table.map_err(|source| Error::Bake { path: path.to_owned(), map: name(), source: source.into() })?;
     let side = |(k, has_places)| Side { name: format!("sector {k}"), has_places };
     Ok(Own { table, about, side_of, sides: has_places.into_iter().enumerate().map(side).collect(), hidden })
 }
 
 /// The table that an engine reads from the lump, and the bytes of the lump; those past the end of the table do not count.
-fn reject_of(path: &Path, map: &DoomMap) -> Result<(RejectTable, usize), CliError> {
+fn reject_of(path: &Path, map: &DoomMap) -> Result<(RejectTable, usize), Error> {
     let name = map.name().to_string();
-    let lump = map.reject().filter(|lump| !lump.is_empty()).ok_or_else(|| CliError::NoOwn {
+    let lump = map.reject().filter(|lump| !lump.is_empty()).ok_or_else(|| Error::NoOwn {
         path: path.to_owned(),
         map: Some(name.clone()),
         what: "REJECT lump",
@@ -80,6 +79,6 @@ fn reject_of(path: &Path, map: &DoomMap) -> Result<(RejectTable, usize), CliErro
     })?;
     let needed = usize::try_from(RejectTable::byte_len(map.n_sectors())).unwrap_or(usize::MAX);
     let table = RejectTable::from_bytes(map.n_sectors(), lump.get(..needed).unwrap_or(lump));
-    let table = table.map_err(|source| CliError::OwnLength { path: path.to_owned(), map: name, source })?;
+    let table = table.map_err(|source| Error::OwnLength { path: path.to_owned(), map: name, source })?;
     Ok((table, lump.len()))
 }

@@ -4,7 +4,7 @@ mod doom;
 mod quake;
 
 use super::outcome::{Told, Violations};
-use crate::error::CliError;
+use crate::commands::verify::Error;
 use crate::input::{self, Kind};
 use crate::output::{bytes, count};
 use serde::Serialize;
@@ -79,8 +79,8 @@ impl fmt::Display for About {
 /// The own visibility of a map, if `path` is one; `scene` is what it will be checked against.
 ///
 /// # Errors
-/// [`CliError`] for a map without visibility of its own, for files that cannot be read, and for those that do not go together.
-pub(super) fn read(path: &Path, scene: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Option<Own>, CliError> {
+/// [`Error`] for a map without visibility of its own, for files that cannot be read, and for those that do not go together.
+pub(super) fn read(path: &Path, scene: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Option<Own>, Error> {
     match input::kind_of(path)? {
         Some(Kind::Bsp) => quake::read(path, scene, prt).map(Some),
         Some(Kind::Wad) => doom::read(path, scene, map).map(Some),

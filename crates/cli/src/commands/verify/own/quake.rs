@@ -1,7 +1,8 @@
 //! The visibility lump of a Quake map.
 
 use super::{About, Own, Side, hidden_pairs};
-use crate::error::CliError;
+use crate::commands::verify::Error;
+use crate::error::InputError;
 use crate::input::{self, Kind};
 use sightlines::bake::quake::{SOURCE_KEY, SOURCE_MAP};
 use sightlines::cells::{CellGraph, Convex};
@@ -13,16 +14,17 @@ use sightlines::pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, Table
 use std::path::{Path, PathBuf};
 
 /// Reads the lump of a map; of which cluster each leaf is, is in the portal file of the scene.
-pub(super) fn read(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<Own, CliError> {
+pub(super) fn read(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<Own, Error> {
     let bsp = read_bsp(path)?;
     let named = portals_of(path, scene, prt)?;
     let portals = read_prt(&named)?;
-    let other_map = |source| CliError::OtherMap { prt: named.clone(), bsp: path.to_owned(), source: Box::new(source) };
+    let other_map =
+        |source| InputError::OtherMap { prt: named.clone(), bsp: path.to_owned(), source: Box::new(source) };
     check_portals(&bsp, &portals).map_err(other_map)?;
     let leafs = portals.leaf_clusters();
     let seen = read_visibility(&bsp, &leafs)
-        .map_err(|source| CliError::OwnVisibility { path: path.to_owned(), source: Box::new(source) })?
-        .ok_or_else(|| CliError::NoOwn {
+        .map_err(|source| Error::OwnVisibility { path: path.to_owned(), source: Box::new(source) })?
+        .ok_or_else(|| Error::NoOwn {
             path: path.to_owned(),
             map: None,
             what: "visibility lump",
@@ -63,15 +65,15 @@ pub(super) fn read(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<Own,
 }
 
 /// The portal file of the scene, which may be one itself.
-fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<PathBuf, CliError> {
+fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<PathBuf, Error> {
     match (input::kind_of(scene)?, prt) {
         (Some(Kind::Prt), _) => Ok(scene.to_owned()),
         (Some(Kind::Bsp), Some(prt)) => Ok(prt.to_owned()),
         (Some(Kind::Bsp), None) => {
             let beside = scene.with_extension("prt");
-            if beside.exists() { Ok(beside) } else { Err(CliError::MapWithoutPortals(scene.to_owned())) }
+            if beside.exists() { Ok(beside) } else { Err(InputError::MapWithoutPortals(scene.to_owned()).into()) }
         }
-        _ => Err(CliError::OwnScene {
+        _ => Err(Error::OwnScene {
             path: path.to_owned(),
             scene: scene.to_owned(),
             needed: "a Quake map or its portal file",

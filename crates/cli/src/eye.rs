@@ -1,9 +1,16 @@
 //! The eye and its picture as arguments.
 
-use super::RenderError;
 use crate::view::Up;
 use sightlines::geometry::{Point3, check_coordinate};
 use sightlines::visible_surface::{Camera, CameraError};
+
+/// Why an eye sees nothing.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum EyeError {
+    /// An eye that sees nothing.
+    #[error("{option}: {source}")]
+    Camera { option: &'static str, source: CameraError },
+}
 
 /// Where the eye is, where it looks, and through what.
 #[derive(Debug, clap::Args)]
@@ -38,7 +45,7 @@ impl EyeArgs {
     }
 
     /// The camera.
-    pub(crate) fn camera(&self, up: Point3) -> Result<Camera, RenderError> {
+    pub(crate) fn camera(&self, up: Point3) -> Result<Camera, EyeError> {
         let camera = Camera::look_at(self.eye, self.look_at, up, self.fov, self.size);
         camera.and_then(|camera| camera.with_depths(self.near, self.far)).map_err(|source| {
             let option = match source {
@@ -49,7 +56,7 @@ impl EyeArgs {
                 // The one that is left.
                 _ => "--near, --far",
             };
-            RenderError::Camera { option, source }
+            EyeError::Camera { option, source }
         })
     }
 }

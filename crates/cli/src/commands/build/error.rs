@@ -1,0 +1,49 @@
+//! Why `build` fails.
+
+use crate::error::InputError;
+use crate::error::OutputError;
+use crate::error::of_map;
+use crate::hiding::BuffersError;
+use sightlines::bake::BakeError;
+use sightlines::bake::CertifyError;
+use sightlines::bake::PrtBakeError;
+use sightlines::bake::RegionBakeError;
+use sightlines::bake::StabBakeError;
+use sightlines::bake::region::GridError;
+use sightlines::formats::ReadError;
+use std::path::PathBuf;
+
+/// Why `build` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// An input that is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A WAD, a plan or a scene cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// Buffers too large to be kept.
+    #[error(transparent)]
+    Buffers(#[from] BuffersError),
+    /// A plan or a scene cannot be baked.
+    #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
+    Bake { path: PathBuf, map: Option<String>, source: BakeError },
+    /// A scene cannot be baked by what is hidden from its cells.
+    #[error("{}: {source}", path.display())]
+    BakeRegion { path: PathBuf, source: RegionBakeError },
+    /// There is no such grid of cells.
+    #[error("{}: {source}", path.display())]
+    Grid { path: PathBuf, source: GridError },
+    /// A portal file, or the map that it is of, cannot be baked.
+    #[error("{}: {source}", path.display())]
+    BakePrt { path: PathBuf, source: PrtBakeError },
+    /// A table cannot have proofs.
+    #[error("{}: {source}", path.display())]
+    Certify { path: PathBuf, source: CertifyError },
+    /// A table cannot have stab trees.
+    #[error("{}: {source}", path.display())]
+    Stab { path: PathBuf, source: StabBakeError },
+}

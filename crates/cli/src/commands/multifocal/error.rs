@@ -1,0 +1,41 @@
+//! Why `multifocal` fails.
+
+use crate::error::InputError;
+use crate::error::OutputError;
+use crate::picture::PictureError;
+use sightlines::multifocal::BackendError;
+use sightlines::multifocal::JobError;
+use sightlines::multifocal::PlaneError;
+use sightlines::multifocal::VolumeError;
+use std::path::PathBuf;
+
+/// Why `multifocal` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// An input that is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A picture that cannot be drawn or written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// A box that is no volume of viewpoints.
+    #[error("--volume: {0}")]
+    Volume(#[from] VolumeError),
+    /// A plane on which no buffer can be.
+    #[error("--plane {plane}: {source}")]
+    Plane { plane: String, source: PlaneError },
+    /// A plane with eyes on both sides, or on it.
+    #[error(
+        "--plane {plane}: the plane goes through the view volume, which reaches from {axis}={low} to {axis}={high}"
+    )]
+    PlaneInVolume { plane: String, axis: &'static str, low: f64, high: f64 },
+    /// A plane and a volume that do not go together.
+    #[error("--plane {plane}: {source}")]
+    Job { plane: String, source: JobError },
+    /// Nobody could fill the buffer.
+    #[error("{}: {source}", path.display())]
+    Backend { path: PathBuf, source: BackendError },
+}

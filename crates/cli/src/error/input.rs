@@ -1,0 +1,90 @@
+//! What can be wrong with a file that a command reads.
+
+use sightlines::cells::PlanError;
+use sightlines::formats::ReadError;
+use sightlines::formats::quake::VisibilityError;
+use sightlines::packed::PackedError;
+use sightlines::pvs::DecodeError;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum InputError {
+    /// A WAD, a plan or a scene cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A file cannot be opened or read.
+    #[error("{}: {source}", path.display())]
+    Open { path: PathBuf, source: io::Error },
+    /// A file is no sound table.
+    #[error("{}: {source}", path.display())]
+    Table { path: PathBuf, source: DecodeError },
+    /// A file is no sound packed table.
+    #[error("{}: {source}", path.display())]
+    Packed { path: PathBuf, source: PackedError },
+    /// A packed table where a plain one is needed.
+    #[error("{}: the table is packed; `sightlines unpack` makes it a plain one, which this command takes", path.display())]
+    IsPacked { path: PathBuf },
+    /// A file is none of the kinds that the command takes.
+    #[error("{}: neither {expected}", path.display())]
+    Kind { path: PathBuf, expected: &'static str },
+    /// A WAD without maps.
+    #[error("{}: there are no maps in the file", .0.display())]
+    NoMaps(PathBuf),
+    /// A WAD with several maps, and none was named.
+    #[error("{}: there are {} maps in the file; choose one with --map: {}", path.display(), names.len(), list(names))]
+    WhichMap { path: PathBuf, names: Vec<String> },
+    /// A map that is not in the WAD.
+    #[error("{}: there is no map {name} in the file; there are {}", path.display(), list(names))]
+    NoSuchMap { path: PathBuf, name: String, names: Vec<String> },
+    /// `--map` for something without maps.
+    #[error("{}: --map is for WADs, and this is none", .0.display())]
+    MapOfPlan(PathBuf),
+    /// An option that means nothing for what the file holds.
+    #[error("{}: {option} is for {meant}, and this is {found}", path.display())]
+    Option { path: PathBuf, option: &'static str, meant: &'static str, found: &'static str },
+    /// A map is no sound plan.
+    #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
+    Plan { path: PathBuf, map: Option<String>, source: PlanError },
+    /// What a table is built from, where the table is needed.
+    #[error("{}: is {found}, not a table: build one first: sightlines build {}{} -o {}", path.display(), path.display(),
+            if *found == SOME_WAD { " --map NAME" } else { "" }, path.with_extension("pvs").display())]
+    NotTable { path: PathBuf, found: &'static str },
+    /// A table that does not know where its cells are.
+    #[error("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())]
+    NoPlaces { path: PathBuf, what: &'static str },
+    /// A table whose cells and portals are not there, so that no lines can be sought.
+    #[error("{}: the table has no polygons and portals to look for lines in", .0.display())]
+    Stripped(PathBuf),
+    /// A scene whose triangles were moved, where something is to hide.
+    #[error("{}: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the original \
+             that it was made from", .0.display())]
+    NoOccluder(PathBuf),
+    /// A Quake map where its portals are needed, without a portal file beside it.
+    #[error("{}: a map does not have its portals, and there is no {} beside it: qbsp writes that file with the map, unless the map leaks; \
+             one elsewhere is named with --prt FILE.prt", .0.display(), name_with(.0, "prt"))]
+    MapWithoutPortals(PathBuf),
+    /// A portal file of another map.
+    #[error("{}: does not go with {}: {source}", prt.display(), bsp.display())]
+    OtherMap { prt: PathBuf, bsp: PathBuf, source: Box<VisibilityError> },
+}
+
+/// Names the map of a file, if it has one.
+pub(crate) fn of_map(map: Option<&String>) -> String {
+    map.map_or(String::new(), |name| format!("map {name}: "))
+}
+
+/// A WAD, as [`InputError::NotTable`] calls it.
+pub(crate) const SOME_WAD: &str = "a WAD";
+
+/// The name of a file, without its folder, with another ending.
+fn name_with(path: &Path, ending: &str) -> String {
+    path.with_extension(ending).file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn list(names: &[String]) -> String {
+    const MOST: usize = 40;
+    let shown = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > MOST { format!("{shown} and {} more", names.len() - MOST) } else { shown }
+}

@@ -1,0 +1,7 @@
+//! Errors that several commands share. What only one command can meet is in its own module.
+
+mod input;
+mod output;
+
+pub(crate) use input::{InputError, SOME_WAD, of_map};
+pub(crate) use output::{OutputError, StdoutError};

@@ -1,0 +1,118 @@
+//! The lines about tables and scenes that several commands print.
+
+use crate::output::{bytes, count, percent, seconds};
+use serde::Serialize;
+use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
+use sightlines::pvs::Table;
+use sightlines::report::Summary;
+use std::fmt;
+use std::time::Duration;
+
+/// Cells, portals, visible pairs, and what has to be drawn; a share of the floor that is no number is not known.
+pub(crate) struct Facts<'a>(pub(crate) &'a Summary);
+
+impl fmt::Display for Facts<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let s = self.0;
+        let groups = if s.n_groups > 0 { format!(", in {}", count(s.n_groups as u64, "group")) } else { String::new() };
+        let names = if s.has_cell_names { ", with names" } else { "" };
+        writeln!(f, "cells          {}{groups}{names}", s.n_cells)?;
+        writeln!(f, "portals        {}", s.n_portals)?;
+        if s.n_objects > 0 {
+            writeln!(f, "objects        {}", s.n_objects)?;
+        }
+        let all = s.n_cells as u64 * (s.n_cells as u64).saturating_sub(1) / 2;
+        writeln!(f, "visible pairs  {} of {all}", s.n_visible_pairs)?;
+        let [cells, floor] = [s.mean_cell_share, s.mean_floor_share].map(percent);
+        if s.mean_floor_share.is_nan() {
+            return writeln!(f, "to draw        {cells} of the cells on average");
+        }
+        let what = if s.dimension == 2 { "floor" } else { "volume" };
+        writeln!(f, "to draw        {floor} of the {what} on average ({cells} of the cells)")
+    }
+}
+
+/// Times to cut and to see.
+pub(crate) fn times(cut_seconds: f64, what: &str, see_seconds: f64) -> String {
+    let [cut, see] = [cut_seconds, see_seconds].map(|s| seconds(Duration::from_secs_f64(s)));
+    format!("{cut} to cut the {what}, {see} to find out who sees whom")
+}
+
+/// What the stab trees of a table are.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub(crate) struct StabFacts {
+    /// Sequences of portals, of all cells.
+    n_sequences: u64,
+    /// Nodes, each for all sequences that go on alike.
+    n_stab_nodes: usize,
+    n_stab_edges: u64,
+    /// What the table would be smaller without.
+    n_stab_bytes: usize,
+}
+
+impl StabFacts {
+    /// Of a table that has stab trees. Writes the table to memory twice.
+    pub(crate) fn of(table: &Table) -> Option<Self> {
+        let trees = table.stab()?;
+        let mut parts = table.parts().clone();
+        parts.stab = None;
+        let without = Table::new(parts).map_or(0, |table| table.to_bytes().len());
+        Some(Self {
+            n_sequences: u64::try_from(trees.n_sequences()).unwrap_or(u64::MAX),
+            n_stab_nodes: trees.n_nodes(),
+            n_stab_edges: trees.n_edges(),
+            n_stab_bytes: table.to_bytes().len().saturating_sub(without),
+        })
+    }
+}
+
+impl fmt::Display for StabFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [nodes, edges] = [self.n_stab_nodes as u64, self.n_stab_edges];
+        let each = self.n_stab_bytes as f64 / self.n_sequences.max(1) as f64;
+        writeln!(f, "stab trees     {} sequences in {nodes} nodes with {edges} edges", self.n_sequences)?;
+        writeln!(f, "               {}, {each:.3} bytes a sequence", bytes(self.n_stab_bytes as u64))
+    }
+}
+
+/// The name of an axis.
+pub(crate) fn axis(axis: Axis) -> &'static str {
+    match axis {
+        Axis::X => "x",
+        Axis::Y => "y",
+        Axis::Z => "z",
+    }
+}
+
+/// What a file says about its scene, for people: format, axis, unit.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Stated {
+    format: &'static str,
+    up: &'static str,
+    up_is_assumed: bool,
+    /// Null if the file does not say.
+    unit: Option<&'static str>,
+}
+
+impl Stated {
+    pub(crate) fn new(info: &SceneInfo) -> Self {
+        let format = match info.format {
+            SceneFormat::Gltf => "glTF",
+            SceneFormat::Obj => "OBJ",
+            _ => "unknown",
+        };
+        let unit = (info.unit == LengthUnit::Metre).then_some("metre");
+        Self { format, up: axis(info.up), up_is_assumed: info.up_is_assumed, unit }
+    }
+}
+
+impl fmt::Display for Stated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let assumed = if self.up_is_assumed { " (assumed)" } else { "" };
+        write!(f, "{} in 3D, {} up{assumed}, ", self.format, self.up)?;
+        match self.unit {
+            Some(unit) => write!(f, "in {unit}s"),
+            None => f.write_str("unit unknown"),
+        }
+    }
+}

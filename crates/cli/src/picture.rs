@@ -1,0 +1,87 @@
+//! Pictures of tables: of which kind, and how they are written.
+
+use crate::error::OutputError;
+use crate::output;
+use sightlines::pvs::{CellId, Table};
+use sightlines::report::DrawError;
+use sightlines::report::PngError;
+use sightlines::report::{DrawOptions, Up, plan_svg, svg_to_png};
+use std::path::{Path, PathBuf};
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum PictureError {
+    /// A result that cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A picture whose name does not say which kind it is.
+    #[error("{}: the name of a picture ends in .svg or .png", .0.display())]
+    PictureKind(PathBuf),
+    /// A picture that is always PNG, and is not called so.
+    #[error("{}: the picture is written as PNG; give a name that ends in .png", .0.display())]
+    NotPng(PathBuf),
+    /// A picture cannot be drawn.
+    #[error("{}: {source}", path.display())]
+    Draw { path: PathBuf, source: DrawError },
+    /// A picture cannot be rendered.
+    #[error("{}: {source}", path.display())]
+    Png { path: PathBuf, source: PngError },
+}
+
+/// The kinds of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PictureKind {
+    Svg,
+    Png,
+}
+
+impl PictureKind {
+    /// Tells the kind of a picture by the end of its name.
+    pub(crate) fn of(path: &Path) -> Result<Self, PictureError> {
+        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(PictureError::PictureKind(path.to_owned())),
+        }
+    }
+}
+
+/// The picture of a plan's table that came from `source`.
+pub(crate) fn draw_plan(source: &Path, table: &Table, options: &DrawOptions) -> Result<String, PictureError> {
+    plan_svg(table, options).map_err(|error| PictureError::Draw { path: source.to_owned(), source: error })
+}
+
+/// Writes a picture in the kind that the file's name says.
+pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<(), PictureError> {
+    match PictureKind::of(out)? {
+        PictureKind::Svg => Ok(output::save(out, svg.as_bytes())?),
+        PictureKind::Png => {
+            let png = svg_to_png(svg).map_err(|error| PictureError::Png { path: out.to_owned(), source: error })?;
+            Ok(output::save(out, &png)?)
+        }
+    }
+}
+
+/// Which way is up in a table: what it says, or y.
+pub(crate) fn up_of(table: &Table) -> Up {
+    match table.info_value("up") {
+        Some("x") => Up::X,
+        Some("z") => Up::Z,
+        _ => Up::Y,
+    }
+}
+
+/// The height of the middle of a cell.
+pub(crate) fn middle(table: &Table, id: CellId, up: Up) -> f64 {
+    let cell = &table.cells()[id.idx()];
+    0.5 * cell.min[up.axis()] + 0.5 * cell.max[up.axis()]
+}
+
+/// Refuses a name that does not say that the picture is PNG.
+pub(crate) fn check_png_name(path: &Path) -> Result<(), PictureError> {
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        Ok(())
+    } else {
+        Err(PictureError::NotPng(path.to_owned()))
+    }
+}

@@ -1,0 +1,177 @@
+//! Simplifying scenes: how, as arguments; what is read, and what is written.
+
+use crate::error::InputError;
+use crate::glb::GlbError;
+use crate::hiding::BuffersError;
+use crate::hiding::{BufferArgs, Hiding, Maker};
+use crate::input;
+use crate::numbers::share;
+use sightlines::cells::{Scene, SceneObject};
+use sightlines::formats::ReadError;
+use sightlines::formats::scene::RewriteError;
+use sightlines::formats::scene::{self, read_scene_with_source, write_simplified_glb};
+use sightlines::formats::{GltfSource, SceneFile};
+use sightlines::simplify::SimplifyError;
+use sightlines::simplify::{Simplified, SimplifyOptions};
+use std::path::{Path, PathBuf};
+
+/// Why a scene was not simplified.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SimplificationError {
+    /// An input that is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A WAD, a plan or a scene cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A scene that cannot be written as GLB.
+    #[error(transparent)]
+    Glb(#[from] GlbError),
+    /// Buffers too large to be kept.
+    #[error(transparent)]
+    Buffers(#[from] BuffersError),
+    /// A scene that cannot be written again.
+    #[error("{}: {source}", path.display())]
+    Rewrite { path: PathBuf, source: RewriteError },
+    /// A scene that cannot be simplified.
+    #[error("{}: {source}", path.display())]
+    Simplify { path: PathBuf, source: SimplifyError },
+}
+
+/// How to simplify, as arguments.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct HowArgs {
+    /// The share of the sphere of directions in which another face may be seen, 0 to 1; 0 takes away only what is hidden
+    #[arg(long, help_heading = "Method", value_name = "SHARE", default_value_t = 0.0, value_parser = share, allow_hyphen_values = true)]
+    budget: f64,
+    /// The share of the budget that is kept for moving corners instead of leaving triangles out, 0 to 1
+    #[arg(long, help_heading = "Method", value_name = "SHARE", default_value_t = SimplifyOptions::default().collapse)]
+    #[arg(value_parser = share, allow_hyphen_values = true)]
+    collapse: f64,
+    /// Also merge triangles of an object that lie in one plane, exactly: no surface changes; what is interpolated over triangles, such as texture
+    /// coordinates, stays the same only where it is linear
+    #[arg(long, help_heading = "Method")]
+    flat: bool,
+    /// Take scenes with mirrors as if there were none; else they are refused, as mirrors show what is hidden
+    #[arg(long, help_heading = "Method")]
+    ignore_mirrors: bool,
+    /// What proves triangles hidden, besides a table
+    #[arg(long, help_heading = "Method", value_name = "HOW", value_enum, default_value_t = Method::Multifocal)]
+    method: Method,
+    #[command(flatten)]
+    buffers: BufferArgs,
+    /// Number of threads; 0 for one for each core
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
+    pub(crate) threads: usize,
+}
+
+/// Who says what is hidden.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Method {
+    /// Any surfaces, by buffers and sheets
+    Multifocal,
+    /// One flat piece that cuts the whole shaft between the eyes and a triangle
+    Shafts,
+    /// Voxels inside of closed surfaces, extended to blockers
+    Voxels,
+    /// Nobody but the table
+    None,
+}
+
+impl HowArgs {
+    /// The share that is allowed.
+    pub(crate) fn budget(&self) -> f64 {
+        self.budget
+    }
+
+    /// The name of the method, and what it is asked with, for a scene that came from `path`.
+    pub(crate) fn maker(
+        &self,
+        path: &Path,
+        scene: &Scene,
+    ) -> Result<(&'static str, Option<Maker>), SimplificationError> {
+        self.buffers.check_memory(path)?;
+        let (name, hiding) = match self.method {
+            Method::Multifocal => ("multifocal", Some(Hiding::Buffers)),
+            Method::Shafts => ("shafts", Some(Hiding::Shafts)),
+            Method::Voxels => ("voxels", Some(Hiding::Voxels)),
+            Method::None => ("none", None),
+        };
+        Ok((name, hiding.map(|hiding| Maker::new(hiding, scene, &self.buffers))))
+    }
+
+    /// The options, for views in at least so many parts.
+    pub(crate) fn options(&self, n_parts: usize) -> SimplifyOptions {
+        let standard = SimplifyOptions::default();
+        let Self { budget, collapse, flat, ignore_mirrors, threads, .. } = *self;
+        SimplifyOptions { budget, collapse, flat, ignore_mirrors, threads, n_parts, ..standard }
+    }
+}
+
+/// A scene, with what it takes to write its file again.
+#[derive(Debug)]
+pub(crate) struct ReadScene {
+    pub(crate) file: SceneFile,
+    /// None for an OBJ.
+    pub(crate) source: Option<GltfSource>,
+}
+
+/// Reads a scene that is to be simplified. One of which triangles were moved is refused: its surfaces hide each other.
+pub(crate) fn read(path: &Path) -> Result<ReadScene, SimplificationError> {
+    input::check_is_scene(path)?;
+    let (file, source) = read_scene_with_source(path)?;
+    input::check_occluder(path, &file)?;
+    if source.is_none() {
+        tracing::warn!("{}: of an OBJ, triangles and names are kept; materials are not", path.display());
+    }
+    Ok(ReadScene { file, source })
+}
+
+/// What is left of a scene, as GLB.
+pub(crate) fn written(
+    path: &Path,
+    scene: &Scene,
+    source: Option<&GltfSource>,
+    simplified: &Simplified,
+) -> Result<Vec<u8>, SimplificationError> {
+    let said = scene::Simplified { occluder: simplified.is_part_of_the_original() };
+    match source {
+        Some(source) => {
+            let change = |(k, list): (usize, &Vec<[u32; 3]>)| simplified.changes(scene, k).then(|| list.clone());
+            let changes: Vec<_> = simplified.triangles.iter().enumerate().map(change).collect();
+            source
+                .rewrite(&changes, Some(said))
+                .map_err(|source| SimplificationError::Rewrite { path: path.to_owned(), source })
+        }
+        None => {
+            let left = left(scene, simplified);
+            let failed = |source| GlbError::Glb { path: path.to_owned(), source };
+            Ok(write_simplified_glb(&left, said).map_err(failed)?)
+        }
+    }
+}
+
+/// The objects of which something is left, with the vertices that are used.
+fn left(scene: &Scene, simplified: &Simplified) -> Scene {
+    let is_mirror = |k: usize| scene.mirrors().iter().any(|&mirror| mirror as usize == k);
+    let (mut objects, mut mirrors) = (Vec::new(), Vec::new());
+    for (k, (o, triangles)) in scene.objects().iter().zip(&simplified.triangles).enumerate() {
+        if triangles.is_empty() {
+            continue;
+        }
+        let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        let place = |v: u32| used.partition_point(|&u| u < v) as u32;
+        if is_mirror(k) {
+            mirrors.push(objects.len() as u32);
+        }
+        objects.push(SceneObject {
+            name: o.name.clone(),
+            vertices: used.iter().map(|&v| o.vertices[v as usize]).collect(),
+            triangles: triangles.iter().map(|t| t.map(place)).collect(),
+        });
+    }
+    let scene = Scene::new(objects).expect("coordinates and indices are those of a scene");
+    scene.with_mirrors(mirrors).expect("mirrors are objects")
+}
