@@ -6,6 +6,9 @@
 //! Does not know: cells' graphs, searching, tables, files.
 //! Invariants: decisions are signs of exact numbers; no step of a proof rests on a later one; what is read from bytes
 //! never takes more memory than a few times its size, and a few bits for each pair of cells of the network it is checked against.
+//!
+//! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
+//! the errors of what makes them.
 
 mod bits;
 mod bytes;

@@ -7,6 +7,9 @@
 //! Does not know: how the real code works; an oracle that shares a method with it proves nothing.
 //! Invariants: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
 //! space are traced in doubles, and what is sampled with them stands clear of rounding.
+//!
+//! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
+//! the errors of what makes them.
 
 pub mod axial;
 mod bvh;

@@ -2,9 +2,8 @@
 
 use crate::grid::PointGrid;
 use crate::noding::{Cut, Piece, sweeps};
-use num_bigint::BigInt;
-use num_rational::Ratio;
-use num_traits::{ToPrimitive, Zero};
+use num_traits::ToPrimitive;
+use sightlines_exact::{BigInt, BigRational, Grid};
 use sightlines_geometry::{Point2, check_coordinate, orient2d};
 
 /// Bound on the distance between a crossing and the point that stands for it: 2^-49 of the larger
@@ -135,17 +134,17 @@ fn by_integers(&[ax, ay, bx, by, cx, cy, dx, dy]: &[i128; 8]) -> (f64, f64) {
 
 /// The same in integers of any size, as multiples of a common power of two.
 fn by_fractions(l: &Piece, m: &Piece) -> (f64, f64) {
-    let fraction = |x: f64| Ratio::<BigInt>::from_float(x).unwrap_or_else(Ratio::zero);
-    let all = [l.a.x, l.a.y, l.b.x, l.b.y, m.a.x, m.a.y, m.b.x, m.b.y].map(fraction);
-    // Denominators are powers of two: the largest is a multiple of all.
-    let unit = all.iter().map(|r| r.denom().clone()).max().unwrap_or_else(|| 1.into());
-    let [ax, ay, bx, by, cx, cy, dx, dy] = all.map(|r| r.numer() * (&unit / r.denom()));
+    let all = [l.a.x, l.a.y, l.b.x, l.b.y, m.a.x, m.a.y, m.b.x, m.b.y];
+    // With 1 among the numbers, the unit of the grid is 1 or a fraction of it.
+    let grid = Grid::of(all.into_iter().chain([1.0])).expect("coordinates of a plan are finite");
+    let unit = grid.integer(1.0);
+    let [ax, ay, bx, by, cx, cy, dx, dy] = all.map(|x| grid.integer(x));
     let (ux, uy, vx, vy) = (&bx - &ax, &by - &ay, &dx - &cx, &dy - &cy);
     let denominator = &ux * &vy - &uy * &vx;
     let numerator = (&cx - &ax) * &vy - (&cy - &ay) * &vx;
     let at = |from: &BigInt, along: &BigInt| {
         let (n, d) = (from * &denominator + &numerator * along, &denominator * &unit);
-        Ratio::new_raw(n, d).to_f64().unwrap_or(0.0)
+        BigRational::new_raw(n, d).to_f64().unwrap_or(0.0)
     };
     (at(&ax, &ux), at(&ay, &uy))
 }

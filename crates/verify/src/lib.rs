@@ -7,6 +7,9 @@
 //! Invariants: a violation that names a segment is proven, by exact signs or by margins that are wider than
 //! what the scene leaves open; so a true table has none. The same table, scene and options give the same findings, with any
 //! number of threads. Rays that find nothing prove nothing.
+//!
+//! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
+//! the errors of what makes them.
 
 pub mod exact;
 mod findings;

@@ -15,7 +15,6 @@ pub mod chosen;
 pub mod compare;
 pub mod counters;
 pub mod cull;
-mod exact;
 pub mod faces;
 pub mod fragment;
 pub mod hierarchical;

@@ -1,9 +1,9 @@
 //! Planes that cut: those of faces, and those across an axis. Where points lie, exactly.
 
 use crate::camera::{TINY_ERROR, U};
-use crate::exact::{self, Dyadic, Dyadic3};
 use crate::faces::Faces;
 use crate::vector::{cross, cross_size, dot, dot_size, sub};
+use sightlines_exact::{Dyadic, vector as exact};
 use sightlines_geometry::{Point3, orient3d};
 
 /// A plane through what was given: exact, whatever has been cut by it.
@@ -83,7 +83,7 @@ impl Plane {
                 if orient3d(a, b, c, p) == 0.0 {
                     return Approx { value: 0.0, error: 0.0 };
                 }
-                let value = self.exact_at(faces, p).rounded();
+                let value = self.exact_at(faces, p).to_f64();
                 Approx { value, error: 2.0 * U * value.abs() }
             }
         }
@@ -94,20 +94,17 @@ impl Plane {
         match *self {
             Self::Axis(k, at) => &Dyadic::new(p[k as usize]) - &Dyadic::new(at),
             Self::Face(face) => {
-                let a = exact::point(faces.of(face)[0]);
-                exact::dot(&self.exact_normal(faces), &exact::sub(&exact::point(p), &a))
+                let a = Dyadic::vector(faces.of(face)[0]);
+                exact::dot(&self.exact_normal(faces), &exact::sub(&Dyadic::vector(p), &a))
             }
         }
     }
 
     /// The gradient of the plane's function, without rounding.
-    pub(crate) fn exact_normal(&self, faces: &Faces) -> Dyadic3 {
+    pub(crate) fn exact_normal(&self, faces: &Faces) -> [Dyadic; 3] {
         match *self {
             Self::Axis(k, _) => std::array::from_fn(|i| Dyadic::new(if i == usize::from(k) { 1.0 } else { 0.0 })),
-            Self::Face(face) => {
-                let [a, b, c] = faces.of(face).map(exact::point);
-                exact::cross(&exact::sub(&b, &a), &exact::sub(&c, &a))
-            }
+            Self::Face(face) => exact::normal(&faces.of(face).map(Dyadic::vector)),
         }
     }
 

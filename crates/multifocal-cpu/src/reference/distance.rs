@@ -1,25 +1,26 @@
 //! Exact distances between convex polygons in space.
 
-use super::exact::{Fraction, Whole3, cross, difference, dot};
-use num_bigint::{BigInt, Sign};
+use super::grid::Integer3;
 use num_traits::{One, Zero};
+use sightlines_exact::vector::{cross, dot};
+use sightlines_exact::{BigInt, Fraction, Sign};
 use std::cmp::Ordering;
 
 /// A point with rational coordinates: `x / w`, `w` positive.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Rational3 {
-    pub(super) x: Whole3,
+    pub(super) x: Integer3,
     pub(super) w: BigInt,
 }
 
-impl From<Whole3> for Rational3 {
-    fn from(x: Whole3) -> Self {
+impl From<Integer3> for Rational3 {
+    fn from(x: Integer3) -> Self {
         Self { x, w: BigInt::one() }
     }
 }
 
 /// `w_a w_b (a - b)`
-fn towards(a: &Rational3, b: &Rational3) -> Whole3 {
+fn towards(a: &Rational3, b: &Rational3) -> Integer3 {
     [0, 1, 2].map(|k| &a.x[k] * &b.w - &b.x[k] * &a.w)
 }
 
@@ -56,20 +57,20 @@ fn edges(polygon: &[Rational3]) -> impl Iterator<Item = [&Rational3; 2]> {
 }
 
 /// None for what has no area.
-fn normal(polygon: &[Rational3]) -> Option<Whole3> {
+fn normal(polygon: &[Rational3]) -> Option<Integer3> {
     let [p, q, r] = polygon.first_chunk()?;
     let n = cross(&towards(q, p), &towards(r, p));
     n.iter().any(|x| !x.is_zero()).then_some(n)
 }
 
 /// If the foot of the perpendicular is inside.
-fn above_polygon(p: &Rational3, polygon: &[Rational3], n: &Whole3) -> Option<Fraction> {
+fn above_polygon(p: &Rational3, polygon: &[Rational3], n: &Integer3) -> Option<Fraction> {
     let inside = edges(polygon).all(|[q, r]| dot(&cross(&towards(r, q), &towards(p, q)), n).sign() != Sign::Minus);
     inside.then(|| {
         let q = &polygon[0];
         let along = dot(n, &towards(p, q));
         let scale = &p.w * &q.w;
-        Fraction { num: &along * &along, den: dot(n, n) * &scale * &scale }
+        Fraction::new(&along * &along, dot(n, n) * &scale * &scale)
     })
 }
 
@@ -84,14 +85,14 @@ fn to_segment(p: &Rational3, [q, r]: [&Rational3; 2]) -> Fraction {
     } else {
         let across = cross(&d, &u);
         let scale = &p.w * &q.w;
-        Fraction { num: dot(&across, &across), den: length * &scale * &scale }
+        Fraction::new(dot(&across, &across), length * &scale * &scale)
     }
 }
 
 fn to_point(p: &Rational3, q: &Rational3) -> Fraction {
     let d = towards(p, q);
     let scale = &p.w * &q.w;
-    Fraction { num: dot(&d, &d), den: &scale * &scale }
+    Fraction::new(dot(&d, &d), &scale * &scale)
 }
 
 /// If the lines through both have their nearest points within both segments.
@@ -107,12 +108,12 @@ fn between_insides([p, q]: [&Rational3; 2], [r, s]: [&Rational3; 2]) -> Option<F
     meets.then(|| {
         let along = dot(&n, &d);
         let scale = &p.w * &r.w;
-        Fraction { num: &along * &along, den: nn * &scale * &scale }
+        Fraction::new(&along * &along, nn * &scale * &scale)
     })
 }
 
 /// The convex hull of points of one plane, with normal `n`; corners only.
-pub(super) fn hull(mut points: Vec<Rational3>, n: &Whole3) -> Vec<Rational3> {
+pub(super) fn hull(mut points: Vec<Rational3>, n: &Integer3) -> Vec<Rational3> {
     let drop = (0..3).find(|&k| !n[k].is_zero()).expect("a normal is not zero");
     let (i, j) = ((drop + 1) % 3, (drop + 2) % 3);
     let by = |a: &Rational3, b: &Rational3, k: usize| (&a.x[k] * &b.w).cmp(&(&b.x[k] * &a.w));
@@ -143,12 +144,7 @@ pub(super) fn hull(mut points: Vec<Rational3>, n: &Whole3) -> Vec<Rational3> {
     around
 }
 
-/// A polygon with whole corners.
-pub(super) fn polygon<'a>(corners: impl IntoIterator<Item = &'a Whole3>) -> Vec<Rational3> {
+/// A polygon with integer corners.
+pub(super) fn polygon<'a>(corners: impl IntoIterator<Item = &'a Integer3>) -> Vec<Rational3> {
     corners.into_iter().cloned().map(Rational3::from).collect()
-}
-
-/// The normal `(b - a) × (c - a)`.
-pub(super) fn normal_of([a, b, c]: &[Whole3; 3]) -> Whole3 {
-    cross(&difference(b, a), &difference(c, a))
 }

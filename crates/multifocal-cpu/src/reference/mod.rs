@@ -5,12 +5,12 @@
 //! are exact, and rounded once, down to whole units. What other backends store is at most this.
 
 mod distance;
-mod exact;
+mod grid;
 mod sweep;
 mod umbra;
 mod value;
 
-use exact::Scale;
+use sightlines_exact::Grid;
 use sightlines_geometry::Point3;
 use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend, Plane};
 use umbra::Hiding;
@@ -33,11 +33,11 @@ impl MultifocalBackend for Reference {
     }
 
     fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
-        let scale = Scale::of(job);
+        let grid = grid::grid_of(job);
         out.resize_with(job.planes().len(), Buffer::default);
         for (idx, plane) in job.planes().iter().enumerate() {
             let (before, rest) = out.split_at_mut(idx);
-            draw(job, &scale, plane, &mut rest[0]);
+            draw(job, grid, plane, &mut rest[0]);
             if job.reproject()
                 && let (Some(buffer), Some(nearer)) = (before.last(), idx.checked_sub(1).map(|i| &job.planes()[i]))
             {
@@ -49,12 +49,12 @@ impl MultifocalBackend for Reference {
 }
 
 /// Fills the buffer of a plane with what each occluder blocks by itself.
-fn draw(job: &Job<'_>, scale: &Scale, plane: &Plane, out: &mut Buffer) {
+fn draw(job: &Job<'_>, grid: Grid, plane: &Plane, out: &mut Buffer) {
     let [w, h] = plane.texels();
     out.reset([w, h]);
     for occluder in job.occluders() {
         let Some(hiding) = Hiding::new(occluder, job.volume()) else { continue };
-        let values = Values::new(job, scale, plane, &hiding);
+        let values = Values::new(job, grid, plane, &hiding);
         for (i, stored) in out.values_mut().iter_mut().enumerate() {
             let texel = corners(plane, i as u32 % w, i as u32 / w);
             if hiding.hides(&texel) {

@@ -10,18 +10,14 @@
 //! touches need not be blocked: who crosses there crosses a texel that is looked at as well. (The rectangle is never
 //! flat: the corners of a texel differ, and less than all of the way is gone.)
 
-use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
+use sightlines_exact::{BigRational, rational};
 use sightlines_multifocal::{Buffer, Job, Plane};
-
-fn fraction(x: f64) -> BigRational {
-    BigRational::from_float(x).expect("coordinates are finite")
-}
 
 /// Adds to `out`, the buffer of the farther plane, what follows from that of the nearer one. Exact.
 pub(super) fn carry(job: &Job<'_>, [nearer, plane]: [&Plane; 2], known: &Buffer, out: &mut Buffer) {
-    let between = (fraction(plane.at()) - fraction(nearer.at())) * fraction(if plane.positive() { 1.0 } else { -1.0 });
-    let rise = (&between / fraction(job.unit())).floor().to_u32().expect("values of a job are less than 2^28");
+    let between = (rational(plane.at()) - rational(nearer.at())) * rational(if plane.positive() { 1.0 } else { -1.0 });
+    let rise = (&between / rational(job.unit())).floor().to_u32().expect("values of a job are less than 2^28");
     let [columns, rows] = [0, 1].map(|k| touched(job, [nearer, plane], &between, k));
     let width = plane.texels()[0] as usize;
     for (i, stored) in out.values_mut().iter_mut().enumerate() {
@@ -39,19 +35,19 @@ pub(super) fn carry(job: &Job<'_>, [nearer, plane]: [&Plane; 2], known: &Buffer,
 fn touched(job: &Job<'_>, [nearer, plane]: [&Plane; 2], between: &BigRational, k: usize) -> Vec<Option<[u32; 2]>> {
     let eyes = job.volume().corners().map(|v| {
         let height =
-            (fraction(plane.at()) - fraction(v[plane.axis()])) / fraction(if plane.positive() { 1.0 } else { -1.0 });
-        (fraction(v[plane.across()[k]]), between / height)
+            (rational(plane.at()) - rational(v[plane.axis()])) / rational(if plane.positive() { 1.0 } else { -1.0 });
+        (rational(v[plane.across()[k]]), between / height)
     });
-    let (origin, step) = (fraction(nearer.origin()[k]), fraction(nearer.step()[k]));
+    let (origin, step) = (rational(nearer.origin()[k]), rational(nearer.step()[k]));
     let crossings = |i: u32| {
-        let p = fraction(plane.origin()[k] + plane.step()[k] * f64::from(i));
+        let p = rational(plane.origin()[k] + plane.step()[k] * f64::from(i));
         let at = eyes.each_ref().map(|(v, part)| (&p + (v - &p) * part - &origin) / &step);
         let [least, greatest] = [at.iter().min(), at.iter().max()].map(|x| x.expect("there are eight eyes").clone());
         (least, greatest)
     };
     let of_texel = |i: u32| {
         let (low, high) = (crossings(i).0.floor(), crossings(i + 1).1.ceil());
-        let is_within = low >= BigRational::zero() && high <= fraction(f64::from(nearer.texels()[k]));
+        let is_within = low >= BigRational::zero() && high <= rational(f64::from(nearer.texels()[k]));
         is_within.then(|| [low, high].map(|x| x.to_u32().expect("it lies within the window")))
     };
     (0..plane.texels()[k]).map(of_texel).collect()

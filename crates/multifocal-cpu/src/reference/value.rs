@@ -20,53 +20,54 @@
 //! * Of bent occluders, both distances are that to the nearest facet's section, or the height of the lowest corner
 //!   if that is more: no distance is less than the height.
 
-use super::distance::{Rational3, hull, normal_of, polygon, square_of_distance};
-use super::exact::{Fraction, Scale, Whole3, difference, dot};
+use super::distance::{Rational3, hull, polygon, square_of_distance};
+use super::grid::Integer3;
 use super::umbra::Hiding;
-use num_bigint::BigInt;
 use num_traits::{ToPrimitive, Zero};
+use sightlines_exact::vector::{dot, normal, sub};
+use sightlines_exact::{BigInt, Fraction, Grid};
 use sightlines_geometry::Point3;
 use sightlines_multifocal::{Job, Measure, Occluder, Plane};
 
 /// The values of one occluder on one plane.
 pub(super) struct Values {
-    scale: Scale,
+    grid: Grid,
     measure: Measure,
     is_flat: bool,
     unit: BigInt,
-    eyes: [Whole3; 8],
+    eyes: [Integer3; 8],
     /// Of the eyes above the plane; positive.
     heights: [BigInt; 8],
     /// Of the occluder's lowest corner, or 0.
     lowest: BigInt,
     facets: Vec<Facet>,
-    outline: Vec<Whole3>,
+    outline: Vec<Integer3>,
 }
 
 /// The plane of a facet, its normal turned to the eyes.
 struct Facet {
-    normal: Whole3,
-    on: Whole3,
+    normal: Integer3,
+    on: Integer3,
     /// Distances of the eyes, times the length of the normal; positive.
     in_front: [BigInt; 8],
 }
 
 impl Facet {
-    fn new(corners: [Whole3; 3], is_in_front: bool, eyes: &[Whole3; 8]) -> Self {
-        let normal = normal_of(&corners);
+    fn new(corners: [Integer3; 3], is_in_front: bool, eyes: &[Integer3; 8]) -> Self {
+        let normal = normal(&corners);
         let normal = if is_in_front { normal } else { normal.map(|x| -x) };
         let [on, ..] = corners;
-        let in_front = eyes.each_ref().map(|v| dot(&normal, &difference(v, &on)));
+        let in_front = eyes.each_ref().map(|v| dot(&normal, &sub(v, &on)));
         Self { normal, on, in_front }
     }
 
     /// Distance of a point of a blocked texel behind the plane, times the length of the normal; not negative.
-    fn behind(&self, p: &Whole3) -> BigInt {
-        dot(&self.normal, &difference(&self.on, p))
+    fn behind(&self, p: &Integer3) -> BigInt {
+        dot(&self.normal, &sub(&self.on, p))
     }
 
     /// The section of the plane with the hull of the eyes and a texel.
-    fn section(&self, eyes: &[Whole3; 8], texel: &[Whole3; 4]) -> Vec<Rational3> {
+    fn section(&self, eyes: &[Integer3; 8], texel: &[Integer3; 4]) -> Vec<Rational3> {
         let mut crossings = Vec::with_capacity(32);
         for p in texel {
             let b = self.behind(p);
@@ -80,47 +81,46 @@ impl Facet {
 }
 
 impl Values {
-    pub(super) fn new(job: &Job<'_>, scale: &Scale, plane: &Plane, hiding: &Hiding<'_>) -> Self {
-        let scale = *scale;
+    pub(super) fn new(job: &Job<'_>, grid: Grid, plane: &Plane, hiding: &Hiding<'_>) -> Self {
         let occluder = hiding.occluder();
-        let eyes = hiding.eyes().map(|v| scale.point(v));
+        let eyes = hiding.eyes().map(|v| grid.vector(v));
         let height = |x: f64| {
-            let h = scale.whole(plane.at()) - scale.whole(x);
+            let h = grid.integer(plane.at()) - grid.integer(x);
             if plane.positive() { h } else { -h }
         };
-        let facets = occluder.facets().iter().map(|f| f.map(|p| scale.point(p)));
+        let facets = occluder.facets().iter().map(|f| f.map(|p| grid.vector(p)));
         Self {
-            scale,
+            grid,
             measure: job.measure(),
             is_flat: occluder.is_flat(),
-            unit: scale.whole(job.unit()),
+            unit: grid.integer(job.unit()),
             heights: hiding.eyes().map(|v| height(v[plane.axis()])),
             lowest: lowest(occluder, plane, height),
             facets: facets.map(|f| Facet::new(f, hiding.is_in_front(), &eyes)).collect(),
             eyes,
-            outline: occluder.outline().iter().map(|&p| scale.point(p)).collect(),
+            outline: occluder.outline().iter().map(|&p| grid.vector(p)).collect(),
         }
     }
 
     /// What is stored for a texel, of which the corners are given, that the occluder blocks.
     pub(super) fn at(&self, texel: &[Point3; 4]) -> u32 {
-        let texel = texel.map(|p| self.scale.point(p));
-        let lowest = || Fraction::whole(self.lowest.clone());
+        let texel = texel.map(|p| self.grid.vector(p));
+        let lowest = || Fraction::from(self.lowest.clone());
         match (self.measure, self.is_flat) {
             (Measure::VertexHeight, _) => self.encode_height(&lowest()),
             (Measure::SectionHeight, _) => self.encode_height(&self.lowest_crossing(&texel).max(lowest())),
             (Measure::Euclid, true) => self.encode_square(&self.to_outline(&texel)),
             (Measure::ClippedEuclid, true) => self.encode_square(&self.to_sections(&texel)),
             (Measure::Euclid | Measure::ClippedEuclid, false) => {
-                let square = Fraction::whole(&self.lowest * &self.lowest);
+                let square = Fraction::from(&self.lowest * &self.lowest);
                 self.encode_square(&self.to_sections(&texel).max(square))
             }
         }
     }
 
-    fn lowest_crossing(&self, texel: &[Whole3; 4]) -> Fraction {
+    fn lowest_crossing(&self, texel: &[Integer3; 4]) -> Fraction {
         let of_facet = |facet: &Facet| {
-            let at = |b: &BigInt, (f, h): (&BigInt, &BigInt)| Fraction { num: h * b, den: f + b };
+            let at = |b: &BigInt, (f, h): (&BigInt, &BigInt)| Fraction::new(h * b, f + b);
             let behind = texel.each_ref().map(|p| facet.behind(p));
             let eyes = || facet.in_front.iter().zip(&self.heights);
             least(behind.iter().flat_map(|b| eyes().map(move |eye| at(b, eye))))
@@ -128,26 +128,26 @@ impl Values {
         least(self.facets.iter().map(of_facet))
     }
 
-    fn to_outline(&self, texel: &[Whole3; 4]) -> Fraction {
+    fn to_outline(&self, texel: &[Integer3; 4]) -> Fraction {
         let texel = polygon(texel);
         let first = &self.outline[0];
         let fan = self.outline[1..].windows(2).map(|pair| polygon([first, &pair[0], &pair[1]]));
         least(fan.map(|triangle| square_of_distance(&texel, &triangle)))
     }
 
-    fn to_sections(&self, texel: &[Whole3; 4]) -> Fraction {
+    fn to_sections(&self, texel: &[Integer3; 4]) -> Fraction {
         let corners = polygon(texel);
         let section = |facet: &Facet| square_of_distance(&corners, &facet.section(&self.eyes, texel));
         least(self.facets.iter().map(section))
     }
 
     fn encode_height(&self, height: &Fraction) -> u32 {
-        self.encode(&height.num / (&height.den * &self.unit))
+        self.encode(height.numerator() / (height.denominator() * &self.unit))
     }
 
     /// The root of the whole part is the whole part of the root.
     fn encode_square(&self, square: &Fraction) -> u32 {
-        self.encode((&square.num / (&square.den * &self.unit * &self.unit)).sqrt())
+        self.encode((square.numerator() / (square.denominator() * &self.unit * &self.unit)).sqrt())
     }
 
     fn encode(&self, units: BigInt) -> u32 {

@@ -14,8 +14,8 @@
 
 use super::Facing;
 use crate::camera::{Camera, U};
-use crate::exact::{self, Dyadic};
 use crate::vector::{cross, dot, sub};
+use sightlines_exact::{Dyadic, vector as exact};
 use sightlines_geometry::Point3;
 
 /// A 4 by 4 matrix, row by row.
@@ -133,9 +133,9 @@ fn z_coefficient_sign(matrix: &Matrix, corners: &[Point3; 3]) -> i32 {
     if value.abs() > error && no_underflow(matrix.iter().flatten().chain(corners.iter().flatten())) {
         return if value > 0.0 { 1 } else { -1 };
     }
-    let [a, b, c] = corners.map(exact::point);
-    let n = exact::cross(&exact::sub(&b, &a), &exact::sub(&c, &a));
-    let constant = -exact::dot(&n, &a);
+    let corners = corners.map(Dyadic::vector);
+    let n = exact::normal(&corners);
+    let constant = -exact::dot(&n, &corners[0]);
     let [x, y, z] = n;
     let mut rows = matrix.map(|row| row.map(Dyadic::new));
     rows[2] = [x, y, z, constant];
@@ -196,8 +196,8 @@ fn exact_determinant(m: &[[Dyadic; 4]; 4]) -> Dyadic {
 }
 
 fn exact_minor_sign(rows: &[Point3; 3]) -> i32 {
-    let [a, b, c] = rows.map(exact::point);
-    exact::dot(&a, &exact::cross(&b, &c)).sign()
+    let [a, b, c] = rows.map(Dyadic::vector);
+    exact::determinant(&a, &b, &c).sign()
 }
 
 /// The cofactors of all entries.

@@ -13,11 +13,11 @@ mod extents;
 mod split;
 
 use crate::camera::Camera;
-use crate::exact::{self, Dyadic, Dyadic3};
 use crate::faces::Faces;
 use crate::plane::{Approx, Plane};
 use crate::rows::spans;
 use crate::side::Side;
+use sightlines_exact::{Dyadic, vector as exact};
 use sightlines_geometry::orient3d;
 use std::sync::Arc;
 
@@ -72,7 +72,7 @@ impl Edge {
     }
 
     /// The function without rounding.
-    fn exact(&self, faces: &Faces, face: u32) -> Dyadic3 {
+    fn exact(&self, faces: &Faces, face: u32) -> [Dyadic; 3] {
         match self.on {
             On::Face(corner) => std::array::from_fn(|k| Dyadic::new(f64::from(u8::from(k == usize::from(corner))))),
             On::Plane(plane) => {

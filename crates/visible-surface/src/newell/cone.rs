@@ -8,13 +8,13 @@
 //! nothing has to be known about depths: fragments may lie across the plane of the eye, and reach around it.
 
 use crate::camera::U;
-use crate::exact::{self, Dyadic3};
 use crate::faces::NOTHING;
 use crate::fragment::{Edge, Fragment, On};
 use crate::method::Shot;
 use crate::plane::{Approx, LEAST, Plane};
 use crate::side::depth_value;
 use crate::vector::{cross, cross_size, dot, sub};
+use sightlines_exact::{Dyadic, vector as exact};
 use sightlines_geometry::{Point3, orient3d};
 use std::cell::{Cell, OnceCell};
 
@@ -52,7 +52,7 @@ pub(super) struct Line {
     face: u32,
     /// Of edges of a face: the one after edge 0, 1 or 2 is 1, 2 or 0.
     place: u8,
-    exact: OnceCell<Box<Dyadic3>>,
+    exact: OnceCell<Box<[Dyadic; 3]>>,
 }
 
 /// What decisions are made from.
@@ -113,18 +113,18 @@ impl Line {
     }
 
     /// The normal without rounding, not divided by anything.
-    fn exactly(&self, sight: &Sight<'_>) -> &Dyadic3 {
+    fn exactly(&self, sight: &Sight<'_>) -> &[Dyadic; 3] {
         self.exact.get_or_init(|| {
             let eye = sight.shot.camera.eye();
             let normal = match &self.source {
                 Source::Edge(p, q) => {
-                    let [u, v] = [p, q].map(|p| exact::sub(&exact::point(*p), &exact::point(eye)));
+                    let [u, v] = [p, q].map(|p| exact::sub(&Dyadic::vector(*p), &Dyadic::vector(eye)));
                     exact::cross(&u, &v)
                 }
                 Source::Cut(first, second) => {
                     let (n, m) = (first.exact_normal(sight.shot.faces), second.exact_normal(sight.shot.faces));
                     let [v, w] = [first, second].map(|p| -p.exact_at(sight.shot.faces, eye));
-                    exact::sub(&exact::times(&n, &w), &exact::times(&m, &v))
+                    exact::sub(&exact::scale(&n, &w), &exact::scale(&m, &v))
                 }
             };
             Box::new(if self.flip { normal.map(|x| -x) } else { normal })
@@ -174,7 +174,7 @@ impl Line {
                 if m == 0 {
                     return turn * w * n;
                 }
-                let way = exact::sub(&exact::point(p), &exact::point(eye));
+                let way = exact::sub(&Dyadic::vector(p), &Dyadic::vector(eye));
                 sight.n_exact.set(sight.n_exact.get() + 1);
                 exact::dot(self.exactly(sight), &way).sign()
             }

@@ -5,10 +5,10 @@
 //! in pixels: `a x + b y + c`. Doubles with a bound decide nearly always; else the same function is computed without rounding.
 
 use crate::camera::{Camera, U};
-use crate::exact::{self, Dyadic, Dyadic3};
 use crate::faces::Faces;
 use crate::plane::{LEAST, Plane};
 use crate::vector::{cross, cross_size, dot, dot_size, sub};
+use sightlines_exact::{Dyadic, vector as exact};
 use sightlines_geometry::Point3;
 use std::cell::OnceCell;
 
@@ -35,7 +35,7 @@ pub(crate) struct Side {
     source: Source,
     /// Whether the function is the negative of its source's.
     flip: bool,
-    exact: OnceCell<Box<Dyadic3>>,
+    exact: OnceCell<Box<[Dyadic; 3]>>,
 }
 
 impl Side {
@@ -130,22 +130,22 @@ impl Side {
 
     /// a, b and c without rounding.
     #[cold]
-    fn exact_function(&self, camera: &Camera, faces: &Faces) -> Dyadic3 {
-        let eye = exact::point(camera.eye());
-        let [corner, across, down] = camera.rays().map(exact::point);
+    fn exact_function(&self, camera: &Camera, faces: &Faces) -> [Dyadic; 3] {
+        let eye = Dyadic::vector(camera.eye());
+        let [corner, across, down] = camera.rays().map(Dyadic::vector);
         let (normal, constant) = match &self.source {
             Source::Edge(p, q) => {
-                let [u, v] = [p, q].map(|p| exact::sub(&exact::point(*p), &eye));
+                let [u, v] = [p, q].map(|p| exact::sub(&Dyadic::vector(*p), &eye));
                 (exact::cross(&u, &v), None)
             }
             Source::Cut(first, second) => {
                 let (n, m) = (first.exact_normal(faces), second.exact_normal(faces));
                 let [v, w] = [first, second].map(|p| -p.exact_at(faces, camera.eye()));
-                (exact::sub(&exact::times(&n, &w), &exact::times(&m, &v)), None)
+                (exact::sub(&exact::scale(&n, &w), &exact::scale(&m, &v)), None)
             }
             Source::Depth(plane, depth) => {
                 let n = plane.exact_normal(faces);
-                (exact::times(&n, &Dyadic::new(-depth)), Some(-plane.exact_at(faces, camera.eye())))
+                (exact::scale(&n, &Dyadic::new(-depth)), Some(-plane.exact_at(faces, camera.eye())))
             }
         };
         let c = exact::dot(&normal, &corner);
