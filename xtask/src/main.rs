@@ -3,6 +3,7 @@
 //! Owns: how tests, benches, documentation and checks are called, and in which order. Depends on
 //! nothing of the workspace, so that it builds in seconds and also where the workspace does not.
 
+mod circles;
 mod debian;
 mod freedoom;
 mod gate;
@@ -66,8 +67,10 @@ enum Task {
     },
     /// Builds the documentation; a warning is an error.
     Docs,
-    /// Checks formatting, lints, file lengths, and that nothing is left unfinished.
+    /// Checks formatting, lints, file lengths, circles of modules, and that nothing is left unfinished.
     Tidy,
+    /// Lists modules of one crate that use each other; a part of `tidy`.
+    Circles,
     /// Checks that each published crate compiles on its own.
     Alone,
     /// Runs everything that a change has to pass, and ends with the tests.
@@ -109,6 +112,7 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Stability { options } => lab::run("stability", &options),
         Task::Docs => gate::docs(),
         Task::Tidy => tidy::tidy(),
+        Task::Circles => circles::check().map(|_| ()),
         Task::Alone => gate::alone(),
         Task::Ci { gpu } => gate::ci(gpu),
         Task::Gpu { gpu } => {

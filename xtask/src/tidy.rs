@@ -1,5 +1,6 @@
 //! Cheap checks of the text of the sources, beside rustfmt and clippy.
 
+use crate::circles;
 use crate::step::{self, Failure, cargo, root};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,6 +25,7 @@ const UNFINISHED: [(&str, &str, &str); 7] = [
 pub(crate) fn tidy() -> Result<(), Failure> {
     step::run(cargo().args(["fmt", "--all", "--check"]))?;
     texts()?;
+    circles::check()?;
     step::run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
 }
 
