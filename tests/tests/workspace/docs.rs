@@ -131,6 +131,8 @@ fn readme_names_the_two_commands_and_every_crate() {
     for command in ["cargo run --release -- demo", "cargo xtask test"] {
         assert!(readme.contains(command), "README.md does not name `{command}`");
     }
+    let n_lines = readme.lines().count();
+    assert!(n_lines <= 150, "README.md has {n_lines} lines; figures belong into docs/FIGURES.md");
     let crates = folders_of_crates();
     for folder in &crates {
         let link = format!("(crates/{}", folder.file_name().expect("a crate has a name").to_string_lossy());

@@ -39,8 +39,9 @@ fn follow(folder: &Folder, name: &str) -> usize {
         if kind != "sh" {
             continue;
         }
-        for line in text.lines().filter(|line| !line.trim().is_empty()) {
-            let mut words = line.split_whitespace();
+        for line in text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with("cargo ")) {
+            // What stands behind `#` is a comment, as for a shell.
+            let mut words = line.split_whitespace().take_while(|word| *word != "#");
             assert_eq!(words.next(), Some("sightlines"), "{name}: {line}");
             let args: Vec<&str> = words.collect();
             let run = folder.run(&args);
@@ -62,14 +63,36 @@ fn follow(folder: &Folder, name: &str) -> usize {
 fn the_guide_for_engines_works() {
     let folder = Folder::new();
     assert!(follow(&folder, "rust-engine.md") >= 7);
-    // The picture of the README is the one that the guide makes, but for its size.
-    let drawn = folder.run(&["draw", "level.pvs", "--eye", "9,1.7,5", "--size", "900", "-o", "small.svg"]);
-    drawn.expect(0);
-    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures/floor.svg");
+    // The picture of the guide is the one that its commands make, but for its size.
+    folder.run(&["draw", "level.pvs", "--eye", "9,1.7,5", "--size", "900", "-o", "small.svg"]).expect(0);
+    assert_same_picture("floor.svg", &folder.read("small.svg"));
+}
+
+/// A picture of the documents is the one that the program draws.
+fn assert_same_picture(name: &str, drawn: &[u8]) {
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures").join(name);
     if std::env::var_os("BLESS").is_some() {
-        std::fs::write(&kept, folder.read("small.svg")).expect("the picture can be written");
+        std::fs::write(&kept, drawn).expect("the picture can be written");
     }
-    assert!(folder.read("small.svg") == std::fs::read(kept).expect("the picture is there"), "BLESS=1 draws it anew");
+    assert!(drawn == std::fs::read(kept).expect("the picture is there"), "{name}: BLESS=1 draws it anew");
+}
+
+#[test]
+fn the_commands_of_the_readme_work() {
+    assert_eq!(follow(&Folder::new(), "../../README.md"), 6);
+}
+
+#[test]
+fn the_picture_of_the_readme_is_what_the_program_draws() {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
+        eprintln!("SKIPPED the_picture_of_the_readme: SIGHTLINES_DATA is not set");
+        return;
+    };
+    let wad = Path::new(&data).join("doom/freedoom1_E1M1.wad");
+    let folder = Folder::new();
+    folder.run(&["build", wad.to_str().expect("a path in UTF-8"), "-o", "e1m1.pvs"]).expect(0);
+    folder.run(&["draw", "e1m1.pvs", "--cell", "200", "--size", "800", "-o", "doom.svg"]).expect(0);
+    assert_same_picture("doom.svg", &folder.read("doom.svg"));
 }
 
 #[test]
