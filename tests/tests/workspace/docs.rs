@@ -37,8 +37,8 @@ fn folders_of_crates() -> Vec<PathBuf> {
 
 // --- Links -----------------------------------------------------------------------------------------
 
-/// Targets of links and pictures that lead to files, outside code.
-fn links(markdown: &str) -> Vec<String> {
+/// Targets of links and pictures that lead to files, outside code, with what stands behind `#`: a heading, or a symbol.
+fn targets(markdown: &str) -> Vec<(String, Option<String>)> {
     let mut found = Vec::new();
     let mut in_code = false;
     for line in markdown.lines() {
@@ -52,13 +52,19 @@ fn links(markdown: &str) -> Vec<String> {
         let text: String = line.split('`').step_by(2).collect();
         for (at, _) in text.match_indices("](") {
             let rest = &text[at + 2..];
-            let target = rest.split([')', ' ', '#']).next().unwrap_or("");
+            let target = rest.split([')', ' ']).next().unwrap_or("");
             if !target.is_empty() && !target.contains("://") && !target.starts_with("mailto:") {
-                found.push(target.to_owned());
+                let (file, anchor) = target.split_once('#').map_or((target, None), |(file, at)| (file, Some(at)));
+                found.push((file.to_owned(), anchor.map(str::to_owned)));
             }
         }
     }
     found
+}
+
+/// Targets of links and pictures that lead to other files.
+fn links(markdown: &str) -> Vec<String> {
+    targets(markdown).into_iter().map(|(file, _)| file).filter(|file| !file.is_empty()).collect()
 }
 
 /// Links of a file that lead nowhere.
@@ -88,6 +94,96 @@ fn impostor_a_dead_link_is_caught() {
                 and `[code](nowhere)`.\n```\n[more code](nowhere)\n```\n![picture](ghost.png \"title\") [here](#figures)\n";
     assert_eq!(links(text), ["docs/ARCHITECTURE.md", "docs/GHOST.md", "ghost.png"]);
     assert_eq!(dead_links(&file, text), ["docs/GHOST.md", "ghost.png"]);
+}
+
+// --- Anchors ---------------------------------------------------------------------------------------
+
+/// The anchors of a document's headings, as GitHub makes them.
+fn headings(markdown: &str) -> Vec<String> {
+    let anchor = |title: &str| {
+        let kept = title.to_lowercase().replace(|c: char| !c.is_alphanumeric() && c != ' ' && c != '-' && c != '_', "");
+        kept.trim().replace(' ', "-")
+    };
+    let mut in_code = false;
+    let mut found = Vec::new();
+    for line in markdown.lines() {
+        in_code ^= line.trim_start().starts_with("```");
+        let title = line.trim_start_matches('#');
+        if !in_code && title.len() < line.len() && title.starts_with(' ') {
+            found.push(anchor(title));
+        }
+    }
+    found
+}
+
+/// Whether a Rust file defines something: an item, a field, or a variant.
+fn defines(rust: &str, symbol: &str) -> bool {
+    const KINDS: [&str; 8] = ["fn", "struct", "enum", "trait", "type", "const", "static", "mod"];
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    rust.lines().map(str::trim_start).filter(|line| !line.starts_with("//")).any(|line| {
+        let words: Vec<&str> = line.split(|c: char| !is_word(c)).filter(|word| !word.is_empty()).collect();
+        let is_item = words.windows(2).any(|pair| KINDS.contains(&pair[0]) && pair[1] == symbol);
+        let member = line.strip_prefix("pub ").or_else(|| line.strip_prefix("pub(crate) ")).unwrap_or(line);
+        let rest = member.strip_prefix(symbol);
+        is_item
+            || rest.is_some_and(|rest| {
+                rest.is_empty() || rest.starts_with([':', ',', '(', '{']) && !rest.starts_with("::")
+            })
+    })
+}
+
+/// Links of a file to headings or symbols that are not there, of how many that name one.
+fn dead_anchors(file: &Path, markdown: &str) -> (Vec<String>, usize) {
+    let folder = file.parent().expect("a file lies in a folder");
+    let (mut dead, mut n_anchors) = (Vec::new(), 0);
+    for (target, anchor) in targets(markdown) {
+        let Some(anchor) = anchor else { continue };
+        let path = if target.is_empty() { file.to_path_buf() } else { folder.join(&target) };
+        let text = if target.is_empty() { markdown.to_owned() } else { fs::read_to_string(&path).unwrap_or_default() };
+        let exists = match path.extension().and_then(|e| e.to_str()) {
+            Some("md") => headings(&text).contains(&anchor),
+            Some("rs") => defines(&text, &anchor),
+            _ => text.contains(&anchor),
+        };
+        n_anchors += 1;
+        if !exists {
+            dead.push(format!("{target}#{anchor}"));
+        }
+    }
+    (dead, n_anchors)
+}
+
+#[test]
+fn links_to_headings_and_symbols_lead_there() {
+    let is_document = |p: &PathBuf| p.extension().is_some_and(|e| e == "md");
+    let (mut n_all, mut complaints) = (0, Vec::new());
+    for document in files_of_workspace().into_iter().filter(is_document) {
+        let text = fs::read_to_string(&document).expect("a document is readable");
+        let (dead, n_anchors) = dead_anchors(&document, &text);
+        complaints.extend(dead.into_iter().map(|link| format!("{}: {link}", document.display())));
+        n_all += n_anchors;
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    assert!(n_all >= 5, "{n_all} anchors");
+}
+
+#[test]
+fn impostor_a_missing_heading_or_symbol_is_caught() {
+    let file = root().join("docs/PAGE.md");
+    let text = "# Where do I…\n[here](#where-do-i), [nowhere](#gone), [words](ARCHITECTURE.md#words), [ghost](STYLE.md#ghost),\n\
+                [test](../tests/tests/workspace/docs.rs#dead_anchors), [no](../tests/tests/workspace/docs.rs#no_such_symbol)";
+    let (dead, n_anchors) = dead_anchors(&file, text);
+    let no_symbol = "../tests/tests/workspace/docs.rs#no_such_symbol";
+    assert_eq!((dead.as_slice(), n_anchors), (&["#gone".into(), "STYLE.md#ghost".into(), no_symbol.into()][..], 6));
+
+    let rust =
+        "// fn a()\nlet b = c::d(e);\npub struct F {\n    pub(crate) g: u32,\n}\nenum H {\n    I(u32),\n    J,\n}\n";
+    for there in ["F", "g", "H", "I", "J"] {
+        assert!(defines(rust, there), "{there}");
+    }
+    for absent in ["a", "c", "d", "e", "u32", "G"] {
+        assert!(!defines(rust, absent), "{absent}");
+    }
 }
 
 // --- READMEs ---------------------------------------------------------------------------------------
