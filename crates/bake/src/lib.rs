@@ -12,6 +12,7 @@
 pub mod auto;
 mod certify;
 pub mod live;
+pub mod methods;
 mod mirrors;
 mod objects;
 mod plan;

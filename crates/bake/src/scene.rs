@@ -92,7 +92,7 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
     let nothing = VisibilityBounds::nothing(cut.graph.n_cells());
     let graph = match options.portals {
-        PortalMode::Bounding => loosened(&cut.graph),
+        PortalMode::Bounding => merge_portals(&cut.graph),
         PortalMode::Exact => cut.graph,
     };
     let seen = space_visibility(&graph, &solid, &boxes, &nothing, &search);
@@ -133,7 +133,7 @@ fn n_triangles(object: &sightlines_cells::SceneObject) -> u32 {
 }
 
 /// The same graph with one portal for each pair of cells: the rectangle around the exact pieces.
-pub(crate) fn loosened(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
+pub(crate) fn merge_portals(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
     let mut portals: Vec<Portal<Axial>> = Vec::new();
     let mut sorted: Vec<&Portal<Axial>> = graph.portals().iter().collect();
     sorted.sort_by_key(|p| p.cells);

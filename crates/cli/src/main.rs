@@ -6,6 +6,7 @@
 //! whole or not at all, and not if anything failed; a closed pipe is no error.
 
 mod args;
+mod buffers;
 mod clusters;
 mod commands;
 mod error;
@@ -13,10 +14,9 @@ mod eye;
 mod facts;
 mod folder;
 mod glb;
-mod hiding;
 mod input;
-mod measure;
 mod memory;
+mod named;
 mod numbers;
 mod output;
 mod picture;

@@ -1,11 +1,12 @@
 //! Simplifying scenes: how, as arguments; what is read, and what is written.
 
+use crate::buffers::{BufferArgs, MethodFailed};
 use crate::error::InputError;
 use crate::glb::GlbError;
-use crate::hiding::BuffersError;
-use crate::hiding::{BufferArgs, Hiding, Maker};
 use crate::input;
+use crate::named::one_of;
 use crate::numbers::share;
+use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::ReadError;
 use sightlines::formats::scene::RewriteError;
@@ -27,9 +28,9 @@ pub(crate) enum SimplificationError {
     /// A scene that cannot be written as GLB.
     #[error(transparent)]
     Glb(#[from] GlbError),
-    /// Buffers too large to be kept.
+    /// A from-region method cannot be prepared.
     #[error(transparent)]
-    Buffers(#[from] BuffersError),
+    Method(#[from] MethodFailed),
     /// A scene that cannot be written again.
     #[error("{}: {source}", path.display())]
     Rewrite { path: PathBuf, source: RewriteError },
@@ -56,8 +57,8 @@ pub(crate) struct HowArgs {
     #[arg(long, help_heading = "Method")]
     ignore_mirrors: bool,
     /// What proves triangles hidden, besides a table
-    #[arg(long, help_heading = "Method", value_name = "HOW", value_enum, default_value_t = Method::Multifocal)]
-    method: Method,
+    #[arg(long, help_heading = "Method", value_name = "HOW", default_value = OcclusionMethod::Multifocal.name(), value_parser = one_of(&method_choices(), choice_name, choice_about))]
+    method: MethodChoice,
     #[command(flatten)]
     buffers: BufferArgs,
     /// Number of threads; 0 for one for each core
@@ -65,17 +66,20 @@ pub(crate) struct HowArgs {
     pub(crate) threads: usize,
 }
 
-/// Who says what is hidden.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Method {
-    /// Any surfaces, by buffers and sheets
-    Multifocal,
-    /// One flat piece that cuts the whole shaft between the eyes and a triangle
-    Shafts,
-    /// Voxels inside of closed surfaces, extended to blockers
-    Voxels,
-    /// Nobody but the table
-    None,
+/// The method that proves triangles hidden, if any does besides the table.
+type MethodChoice = Option<OcclusionMethod>;
+
+/// All methods, and none.
+fn method_choices() -> Vec<MethodChoice> {
+    OcclusionMethod::ALL.into_iter().map(Some).chain([None]).collect()
+}
+
+fn choice_name(choice: MethodChoice) -> &'static str {
+    choice.map_or("none", OcclusionMethod::name)
+}
+
+fn choice_about(choice: MethodChoice) -> &'static str {
+    choice.map_or("Nothing but the table", OcclusionMethod::about)
 }
 
 impl HowArgs {
@@ -84,20 +88,17 @@ impl HowArgs {
         self.budget
     }
 
-    /// The name of the method, and what it is asked with, for a scene that came from `path`.
-    pub(crate) fn maker(
+    /// The name of the method, and the method prepared for a scene that came from `path`; none if only the table proves.
+    pub(crate) fn prepare(
         &self,
         path: &Path,
         scene: &Scene,
-    ) -> Result<(&'static str, Option<Maker>), SimplificationError> {
-        self.buffers.check_memory(path)?;
-        let (name, hiding) = match self.method {
-            Method::Multifocal => ("multifocal", Some(Hiding::Buffers)),
-            Method::Shafts => ("shafts", Some(Hiding::Shafts)),
-            Method::Voxels => ("voxels", Some(Hiding::Voxels)),
-            Method::None => ("none", None),
-        };
-        Ok((name, hiding.map(|hiding| Maker::new(hiding, scene, &self.buffers))))
+    ) -> Result<(&'static str, Option<OcclusionMethodFactory>), SimplificationError> {
+        let options = self.buffers.options();
+        let failed = |source| MethodFailed { path: path.to_owned(), source };
+        options.check().map_err(|source| failed(source.into()))?;
+        let prepare = |method| OcclusionMethodFactory::new(method, scene, &options).map_err(failed);
+        Ok((choice_name(self.method), self.method.map(prepare).transpose()?))
     }
 
     /// The options, for views in at least so many parts.

@@ -1,8 +1,8 @@
 //! Multifocal buffers filled by a GPU.
 //!
 //! Owns: the device and what runs on it ([`Gpu`]), the backend in three ways ([`GpuBackend`], [`Way`]), jobs in flight
-//! ([`Ticket`]), results that stay on the device ([`Values`]) and what can be done with them there, and who takes over
-//! when a device fails ([`WithFallback`]).
+//! ([`Ticket`]), and results that stay on the device ([`Values`]) with what can be done there.
+//! A backend that takes over when the device fails: [`WithFallback`](sightlines_multifocal::WithFallback).
 //! Does not know: how occluders become integers (`multifocal` does), what the shaders say (`shaders`), windows, files.
 //! Invariants: [`Way::Compute`] and [`Way::Raster`] have the bits that the integer form says, on any device; nothing
 //! but [`Gpu::open`] and the blocking calls named so waits for a device; no error of a device is a panic.
@@ -10,7 +10,6 @@
 mod backend;
 mod context;
 mod draw;
-mod fallback;
 mod flags;
 mod float;
 mod jobs;
@@ -22,7 +21,6 @@ mod pipelines;
 pub use backend::{GpuBackend, Way};
 pub use context::Gpu;
 pub use draw::Values;
-pub use fallback::WithFallback;
 pub use flags::DrawRecords;
 pub use jobs::Ticket;
 pub use open::OpenError;

@@ -65,3 +65,17 @@ pub trait MultifocalBackend: fmt::Debug + Send {
     /// [`BackendError`]
     fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError>;
 }
+
+impl<B: MultifocalBackend + ?Sized> MultifocalBackend for Box<B> {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn supports(&self, measure: Measure) -> bool {
+        (**self).supports(measure)
+    }
+
+    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+        (**self).render(job, out)
+    }
+}

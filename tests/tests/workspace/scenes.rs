@@ -60,7 +60,8 @@ fn rays_in_a_small_tower_are_in_the_table() {
     assert!(n_visible < all, "{n_visible} of {all}");
 }
 
-/// Invariant: rectangles around openings give at least the exact answer; threads change nothing.
+/// Invariant: rectangles around openings show at least what the exact openings show; a search of the exact openings that
+/// starts from that bound finds the same answer; threads change nothing.
 #[test]
 fn portal_modes_are_nested() {
     let scene = small_tower();

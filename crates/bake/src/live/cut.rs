@@ -1,7 +1,7 @@
 //! A scene, cut for its table only.
 
 use crate::plan::BakeError;
-use crate::scene::{PortalMode, loosened};
+use crate::scene::{PortalMode, merge_portals};
 use sightlines_cells::{Axial, CellGraph, Scene};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneCutter, SceneOptions, SceneSummary};
@@ -25,7 +25,7 @@ impl Cut {
         let cut = cutter.cut(scene, cutting)?;
         let solid = cut.left_out();
         let graph = match portals {
-            PortalMode::Bounding => loosened(&cut.graph),
+            PortalMode::Bounding => merge_portals(&cut.graph),
             PortalMode::Exact => cut.graph,
         };
         Ok(Self { graph, solid, summary: cut.summary })

@@ -13,7 +13,7 @@ pub use boxes::{GridError, grid};
 
 use crate::mirrors;
 use crate::plan::BakeError;
-use crate::scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene, loosened, portal_record};
+use crate::scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene, merge_portals, portal_record};
 use sightlines_cells::Scene;
 use sightlines_formats::ViewCells;
 use sightlines_geometry::{Aabb, Point3};
@@ -212,7 +212,7 @@ fn past_walls(
     let ends = [scene.bounds().min, scene.bounds().max].into_iter().chain(cells.iter().flat_map(|b| [b.min, b.max]));
     let cut = SceneOptions { keep_solid: true, view_region: Some(Aabb::around(ends)), ..options.cut };
     let cut = subdivide_scene(scene, &cut)?;
-    let loose = (options.portals == PortalMode::Bounding).then(|| loosened(&cut.graph));
+    let loose = (options.portals == PortalMode::Bounding).then(|| merge_portals(&cut.graph));
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
     let graph = loose.as_ref().unwrap_or(&cut.graph);
     Ok(box_visibility(graph, &cut.left_out(), cells, objects, doubt, &search))

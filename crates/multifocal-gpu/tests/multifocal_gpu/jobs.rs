@@ -2,9 +2,9 @@
 
 use crate::common::scene::{job, occluders};
 use crate::common::{Chance, expected, gpu};
-use sightlines_multifocal::{BackendError, Buffer, Measure, MultifocalBackend};
+use sightlines_multifocal::{BackendError, Buffer, Measure, MultifocalBackend, WithFallback};
 use sightlines_multifocal_cpu::Fast;
-use sightlines_multifocal_gpu::{Gpu, GpuBackend, PlaneForms, Way, WithFallback, wgpu};
+use sightlines_multifocal_gpu::{Gpu, GpuBackend, PlaneForms, Way, wgpu};
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 

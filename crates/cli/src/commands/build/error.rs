@@ -1,9 +1,9 @@
 //! Why `build` fails.
 
+use crate::buffers::MethodFailed;
 use crate::error::InputError;
 use crate::error::OutputError;
 use crate::error::of_map;
-use crate::hiding::BuffersError;
 use sightlines::bake::BakeError;
 use sightlines::bake::CertifyError;
 use sightlines::bake::PrtBakeError;
@@ -25,9 +25,9 @@ pub(crate) enum Error {
     /// A result that cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// Buffers too large to be kept.
+    /// A from-region method cannot be prepared.
     #[error(transparent)]
-    Buffers(#[from] BuffersError),
+    Method(#[from] MethodFailed),
     /// A plan or a scene cannot be baked.
     #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
     Bake { path: PathBuf, map: Option<String>, source: BakeError },

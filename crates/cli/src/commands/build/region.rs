@@ -4,12 +4,13 @@ use super::BakeArgs;
 use super::Error;
 use super::space::informed;
 use super::view_cells::ViewCellsArgs;
+use crate::buffers::{BufferArgs, MethodFailed};
 use crate::facts::{Facts, Stated};
-use crate::hiding::{BufferArgs, Hiding, Maker};
 use crate::output::{bytes, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::auto::SceneChoice;
+use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
 use sightlines::bake::region::grid;
 use sightlines::bake::{BakedRegions, CellsFrom, RegionBakeOptions, bake_regions};
 use sightlines::formats::SceneFile;
@@ -106,7 +107,6 @@ pub(super) fn bake(
     show_progress: bool,
 ) -> Result<BakedRegions, Error> {
     args.check_for_space(path)?;
-    region.buffers.check_memory(path)?;
     let failed = |source| Error::BakeRegion { path: path.to_owned(), source };
     let cut = args.cut();
     let cells = match (region.cells.read()?, region.grid) {
@@ -119,19 +119,23 @@ pub(super) fn bake(
         (None, None) => CellsFrom::KdTree,
     };
     let method = region.method.unwrap_or(Method::Sightlines);
-    let hiding = match method {
+    let method_of_cells = match method {
         Method::Auto | Method::Sightlines => None,
-        Method::Multifocal | Method::Both => Some(Hiding::Buffers),
-        Method::Shafts => Some(Hiding::Shafts),
-        Method::Voxels => Some(Hiding::Voxels),
+        Method::Multifocal | Method::Both => Some(OcclusionMethod::Multifocal),
+        Method::Shafts => Some(OcclusionMethod::Shafts),
+        Method::Voxels => Some(OcclusionMethod::Voxels),
     };
-    let maker = hiding.map(|hiding| Maker::new(hiding, &file.scene, &region.buffers));
-    let make = || maker.as_ref().expect("only called if there is one").make();
+    let options = region.buffers.options();
+    let unfit = |source| MethodFailed { path: path.to_owned(), source };
+    options.check().map_err(|source| unfit(source.into()))?;
+    let prepare = |method| OcclusionMethodFactory::new(method, &file.scene, &options).map_err(unfit);
+    let factory = method_of_cells.map(prepare).transpose()?;
+    let make = || factory.as_ref().expect("only called if there is one").instance();
     let bar = Bar::new("who sees whom", show_progress);
     let progress = |done, all| bar.set(done, all);
     let options = RegionBakeOptions {
         cells: &cells,
-        method: maker.is_some().then_some(&make),
+        method: factory.is_some().then_some(&make),
         sightlines: matches!(method, Method::Auto | Method::Sightlines | Method::Both),
         split: Split { depth: region.split, ..Split::default() },
         cut,

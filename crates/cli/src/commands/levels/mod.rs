@@ -74,10 +74,10 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     let ReadScene { file, source } = read(&args.scene)?;
     let scene = &file.scene;
     let table = input::table(&args.table)?;
-    let (method, maker) = args.how.maker(&args.scene, scene)?;
-    let make = || -> Box<dyn FromRegion + Send> { maker.as_ref().expect("only called if there is one").make() };
+    let (method, factory) = args.how.prepare(&args.scene, scene)?;
+    let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };
     let make: MakeMethod<'_> = &make;
-    let by = HiddenBy { method: maker.is_some().then_some(make), table: None };
+    let by = HiddenBy { method: factory.is_some().then_some(make), table: None };
     let standard = LevelOptions::default();
     let simplify = args.how.options(standard.simplify.n_parts);
     let options =

@@ -1,5 +1,6 @@
 //! Why `multifocal` fails.
 
+use crate::buffers::MethodFailed;
 use crate::error::InputError;
 use crate::error::OutputError;
 use crate::picture::PictureError;
@@ -35,7 +36,10 @@ pub(crate) enum Error {
     /// A plane and a volume that do not go together.
     #[error("--plane {plane}: {source}")]
     Job { plane: String, source: JobError },
-    /// Nobody could fill the buffer.
+    /// A backend that is not part of this build.
+    #[error(transparent)]
+    Method(#[from] MethodFailed),
+    /// No backend could fill the buffer.
     #[error("{}: {source}", path.display())]
     Backend { path: PathBuf, source: BackendError },
 }

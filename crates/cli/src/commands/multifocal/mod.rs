@@ -6,16 +6,18 @@ mod outcome;
 mod target;
 
 use crate::Answer;
+use crate::buffers::MethodFailed;
 use crate::input;
-use crate::measure::MeasureArg;
+use crate::named::{measure, one_of};
 use crate::output;
 use crate::picture::{self, PictureError};
 use crate::region::Region;
 use error::Error;
 use outcome::{FieldInfo, Outcome};
+use sightlines::bake::methods::{Backend, NotBuiltIn};
 use sightlines::geometry::Point3;
 use sightlines::multifocal::mesh::{PatchOptions, patches};
-use sightlines::multifocal::{Buffer, Job, Occluder, Plane, Volume};
+use sightlines::multifocal::{Buffer, Job, Measure, Occluder, Plane, Volume};
 use sightlines::multifocal_cpu::fields::{Features, Field};
 use sightlines::report::{PngError, buffer_png, distance_png, voronoi_png};
 use std::path::{Path, PathBuf};
@@ -47,11 +49,11 @@ pub(crate) struct MultifocalArgs {
     texels: Texels,
     /// What values are: distances to the texel, with or without what no eye sees there; heights above the plane, of
     /// corners or of what eyes see
-    #[arg(long, help_heading = "Method", value_enum, default_value_t = MeasureArg::Height)]
-    measure: MeasureArg,
+    #[arg(long, help_heading = "Method", default_value = Measure::default().name(), value_parser = measure())]
+    measure: Measure,
     /// Who fills the buffer. What cannot be done by one is done by the next: gpu, cpu, reference (slow)
-    #[arg(long, help_heading = "Method", value_enum, default_value_t = backend::Kind::Cpu)]
-    backend: backend::Kind,
+    #[arg(long, help_heading = "Method", default_value = Backend::Cpu.name(), value_parser = one_of(&Backend::ALL, Backend::name, Backend::about))]
+    backend: Backend,
     /// Let each triangle hide by itself, as in the slides, instead of putting neighbours together that hide more
     #[arg(long, help_heading = "Method")]
     triangles: bool,
@@ -77,10 +79,12 @@ pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, Error> {
     let volume = Volume::new(args.volume.0)?;
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
     let occluders = occluders(&triangles, args.triangles);
-    let job = Job::new(volume, vec![plane], &occluders, args.measure.measure(), false)
+    let job = Job::new(volume, vec![plane], &occluders, args.measure, false)
         .map_err(|source| Error::Job { plane: args.plane.to_string(), source })?;
+    let failed = |source: NotBuiltIn| MethodFailed { path: args.scene.clone(), source: source.into() };
+    let chain = args.backend.open(|text| tracing::warn!("{text}")).map_err(failed)?.chain();
     let (by, buffer) =
-        backend::fill(args.backend, &job).map_err(|source| Error::Backend { path: args.scene.clone(), source })?;
+        backend::fill(chain, &job).map_err(|source| Error::Backend { path: args.scene.clone(), source })?;
     let fields = (args.voronoi.is_some() || args.distance.is_some()).then(|| {
         let features = Features::new(triangles.iter().copied());
         let field = Field::new(&features, &plane);

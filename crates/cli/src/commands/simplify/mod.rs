@@ -55,10 +55,10 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     let ReadScene { file, source } = read(&args.scene)?;
     let scene = &file.scene;
     let (table, views) = args.eyes.read()?;
-    let (method, maker) = args.how.maker(&args.scene, scene)?;
-    let make = || -> Box<dyn FromRegion + Send> { maker.as_ref().expect("only called if there is one").make() };
+    let (method, factory) = args.how.prepare(&args.scene, scene)?;
+    let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };
     let make: MakeMethod<'_> = &make;
-    let by = HiddenBy { method: maker.is_some().then_some(make), table: table.as_ref() };
+    let by = HiddenBy { method: factory.is_some().then_some(make), table: table.as_ref() };
     let options = args.how.options(args.parts as usize);
     let failed = |source| match (&source, &args.eyes.table) {
         (SimplifyError::OtherScene(_), Some(table)) => SimplificationError::Simplify { path: table.clone(), source },

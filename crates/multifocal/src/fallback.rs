@@ -1,11 +1,10 @@
-//! Somebody who takes over.
+//! A backend with another one that takes over its jobs.
 
-use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend};
+use crate::{BackendError, Buffer, Job, Measure, MultifocalBackend};
 
-/// A backend, and another one that does its jobs once it has failed: the one on a device, and one on the processor.
+/// Two backends: the second does the jobs that the first refuses, for example one on a device and one on the processor.
 ///
-/// A job that the first cannot do (no form of the measure, no memory for it) is done by the second, and the first is
-/// asked again for the next one. A device that is lost stays lost, so then the second does all that follow.
+/// The first is tried again for the next job, unless its device is lost: then the second does all that follow.
 #[derive(Debug)]
 pub struct WithFallback<A, B> {
     first: A,
@@ -14,12 +13,12 @@ pub struct WithFallback<A, B> {
 }
 
 impl<A: MultifocalBackend, B: MultifocalBackend> WithFallback<A, B> {
-    /// Asks `first` as long as it can be asked, else `second`.
+    /// Tries `first`, then `second`.
     pub const fn new(first: A, second: B) -> Self {
         Self { first, second, took_over: None }
     }
 
-    /// Why the second did the last job; None if the first did.
+    /// The error of the first backend, if the second did the last job.
     pub const fn took_over(&self) -> Option<&BackendError> {
         self.took_over.as_ref()
     }

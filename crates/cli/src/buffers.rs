@@ -1,0 +1,50 @@
+//! Multifocal buffers and sheets as arguments.
+
+use crate::named::{measure, one_of};
+use sightlines::bake::methods::{Backend, BufferOptions, MethodError};
+use sightlines::multifocal::Measure;
+use std::path::PathBuf;
+
+/// A from-region method that cannot be prepared for the scene of a file.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {source}", path.display())]
+pub(crate) struct MethodFailed {
+    pub(crate) path: PathBuf,
+    pub(crate) source: MethodError,
+}
+
+/// How multifocal buffers and sheets are made.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Multifocal buffers")]
+pub(crate) struct BufferArgs {
+    /// multifocal: what buffers compare
+    #[arg(long, value_name = "WHAT", default_value = Measure::default().name(), value_parser = measure())]
+    measure: Measure,
+    /// multifocal: planes on each side of a cell; 0 for none
+    #[arg(long, value_name = "N", default_value_t = BufferOptions::default().planes, value_parser = clap::value_parser!(u32).range(0..=256))]
+    pub(crate) planes: u32,
+    /// multifocal: texels along the longer side of a plane
+    #[arg(long, value_name = "N", default_value_t = BufferOptions::default().texels, value_parser = clap::value_parser!(u32).range(1..=8192))]
+    pub(crate) texels: u32,
+    /// multifocal: the most surfaces that are drawn on each side of a cell; those that seem to hide most
+    #[arg(long, value_name = "N", default_value_t = BufferOptions::default().occluders)]
+    occluders: u32,
+    /// multifocal: do not carry over to a plane what is known on the one before
+    #[arg(long)]
+    no_carry: bool,
+    /// multifocal: how many sides of triangles are looked at to find a surface between a cell and an object; 0 for none
+    #[arg(long, value_name = "N", default_value_t = BufferOptions::default().sheets)]
+    pub(crate) sheets: u32,
+    /// multifocal: who draws the buffers
+    #[arg(long, value_name = "WHO", default_value = Backend::Cpu.name(), value_parser = one_of(&Backend::ALL, Backend::name, Backend::about))]
+    backend: Backend,
+}
+
+impl BufferArgs {
+    /// The options. A backend that takes over is a warning.
+    pub(crate) fn options(&self) -> BufferOptions {
+        let Self { measure, planes, texels, occluders, no_carry, sheets, backend } = *self;
+        let warn = |text: &str| tracing::warn!("{text}");
+        BufferOptions { measure, planes, texels, occluders, carry: !no_carry, sheets, backend, warn }
+    }
+}
