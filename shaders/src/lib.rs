@@ -1,21 +1,19 @@
-//! WGSL texts of the sightlines crates, with their layouts and constants on the Rust side.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the texts ([`Shader`]), the records that they read, as types that know their layout and turn themselves into
-//! bytes ([`Record`]), which bindings an entry point has, workgroup sizes and shared constants.
-//! Does not know: devices, scenes, who runs the shaders. Has no dependency.
-//! Invariants: plain core WGSL without optional features; at most 256 invocations in a workgroup, 16 KiB of its memory,
-//! 4 bind groups, 8 storage buffers. What Rust says of a text is what the text says: the tests parse each one and
-//! compare, and are shown to notice a difference.
+//! # Scope
+//!
+//! - **Owns**: the sources ([`Shader`]), the records that they read, as types with a layout and a conversion to
+//!   bytes ([`Record`]), the bindings of each entry point, workgroup sizes and shared constants.
+//! - **Out of scope**: devices, scenes, running the shaders. It has no dependency.
+//! - **Invariants**: plain core WGSL without optional features; at most 256 invocations in a workgroup, 16 KiB of its memory,
+//!   4 bind groups, 8 storage buffers. The Rust side matches the WGSL: the tests parse each source and
+//!   compare, and impostors show that they notice a difference.
 
 pub mod multifocal;
 pub mod record;
 
 pub use multifocal::ALL;
 pub use record::{Field, Kind, Layout, Member, Record};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;
 
 /// How a shader uses a binding of group 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,15 +1,19 @@
-//! An area light as the view volume: which surfaces are wholly in umbra, wholly lit, or in doubt, and pictures of soft shadows.
+#![doc = include_str!("../README.md")]
 //!
-//! What is hidden from a volume of viewpoints is in umbra if the volume is a light. So the from-region methods of
-//! `sightlines-multifocal` find umbrae; that nothing at all stands between a surface and the light is shown here.
+//! # Scope
 //!
-//! Owns: the states of surfaces under a light ([`Shadows::classify`], [`Lighting`], [`Piece`]), the proof that a piece is wholly lit, pictures in
-//! which rays are cast only where nothing is proven ([`Shadows::picture`]).
-//! Does not know: how umbrae are found, colours, files, threads.
-//! Invariants: umbra and lit are proven of pieces with their true corners, which cover the face (a given corner may be off by a rounding, as
-//! [`Piece::error`] says), for all points of the light that lie on no surface; rays decide nothing but what is worth asking, and shares where nothing is proven; the same input gives the same answer.
+//! - **Owns**: the states of surfaces under a light ([`Shadows::classify`], [`Lighting`], [`Piece`]), the proof that a
+//!   piece is fully lit, pictures that cast rays only where nothing is proven ([`Shadows::picture`]).
+//! - **Out of scope**: how umbrae are found, colours, files, threads.
+//! - **Invariants**: umbra and lit are proven for pieces with their true corners, which cover the face
+//!   ([`Piece::error`] bounds the rounding of the stored ones), for all points of the light that lie on no surface;
+//!   rays only steer the work and estimate shares where nothing is proven; the same input gives the same answer.
 //!
-//! Source: the parts of a soft shadow and their exact borders: Nishita and Nakamae, "Half-tone representation of 3-D objects illuminated by area sources or
+//! If the volume of viewpoints is a light, what is hidden from it is in umbra. So the from-region methods of
+//! `sightlines-multifocal` find umbrae; the proof that nothing lies between a surface and the light is here.
+//!
+//! # Source
+//! The parts of a soft shadow and their exact borders: Nishita and Nakamae, "Half-tone representation of 3-D objects illuminated by area sources or
 //! polyhedron sources", COMPSAC 1983.
 
 mod classify;
@@ -26,7 +30,3 @@ pub use lighting::{Areas, LightCounters, Lighting};
 pub use options::{Options, Side, Sides};
 pub use picture::{LightPicture, Shade, shown};
 pub use piece::{Piece, State};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

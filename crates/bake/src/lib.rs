@@ -1,13 +1,15 @@
-//! The offline pipeline: from a scene to its visibility table in one call.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the choice of subdivision and predicate ([`bake_plan`]), and of methods by what a scene is like ([`auto`]), the table made from a cell graph
-//! ([`table_of`]) and the way back ([`graph_of`], [`axial_graph_of`]), stab trees for a finished table ([`with_stab_trees`]), proofs for it ([`certify_table`]),
-//! the REJECT lumps of a WAD ([`reject_wad`]),
-//! the visibility of Quake maps and how far a search of one came ([`quake`]),
-//! the table of a scene that changes ([`live`]).
-//! Does not know: paths, the command line, pictures.
-//! Invariants: the same scene and options give the same table, byte for byte, with any number of
-//! threads; every approximation on the way errs towards visible.
+//! # Scope
+//!
+//! - **Owns**: the choice of subdivision and predicate ([`bake_plan`]), and of methods from the properties of a scene
+//!   ([`auto`]), the conversion of a cell graph to a table ([`table_of`]) and back ([`graph_of`], [`axial_graph_of`]),
+//!   stab trees for a finished table ([`with_stab_trees`]), proofs for it ([`certify_table`]), the REJECT lumps of a
+//!   WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted search ([`quake`]), the table
+//!   of a changing scene ([`live`]).
+//! - **Out of scope**: paths, the command line, pictures.
+//! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
+//!   threads; every approximation on the way errs towards visible.
 
 pub mod auto;
 mod certify;
@@ -38,7 +40,3 @@ pub use scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
 pub use stab::{BakedStab, StabBakeError, StabOptions, most_nodes, with_stab_trees};
 pub use table::{TableOptions, axial_graph_of, graph_of, table_of};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

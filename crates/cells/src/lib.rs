@@ -1,10 +1,12 @@
-//! The meeting point of cutting and seeing: scenes in the plane, and the graph of cells and portals.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: [`Plan`] (a scene in the plane, checked once), [`CellGraph`] (convex cells, the portals
-//! between them, who leads where) for every kind of cell, and what makes a graph well formed.
-//! Does not know: how a scene was cut, how a sightline is found, files.
-//! Invariants: ids are dense from 0; a portal joins two different cells; a cell's exits are ordered by
-//! side, then portal; every cell lies on the left of its own sides.
+//! # Scope
+//!
+//! - **Owns**: [`Plan`] (a scene in the plane, validated once), [`CellGraph`] (convex cells, the portals between them,
+//!   and which portal leads where) for every kind of cell, and what makes a graph well formed.
+//! - **Out of scope**: how a scene was cut, how a sight line is found, files.
+//! - **Invariants**: ids are dense from 0; a portal joins two different cells; a cell's exits are ordered by
+//!   side, then portal; every cell lies on the left of its own sides.
 
 pub mod axial;
 pub mod convex;
@@ -21,7 +23,3 @@ pub use planar::{ConvexCell2, Planar, WellFormedError};
 pub use scene::{Scene, SceneError, SceneObject};
 pub use sightlines_geometry::{AxialDoor, Point3, Portal2, Portal3};
 pub use sightlines_pvs::CellId;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

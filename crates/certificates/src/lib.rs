@@ -1,11 +1,13 @@
-//! Proofs of whole tables: a witness for what is visible, a certificate for what is hidden.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the proofs as data, their bytes, and a checker that shares no code with the solvers that find them:
-//! [`plan`] for polygons of the plane, [`space`] for boxes, [`convex`] for cells joined by polygons in space. Who finds
-//! proofs hands them to a maker here, which checks each of them at once.
-//! Does not know: cells' graphs, searching, tables, files.
-//! Invariants: decisions are signs of exact numbers; no step of a proof rests on a later one; what is read from bytes
-//! never takes more memory than a few times its size, and a few bits for each pair of cells of the network it is checked against.
+//! # Scope
+//!
+//! - **Owns**: the proofs as data, their bytes, and a checker that shares no code with the solvers that find them:
+//!   [`plan`] for polygons of the plane, [`space`] for boxes, [`convex`] for cells joined by polygons in space. A search
+//!   that finds proofs passes them to a maker here, which checks each of them immediately.
+//! - **Out of scope**: graphs of cells, searching, tables, files.
+//! - **Invariants**: decisions are signs of exact numbers; no step of a proof rests on a later one; what is read from bytes
+//!   never takes more memory than a few times its size, and a few bits for each pair of cells of the network it is checked against.
 //!
 //! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
 //! the errors of what makes them.
@@ -32,7 +34,3 @@ pub use proven::{NoWall, Proven, Refusal};
 pub fn kind_of(bytes: &[u8]) -> Result<Kind, ReadError> {
     bytes::unframed(bytes).map(|(kind, _)| kind)
 }
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

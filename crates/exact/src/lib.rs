@@ -1,10 +1,12 @@
-//! Exact numbers: doubles as dyadic numbers, as integers on a common grid, and as fractions.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the conversion of doubles to big integers ([`decode`], [`Grid`]), to an integer times a power of two
-//! ([`Dyadic`]) and to fractions ([`rational`], [`Fraction`]); products of vectors of any such numbers ([`vector`]).
-//! Does not know: geometry, filters in floating point, files.
-//! Invariants: no result is rounded, except that of [`Dyadic::to_f64`]. Whoever checks results of crates that use this one
-//! has an arithmetic of their own (`certificates`, `verify`, `testkit`).
+//! # Scope
+//!
+//! - **Owns**: the conversion of doubles to big integers ([`decode`], [`Grid`]), to an integer times a power of two
+//!   ([`Dyadic`]) and to fractions ([`rational`], [`Fraction`]); products of vectors of any such numbers ([`vector`]).
+//! - **Out of scope**: geometry, filters in floating point, files.
+//! - **Invariants**: no result is rounded, except that of [`Dyadic::to_f64`]. The crates that check results of this one
+//!   have their own arithmetic (`certificates`, `verify`, `testkit`).
 
 mod decode;
 mod dyadic;
@@ -18,7 +20,3 @@ pub use fraction::Fraction;
 pub use grid::Grid;
 pub use num_bigint::{BigInt, Sign};
 pub use num_rational::BigRational;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

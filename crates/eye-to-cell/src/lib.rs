@@ -1,12 +1,14 @@
-//! Which cells and objects a viewer sees: from what his cell may see, by where he is and looks.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the viewer's cone ([`View`]), what is gathered from a table for the viewers of one cell ([`Outlook`]), the
-//! four methods of Teller and Séquin and the zeroth ([`Method`], behind [`EyeToCell`]), portals that are closed
-//! for now ([`Doors`]), what is seen in mirrors ([`Reflection`]).
-//! Does not know: how the table was made, files, threads, frames.
-//! Invariants: answers err towards visible, by rounding only, and each tolerance is derived ([`side`](self)); each
-//! method's answer is within that of the one before; once warm, a query without mirrors allocates nothing; no number, however
-//! strange, makes a panic.
+//! # Scope
+//!
+//! - **Owns**: the viewer's cone ([`View`]), what is gathered from a table for the viewers of one cell ([`Outlook`]), the
+//!   four methods of Teller and Séquin and the zeroth ([`Method`], behind [`EyeToCell`]), portals that are closed
+//!   for now ([`Doors`]), what is seen in mirrors ([`Reflection`]).
+//! - **Out of scope**: how the table was made, files, threads, frames.
+//! - **Invariants**: answers err towards visible, by rounding only, and each tolerance is derived ([`side`](self));
+//!   each method's answer is within that of the one before; once warm, a query without mirrors allocates nothing; no
+//!   number, however strange, causes a panic.
 
 #![forbid(unsafe_code)]
 
@@ -33,7 +35,3 @@ pub use seen::{Reflection, Seen};
 pub use source::{CellSource, MirrorWay, StabStep, Way};
 pub use table::TableCells;
 pub use view::{View, ViewError};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

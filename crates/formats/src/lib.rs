@@ -1,16 +1,17 @@
-//! Readers and writers of the files that scenes come from: Doom WADs, GeoJSON floor plans,
-//! glTF and OBJ scenes in space, boxes where viewers can be, maps of the Quake family with their portals.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
-//! GeoJSON plans ([`geojson`]), scenes in space ([`scene`]) and simplified levels of them
-//! ([`levels`]), view cells ([`view_cells`]), maps of the Quake family and their visibility
-//! ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), and errors that name the file
-//! and the place in it ([`ReadError`]).
-//! Does not know: how a plan is cut into cells, what a sightline is, how a REJECT table is computed.
-//! Invariants: no input causes a panic; memory stays within a small multiple of the input's size
-//! (of a scene in space: with its meshes as often as it shows them, up to a limit), whatever counts
-//! the input claims; what is not understood is either passed through byte for byte
-//! or refused, never guessed; the same value is always written as the same bytes.
+//! # Scope
+//!
+//! - **Owns**: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
+//!   GeoJSON plans ([`geojson`]), scenes in space ([`scene`]) and simplified levels of them
+//!   ([`levels`]), view cells ([`view_cells`]), maps of the Quake family and their visibility
+//!   ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), and errors that name the file
+//!   and the place in it ([`ReadError`]).
+//! - **Out of scope**: how a plan is cut into cells, what a sight line is, how a REJECT table is computed.
+//! - **Invariants**: no input causes a panic; memory stays within a small multiple of the input's size
+//!   (of a scene in space: with its meshes as often as it shows them, up to a limit), whatever counts
+//!   the input claims; what is not understood is either passed through byte for byte
+//!   or refused, never guessed; the same value is always written as the same bytes.
 
 pub mod doom;
 pub mod error;
@@ -34,7 +35,3 @@ pub use reject::RejectTable;
 pub use scene::{GltfSource, SceneFile, SceneInfo, SceneReadError, Simplified};
 pub use view_cells::{ViewCell, ViewCells, ViewCellsError};
 pub use wad::{LumpName, Wad, WadBuilder, WadError};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,11 +1,13 @@
-//! The older ways to say what is hidden from a volume of viewpoints, behind the interface of `sightlines-multifocal`.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: view shafts ([`ViewShafts`]: one convex occluder cuts all lines between two boxes), and voxels with blocker
-//! extension ([`Voxels`]: the insides of closed surfaces, grown into what is hidden already).
-//! Does not know: buffers, threads, devices, files, who asks.
-//! Invariants: what is called hidden is hidden, as far as [`FromRegion::guarantee`] says; doubles that are rounded
-//! may reject a blocker, accepting takes exact predicates or bounds that err towards visible; the same input gives
-//! the same answer.
+//! # Scope
+//!
+//! - **Owns**: view shafts ([`ViewShafts`]: one convex occluder cuts all lines between two boxes), and voxels with blocker
+//!   extension ([`Voxels`]: the insides of closed surfaces, grown into what is hidden already).
+//! - **Out of scope**: buffers, threads, devices, files, callers.
+//! - **Invariants**: what is reported hidden is hidden, as far as [`FromRegion::guarantee`] states; rounded doubles may
+//!   reject a blocker, but accepting one takes exact predicates or bounds that err towards visible; the same input
+//!   gives the same answer.
 //!
 //! [`FromRegion::guarantee`]: sightlines_multifocal::FromRegion::guarantee
 
@@ -22,7 +24,3 @@ pub mod voxels;
 
 pub use shafts::{ShaftUmbra, ViewShafts};
 pub use voxels::{Interior, VoxelError, VoxelOptions, VoxelUmbra, Voxels};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

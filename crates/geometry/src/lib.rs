@@ -1,11 +1,13 @@
-//! Points, segments, boxes and the exact predicates that every decision of `sightlines` rests on.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the coordinate types ([`Point2`], [`Point3`], [`Segment2`], [`Aabb`]), the orientation predicate of
-//! the plane in two forms with one meaning ([`Adaptive`], [`SmallGrid`]) and that of space ([`orient3d`]),
-//! convex polygons in the plane, oriented portals of each kind, trees of boxes ([`BoxTree`]), places to sample ([`Random`]).
-//! Does not know: walls, cells, portals, files.
-//! Invariants: a predicate reads input coordinates only and its sign is exact for every coordinate that
-//! [`check_coordinate`] accepts; nothing here compares with an epsilon.
+//! # Scope
+//!
+//! - **Owns**: the coordinate types ([`Point2`], [`Point3`], [`Segment2`], [`Aabb`]), the orientation predicate of
+//!   the plane in two forms with one meaning ([`Adaptive`], [`SmallGrid`]) and that of space ([`orient3d`]),
+//!   convex polygons in the plane, oriented portals of each kind, trees of boxes ([`BoxTree`]), places to sample ([`Random`]).
+//! - **Out of scope**: walls, cells, portals, files.
+//! - **Invariants**: a predicate reads input coordinates only and its sign is exact for every coordinate that
+//!   [`check_coordinate`] accepts; nothing here compares with an epsilon.
 
 pub mod bounds;
 pub mod boxtree;
@@ -31,10 +33,6 @@ pub use portal::Portal2;
 pub use portal3::Portal3;
 pub use random::Random;
 pub use segment::Segment2;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;
 
 /// A point of the plane in scene units.
 pub type Point2 = glam::DVec2;

@@ -1,24 +1,26 @@
-//! Axial k-d subdivision: a scene of axis-parallel walls, cut into boxes with portals between them.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: [`AxialFace`] and its classes against a cell ([`classify`], [`cleaves`]), the choice of
-//! splitting planes ([`Options`]), the tree with its cells, portals and point location ([`AxialTree`]),
-//! the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]), and that from a
-//! [`Scene`](sightlines_cells::Scene): which of its triangles hide ([`scene_faces`]), which cells are
-//! inside of solid matter ([`subdivide_scene`], [`SceneCutter`] for scenes that change).
-//! Does not know: sightlines, tables, files, walls that are not axis-parallel.
-//! Invariants: the cells tile the bounds without gap or overlap; no coordinate is ever computed, so
-//! cells and portals have the coordinates of faces and bounds, bit for bit; a portal is an opening of
-//! positive measure that no face covers; cell ids count the leaves depth-first, low before high.
+//! # Scope
+//!
+//! - **Owns**: [`AxialFace`] and its classes against a cell ([`classify`], [`cleaves`]), the choice of
+//!   splitting planes ([`Options`]), the tree with its cells, portals and point location ([`AxialTree`]),
+//!   the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]), and that from a
+//!   [`Scene`](sightlines_cells::Scene): which of its triangles act as walls ([`scene_faces`]), which cells are
+//!   inside solids ([`subdivide_scene`], [`SceneCutter`] for scenes that change).
+//! - **Out of scope**: sight lines, tables, files, walls that are not axis-parallel.
+//! - **Invariants**: the cells tile the bounds without gap or overlap; no coordinate is ever computed, so
+//!   cells and portals have the coordinates of faces and bounds, bit for bit; a portal is an opening of
+//!   positive measure that no face covers; cell ids count the leaves depth-first, low before high.
 //!
 //! # On which side it errs
-//! A face hides only where it lies on the border of cells. Faces that the tree does not follow (the
-//! threshold [`Options::tau`], lines that are not axial) hide nothing, so all that is seen through the
-//! cells and portals without them is seen. With `tau` 0 every face is followed and the subdivision is
+//! A face blocks sight only where it lies on the border of cells. Faces that the tree does not follow (the
+//! threshold [`Options::tau`], lines that are not axial) block nothing, so everything visible through the
+//! cells and portals without them is reported visible. With `tau` 0 every face is followed and the subdivision is
 //! exact: an open set of lines meets no face if and only if it passes portals wherever it leaves a cell.
 //!
 //! # Dimension
-//! Everything is generic over the dimension `D`, which has to be 2 or 3. It is told apart when the
-//! code is compiled: a plan is not lifted into space in order to be cut.
+//! Everything is generic over the dimension `D`, which has to be 2 or 3. The dimension is fixed at
+//! compile time: a plan is not lifted into space in order to be cut.
 //!
 //! # Source
 //! Teller and Séquin, "Visibility preprocessing for interactive walkthroughs", SIGGRAPH 1991, for the
@@ -54,7 +56,3 @@ pub use portals::AxialPortal;
 pub use scene::{SceneCutter, SceneOptions, SceneSubdivision, SceneSummary, subdivide_scene};
 pub use scene_faces::{SceneFaces, default_detail_below, scene_faces};
 pub use tree::{AxialCell, AxialNode, AxialTree};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,10 +1,12 @@
-//! Multifocal buffers on the CPU.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the [`Reference`], which is the definition of what every backend's buffers are bounded by;
-//! fields of what is nearest to texels ([`fields`]).
-//! Does not know: scenes, cells, files, devices.
-//! Invariants: the reference decides and measures in exact arithmetic, without any rounding but the last, down to a
-//! whole number of units; nobody tunes it.
+//! # Scope
+//!
+//! - **Owns**: the [`Reference`], which defines the bound for every backend's buffers; nearest-feature fields of texels
+//!   ([`fields`]).
+//! - **Out of scope**: scenes, cells, files, devices.
+//! - **Invariants**: the reference decides and measures in exact arithmetic; only the result is rounded, down to a
+//!   whole number of units; it is not tuned.
 
 pub mod fast;
 pub mod fields;
@@ -12,7 +14,3 @@ pub mod reference;
 
 pub use fast::Fast;
 pub use reference::Reference;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

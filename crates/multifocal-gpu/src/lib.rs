@@ -1,11 +1,13 @@
-//! Multifocal buffers filled by a GPU.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the device and what runs on it ([`Gpu`]), the backend in three ways ([`GpuBackend`], [`Way`]), jobs in flight
-//! ([`Ticket`]), and results that stay on the device ([`Values`]) with what can be done there.
-//! A backend that takes over when the device fails: [`WithFallback`](sightlines_multifocal::WithFallback).
-//! Does not know: how occluders become integers (`multifocal` does), what the shaders say (`shaders`), windows, files.
-//! Invariants: [`Way::Compute`] and [`Way::Raster`] have the bits that the integer form says, on any device; nothing
-//! but [`Gpu::open`] and the blocking calls named so waits for a device; no error of a device is a panic.
+//! # Scope
+//!
+//! - **Owns**: the device and what runs on it ([`Gpu`]), the backend with three pipelines ([`GpuBackend`], [`Way`]), jobs in flight
+//!   ([`Ticket`]), and results that stay on the device ([`Values`]) with what can be done there.
+//!   A backend that takes over when the device fails: [`WithFallback`](sightlines_multifocal::WithFallback).
+//! - **Out of scope**: how occluders become integers (`multifocal`), the shader sources (`shaders`), windows, files.
+//! - **Invariants**: [`Way::Compute`] and [`Way::Raster`] have the bits that the integer form says, on any device; nothing
+//!   but [`Gpu::open`] and the blocking calls named so waits for a device; no error of a device is a panic.
 
 mod backend;
 mod context;
@@ -26,7 +28,3 @@ pub use jobs::Ticket;
 pub use open::OpenError;
 pub use pack::PlaneForms;
 pub use wgpu;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

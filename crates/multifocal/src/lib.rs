@@ -1,18 +1,17 @@
-//! What is hidden from a whole volume of viewpoints: multifocal buffers.
+#![doc = include_str!("../README.md")]
 //!
-//! A multifocal buffer lies on a plane behind a scene. For each of its texels it says how far in front of it
-//! everything is surely blocked, whatever eye of the volume looks there; what lies behind that is hidden from the
-//! whole volume.
+//! # Scope
 //!
-//! Owns: the view volume ([`Volume`]), the planes with their texels ([`Plane`]), what hides ([`Occluder`]), what is
-//! compared ([`Measure`]), buffers ([`Buffer`]) and the jobs that fill them ([`Job`]), the contract of those who do
-//! ([`MultifocalBackend`]), and that of all methods that answer for a volume ([`FromRegion`], [`Umbra`]).
-//! Does not know: how buffers are filled, threads, devices, cells, files.
-//! Invariants: everything errs towards visible; conditions are decided by exact predicates, or by integers that were
-//! rounded towards visible; nothing compares with an epsilon.
+//! - **Owns**: the view volume ([`Volume`]), the planes with their texels ([`Plane`]), occluders ([`Occluder`]), what is
+//!   compared ([`Measure`]), buffers ([`Buffer`]) and the jobs that fill them ([`Job`]), the contract of backends
+//!   ([`MultifocalBackend`]) and of from-region methods ([`FromRegion`], [`Umbra`]).
+//! - **Out of scope**: how buffers are filled, threads, devices, cells, files.
+//! - **Invariants**: everything errs towards visible; conditions are decided by exact predicates, or by integers that were
+//!   rounded towards visible; nothing compares with an epsilon.
 //!
-//! Source: Marsden, "Visibility Determination Using a Multifocal z-Buffer", 2002, with the corrections that
-//! make it conservative, given where they matter.
+//! # Source
+//! Marsden, "Visibility Determination Using a Multifocal z-Buffer", 2002, with the corrections that
+//! make it conservative, described where they matter.
 
 pub mod adaptive;
 pub mod backend;

@@ -1,11 +1,13 @@
-//! Small visibility tables with random access: a file that a run-time asks piece by piece.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the coding of rows ([`Distinct`], blocks through zstd), merging within a budget ([`PackOptions`]), the byte
-//! [`format`](mod@format), reading on demand ([`Packed`]), the coarse table to fall back on.
-//! Does not know: how a table was made, cones and eyes, threads of its own, paths of files.
-//! Invariants: without a budget a table comes back exactly; with one, everything that was visible still is.
-//! Bytes that are not what was written are errors, never a panic, and never ask for memory that neither the
-//! length of the file nor a stated limit justifies. Same table and options, same bytes.
+//! # Scope
+//!
+//! - **Owns**: the coding of rows ([`Distinct`], blocks through zstd), merging within a budget ([`PackOptions`]), the byte
+//!   [`format`](mod@format), reading on demand ([`Packed`]), the coarse table to fall back on.
+//! - **Out of scope**: how a table was made, cones and eyes, threads of its own, paths of files.
+//! - **Invariants**: without a budget a table comes back exactly; with one, everything visible stays visible.
+//!   Damaged bytes are errors, never a panic, and never claim memory that neither the
+//!   length of the file nor a stated limit justifies. Same table and options, same bytes.
 //!
 //! # Why positional reads and no map
 //! A file could be mapped into memory and left to the system's page cache. This crate reads at positions
@@ -42,7 +44,3 @@ pub use packed::Packed;
 pub use query::{ExitVisitor, StabNode};
 pub use sizes::PartSize;
 pub use source::Source;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,12 +1,13 @@
-//! Run-time table: which cells can be seen from which.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: [`CellId`], the rows of bits ([`BitMatrix`]), point location ([`Locator`], [`PlaneTree`]), stab
-//! trees as they are kept ([`StabTrees`]), the checked [`Table`] of all this, its byte format
-//! ([`format`](mod@format)).
-//! Does not know: how the table was made, walls, files, threads. A game ships this crate alone.
-//! Invariants: ids are dense from 0; every cell sees itself; who is seen sees; every point of a cell is
-//! located in it; answers err towards "visible". Bytes that are not exactly what was written never
-//! become a table, and never a panic.
+//! # Scope
+//!
+//! - **Owns**: [`CellId`] and the other ids, the rows of bits ([`BitMatrix`]), point location ([`Locator`],
+//!   [`PlaneTree`]), stored stab trees ([`StabTrees`]), the validated [`Table`] of all this, its byte format
+//!   ([`format`](mod@format)).
+//! - **Out of scope**: how the table was made, walls, files, threads. A game ships this crate alone.
+//! - **Invariants**: ids are dense from 0; every cell sees itself; visibility is symmetric; every point of a cell is
+//!   located in it; answers err towards visible. Damaged bytes never become a table, and never cause a panic.
 
 #![forbid(unsafe_code)]
 
@@ -33,7 +34,3 @@ pub use set::CellSet;
 pub use side::polygon_may_contain;
 pub use stab::{StabError, StabParts, StabTrees};
 pub use table::Table;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,14 +1,16 @@
-//! Pictures, exports and numbers of visibility tables.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the drawing of cells and of what is seen in them, as a plan ([`plan_svg`]), as a floor plan of a
-//! scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`], [`svg_to_png`]); the JSON export
-//! ([`export_json`]); the numbers that sum a table up ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]);
-//! pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]);
-//! pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]);
-//! pictures of soft shadows ([`light_png`]).
-//! Does not know: how a table was made, files, how the numbers are worded.
-//! Invariants: a table is only looked at, and what is shown is what it says; the same table and options
-//! give the same bytes on every machine; pictures of tables have no text, so they need no fonts.
+//! # Scope
+//!
+//! - **Owns**: drawings of cells and of what is visible, as a plan ([`plan_svg`]), as a floor plan of a
+//!   scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`], [`svg_to_png`]); the JSON export
+//!   ([`export_json`]); summary numbers of a table ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]);
+//!   pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]);
+//!   pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]);
+//!   pictures of soft shadows ([`light_png`]).
+//! - **Out of scope**: how a table was made, files, how the numbers are worded.
+//! - **Invariants**: a table is only read, and pictures show only what it contains; the same table and options
+//!   give the same bytes on every machine; pictures of tables have no text, so they need no fonts.
 
 mod draw;
 mod export;
@@ -35,7 +37,3 @@ pub use png::{PngError, svg_to_png};
 pub use share::ViewerShare;
 pub use summary::Summary;
 pub use walk::{WalkBar, walk_svg};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

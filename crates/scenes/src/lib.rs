@@ -1,13 +1,12 @@
-//! Deterministic generators of scenes: offices, mazes, pillared halls, Doom-like maps, the degenerate
-//! families that a subdivision has to survive, and in space furnished office towers, cities of boxes, rectangles that
-//! hide boxes, worlds of convex cells, cut as the compilers of maps cut them, and triangles that are hard to draw in
-//! order.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the generators, their options, their source of chance.
-//! Does not know: sightlines, files; cells only where a scene is made of them.
-//! Invariants: the same options give the same bytes on every machine (integers only until the last
-//! step, which divides by a power of two); a plan is closed by an outer wall unless its description
-//! says otherwise; meshes are closed and face outwards; bad options give an error, never a panic.
+//! # Scope
+//!
+//! - **Owns**: the generators, their options and their random numbers.
+//! - **Out of scope**: sight lines and files; cells, except in generators that produce worlds of cells.
+//! - **Invariants**: the same options give the same bytes on every machine (integers only until the last
+//!   step, which divides by a power of two); a plan is closed by an outer wall unless its description
+//!   says otherwise; meshes are closed and face outwards; bad options give an error, never a panic.
 
 #[cfg(test)]
 mod check;
@@ -39,7 +38,3 @@ pub use surfaces::{
 };
 pub use tower::{TowerOptions, TowerRoom, tower, tower_rooms};
 pub use world::{BspWorldOptions, QuakeLikeOptions, World, bsp_world, quake_like};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,13 +1,15 @@
-//! Stabbing lines: is there a line through a sequence of oriented portals, and which?
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the [`Stabber`] contract that a search drives, the planar [`Funnel`] (exact, incremental), the
-//! proofs of its answers ([`PlanarWitness`], [`PlanarCertificate`]) with checkers that share no code with it; the same
-//! for axis-aligned rectangles in space ([`AxialStabber`], [`AxialWitness`], [`AxialCertificate`]) and for convex
-//! polygons ([`ConvexStabber`], [`Line3`], [`ConvexCertificate`]); and the first two questions as linear
-//! programs ([`lp`]), for reference.
-//! Does not know: cells, graphs, tables, files.
-//! Invariants: every decision is exact for the coordinates given; a sequence that an open set of lines
-//! passes is never called blocked, and one that only grazing lines pass is never called open.
+//! # Scope
+//!
+//! - **Owns**: the [`Stabber`] contract that a search drives, the planar [`Funnel`] (exact, incremental), the
+//!   proofs of its answers ([`PlanarWitness`], [`PlanarCertificate`]) with checkers that share no code with it; the same
+//!   for axis-aligned rectangles in space ([`AxialStabber`], [`AxialWitness`], [`AxialCertificate`]) and for convex
+//!   polygons ([`ConvexStabber`], [`Line3`], [`ConvexCertificate`]); and the first two questions as linear
+//!   programs ([`lp`]), for reference.
+//! - **Out of scope**: cells, graphs, tables, files.
+//! - **Invariants**: every decision is exact for the coordinates given; a sequence that an open set of lines
+//!   passes is never reported blocked, and one that only grazing lines pass is never reported open.
 //!
 //! Portals are open segments or rectangles and walls are closed, so a line that only touches an end or an
 //! edge of a portal does not count.
@@ -32,10 +34,6 @@ pub use convex::{
 };
 pub use planar::{End, Funnel, FunnelUndo, PlanarCertificate, PlanarWitness, Stabbing2, stabbing_line};
 pub use stabber::Stabber;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;
 
 /// What is wrong with a sequence of portals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

@@ -1,12 +1,12 @@
-//! Visibility for scenes: cells, portals, sightlines and the tables they make, under one name.
+#![cfg_attr(
+    any(not(doctest), all(feature = "bake", feature = "cells", feature = "geometry")),
+    doc = include_str!("../README.md")
+)]
 //!
-//! Owns: nothing. Each module is a crate of its own, `sightlines-<module>`, behind a feature of the same
-//! name; all are on by default.
-//! Does not know: anything that those crates do not. There is no logic here.
-//! Invariants: the crates under one version of this one fit together.
+//! # Scope
 //!
-//! A game that only asks tables needs the crate `sightlines-pvs` alone, which depends on nothing that
-//! bakes them.
+//! This crate contains no logic: each module is another crate, re-exported behind a feature. Crates of the same version
+//! as this one fit together.
 
 #[cfg(feature = "area-light")]
 pub use sightlines_area_light as area_light;
@@ -56,7 +56,3 @@ pub use sightlines_verify as verify;
 pub use sightlines_visible_surface as visible_surface;
 #[cfg(feature = "walkthrough")]
 pub use sightlines_walkthrough as walkthrough;
-
-#[cfg(all(doctest, feature = "bake", feature = "cells", feature = "geometry"))]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,11 +1,15 @@
-//! Fewer triangles for a volume of viewpoints: what intercepts no visible ray goes, what intercepts few goes within a budget.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: how much of the view a triangle can take up, as a proven upper bound ([`Intercepts`]) and as an estimate by rays
-//! ([`Estimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table ([`levels()`]); the measurement of
-//! what a simplified scene changes ([`measure`]); the ordinary geometric metric, to compare with ([`geometric`]).
-//! Does not know: how hidden things are proven (a [`FromRegion`](sightlines_multifocal::FromRegion) method or a table says so), files.
-//! Invariants: for every eye in the closed boxes of [`Views`] that lies on no surface, the share of the sphere of directions in which the first surface met
-//! is another one than before is at most [`Simplified::bound`], which is at most the budget; with a budget of 0 it is none.
+//! # Scope
+//!
+//! - **Owns**: the share of the view that a triangle can cover, as a proven upper bound ([`Intercepts`]) and as an
+//!   estimate by rays ([`Estimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table
+//!   ([`levels()`]); the measurement of the change ([`measure`]); the ordinary geometric metric, for comparison
+//!   ([`geometric`]).
+//! - **Out of scope**: how hidden things are proven (a [`FromRegion`](sightlines_multifocal::FromRegion) method or a table says so), files.
+//! - **Invariants**: for every eye in the closed boxes of [`Views`] that lies on no surface, the share of the sphere of
+//!   directions in which the first surface met changes is at most [`Simplified::bound`], which is at most the budget;
+//!   with a budget of 0 nothing changes.
 //!
 //! # The promise
 //! Let a direction's first hit be the face that its ray from the eye meets first. Faces are kept, taken away, or put in. If
@@ -47,7 +51,3 @@ pub use options::{OptionsError, SimplifyOptions};
 pub use simplified::{Counts, Simplified};
 pub use simplify::{Prepared, SimplifyError, simplify};
 pub use views::{View, Views, ViewsError};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,18 +1,19 @@
-//! Cell-to-cell visibility: a depth-first search over portals, driven by a stabber; and, in space, pairs of
-//! boxes, driven by what stands between them.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: [`visible_zones`] (which cells, or groups of cells, see each other, by portal sequences),
-//! [`space_visibility`] (the same for boxes in space, and for objects, by what stands between them), [`LiveSpace`] (that answer
-//! kept up to date while walls and objects change), [`box_visibility`] (what boxes see that are no cells),
-//! [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
-//! [`StabTree`] (every stabbable portal sequence out of one cell), [`stab_trees`] (those out of all cells, in one graph,
-//! up to a limit), [`explain`](fn@explain),
-//! [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none), [`certify_plan`],
-//! [`certify_space`] and [`certify_convex`] (proofs of all rows of a table).
-//! Does not know: files, tables, how cells were cut. The search over sequences is generic over the
-//! [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
-//! Invariants: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and
-//! does not depend on the number of threads or on which hints a caller gives.
+//! # Scope
+//!
+//! - **Owns**: [`visible_zones`] (which cells, or groups of cells, see each other, by portal sequences),
+//!   [`space_visibility`] (the same for boxes in space, and for objects, by the walls between them), [`LiveSpace`] (that answer
+//!   kept up to date while walls and objects change), [`box_visibility`] (from-region queries for boxes that are no cells),
+//!   [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
+//!   [`StabTree`] (every stabbable portal sequence out of one cell), [`stab_trees`] (those out of all cells, in one graph,
+//!   up to a limit), [`explain`](fn@explain),
+//!   [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none), [`certify_plan`],
+//!   [`certify_space`] and [`certify_convex`] (proofs of all rows of a table).
+//! - **Out of scope**: files, tables, how cells were cut. The search over sequences is generic over the
+//!   [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
+//! - **Invariants**: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and
+//!   does not depend on the number of threads or on which hints a caller gives.
 
 mod certify;
 mod chords;
@@ -47,10 +48,6 @@ use sightlines_cells::{CellGraph, Planar};
 use sightlines_geometry::Adaptive;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Funnel;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;
 
 /// Which zones of a planar graph see each other: chords first, then the exact search.
 ///

@@ -1,12 +1,14 @@
-//! Oracles and proptest strategies for the tests of `sightlines`; not published.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
-//! [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`], [`eye_fan`]), what a
-//! point among boxes sees ([`directions_among_boxes`]), sampled lower bounds (from a volume: [`hidden_by_sampling`]), what is known of worlds of convex
-//! cells ([`convex`]), and strategies that draw from small grids.
-//! Does not know: how the real code works; an oracle that shares a method with it proves nothing.
-//! Invariants: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
-//! space are traced in doubles, and what is sampled with them stands clear of rounding.
+//! # Scope
+//!
+//! - **Owns**: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
+//!   [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`], [`eye_fan`]), what a
+//!   point among boxes sees ([`directions_among_boxes`]), sampled lower bounds (from a volume: [`hidden_by_sampling`]), what is known of worlds of convex
+//!   cells ([`convex`]), and strategies that draw from small grids.
+//! - **Out of scope**: the code under test; an oracle that shares a method with it proves nothing.
+//! - **Invariants**: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
+//!   space are traced in doubles, and what is sampled with them stands clear of rounding.
 //!
 //! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
 //! the errors of what makes them.
@@ -58,7 +60,3 @@ pub fn draw<S: Strategy>(strategy: &S, n: usize) -> Vec<S::Value> {
     let mut one = || strategy.new_tree(&mut runner).expect("the strategy rejects little").current();
     (0..n).map(|_| one()).collect()
 }
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

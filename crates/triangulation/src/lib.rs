@@ -1,13 +1,15 @@
-//! Convex cells for plans whose walls run in any direction.
+#![doc = include_str!("../README.md")]
+//!
+//! # Scope
+//!
+//! - **Owns**: the way from a [`Plan`] to a [`CellGraph`] by triangulation.
+//! - **Out of scope**: sight lines, tables, files, the k-d tree.
+//! - **Invariants**: every piece of an opaque line that was not given up lies on cell boundaries and under no
+//!   portal; every other cell side towards a neighbour is a portal; no wall is invented.
 //!
 //! The lines of a plan are cut where they meet ([`noding`]), a constrained Delaunay triangulation (the
 //! `spade` crate) fills the plane between them, the groups that lines name are spread over the regions
 //! they bound (`regions`), and triangles are merged into convex cells (`merge`).
-//!
-//! Owns: the way from a [`Plan`] to a [`CellGraph`] by triangulation.
-//! Does not know: sightlines, tables, files, the k-d tree.
-//! Invariants: every piece of an opaque line that was not given up lies on cell boundaries and under no
-//! portal; every other cell side towards a neighbour is a portal; no wall is invented.
 //!
 //! # On which side it errs
 //! All end points are input points and all predicates are exact, so plans whose lines meet only in
@@ -23,10 +25,6 @@ mod regions;
 
 use sightlines_cells::{CellGraph, Plan, Planar};
 use sightlines_geometry::Point2;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;
 
 /// Why a plan could not be cut.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

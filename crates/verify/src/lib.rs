@@ -1,12 +1,14 @@
-//! Is a table true to its scene? Structure, rays against the real geometry, proofs.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the checks of a table ([`verify`]) against what is really there ([`Truth`]), and what they find
-//! ([`Findings`]) as [`Violation`]s with the segment that shows them; the comparison of a table with its proofs ([`check_proofs`]), and
-//! of its walls with the scene ([`check_walls_of_plan`], [`check_walls_in_space`]).
-//! Does not know: how tables are made (no code is shared with cutting, seeing or baking), files, pictures.
-//! Invariants: a violation that names a segment is proven, by exact signs or by margins that are wider than
-//! what the scene leaves open; so a true table has none. The same table, scene and options give the same findings, with any
-//! number of threads. Rays that find nothing prove nothing.
+//! # Scope
+//!
+//! - **Owns**: the checks of a table ([`verify`]) against the real geometry ([`Truth`]), and their results
+//!   ([`Findings`]) as [`Violation`]s with the segment that shows them; the comparison of a table with its proofs
+//!   ([`check_proofs`]), and of its walls with the scene ([`check_walls_of_plan`], [`check_walls_in_space`]).
+//! - **Out of scope**: how tables are made (no code is shared with cutting, searching or baking), files, pictures.
+//! - **Invariants**: a violation that names a segment is proven, by exact signs or by margins that are wider than
+//!   the uncertainty of the scene; so a correct table has none. The same table, scene and options give the same findings, with any
+//!   number of threads. Rays that find nothing prove nothing.
 //!
 //! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
 //! the errors of what makes them.
@@ -46,7 +48,3 @@ pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions) -> Resu
     pool.install(|| rays::check(table, truth, options, &mut findings));
     Ok(findings)
 }
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,12 +1,15 @@
-//! What one eye sees: every classical method, side by side, with exact decisions.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: faces and cameras; back-face and view-volume culling; the painter, Newell, Schumacker and BSP methods, which order faces and split them
-//! where they must; the z-buffer and the ray caster; the comparison of their pictures.
-//! Does not know: tables of what is visible (who has one says which faces may be drawn), files, colours.
-//! Invariants: which pixels a face covers, which of two faces is nearer at a pixel, and on which side of a plane a fragment lies
-//! are signs of polynomials in input coordinates, computed exactly; so all exact methods show the same face in every pixel, but for
-//! those where two faces that are not in one plane are met first at the same depth, exactly: on the line in which they pass through each other, or on an
-//! edge that they share. There either may be shown. Same input, same picture.
+//! # Scope
+//!
+//! - **Owns**: faces and cameras; back-face and frustum culling; the painter, Newell, Schumacker and BSP methods, which
+//!   order faces and split them where they must; the z-buffer and the ray caster; the comparison of their pictures.
+//! - **Out of scope**: visibility tables (a caller that has one passes the faces to draw), files, colours.
+//! - **Invariants**: which pixels a face covers, which of two faces is nearer at a pixel, and on which side of a plane
+//!   a fragment lies are signs of polynomials in input coordinates, computed exactly. So all exact methods show the
+//!   same face in every pixel, except where two faces of different planes are met first at exactly one depth: on the
+//!   line where they intersect, or on an edge that they share. There either may be shown. The same input gives the same
+//!   picture.
 
 pub mod any_order;
 pub mod bsp;
@@ -47,7 +50,3 @@ pub use plane::Plane;
 pub use raycast::{RayCaster, Rays};
 pub use schumacker::{Schumacker, SchumackerOptions, SchumackerStats};
 pub use zbuffer::{DepthFormat, ZBuffer};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,13 +1,15 @@
-//! Following a viewer through a scene: what to draw in each frame, prepared before he arrives.
+#![doc = include_str!("../README.md")]
 //!
-//! Owns: the frame loop's side of a table ([`Walkthrough`]): the last answer and the last outlooks are used again, the
-//! next ones are prepared on another thread ([`Prefetcher`]) along the way that the viewer seems to take, within a
-//! budget of bytes; doors that open and close; tables that are replaced on the way; moving objects that cost nothing while they are hidden
-//! ([`Movers`]); simplified levels of the scene for the cells that the viewer is in ([`Levels`]).
-//! Does not know: how visibility is decided (`eye-to-cell`), how tables are stored (`packed`, `pvs`), files, drawing.
-//! Invariants: a frame never waits, neither for the thread nor for a lock; an answer that comes before everything is prepared is a
-//! superset; a mover that keeps its promises is never missed; a level that has not come, or is not for all of the viewer's cells, is the
-//! original; an eye outside every cell sees everything.
+//! # Scope
+//!
+//! - **Owns**: the frame loop's side of a table ([`Walkthrough`]): the last answer is reused, and the data of the next
+//!   cells is prepared on another thread ([`Prefetcher`]) along the predicted path of the eye, within a byte budget;
+//!   doors that open and close; tables that are replaced at run time; moving objects that cost nothing while they are
+//!   hidden ([`Movers`]); simplified levels of the scene for the cells of the eye ([`Levels`]).
+//! - **Out of scope**: how visibility is decided (`eye-to-cell`), how tables are stored (`packed`, `pvs`), files, drawing.
+//! - **Invariants**: a frame never waits, neither for the thread nor for a lock; an answer given before everything is
+//!   prepared is a superset; a mover that keeps its promises is never missed; where a level has not arrived, or is not
+//!   for all cells of the eye, the original is drawn; an eye outside every cell sees everything.
 
 #![forbid(unsafe_code)]
 
@@ -33,7 +35,3 @@ pub use prefetch::{Prefetcher, Prepare};
 pub use resident::Resident;
 pub use walkthrough::{Answer, Frame, WalkCounters, WalkOptions, Walkthrough};
 pub use wander::{Stand, wander};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;
