@@ -3,7 +3,7 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use sightlines::geometry::{Point3, Portal3};
-use sightlines::sightline::{ConvexStabber, StabLimits, Stabbing3};
+use sightlines::sightline::{ConvexStabber, StabLimits, Verdict};
 
 fn main() {
     divan::main();
@@ -52,15 +52,15 @@ fn of_answer(n: usize, visible: bool) -> Vec<Vec<Portal3>> {
     sequences.retain(|portals| {
         let portals: Vec<&Portal3> = portals.iter().collect();
         match stabber.stab(&portals, None) {
-            Stabbing3::Visible(line) => {
+            Verdict::Visible(line) => {
                 assert!(portals.iter().all(|p| line.passes(p)));
                 visible
             }
-            Stabbing3::Hidden(proof) => {
-                assert!(proof.check(&portals));
+            Verdict::Hidden(proof) => {
+                assert!(proof.holds(&portals));
                 !visible
             }
-            Stabbing3::Undecided => panic!("a random sequence is undecided"),
+            Verdict::Undecided(_) => panic!("a random sequence is undecided"),
         }
     });
     assert!(sequences.len() >= 20, "{} of {n} portals", sequences.len());
@@ -72,7 +72,7 @@ fn bench(bencher: Bencher<'_, '_>, n: usize, visible: bool) {
     let sequences: Vec<Vec<&Portal3>> = sequences.iter().map(|s| s.iter().collect()).collect();
     let mut stabber = ConvexStabber::new(StabLimits::default());
     bencher.counter(ItemsCount::new(sequences.len())).bench_local(move || {
-        sequences.iter().filter(|s| matches!(stabber.stab(black_box(s), None), Stabbing3::Visible(_))).count()
+        sequences.iter().filter(|s| matches!(stabber.stab(black_box(s), None), Verdict::Visible(_))).count()
     });
 }
 

@@ -5,7 +5,7 @@
 //! sequence may look for another one: `stability --show METHOD` prints them.
 
 use sightlines::geometry::{Aabb, AxialDoor, Point2, Portal2, Portal3};
-use sightlines::sightline::{ConvexStabber, StabLimits, Stabbing3};
+use sightlines::sightline::{ConvexStabber, StabLimits, Verdict};
 use sightlines_lab::stability::sweep::caught;
 use sightlines_lab::stability::{Answer, Decide, Kind, axial, convex, plane};
 use sightlines_testkit::axial_stabbable_brute_force;
@@ -68,7 +68,7 @@ fn convex_portals_that_were_hidden_wrongly() {
         let portals: Vec<Portal3> = portals.iter().map(|p| Portal3::of_corners(p.to_vec()).unwrap()).collect();
         let refs: Vec<&Portal3> = portals.iter().collect();
         // A line that has every edge on its inner side, exactly, is proof enough.
-        let Stabbing3::Visible(line) = ConvexStabber::new(StabLimits::default()).stab(&refs, None) else {
+        let Verdict::Visible(line) = ConvexStabber::new(StabLimits::default()).stab(&refs, None) else {
             panic!("no line for what was found with {names:?}")
         };
         assert!(portals.iter().all(|portal| line.passes(portal)), "{names:?}");

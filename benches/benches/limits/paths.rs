@@ -18,7 +18,7 @@ use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::surfaces::{self, SurfaceOptions};
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, doom_like, office, tower, tower_rooms};
-use sightlines::sightline::{AxialStabber, ConvexStabber, Funnel, StabLimits, Stabber, Stabbing3};
+use sightlines::sightline::{AxialStabber, ConvexStabber, Funnel, StabLimits, Stabber, Verdict};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, SearchOptions};
 use sightlines::visible_surface::{Camera, Chosen, DepthFormat, Faces, RayCaster, Shot, VisibleSurface, ZBuffer};
 use sightlines::walkthrough::wander;
@@ -117,7 +117,7 @@ fn push_convex(rates: &Rates) -> Path {
     let portals: Vec<Portal3> = (0..6).map(square).collect();
     let portals: Vec<&Portal3> = portals.iter().collect();
     let mut stabber = ConvexStabber::new(StabLimits::default());
-    assert!(matches!(stabber.stab(&portals, None), Stabbing3::Visible(_)), "squares in a row are open");
+    assert!(matches!(stabber.stab(&portals, None), Verdict::Visible(_)), "squares in a row are open");
     let seconds = least(|| {
         black_box(stabber.stab(black_box(&portals), None));
     });

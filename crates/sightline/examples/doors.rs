@@ -4,7 +4,7 @@
 
 use sightlines_geometry::{Adaptive, Point2, Portal2};
 use sightlines_sightline::lp::{LpAnswer, stab};
-use sightlines_sightline::{End, Funnel, PlanarCertificate, PlanarWitness, SightlineError, Stabbing2, stabbing_line};
+use sightlines_sightline::{End, Funnel, PlanarCertificate, PlanarWitness, SightlineError, Verdict, stabbing_line};
 
 /// A door across a corridor that runs towards +x, from `low` to `high`.
 fn door(x: f64, low: f64, high: f64) -> Portal2 {
@@ -37,8 +37,8 @@ fn print_proof(proof: &PlanarCertificate, doors: &[Portal2]) {
 fn explain(doors: &[Portal2]) -> Result<(), SightlineError> {
     match stabbing_line(doors)? {
         None => println!("  no doors, nothing to pass"),
-        Some(Stabbing2::Visible(line)) => print_witness(&line, doors),
-        Some(Stabbing2::Blocked(proof)) => print_proof(&proof, doors),
+        Some(Verdict::Visible(line)) => print_witness(&line, doors),
+        Some(Verdict::Hidden(proof)) => print_proof(&proof, doors),
     }
     match stab(doors) {
         LpAnswer::Open { margin } => println!("  the linear program agrees, with a margin of {margin:.3}"),

@@ -19,21 +19,23 @@ pub mod convex;
 pub mod lp;
 pub mod planar;
 mod stabber;
+mod verdict;
 
 pub use axial::shaft::{
     BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, FreeLine, FreeSpan, ProofSize, Shaft,
-    ShaftCounters, Sight, Target,
+    ShaftCounters, ShaftVerdict, Target,
 };
 pub use axial::{
-    AxialCertificate, AxialCounters, AxialRow, AxialStabber, AxialUndo, AxialWitness, OctantProof, StabbingAxial,
+    AxialCertificate, AxialCounters, AxialRow, AxialStabber, AxialUndo, AxialVerdict, AxialWitness, OctantProof,
     stabbing_line_axial,
 };
 pub use convex::{
-    Block, BoxProof, ConvexCertificate, ConvexCounters, ConvexNode, ConvexStabber, ConvexTerm, Line3, PlaneProof,
-    StabLimits, Stabbing3,
+    Block, BoxProof, ConvexCertificate, ConvexCounters, ConvexNode, ConvexSequence, ConvexStabber, ConvexTerm,
+    ConvexUndo, ConvexVerdict, Line3, PlaneProof, StabLimits,
 };
-pub use planar::{End, Funnel, FunnelUndo, PlanarCertificate, PlanarWitness, Stabbing2, stabbing_line};
-pub use stabber::Stabber;
+pub use planar::{End, Funnel, FunnelUndo, PlanarCertificate, PlanarVerdict, PlanarWitness, stabbing_line};
+pub use stabber::{Proof, Stabber, Witness};
+pub use verdict::{LimitReached, Verdict};
 
 /// What is wrong with a sequence of portals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

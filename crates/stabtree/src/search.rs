@@ -183,7 +183,7 @@ impl Front {
             return front;
         }
         for &exit in network.sources.iter().flatten() {
-            let portal = network.steps[exit as usize].portal;
+            let portal = &network.steps[exit as usize].portal;
             front.row_of[exit as usize] = (front.rows.len() / width) as u32;
             let word = |chunk: &[S::Bounds]| {
                 let bit = |(i, b)| u64::from(stabber.in_front(portal, b)) << i;
@@ -212,7 +212,7 @@ struct Shared<'a, P, B> {
     done: AtomicUsize,
 }
 
-impl<'a, P: Copy, B> Shared<'a, P, B> {
+impl<'a, P: Clone, B> Shared<'a, P, B> {
     fn new<S>(network: &'a Network<P, B>, stabber: &S, known: &VisibilityBounds) -> Self
     where
         S: Stabber<Portal = P, Bounds = B>,
@@ -329,7 +329,7 @@ impl<'a, S: Stabber> Worker<'a, S> {
             }
         }
         let all = (0, self.arena.len() as u32);
-        self.stabber.start(step.portal);
+        self.stabber.start(step.portal.clone());
         self.summary.n_pushes += 1;
         self.enter(exit, zone, all, None);
         while let Some(frame) = self.stack.last_mut() {
@@ -344,7 +344,7 @@ impl<'a, S: Stabber> Worker<'a, S> {
                 continue;
             }
             self.summary.n_pushes += 1;
-            if let Some(undo) = self.stabber.push(step.portal) {
+            if let Some(undo) = self.stabber.push(step.portal.clone()) {
                 let (zone, candidates) = (frame.zone, frame.candidates);
                 if !self.enter(exit, zone, candidates, Some(undo)) {
                     self.stabber.undo(undo);

@@ -2,8 +2,9 @@
 
 use super::clock::Start;
 use sightlines::geometry::{Aabb, Adaptive, AxialDoor, Orient2d, Point2, Portal2};
-use sightlines::sightline::Stabber;
 use sightlines::sightline::lp::{self, LpAnswer};
+use sightlines::sightline::{LimitReached, Stabber, Verdict};
+use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
@@ -59,6 +60,9 @@ impl<P: Programmed> Stabber for ByProgram<P> {
     type Portal = P;
     type Bounds = P::Bounds;
     type Undo = ();
+    type Line = Infallible;
+    type Proof = Infallible;
+    type Doubt = LimitReached;
 
     fn start(&mut self, portal: P) {
         self.0.clear();
@@ -84,8 +88,17 @@ impl<P: Programmed> Stabber for ByProgram<P> {
         true
     }
 
-    fn in_front(&self, portal: P, bounds: &P::Bounds) -> bool {
+    fn in_front(&self, portal: &P, bounds: &P::Bounds) -> bool {
         portal.is_before(bounds)
+    }
+
+    /// The program's evidence is in doubles, which is none.
+    fn line(&mut self) -> Option<Infallible> {
+        None
+    }
+
+    fn decide(&mut self, _: &[P]) -> Verdict<Infallible, Infallible, LimitReached> {
+        Verdict::Undecided(LimitReached)
     }
 }
 
@@ -115,6 +128,9 @@ impl<S: Stabber> Stabber for Limited<S> {
     type Portal = S::Portal;
     type Bounds = S::Bounds;
     type Undo = S::Undo;
+    type Line = S::Line;
+    type Proof = S::Proof;
+    type Doubt = S::Doubt;
 
     fn start(&mut self, portal: S::Portal) {
         self.stabber.start(portal);
@@ -144,7 +160,15 @@ impl<S: Stabber> Stabber for Limited<S> {
         self.stabber.meets(bounds)
     }
 
-    fn in_front(&self, portal: S::Portal, bounds: &S::Bounds) -> bool {
+    fn in_front(&self, portal: &S::Portal, bounds: &S::Bounds) -> bool {
         self.stabber.in_front(portal, bounds)
+    }
+
+    fn line(&mut self) -> Option<S::Line> {
+        self.stabber.line()
+    }
+
+    fn decide(&mut self, portals: &[S::Portal]) -> Verdict<S::Line, S::Proof, S::Doubt> {
+        self.stabber.decide(portals)
     }
 }

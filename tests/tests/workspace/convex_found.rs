@@ -4,7 +4,7 @@ use sightlines::cells::{CellGraph, CellId, Convex, Portal3};
 use sightlines::formats::quake::graph_of_prt;
 use sightlines::formats::quake::prt::parse_prt;
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
-use sightlines::sightline::{Line3, convex};
+use sightlines::sightline::{Line3, Verdict, convex};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, ConvexVisibility};
 
 /// A cut leaves a speck of a portal; a later beam through the whole of it is not within that speck.
@@ -74,7 +74,7 @@ fn chain(graph: &CellGraph<Convex>, cells: &[u32]) -> Vec<Portal3> {
 fn a_beam_is_not_within_a_speck() {
     let graph = graph(WITHIN);
     let way = chain(&graph, &[2, 1, 4, 3, 0]);
-    let convex::Stabbing3::Visible(line) = convex::stab(&way.iter().collect::<Vec<_>>()) else { panic!("no line") };
+    let Verdict::Visible(line) = convex::stab(&way.iter().collect::<Vec<_>>()) else { panic!("no line") };
     assert!(way.iter().all(|portal| line.passes(portal)));
     assert!(exact(&graph).cells.get(0, 2));
 }

@@ -11,6 +11,7 @@
 //! Source: the rows are those of Megiddo, US patent 5,481,658 (expired); that such multiples exist
 //! whenever no line passes is Gordan's alternative, and six suffice by Carathéodory's theorem.
 
+use crate::stabber::Proof;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
@@ -131,4 +132,10 @@ fn times(row: &AxialRow, doors: &[AxialDoor], signs: [bool; 3]) -> Option<[(usiz
     // Going towards larger coordinates, an extent is entered by its lower side.
     let side = if row.entering == signs[axis] { door.extent.min[axis] } else { door.extent.max[axis] };
     Some(if row.entering { [(axis, side), plane] } else { [plane, (axis, side)] })
+}
+
+impl Proof<AxialDoor> for AxialCertificate {
+    fn holds(&self, portals: &[AxialDoor]) -> bool {
+        self.holds(portals)
+    }
 }

@@ -40,19 +40,13 @@ pub use certificate::{AxialCertificate, AxialRow, OctantProof};
 pub use stabber::{AxialCounters, AxialStabber, AxialUndo};
 pub use witness::AxialWitness;
 
-use crate::SightlineError;
+use crate::{SightlineError, Verdict};
 use octant::{Decision, SMALL_FIRST, decide};
 use rows::{Octant, ROWS_PER_DOOR, Row, door_rows, is_forward, octants_through, others};
 use sightlines_geometry::{AxialDoor, check_coordinate};
 
-/// The answer for one sequence of axis-aligned doors.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum StabbingAxial {
-    /// An open set of lines passes; here is one of them.
-    Visible(Box<AxialWitness>),
-    /// None does; here is why.
-    Blocked(AxialCertificate),
-}
+/// The answer for one sequence of axis-aligned doors. It is exact.
+pub type AxialVerdict = Verdict<Box<AxialWitness>, AxialCertificate>;
 
 /// Finds a directed line that passes through every one of `doors`, each strictly inside and in its
 /// direction.
@@ -68,16 +62,18 @@ pub enum StabbingAxial {
 ///
 /// # Source
 /// See the [module](self).
-pub fn stabbing_line_axial(doors: &[AxialDoor]) -> Result<Option<StabbingAxial>, SightlineError> {
+pub fn stabbing_line_axial(doors: &[AxialDoor]) -> Result<Option<AxialVerdict>, SightlineError> {
     doors.iter().enumerate().try_for_each(|(i, door)| check(i, door))?;
-    if doors.is_empty() {
-        return Ok(None);
-    }
+    Ok((!doors.is_empty()).then(|| decide_doors(doors)))
+}
+
+/// The verdict about doors with usable coordinates, at least one.
+fn decide_doors(doors: &[AxialDoor]) -> AxialVerdict {
     let crossed =
         |axis: usize, forward: bool| doors.iter().position(|d| usize::from(d.axis) == axis && d.forward == forward);
     let opposed = (0..3).find_map(|axis| Some([crossed(axis, true)?, crossed(axis, false)?]));
     if let Some(pair) = opposed {
-        return Ok(Some(StabbingAxial::Blocked(AxialCertificate::Opposed(pair))));
+        return Verdict::Hidden(AxialCertificate::Opposed(pair));
     }
     let octants = doors.iter().fold(u8::MAX, |o, door| o & octants_through(door));
     let (mut proofs, mut scratch): (Vec<OctantProof>, Vec<Row>) = (Vec::new(), Vec::new());
@@ -88,14 +84,14 @@ pub fn stabbing_line_axial(doors: &[AxialDoor]) -> Result<Option<StabbingAxial>,
         }
         let rows: Vec<Row> = doors.iter().flat_map(|door| door_rows(door, octant)).collect();
         match decide(&rows, octant, SMALL_FIRST, &mut scratch).0 {
-            Decision::Line(line) => return Ok(Some(StabbingAxial::Visible(Box::new(AxialWitness::through(&line))))),
-            Decision::Fractions(witness) => return Ok(Some(StabbingAxial::Visible(witness))),
+            Decision::Line(line) => return Verdict::Visible(Box::new(AxialWitness::through(&line))),
+            Decision::Fractions(witness) => return Verdict::Visible(witness),
             Decision::Blocked(proof) => proofs.push(octant_proof(doors, octant, &rows, &proof)),
         }
     }
     let certificate = certificate(doors, proofs);
     debug_assert!(certificate.holds(doors), "{certificate:?} of {doors:?}");
-    Ok(Some(StabbingAxial::Blocked(certificate)))
+    Verdict::Hidden(certificate)
 }
 
 fn check(i: usize, door: &AxialDoor) -> Result<(), SightlineError> {

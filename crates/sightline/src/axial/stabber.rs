@@ -6,9 +6,11 @@ use super::rows::{
     reaches,
 };
 use super::witness::AxialWitness;
+use super::{AxialCertificate, AxialVerdict, decide_doors};
 use crate::planar::{Funnel, FunnelUndo};
 use crate::stabber::Stabber;
 use sightlines_geometry::{Aabb, Adaptive, AxialDoor, Point2, Portal2};
+use std::convert::Infallible;
 
 /// How often each way of deciding decided a push.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -212,6 +214,9 @@ impl Stabber for AxialStabber {
     type Portal = AxialDoor;
     type Bounds = Aabb<3>;
     type Undo = AxialUndo;
+    type Line = Box<AxialWitness>;
+    type Proof = AxialCertificate;
+    type Doubt = Infallible;
 
     fn start(&mut self, door: AxialDoor) {
         self.doors.clear();
@@ -290,8 +295,17 @@ impl Stabber for AxialStabber {
     }
 
     #[inline]
-    fn in_front(&self, portal: AxialDoor, bounds: &Aabb<3>) -> bool {
+    fn in_front(&self, portal: &AxialDoor, bounds: &Aabb<3>) -> bool {
         let axis = usize::from(portal.axis);
         if portal.forward { bounds.max[axis] > portal.at() } else { bounds.min[axis] < portal.at() }
+    }
+    /// Costs a linear program if no line is at hand.
+    fn line(&mut self) -> Option<Box<AxialWitness>> {
+        Some(Box::new(self.witness()))
+    }
+
+    /// Exact. At most eight small linear programs.
+    fn decide(&mut self, portals: &[AxialDoor]) -> AxialVerdict {
+        decide_doors(portals)
     }
 }

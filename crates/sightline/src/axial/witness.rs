@@ -1,6 +1,7 @@
 //! A line that passes a sequence of doors in space, in fractions.
 
 use super::rows::Line;
+use crate::stabber::Witness;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use sightlines_geometry::AxialDoor;
@@ -86,5 +87,11 @@ impl AxialWitness {
             Some([x?, y?, z?])
         };
         Line::new(round(&first)?, round(&last)?)
+    }
+}
+
+impl Witness<AxialDoor> for Box<AxialWitness> {
+    fn passes(&self, portal: &AxialDoor) -> bool {
+        AxialWitness::passes(self, portal)
     }
 }

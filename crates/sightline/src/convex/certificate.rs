@@ -4,9 +4,11 @@
 //! integer times a power of two, so after two scalings, one for places and one for coordinates of boxes,
 //! there is nothing left to round. Why the proof proves is said in the [module above](super).
 
+use crate::stabber::Proof;
 use num_bigint::BigInt;
 use num_traits::{Signed, Zero};
 use sightlines_geometry::{Point3, Portal3};
+use std::borrow::Borrow;
 
 /// A box in space, not parallel to the axes: its points are `corner + x edges[0] + y edges[1] + z edges[2]`
 /// with coordinates from 0 to 1. These numbers are exact.
@@ -101,7 +103,7 @@ impl ConvexCertificate {
 
     /// Whether it proves that no line passes `portals` in order. Exact; `false` for whatever is damaged.
     /// Cost: 64 sums for each leaf, in integers of some hundred bits.
-    pub fn check(&self, portals: &[&Portal3]) -> bool {
+    pub fn holds(&self, portals: &[&Portal3]) -> bool {
         match self {
             Self::Boxes(proof) => proof.check(portals),
             Self::Plane(proof) => proof.check(portals),
@@ -311,4 +313,10 @@ fn contains_corners([corner, x, y, z]: &[Whole; 4], portal: &Portal3, scales: &S
             let from = minus(&scales.place(p), corner);
             normals.iter().map(|n| scalar(&from, n)).all(|v| !v.is_negative() && v <= volume)
         })
+}
+
+impl<P: Borrow<Portal3>> Proof<P> for ConvexCertificate {
+    fn holds(&self, portals: &[P]) -> bool {
+        self.holds(&portals.iter().map(Borrow::borrow).collect::<Vec<_>>())
+    }
 }

@@ -1,7 +1,9 @@
 //! Lines through two points, and the polygons that they pass.
 
+use crate::stabber::Witness;
 use sightlines_geometry::coordinate::MIN_MAGNITUDE;
 use sightlines_geometry::{Point3, Portal3, check_coordinate, orient3d};
+use std::borrow::Borrow;
 
 /// A directed line, through `a` first and then `b`; a witness when it passes a sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,5 +34,11 @@ impl Line3 {
     #[must_use]
     pub const fn reversed(self) -> Self {
         Self { a: self.b, b: self.a }
+    }
+}
+
+impl<P: Borrow<Portal3>> Witness<P> for Line3 {
+    fn passes(&self, portal: &P) -> bool {
+        self.passes(portal.borrow())
     }
 }

@@ -58,7 +58,7 @@
 //!   with the largest bound is next; what is relaxed away shrinks like the square of the box.
 //!
 //! Doubles only propose. What is visible has passed exact predicates, what is hidden a rigorous check;
-//! everything else is [`Stabbing3::Undecided`], which a caller has to take for visible.
+//! everything else is [`Verdict::Undecided`](crate::Verdict::Undecided), which a caller has to take for visible.
 //!
 //! # Source
 //! Plücker's coordinates for lines past lines: Teller, "Computing the antipenumbra of an area light source",
@@ -72,6 +72,7 @@ mod hull;
 mod line;
 mod planes;
 mod rows;
+mod sequence;
 mod simplex;
 mod solver;
 mod vector;
@@ -81,22 +82,17 @@ mod witness;
 pub use certificate::{Block, BoxProof, ConvexCertificate, ConvexNode, ConvexTerm, PlaneProof};
 pub use counters::ConvexCounters;
 pub use line::Line3;
+pub use sequence::{ConvexSequence, ConvexUndo};
 pub use solver::{ConvexStabber, StabLimits};
 
+use crate::{LimitReached, Verdict};
 use sightlines_geometry::Portal3;
 
-/// The answer for one sequence of convex polygons.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Stabbing3 {
-    /// This line passes, and so does an open set of lines.
-    Visible(Line3),
-    /// No line passes in order; here is why.
-    Hidden(ConvexCertificate),
-    /// Neither was proven within the limits. To be taken for visible.
-    Undecided,
-}
+/// The answer for one sequence of convex polygons. A [`Verdict::Hidden`] says that no line passes in order; what is
+/// [`Verdict::Undecided`] was not decided within the limits and has to count as visible.
+pub type ConvexVerdict = Verdict<Line3, ConvexCertificate, LimitReached>;
 
 /// Decides about one sequence, with the default limits: see [`ConvexStabber::stab`].
-pub fn stab(portals: &[&Portal3]) -> Stabbing3 {
+pub fn stab(portals: &[&Portal3]) -> ConvexVerdict {
     ConvexStabber::new(StabLimits::default()).stab(portals, None)
 }

@@ -1,6 +1,6 @@
 //! The decision for one sequence: lines by turns, the relaxed program, boxes cut in two.
 
-use super::Stabbing3;
+use super::ConvexVerdict;
 use super::certificate::{BoxProof, ConvexCertificate, ConvexNode};
 use super::chart::Chart;
 use super::counters::ConvexCounters;
@@ -12,6 +12,7 @@ use super::simplex::Program;
 use super::vector::{along, dot};
 use super::verify::{named, refutes};
 use super::witness::alternate;
+use crate::{LimitReached, Verdict};
 use sightlines_geometry::Portal3;
 
 /// A bound on the margin, in units of the chart, below which a box is refuted without looking for the
@@ -121,31 +122,31 @@ impl ConvexStabber {
     ///   and the limits.
     ///
     /// Cost: some programs with a row for each edge; see the [module](super).
-    pub fn stab(&mut self, portals: &[&Portal3], hint: Option<&Line3>) -> Stabbing3 {
+    pub fn stab(&mut self, portals: &[&Portal3], hint: Option<&Line3>) -> ConvexVerdict {
         self.counters.n_asked += 1;
         if let Some(line) = hint.filter(|line| passes(line, portals)) {
             self.counters.n_by_hint += 1;
-            return Stabbing3::Visible(*line);
+            return Verdict::Visible(*line);
         }
         if let [portal] = portals
             && let Some(line) = across(portal)
         {
             self.counters.n_by_turns += 1;
-            return Stabbing3::Visible(line);
+            return Verdict::Visible(line);
         }
         let answer = Chart::best(portals).and_then(|chart| self.decide(&chart, portals, hint));
         answer.unwrap_or_else(|| {
             self.counters.n_undecided += 1;
-            Stabbing3::Undecided
+            Verdict::Undecided(LimitReached)
         })
     }
 
-    fn decide(&mut self, chart: &Chart, portals: &[&Portal3], hint: Option<&Line3>) -> Option<Stabbing3> {
+    fn decide(&mut self, chart: &Chart, portals: &[&Portal3], hint: Option<&Line3>) -> Option<ConvexVerdict> {
         rows::edges(portals, chart, &mut self.edges);
         let start = hint.map_or([0.5, 0.5], |line| chart.coordinates(line.a, line.b));
         if let Some(line) = self.by_turns(chart, portals, start) {
             self.counters.n_by_turns += 1;
-            return Some(Stabbing3::Visible(line));
+            return Some(Verdict::Visible(line));
         }
         let mut proof =
             BoxProof { portals: chart.portals, blocks: chart.blocks, nodes: vec![ConvexNode::Leaf(Vec::new())] };
@@ -155,25 +156,25 @@ impl ConvexStabber {
             } else {
                 self.counters.n_hidden_bounded += 1;
             }
-            return Some(Stabbing3::Hidden(ConvexCertificate::Boxes(proof)));
+            return Some(Verdict::Hidden(ConvexCertificate::Boxes(proof)));
         };
         let at = whole.relaxed_line();
         if let Some(line) = self.by_turns(chart, portals, [at[0], at[1]]) {
             self.counters.n_by_relaxed += 1;
-            return Some(Stabbing3::Visible(line));
+            return Some(Verdict::Visible(line));
         }
         if self.limits.boxes <= 1 {
             return None;
         }
         if let Some(plane) = stopping(portals, &self.suspects(chart, portals.len())) {
             self.counters.n_hidden_plane += 1;
-            return Some(Stabbing3::Hidden(ConvexCertificate::Plane(plane)));
+            return Some(Verdict::Hidden(ConvexCertificate::Plane(plane)));
         }
         self.cut(chart, portals, whole, proof)
     }
 
     /// Branch and bound, the part with the largest bound first.
-    fn cut(&mut self, chart: &Chart, portals: &[&Portal3], whole: Part, mut proof: BoxProof) -> Option<Stabbing3> {
+    fn cut(&mut self, chart: &Chart, portals: &[&Portal3], whole: Part, mut proof: BoxProof) -> Option<ConvexVerdict> {
         let mut open = vec![whole];
         let mut boxes = 1;
         while let Some(best) = (0..open.len()).max_by(|&i, &j| open[i].bound.total_cmp(&open[j].bound).then(j.cmp(&i)))
@@ -201,13 +202,13 @@ impl ConvexStabber {
                 let at = part.relaxed_line();
                 if let Some(line) = self.by_turns(chart, portals, [at[0], at[1]]) {
                     self.counters.n_by_cutting += 1;
-                    return Some(Stabbing3::Visible(line));
+                    return Some(Verdict::Visible(line));
                 }
                 open.push(part);
             }
         }
         self.counters.n_hidden_cut += 1;
-        Some(Stabbing3::Hidden(ConvexCertificate::Boxes(proof)))
+        Some(Verdict::Hidden(ConvexCertificate::Boxes(proof)))
     }
 
     /// Solves the relaxed program of a box and fills its leaf if that refutes it; else the part.

@@ -7,6 +7,7 @@
 //!
 //! Source: Kirchberger, Math. Ann. 57, 1903.
 
+use crate::stabber::Proof;
 use sightlines_geometry::{Point2, Portal2, Segment2, orient2d};
 
 /// One end of a door of a sequence.
@@ -152,6 +153,12 @@ fn covered(portals: &[Portal2], inner: &[End], outer: &[End]) -> Option<(End, Ve
         .into_iter()
         .find(|&(p, [a, b, c])| in_triangle(at(p), at(a), at(b), at(c)))
         .map(|(p, triangle)| (p, triangle.to_vec()))
+}
+
+impl Proof<Portal2> for PlanarCertificate {
+    fn holds(&self, portals: &[Portal2]) -> bool {
+        self.holds(portals)
+    }
 }
 
 #[cfg(test)]

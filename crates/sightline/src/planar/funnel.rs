@@ -24,9 +24,10 @@
 //! hourglass of Guibas and Hershberger, J. Comput. Syst. Sci. 39, 1989); proof of the two tests in
 //! the project's notes on planar stabbing, restated above.
 
-use super::witness::PlanarWitness;
+use super::{PlanarCertificate, PlanarVerdict, PlanarWitness, decide};
 use crate::stabber::Stabber;
 use sightlines_geometry::{Aabb, Orient2d, Point2, Portal2, along};
+use std::convert::Infallible;
 
 /// End points, near to far; the live part is `points[front..back]`.
 #[derive(Debug, Clone)]
@@ -205,6 +206,9 @@ impl<O: Orient2d> Stabber for Funnel<O> {
     type Portal = Portal2;
     type Bounds = Aabb<2>;
     type Undo = FunnelUndo;
+    type Line = PlanarWitness;
+    type Proof = PlanarCertificate;
+    type Doubt = Infallible;
 
     #[inline]
     fn start(&mut self, portal: Portal2) {
@@ -231,8 +235,17 @@ impl<O: Orient2d> Stabber for Funnel<O> {
     }
 
     #[inline]
-    fn in_front(&self, portal: Portal2, bounds: &Aabb<2>) -> bool {
+    fn in_front(&self, portal: &Portal2, bounds: &Aabb<2>) -> bool {
         reaches_left(self.orient, portal.left, portal.right, bounds)
+    }
+
+    fn line(&mut self) -> Option<PlanarWitness> {
+        Some(self.witness())
+    }
+
+    /// Exact for any coordinates that predicates can bear, whatever `O` is. O(n) for a line, O(n²) for a certificate.
+    fn decide(&mut self, portals: &[Portal2]) -> PlanarVerdict {
+        decide(portals).expect("there is a portal")
     }
 }
 

@@ -8,17 +8,11 @@ pub use certificate::{End, PlanarCertificate};
 pub use funnel::{Funnel, FunnelUndo};
 pub use witness::PlanarWitness;
 
-use crate::SightlineError;
+use crate::{SightlineError, Verdict};
 use sightlines_geometry::{Adaptive, Portal2, check_coordinate};
 
-/// The answer for one sequence.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Stabbing2 {
-    /// An open set of lines passes; here is one of them.
-    Visible(PlanarWitness),
-    /// None does; here is why.
-    Blocked(PlanarCertificate),
-}
+/// The answer for one sequence of doors in the plane. It is exact.
+pub type PlanarVerdict = Verdict<PlanarWitness, PlanarCertificate>;
 
 /// Finds a directed line that passes through every portal of `portals`, in order.
 ///
@@ -36,7 +30,7 @@ pub enum Stabbing2 {
 ///
 /// # Source
 /// Teller and Séquin, SIGGRAPH 1991, for the question; for the method see [`funnel`].
-pub fn stabbing_line(portals: &[Portal2]) -> Result<Option<Stabbing2>, SightlineError> {
+pub fn stabbing_line(portals: &[Portal2]) -> Result<Option<PlanarVerdict>, SightlineError> {
     for (i, p) in portals.iter().enumerate() {
         if [p.left.x, p.left.y, p.right.x, p.right.y].into_iter().any(|x| check_coordinate(x).is_err()) {
             return Err(SightlineError::NotFinite(i));
@@ -45,18 +39,22 @@ pub fn stabbing_line(portals: &[Portal2]) -> Result<Option<Stabbing2>, Sightline
             return Err(SightlineError::ZeroLength(i));
         }
     }
-    let Some((first, rest)) = portals.split_first() else { return Ok(None) };
+    Ok(decide(portals))
+}
+
+/// The verdict about portals with usable coordinates; `None` if there are none.
+fn decide(portals: &[Portal2]) -> Option<PlanarVerdict> {
+    let (first, rest) = portals.split_first()?;
     let mut funnel = Funnel::new(Adaptive);
     funnel.start(*first);
     if rest.iter().all(|p| funnel.push(*p).is_some()) {
         let witness = funnel.witness();
         if portals.iter().all(|&p| witness.passes(p)) {
-            return Ok(Some(Stabbing2::Visible(witness)));
+            return Some(Verdict::Visible(witness));
         }
     }
     // The funnel trusts the order of portals. Sequences that no chain of cells made may break it, so
     // "blocked" is said only with a certificate.
     let separating = || PlanarWitness::separating(portals).expect("hulls that do not meet are separated by a line");
-    let proof = PlanarCertificate::find(portals).map_or_else(|| Stabbing2::Visible(separating()), Stabbing2::Blocked);
-    Ok(Some(proof))
+    Some(PlanarCertificate::find(portals).map_or_else(|| Verdict::Visible(separating()), Verdict::Hidden))
 }

@@ -1,5 +1,6 @@
 //! A line that passes a sequence of doors, with exact coefficients.
 
+use crate::stabber::Witness;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 use sightlines_geometry::{Point2, Portal2, check_coordinate, orient2d};
@@ -103,5 +104,11 @@ impl PlanarWitness {
         let bisectors = bisectors.filter(|d| d.left != d.right).map(Self::across);
         let strict = |w: &Self| portals.iter().all(|&d| w.passes(d));
         std::iter::once(sum).chain(bisectors).find(strict)
+    }
+}
+
+impl Witness<Portal2> for PlanarWitness {
+    fn passes(&self, portal: &Portal2) -> bool {
+        self.passes(*portal)
     }
 }

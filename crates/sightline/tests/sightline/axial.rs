@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Adaptive, AxialDoor, Point2, Portal2};
 use sightlines_sightline::lp::{LpAnswer, stab_axial};
 use sightlines_sightline::{
-    AxialCertificate, AxialStabber, Funnel, OctantProof, SightlineError, Stabber, StabbingAxial, stabbing_line_axial,
+    AxialCertificate, AxialStabber, Funnel, OctantProof, SightlineError, Stabber, Verdict, stabbing_line_axial,
 };
 use sightlines_testkit::{
     AXIS_ORDERS, any_axial_doors, axial_corridor, axial_meets_brute_force, axial_moved, axial_stabbable_brute_force,
@@ -66,14 +66,14 @@ proptest! {
     fn stabbing_lines_are_proven(doors in prop_oneof![any_corridor(), any_axial_doors()]) {
         let open = axial_stabbable_brute_force(&doors);
         match stabbing_line_axial(&doors) {
-            Ok(Some(StabbingAxial::Visible(witness))) => {
+            Ok(Some(Verdict::Visible(witness))) => {
                 prop_assert!(open, "{:?}", doors);
                 prop_assert!(doors.iter().all(|d| witness.passes(d)), "{:?} {:?}", witness, doors);
                 prop_assert!(witness.direction().iter().all(|d| *d != Default::default()));
                 let rounded = witness.rounded(&doors);
                 prop_assert!(rounded.is_some(), "{:?} {:?}", witness, doors);
             }
-            Ok(Some(StabbingAxial::Blocked(certificate))) => {
+            Ok(Some(Verdict::Hidden(certificate))) => {
                 prop_assert!(!open, "{:?}", doors);
                 prop_assert!(certificate.holds(&doors), "{:?} {:?}", certificate, doors);
                 let named: Vec<AxialDoor> = certificate.doors().into_iter().map(|i| doors[i]).collect();
@@ -99,8 +99,8 @@ proptest! {
         let open = axial_stabbable_brute_force(&doors);
         prop_assert_eq!(is_open(&doors), open, "{:?}", doors);
         match stabbing_line_axial(&doors) {
-            Ok(Some(StabbingAxial::Visible(witness))) => prop_assert!(open && doors.iter().all(|d| witness.passes(d))),
-            Ok(Some(StabbingAxial::Blocked(certificate))) => prop_assert!(!open && certificate.holds(&doors)),
+            Ok(Some(Verdict::Visible(witness))) => prop_assert!(open && doors.iter().all(|d| witness.passes(d))),
+            Ok(Some(Verdict::Hidden(certificate))) => prop_assert!(!open && certificate.holds(&doors)),
             other => prop_assert!(false, "{:?}", other),
         }
     }
@@ -145,7 +145,7 @@ proptest! {
         };
         let open = planar((axis + 1) % 3) && planar((axis + 2) % 3);
         prop_assert_eq!(is_open(&doors), open);
-        let program = matches!(stabbing_line_axial(&doors), Ok(Some(StabbingAxial::Visible(_))));
+        let program = matches!(stabbing_line_axial(&doors), Ok(Some(Verdict::Visible(_))));
         prop_assert_eq!(program, open, "{:?}", doors);
     }
 
@@ -200,7 +200,7 @@ proptest! {
     /// Invariant: a changed certificate is refused, whatever was changed.
     #[test]
     fn tampered_certificates_are_refused(doors in axial_corridor()) {
-        let Ok(Some(StabbingAxial::Blocked(certificate))) = stabbing_line_axial(&doors) else { return Ok(()) };
+        let Ok(Some(Verdict::Hidden(certificate))) = stabbing_line_axial(&doors) else { return Ok(()) };
         let AxialCertificate::Rows { guards, proofs } = certificate else { return Ok(()) };
         let changes: [fn(&mut OctantProof); 7] = [
             // A row less, a multiplier one more, none at all or turned round, another side, another door.
@@ -246,7 +246,7 @@ fn a_forgetful_stabber_is_noticed() {
 #[test]
 fn guards_are_checked() {
     let blocked = [across(0., [0., 1.], [0., 1.]), across(1., [5., 6.], [0., 1.]), across(2., [0., 1.], [0., 1.])];
-    let Ok(Some(StabbingAxial::Blocked(certificate))) = stabbing_line_axial(&blocked) else { panic!("blocked") };
+    let Ok(Some(Verdict::Hidden(certificate))) = stabbing_line_axial(&blocked) else { panic!("blocked") };
     assert!(certificate.holds(&blocked));
     let AxialCertificate::Rows { guards, proofs } = certificate else { panic!("not opposed") };
     assert!(matches!(guards, [Some(_), None, None]), "{guards:?}");
@@ -256,7 +256,7 @@ fn guards_are_checked() {
     assert!(!AxialCertificate::Opposed([0, 1]).holds(&blocked));
     assert!(!AxialCertificate::Opposed([0, 7]).holds(&blocked));
     let opposed = [blocked[0], blocked[1].reversed()];
-    let Ok(Some(StabbingAxial::Blocked(certificate))) = stabbing_line_axial(&opposed) else { panic!("blocked") };
+    let Ok(Some(Verdict::Hidden(certificate))) = stabbing_line_axial(&opposed) else { panic!("blocked") };
     assert_eq!(certificate, AxialCertificate::Opposed([0, 1]));
     assert!(certificate.holds(&opposed) && !certificate.holds(&blocked));
     assert_eq!(certificate.doors(), [0, 1]);
@@ -290,7 +290,7 @@ fn slits_of_one_ulp_are_open_and_aligned_edges_are_not() {
         stabber.start(doors[0]);
         assert_eq!(doors[1..].iter().all(|&door| stabber.push(door).is_some()), open, "{doors:?}");
         n_exact += stabber.counters().n_exact;
-        let visible = matches!(stabbing_line_axial(&doors), Ok(Some(StabbingAxial::Visible(_))));
+        let visible = matches!(stabbing_line_axial(&doors), Ok(Some(Verdict::Visible(_))));
         assert_eq!(visible, open, "{doors:?}");
     }
     assert!(n_exact > 0, "slits as narrow as these are for fractions");

@@ -5,7 +5,8 @@ use num_traits::{Float, Signed, Zero};
 use proptest::prelude::*;
 use sightlines_geometry::{AxialDoor, Point3, Portal3};
 use sightlines_sightline::{
-    BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, Line3, PlaneProof, StabLimits, Stabbing3,
+    BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexVerdict, LimitReached, Line3, PlaneProof, StabLimits,
+    Verdict,
 };
 use sightlines_testkit::{axial_corridor, axial_stabbable_brute_force, straight_axial_corridor};
 
@@ -119,15 +120,15 @@ enum Found {
 fn decide(stabber: &mut ConvexStabber, portals: &[Portal3]) -> Found {
     let sequence = refs(portals);
     match stabber.stab(&sequence, None) {
-        Stabbing3::Visible(line) => {
+        Verdict::Visible(line) => {
             assert!(portals.iter().all(|p| passes_exactly(&line, p)), "{line:?} does not pass {portals:?}");
             Found::Visible
         }
-        Stabbing3::Hidden(proof) => {
-            assert!(proof.check(&sequence), "{proof:?} does not hold for {portals:?}");
+        Verdict::Hidden(proof) => {
+            assert!(proof.holds(&sequence), "{proof:?} does not hold for {portals:?}");
             Found::Hidden
         }
-        Stabbing3::Undecided => Found::Undecided,
+        Verdict::Undecided(_) => Found::Undecided,
     }
 }
 
@@ -184,12 +185,12 @@ proptest! {
         let mut stabber = ConvexStabber::new(StabLimits::default());
         let plain = decide(&mut stabber, &portals);
         let hinted = match stabber.stab(&refs(&portals), Some(&hint)) {
-            Stabbing3::Visible(line) => {
+            Verdict::Visible(line) => {
                 prop_assert!(portals.iter().all(|p| passes_exactly(&line, p)));
                 Found::Visible
             }
-            Stabbing3::Hidden(_) => Found::Hidden,
-            Stabbing3::Undecided => Found::Undecided,
+            Verdict::Hidden(_) => Found::Hidden,
+            Verdict::Undecided(_) => Found::Undecided,
         };
         prop_assert_eq!(plain, hinted);
     }
@@ -255,9 +256,9 @@ fn sequences_near_the_critical_size_are_decided() {
                 let found = stabber.stab(&refs(&with(by).unwrap()), None);
                 let boxes = (stabber.counters() - before).n_boxes;
                 match found {
-                    Stabbing3::Visible(_) => high = by,
-                    Stabbing3::Hidden(_) => low = by,
-                    Stabbing3::Undecided => panic!("undecided between {low} and {high}: {portals:?}"),
+                    Verdict::Visible(_) => high = by,
+                    Verdict::Hidden(_) => low = by,
+                    Verdict::Undecided(_) => panic!("undecided between {low} and {high}: {portals:?}"),
                 }
                 let band = if high / low > 1.01 {
                     0
@@ -301,7 +302,7 @@ fn proofs(count: usize) -> Vec<(Vec<Portal3>, ConvexCertificate)> {
     while proofs.len() < count {
         let n = 3 + (random.bits() % 6) as usize;
         let portals = corridor(&mut random, n, 24.0, 0.0, 0.0);
-        if let Stabbing3::Hidden(proof) = stabber.stab(&refs(&portals), None) {
+        if let Verdict::Hidden(proof) = stabber.stab(&refs(&portals), None) {
             proofs.push((portals, proof));
         }
     }
@@ -313,9 +314,9 @@ fn damaged_box_proofs_are_refused() {
     let (mut terms, mut blocks, mut refused) = (0, 0, 0);
     for (portals, proof) in proofs(60) {
         let sequence = refs(&portals);
-        assert!(proof.check(&sequence));
+        assert!(proof.holds(&sequence));
         let ConvexCertificate::Boxes(proof) = proof else { continue };
-        let holds = |proof: BoxProof| ConvexCertificate::Boxes(proof).check(&sequence);
+        let holds = |proof: BoxProof| ConvexCertificate::Boxes(proof).holds(&sequence);
         let change = |change: &dyn Fn(&mut BoxProof)| {
             let mut proof = proof.clone();
             change(&mut proof);
@@ -375,16 +376,16 @@ fn impostors_are_found_out() {
     for _ in 0..200 {
         let portals = corridor(&mut random, 4, 30.0, 0.0, 0.0);
         let wide: Vec<Portal3> = portals.iter().map(|p| scaled(p, 16.0).unwrap()).collect();
-        if let (Stabbing3::Hidden(proof), Stabbing3::Visible(line)) =
+        if let (Verdict::Hidden(proof), Verdict::Visible(line)) =
             (stabber.stab(&refs(&portals), None), stabber.stab(&refs(&wide), None))
         {
-            assert!(!proof.check(&refs(&wide)));
+            assert!(!proof.holds(&refs(&wide)));
             assert!(!portals.iter().all(|p| passes_exactly(&line, p)));
             assert!(!wide.iter().any(|p| passes_exactly(&line.reversed(), p)));
             // Without the portals that the proof names, lines may pass; those do not pass all.
             let named = proof.named();
             let rest: Vec<&Portal3> = (0..4).filter(|i| *i != named[named.len() / 2]).map(|i| &portals[i]).collect();
-            if let Stabbing3::Visible(line) = stabber.stab(&rest, None) {
+            if let Verdict::Visible(line) = stabber.stab(&rest, None) {
                 assert!(!portals.iter().all(|p| line.passes(p)));
                 forgotten += 1;
             }
@@ -405,10 +406,10 @@ fn a_plane_stops_what_a_line_grazes() {
     let portals =
         [square(0.0, [0.0, 1.0], [0.0, 5.0]), square(1.0, [1.0, 2.0], [1.0, 3.0]), square(2.0, [0.0, 1.0], [0.0, 5.0])];
     let sequence = refs(&portals);
-    let Stabbing3::Hidden(proof) = stab(&portals) else { panic!("only lines on x = 1 are left") };
-    assert!(proof.check(&sequence));
+    let Verdict::Hidden(proof) = stab(&portals) else { panic!("only lines on x = 1 are left") };
+    assert!(proof.holds(&sequence));
     let plane = PlaneProof { edge: (1, 3), corner: (0, 1), stops: [0, 1, 2] };
-    assert!(ConvexCertificate::Plane(plane).check(&sequence), "{portals:?}");
+    assert!(ConvexCertificate::Plane(plane).holds(&sequence), "{portals:?}");
     for damaged in [
         PlaneProof { stops: [0, 2, 1], ..plane },
         PlaneProof { stops: [0, 1, 3], ..plane },
@@ -419,29 +420,29 @@ fn a_plane_stops_what_a_line_grazes() {
         // An edge's own end fixes no plane.
         PlaneProof { corner: (1, 3), ..plane },
     ] {
-        assert!(!ConvexCertificate::Plane(damaged).check(&sequence), "{damaged:?}");
+        assert!(!ConvexCertificate::Plane(damaged).holds(&sequence), "{damaged:?}");
     }
     // A hair wider, and there is a line.
     let next = 1.0 + 1e-9;
     let open = [portals[0].clone(), portals[1].clone(), square(2.0, [0.0, next], [0.0, 5.0])];
-    assert!(matches!(stab(&open), Stabbing3::Visible(_)));
-    assert!(!proof.check(&refs(&open)));
+    assert!(matches!(stab(&open), Verdict::Visible(_)));
+    assert!(!proof.holds(&refs(&open)));
 }
 
-fn stab(portals: &[Portal3]) -> Stabbing3 {
+fn stab(portals: &[Portal3]) -> ConvexVerdict {
     ConvexStabber::new(StabLimits::default()).stab(&refs(portals), None)
 }
 
 #[test]
 fn short_and_strange_sequences() {
-    assert_eq!(stab(&[]), Stabbing3::Undecided);
+    assert_eq!(stab(&[]), Verdict::Undecided(LimitReached));
     let one = square(0.0, [0.0, 1.0], [0.0, 1.0]);
-    assert!(matches!(stab(std::slice::from_ref(&one)), Stabbing3::Visible(_)));
+    assert!(matches!(stab(std::slice::from_ref(&one)), Verdict::Visible(_)));
     // The same opening twice is not hidden, and neither are two that overlap in one plane.
     for other in [one.clone(), square(0.0, [0.5, 2.0], [0.5, 2.0])] {
-        assert!(!matches!(stab(&[one.clone(), other]), Stabbing3::Hidden(_)));
+        assert!(!matches!(stab(&[one.clone(), other]), Verdict::Hidden(_)));
     }
     // There and back again.
     let back = square(1.0, [0.0, 1.0], [0.0, 1.0]).reversed();
-    assert!(!matches!(stab(&[one, back]), Stabbing3::Visible(_)));
+    assert!(!matches!(stab(&[one, back]), Verdict::Visible(_)));
 }

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sightlines_geometry::{Adaptive, Point2, Portal2, orient2d};
 use sightlines_sightline::lp::{LpAnswer, stab};
-use sightlines_sightline::{Funnel, PlanarCertificate, SightlineError, Stabbing2, stabbing_line};
+use sightlines_sightline::{Funnel, PlanarCertificate, SightlineError, Verdict, stabbing_line};
 use sightlines_testkit::{PortalPair, Stab, any_portals, as_portals, corridor, stabbable_brute_force};
 
 /// The funnel's answer to a whole sequence.
@@ -34,7 +34,7 @@ proptest! {
     fn stabbing_lines_are_proven(pairs in prop_oneof![corridor(), any_portals()]) {
         let doors = as_portals(&pairs);
         match stabbing_line(&doors) {
-            Ok(Some(Stabbing2::Visible(witness))) => {
+            Ok(Some(Verdict::Visible(witness))) => {
                 prop_assert!(is_open(&pairs), "{:?}", pairs);
                 prop_assert!(doors.iter().all(|&d| witness.passes(d)), "{:?}", pairs);
                 if let Some([p, q]) = witness.rounded(&doors) {
@@ -42,7 +42,7 @@ proptest! {
                     prop_assert!(doors.iter().all(passes), "{:?}", pairs);
                 }
             }
-            Ok(Some(Stabbing2::Blocked(certificate))) => {
+            Ok(Some(Verdict::Hidden(certificate))) => {
                 prop_assert!(!is_open(&pairs), "{:?}", pairs);
                 prop_assert!(certificate.holds(&doors), "{:?} {:?}", pairs, certificate);
                 prop_assert!(certificate.lefts.len() + certificate.rights.len() <= 4);
@@ -147,10 +147,10 @@ fn bad_sequences_are_errors() {
 fn doors_on_one_line_are_separated() {
     let p = Point2::new;
     let doors = [Portal2 { left: p(-3., 4.), right: p(-1., 4.) }, Portal2 { left: p(-2., 4.), right: p(0., 4.) }];
-    let Ok(Some(Stabbing2::Visible(witness))) = stabbing_line(&doors) else { panic!("open") };
+    let Ok(Some(Verdict::Visible(witness))) = stabbing_line(&doors) else { panic!("open") };
     assert!(doors.iter().all(|&d| witness.passes(d)));
     let apart = [doors[0], Portal2 { left: p(-1., 4.), right: p(0., 4.) }];
-    assert!(matches!(stabbing_line(&apart), Ok(Some(Stabbing2::Blocked(_)))));
+    assert!(matches!(stabbing_line(&apart), Ok(Some(Verdict::Hidden(_)))));
 }
 
 /// A slit of one unit in the last place between two far doors is passable, and closed it is not.

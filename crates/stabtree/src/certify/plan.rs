@@ -108,7 +108,7 @@ fn shoot(graph: &CellGraph<Planar>, maker: &mut PlanMaker<'_>, per_portal: u32) 
 
 /// Which cells reach in front of a portal: errs towards reaching.
 fn front(portal: Portal2, bounds: &sightlines_geometry::Aabb<2>) -> bool {
-    sightlines_sightline::Stabber::in_front(&Funnel::new(Adaptive), portal, bounds)
+    sightlines_sightline::Stabber::in_front(&Funnel::new(Adaptive), &portal, bounds)
 }
 
 /// Seeks lines to cells that are known to be seen, from one cell.

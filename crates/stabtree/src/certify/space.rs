@@ -11,7 +11,7 @@ use sightlines_certificates::space::{
 };
 use sightlines_geometry::{Aabb, BoxTree, check_coordinate};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, Sight, Target};
+use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, Target, Verdict};
 
 /// Lines are taken in rounds: at first only those that prove at least so many new pairs.
 const ROUNDS: [usize; 3] = [64, 8, 1];
@@ -231,7 +231,7 @@ impl<'a> Search<'a> {
     ) -> Option<BlockedProof> {
         let apart = (0..3).any(|k| a.max[k] <= b.min[k] || b.max[k] <= a.min[k]);
         // Cells are known to be hidden; of groups that is not known, and to decide about them is quicker than to prove.
-        let worth_it = apart && (is_leaf || shaft.decide(a, b, Target::Inside, budget) == Sight::Blocked);
+        let worth_it = apart && (is_leaf || shaft.decide(a, b, Target::Inside, budget).is_hidden());
         if worth_it { shaft.certify(a, b, Target::Inside, budget) } else { None }
     }
 
@@ -256,7 +256,7 @@ impl<'a> Search<'a> {
         if !apart {
             return;
         }
-        let Sight::Open(line) = shaft.decide(&a, &b, Target::Inside, self.budgets[1]) else { return };
+        let Verdict::Visible(line) = shaft.decide(&a, &b, Target::Inside, self.budgets[1]) else { return };
         let [p, q] = line.points();
         // A line that is free may pass the common edge of two portals. Lines next to it do not.
         let mut width = 0.25;

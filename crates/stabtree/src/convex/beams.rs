@@ -26,7 +26,7 @@ use super::gates::{Gate, Gates};
 use super::vector::{add, sub, unit};
 use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
+use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
 
 /// How many different parts of one gate are followed before the whole gate is.
 const MOST_PARTS: usize = 8;
@@ -277,7 +277,7 @@ impl BeamTracer {
             self.sequence_to(beam, exit);
             let shapes: Vec<&Portal3> = self.sequence.iter().map(|&g| gates.shape(g)).collect();
             let hint = Line3::through(start, end);
-            if let Stabbing3::Visible(line) = self.stabber.stab(&shapes, hint.as_ref()) {
+            if let Verdict::Visible(line) = self.stabber.stab(&shapes, hint.as_ref()) {
                 // Followed on, it may pass more; where rounding could matter, it is what was decided exactly.
                 self.counted.lines += 1;
                 gates.chain(source, line.a, unit(sub(line.b, line.a)), &mut self.chain);

@@ -3,7 +3,7 @@
 use super::beams::BeamTracer;
 use super::bound;
 use super::gates::Gates;
-use super::pairs::{SequenceTracer, Sight};
+use super::pairs::SequenceTracer;
 use super::vector::{Point3, add, cross, dot, scale};
 use crate::certify::CertifyOptions;
 use crate::chords::SplitMix;
@@ -15,7 +15,7 @@ use sightlines_certificates::convex::{
 use sightlines_geometry::check_coordinate;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::convex::{Block, BoxProof, ConvexCertificate, ConvexNode, PlaneProof};
-use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
+use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
 
 /// Lines are taken in rounds: at first only those that prove at least so many new pairs.
 const ROUNDS: [usize; 3] = [32, 6, 1];
@@ -135,7 +135,7 @@ fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
             return;
         }
         let shapes: Vec<&Portal3> = chain.iter().map(|&gate| gates.shape(gate)).collect();
-        if let Stabbing3::Visible(line) = stabber.stab(&shapes, None) {
+        if let Verdict::Visible(line) = stabber.stab(&shapes, None) {
             let _ = lines(chain[0], [line.a, line.b]).into_iter().any(|line| maker.take_line(line, 1));
         }
     };
@@ -152,7 +152,7 @@ fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
     for a in 0..gates.n_cells() as u32 {
         for b in rows.iter_ones(a as usize).map(|b| b as u32).filter(|&b| b > a) {
             if !maker.visible().has(a, b)
-                && let Sight::Visible(chain) = sequences.decide(gates, [a, b], &through)
+                && let Verdict::Visible(chain) = sequences.decide(gates, [a, b], &through)
             {
                 take(&chain, maker);
             }
@@ -211,12 +211,12 @@ impl ConvexGuide for Guide<'_> {
         let shapes: Vec<&Portal3> = chain.iter().chain([&gate]).map(|&g| self.gates.shape(g)).collect();
         let hint = self.lines.last().copied().flatten();
         let line = match self.stabber.stab(&shapes, hint.as_ref()) {
-            Stabbing3::Visible(line) => Some(line),
-            Stabbing3::Hidden(proof) => match self.block(&proof, chain, gate) {
+            Verdict::Visible(line) => Some(line),
+            Verdict::Hidden(proof) => match self.block(&proof, chain, gate) {
                 Some(block) => return ConvexStep::Blocked(block),
                 None => None,
             },
-            Stabbing3::Undecided => None,
+            Verdict::Undecided(_) => None,
         };
         self.lines.push(line);
         ConvexStep::Open

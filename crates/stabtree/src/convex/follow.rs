@@ -2,26 +2,40 @@
 
 use super::gates::Gates;
 use crate::tree::Follower;
-use sightlines_cells::{CellGraph, Convex};
-use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
+use sightlines_cells::{CellGraph, Convex, Portal3};
+use sightlines_sightline::{ConvexSequence, Line3, StabLimits};
+use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// Follows sequences of convex portals. What is not decided counts as passed.
 #[derive(Debug, Clone)]
 pub struct ByPolygons {
     gates: Arc<Gates>,
-    stabber: ConvexStabber,
+    stabber: ConvexSequence<Gate>,
     sequence: Vec<u32>,
-    /// For each gate of the sequence, a line up to there, if one is known.
-    lines: Vec<Option<Line3>>,
-    n_undecided: u64,
+}
+
+/// The shape of a gate.
+#[derive(Debug, Clone)]
+struct Gate {
+    gates: Arc<Gates>,
+    gate: u32,
+}
+
+impl Borrow<Portal3> for Gate {
+    fn borrow(&self) -> &Portal3 {
+        self.gates.shape(self.gate)
+    }
 }
 
 impl ByPolygons {
-    /// For the portals of a graph; `limits` are those of each question.
+    /// For the portals of a graph; `limits` are those of each push.
     pub fn new(graph: &CellGraph<Convex>, limits: StabLimits) -> Self {
-        let (gates, stabber) = (Arc::new(Gates::new(graph)), ConvexStabber::new(limits));
-        Self { gates, stabber, sequence: Vec::new(), lines: Vec::new(), n_undecided: 0 }
+        Self { gates: Arc::new(Gates::new(graph)), stabber: ConvexSequence::new(limits), sequence: Vec::new() }
+    }
+
+    fn shape(&self, gate: u32) -> Gate {
+        Gate { gates: Arc::clone(&self.gates), gate }
     }
 }
 
@@ -34,31 +48,23 @@ impl Follower for ByPolygons {
         if !self.sequence.iter().all(|&before| self.gates.may_follow(before, gate)) {
             return None;
         }
-        let shapes: Vec<_> = self.sequence.iter().chain([&gate]).map(|&g| self.gates.shape(g)).collect();
-        let hint = self.lines.last().copied().flatten();
-        let line = match self.stabber.stab(&shapes, hint.as_ref()) {
-            Stabbing3::Visible(line) => Some(line),
-            Stabbing3::Undecided => {
-                self.n_undecided += 1;
-                None
-            }
-            Stabbing3::Hidden(_) => return None,
-        };
-        self.push_again(gate, line);
-        Some(line)
+        self.stabber.extend(self.shape(gate))?;
+        self.sequence.push(gate);
+        Some(self.stabber.known_line())
     }
 
     fn push_again(&mut self, gate: u32, line: Option<Line3>) {
+        self.stabber.push_known(self.shape(gate), line);
         self.sequence.push(gate);
-        self.lines.push(line);
     }
 
     fn pop(&mut self) {
-        self.sequence.pop();
-        self.lines.pop();
+        if self.sequence.pop().is_some() {
+            self.stabber.pop();
+        }
     }
 
     fn n_undecided(&self) -> u64 {
-        self.n_undecided
+        self.stabber.n_undecided()
     }
 }

@@ -40,9 +40,10 @@ pub use state::{ConvexCounters, ConvexOptions, ConvexState, ConvexVisibility};
 pub(crate) use batch::Workers;
 use beams::BeamTracer;
 use gates::Gates;
-use pairs::{SequenceTracer, Sight, cells_of};
+use pairs::{SequenceTracer, cells_of};
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_pvs::BitMatrix;
+use sightlines_sightline::{LimitReached, Verdict};
 
 /// The stages; their number also says that all are done.
 const N_STAGES: u32 = 4;
@@ -330,9 +331,9 @@ impl ConvexSearch {
         for ([a, b], (sight, counters)) in pairs.into_iter().zip(decided) {
             self.state.counters += counters;
             match sight {
-                Sight::Visible(chain) => sampled::mark(&self.gates, &chain, &mut self.state.visible),
-                Sight::Undecided => self.state.undecided.push([a.min(b), a.max(b)]),
-                Sight::Hidden => {
+                Verdict::Visible(chain) => sampled::mark(&self.gates, &chain, &mut self.state.visible),
+                Verdict::Undecided(LimitReached) => self.state.undecided.push([a.min(b), a.max(b)]),
+                Verdict::Hidden(()) => {
                     for [from, to] in [[a, b], [b, a]] {
                         self.state.possible.set(from as usize, to as usize, false);
                         for &gate in self.gates.exits(from) {

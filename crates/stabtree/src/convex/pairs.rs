@@ -15,7 +15,7 @@ use super::vector::{sub, unit};
 use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::ones;
-use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Stabbing3};
+use sightlines_sightline::{ConvexStabber, LimitReached, Line3, StabLimits, Verdict};
 use std::collections::HashMap;
 
 /// How many questions about sequences may be asked for a pair; one that takes more counts as visible.
@@ -42,16 +42,8 @@ struct Level {
     goal: Part,
 }
 
-/// What is known about a pair.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Sight {
-    /// A line joins the cells; the gates that it passes, which may be more than those between the cells.
-    Visible(Vec<u32>),
-    /// No open set of lines joins them.
-    Hidden,
-    /// Neither could be shown.
-    Undecided,
-}
+/// The answer for a pair. Visible: the gates that a line passes, which may be more than those between the cells.
+pub(super) type PairVerdict = Verdict<Vec<u32>, (), LimitReached>;
 
 /// Follows sequences; one for each thread.
 #[derive(Debug)]
@@ -102,7 +94,7 @@ impl SequenceTracer {
 
     /// Decides whether cell `a` sees cell `b`, another one. Row `g` of `through` has the cells that may be seen
     /// through gate `g`.
-    pub(super) fn decide(&mut self, gates: &Gates, [a, b]: [u32; 2], through: &BitMatrix) -> Sight {
+    pub(super) fn decide(&mut self, gates: &Gates, [a, b]: [u32; 2], through: &BitMatrix) -> PairVerdict {
         (self.asked, self.undecided) = (0, false);
         self.learnt.clear();
         for goal in gates.exits(b).iter().map(|&exit| exit ^ 1) {
@@ -124,11 +116,15 @@ impl SequenceTracer {
                 if first == goal && self.ask(gates, 0, None)
                     || first != goal && self.follow(gates, 0, &Pair { a, b, goal, through })
                 {
-                    return Sight::Visible(self.chain.clone());
+                    return Verdict::Visible(self.chain.clone());
                 }
             }
         }
-        if self.undecided || self.asked >= MOST_QUESTIONS { Sight::Undecided } else { Sight::Hidden }
+        if self.undecided || self.asked >= MOST_QUESTIONS {
+            Verdict::Undecided(LimitReached)
+        } else {
+            Verdict::Hidden(())
+        }
     }
 
     fn level(&mut self, depth: usize) -> &mut Level {
@@ -246,7 +242,7 @@ impl SequenceTracer {
         let sequence: Vec<u32> = self.levels[..=depth].iter().map(|l| l.gate).chain(goal).collect();
         let shapes: Vec<&Portal3> = sequence.iter().map(|&gate| gates.shape(gate)).collect();
         match self.stabber.stab(&shapes, hint.as_ref()) {
-            Stabbing3::Visible(line) => {
+            Verdict::Visible(line) => {
                 // Followed on, it may pass more; where rounding could matter, it is what was decided exactly.
                 self.counted.lines += 1;
                 gates.chain(sequence[0], line.a, unit(sub(line.b, line.a)), &mut self.chain);
@@ -256,11 +252,11 @@ impl SequenceTracer {
                 self.chain = sequence;
                 goal.is_none()
             }
-            Stabbing3::Undecided => {
+            Verdict::Undecided(_) => {
                 self.undecided |= goal.is_none();
                 false
             }
-            Stabbing3::Hidden(proof) => {
+            Verdict::Hidden(proof) => {
                 let mut named = proof.named();
                 if let Some(mut last) = named.pop() {
                     if named.len() <= MOST_LEARNT {

@@ -4,7 +4,7 @@ use super::opaque::opaque_rectangles;
 use sightlines_cells::{Axial, CellGraph, CellId, Exit, PortalId};
 use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_sightline::{
-    AxialStabber, AxialWitness, BlockedProof, Blockers, FreeLine, Shaft, Sight, Stabber, Target,
+    AxialStabber, AxialWitness, BlockedProof, Blockers, FreeLine, Shaft, Stabber, Target, Verdict,
 };
 
 /// The answer for two cells in space.
@@ -77,9 +77,9 @@ pub fn explain_space(
     let [a, b] = [from, to].map(|cell| &graph.cell(cell).bounds);
     let mut shaft = Shaft::new(&blockers);
     let explanation = match shaft.decide(a, b, Target::Inside, budget) {
-        Sight::Open(line) => Walk::new(graph, &useful, &line, to).explain(from),
+        Verdict::Visible(line) => Walk::new(graph, &useful, &line, to).explain(from),
         // What doubles leave open is often decided by the fractions of a proof.
-        Sight::Blocked | Sight::Undecided => shaft
+        Verdict::Hidden(()) | Verdict::Undecided(_) => shaft
             .certify(a, b, Target::Inside, budget)
             .and_then(|proof| proof.narrowed(blockers.rectangles()))
             .filter(|(proof, walls)| proof.holds(a, b, Target::Inside, walls))

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Blockers, FreeLine, Shaft, ShaftCounters, Sight, Target};
+use sightlines_sightline::{Blockers, FreeLine, Shaft, ShaftCounters, Target, Verdict};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// What is asked about boxes: pairs of boxes, which has to be symmetric, and of a box and an object.
@@ -339,9 +339,9 @@ impl BoxSearch<'_, '_, '_> {
             let none_seen = || within.iter().all(|&i| !marks.get(self.id, i as usize));
             if n_left > 1 && apart(self.thick, &node.bounds) && none_seen() {
                 match self.shaft.decide(self.thick, &node.bounds, targets.target, GROUP_BUDGET) {
-                    Sight::Blocked => continue,
-                    Sight::Open(line) => known.follow(&line, [self.thick, &node.bounds]),
-                    Sight::Undecided => {}
+                    Verdict::Hidden(()) => continue,
+                    Verdict::Visible(line) => known.follow(&line, [self.thick, &node.bounds]),
+                    Verdict::Undecided(_) => {}
                 }
             }
             stack.extend(targets.tree.children(n));
@@ -357,9 +357,9 @@ impl BoxSearch<'_, '_, '_> {
             return self.known.see(kind, self.id, i);
         };
         match sight {
-            Sight::Blocked => return,
-            Sight::Open(line) => self.known.follow(&line, [self.thick, target]),
-            Sight::Undecided => self.n_assumed += 1,
+            Verdict::Hidden(()) => return,
+            Verdict::Visible(line) => self.known.follow(&line, [self.thick, target]),
+            Verdict::Undecided(_) => self.n_assumed += 1,
         }
         self.known.see(kind, self.id, i);
     }

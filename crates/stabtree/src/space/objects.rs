@@ -4,7 +4,7 @@ use super::SpaceSearch;
 use super::pairs::{CELL_BUDGET, FEW, GROUP_BUDGET, apart};
 use super::witness_log::{FoundFor, WitnessLog, Worker};
 use sightlines_geometry::Aabb;
-use sightlines_sightline::{Sight, Target};
+use sightlines_sightline::{Target, Verdict};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Whether two closed boxes have a point in common.
@@ -78,9 +78,9 @@ impl SpaceSearch<'_> {
                 let budget = if node.is_leaf() { CELL_BUDGET } else { self.group_budget() };
                 let found_for = if node.is_leaf() { FoundFor::Object([object, places[0]]) } else { FoundFor::Groups };
                 match worker.shaft.decide(&node.bounds, target, Target::Surface, budget) {
-                    Sight::Blocked => continue,
-                    Sight::Open(line) => self.follow(&line, [&node.bounds, target], found_for, worker),
-                    Sight::Undecided => {
+                    Verdict::Hidden(()) => continue,
+                    Verdict::Visible(line) => self.follow(&line, [&node.bounds, target], found_for, worker),
+                    Verdict::Undecided(_) => {
                         if node.is_leaf() && self.is_object_hidden_in_groups(object, places[0], worker) {
                             continue;
                         }
@@ -113,7 +113,7 @@ impl SpaceSearch<'_> {
                 return false;
             }
             let ask = apart(&node.bounds, target);
-            if ask && worker.shaft.decide(&node.bounds, target, Target::Surface, GROUP_BUDGET) == Sight::Blocked {
+            if ask && worker.shaft.decide(&node.bounds, target, Target::Surface, GROUP_BUDGET).is_hidden() {
                 return true;
             }
             let [low, high] = self.tree.children(n);

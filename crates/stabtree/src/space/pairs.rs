@@ -4,7 +4,7 @@ use super::SpaceSearch;
 use super::live::PairsInDoubt;
 use super::witness_log::{FoundFor, Line, Proof, Worker};
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_sightline::{FreeLine, FreeSpan, Sight, Target};
+use sightlines_sightline::{FreeLine, FreeSpan, Target, Verdict};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Linear programs spent on a pair of groups; one that takes more is halved.
@@ -60,9 +60,9 @@ impl SpaceSearch<'_> {
         let worth_it = self.doubt.as_ref().is_none_or(|doubt| !few(doubt));
         if worth_it && apart(&na.bounds, &nb.bounds) && !self.cells.any(rows, cols) {
             match worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, self.group_budget()) {
-                Sight::Blocked => return,
-                Sight::Open(line) => self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, worker),
-                Sight::Undecided => {}
+                Verdict::Hidden(()) => return,
+                Verdict::Visible(line) => self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, worker),
+                Verdict::Undecided(_) => {}
             }
         }
         if halves_first(&self.tree, [a, b]) {
@@ -97,7 +97,7 @@ impl SpaceSearch<'_> {
                 return false;
             }
             let ask = apart(&na.bounds, &nb.bounds);
-            if ask && worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET) == Sight::Blocked {
+            if ask && worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, GROUP_BUDGET).is_hidden() {
                 return true;
             }
             if halves_first(&self.tree, [a, b]) {
@@ -118,10 +118,10 @@ impl SpaceSearch<'_> {
             return;
         }
         match worker.shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
-            Sight::Blocked => {}
-            Sight::Open(line) => self.follow(&line, bounds, FoundFor::Cells([a, b]), worker),
-            Sight::Undecided if self.is_hidden_in_groups([a, b], worker) => {}
-            Sight::Undecided => {
+            Verdict::Hidden(()) => {}
+            Verdict::Visible(line) => self.follow(&line, bounds, FoundFor::Cells([a, b]), worker),
+            Verdict::Undecided(_) if self.is_hidden_in_groups([a, b], worker) => {}
+            Verdict::Undecided(_) => {
                 self.n_assumed.fetch_add(1, Relaxed);
                 if self.join(a, b) {
                     let log = worker.log.iter_mut();

@@ -65,7 +65,7 @@ where
     type Note = ();
 
     fn push(&mut self, gate: u32) -> Option<()> {
-        let portal = self.portals[gate as usize];
+        let portal = self.portals[gate as usize].clone();
         let undo = if self.undos.is_empty() {
             self.stabber.start(portal);
             None

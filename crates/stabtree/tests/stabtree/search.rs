@@ -5,11 +5,12 @@ use proptest::prelude::*;
 use sightlines_cells::{CellGraph, Exit, Plan, Planar};
 use sightlines_geometry::{Aabb, Adaptive, Point2, Portal2, orient2d};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, Stabber};
+use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, PlanarVerdict, PlanarWitness, Stabber};
 use sightlines_stabtree::{
     Explanation, Network, SearchOptions, StabTree, VisibilityBounds, Zones, explain, plan_visibility, visible_zones,
 };
 use std::cell::Cell;
+use std::convert::Infallible;
 
 const MAX_NODES: usize = 20_000;
 
@@ -42,6 +43,9 @@ impl Stabber for Checked {
     type Portal = Portal2;
     type Bounds = Aabb<2>;
     type Undo = FunnelUndo;
+    type Line = PlanarWitness;
+    type Proof = PlanarCertificate;
+    type Doubt = Infallible;
 
     fn start(&mut self, portal: Portal2) {
         self.doors = vec![portal];
@@ -76,8 +80,16 @@ impl Stabber for Checked {
         self.funnel.may_meet(bounds)
     }
 
-    fn in_front(&self, portal: Portal2, bounds: &Aabb<2>) -> bool {
+    fn in_front(&self, portal: &Portal2, bounds: &Aabb<2>) -> bool {
         self.funnel.in_front(portal, bounds)
+    }
+
+    fn line(&mut self) -> Option<PlanarWitness> {
+        self.funnel.line()
+    }
+
+    fn decide(&mut self, portals: &[Portal2]) -> PlanarVerdict {
+        self.funnel.decide(portals)
     }
 }
 

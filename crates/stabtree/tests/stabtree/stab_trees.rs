@@ -7,7 +7,7 @@ use sightlines_geometry::{Aabb, Adaptive, Point2, Portal2};
 use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
 use sightlines_pvs::{BitMatrix, StabParts};
 use sightlines_scenes::world::{BspWorldOptions, World, bsp_world, world_families};
-use sightlines_sightline::{AxialStabber, ConvexStabber, Funnel, Line3, StabLimits, Stabbing3};
+use sightlines_sightline::{AxialStabber, ConvexStabber, Funnel, Line3, StabLimits, Verdict};
 use sightlines_stabtree::{
     ConvexOptions, ConvexSearch, Network, SearchOptions, StabTree, StabTreesOptions, StabTreesSummary,
     VisibilityBounds, Zones, gate_of, plan_visibility, portal_of, stab_trees_axial, stab_trees_convex,
@@ -260,9 +260,9 @@ fn plain_convex(graph: &CellGraph<Convex>, root: CellId, stabber: &mut ConvexSta
             let longer = [&sequence[..], &[gate_of(exit)]].concat();
             let shapes: Vec<_> = longer.iter().map(|&gate| shape(gate)).collect();
             match stabber.stab(&shapes.iter().collect::<Vec<_>>(), None) {
-                Stabbing3::Hidden(_) => continue,
-                Stabbing3::Undecided => return None,
-                Stabbing3::Visible(line) => {
+                Verdict::Hidden(_) => continue,
+                Verdict::Undecided(_) => return None,
+                Verdict::Visible(line) => {
                     all.insert(longer.clone());
                     waiting.push((longer, [&met[..], &[exit.to]].concat(), Some(line)));
                 }

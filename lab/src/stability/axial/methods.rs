@@ -6,7 +6,7 @@ use crate::stability::solvers::{Program, Solver};
 use crate::stability::sweep::{Answer, Decide, Kind, method};
 use sightlines::geometry::{Aabb, AxialDoor};
 use sightlines::sightline::lp::{LpAnswer, stab_axial};
-use sightlines::sightline::{AxialStabber, Stabber, StabbingAxial, stabbing_line_axial};
+use sightlines::sightline::{AxialStabber, Stabber, Verdict, stabbing_line_axial};
 
 /// A sequence of doors.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,8 +46,8 @@ fn axial(doors: &[AxialDoor]) -> Answer {
 /// answer.
 fn proven(doors: &[AxialDoor]) -> Answer {
     match stabbing_line_axial(doors) {
-        Ok(Some(StabbingAxial::Visible(witness))) if doors.iter().all(|door| witness.passes(door)) => Answer::Seen,
-        Ok(Some(StabbingAxial::Blocked(certificate))) if certificate.holds(doors) => Answer::Hidden,
+        Ok(Some(Verdict::Visible(witness))) if doors.iter().all(|door| witness.passes(door)) => Answer::Seen,
+        Ok(Some(Verdict::Hidden(certificate))) if certificate.holds(doors) => Answer::Hidden,
         _ => Answer::Failed,
     }
 }

@@ -4,7 +4,7 @@ use super::{edges, separators};
 use crate::stability::plane::said;
 use crate::stability::sweep::{Answer, Decide, Kind, method};
 use sightlines::geometry::Portal3;
-use sightlines::sightline::{ConvexStabber, StabLimits, Stabbing3};
+use sightlines::sightline::{ConvexStabber, StabLimits, Verdict};
 
 /// A sequence of portals.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,9 +32,9 @@ pub fn methods(short: bool) -> Vec<Decide<ConvexPortals>> {
 fn convex(portals: &[Portal3]) -> Answer {
     let portals: Vec<&Portal3> = portals.iter().collect();
     match ConvexStabber::new(StabLimits::default()).stab(&portals, None) {
-        Stabbing3::Visible(line) if portals.iter().all(|portal| line.passes(portal)) => Answer::Seen,
-        Stabbing3::Hidden(proof) if proof.check(&portals) => Answer::Hidden,
-        Stabbing3::Undecided => Answer::Seen,
+        Verdict::Visible(line) if portals.iter().all(|portal| line.passes(portal)) => Answer::Seen,
+        Verdict::Hidden(proof) if proof.holds(&portals) => Answer::Hidden,
+        Verdict::Undecided(_) => Answer::Seen,
         _ => Answer::Failed,
     }
 }

@@ -5,7 +5,7 @@ use crate::stability::solvers::{Program, Solver};
 use crate::stability::sweep::{Answer, Decide, Kind, method};
 use sightlines::geometry::{Aabb, Adaptive, Point2, Portal2};
 use sightlines::sightline::lp::{LpAnswer, stab};
-use sightlines::sightline::{Funnel, Stabbing2, stabbing_line};
+use sightlines::sightline::{Funnel, Verdict, stabbing_line};
 
 /// A sequence of doors.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,8 +53,8 @@ pub(super) fn funnel(doors: &[Portal2]) -> Answer {
 /// answer.
 fn proven(doors: &[Portal2]) -> Answer {
     match stabbing_line(doors) {
-        Ok(Some(Stabbing2::Visible(witness))) if doors.iter().all(|&door| witness.passes(door)) => Answer::Seen,
-        Ok(Some(Stabbing2::Blocked(certificate))) if certificate.holds(doors) => Answer::Hidden,
+        Ok(Some(Verdict::Visible(witness))) if doors.iter().all(|&door| witness.passes(door)) => Answer::Seen,
+        Ok(Some(Verdict::Hidden(certificate))) if certificate.holds(doors) => Answer::Hidden,
         _ => Answer::Failed,
     }
 }

@@ -37,6 +37,7 @@ use super::octant::{Decision, FINE, SMALL_FIRST, decide_in_doubles, two_axes};
 use super::proof;
 use super::rows::{Line, Octant, Row, others, sign};
 use super::simplex::{Frame, Tableau};
+use crate::{LimitReached, Verdict};
 use cuts::{BypassRows, Ends};
 use ray::Ray;
 use sightlines_geometry::Aabb;
@@ -50,17 +51,10 @@ pub enum Target {
     Surface,
 }
 
-/// What is between two boxes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sight {
-    /// This line, from its first point towards its second, leaves the first box and enters the second
-    /// without meeting a rectangle; so does an open set of lines.
-    Open(FreeLine),
-    /// No line does.
-    Blocked,
-    /// It would have taken more effort than allowed.
-    Undecided,
-}
+/// What is between two boxes. [`Verdict::Visible`]: the line, from its first point towards its second, leaves the
+/// first box and enters the second without meeting a rectangle; so does an open set of lines. For a proof of
+/// [`Verdict::Hidden`] see [`Shaft::certify`].
+pub type ShaftVerdict = Verdict<FreeLine, (), LimitReached>;
 
 /// How questions were decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -162,9 +156,9 @@ impl<'a> Shaft<'a> {
     /// * `budget`: linear programs after which it gives up; the answer for a budget does not depend on
     ///   anything else.
     ///
-    /// Exact, except for [`Sight::Undecided`], which errs on neither side. Rectangles inside of the boxes
+    /// Exact, except for [`Verdict::Undecided`], which errs on neither side. Rectangles inside of the boxes
     /// count only for lines that have to pass them between leaving the first and entering the second.
-    pub fn decide(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target, budget: u32) -> Sight {
+    pub fn decide(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target, budget: u32) -> ShaftVerdict {
         self.counters.n_asked += 1;
         self.left = budget;
         self.middle_blockers(from, to, target);
@@ -182,16 +176,16 @@ impl<'a> Shaft<'a> {
             self.unit.extend(self.rows.iter().map(|row| frame.scaled(row)));
             self.passed.clear();
             match self.search(&ends, &frame, Tableau::bounded()) {
-                Part::Open(line) => return Sight::Open(line),
+                Part::Open(line) => return Verdict::Visible(line),
                 Part::Blocked => {}
                 Part::Undecided => given_up = true,
             }
         }
         if given_up {
             self.counters.n_undecided += 1;
-            return Sight::Undecided;
+            return Verdict::Undecided(LimitReached);
         }
-        Sight::Blocked
+        Verdict::Hidden(())
     }
 
     /// Whether no line between the boxes gets past a rectangle.

@@ -54,7 +54,7 @@ fn holds(blocked: &BlockedConvex, graph: &CellGraph<Convex>) -> bool {
     }
     let shapes: Vec<Portal3> = blocked.gates.iter().map(|gate| gate.shape(graph)).collect();
     match (&blocked.reason, &shapes[..]) {
-        (Blocking::Certificate(certificate), shapes) => certificate.check(&shapes.iter().collect::<Vec<_>>()),
+        (Blocking::Certificate(certificate), shapes) => certificate.holds(&shapes.iter().collect::<Vec<_>>()),
         (Blocking::Behind, [first, second]) => {
             let corners = first.corners().iter().chain(second.corners()).flatten();
             // Twice what the search has: rounding may let one call near what the other calls far.

@@ -5,7 +5,8 @@ use super::super::vector::{dot, sub, unit};
 use super::{BlockedConvex, Blocking, ConvexExplanation, ConvexGate};
 use sightlines_cells::{Portal3, PortalId};
 use sightlines_sightline::{
-    BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexTerm, Line3, PlaneProof, StabLimits, Stabbing3,
+    BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexTerm, ConvexVerdict, Line3, PlaneProof, StabLimits,
+    Verdict,
 };
 
 /// A gate into the goal that lines may reach through the chain, and one that does.
@@ -116,13 +117,13 @@ impl<'g> Search<'g> {
     fn arrive(&mut self, gate: u32, aim: Option<Aim>) {
         let sequence = [&self.chain[..], &[gate]].concat();
         let line = match aim.and_then(|aim| aim.line) {
-            Some(line) => Stabbing3::Visible(line),
+            Some(line) => Verdict::Visible(line),
             None => self.ask(&sequence, None),
         };
         match line {
-            Stabbing3::Visible(line) => self.visible = Some((sequence, line)),
-            Stabbing3::Hidden(_) => {}
-            Stabbing3::Undecided => self.undecided = self.undecided.take().or(Some(sequence)),
+            Verdict::Visible(line) => self.visible = Some((sequence, line)),
+            Verdict::Hidden(_) => {}
+            Verdict::Undecided(_) => self.undecided = self.undecided.take().or(Some(sequence)),
         }
     }
 
@@ -138,7 +139,7 @@ impl<'g> Search<'g> {
         let passes = |line: &Line3| line.passes(self.gates.shape(exit));
         let near = aims.iter().find_map(|aim| aim.line);
         if !aims.iter().any(|aim| aim.line.as_ref().is_some_and(passes))
-            && matches!(self.ask(&sequence, near.as_ref()), Stabbing3::Hidden(_))
+            && matches!(self.ask(&sequence, near.as_ref()), Verdict::Hidden(_))
         {
             return None;
         }
@@ -177,12 +178,12 @@ impl<'g> Search<'g> {
             let line = match known {
                 Some(line) => Some(line),
                 None => match self.ask(&sequence, aim.line.as_ref()) {
-                    Stabbing3::Visible(line) => {
+                    Verdict::Visible(line) => {
                         self.follow(last, line);
                         Some(line).filter(|line| self.is_in_order(line, &sequence))
                     }
-                    Stabbing3::Hidden(_) => continue,
-                    Stabbing3::Undecided => None,
+                    Verdict::Hidden(_) => continue,
+                    Verdict::Undecided(_) => None,
                 },
             };
             left.push(Aim { gate: aim.gate, line });
@@ -214,11 +215,11 @@ impl<'g> Search<'g> {
     }
 
     /// Asks whether a line passes gates in order, and learns why not.
-    fn ask(&mut self, sequence: &[u32], hint: Option<&Line3>) -> Stabbing3 {
+    fn ask(&mut self, sequence: &[u32], hint: Option<&Line3>) -> ConvexVerdict {
         self.asked += 1;
         let shapes: Vec<&Portal3> = sequence.iter().map(|&gate| self.gates.shape(gate)).collect();
         let answer = self.stabber.stab(&shapes, hint);
-        if let Stabbing3::Hidden(proof) = &answer {
+        if let Verdict::Hidden(proof) = &answer {
             let (places, certificate) = narrowed(proof);
             let gates: Vec<u32> = places.into_iter().map(|place| sequence[place]).collect();
             if let Some((&last, before)) = gates.split_last() {
@@ -232,7 +233,7 @@ impl<'g> Search<'g> {
 
     /// Learns that no line passes two gates one after the other, of which planes say so.
     fn block_pair(&mut self, first: u32, second: u32) {
-        if !matches!(self.ask(&[first, second], None), Stabbing3::Hidden(_)) {
+        if !matches!(self.ask(&[first, second], None), Verdict::Hidden(_)) {
             self.learnt[second as usize].push(vec![first]);
             self.blocked.push(BlockedConvex { gates: named(&[first, second]), reason: Blocking::Behind });
         }

@@ -10,7 +10,7 @@ use super::LiveSpace;
 use super::matching::Matching;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Sight, Target};
+use sightlines_sightline::Target;
 use std::cell::Cell;
 
 /// The pairs about which nothing is known. All others are visible already, or hidden.
@@ -218,7 +218,7 @@ impl SpaceSearch<'_> {
             }
             let budget = if node.is_leaf() { CELL_BUDGET } else { GROUP_BUDGET };
             let sees = touch(&node.bounds, target)
-                || worker.shaft.decide(&node.bounds, target, Target::Surface, budget) != Sight::Blocked;
+                || worker.shaft.decide(&node.bounds, target, Target::Surface, budget).may_be_visible();
             match (sees, node.is_leaf()) {
                 (false, _) => {}
                 (true, true) => found.push(node.start as usize),

@@ -1,6 +1,6 @@
 //! Proofs that boxes are hidden from each other: they hold, and changed ones do not.
 
-use super::super::{BlockedProof, Blockers, Branch, Shaft, Sight, Target};
+use super::super::{BlockedProof, Blockers, Branch, Shaft, ShaftVerdict, Target, Verdict};
 use super::BUDGET;
 use super::oracle::{Case, any_case, any_place, more, nudged};
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ impl Case {
         Shaft::new(&blockers).certify(&self.from, &self.to, self.target, BUDGET)
     }
 
-    fn decided(&self) -> Sight {
+    fn decided(&self) -> ShaftVerdict {
         let blockers = Blockers::new(self.rectangles.iter().copied());
         Shaft::new(&blockers).decide(&self.from, &self.to, self.target, BUDGET)
     }
@@ -26,8 +26,8 @@ impl Case {
 /// What is blocked is proven, and nothing else is.
 fn check(case: &Case) -> Result<(), String> {
     match (case.decided(), case.certified()) {
-        (Sight::Blocked, None) => Err("blocked without a proof".to_owned()),
-        (Sight::Open(_), Some(proof)) => Err(format!("{proof:?} of what is open")),
+        (Verdict::Hidden(()), None) => Err("blocked without a proof".to_owned()),
+        (Verdict::Visible(_), Some(proof)) => Err(format!("{proof:?} of what is open")),
         (_, Some(proof)) if !case.obeys(&proof) => Err(format!("{proof:?} does not hold")),
         (_, Some(proof)) => {
             let (narrow, kept) =

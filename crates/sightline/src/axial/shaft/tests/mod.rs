@@ -3,7 +3,7 @@
 mod certificates;
 mod oracle;
 
-use super::{Blockers, Shaft, Sight};
+use super::{Blockers, Shaft, Verdict};
 use oracle::{Case, any_case, any_place, nudged};
 use proptest::prelude::*;
 use sightlines_testkit::draw;
@@ -47,12 +47,12 @@ fn compare(case: &Case, given: &Case) -> Result<Kind, String> {
     let blockers = Blockers::new(given.rectangles.iter().copied());
     assert_eq!(blockers.rectangles(), given.rectangles, "all of them are rectangles");
     match Shaft::new(&blockers).decide(&given.from, &given.to, given.target, BUDGET) {
-        Sight::Open(line) if !case.is_open() => Err(format!("{line:?} where nothing leads")),
-        Sight::Open(line) if !case.is_free(&line) => Err(format!("{line:?} is not free")),
-        Sight::Open(_) => Ok(Kind::Open),
-        Sight::Blocked if case.is_open() => Err("blocked, where lines lead".to_owned()),
-        Sight::Blocked => Ok(Kind::Blocked),
-        Sight::Undecided => Ok(Kind::Undecided),
+        Verdict::Visible(line) if !case.is_open() => Err(format!("{line:?} where nothing leads")),
+        Verdict::Visible(line) if !case.is_free(&line) => Err(format!("{line:?} is not free")),
+        Verdict::Visible(_) => Ok(Kind::Open),
+        Verdict::Hidden(()) if case.is_open() => Err("blocked, where lines lead".to_owned()),
+        Verdict::Hidden(()) => Ok(Kind::Blocked),
+        Verdict::Undecided(_) => Ok(Kind::Undecided),
     }
 }
 
