@@ -11,7 +11,7 @@ use sightlines::formats::doom::{DoomMap, list_maps};
 use sightlines::formats::quake::read_prt;
 use sightlines::formats::scene::read_scene;
 use sightlines::kdtree::SceneOptions;
-use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableParts};
+use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use sightlines::scenes;
 use sightlines_benches::codings::{CodedRows, RowCoding, unpack_runs, zero_runs};
 use sightlines_benches::spec::SceneSpec;
@@ -309,7 +309,14 @@ fn hashed(n: u32) -> Result<Table, Box<dyn Error>> {
     let portals = portals.collect();
     let locator = Locator::build(&bounds, 3);
     let cell_objects = vec![vec![]; n as usize];
-    Ok(Table::new(TableParts { cells, portals, rows, locator, cell_objects, ..TableParts::empty(3) })?)
+    Ok(Table::new(TableParts {
+        cells,
+        portals,
+        rows,
+        locator,
+        cell_objects,
+        ..TableParts::empty(3, TableKind::Unspecified)
+    })?)
 }
 
 /// Opens a large file, locates a point, and asks for the row there; each time as if for the first time.

@@ -186,10 +186,10 @@ fn measure(scene: &str, table: &Table, nodes: usize, threads: usize) -> Result<R
     assert!(Table::from_bytes(&bytes)? == baked.table, "{scene}: what was written is read back");
     assert_eq!(trees.n_sequences(), u128::from(baked.trees.n_sequences), "{scene}: sharing changes no sequence");
     let (found, all) = reached(scene, &baked.table, trees);
-    let kind = match (table.dimension(), table.info_value("source")) {
-        (2, _) => "plane",
-        (_, None) => "boxes",
-        (_, Some(_)) => "convex",
+    let kind = match table.dimension() {
+        2 => "plane",
+        _ if table.kind().is_quake() => "convex",
+        _ => "boxes",
     };
     Ok(Row {
         scene: Path::new(scene).file_stem().unwrap_or_default().to_string_lossy().into_owned(),

@@ -29,7 +29,7 @@ pub fn mean_share<I: IntoIterator<Item = u32>>(table: &Table, triangles: &[u64],
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sightlines::pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, TableParts};
+    use sightlines::pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, TableKind, TableParts};
 
     #[test]
     fn large_cells_count_more() {
@@ -47,7 +47,7 @@ mod tests {
             rows: BitMatrix::identity(2),
             objects: vec![object(0.5), object(0.5)],
             cell_objects: vec![vec![0, 1], vec![]],
-            ..TableParts::empty(3)
+            ..TableParts::empty(3, TableKind::Unspecified)
         });
         let table = table.unwrap();
         assert_eq!(share_of(&[3, 1], [1]), 0.25);

@@ -3,7 +3,7 @@
 use crate::mirrors;
 use crate::table::{TableOptions, table_of};
 use sightlines_cells::{CellGraph, Plan, PlanError, Planar};
-use sightlines_pvs::{Table, TableError, TableParts};
+use sightlines_pvs::{Table, TableError, TableKind, TableParts};
 use sightlines_stabtree::{Progress, SearchOptions, Zones, plan_visibility};
 use sightlines_triangulation::TriangulationError;
 use std::fmt;
@@ -166,11 +166,16 @@ pub fn bake_plan(plan: &Plan, options: &BakeOptions<'_>) -> Result<Baked, BakeEr
     summary.n_portals = graph.portals().len();
     summary.n_visible_pairs = (rows.count_ones() - graph.n_cells() as u64) / 2;
     (summary.n_pushes, summary.n_visits) = (found.n_pushes, found.n_visits);
+    let kind = match summary.subdivide {
+        Subdivide::KdTree => TableKind::PlanKdTree,
+        Subdivide::Triangulation => TableKind::PlanTriangulation,
+        Subdivide::Auto => unreachable!("a plan was cut by one of the two"),
+    };
     let mut info = vec![("subdivide".to_owned(), summary.subdivide.to_string())];
     if summary.subdivide == Subdivide::KdTree {
         info.push(("tau".to_owned(), options.tau.to_string()));
     }
-    let mut table = table_of(&graph, rows, TableOptions { objects: plan.objects(), info })?;
+    let mut table = table_of(&graph, rows, TableOptions { objects: plan.objects(), kind, info })?;
     if !plan.mirrors().is_empty() {
         let mirrors = mirrors::of_plan(&graph, plan);
         (summary.n_mirror_parts, summary.n_lost_mirrors) = (mirrors.parts.len(), mirrors.n_lost);

@@ -5,7 +5,10 @@ use crate::plan::BakeError;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Portal, Scene};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
-use sightlines_pvs::{CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableError, TableParts};
+use sightlines_pvs::{
+    CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, SceneMethods, Table, TableError, TableKind,
+    TableParts,
+};
 use sightlines_sightline::ShaftCounters;
 use sightlines_stabtree::{Progress, SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
 use std::time::{Duration, Instant};
@@ -149,6 +152,9 @@ pub(crate) fn merge_portals(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
     CellGraph::new(graph.cells().to_vec(), portals)
 }
 
+/// What found the hidden in a table of a scene that was cut along its rectangles.
+const SIGHTLINES: SceneMethods = SceneMethods { sightlines: true, from_region: false, only_in_air: false };
+
 pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, String)> {
     let portals = match options.portals {
         PortalMode::Bounding => "bounding",
@@ -194,7 +200,7 @@ pub(crate) fn scene_table(
         cells,
         info,
         mirrors,
-        ..TableParts::empty(3)
+        ..TableParts::empty(3, TableKind::SceneKdTree { hidden_by: SIGHTLINES })
     })
 }
 

@@ -5,16 +5,25 @@ use crate::scene;
 use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
 use sightlines_geometry::{Aabb, Point2, Portal2, check_coordinate};
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableKind, TableParts,
 };
 
 /// What goes into a table beside cells and rows.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct TableOptions<'a> {
     /// Objects of the scene.
     pub objects: &'a [PlanObject],
-    /// Keys and values for the table's information; sorted here.
+    /// What kind of table it is.
+    pub kind: TableKind,
+    /// Keys and values for people; sorted here.
     pub info: Vec<(String, String)>,
+}
+
+impl TableOptions<'_> {
+    /// A table of a kind, without objects and texts.
+    pub fn new(kind: TableKind) -> Self {
+        Self { objects: &[], kind, info: Vec::new() }
+    }
 }
 
 fn lift([x, y]: [f64; 2]) -> [f64; 3] {
@@ -60,7 +69,7 @@ pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOption
         locator: Locator::build(&bounds, 2),
         cells,
         info,
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, options.kind)
     })
 }
 

@@ -2,7 +2,6 @@
 
 use crate::error::{InputError, SOME_WAD};
 use sightlines::bake::graph_of;
-use sightlines::bake::quake::is_of_clusters;
 use sightlines::cells::{CellGraph, Plan, Planar};
 use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
 use sightlines::formats::quake::prt::PrtDialect;
@@ -105,16 +104,12 @@ pub(crate) fn refuse_source(path: &Path) -> Result<(), InputError> {
 /// Whether a table is of a portal file, with its map or without: its cells are joined by convex portals, and nobody knows
 /// their volumes.
 pub(crate) fn is_of_portals(table: &Table) -> bool {
-    is_of_clusters(table)
+    table.kind().is_quake()
 }
 
 /// Refuses a table that does not know where its cells are; `what` says what cannot be done for that.
 pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static str) -> Result<(), InputError> {
-    if is_of_portals(table) && table.planes().is_none() {
-        Err(InputError::NoPlaces { path: path.to_owned(), what })
-    } else {
-        Ok(())
-    }
+    if !table.has_places() { Err(InputError::NoPlaces { path: path.to_owned(), what }) } else { Ok(()) }
 }
 
 /// The cell graph that a table holds.

@@ -2,7 +2,7 @@
 
 use crate::error::OutputError;
 use crate::output;
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{Axis, CellId, Table};
 use sightlines::report::DrawError;
 use sightlines::report::PngError;
 use sightlines::report::{DrawOptions, Up, plan_svg, svg_to_png};
@@ -64,10 +64,10 @@ pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<(), PictureError> {
 
 /// Which way is up in a table: what it says, or y.
 pub(crate) fn up_of(table: &Table) -> Up {
-    match table.info_value("up") {
-        Some("x") => Up::X,
-        Some("z") => Up::Z,
-        _ => Up::Y,
+    match table.up() {
+        Some(Axis::X) => Up::X,
+        Some(Axis::Z) => Up::Z,
+        Some(Axis::Y) | None => Up::Y,
     }
 }
 

@@ -2,10 +2,9 @@
 
 use crate::error::InputError;
 use crate::input::{self, Kind};
-use sightlines::bake::quake::{SOURCE_KEY, SOURCE_MAP, SOURCE_PRT};
 use sightlines::eye_to_cell::{CellSource, TableCells};
 use sightlines::packed::{Packed, PackedError};
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{Axis, CellId, Table};
 use sightlines::walkthrough::{PackedCells, Resident};
 use std::convert::Infallible;
 use std::fs::File;
@@ -38,11 +37,11 @@ pub(crate) trait Cells: CellSource<Error: Send + 'static> + Resident + Clone + S
     /// What went wrong, with the file's name.
     fn fail(path: &Path, error: Self::Error) -> InputError;
 
-    /// The value of a key that the table's maker left.
-    fn info_value(&self, key: &str) -> Option<&str>;
+    /// The axis that points up, if it is known.
+    fn up(&self) -> Option<Axis>;
 
-    /// Whether planes say where the cells are.
-    fn has_planes(&self) -> bool;
+    /// Whether cells can be found at points.
+    fn has_places(&self) -> bool;
 
     fn n_portals(&self) -> usize;
 
@@ -58,8 +57,7 @@ pub(crate) trait Cells: CellSource<Error: Send + 'static> + Resident + Clone + S
 
     /// Refuses a table that does not know where its cells are.
     fn refuse_without_places(&self, path: &Path) -> Result<(), InputError> {
-        let of_portals = |source: &str| source.starts_with(SOURCE_PRT) || source.starts_with(SOURCE_MAP);
-        if self.info_value(SOURCE_KEY).is_some_and(of_portals) && !self.has_planes() {
+        if !self.has_places() {
             return Err(InputError::NoPlaces { path: path.to_owned(), what: "no cell can be found at a point" });
         }
         Ok(())
@@ -81,12 +79,12 @@ impl Cells for TableCells<Arc<Table>> {
         match error {}
     }
 
-    fn info_value(&self, key: &str) -> Option<&str> {
-        self.table().info_value(key)
+    fn up(&self) -> Option<Axis> {
+        self.table().up()
     }
 
-    fn has_planes(&self) -> bool {
-        self.table().planes().is_some()
+    fn has_places(&self) -> bool {
+        self.table().has_places()
     }
 
     fn n_portals(&self) -> usize {
@@ -115,12 +113,12 @@ impl Cells for PackedCells<File> {
         InputError::Packed { path: path.to_owned(), source }
     }
 
-    fn info_value(&self, key: &str) -> Option<&str> {
-        self.packed().info().iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
+    fn up(&self) -> Option<Axis> {
+        self.packed().up()
     }
 
-    fn has_planes(&self) -> bool {
-        self.packed().planes().is_some()
+    fn has_places(&self) -> bool {
+        self.packed().has_places()
     }
 
     fn n_portals(&self) -> usize {

@@ -76,7 +76,7 @@ impl LensArgs {
             refuse(path, &given, "tables of scenes in space", "the table of a plan")?;
             return Ok(Lens { fov, in_space: None });
         }
-        let named = cells.info_value("up").and_then(|axis| axis.parse().ok());
+        let named = cells.up().map(Up::axis);
         let Up(up) = self.up.or(named).unwrap_or(Up([0.0, 1.0, 0.0]));
         Ok(Lens { fov, in_space: Some((up, self.aspect.unwrap_or(ASPECT))) })
     }

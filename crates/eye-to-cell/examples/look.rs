@@ -10,7 +10,9 @@
 //! ```
 
 use sightlines_eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View, follow_reflections};
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, MirrorRecord, PortalRecord, Table, TableParts};
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, Locator, MirrorRecord, PortalRecord, Table, TableKind, TableParts,
+};
 
 fn room(i: u32) -> CellRecord {
     let (x0, x1) = (4.0 * f64::from(i), 4.0 * f64::from(i + 1));
@@ -40,7 +42,7 @@ fn house() -> TableParts {
         cell_objects: vec![vec![]; 4],
         // Who looks west has the south at the left hand.
         mirrors: vec![MirrorRecord { cell: CellId(0), face: 7, points: vec![[0.0, 0.0, 0.0], [0.0, 4.0, 0.0]] }],
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     }
 }
 

@@ -55,6 +55,10 @@ impl FromRegion for ViewShafts {
         if self.n_halvings == 0 { "shafts".to_owned() } else { format!("shafts-halved-{}", self.n_halvings) }
     }
 
+    fn only_in_air(&self) -> bool {
+        true
+    }
+
     fn guarantee(&self) -> Guarantee {
         Guarantee::Conservative
     }

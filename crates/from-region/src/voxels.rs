@@ -121,6 +121,10 @@ impl FromRegion for Voxels {
         format!("voxels-{interior}-{}", self.options.n_longest)
     }
 
+    fn only_in_air(&self) -> bool {
+        true
+    }
+
     fn guarantee(&self) -> Guarantee {
         match self.options.interior {
             Interior::Closed => Guarantee::Conservative,

@@ -21,6 +21,11 @@ pub trait FromRegion: fmt::Debug {
     /// On which side it errs.
     fn guarantee(&self) -> Guarantee;
 
+    /// Whether nothing is promised for eyes inside solid matter, because the method uses its inside as an occluder.
+    fn only_in_air(&self) -> bool {
+        false
+    }
+
     /// Works out whatever is needed to ask about one volume.
     ///
     /// # Errors

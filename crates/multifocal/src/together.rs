@@ -35,6 +35,10 @@ impl FromRegion for Together {
         conditional.unwrap_or(Guarantee::Conservative)
     }
 
+    fn only_in_air(&self) -> bool {
+        self.methods.iter().any(|m| m.only_in_air())
+    }
+
     fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError> {
         let umbrae = self.methods.iter_mut().map(|method| method.umbra(volume)).collect::<Result<_, _>>()?;
         Ok(Box::new(AnyUmbra { umbrae, n_about_points: self.n_about_points }))

@@ -3,12 +3,12 @@
 //! `pack IN.pvs OUT.pvz [MAX_BYTES]`; without arguments it packs a row of rooms and keeps it in memory.
 
 use sightlines_packed::{PackOptions, Packed, Source, pack_report};
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, Table, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, Table, TableKind, TableParts};
 use std::error::Error;
 
 /// `n` rooms in a row, each of which sees up to `reach` rooms to both sides.
 fn rooms(n: usize, reach: usize) -> Result<Table, Box<dyn Error>> {
-    let mut parts = TableParts::empty(2);
+    let mut parts = TableParts::empty(2, TableKind::Unspecified);
     for i in 0..n {
         let x = i as f64;
         parts.cells.push(CellRecord { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 0.0], group: None, polygon: vec![] });

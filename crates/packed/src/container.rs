@@ -13,6 +13,7 @@ pub(crate) struct Resident {
     bytes: Vec<u8>,
     /// Offset of the first section in the file.
     base: u64,
+    minor: u16,
     found: [Option<Range<usize>>; SECTIONS.len()],
 }
 
@@ -79,7 +80,13 @@ impl Resident {
                 found[known] = Some(range);
             }
         }
-        Ok((Self { bytes, base, found }, len))
+        let minor = u16::from_le_bytes([fixed[10], fixed[11]]);
+        Ok((Self { bytes, base, minor, found }, len))
+    }
+
+    /// The minor version that the file states.
+    pub(crate) fn minor(&self) -> u16 {
+        self.minor
     }
 
     /// A section that may be missing.

@@ -27,6 +27,7 @@
 //! | `LOCA` | number of nodes, number of entries (`u32`); nodes in preorder, 16 bytes each: axis, index of the high child, split — or 2^32 - 1, number of entries, first entry (`u64`) for a leaf; then the entries (`u32` cells) |
 //! | `PLAN`, optional | slack; number of nodes (`u32`); for each: normal (3), offset, two children: 2 `u32`, kind (0 node, 1 cell, 2 nothing) and id |
 //! | `MIRR`, optional | varint number; for each: varint cell, face, number of points; points (d each) |
+//! | `KIND`, optional | as in a `.pvs` file of version 1.4; new in 1.2 here |
 //! | `INFO` | varint number; for each: key, value, each as varint number of bytes and UTF-8 |
 //! | `COAR` | pages by pages of cells, a bit if some cell of the one sees some cell of the other, rows of `u64` |
 //! | `CLAS` | classes of cells in `ROWS`, counted by their first members; empty if each is its own, else the unpacked length (`u32`) and, packed by zstd, for each cell a varint: how far its class is below the least that no cell before has |
@@ -56,7 +57,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVP\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the least that has all that is in a table, so that files
 /// without what is new stay as they were.
-pub const MINOR: u16 = 1;
+pub const MINOR: u16 = 2;
 /// Bytes that a block may have when it is unpacked: a file cannot ask for more memory at once.
 pub const MAX_BLOCK: u32 = 1 << 24;
 /// Bytes that rows of bits may take in [`crate::Packed::to_table`]: few bytes of a file can tell of many.
@@ -68,6 +69,7 @@ pub(crate) const POLYGONS: SectionId = SectionId(*b"POLY");
 pub(crate) const LOCATOR: SectionId = SectionId(*b"LOCA");
 pub(crate) const PLANES: SectionId = SectionId(*b"PLAN");
 pub(crate) const MIRRORS: SectionId = SectionId(*b"MIRR");
+pub(crate) const KIND: SectionId = SectionId(*b"KIND");
 pub(crate) const INFO: SectionId = SectionId(*b"INFO");
 pub(crate) const COARSE: SectionId = SectionId(*b"COAR");
 pub(crate) const CLASSES: SectionId = SectionId(*b"CLAS");
@@ -76,13 +78,14 @@ pub(crate) const SEEN_COLUMNS: SectionId = SectionId(*b"SCLC");
 pub(crate) const BLOCKS: SectionId = SectionId(*b"BLKS");
 
 /// The sections of this version, and whether they are optional.
-pub(crate) const SECTIONS: [(SectionId, bool); 12] = [
+pub(crate) const SECTIONS: [(SectionId, bool); 13] = [
     (HEAD, false),
     (BOXES, false),
     (POLYGONS, true),
     (LOCATOR, false),
     (PLANES, true),
     (MIRRORS, true),
+    (KIND, true),
     (INFO, false),
     (COARSE, false),
     (CLASSES, false),
@@ -98,6 +101,11 @@ pub(crate) const PORTALS: SectionId = SectionId(*b"PORT");
 pub(crate) const OBJECTS: SectionId = SectionId(*b"OBJS");
 pub(crate) const STAB: SectionId = SectionId(*b"STAB");
 pub(crate) const CELL_NAMES: SectionId = SectionId(*b"CNAM");
+
+/// The minor version that brought names of cells.
+pub(crate) const SINCE_CELL_NAMES: u16 = 1;
+/// The minor version that brought the kind of a table.
+pub(crate) const SINCE_KIND: u16 = 2;
 
 /// Bytes before the section table.
 pub(crate) const FIXED: usize = 24;

@@ -3,10 +3,11 @@
 use crate::bytes::Writer;
 use crate::classes::{Classes, Distinct};
 use crate::error::PackError;
-use crate::format::{self, ENTRY, FIXED, MAGIC, MAJOR, MINOR, OPTIONAL};
+use crate::format::{self, ENTRY, FIXED, MAGIC, MAJOR, OPTIONAL, SINCE_CELL_NAMES, SINCE_KIND};
 use crate::merge::{Sight, after, merge_order, merged};
 use crate::store::Store;
 use crate::write;
+use sightlines_pvs::format::kind_section;
 use sightlines_pvs::{BitMatrix, SectionId, Table};
 
 /// Wishes about a packed table.
@@ -198,6 +199,9 @@ impl Frame {
         if !parts.mirrors.is_empty() {
             sections.push((format::MIRRORS, write::mirrors(parts)));
         }
+        if let Some(kind) = kind_section(parts.dimension, parts.kind, parts.up, &parts.info) {
+            sections.push((format::KIND, kind.to_vec()));
+        }
         sections.push((format::INFO, write::info(&parts.info)));
         let mut stores = vec![
             Store::of_records(format::CELLS, &write::cells(parts))?,
@@ -256,7 +260,9 @@ impl Frame {
         let mut out = Writer(Vec::with_capacity(total as usize));
         out.0.extend(MAGIC);
         out.0.extend(MAJOR.to_le_bytes());
-        let minor = if table.has_cell_names() { MINOR } else { 0 };
+        let has_kind = ordered.iter().any(|(id, ..)| *id == format::KIND);
+        let needed = [(table.has_cell_names(), SINCE_CELL_NAMES), (has_kind, SINCE_KIND)];
+        let minor = needed.into_iter().filter(|(there, _)| *there).map(|(_, since)| since).max().unwrap_or(0);
         out.0.extend(minor.to_le_bytes());
         out.u32(ordered.len() as u32);
         out.u64(total);

@@ -9,7 +9,8 @@ use crate::format::{self, HAS_SEEN, HEAD_LEN, MAX_BLOCK, NONE};
 use crate::locate::Places;
 use crate::source::Source;
 use sightlines_pvs::bits::ones;
-use sightlines_pvs::{CellId, MirrorRecord, SectionId};
+use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
+use sightlines_pvs::{Axis, CellId, MirrorRecord, SectionId, TableKind};
 use std::sync::Arc;
 
 /// A packed table that is read piece by piece, and keeps to a budget of memory.
@@ -24,6 +25,8 @@ pub struct Packed<S: Source> {
     pub(crate) head: Head,
     pub(crate) places: Places,
     info: Vec<(String, String)>,
+    kind: TableKind,
+    up: Option<Axis>,
     mirrors: Vec<MirrorRecord>,
     pub(crate) rows: RowStore,
     pub(crate) seen: Option<RowStore>,
@@ -210,8 +213,12 @@ impl<S: Source> Packed<S> {
         resident.need(format::COARSE)?.expect(n_pages * n_pages.div_ceil(64) * 8)?;
         let cache = Cache::new(index.entries.len(), cache_bytes);
         cache.count_read(resident.end());
+        let info = info(&resident)?;
+        let (kind, up) = kind(&resident, head.dimension, &info)?;
         Ok(Self {
-            info: info(&resident)?,
+            info,
+            kind,
+            up,
             mirrors: mirrors(&resident, &head)?,
             rows,
             seen,
@@ -252,7 +259,22 @@ impl<S: Source> Packed<S> {
         self.head.dimension
     }
 
-    /// Free keys and values of the table.
+    /// What was cut into cells, and how.
+    pub fn kind(&self) -> TableKind {
+        self.kind
+    }
+
+    /// The axis that points up, in its positive direction; `None` if it is not known.
+    pub fn up(&self) -> Option<Axis> {
+        self.up
+    }
+
+    /// Whether cells can be found at points, as [`sightlines_pvs::Table::has_places`].
+    pub fn has_places(&self) -> bool {
+        !self.kind.is_quake() || self.planes().is_some()
+    }
+
+    /// Free keys and values of the table, for people.
     pub fn info(&self) -> &[(String, String)] {
         &self.info
     }
@@ -387,6 +409,21 @@ fn info(resident: &Resident) -> Result<Vec<(String, String)>, PackedError> {
     }
     r.finish()?;
     Ok(info)
+}
+
+/// Kind and upward axis; a file of a later minor version may have values that are not known here.
+fn kind(
+    resident: &Resident,
+    dimension: u8,
+    info: &[(String, String)],
+) -> Result<(TableKind, Option<Axis>), PackedError> {
+    let Some(section) = resident.find(format::KIND) else { return Ok(kind_from_info(dimension, info)) };
+    let bytes = section.bytes.try_into().map_err(|_| section.place.fail(Kind::Cut))?;
+    match kind_from_bytes(bytes) {
+        Ok(known) => Ok(known),
+        Err(_) if resident.minor() > format::MINOR => Ok((TableKind::Unspecified, None)),
+        Err(value) => Err(section.place.fail(Kind::Value { value: u64::from(value) })),
+    }
 }
 
 fn mirrors(resident: &Resident, head: &Head) -> Result<Vec<MirrorRecord>, PackedError> {

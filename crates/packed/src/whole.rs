@@ -27,7 +27,8 @@ impl<S: Source> Packed<S> {
             planes: self.planes().cloned(),
             locator: Locator::from_nodes(&self.places.locator_nodes(&self.resident))
                 .map_err(|error| table_error(format::LOCATOR)(error.into()))?,
-            ..TableParts::empty(self.dimension())
+            up: self.up(),
+            ..TableParts::empty(self.dimension(), self.kind())
         };
         if let Some(seen) = &self.seen {
             parts.objects_seen =

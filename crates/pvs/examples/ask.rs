@@ -8,7 +8,9 @@
 //! +---+---+---+---+
 //! ```
 
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+};
 
 fn room(i: u32) -> CellRecord {
     let (x0, x1) = (4.0 * f64::from(i), 4.0 * f64::from(i + 1));
@@ -39,7 +41,7 @@ fn house() -> TableParts {
         objects: vec![ObjectRecord { name: "lamp".to_owned(), min: [14.0, 1.0, 0.0], max: [15.0, 2.0, 0.0] }],
         cell_objects: vec![vec![], vec![], vec![], vec![0]],
         info: vec![("source".to_owned(), "by hand".to_owned())],
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What must be true of a table's parts.
 
 use crate::parts::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord, TableParts};
-use crate::{BitMatrix, CellId, LocatorError, PlaneError, StabError, side};
+use crate::{BitMatrix, CellId, LocatorError, PlaneError, StabError, TableKind, side};
 
 /// A kind of thing with coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,6 +37,14 @@ pub enum TableError {
     /// Neither 2 nor 3.
     #[error("a table has 2 or 3 dimensions, not {0}")]
     Dimension(u8),
+    /// A kind of table that has another dimension.
+    #[error("a table of the kind '{kind}' does not have {dimension} dimensions")]
+    Kind {
+        /// The kind.
+        kind: TableKind,
+        /// Number of dimensions.
+        dimension: u8,
+    },
     /// More items of one kind than 32 bits count.
     #[error("{n} are more than 32 bits can count (item kind: {item})")]
     TooMany {
@@ -232,6 +240,9 @@ impl TableParts {
     pub(crate) fn check(&self) -> Result<(), TableError> {
         if !matches!(self.dimension, 2 | 3) {
             return Err(TableError::Dimension(self.dimension));
+        }
+        if self.kind.dimension().is_some_and(|d| d != self.dimension) {
+            return Err(TableError::Kind { kind: self.kind, dimension: self.dimension });
         }
         self.check_counts()?;
         let mut cells = (0u32..).map(CellId).zip(&self.cells);

@@ -1,6 +1,6 @@
 //! What a table is made of.
 
-use crate::{BitMatrix, CellId, Locator, PlaneTree, StabTrees};
+use crate::{Axis, BitMatrix, CellId, Locator, PlaneTree, StabTrees, TableKind};
 
 /// A convex cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +58,10 @@ pub struct MirrorRecord {
 pub struct TableParts {
     /// 2 for a plane, 3 for space.
     pub dimension: u8,
+    /// What was cut into cells, and how.
+    pub kind: TableKind,
+    /// The axis that points up, in its positive direction; `None`: not known.
+    pub up: Option<Axis>,
     /// The cells; their index is their id.
     pub cells: Vec<CellRecord>,
     /// The portals; may be empty, no question is answered from them.
@@ -83,15 +87,17 @@ pub struct TableParts {
     pub planes: Option<PlaneTree>,
     /// The stab trees of all cells, over the portals of the table; `None`: not known.
     pub stab: Option<StabTrees>,
-    /// Free keys and values (source, method, options), with strictly ascending keys.
+    /// Free keys and values for people (source, method, options), with strictly ascending keys; no code depends on them.
     pub info: Vec<(String, String)>,
 }
 
 impl TableParts {
-    /// The parts of a table without anything, in a plane (2) or in space (3): to be filled.
-    pub fn empty(dimension: u8) -> Self {
+    /// The parts of a table of a kind without anything, in a plane (2) or in space (3): to be filled.
+    pub fn empty(dimension: u8, kind: TableKind) -> Self {
         Self {
             dimension,
+            kind,
+            up: None,
             cells: Vec::new(),
             portals: Vec::new(),
             rows: BitMatrix::default(),

@@ -1,7 +1,7 @@
 //! The table and what it can be asked.
 
 use crate::parts::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord, TableParts};
-use crate::{CellId, CellSet, Locator, PlaneTree, StabTrees, TableError, bits, side};
+use crate::{Axis, CellId, CellSet, Locator, PlaneTree, StabTrees, TableError, TableKind, bits, side};
 
 /// Which cells of a scene can be seen from which: checked, and never changed.
 ///
@@ -49,6 +49,21 @@ impl Table {
     /// 2 for a plane, 3 for space.
     pub fn dimension(&self) -> u8 {
         self.parts.dimension
+    }
+
+    /// What was cut into cells, and how.
+    pub fn kind(&self) -> TableKind {
+        self.parts.kind
+    }
+
+    /// The axis that points up, in its positive direction; `None` if it is not known.
+    pub fn up(&self) -> Option<Axis> {
+        self.parts.up
+    }
+
+    /// Whether cells can be found at points: not in a table of the clusters of a Quake map without planes.
+    pub fn has_places(&self) -> bool {
+        !self.parts.kind.is_quake() || self.parts.planes.is_some()
     }
 
     /// Number of cells; ids are below it.
@@ -116,7 +131,7 @@ impl Table {
         self.parts.stab.as_ref()
     }
 
-    /// Free keys and values, by ascending key.
+    /// Free keys and values for people, by ascending key; see [`Table::kind`] for what code may depend on.
     pub fn info(&self) -> &[(String, String)] {
         &self.parts.info
     }

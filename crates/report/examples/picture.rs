@@ -2,7 +2,7 @@
 //!
 //! Run as `cargo run -p sightlines-report --example picture > picture.svg`.
 
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use sightlines_report::{DrawOptions, View, plan_svg};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         cells,
         portals: vec![door(0, 4.0, 0.5), door(1, 8.0, 1.5)],
         cell_objects: vec![vec![]; 3],
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     })?;
     print!("{}", plan_svg(&table, &DrawOptions { view: View::Cell(CellId(1)), ..DrawOptions::default() })?);
     Ok(())

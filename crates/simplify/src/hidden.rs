@@ -82,8 +82,8 @@ struct TableFaces<'a> {
 
 impl<'a> TableFaces<'a> {
     fn new(faces: &Faces, table: &'a Table) -> Self {
-        if table.info_value("subdivide") != Some("kd") {
-            // Boxes from elsewhere leave gaps.
+        if !table.kind().cells_fill_space() {
+            // Other cells leave gaps.
             return Self { table, touched: vec![Vec::new(); faces.len()] };
         }
         let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();

@@ -52,7 +52,7 @@ pub enum ViewsError {
 
 /// Whether the cells of a table are the boxes that it has of them.
 fn has_boxes(table: &Table) -> bool {
-    table.planes().is_none() && matches!(table.info_value("subdivide"), Some("kd" | "boxes"))
+    table.planes().is_none() && table.kind().has_box_cells()
 }
 
 impl Views {

@@ -180,7 +180,7 @@ pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
     if table.dimension() != 3 {
         return Err(ProofError::Kind { proofs: "a scene in space", table: "of a plan" });
     }
-    if crate::truth::is_of_clusters(table) {
+    if table.kind().is_quake() {
         return Err(ProofError::Kind { proofs: "a scene in space", table: "of a Quake map" });
     }
     if is_stripped(table) {
@@ -214,7 +214,7 @@ pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
 /// # Errors
 /// [`ProofError`] for other tables, stripped ones, and those with portals that are no polygons.
 pub fn convex_of(table: &Table) -> Result<ConvexNetwork, ProofError> {
-    if table.dimension() != 3 || !crate::truth::is_of_clusters(table) {
+    if table.dimension() != 3 || !table.kind().is_quake() {
         return Err(ProofError::Kind { proofs: "a Quake map", table: "of another kind" });
     }
     if is_stripped(table) {

@@ -2,7 +2,7 @@
 
 use sightlines_cells::{CellGraph, Convex, Plan, Scene};
 use sightlines_geometry::Point3;
-use sightlines_pvs::Table;
+use sightlines_pvs::{Table, TableKind};
 
 /// The scene that a table is to be true to.
 #[derive(Debug, Clone)]
@@ -86,22 +86,6 @@ pub enum VerifyError {
     Places(&'static str),
 }
 
-/// The key and the values under which tables say that they are of a Quake map.
-const SOURCE: &str = "source";
-const OF_PORTALS: &str = "portal file";
-const OF_MAP: &str = "Quake map";
-
-/// Whether a table says that it is of a portal file, and of a map with its portals.
-fn source_of(table: &Table) -> [bool; 2] {
-    let source = table.info_value(SOURCE).unwrap_or_default();
-    [OF_PORTALS, OF_MAP].map(|of| source.starts_with(of))
-}
-
-/// Whether a table says that its cells are the clusters of a map.
-pub(crate) fn is_of_clusters(table: &Table) -> bool {
-    source_of(table).contains(&true)
-}
-
 impl Truth<'_> {
     const fn dimension(&self) -> u8 {
         if matches!(self, Self::Plan(_)) { 2 } else { 3 }
@@ -112,14 +96,13 @@ impl Truth<'_> {
         if table.dimension() != self.dimension() {
             return Err(VerifyError::Dimension { table: table.dimension(), scene: self.dimension() });
         }
-        let [of_portals, of_map] = source_of(table);
-        let of_clusters = of_portals || of_map;
+        let of_clusters = table.kind().is_quake();
         match self {
             Self::Portals(_) | Self::World(..) if !of_clusters => {
                 Err(VerifyError::Kind { table: "of no Quake map", scene: "one" })
             }
             Self::Scene(_) if of_clusters => Err(VerifyError::Kind { table: "of a Quake map", scene: "none" }),
-            Self::World(..) if of_portals => {
+            Self::World(..) if table.kind() == TableKind::QuakePortalFile => {
                 Err(VerifyError::Places("was made of a portal file alone: give that file, not the map"))
             }
             _ => Ok(()),

@@ -1,7 +1,7 @@
 //! A viewer walks along a corridor of ten rooms; one of the doors is closed in between.
 
 use sightlines_eye_to_cell::{Method, TableCells, View};
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use sightlines_walkthrough::{WalkOptions, Walkthrough};
 use std::error::Error;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         portals: (0..9).map(door).collect(),
         cell_objects: vec![vec![]; 10],
         locator: Locator::build(&bounds, 2),
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     })?;
 
     let cells = TableCells::new(Arc::new(table));

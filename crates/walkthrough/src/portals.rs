@@ -63,7 +63,7 @@ fn canonical(corners: &[[f64; 3]]) -> Corners {
 mod tests {
     use super::*;
     use sightlines_eye_to_cell::TableCells;
-    use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableParts};
+    use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 
     /// Rooms in a row with these doors: their lower ends, and whether they are told from the other side.
     fn row(doors: &[(u32, f64, bool)]) -> TableCells<Table> {
@@ -91,7 +91,7 @@ mod tests {
             cell_objects: vec![vec![]; 4],
             locator: Locator::build(&bounds, 2),
             cells,
-            ..TableParts::empty(2)
+            ..TableParts::empty(2, TableKind::Unspecified)
         };
         TableCells::new(Table::new(parts).unwrap())
     }

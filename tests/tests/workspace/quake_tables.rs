@@ -1,7 +1,7 @@
 //! Tables of Quake maps that know where their cells are: of generated worlds in every format, and of real maps. What
 //! the tables say of points and faces is compared with descents that are written here, over the bytes of the map.
 
-use sightlines::bake::quake::{bake_map, is_of_clusters};
+use sightlines::bake::quake::bake_map;
 use sightlines::bake::{BakedMap, PrtOptions, axial_graph_of, convex_graph_of};
 use sightlines::formats::quake::{Bsp, BspFormat, Prt, graph_of_prt, read_prt};
 use sightlines::geometry::Portal3;
@@ -200,7 +200,7 @@ fn check_faces(
 /// What else has to hold of a table.
 fn check_whole(case: &Case) {
     let (table, name) = (&case.baked.table, &case.name);
-    assert!(is_of_clusters(table), "{name}");
+    assert!(table.kind().is_quake(), "{name}");
     assert_eq!(convex_graph_of(table).as_ref(), Some(&graph_of_prt(&case.prt)), "{name}: to the bit");
     assert!(axial_graph_of(table).is_none(), "{name}");
     assert_eq!(Table::from_bytes(&table.to_bytes()).as_ref(), Ok(table), "{name}");

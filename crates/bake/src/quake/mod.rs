@@ -12,7 +12,7 @@ mod world;
 
 pub use error::PrtBakeError;
 pub use state::{StateError, StateKey, named_counters};
-pub use table::{SOURCE_KEY, SOURCE_MAP, SOURCE_PRT, convex_graph_of, is_of_clusters};
+pub use table::convex_graph_of;
 pub use world::{BakedMap, WorldSummary, bake_map};
 
 use sightlines_cells::{CellGraph, Convex};
@@ -109,7 +109,7 @@ pub fn vis_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<VisMap, 
 ///
 /// A portal file says nothing of walls, so the table does not know where its cells are: the box of a cell is that
 /// around its portals, which the cell may leave on all sides, and a cell without portals has a box without volume.
-/// Who asks such a table, which says [`SOURCE_PRT`] under [`SOURCE_KEY`], names cells instead of points.
+/// Query such a table, of the kind [`sightlines_pvs::TableKind::QuakePortalFile`], by cells instead of points.
 ///
 /// # Errors
 /// As [`vis_map`].

@@ -3,21 +3,10 @@
 use sightlines_cells::{CellGraph, CellId, Convex, Portal, Portal3};
 use sightlines_formats::quake::Prt;
 use sightlines_geometry::check_coordinate;
-use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableParts};
+use sightlines_pvs::{Axis, BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 
-/// Under this key a table says what it was made from, if that is a portal file, or a map with one.
-pub const SOURCE_KEY: &str = "source";
-/// What a table of a portal file says under [`SOURCE_KEY`], followed by the dialect.
-pub const SOURCE_PRT: &str = "portal file";
-/// What a table of a map with its portal file says under [`SOURCE_KEY`], followed by the format and the dialect.
-pub const SOURCE_MAP: &str = "Quake map";
-
-/// Whether the cells of a table are the clusters of a Quake map, from its portal file alone or from both. Where the
-/// cells are is known only in a table that has planes.
-pub fn is_of_clusters(table: &Table) -> bool {
-    let made_from = |source: &str| source.starts_with(SOURCE_PRT) || source.starts_with(SOURCE_MAP);
-    table.info_value(SOURCE_KEY).is_some_and(made_from)
-}
+/// The key of the text that names the file's format and dialect, for people.
+pub(super) const SOURCE_KEY: &str = "source";
 
 /// What a table of a graph of clusters is made of, without where they are.
 pub(super) fn parts_of_clusters(prt: &Prt, graph: &CellGraph<Convex>, rows: BitMatrix, fast: bool) -> TableParts {
@@ -32,7 +21,7 @@ pub(super) fn parts_of_clusters(prt: &Prt, graph: &CellGraph<Convex>, rows: BitM
     // Ascending keys.
     let info = vec![
         pair("search", if fast { "fast" } else { "full" }.to_owned()),
-        pair(SOURCE_KEY, format!("{SOURCE_PRT} {}", prt.dialect())),
+        pair(SOURCE_KEY, format!("portal file {}", prt.dialect())),
         pair("up", "z".to_owned()),
     ];
     TableParts {
@@ -42,7 +31,8 @@ pub(super) fn parts_of_clusters(prt: &Prt, graph: &CellGraph<Convex>, rows: BitM
         locator: Locator::build(&bounds, 3),
         cells,
         info,
-        ..TableParts::empty(3)
+        up: Some(Axis::Z),
+        ..TableParts::empty(3, TableKind::QuakePortalFile)
     }
 }
 
@@ -54,12 +44,12 @@ fn portal_record(portal: &Portal<Convex>) -> PortalRecord {
 }
 
 /// The graph of clusters that a table of a portal file, or of a map, stores: the one that the table was made from, to the
-/// bit. `None` if the table was made from something else ([`is_of_clusters`]), or its portals were stripped, or have coordinates that predicates do
+/// bit. `None` if the table was made from something else ([`sightlines_pvs::TableKind::is_quake`]), or its portals were stripped, or have coordinates that predicates do
 /// not bear or corners that go round nothing. That portals are convex and flat is believed, as bits of rows are.
 pub fn convex_graph_of(table: &Table) -> Option<CellGraph<Convex>> {
     // Cells that see each other are joined by portals, so without any they were stripped.
     let joined = (0u32..).take(table.n_cells()).map(CellId).any(|cell| table.visible(cell).any(|other| other != cell));
-    if table.dimension() != 3 || !is_of_clusters(table) || (table.portals().is_empty() && joined) {
+    if table.dimension() != 3 || !table.kind().is_quake() || (table.portals().is_empty() && joined) {
         return None;
     }
     let portal = |p: &PortalRecord| {

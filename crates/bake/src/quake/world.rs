@@ -3,7 +3,7 @@
 mod faces;
 mod planes;
 
-use super::table::{SOURCE_KEY, SOURCE_MAP, parts_of_clusters};
+use super::table::{SOURCE_KEY, parts_of_clusters};
 use super::{PrtBakeError, PrtOptions, SeenClusters, graph, see};
 use planes::ClusterTree;
 use sightlines_cells::{CellGraph, Convex};
@@ -11,7 +11,7 @@ use sightlines_formats::quake::bsp::{BspTree, WorldFaces};
 use sightlines_formats::quake::visibility::check_portals;
 use sightlines_formats::quake::{Bsp, Prt};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellRecord, Locator, ObjectRecord, Table};
+use sightlines_pvs::{CellRecord, Locator, ObjectRecord, Table, TableKind};
 
 /// By how much the bounds of leafs may be too small, in map units. Most formats have them as whole numbers, and some
 /// compilers cut the rest off.
@@ -81,7 +81,8 @@ pub fn bake_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<BakedMa
     };
     parts.cell_objects = lists.of_clusters;
     parts.planes = planes.into_planes();
-    let source = format!("{SOURCE_MAP} {} with {}", bsp.format().name(), prt.dialect());
+    let source = format!("Quake map {} with {}", bsp.format().name(), prt.dialect());
+    parts.kind = TableKind::QuakeMap;
     parts.info.iter_mut().filter(|(key, _)| key == SOURCE_KEY).for_each(|(_, value)| value.clone_from(&source));
     Ok(BakedMap { table: Table::new(parts)?, clusters, world })
 }

@@ -19,7 +19,9 @@ use sightlines_formats::ViewCells;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{SceneOptions, SceneSubdivision, subdivide_scene};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Split, Volume, VolumeError, Witness};
-use sightlines_pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, Table, TableError, TableParts};
+use sightlines_pvs::{
+    BitMatrix, CellRecord, Locator, ObjectRecord, SceneMethods, Table, TableError, TableKind, TableParts,
+};
 use sightlines_stabtree::{BoxVisibility, PairMask, Progress, SearchOptions, box_visibility};
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -152,7 +154,8 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let mut proven = PairMask { boxes: BitMatrix::identity(n), objects: BitMatrix::new(n, boxes.len()) };
     let (mut rows, mut objects, effort, method) = match options.method {
         Some(make) => {
-            let method = make().name();
+            let made = make();
+            let method = (made.name(), made.only_in_air());
             let witness = Witness::new(triangles.iter().map(|t| &t[..]));
             let occludees = Occludees::new(triangles);
             let scene = see::Scene { occludees: &occludees, witness: &witness, volumes: &volumes };
@@ -181,6 +184,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         parts.object_polygons =
             scene.objects().iter().map(|o| u32::try_from(o.triangles.len()).unwrap_or(u32::MAX)).collect();
     }
+    let (method, only_in_air) = method.map_or((None, false), |(name, only_in_air)| (Some(name), only_in_air));
     let text = method.clone().unwrap_or_default();
     let by = if by_sightlines && method.is_some() {
         "sightlines+"
@@ -188,6 +192,11 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         "sightlines"
     } else {
         ""
+    };
+    let hidden_by = SceneMethods { sightlines: by_sightlines, from_region: method.is_some(), only_in_air };
+    parts.kind = match options.cells {
+        CellsFrom::KdTree => TableKind::SceneKdTree { hidden_by },
+        CellsFrom::Boxes(_) => TableKind::SceneGivenCells { hidden_by },
     };
     parts.info.push(("method".to_owned(), format!("{by}{text}")));
     parts.info.sort();
@@ -257,7 +266,7 @@ fn kd_parts(scene: &Scene, cut: &SceneSubdivision, n_objects: usize) -> (TablePa
         locator: Locator::build(&bounds, 3),
         mirrors: mirrors::of_scene(&cut.graph, scene).parts,
         info,
-        ..TableParts::empty(3)
+        ..TableParts::empty(3, TableKind::SceneKdTree { hidden_by: SceneMethods::default() })
     };
     let n = cells.len();
     (parts, Start { cells, rows: ones(n, n), objects: ones(n, n_objects) })
@@ -276,7 +285,7 @@ fn box_parts(boxes: &ViewCells, n_objects: usize) -> (TableParts, Start) {
         cell_names: boxes.cells.iter().map(|b| b.id.clone()).collect(),
         locator: Locator::build(&bounds, 3),
         info: vec![("subdivide".to_owned(), "boxes".to_owned())],
-        ..TableParts::empty(3)
+        ..TableParts::empty(3, TableKind::SceneGivenCells { hidden_by: SceneMethods::default() })
     };
     let n = cells.len();
     (parts, Start { cells, rows: ones(n, n), objects: ones(n, n_objects) })

@@ -5,7 +5,7 @@ use sightlines_bake::{BakeError, BakeOptions, Baked, Subdivide, bake_plan, graph
 use sightlines_cells::{CellGraph, CellId, Plan, PlanLine, PlanObject, Planar};
 use sightlines_geometry::{Aabb, Point2, Segment2, signed_area};
 use sightlines_kdtree::KdError;
-use sightlines_pvs::{BitMatrix, CellRecord, Locator, Table, TableParts};
+use sightlines_pvs::{BitMatrix, CellRecord, Locator, Table, TableKind, TableParts};
 use sightlines_scenes::{OfficeOptions, doom_like, maze, office, turned_pillared_hall};
 use sightlines_testkit::{axial_plan, small_grid_plan};
 use sightlines_triangulation::TriangulationError;
@@ -216,7 +216,7 @@ fn tables_of_space_have_no_planar_graph() {
         rows: BitMatrix::identity(1),
         cells: vec![cell],
         cell_objects: vec![vec![]],
-        ..TableParts::empty(3)
+        ..TableParts::empty(3, TableKind::Unspecified)
     };
     assert_eq!(graph_of(&Table::new(parts).expect("a box in space")), None);
 }
@@ -241,7 +241,7 @@ fn information_is_sorted_and_rows_are_checked() {
     let graph = cut(&boxed(&[line(4., 0., 4., 3.)]), Subdivide::KdTree).expect("a region");
     let options = |keys: &[&str]| sightlines_bake::TableOptions {
         info: keys.iter().map(|k| ((*k).to_owned(), String::new())).collect(),
-        ..Default::default()
+        ..sightlines_bake::TableOptions::new(TableKind::PlanKdTree)
     };
     let table = table_of(&graph, BitMatrix::identity(graph.n_cells()), options(&["b", "c", "a"])).unwrap();
     assert!(table.info().iter().map(|(key, _)| key.as_str()).eq(["a", "b", "c"]));

@@ -3,7 +3,7 @@
 use sightlines_bake::{PortalMode, SceneBakeOptions, axial_graph_of, bake_scene, graph_of};
 use sightlines_cells::{Axial, CellGraph, CellId};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableParts};
+use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use sightlines_scenes::{TowerOptions, tower};
 use sightlines_sightline::Target;
 use sightlines_stabtree::{SpaceExplanation, explain_space};
@@ -47,7 +47,7 @@ fn with(table: &Table, portals: Vec<PortalRecord>, rows: BitMatrix) -> Table {
         cell_objects: vec![Vec::new(); cells.len()],
         locator: Locator::build(&bounds, 3),
         cells,
-        ..TableParts::empty(3)
+        ..TableParts::empty(3, TableKind::Unspecified)
     })
     .expect("the parts fit together")
 }

@@ -6,7 +6,7 @@ use super::query::Query;
 use super::sweep::{sweep, sweep_within};
 use crate::{Doors, Outlook, Scratch, Seen, TableCells, View};
 use proptest::prelude::*;
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use std::f64::consts::TAU;
 
 /// Boxes along each side of the block.
@@ -97,7 +97,7 @@ fn all_see_all(dimension: u8, cells: Vec<CellRecord>, portals: Vec<PortalRecord>
         cell_objects: vec![vec![]; n],
         locator: Locator::build(&bounds, dimension),
         cells,
-        ..TableParts::empty(dimension)
+        ..TableParts::empty(dimension, TableKind::Unspecified)
     };
     Table::new(parts).unwrap()
 }

@@ -40,6 +40,7 @@ pub use write::{write_glb, write_simplified_glb};
 
 use crate::ReadError;
 use sightlines_cells::Scene;
+pub use sightlines_pvs::Axis;
 use std::fs;
 use std::path::Path;
 
@@ -101,17 +102,6 @@ pub enum SceneFormat {
     Gltf,
     /// Wavefront OBJ.
     Obj,
-}
-
-/// An axis of space, in its positive direction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
-    /// The first coordinate.
-    X,
-    /// The second coordinate.
-    Y,
-    /// The third coordinate.
-    Z,
 }
 
 /// How long a scene unit is.

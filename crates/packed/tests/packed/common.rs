@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, MirrorRecord, ObjectRecord, PlaneChild, PlaneNode, PlaneTree, PortalRecord,
-    StabParts, StabTrees, Table, TableParts,
+    Axis, BitMatrix, CellId, CellRecord, Locator, MirrorRecord, ObjectRecord, PlaneChild, PlaneNode, PlaneTree,
+    PortalRecord, SceneMethods, StabParts, StabTrees, Table, TableKind, TableParts,
 };
 
 /// What a table is made from: dimension, columns, rows, seed (cells have names if it is odd), and which optional
@@ -42,7 +42,11 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
     };
     let cells: Vec<CellRecord> = (0..n).map(cell).collect();
     let bounds: Vec<_> = cells.iter().map(|cell| (cell.min, cell.max)).collect();
-    let mut out = TableParts { cells, locator: Locator::build(&bounds, dimension), ..TableParts::empty(dimension) };
+    let mut out = TableParts {
+        cells,
+        locator: Locator::build(&bounds, dimension),
+        ..TableParts::empty(dimension, TableKind::Unspecified)
+    };
     out.rows = rows(n, &mut dice, 1 + u32::from(parts) % 5);
     out.portals = portals(n, width as usize, &place, dimension);
     let n_objects = if has(2) { dice.below(90) } else { 0 };
@@ -73,6 +77,11 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
     }
     if has(7) {
         out.info = [("a", "b"), ("key", ""), ("ä", "value")].map(|(k, v)| (k.to_owned(), v.to_owned())).to_vec();
+    }
+    if seed % 3 == 0 {
+        let hidden_by = SceneMethods { sightlines: seed % 2 == 1, from_region: true, only_in_air: seed % 5 == 0 };
+        out.kind = if dimension == 2 { TableKind::PlanKdTree } else { TableKind::SceneGivenCells { hidden_by } };
+        out.up = Some(Axis::ALL[seed as usize % 2]);
     }
     if seed % 2 == 1 {
         // Some are alike, some empty, some no ASCII.

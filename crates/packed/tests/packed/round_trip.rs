@@ -3,12 +3,14 @@
 use crate::common::{points, recipes, table};
 use proptest::prelude::*;
 use sightlines_packed::{PackOptions, Packed, PackedErrorKind, pack, pack_report};
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::format::kind_to_bytes;
+use sightlines_pvs::{Axis, CellId, Table, TableKind, TableParts};
 
 /// All that a packed table answers, compared with the table; the number of comparisons.
 pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
     let (mut cells, mut numbers, mut n) = (Vec::new(), Vec::new(), 0);
     assert_eq!((packed.n_cells(), packed.dimension()), (table.n_cells(), table.dimension()));
+    assert_eq!((packed.kind(), packed.up()), (table.kind(), table.up()));
     assert_eq!((packed.info(), packed.mirrors(), packed.planes()), (table.info(), table.mirrors(), table.planes()));
     for p in points(table.dimension()) {
         packed.locate(&p, &mut cells).unwrap();
@@ -146,4 +148,43 @@ fn what_is_not_there_is_an_error_that_says_so() {
     let error = Packed::open(b"\x89PVS\r\n\x1a\n".to_vec(), 0).unwrap_err();
     assert!(matches!(error.kind, PackedErrorKind::Magic));
     assert_eq!(error.to_string(), "byte 0: this is no packed visibility table");
+}
+
+/// The section `KIND` of a packed table, renamed so that no reader knows it, or changed; with right checksums.
+fn with_kind(bytes: &[u8], id: [u8; 4], content: Option<[u8; 12]>, minor: u8) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    bytes[10] = minor;
+    let number = |bytes: &[u8], at: usize| u32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]));
+    let n = number(&bytes, 12) as usize;
+    let entry = (0..n).map(|i| 24 + 24 * i).find(|&at| bytes[at..at + 4] == *b"KIND").expect("the kind is stored");
+    bytes[entry..entry + 4].copy_from_slice(&id);
+    if let Some(content) = content {
+        let at = number(&bytes, entry + 8) as usize;
+        bytes[at..at + 12].copy_from_slice(&content);
+        bytes[entry + 20..entry + 24].copy_from_slice(&crc32fast::hash(&content).to_le_bytes());
+    }
+    let crc = crc32fast::hash(&bytes[..24 + 24 * n]).to_le_bytes();
+    bytes[24 + 24 * n..28 + 24 * n].copy_from_slice(&crc);
+    bytes
+}
+
+#[test]
+fn kinds_are_stored_and_older_files_understood() {
+    let info = vec![("source".to_owned(), "portal file PRT1".to_owned()), ("up".to_owned(), "z".to_owned())];
+    let kind = TableKind::QuakePortalFile;
+    let table = Table::new(TableParts { info, up: Some(Axis::Z), ..TableParts::empty(3, kind) }).unwrap();
+    let bytes = pack(&table, &PackOptions::default()).unwrap();
+    let made = |bytes: Vec<u8>| Packed::open(bytes, 0).map(|packed| (packed.kind(), packed.up(), packed.has_places()));
+    assert_eq!(bytes[10], 2, "the minor version");
+    let known = (kind, Some(Axis::Z), false);
+    assert_eq!(made(bytes.clone()).unwrap(), known);
+    // As before version 1.2, by the texts.
+    assert_eq!(made(with_kind(&bytes, *b"xIND", None, 1)).unwrap(), known);
+    // The section, not the texts, if there is one.
+    let other = kind_to_bytes(TableKind::QuakeMap, None);
+    assert_eq!(made(with_kind(&bytes, *b"KIND", Some(other), 2)).unwrap(), (TableKind::QuakeMap, None, false));
+    let unknown = [9; 12];
+    let error = made(with_kind(&bytes, *b"KIND", Some(unknown), 2)).unwrap_err();
+    assert!(matches!(error.kind, PackedErrorKind::Value { .. }), "{error}");
+    assert_eq!(made(with_kind(&bytes, *b"KIND", Some(unknown), 3)).unwrap(), (TableKind::Unspecified, None, true));
 }

@@ -55,8 +55,8 @@ pub(super) fn write(sections: &[Payload]) -> Vec<u8> {
     out
 }
 
-/// Checks everything about the file but what the sections mean; returns the known sections.
-pub(super) fn read(bytes: &[u8]) -> Result<Vec<Section<'_>>, DecodeError> {
+/// Checks everything about the file but what the sections mean; returns the minor version and the known sections.
+pub(super) fn read(bytes: &[u8]) -> Result<(u16, Vec<Section<'_>>), DecodeError> {
     let entries = read_header(bytes)?;
     let mut end = FIXED + entries.len() + 8;
     let mut found: Vec<Section<'_>> = Vec::new();
@@ -77,7 +77,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Section<'_>>, DecodeError> {
         }
     }
     match end == bytes.len() {
-        true => Ok(found),
+        true => Ok((u16::from_le_bytes(array(bytes, 10)), found)),
         false => Err(DecodeError { section: None, offset: end as u64, kind: Kind::Misplaced }),
     }
 }

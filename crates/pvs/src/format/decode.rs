@@ -1,13 +1,14 @@
 //! Reads a table.
 
-use super::container::{self, Section};
+use super::container::{self, Section, array};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::Reader;
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS,
-    ROWS, SEEN, STAB, SectionId, n_row_words, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS, OBJECT_POLYGONS, OBJECTS,
+    PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_from_bytes, kind_from_info, n_row_words, planes, stab,
 };
 use crate::locator::Node;
+use crate::{Axis, TableKind};
 use crate::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, MirrorRecord, ObjectRecord, PortalRecord};
 use crate::{Table, TableError, TableParts};
 
@@ -20,7 +21,8 @@ impl Table {
     /// # Errors
     /// [`DecodeError`], with section and byte offset.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, DecodeError> {
-        let sections = Sections { found: container::read(bytes)?, len: bytes.len() as u64 };
+        let (minor, found) = container::read(bytes)?;
+        let sections = Sections { found, len: bytes.len() as u64 };
         let (dimension, mut cells) = read(sections.need(CELLS)?, cells)?;
         let d = usize::from(dimension);
         if let Some(section) = sections.find(POLYGONS) {
@@ -39,7 +41,14 @@ impl Table {
             return Err(sections.blame(error));
         }
         let stab = sections.find(STAB).map(|s| read(s, |r| stab::parse(r, &portals, cells.len()))).transpose()?;
+        let info = read(sections.need(INFO)?, info)?;
+        let (kind, up) = match sections.find(KIND) {
+            Some(section) => read(section, |r| kind(r, minor > MINOR))?,
+            None => kind_from_info(dimension, &info),
+        };
         let parts = TableParts {
+            kind,
+            up,
             mirrors,
             object_polygons,
             cell_names,
@@ -52,7 +61,7 @@ impl Table {
             objects_seen: seen.transpose()?,
             objects,
             cell_objects: read(sections.need(CELL_OBJECTS)?, |r| cell_objects(r, cells.len()))?,
-            info: read(sections.need(INFO)?, info)?,
+            info,
             cells,
         };
         Self::new(parts).map_err(|error| sections.blame(error))
@@ -100,6 +109,7 @@ fn section_of(error: &TableError) -> SectionId {
             Item::Mirror => MIRRORS,
         },
         TableError::Dimension(_) => CELLS,
+        TableError::Kind { .. } => KIND,
         TableError::Corners { .. } | TableError::NotConvex { .. } | TableError::OutsideBox { .. } => POLYGONS,
         TableError::PortalCell { .. } | TableError::PortalLoop { .. } | TableError::PortalPoints { .. } => PORTALS,
         TableError::RowsShape { .. }
@@ -270,6 +280,16 @@ fn cell_names(r: &mut Reader<'_>, n: usize) -> Result<Vec<String>, DecodeError> 
     // Each takes four bytes at least, so that memory is taken for no more names than there can be.
     r.expect(n as u64, 4)?;
     (0..n).map(|_| r.text()).collect()
+}
+
+/// Kind and upward axis; a file of a later minor version may have values that are not known here.
+fn kind(r: &mut Reader<'_>, is_later: bool) -> Result<(TableKind, Option<Axis>), DecodeError> {
+    let bytes = r.take(KIND_LEN)?;
+    match kind_from_bytes(array(bytes, 0)) {
+        Err(_) if is_later => Ok((TableKind::Unspecified, None)),
+        Err(value) => Err(r.fail(KIND_LEN, Kind::Value { value })),
+        Ok(known) => Ok(known),
+    }
 }
 
 fn info(r: &mut Reader<'_>) -> Result<Vec<(String, String)>, DecodeError> {

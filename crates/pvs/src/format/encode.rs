@@ -2,8 +2,8 @@
 
 use super::container::{self, Payload};
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, INFO, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS,
-    ROWS, SEEN, STAB, SectionId, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS,
+    PORTALS, ROWS, SEEN, STAB, SectionId, kind_section, planes, stab,
 };
 use crate::locator::Node;
 use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectRecord, PortalRecord, Table, TableParts};
@@ -43,6 +43,9 @@ impl Table {
         }
         if !parts.cell_names.is_empty() {
             sections.push(section(CELL_NAMES, |out| parts.cell_names.iter().for_each(|name| out.text(name))));
+        }
+        if let Some(kind) = kind_section(parts.dimension, parts.kind, parts.up, &parts.info) {
+            sections.push(section(KIND, |out| out.0.extend(kind)));
         }
         sections.push(section(INFO, |out| info(out, &parts.info)));
         container::write(&sections)

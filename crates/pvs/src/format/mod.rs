@@ -37,6 +37,7 @@
 //! | `PLNS`, optional, only in space | slack (`f64`), number of nodes; for each: normal (3), offset, two children (`u32`): 0 for nothing, the number of a node, or 2^31 plus a cell |
 //! | `STAB`, optional | the stab trees, see below |
 //! | `CNAM`, optional | for each cell its name, as number of bytes and UTF-8 |
+//! | `KIND`, optional | what kind of table it is (`u32`): 0 not stated, 1 plan by k-d tree, 2 plan by triangulation, 3 scene by k-d tree, 4 scene with given cells, 5 Quake portal file, 6 Quake map; for scenes, what found the hidden (`u32`): 1 sight lines, plus 2 a from-region method, plus 4 if nothing is promised for eyes inside solid matter; the axis that points up (`u32`): 0 not known, 1 to 3 |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
 //! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are
@@ -44,7 +45,9 @@
 //! the objects that touch any cell that it sees. Of what is new in 1.2, a missing `MIRR` means that there are
 //! no mirrors, a missing `OPOL` that the numbers of polygons are not known, a missing `PLNS` that the cells'
 //! outlines say where a point is, a missing `STAB` that the stab trees are not known. A missing `CNAM` (new in 1.3)
-//! means that the cells have no names.
+//! means that the cells have no names. Without a `KIND` (new in 1.4), kind and axis are what older programs left in `INFO`
+//! under the keys `source`, `subdivide`, `method` and `up` ([`kind_from_info`]), or not known; a later minor version may add
+//! kinds, which a reader takes as not stated.
 //!
 //! # Stab trees
 //!
@@ -77,11 +80,13 @@ mod container;
 mod decode;
 mod encode;
 mod error;
+mod kind;
 mod planes;
 mod reader;
 mod stab;
 
 pub use error::{DecodeError, DecodeErrorKind, SectionId};
+pub use kind::{KIND_LEN, kind_from_bytes, kind_from_info, kind_section, kind_to_bytes};
 
 /// The first bytes of every file.
 ///
@@ -92,7 +97,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the least that has all the sections of a
 /// table, so that files without the new ones stay as they were.
-pub const MINOR: u16 = 3;
+pub const MINOR: u16 = 4;
 
 const CELLS: SectionId = SectionId(*b"CELL");
 const POLYGONS: SectionId = SectionId(*b"POLY");
@@ -107,10 +112,21 @@ const OBJECT_POLYGONS: SectionId = SectionId(*b"OPOL");
 const PLANES: SectionId = SectionId(*b"PLNS");
 const STAB: SectionId = SectionId(*b"STAB");
 const CELL_NAMES: SectionId = SectionId(*b"CNAM");
+const KIND: SectionId = SectionId(*b"KIND");
 const INFO: SectionId = SectionId(*b"INFO");
 
-/// The sections of this version, whether they are optional, and the minor version that brought them.
-const KNOWN: [(SectionId, bool, u16); 14] = [
+/// The minor version that brought rows of objects.
+const SINCE_SEEN: u16 = 1;
+/// The minor version that brought mirrors, numbers of polygons, planes and stab trees.
+const SINCE_MIRRORS_PLANES_STAB: u16 = 2;
+/// The minor version that brought names of cells.
+const SINCE_CELL_NAMES: u16 = 3;
+/// The minor version that brought the kind of a table.
+const SINCE_KIND: u16 = 4;
+
+/// The sections of this version, whether they are optional, and the minor version that brought them: a constant that never
+/// changes.
+const KNOWN: [(SectionId, bool, u16); 15] = [
     (CELLS, false, 0),
     (POLYGONS, true, 0),
     (PORTALS, true, 0),
@@ -118,12 +134,13 @@ const KNOWN: [(SectionId, bool, u16); 14] = [
     (LOCATOR, false, 0),
     (OBJECTS, false, 0),
     (CELL_OBJECTS, false, 0),
-    (SEEN, true, 1),
-    (MIRRORS, true, 2),
-    (OBJECT_POLYGONS, true, 2),
-    (PLANES, true, 2),
-    (STAB, true, 2),
-    (CELL_NAMES, true, MINOR),
+    (SEEN, true, SINCE_SEEN),
+    (MIRRORS, true, SINCE_MIRRORS_PLANES_STAB),
+    (OBJECT_POLYGONS, true, SINCE_MIRRORS_PLANES_STAB),
+    (PLANES, true, SINCE_MIRRORS_PLANES_STAB),
+    (STAB, true, SINCE_MIRRORS_PLANES_STAB),
+    (CELL_NAMES, true, SINCE_CELL_NAMES),
+    (KIND, true, SINCE_KIND),
     (INFO, false, 0),
 ];
 

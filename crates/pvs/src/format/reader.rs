@@ -29,7 +29,7 @@ impl<'a> Reader<'a> {
         if need > left { Err(self.fail(0, Kind::Cut { need, left })) } else { Ok(()) }
     }
 
-    fn take(&mut self, n: usize) -> Result<&'a [u8], DecodeError> {
+    pub(super) fn take(&mut self, n: usize) -> Result<&'a [u8], DecodeError> {
         self.expect(n as u64, 1)?;
         self.at += n;
         Ok(&self.section.bytes[self.at - n..self.at])

@@ -5,7 +5,7 @@ use crate::common::file::{File, Part, assert_damage_is_noticed};
 use crate::common::full::{any_full_parts, named_villa, villa, wedges};
 use crate::common::rooms;
 use proptest::prelude::*;
-use sightlines_pvs::{CellId, DecodeErrorKind as Kind, Item, MirrorRecord, Table, TableError, TableParts};
+use sightlines_pvs::{CellId, DecodeErrorKind as Kind, Item, MirrorRecord, Table, TableError, TableKind, TableParts};
 
 proptest! {
     #[test]
@@ -23,7 +23,8 @@ proptest! {
         // The least version that has all that is there.
         let parts = table.parts();
         let new = parts.stab.is_some() || parts.planes.is_some() || !parts.mirrors.is_empty() || !parts.object_polygons.is_empty();
-        let minor = if table.has_cell_names() { 3 } else if new { 2 } else { 0 };
+        let made = (table.kind(), table.up()) != (TableKind::Unspecified, None);
+        let minor = if made { 4 } else if table.has_cell_names() { 3 } else if new { 2 } else { 0 };
         prop_assert_eq!(bytes[10], minor);
     }
 

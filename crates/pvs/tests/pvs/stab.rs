@@ -5,7 +5,7 @@ use crate::common::full::{Choice, choices, stab_parts, villa};
 use crate::common::rooms;
 use proptest::prelude::*;
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord};
-use sightlines_pvs::{StabError, StabParts, StabTrees, Table, TableError, TableParts};
+use sightlines_pvs::{StabError, StabParts, StabTrees, Table, TableError, TableKind, TableParts};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Portals between few cells, so that a cell may have more than the sixteen entries that fit a mask.
@@ -224,7 +224,7 @@ fn table_with(portals: Vec<PortalRecord>, n_cells: usize, stab: StabTrees) -> Ta
         cell_objects: vec![vec![]; n_cells],
         locator: Locator::build(&vec![([0.0; 3], [0.0; 3]); n_cells], 2),
         stab: Some(stab),
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     })
     .expect("a table of nothing but trees")
 }

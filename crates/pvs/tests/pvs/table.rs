@@ -3,7 +3,7 @@
 use crate::common::{any_parts, assert_well_formed, located, rooms};
 use proptest::prelude::*;
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, LocatorNode};
-use sightlines_pvs::{Table, TableError, TableParts};
+use sightlines_pvs::{Table, TableError, TableKind, TableParts};
 
 /// The first grid point, half-way points included, at which the table and brute force differ.
 fn misplaced(table: &Table) -> Option<(Vec<f64>, Vec<CellId>, Vec<CellId>)> {
@@ -160,7 +160,7 @@ fn empty_tables_are_tables() {
             rows: BitMatrix::default(),
             cell_objects: vec![],
             locator: Locator::default(),
-            ..TableParts::empty(dimension)
+            ..TableParts::empty(dimension, TableKind::Unspecified)
         };
         let table = Table::new(nothing).unwrap();
         assert_eq!(table.mean_visible_share(), 0.0);

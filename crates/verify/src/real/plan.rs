@@ -5,13 +5,13 @@ use crate::exact::{segments_apart, snapped, strictly_in_polygon};
 use crate::rays::{Sight, Target};
 use sightlines_cells::{CellId, Plan};
 use sightlines_geometry::{Aabb, BoxTree, Point2, Point3, Random, Segment2, polygon_contains};
-use sightlines_pvs::Table;
+use sightlines_pvs::{Table, TableKind};
 
 mod slit;
 
 /// The cells' outlines; `None` if the table does not have them, and its boxes are not the cells.
 pub(crate) fn outlines(table: &Table) -> Option<Vec<Vec<Point2>>> {
-    let boxes_are_cells = table.info_value("subdivide") == Some("kd");
+    let boxes_are_cells = table.kind() == TableKind::PlanKdTree;
     let outline = |c: &sightlines_pvs::CellRecord| {
         let corners = [[c.min[0], c.min[1]], [c.max[0], c.min[1]], [c.max[0], c.max[1]], [c.min[0], c.max[1]]];
         match c.polygon.is_empty() {

@@ -40,7 +40,6 @@ impl SolidWorld {
         let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
         let all = boxes.iter().chain(&cells).fold(Aabb::EMPTY, |all: Aabb<3>, b| all.with(b.min).with(b.max));
         let scale = if all.is_empty() { 1.0 } else { scale_of(all.min.into_iter().chain(all.max)) };
-        let method = table.info_value("method").unwrap_or_default();
         Self {
             tree: BoxTree::build(&boxes, 4),
             cell_tree: BoxTree::build(&cells, 4),
@@ -51,7 +50,7 @@ impl SolidWorld {
             next: neighbours_of(table),
             slack: scale * 2f64.powi(-40),
             size: if all.is_empty() { 0.0 } else { length(sub(all.max, all.min)) },
-            only_in_air: ["voxels", "shafts"].iter().any(|m| method.contains(m)),
+            only_in_air: table.kind().only_in_air(),
         }
     }
 

@@ -4,13 +4,13 @@ use super::middle;
 use crate::findings::{Findings, Violation};
 use sightlines_cells::CellId;
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_pvs::{CellRecord, Table};
+use sightlines_pvs::{CellRecord, Table, TableKind};
 
 pub(super) fn check(table: &Table, findings: &mut Findings) {
     let boxes: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
     let tree = BoxTree::build(&boxes, 4);
-    // Boxes that someone gave as cells may overlap as they like, and be flat.
-    let given = table.info_value("subdivide") == Some("boxes");
+    // Given cells may overlap and be flat.
+    let given = matches!(table.kind(), TableKind::SceneGivenCells { .. });
     for (id, bounds) in (0u32..).map(CellId).zip(&boxes) {
         if !given && (0..3).any(|k| bounds.min[k] >= bounds.max[k]) {
             findings.add(Violation::NotConvex { cell: id });

@@ -3,7 +3,7 @@
 use sightlines_eye_to_cell::{CellSource, Method, MirrorWay, StabStep, TableCells, View, Way};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
 };
 use sightlines_walkthrough::{Answer, Prefetcher, Prepare, WalkOptions, Walkthrough};
 use std::collections::BTreeSet;
@@ -38,7 +38,7 @@ fn rooms(n: u32) -> Arc<Table> {
         cell_objects: (0..n).map(|i| vec![i]).collect(),
         locator: Locator::build(&bounds, 2),
         cells,
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     };
     Arc::new(Table::new(parts).unwrap())
 }
@@ -300,7 +300,7 @@ fn wanderers_stay_inside() {
     assert_eq!(visited.len(), 12);
     assert_eq!(walk, sightlines_walkthrough::wander(&cells, 5000, 0.05, 3).unwrap());
     assert_ne!(walk, sightlines_walkthrough::wander(&cells, 5000, 0.05, 4).unwrap());
-    let alone = Arc::new(Table::new(TableParts::empty(2)).unwrap());
+    let alone = Arc::new(Table::new(TableParts::empty(2, TableKind::Unspecified)).unwrap());
     assert!(sightlines_walkthrough::wander(&TableCells::new(alone), 10, 0.05, 3).unwrap().is_empty());
 }
 

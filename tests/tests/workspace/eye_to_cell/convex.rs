@@ -6,7 +6,7 @@ use crate::eye_to_cell::plans::reachable;
 use sightlines::bake::{StabOptions, with_stab_trees};
 use sightlines::eye_to_cell::{Doors, View};
 use sightlines::geometry::Point3;
-use sightlines::pvs::{CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines::pvs::{CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts};
 use sightlines::scenes::world::{
     BspWorldOptions, QuakeLikeOptions, World, WorldLeaf, bsp_world, quake_like, world_families,
 };
@@ -38,9 +38,8 @@ fn table(world: &World) -> Table {
         cell_objects: (0..cells.len() as u32).map(|id| vec![id]).collect(),
         locator: Locator::build(&bounds, 3),
         cells,
-        // As tables of portal files say, so that stab trees know what they are.
-        info: vec![("source".to_owned(), "portal file of a test".to_owned())],
-        ..TableParts::empty(3)
+        // As tables of portal files, so that stab trees know what they are.
+        ..TableParts::empty(3, TableKind::QuakePortalFile)
     };
     Table::new(parts).expect("the parts fit together")
 }

@@ -10,7 +10,7 @@ use sightlines::geometry::vector::{length, scale};
 use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::SheetMethod;
 use sightlines::multifocal::{FromRegion, Split, Witness};
-use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Table, TableParts};
+use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Table, TableKind, TableParts};
 use sightlines::scenes::{TowerOptions, tower};
 
 fn table_of(scene: &Scene, cells: ViewCells) -> Table {
@@ -93,7 +93,7 @@ fn what_rays_meet_is_seen_from_boxes() {
 fn objects_in_gaps_are_seen() {
     let cell =
         |x: f64, z: f64| CellRecord { min: [x, 0.0, z], max: [x + 1.0, 1.0, z + 1.0], group: None, polygon: vec![] };
-    let mut parts = TableParts::empty(3);
+    let mut parts = TableParts::empty(3, TableKind::Unspecified);
     parts.cells = vec![cell(0.0, 0.0), cell(4.0, 6.0), cell(9.0, 0.0)];
     parts.rows = BitMatrix::new(3, 3);
     for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {

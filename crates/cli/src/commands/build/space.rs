@@ -49,6 +49,7 @@ fn warn(path: &Path, baked: &BakedScene) {
 /// The table with what the file says about its scene.
 pub(super) fn informed(table: Table, said: &SceneInfo) -> Result<Table, sightlines::pvs::TableError> {
     let mut parts = table.into_parts();
+    parts.up = Some(said.up);
     parts.info.push(("up".to_owned(), axis(said.up).to_owned()));
     if said.unit == LengthUnit::Metre {
         parts.info.push(("unit".to_owned(), "metre".to_owned()));

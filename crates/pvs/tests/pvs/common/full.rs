@@ -3,8 +3,8 @@
 use super::{any_parts, rooms};
 use proptest::prelude::*;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, MirrorRecord, PlaneChild, PlaneNode, PlaneTree, PortalRecord, StabParts,
-    StabTrees, TableParts,
+    Axis, BitMatrix, CellId, CellRecord, Locator, MirrorRecord, PlaneChild, PlaneNode, PlaneTree, PortalRecord,
+    SceneMethods, StabParts, StabTrees, TableKind, TableParts,
 };
 
 /// The rooms with a mirror at the western wall, numbers of polygons, and their stab trees by hand: the door
@@ -34,6 +34,24 @@ pub(crate) fn villa() -> TableParts {
         stab: Some(StabTrees::new(stab, &parts.portals, parts.cells.len()).expect("trees of the rooms")),
         ..parts
     }
+}
+
+/// All kinds of tables.
+pub(crate) fn kinds() -> Vec<TableKind> {
+    let bit = |k: u32, bits: u32| bits >> k & 1 == 1;
+    let methods =
+        |bits| SceneMethods { sightlines: bit(0, bits), from_region: bit(1, bits), only_in_air: bit(2, bits) };
+    let methods: [SceneMethods; 8] = std::array::from_fn(|bits| methods(bits as u32));
+    let mut all = vec![TableKind::Unspecified, TableKind::PlanKdTree, TableKind::PlanTriangulation];
+    all.extend(methods.map(|hidden_by| TableKind::SceneKdTree { hidden_by }));
+    all.extend(methods.map(|hidden_by| TableKind::SceneGivenCells { hidden_by }));
+    all.extend([TableKind::QuakePortalFile, TableKind::QuakeMap]);
+    all
+}
+
+/// The wedges as a map with the third axis up.
+pub(crate) fn map_of_wedges() -> TableParts {
+    TableParts { kind: TableKind::QuakeMap, up: Some(Axis::Z), ..wedges() }
 }
 
 /// The villa with names of its cells: two that are alike, an empty one, one that is no ASCII.
@@ -75,7 +93,7 @@ pub(crate) fn wedges() -> TableParts {
         stab: Some(StabTrees::new(stab, &portals, 2).expect("trees of two wedges")),
         portals,
         cells: vec![cell.clone(), cell],
-        ..TableParts::empty(3)
+        ..TableParts::empty(3, TableKind::Unspecified)
     }
 }
 
@@ -147,8 +165,12 @@ pub(crate) fn any_full_parts() -> impl Strategy<Value = TableParts> {
     let stab = prop::option::of((choices(0..40), choices(1..8)));
     let polygons = prop::option::of(any::<[u32; 4]>());
     let names = prop::option::of(prop::collection::vec(".{0,4}", 1..4));
-    let parts = (any_parts(), mirrors, planes, stab, polygons, names);
-    parts.prop_map(|(mut parts, mirrors, planes, stab, polygons, names)| {
+    let made = (prop::sample::select(kinds()), prop::option::of(prop::sample::select(Axis::ALL.to_vec())));
+    let parts = (any_parts(), mirrors, planes, stab, polygons, names, made);
+    parts.prop_map(|(mut parts, mirrors, planes, stab, polygons, names, (kind, up))| {
+        if kind.dimension().is_none_or(|d| d == parts.dimension) {
+            (parts.kind, parts.up) = (kind, up);
+        }
         let n_cells = parts.cells.len();
         let flat = parts.dimension == 2;
         if n_cells > 0 {

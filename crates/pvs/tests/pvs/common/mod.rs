@@ -1,7 +1,9 @@
 //! Tables to test with: one small one with everything in it, and random ones.
 
 use proptest::prelude::*;
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+};
 use std::collections::BTreeMap;
 
 pub(crate) mod file;
@@ -44,7 +46,7 @@ pub(crate) fn rooms() -> TableParts {
         cell_objects: vec![vec![0], vec![0], vec![], vec![1], vec![]],
         locator: Locator::from_nodes(&tree).expect("a tree"),
         info: vec![pair("method", "by hand"), pair("source", "")],
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     }
 }
 
@@ -172,7 +174,7 @@ fn assemble(
         cell_objects: touches.iter().map(touched).collect(),
         objects,
         info: info.into_iter().collect(),
-        ..TableParts::empty(dimension)
+        ..TableParts::empty(dimension, TableKind::Unspecified)
     }
 }
 

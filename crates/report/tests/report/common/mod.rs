@@ -10,7 +10,9 @@
 
 pub(crate) mod tower;
 
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+};
 
 fn cell(min: [f64; 2], max: [f64; 2], group: Option<u32>) -> CellRecord {
     let ([x0, y0], [x1, y1]) = (min, max);
@@ -42,7 +44,7 @@ pub(crate) fn rooms(leak: bool) -> Table {
         portals: vec![door],
         objects: vec![desk, safe],
         cell_objects: vec![vec![0], vec![], vec![1]],
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     })
     .expect("a sound table")
 }
@@ -54,7 +56,7 @@ pub(crate) fn nothing() -> Table {
         rows: BitMatrix::identity(0),
         cells: vec![],
         cell_objects: vec![],
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     })
     .expect("an empty table is sound")
 }

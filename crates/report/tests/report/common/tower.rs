@@ -9,7 +9,9 @@
 //! +-------+-------+  z = 2       x = 0   4       6
 //! ```
 
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableParts};
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+};
 
 fn cell(min: [f64; 3], max: [f64; 3]) -> CellRecord {
     CellRecord { min, max, group: None, polygon: vec![] }
@@ -41,7 +43,7 @@ pub(crate) fn house() -> Table {
         portals: vec![door],
         objects: vec![object("lamp", [1.0, 2.5, 0.2]), object("cat", [5.0, 3.0, 1.0])],
         cell_objects: vec![vec![0], vec![], vec![1]],
-        ..TableParts::empty(3)
+        ..TableParts::empty(3, TableKind::Unspecified)
     })
     .expect("a sound table")
 }

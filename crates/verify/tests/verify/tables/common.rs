@@ -10,7 +10,7 @@ use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::mesh::{PatchOptions, patches};
 use sightlines_multifocal::{Chosen, FromRegion, Layout, Multifocal};
 use sightlines_multifocal_cpu::Fast;
-use sightlines_pvs::{Locator, Table, TableParts};
+use sightlines_pvs::{Locator, Table, TableKind, TableParts};
 use sightlines_scenes::world::WorldChild as Child;
 use sightlines_scenes::{
     OfficeOptions, QuakeLikeOptions, TowerOptions, World, doom_like, maze, office, quake_like, tower,
@@ -153,7 +153,7 @@ pub(crate) fn map_case() -> Case {
     };
     let nodes = world.nodes.iter().map(node).collect();
     let mut parts: TableParts = table.into_parts();
-    parts.info.iter_mut().filter(|(k, _)| k == "source").for_each(|(_, v)| *v = "Quake map, made up".to_owned());
+    parts.kind = TableKind::QuakeMap;
     for (cell, leaf) in world.cells().iter().enumerate() {
         let around = Aabb::<3>::around(leaf.faces.iter().flatten().copied());
         (parts.cells[cell].min, parts.cells[cell].max) = (around.min, around.max);

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use sightlines_eye_to_cell::{Seen, TableCells};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, PlaneChild, PlaneNode, PlaneTree, PortalRecord, Table, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, PlaneChild, PlaneNode, PlaneTree, PortalRecord, Table, TableKind,
+    TableParts,
 };
 use sightlines_walkthrough::{Answer, Frame};
 use std::sync::Arc;
@@ -164,7 +165,7 @@ pub(crate) fn grid(
         locator: Locator::build(&bounds, dimension),
         planes,
         cells,
-        ..TableParts::empty(dimension)
+        ..TableParts::empty(dimension, TableKind::Unspecified)
     });
     Grid { kind, table: Arc::new(table.unwrap()), shapes, size: n.map(|x| x as i64 * UNIT) }
 }

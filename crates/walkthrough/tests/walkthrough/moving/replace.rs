@@ -27,7 +27,7 @@ fn until_full(walk: &mut Walk, view: &View) -> BTreeSet<u32> {
 
 /// `n` rooms in a row with doors between them but for those that are walled up, in the other order if `turned`.
 fn rooms(n: u32, walled: &[u32], turned: bool) -> Arc<Table> {
-    use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, TableParts};
+    use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, TableKind, TableParts};
     let record = |i: u32| {
         let x = f64::from(i);
         CellRecord { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 0.0], group: None, polygon: vec![] }
@@ -53,7 +53,7 @@ fn rooms(n: u32, walled: &[u32], turned: bool) -> Arc<Table> {
         cell_objects: vec![vec![]; n as usize],
         locator: Locator::build(&bounds, 2),
         cells,
-        ..TableParts::empty(2)
+        ..TableParts::empty(2, TableKind::Unspecified)
     };
     Arc::new(Table::new(parts).unwrap())
 }

@@ -5,7 +5,7 @@ use crate::commands::verify::Error;
 use crate::input::{self, Kind};
 use sightlines::bake::{BakeError, TableOptions, table_of};
 use sightlines::formats::{DoomMap, RejectTable};
-use sightlines::pvs::BitMatrix;
+use sightlines::pvs::{BitMatrix, TableKind};
 use sightlines::triangulation::subdivide;
 use std::path::Path;
 
@@ -62,7 +62,7 @@ pub(super) fn read(path: &Path, scene: &Path, name: Option<&str>) -> Result<Own,
         n_uneven_clusters: 0,
     };
     let side_of = groups.iter().map(|list| list.first().copied()).collect();
-    let table = table_of(&graph, rows, TableOptions::default());
+    let table = table_of(&graph, rows, TableOptions::new(TableKind::PlanTriangulation));
     let table = table.map_err(|source| Error::Bake { path: path.to_owned(), map: name(), source: source.into() })?;
     let side = |(k, has_places)| Side { name: format!("sector {k}"), has_places };
     Ok(Own { table, about, side_of, sides: has_places.into_iter().enumerate().map(side).collect(), hidden })

@@ -4,13 +4,12 @@ use super::{About, Own, Side, hidden_pairs};
 use crate::commands::verify::Error;
 use crate::error::InputError;
 use crate::input::{self, Kind};
-use sightlines::bake::quake::{SOURCE_KEY, SOURCE_MAP};
 use sightlines::cells::{CellGraph, Convex};
 use sightlines::formats::quake::bsp::LeafRow;
 use sightlines::formats::quake::visibility::{check_portals, read_visibility};
 use sightlines::formats::quake::{Bsp, LeafClusters, graph_of_prt, read_bsp, read_prt, rle};
 use sightlines::geometry::Aabb;
-use sightlines::pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableParts};
+use sightlines::pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use std::path::{Path, PathBuf};
 
 /// Reads the lump of a map; of which cluster each leaf is, is in the portal file of the scene.
@@ -151,8 +150,8 @@ fn table(bsp: &Bsp, graph: &CellGraph<Convex>, in_clusters: &[Vec<usize>], rows:
         cell_objects: vec![Vec::new(); cells.len()],
         locator: Locator::build(&bounds, 3),
         cells,
-        info: vec![(SOURCE_KEY.to_owned(), format!("{SOURCE_MAP}, its own visibility"))],
-        ..TableParts::empty(3)
+        info: vec![("source".to_owned(), "Quake map, its own visibility".to_owned())],
+        ..TableParts::empty(3, TableKind::QuakeMap)
     })
     .ok()
 }
