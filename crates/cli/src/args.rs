@@ -22,21 +22,21 @@ use crate::commands::{
 };
 use clap::{Parser, Subcommand};
 
-/// Exact, conservative visibility: which cells of a scene can see each other.
+/// Precomputes which parts of a scene can be seen from which others, exactly and conservatively
 #[derive(Debug, Parser)]
 #[command(name = "sightlines", version, long_about = None, disable_help_flag = true, disable_version_flag = true)]
-#[command(after_help = "Exit codes: 0 done; 1 the answer is no (query, draw: a point outside every cell; \
-                        explain: hidden; verify: a violation); 2 bad input or usage.")]
+#[command(after_help = "Exit codes: 0 success; 1 the answer is no (query, draw: a point outside every cell; explain: \
+                        hidden; verify: a violation); 2 bad input or usage.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Say more on standard error (twice: still more)
+    /// Print more on standard error; -vv prints even more
     #[arg(short, long, help_heading = "General", global = true, action = clap::ArgAction::Count)]
     pub(crate) verbose: u8,
-    /// Show no progress and no warnings
+    /// Print no progress and no warnings
     #[arg(short, long, help_heading = "General", global = true)]
     pub(crate) quiet: bool,
-    /// Print help; with -h in short
+    /// Print help; -h prints a summary
     #[arg(short, long, help_heading = "General", global = true, action = clap::ArgAction::Help)]
     help: Option<bool>,
     /// Print version
@@ -47,46 +47,43 @@ pub(crate) struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Build a visibility table: of a Doom map in a WAD, a GeoJSON floor plan, a scene in space (GLB, glTF, OBJ), or a
-    /// portal file of a Quake map (PRT)
+    /// Build the visibility table of a floor plan, a Doom map, a scene in space, or a Quake map
     Build(BuildArgs),
-    /// Write the REJECT lumps of the maps of a WAD, and leave all else as it is
+    /// Write the REJECT lumps of a WAD; all other lumps stay as they are
     Reject(RejectArgs),
-    /// Write the visibility of a map of Quake or Quake II, and leave all else as it is
+    /// Write the visibility of a Quake or Quake II map; everything else stays as it is
     Vis(VisArgs),
-    /// Check a table against the scene that it was built from, or what a map of Quake or Doom itself says of who sees whom: structure,
-    /// and rays against the real geometry; exit code 1 if anything is not as is said
+    /// Check a table, or the visibility in a Quake or Doom map, against its scene; exit code 1 for a violation
     Verify(VerifyArgs),
-    /// Say which cells and objects may be seen from a point, or from there in a direction
+    /// List the cells and objects visible from a point, or in a view from there
     Query(QueryArgs),
-    /// Follow a viewer through a scene, and measure what each method to find what he sees leaves to draw, and costs
+    /// Measure the eye-to-cell methods on a walk: what each leaves to draw, and its time
     Walk(WalkArgs),
-    /// Make a table small, for programs that read it piece by piece
+    /// Compress a table into a file that can be read piece by piece
     Pack(PackArgs),
-    /// Make a packed table a plain one again
+    /// Convert a packed table back to a plain one
     Unpack(UnpackArgs),
-    /// Write a table as JSON
+    /// Export a table as JSON
     Export(ExportArgs),
-    /// Show the line of sight between two cells of a plan, or say why there is none
+    /// Show a line of sight between two cells, or the reason why there is none
     Explain(ExplainArgs),
-    /// Draw a table and what is seen from somewhere, as SVG or PNG: plans, floor plans, isometric views
+    /// Draw a table, and what is visible from a cell or a point, as a plan, a floor plan or an isometric view
     Draw(DrawArgs),
-    /// Draw what is surely blocked from a volume of eyes on a plane behind a scene in space, and what is nearest to it
+    /// Draw the multifocal buffer of a view volume on a plane: the heights below which everything is hidden
     Multifocal(MultifocalArgs),
-    /// Draw what one eye sees of a scene in space by one of the methods of visible-surface determination, or by all, side by
-    /// side, with what differs
+    /// Draw the visible surfaces of a scene for one eye by a classical method, or compare all methods
     Render(RenderArgs),
-    /// Write a scene with fewer triangles for eyes in a volume: without what is hidden from there, and within a budget without
-    /// what can hardly be seen
+    /// Write a scene with fewer triangles for eyes in a volume, without hidden triangles and, within a budget, without
+    /// barely visible ones
     Simplify(SimplifyArgs),
-    /// Draw which surfaces an area light reaches not at all, wholly, or in part, as one eye sees them
+    /// Draw the umbra, the lit parts and the parts in doubt under an area light
     Light(LightArgs),
-    /// Write simplified variants of a scene for the cells of its table, within a memory
+    /// Write simplified variants of a scene for the cells of its table, within a memory budget
     Levels(LevelsArgs),
-    /// Sum up a table, a WAD, a GeoJSON plan, a scene in space, a Quake map or a portal file
+    /// Summarize a table, a WAD, a floor plan, a scene, a Quake map or a portal file
     Info(InfoArgs),
-    /// Write a generated scene of any size
+    /// Generate a scene of any size
     Generate(GenerateArgs),
-    /// Generate an office floor or a small tower, build its table, sum it up and draw it
+    /// Generate an office floor or a small tower, build its table, summarize and draw it
     Demo(DemoArgs),
 }

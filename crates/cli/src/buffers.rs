@@ -17,25 +17,26 @@ pub(crate) struct MethodFailed {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Multifocal buffers")]
 pub(crate) struct BufferArgs {
-    /// multifocal: what buffers compare
+    /// Multifocal: the measure that buffers store
     #[arg(long, value_name = "WHAT", default_value = Measure::default().name(), value_parser = measure())]
     measure: Measure,
-    /// multifocal: planes on each side of a cell; 0 for none
+    /// Multifocal: planes on each side of a cell; 0 for none
     #[arg(long, value_name = "N", default_value_t = BufferOptions::default().planes, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub(crate) planes: u32,
-    /// multifocal: texels along the longer side of a plane
+    /// Multifocal: texels along the longer side of a plane
     #[arg(long, value_name = "N", default_value_t = BufferOptions::default().texels, value_parser = clap::value_parser!(u32).range(1..=8192))]
     pub(crate) texels: u32,
-    /// multifocal: the most surfaces that are drawn on each side of a cell; those that seem to hide most
+    /// Multifocal: maximum number of occluders drawn on each side of a cell, the most effective first
     #[arg(long, value_name = "N", default_value_t = BufferOptions::default().occluders)]
     occluders: u32,
-    /// multifocal: do not carry over to a plane what is known on the one before
+    /// Multifocal: do not carry blocked texels over from one plane to the next
     #[arg(long)]
     no_carry: bool,
-    /// multifocal: how many sides of triangles are looked at to find a surface between a cell and an object; 0 for none
+    /// Multifocal: maximum number of triangle sides examined to find a sheet between a cell and an object; 0 turns
+    /// sheets off
     #[arg(long, value_name = "N", default_value_t = BufferOptions::default().sheets)]
     pub(crate) sheets: u32,
-    /// multifocal: who draws the buffers
+    /// Multifocal: the backend that draws the buffers
     #[arg(long, value_name = "WHO", default_value = Backend::Cpu.name(), value_parser = one_of(&Backend::ALL, Backend::name, Backend::about))]
     backend: Backend,
 }

@@ -15,25 +15,25 @@ pub(crate) enum EyeError {
 /// Where the eye is, where it looks, and through what.
 #[derive(Debug, clap::Args)]
 pub(crate) struct EyeArgs {
-    /// Where the eye is, in scene units
+    /// The eye, in scene units
     #[arg(long, help_heading = "Viewer", value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub(crate) eye: Point3,
-    /// A point that is in the middle of the picture
+    /// The point in the middle of the picture, in scene units
     #[arg(long, help_heading = "Viewer", value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub(crate) look_at: Point3,
-    /// What is up in the picture, an axis or a vector, if not the axis that the scene names (y if it names none)
+    /// Up direction of the picture, an axis or a vector [default: the up axis of the scene, else y]
     #[arg(long, help_heading = "Viewer", value_name = "AXIS|X,Y,Z", allow_hyphen_values = true)]
     up: Option<Up>,
-    /// The angle of view in degrees, from the lower to the upper edge of the picture
+    /// Vertical angle of view, in degrees
     #[arg(long, help_heading = "Viewer", value_name = "DEGREES", default_value_t = 60.0, allow_hyphen_values = true)]
     pub(crate) fov: f64,
-    /// Pixels to the right and down
+    /// Width and height of the picture, in pixels
     #[arg(long, help_heading = "Viewer", value_name = "WxH", value_parser = size, default_value = "640x480")]
     size: [u32; 2],
-    /// The least depth that is seen, along the axis of view, in scene units
+    /// Near plane: smallest visible depth along the viewing axis, in scene units
     #[arg(long, help_heading = "Viewer", value_name = "DEPTH", default_value_t = 0.0, allow_hyphen_values = true)]
     near: f64,
-    /// The greatest depth that is seen; inf for no end
+    /// Far plane: greatest visible depth, in scene units; inf for none
     #[arg(long, help_heading = "Viewer", value_name = "DEPTH", default_value_t = f64::INFINITY, allow_hyphen_values = true)]
     far: f64,
 }

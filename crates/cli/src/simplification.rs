@@ -42,26 +42,26 @@ pub(crate) enum SimplificationError {
 /// How to simplify, as arguments.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct HowArgs {
-    /// The share of the sphere of directions in which another face may be seen, 0 to 1; 0 takes away only what is hidden
+    /// Share of the sphere of directions in which the visible face may change, 0 to 1; 0 removes only what is hidden
     #[arg(long, help_heading = "Method", value_name = "SHARE", default_value_t = 0.0, value_parser = share, allow_hyphen_values = true)]
     budget: f64,
-    /// The share of the budget that is kept for moving corners instead of leaving triangles out, 0 to 1
+    /// Share of the budget for collapsing edges instead of removing triangles, 0 to 1
     #[arg(long, help_heading = "Method", value_name = "SHARE", default_value_t = SimplifyOptions::default().collapse)]
     #[arg(value_parser = share, allow_hyphen_values = true)]
     collapse: f64,
-    /// Also merge triangles of an object that lie in one plane, exactly: no surface changes; what is interpolated over triangles, such as texture
-    /// coordinates, stays the same only where it is linear
+    /// Also merge coplanar triangles of an object, exactly: no surface changes; interpolated attributes such as texture
+    /// coordinates stay the same only where they are linear
     #[arg(long, help_heading = "Method")]
     flat: bool,
-    /// Take scenes with mirrors as if there were none; else they are refused, as mirrors show what is hidden
+    /// Ignore mirrors; otherwise scenes with mirrors are refused, because mirrors show hidden things
     #[arg(long, help_heading = "Method")]
     ignore_mirrors: bool,
-    /// What proves triangles hidden, besides a table
+    /// The method that proves triangles hidden, besides a table
     #[arg(long, help_heading = "Method", value_name = "HOW", default_value = OcclusionMethod::Multifocal.name(), value_parser = one_of(&method_choices(), choice_name, choice_about))]
     method: MethodChoice,
     #[command(flatten)]
     buffers: BufferArgs,
-    /// Number of threads; 0 for one for each core
+    /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(crate) threads: usize,
 }

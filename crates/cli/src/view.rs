@@ -50,14 +50,13 @@ pub(crate) struct UnknownMethods(#[from] UnknownMethod);
 /// How wide the picture is.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(crate) struct LensArgs {
-    /// The angle of view in degrees, above 0 and at most 360; in space that of the picture's width; 75 if not given
+    /// Angle of view in degrees, above 0 and up to 360; in space the horizontal one [default: 75]
     #[arg(long, help_heading = "Viewer", value_name = "DEGREES", value_parser = degrees, allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// Scenes in space only: width by height of the picture; 4/3 if not given
+    /// Scenes in space: aspect ratio of the picture, width by height [default: 4/3]
     #[arg(long, help_heading = "Viewer", value_name = "W/H", value_parser = aspect, allow_hyphen_values = true)]
     aspect: Option<f64>,
-    /// Scenes in space only: what is up in the picture, an axis or a vector, if not the axis that the table names (y if
-    /// it names none)
+    /// Scenes in space: up direction of the picture, an axis or a vector [default: the up axis of the table, else y]
     #[arg(long, help_heading = "Viewer", value_name = "AXIS|X,Y,Z", allow_hyphen_values = true)]
     up: Option<Up>,
 }

@@ -25,7 +25,7 @@ pub(crate) struct ExportArgs {
     /// The table
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
-    /// Where to write; standard output if not given
+    /// The file to write [default: standard output]
     #[arg(short, long, help_heading = "Output", value_name = "OUT.json")]
     output: Option<PathBuf>,
 }

@@ -41,25 +41,25 @@ enum What {
 /// Arguments of `generate tower`.
 #[derive(Debug, clap::Args)]
 struct TowerArgs {
-    /// Another seed gives another tower
+    /// Seed of the generator
     #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().seed)]
     seed: u64,
-    /// Floors, from 1 to 256; a higher tower has the same lower floors
+    /// Floors, 1 to 256; a higher tower has the same lower floors
     #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().floors)]
     floors: u32,
-    /// Room places side by side, from 1 to 128
+    /// Rooms side by side, 1 to 128
     #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().rooms_x)]
     rooms_x: u32,
-    /// Rows of rooms, from 1 to 128
+    /// Rows of rooms, 1 to 128
     #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().rooms_y)]
     rooms_y: u32,
-    /// Furniture: 0 for none, up to 3 for the finest
+    /// Furniture, 0 (none) to 3 (finest)
     #[arg(long, help_heading = "Tower", value_name = "LEVEL", default_value_t = TowerOptions::default().furniture)]
     furniture: u32,
     /// Leave out the windows
     #[arg(long, help_heading = "Tower")]
     no_windows: bool,
-    /// Thickness of walls: 0, 0.25 or 0.5
+    /// Thickness of the walls, in metres: 0, 0.25 or 0.5
     #[arg(long, help_heading = "Tower", value_name = "UNITS")]
     #[arg(default_value_t = TowerOptions::default().wall_thickness, allow_hyphen_values = true)]
     wall_thickness: f64,

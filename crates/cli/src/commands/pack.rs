@@ -38,8 +38,8 @@ pub(crate) struct PackArgs {
     /// The packed table to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvz")]
     output: PathBuf,
-    /// The most bytes that the file may have: cells are merged in what they see until it fits, so that more is visible,
-    /// and nothing less. Without it nothing is lost
+    /// Maximum size of the file, in bytes: visibility rows are merged until it fits, so more is reported visible, never
+    /// less [default: lossless]
     #[arg(long, help_heading = "Output", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_bytes: Option<u64>,
     /// Print the result as JSON

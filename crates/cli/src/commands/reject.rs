@@ -33,16 +33,16 @@ pub(crate) struct RejectArgs {
     /// The WAD to read
     #[arg(value_name = "IN.wad")]
     input: PathBuf,
-    /// Do only this map; may be given several times
+    /// Process only this map; repeatable
     #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Vec<String>,
-    /// Replace tables with effects made by hand too (not symmetric, or a sector rejected from itself)
+    /// Also replace tables with hand-made effects (asymmetric, or a sector rejected from itself)
     #[arg(long, help_heading = "Method")]
     force: bool,
-    /// Number of threads; 0 for one for each core
+    /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
-    /// The WAD to write; may be the one that was read
+    /// The WAD to write; may be the input
     #[arg(short, long, help_heading = "Output", value_name = "OUT.wad")]
     output: PathBuf,
     /// Print the result as JSON

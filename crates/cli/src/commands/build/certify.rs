@@ -13,9 +13,10 @@ use std::path::{Path, PathBuf};
 /// Whether proofs are written, and where.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct CertifyArgs {
-    /// Write proofs too, beside the table with the ending .cert, or into FILE: a line for what is visible, a reason for what is
-    /// hidden, which `verify` checks without any of the code that built the table. May take ten times as long as the table, and for large
-    /// Quake maps much longer: what takes too long is left without a proof. Not for scenes by another method than sightlines
+    /// Also write proofs, to FILE or beside the table with the extension .cert: a line for each visible pair, a reason
+    /// for each hidden one, for `verify` to check with independent code. May take ten times as long as the table, and
+    /// much longer for large Quake maps, where pairs that take too long stay without a proof. In space only for
+    /// --method sightlines
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     certify: Option<Option<PathBuf>>,
 }

@@ -26,13 +26,13 @@ use std::path::PathBuf;
 /// Arguments of `build`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct BuildArgs {
-    /// A WAD, a floor plan as GeoJSON, a scene in space as GLB, glTF or OBJ, a Quake map, or its portal file alone
+    /// The input: a WAD, a GeoJSON floor plan, a scene as GLB, glTF or OBJ, a Quake map, or its portal file alone
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// Which map of the WAD; not needed if there is only one
+    /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Option<String>,
-    /// Quake maps only: the portal file, as the compiler wrote it; beside the map if not given
+    /// Quake maps: the portal file that the compiler wrote [default: beside the map]
     #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
     #[command(flatten)]
@@ -42,10 +42,10 @@ pub(crate) struct BuildArgs {
     /// The table to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     output: PathBuf,
-    /// Keep stab trees in the table: for each cell the sequences of portals out of it that a sightline passes. A tree
-    /// has at most N nodes and is cut beyond, which shows more and hides nothing; without N 65536 for plans, 16384
-    /// for scenes in space, 4096 for Quake maps and portal files. May take much longer than the table and make it several
-    /// times as large; without trees the exact method finds the same cells
+    /// Store stab trees in the table: for each cell, the sequences of portals that sight lines pass. A tree is
+    /// truncated after N nodes, which never hides anything; without N 65536 for plans, 16384 for scenes in space, 4096
+    /// for Quake maps and portal files. May take much longer than the table and make it several times as large; the
+    /// exact method finds the same cells without trees
     #[arg(long, help_heading = "Output", value_name = "N", num_args = 0..=1, require_equals = true)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     stab_trees: Option<Option<u32>>,

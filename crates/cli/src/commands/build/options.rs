@@ -11,36 +11,34 @@ use std::path::Path;
 /// How to bake.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(crate) struct BakeArgs {
-    /// Plans only: how to cut into cells: kd (walls along the axes only), triangulation, or auto, which is
-    /// the default
+    /// Plans: how to cut into cells: kd (axis-parallel walls only), triangulation, or auto [default: auto]
     #[arg(long, help_heading = "Cells", value_name = "HOW")]
     pub(super) subdivide: Option<Subdivide>,
-    /// For k-d trees: split along walls only where they cover at least this share of a cell, 0 to 1; with 0,
-    /// the default, no wall is left out
+    /// K-d trees: split only along walls that cover at least this share of a cell, from 0 to 1; 0 uses every wall
+    /// [default: 0]
     #[arg(long, help_heading = "Cells", value_name = "X", value_parser = share, allow_hyphen_values = true)]
     tau: Option<f64>,
-    /// Scenes in space only: the box where a viewer can be, in scene units; the scene's box if not given
+    /// Scenes in space: the box where eyes can be, in scene units [default: the box of the scene]
     #[arg(long, help_heading = "Cells", value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     view_region: Option<Region>,
-    /// Scenes in space only: things smaller than this in every direction, in scene units, are seen but hide
-    /// nothing; chosen from the scene if not given
+    /// Scenes in space: objects smaller than this in every direction, in scene units, are not used as occluders
+    /// [default: chosen from the scene]
     #[arg(long, help_heading = "Cells", value_name = "SIZE", value_parser = size, allow_hyphen_values = true)]
     detail_below: Option<f64>,
     /// Scenes in space only: look through the exact openings between cells, which is the default, or
     /// through one rectangle around each, which shows more
     #[arg(long, help_heading = "Method", value_name = "HOW")]
     portals: Option<Portals>,
-    /// Scenes in space only: give up beyond so many cells; 65536 if not given
+    /// Scenes in space: fail if there are more cells than this [default: 65536]
     #[arg(long, help_heading = "Cells", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_cells: Option<u32>,
-    /// Scenes in space only: keep the insides of walls and other solid things as cells, for eyes that get
-    /// into them
+    /// Scenes in space: keep the insides of walls and other solids as cells, for eyes that can get into them
     #[arg(long, help_heading = "Cells")]
     keep_solid: bool,
-    /// Portal files only: only the first, coarse bound: quick, and shows much that is hidden
+    /// Quake maps and portal files: compute only a coarse bound; fast, and reports much that is hidden as visible
     #[arg(long, help_heading = "Method")]
     pub(super) fast: bool,
-    /// Number of threads; 0 for one for each core
+    /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(super) threads: usize,
 }

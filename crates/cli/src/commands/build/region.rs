@@ -22,20 +22,19 @@ use std::path::Path;
 /// What is asked who sees whom, for scenes in space.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct RegionArgs {
-    /// Scenes in space only: sightlines through the portals between cells, which is the default; multifocal: what is
-    /// hidden from all of a cell by any surfaces, axis-aligned or not; both, which hides what either does; shafts or
-    /// voxels, older methods to compare with. auto, for any input, measures it, asks sightlines and what else it
-    /// needs, and says why
+    /// Scenes in space: sightlines (through portals; axis-aligned walls occlude), multifocal (from whole cells; any
+    /// surfaces occlude), both (hides what either hides), or shafts and voxels (older methods, for comparison). auto,
+    /// for any input, measures it, chooses the methods and prints the reasons [default: sightlines]
     #[arg(long, value_name = "HOW")]
     method: Option<Method>,
     #[command(flatten)]
     cells: ViewCellsArgs,
-    /// Scenes in space only: a grid of boxes as cells, in the view region or else the scene's box
+    /// Scenes in space: use a grid of boxes as cells, in the view region or the box of the scene
     #[arg(long, value_name = "NX,NY,NZ", value_parser = counts, conflicts_with = "cells")]
     grid: Option<[u32; 3]>,
     #[command(flatten)]
     buffers: BufferArgs,
-    /// multifocal: how often a cell is cut in two where much is in doubt
+    /// Multifocal: how often a cell may be halved where much is in doubt
     #[arg(long, value_name = "N", default_value_t = Split::default().depth, value_parser = clap::value_parser!(u32).range(0..=12))]
     split: u32,
 }
@@ -47,9 +46,9 @@ enum Method {
     Sightlines,
     Multifocal,
     Both,
-    /// One flat piece that cuts the whole shaft between a cell and an object
+    /// View shafts: one flat occluder cuts all lines between a cell and an object
     Shafts,
-    /// Voxels inside of closed surfaces, extended to blockers
+    /// Voxels inside closed surfaces, extended to blockers
     Voxels,
 }
 

@@ -8,8 +8,7 @@ use std::path::PathBuf;
 /// Which boxes are the cells of a scene.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct ViewCellsArgs {
-    /// Scenes in space only: the boxes where viewers can be, as JSON, instead of cells that are cut:
-    /// {"cells":[{"id":"hall","min":[0,0,0],"max":[4,2.5,6]}]}
+    /// Scenes in space: use these boxes as cells, as JSON: {"cells":[{"id":"hall","min":[0,0,0],"max":[4,2.5,6]}]}
     #[arg(long, help_heading = "Cells", value_name = "FILE.json")]
     cells: Option<PathBuf>,
 }

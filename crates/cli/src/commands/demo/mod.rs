@@ -17,13 +17,13 @@ use std::time::Instant;
 /// Arguments of `demo`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct DemoArgs {
-    /// What to generate: an office floor as a plan, or a small furnished tower in space
+    /// The scene: an office floor in the plane, or a small furnished tower in space
     #[arg(value_name = "SCENE", value_enum, default_value_t = Example::Office)]
     example: Example,
-    /// Another seed gives another scene
+    /// Seed of the generator
     #[arg(long, help_heading = "Input", value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// The folder for the scene, the table and the pictures; files of the same names are replaced
+    /// Folder for the scene, the table and the pictures; existing files of the same names are replaced
     #[arg(long, help_heading = "Output", value_name = "FOLDER", default_value = "sightlines-demo")]
     out: PathBuf,
     /// Print the result as JSON

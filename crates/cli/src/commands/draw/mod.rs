@@ -20,23 +20,23 @@ pub(crate) struct DrawArgs {
     /// The table
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
-    /// Show what this cell sees
+    /// Show what is visible from this cell
     #[arg(long, help_heading = "Viewer", value_name = "N", conflicts_with = "eye")]
     cell: Option<u32>,
-    /// Show what a viewer at this point sees; exit code 1, and no picture, if that is outside every cell
+    /// Show what is visible from the cell of this point, in scene units; exit code 1 and no picture outside every cell
     #[arg(long, help_heading = "Viewer", value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     eye: Option<Point>,
-    /// Scenes in space only: draw the floor plan at this height in scene units; that of the eye or of the
-    /// middle of the cell if not given. With --isometric: leave out what is above
+    /// Scenes in space: height of the floor plan, in scene units [default: that of the eye or of the middle of the
+    /// cell]. With --isometric: leave out everything above
     #[arg(long, help_heading = "Picture", value_name = "Y", value_parser = height, allow_hyphen_values = true)]
     height: Option<f64>,
-    /// Scenes in space only: draw the cells as boxes, as seen from the positive side of all axes
+    /// Scenes in space: draw the cells as boxes, viewed from the positive side of all axes
     #[arg(long, help_heading = "Picture")]
     isometric: bool,
-    /// Scenes in space only: which axis points up, if not the one that the table names (y if it names none)
+    /// Scenes in space: the axis that points up [default: the one stored in the table, else y]
     #[arg(long, help_heading = "Picture", value_name = "AXIS")]
     up: Option<space::UpAxis>,
-    /// The longer side of the picture in pixels
+    /// Longer side of the picture, in pixels
     #[arg(long, help_heading = "Picture", value_name = "PX", default_value_t = 1600)]
     #[arg(value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIZE)..=i64::from(MAX_SIZE)))]
     size: u32,

@@ -36,25 +36,25 @@ pub(crate) struct ExplainArgs {
     /// The table, or the portal file of a Quake map
     #[arg(value_name = "FILE.pvs|MAP.prt")]
     table: PathBuf,
-    /// The viewer: a cell's id, or a point X,Y; of portal files a cluster's number
+    /// The viewer: a cell id, a point X,Y[,Z], or the number of a cluster in a portal file
     #[arg(value_name = "A", allow_hyphen_values = true)]
     from: Place,
-    /// What is looked for: a cell's id, or a point X,Y; exit code 1 if it is hidden
+    /// The target, given like the viewer; exit code 1 if it is hidden
     #[arg(value_name = "B", allow_hyphen_values = true)]
     to: Place,
-    /// In plans: give up after so many cells on the way [default: 20000000]
+    /// Plans: stop after entering this many cells [default: 20000000]
     #[arg(long, help_heading = "Method", value_name = "N")]
     max_visits: Option<u64>,
-    /// In space: give up after so many linear programs [default: 20000]
+    /// Scenes in space: stop after this many linear programs [default: 20000]
     #[arg(long, help_heading = "Method", value_name = "N")]
     max_programs: Option<u32>,
-    /// Of portal files: give up after so many questions about sequences of portals [default: 100000]
+    /// Portal files: stop after testing this many sequences of portals [default: 100000]
     #[arg(long, help_heading = "Method", value_name = "N")]
     max_questions: Option<u64>,
-    /// Draw the line, or what blocks it; of plans
+    /// Plans: draw the line, or what blocks it
     #[arg(long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
     draw: Option<PathBuf>,
-    /// If hidden: how many of the blocked ways or sequences to show, or of the walls in space
+    /// If hidden: how many blocked ways, sequences or walls to show
     #[arg(long, help_heading = "Output", value_name = "N", default_value_t = 3)]
     proofs: usize,
     /// Print the result as JSON

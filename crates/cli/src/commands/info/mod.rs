@@ -36,7 +36,7 @@ pub(crate) enum Error {
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
-    /// A table, plain or packed, a WAD, a GeoJSON plan, a scene in space as GLB, glTF or OBJ, a Quake map or its portal
+    /// A table (plain or packed), a WAD, a GeoJSON floor plan, a scene as GLB, glTF or OBJ, a Quake map, or a portal
     /// file
     #[arg(value_name = "FILE")]
     file: PathBuf,

@@ -37,24 +37,24 @@ pub(crate) enum Error {
 /// Arguments of `levels`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "The folder gets level_0.glb, level_1.glb and so on, and index.json, which says for each cell of the \
-                  table which level is drawn for eyes in it. Each level is the scene for those eyes, but for the budget: \
-                  what the table or the method hides from them is not in it. Cells that see much the same share a level. \
-                  `sightlines walk` with --levels counts what is drawn then."
+    after_help = "The folder gets level_0.glb, level_1.glb and so on, and index.json, which assigns a level to each \
+                  cell of the table. A level contains what the eyes in its cells can see, within the budget. Cells \
+                  with similar visible sets share a level. `sightlines walk --levels` counts the triangles drawn with \
+                  them."
 )]
 pub(crate) struct LevelsArgs {
-    /// The scene: GLB, glTF, or OBJ, of which only triangles and names are kept
+    /// The scene: GLB or glTF; from an OBJ only triangles and names are kept
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// The table of the scene, with boxes as cells
+    /// The table of the scene; its cells must be boxes
     #[arg(long, help_heading = "Input", value_name = "FILE.pvs")]
     table: PathBuf,
     #[command(flatten)]
     how: HowArgs,
-    /// Bytes that the triangles of all levels may take together, textures not counted
+    /// Maximum size of the triangles of all levels together, in bytes, without textures
     #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = LevelOptions::default().memory)]
     memory: u64,
-    /// The folder to write: a new one, or one that only holds levels, which are replaced
+    /// The folder to write: a new one, or one that contains only levels, which are replaced
     #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
     output: PathBuf,
     /// Print the result as JSON

@@ -13,9 +13,9 @@ const MOST_OCCLUDERS: usize = 1024;
 /// A method as an argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Kind {
-    /// Surfaces that stand between light and piece as a whole, however they are cut into triangles
+    /// Sheets: surfaces that as a whole separate the light from a piece
     Sheets,
-    /// Single occluders that cut all lines between light and piece
+    /// View shafts: single occluders that cut all lines between the light and a piece
     Shafts,
     /// Multifocal buffers around the light
     Multifocal,

@@ -29,21 +29,23 @@ const MOST_RAYS: u32 = 65_536;
 /// Arguments of `light`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "What is seen is cut into pieces until each is proven to be wholly in umbra (blue) or wholly lit \
-                  (pale), or is small. Pixels in doubt are reds, the paler the more of the light arrives, by rays to points of \
-                  the light. Surfaces are lit on the side that the eye sees, by what of the light is in front of them; both \
-                  sides of every surface cast shadows. With --grey the picture is the share of the light alone."
+    after_help = "Visible faces are divided into pieces until each is proven to be in full umbra (blue) or fully lit \
+                  (pale), or is small. Pixels in doubt are red, paler where more of the light arrives, measured by \
+                  rays to points of the light. A surface is lit on the side that the eye sees, by the part of the \
+                  light in front of it; both sides of every surface cast shadows. With --grey the picture shows the \
+                  visible share of the light only."
 )]
 pub(crate) struct LightArgs {
     /// The scene: GLB, glTF or OBJ
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// The light: a box, its lower corner, then its upper one; flat for a rectangle, one point for a lamp without size
+    /// The light as a box: its lower corner, then its upper one, in scene units; a flat box is a rectangle, an empty
+    /// one a point light
     #[arg(long, help_heading = "Light", value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     light: Region,
     #[command(flatten)]
     eye: EyeArgs,
-    /// How umbrae are found; several, separated by commas, are asked one after the other
+    /// Methods that find umbrae, separated by commas; each is tried where those before found nothing
     #[arg(
         long,
         help_heading = "Method",
@@ -53,18 +55,18 @@ pub(crate) struct LightArgs {
         default_value = "sheets"
     )]
     method: Vec<Kind>,
-    /// How often a face is halved at most
+    /// Maximum number of times that a face is halved
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 10)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_DEPTH)))]
     depth: u32,
-    /// Pieces whose longest edge is no longer are not halved, in scene units
+    /// Do not halve pieces whose longest edge is at most this long, in scene units
     #[arg(long, help_heading = "Method", value_name = "LENGTH", default_value_t = 0.0)]
     min_size: f64,
     /// Rays for each pixel in doubt
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 64)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_RAYS)))]
     rays: u32,
-    /// Draw the share of the light in grey, not what is proven
+    /// Draw the visible share of the light in grey instead of the proven states
     #[arg(long, help_heading = "Output")]
     grey: bool,
     /// The picture to write

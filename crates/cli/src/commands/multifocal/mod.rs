@@ -26,44 +26,46 @@ use target::{PlaneArg, Texels};
 /// Arguments of `multifocal`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "The picture of the buffer has one pixel for each texel: blue where nothing is known to block; else \
-                        grey, from black, where only what lies behind the plane is hidden, to white, for the largest \
-                        height or distance in the picture, which is printed. So a texel that is blocked at height 0 is \
-                        not one that is not blocked. In the map of nearest features vertices have dark colours, edges \
-                        bright ones and faces pale ones. Of the two axes across the plane, the one that follows its \
-                        axis (of x, y, z, x, y) points to the right, and the next one up."
+    after_help = "The picture has one pixel for each texel: blue where nothing is known to block; otherwise grey, from \
+                  black, where only what lies behind the plane is hidden, to white for the largest height or distance \
+                  in the picture, which is printed. A texel blocked at height 0 thus differs from one that is not \
+                  blocked. In the Voronoi map vertices are dark, edges bright and faces pale. The axis after that of \
+                  the plane (in the order x, y, z, x, y) points to the right, the next one up."
 )]
 pub(crate) struct MultifocalArgs {
     /// The scene: GLB, glTF or OBJ
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// Where eyes may be: a box, its lower corner, then its upper one
+    /// The view volume as a box: its lower corner, then its upper one, in scene units
     #[arg(long, help_heading = "Viewer", value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     volume: Region,
-    /// The plane behind the scene that eyes look at, such as z=20, and a window on it along the two axes that follow
-    /// (for y these are z and x); the shadow of the scene's box if not given, or its sides where it is beside the volume
+    /// The plane behind the scene, such as z=20, and a window on it along the two axes that follow (for y: z and x), in
+    /// scene units [default: the shadow of the scene's box, or its sides where it is beside the volume]
     #[arg(long, help_heading = "Picture", value_name = "AXIS=AT[:U0,V0,U1,V1]", allow_hyphen_values = true)]
     plane: PlaneArg,
-    /// Texels along the longer side of the window, about as many along the other as make them square; or along both
+    /// Texels along the longer side of the window (texels are then nearly square), or along both
     #[arg(long, help_heading = "Picture", value_name = "N|WxH", default_value = "256")]
     texels: Texels,
-    /// What values are: distances to the texel, with or without what no eye sees there; heights above the plane, of
-    /// corners or of what eyes see
+    /// The measure: distances to the texel, with or without parts that no eye sees there, or heights above the plane,
+    /// of corners or of the parts that eyes see
     #[arg(long, help_heading = "Method", default_value = Measure::default().name(), value_parser = measure())]
     measure: Measure,
-    /// Who fills the buffer. What cannot be done by one is done by the next: gpu, cpu, reference (slow)
+    /// The backend that fills the buffer. If one is not available or fails, the next takes over: gpu, cpu, reference
+    /// (slow)
     #[arg(long, help_heading = "Method", default_value = Backend::Cpu.name(), value_parser = one_of(&Backend::ALL, Backend::name, Backend::about))]
     backend: Backend,
-    /// Let each triangle hide by itself, as in the slides, instead of putting neighbours together that hide more
+    /// Use each triangle as an occluder by itself, as in Marsden's slides, instead of merging neighbours into larger
+    /// occluders
     #[arg(long, help_heading = "Method")]
     triangles: bool,
     /// The picture of the buffer to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.png")]
     output: PathBuf,
-    /// Also write a map of the features (vertices, edges, faces) that are nearest to the texels
+    /// Also write a Voronoi map: the feature (vertex, edge or face) nearest to each texel
     #[arg(long, help_heading = "Output", value_name = "OUT.png")]
     voronoi: Option<PathBuf>,
-    /// Also write the distances of the texels to what is nearest: black for 0, white for the largest
+    /// Also write a distance field: the distance of each texel to the nearest feature, black for 0, white for the
+    /// largest
     #[arg(long, help_heading = "Output", value_name = "OUT.png")]
     distance: Option<PathBuf>,
     /// Print the result as JSON

@@ -26,7 +26,7 @@ pub(crate) struct QueryArgs {
     /// The table, plain or packed
     #[arg(value_name = "FILE")]
     table: PathBuf,
-    /// Where the viewer is, in scene units; exit code 1 if that is outside every cell, where everything may be seen
+    /// The eye, in scene units; exit code 1 outside every cell, where everything may be visible
     #[arg(long, help_heading = "Viewer", value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     eye: Point,
     #[command(flatten)]

@@ -23,20 +23,19 @@ const RUNS: usize = 9;
 /// How the viewer looks.
 #[derive(Debug, clap::Args)]
 pub(super) struct SightArgs {
-    /// Where the viewer looks; all round if not given
+    /// Direction of view [default: all directions]
     #[arg(long, help_heading = "Viewer", value_name = "DX,DY[,DZ]", allow_hyphen_values = true)]
     dir: Option<Point>,
     #[command(flatten)]
     lens: LensArgs,
-    /// How to find what is seen: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each no more
-    /// than the one before), or all of them. exact if any option says how the viewer looks; without one, what
-    /// the viewer's cell sees
+    /// Eye-to-cell method: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each within the
+    /// one before), or all [default: exact if an option describes the view, else the visible set of the eye's cell]
     #[arg(long, help_heading = "Method", value_name = "NAME")]
     method: Option<Methods>,
-    /// Portals that are closed
+    /// Closed portals, by number, separated by commas
     #[arg(long, help_heading = "Method", value_name = "P,P,...", value_delimiter = ',')]
     closed: Vec<u32>,
-    /// Also list what is seen in mirrors, up to so many one after the other
+    /// Also list what is visible in mirrors, up to this many reflections in a row
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = crate::view::bounces)]
     bounces: Option<usize>,
 }

@@ -16,13 +16,13 @@ const CACHE: usize = 64 << 20;
 /// A way to leave faces out, as an argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Cull {
-    /// Faces that are seen from behind
+    /// Back-facing triangles
     Backface,
-    /// What is outside the picture, by boxes of objects and then by faces
+    /// Everything outside the view frustum, first by boxes of objects, then by faces
     Frustum,
-    /// What is not seen from the cell that the eye is in, by the table of --table
+    /// Everything that is not visible from the cell of the eye, according to --table
     Pvs,
-    /// What is behind all that a z-buffer shows of the rest, by its pyramid of depths
+    /// Everything behind a hierarchical z-buffer of the rest
     HierarchicalZ,
 }
 

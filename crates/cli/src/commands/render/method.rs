@@ -9,34 +9,34 @@ use std::time::{Duration, Instant};
 /// A method as an argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Kind {
-    /// Faces sorted by the depth of their middles, which is wrong where that order is
+    /// Faces sorted by the depth of their centres; wrong where that order is wrong
     Painter,
-    /// Newell, Newell and Sancha: faces sorted by depth, tested against each other, and split where they go round
+    /// Newell, Newell and Sancha: faces sorted by depth, tested against each other, and split at cycles
     Newell,
-    /// Clusters of faces that planes part, and in each an order of its own
+    /// Schumacker: clusters of faces separated by planes, each with a fixed order of faces
     Schumacker,
-    /// A binary space partition, drawn from the farthest to the nearest
+    /// A BSP tree, drawn back to front
     Bsp,
-    /// The same from the nearest to the farthest
+    /// A BSP tree, drawn front to back
     BspFront,
-    /// Each face is drawn, and pixels keep what is nearest
+    /// Z-buffer: each pixel keeps the nearest face
     Zbuffer,
-    /// A ray through each pixel: what the others are compared with
+    /// One ray through each pixel; the reference for all others
     Raycast,
 }
 
 /// What a z-buffer keeps, as an argument. The last three reach from the least depth that is seen to the greatest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Depth {
-    /// Doubles, and a decision without rounding where they are too near to each other
+    /// Doubles, with an exact decision where they are too close
     Exact,
     /// Doubles
     Double,
-    /// Floats, 0 for what is at --near (at 1/64 if that is 0), 1 at --far
+    /// Floats from 0 at --near (at 1/64 if that is 0) to 1 at --far
     F32,
-    /// Floats, 1 for what is near, 0 at --far
+    /// Reversed floats, from 1 at --near to 0 at --far
     F32Reversed,
-    /// Whole numbers of 24 bits, 0 for what is near
+    /// 24-bit integers, 0 at --near
     U24,
 }
 

@@ -28,12 +28,12 @@ const MOST_PIXELS: u64 = 1 << 27;
 #[derive(Debug, clap::Args)]
 #[command(
     group = clap::ArgGroup::new("drawn by").args(["method", "compare"]).required(true).multiple(true),
-    after_help = "Each face has a colour of its own, so that pictures can be compared pixel by pixel; what is dark is \
-                  nothing. All methods but the painter's and rounded z-buffers are exact: a pixel shows the face that the \
-                  ray through its centre meets first, without rounding, and of faces at one depth the one that comes first in \
-                  the scene. With --compare there is a picture for each method in the sheet, with its number, as in \
-                  the table that is printed, above it: faces are darkened, and pixels that are not as the ray caster's, from which nothing but back faces \
-                  was left out, are magenta, but for those in doubt: there the ray meets both faces at one depth."
+    after_help = "Each face has its own colour, so that pictures can be compared pixel by pixel; the background is \
+                  dark. All methods except the painter's sort and rounded z-buffers are exact: a pixel shows the face \
+                  that the ray through its centre meets first, and of faces at equal depth the first one in the scene. \
+                  With --compare the sheet has one numbered picture for each method, as in the printed table: faces \
+                  are darkened, and pixels that differ from the ray caster (run with back-face culling at most) are \
+                  magenta, except where its ray meets both faces at equal depth."
 )]
 pub(crate) struct RenderArgs {
     /// The scene: GLB, glTF or OBJ
@@ -41,20 +41,20 @@ pub(crate) struct RenderArgs {
     scene: PathBuf,
     #[command(flatten)]
     eye: EyeArgs,
-    /// How to find what is seen; this or --compare is needed. Several, separated by commas, with --compare
+    /// The method; this or --compare is needed. With --compare several, separated by commas
     #[arg(long, help_heading = "Method", value_name = "NAME[,NAME...]", value_enum, value_delimiter = ',')]
     method: Vec<Kind>,
-    /// Draw by all methods, or those of --method and the ray caster, side by side in one sheet, and count the pixels that are not as
-    /// the ray caster's
+    /// Draw all methods, or those of --method, side by side with the ray caster in one sheet, and count the pixels that
+    /// differ from it
     #[arg(long, help_heading = "Method")]
     compare: bool,
-    /// What the z-buffer keeps; exact if not given, with --compare all
+    /// Depth format of the z-buffer [default: exact; all with --compare]
     #[arg(long, help_heading = "Method", value_name = "FORMAT", value_enum)]
     depth: Option<Depth>,
-    /// What to leave out before anything is drawn, in this order; separated by commas
+    /// What to cull before drawing, in this order; separated by commas
     #[arg(long, help_heading = "Method", value_name = "WAY[,WAY...]", value_enum, value_delimiter = ',')]
     cull: Vec<Cull>,
-    /// For --cull pvs: a table of the scene, plain or packed
+    /// For --cull pvs: the table of the scene, plain or packed
     #[arg(long, help_heading = "Method", value_name = "FILE.pvs")]
     table: Option<PathBuf>,
     /// Colour objects instead of faces

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Where eyes are, as arguments.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct EyesArgs {
-    /// Where eyes may be: a box, its lower corner, then its upper one; may be given several times
+    /// View volume as a box: its lower corner, then its upper one, in scene units; repeatable
     #[arg(
         long,
         help_heading = "Viewer",
@@ -21,10 +21,10 @@ pub(super) struct EyesArgs {
         conflicts_with = "table"
     )]
     volume: Vec<Region>,
-    /// A table of the scene: eyes are in its cells of --cell, and what it hides from them is hidden
+    /// The table of the scene, for eyes in its cells --cell; what it hides from them is hidden
     #[arg(long, help_heading = "Viewer", value_name = "FILE.pvs", requires = "cell")]
     pub(super) table: Option<PathBuf>,
-    /// The cells of the table, by number, separated by commas
+    /// Cells of the table, by number, separated by commas
     #[arg(long, help_heading = "Viewer", value_name = "N[,N...]", value_delimiter = ',', requires = "table")]
     cell: Vec<u32>,
 }

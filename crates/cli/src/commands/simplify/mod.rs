@@ -20,28 +20,28 @@ use std::time::Instant;
 /// Arguments of `simplify`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "What no eye in the boxes can see goes, whatever the budget. The budget is a share of the sphere of \
-                  directions: from every place in the boxes, at most so much of the view shows another face than \
-                  before, which is proven. Materials, textures, names and all else of a glTF survive; pictures in files \
-                  beside it go into the result. A result of which triangles were moved may hide what can be seen, says \
-                  so, and is refused where a scene has to hide something."
+    after_help = "Triangles that no eye in the boxes can see are always removed. The budget is a share of the sphere \
+                  of directions: for every eye in the boxes, at most that share of the view shows another face than \
+                  before. This bound is proven. Materials, textures, names and everything else in a glTF are kept; \
+                  textures in separate files are embedded. A result with moved triangles is marked, and is refused \
+                  wherever a scene is used as an occluder."
 )]
 pub(crate) struct SimplifyArgs {
-    /// The scene: GLB, glTF, or OBJ, of which only triangles and names are kept
+    /// The scene: GLB or glTF; from an OBJ only triangles and names are kept
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     #[command(flatten)]
     eyes: EyesArgs,
     #[command(flatten)]
     how: HowArgs,
-    /// At least so many boxes are made of those where eyes are, as small boxes give better bounds
+    /// Divide the view volumes into at least this many boxes; smaller boxes give better bounds
     #[arg(long, help_heading = "Viewer", value_name = "N", default_value_t = SimplifyOptions::default().n_parts as u32)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
     parts: u32,
-    /// The scene to write; it may be the one that is read
+    /// The scene to write; may be the input
     #[arg(short, long, help_heading = "Output", value_name = "OUT.glb")]
     output: PathBuf,
-    /// Also count by fresh rays what has changed, over all eyes and for the worst one
+    /// Also measure the change with fresh rays, over all eyes and for the worst one
     #[arg(long, help_heading = "Output")]
     report: bool,
     /// Print the result as JSON

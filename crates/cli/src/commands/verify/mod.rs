@@ -23,37 +23,37 @@ use std::time::Instant;
 /// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct VerifyArgs {
-    /// The table, plain or packed; or a Quake map or a WAD, whose own visibility or REJECT is checked, whoever wrote it
+    /// The table (plain or packed), or a Quake map or WAD whose own visibility or REJECT lump is checked
     #[arg(value_name = "FILE.pvs|MAP.bsp|FILE.wad")]
     table: PathBuf,
-    /// What it was built from: a WAD, a floor plan as GeoJSON, a scene in space as GLB, glTF or OBJ, a Quake map, or its
+    /// The input it was built from: a WAD, a GeoJSON floor plan, a scene as GLB, glTF or OBJ, a Quake map, or its
     /// portal file alone
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// Which map of the WAD; not needed if there is only one
+    /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Option<String>,
-    /// Quake maps only: the portal file; beside the map if not given
+    /// Quake maps: the portal file [default: beside the map]
     #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
-    /// Rays in random directions from random places
+    /// Number of rays from random places in random directions
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().rays)]
     rays: u64,
-    /// Hidden pairs, of cells or of a cell and an object, that rays are aimed at, the most suspicious first
+    /// Number of hidden pairs (two cells, or a cell and an object) to aim rays at, the most suspicious first
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().pairs)]
     pairs: u64,
-    /// Rays aimed at each of these pairs; eight times as many at those with nothing but visible pairs around
+    /// Number of rays aimed at each of these pairs; eight times as many where all neighbouring pairs are visible
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().tries)]
     tries: u32,
-    /// What the random numbers begin with; the same seed gives the same answer
+    /// Seed of the random numbers; the same seed gives the same result
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().seed)]
     seed: u64,
-    /// Number of threads; 0 for one for each core. Changes nothing but the time
+    /// Number of threads; 0 uses every core. Does not change the result
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
     #[command(flatten, next_help_heading = "Proofs")]
     proofs: proofs::ProofArgs,
-    /// Draw the first ray that shows a violation, on the plan or on the floor where it begins
+    /// Draw the first violating ray, on the plan or on the floor where it starts
     #[arg(long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
     draw: Option<PathBuf>,
     /// Print the result as JSON

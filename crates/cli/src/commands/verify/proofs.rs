@@ -18,11 +18,12 @@ use std::time::{Duration, Instant};
 /// Which proofs are checked.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct ProofArgs {
-    /// The proofs that `build --certify` wrote with the table; the file of the table's name that ends in .cert, if there is one and
-    /// nothing else is given
+    /// The proofs that `build --certify` wrote [default: the table's name with the extension .cert, if that file
+    /// exists]
     #[arg(long, value_name = "FILE.cert")]
     proofs: Option<PathBuf>,
-    /// With proofs: a hidden pair without one is a violation too, and so is a wall of a cell that nothing in the scene covers
+    /// With proofs: hidden pairs without a proof are violations, and so are walls of cells that nothing in the scene
+    /// covers
     #[arg(long)]
     strict: bool,
 }

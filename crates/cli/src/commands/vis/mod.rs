@@ -29,28 +29,28 @@ pub(crate) struct VisArgs {
     /// The map: Quake's BSP 29, BSP2 or 2PSB, or Quake II's IBSP 38
     #[arg(value_name = "MAP.bsp")]
     map: PathBuf,
-    /// Its portal file, as the compiler wrote it; beside the map if not given
+    /// The portal file that the compiler wrote [default: beside the map]
     #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
-    /// Only the first, coarse bound: quick, and shows much that is hidden
+    /// Compute only a coarse bound; fast, and reports much that is hidden as visible
     #[arg(long, help_heading = "Method")]
     fast: bool,
-    /// Number of threads; 0 for one for each core
+    /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
-    /// Go on where an earlier run with the same portals and options was stopped
+    /// Resume an interrupted run with the same portals and options
     #[arg(long, help_heading = "Going on")]
     resume: bool,
-    /// Where a run keeps how far it came; beside the output, as .vis-state, if not given
+    /// File for the state of the run [default: beside the output, with the extension .vis-state]
     #[arg(long, help_heading = "Going on", value_name = "FILE")]
     state: Option<PathBuf>,
     /// Seconds between two savings of the state
     #[arg(long, help_heading = "Going on", hide = true, value_name = "SECONDS", default_value_t = 30)]
     save_every: u64,
-    /// Prove so many of the visible pairs and as many of the hidden ones, and check the proofs independently
+    /// Prove this many visible and as many hidden pairs, and check the proofs independently
     #[arg(long, help_heading = "Method", value_name = "N")]
     certify: Option<usize>,
-    /// Where to write; the map itself if not given
+    /// The map to write [default: the input]
     #[arg(short, long, help_heading = "Output", value_name = "OUT.bsp")]
     output: Option<PathBuf>,
     /// Print the result as JSON

@@ -24,10 +24,10 @@ use std::path::{Path, PathBuf};
 /// Arguments of `walk`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct WalkArgs {
-    /// The table, plain or packed; of a packed one, blocks are read when they are needed
+    /// The table, plain or packed; blocks of a packed one are read on demand
     #[arg(value_name = "FILE")]
     table: PathBuf,
-    /// The walk as JSON: {"frames": [{"eye": [x, y, z], "dir": [x, y, z]}, ...]}; two numbers each in a plane
+    /// The walk as JSON: {"frames": [{"eye": [x, y, z], "dir": [x, y, z]}, ...]}; two coordinates each in the plane
     #[arg(
         long,
         help_heading = "Walk",
@@ -36,37 +36,37 @@ pub(crate) struct WalkArgs {
         conflicts_with = "random"
     )]
     path: Option<PathBuf>,
-    /// A walk of so many frames without a goal, from cell to cell, that now and then begins anew elsewhere
+    /// Generate a random walk of this many frames, from cell to cell, with occasional jumps
     #[arg(long, help_heading = "Walk", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     random: Option<u32>,
-    /// Another seed gives another random walk
+    /// Seed of the random walk
     #[arg(long, help_heading = "Walk", value_name = "S", default_value_t = 1, conflicts_with = "path")]
     seed: u64,
-    /// The way from frame to frame of a random walk, in scene units; a 400th of the scene's diagonal if not given
+    /// Distance from frame to frame of a random walk, in scene units [default: 1/400 of the scene's diagonal]
     #[arg(long, help_heading = "Walk", value_name = "UNITS", value_parser = step, allow_hyphen_values = true, conflicts_with = "path")]
     step: Option<f64>,
     #[command(flatten)]
     lens: LensArgs,
-    /// How to find what is seen: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each no
-    /// more than the one before), or all; cell-to-cell is always there to compare with
+    /// Eye-to-cell method: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each within the
+    /// one before), or all; cell-to-cell always runs for comparison
     #[arg(long, help_heading = "Method", value_name = "NAME", default_value = "all")]
     method: Methods,
-    /// The most bytes that may be kept of what is prepared ahead; of a packed table, as many again of its blocks
+    /// Memory budget for prepared data, in bytes; the blocks of a packed table get the same again
     #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = WalkOptions::default().budget)]
     budget: usize,
-    /// Also follow lines into mirrors, up to so many one after the other
+    /// Also follow reflections in mirrors, up to this many in a row
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::view::bounces)]
     bounces: usize,
-    /// Frames a second in the pass that does not wait for what is prepared ahead; as many as possible if not given
+    /// Frames per second of the pass that does not wait for prepared data [default: as many as possible]
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     fps: Option<u32>,
-    /// A folder that `sightlines levels` wrote for this table: also count the triangles that are drawn with its levels
+    /// Also count the triangles drawn with the levels in this folder, which `sightlines levels` wrote for the table
     #[arg(long, help_heading = "Method", value_name = "FOLDER")]
     levels: Option<PathBuf>,
     /// A chart to write
     #[arg(short, long, help_heading = "Output", value_name = "CHART.svg")]
     output: Option<PathBuf>,
-    /// The numbers to write, a line for each method
+    /// The numbers to write as CSV, one line for each method
     #[arg(long, help_heading = "Output", value_name = "OUT.csv")]
     csv: Option<PathBuf>,
     /// Print the result as JSON
