@@ -2,7 +2,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use sightlines::geometry::{Point3, Portal3};
+use sightlines::geometry::{Point3, Portal3, Random};
 use sightlines::sightline::{ConvexStabber, StabLimits, Verdict};
 
 fn main() {
@@ -14,20 +14,11 @@ const LENGTHS: [usize; 5] = [3, 5, 10, 20, 50];
 /// Number of sequences of each length.
 const N_SEQUENCES: usize = 400;
 
-/// Random numbers from 0 to 1 that are the same everywhere.
-fn unit(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut x = *state;
-    x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((x ^ x >> 31) >> 11) as f64 / (1u64 << 53) as f64
-}
-
 /// Tilted polygons of 3 to 6 corners along a corridor, in each sequence of another size, so that both
 /// answers are common.
 fn sequences(n: usize) -> Vec<Vec<Portal3>> {
-    let mut state = n as u64;
-    let mut next = |low: f64, high: f64| low + (high - low) * unit(&mut state);
+    let mut random = Random::new(n as u64);
+    let mut next = |low: f64, high: f64| low + (high - low) * random.unit();
     let mut portal = |k: usize, size: f64| {
         let [x, y] = [next(-40.0, 40.0), next(-40.0, 40.0)];
         let tilt = [next(-0.6, 0.6), next(-0.6, 0.6)];

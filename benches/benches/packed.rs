@@ -154,7 +154,7 @@ fn tables(args: &Args) -> Result<Vec<Named>, Box<dyn Error>> {
 
 /// Nanoseconds that `ask` takes for random rows below `n`, on average over `n_asked` of them.
 fn time(n_asked: usize, n: usize, mut ask: impl FnMut(usize)) -> f64 {
-    let mut random = SplitMix(1);
+    let mut random = SplitMix::new(1);
     let asked: Vec<usize> = (0..n_asked).map(|_| random.below(n)).collect();
     let start = Instant::now();
     asked.into_iter().for_each(&mut ask);
@@ -330,7 +330,7 @@ fn large(args: &Args) -> Result<String, Box<dyn Error>> {
     std::fs::write(&path, bytes)?;
     let mut times = Vec::new();
     let (mut resident, mut read) = (0, 0);
-    let mut random = SplitMix(7);
+    let mut random = SplitMix::new(7);
     let asked = (|| -> Result<(), Box<dyn Error>> {
         for _ in 0..31 {
             let (min, max) = table.parts().cell_bounds()[random.below(table.n_cells())];

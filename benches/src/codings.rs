@@ -172,7 +172,7 @@ mod tests {
     /// Matrices of all shapes, dense and sparse.
     fn matrices() -> impl Iterator<Item = BitMatrix> {
         (0..60).map(|seed| {
-            let mut random = SplitMix(seed);
+            let mut random = SplitMix::new(seed);
             let (n, m, rare) = (random.below(40), 1 + random.below(700), 1 + random.below(60));
             let mut bits = BitMatrix::new(n, m);
             (0..n).for_each(|i| (0..m).for_each(|j| bits.set(i, j, random.below(rare) == 0)));

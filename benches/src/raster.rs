@@ -8,6 +8,7 @@
 use sightlines::cells::{Point3, Scene};
 use sightlines::eye_to_cell::View;
 use sightlines::geometry::Aabb;
+use sightlines::geometry::vector::{cross, dot, sub};
 use std::f64::consts::FRAC_PI_2;
 
 /// Nothing nearer than this is drawn, in scene units.
@@ -136,7 +137,7 @@ impl Picture {
             return;
         }
         let [a, b, c] = corners;
-        let normal = cross(minus(b, a), minus(c, a));
+        let normal = cross(sub(b, a), sub(c, a));
         let away = dot(normal, a);
         if away == 0.0 {
             // Seen edge-on.
@@ -209,18 +210,6 @@ fn where_near(p: Point3, q: Point3) -> Point3 {
     let [p, q] = if p[2] <= q[2] { [p, q] } else { [q, p] };
     let t = (NEAR - p[2]) / (q[2] - p[2]);
     [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]), NEAR]
-}
-
-fn minus(a: Point3, b: Point3) -> Point3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Point3, b: Point3) -> Point3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn unit(a: Point3) -> Point3 {

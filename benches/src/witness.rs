@@ -9,6 +9,7 @@ use crate::shares::{mean_share, triangles_of};
 use crate::targets::Targets;
 use sightlines::cells::{Point3, Scene};
 use sightlines::geometry::Aabb;
+use sightlines::geometry::vector::sub;
 use sightlines::pvs::{CellId, Table};
 use sightlines_testkit::rays::{CellIndex, Random, RayScene};
 use std::collections::BTreeMap;
@@ -275,13 +276,13 @@ impl<'a> Judge<'a> {
                 let cell = if in_turn { (turn % n_cells) as usize } else { partition.any_cell(&mut random) };
                 let origin = random.point(&partition.boxes[cell]);
                 let target = if random.below(2) == 0 { None } else { self.targets.any(&mut random) };
-                (origin, target.map_or_else(|| random.direction(), |t| minus(t, origin)))
+                (origin, target.map_or_else(|| random.direction(), |t| sub(t, origin)))
             }
             Aim::Doubtful(pairs) => {
                 let (partition, cell, object) = pairs[(nth % pairs.len() as u64) as usize];
                 let origin = random.point(&self.partitions[partition].boxes[cell as usize]);
                 let target = self.targets.on(object, &mut random);
-                (origin, target.map_or_else(|| random.direction(), |t| minus(t, origin)))
+                (origin, target.map_or_else(|| random.direction(), |t| sub(t, origin)))
             }
         };
         let Some(line) = self.rays.clear_line(origin, direction) else { return false };
@@ -345,10 +346,6 @@ impl<'a> Judge<'a> {
 
 fn threads(asked: usize) -> usize {
     if asked > 0 { asked } else { std::thread::available_parallelism().map_or(1, usize::from) }
-}
-
-fn minus(a: Point3, b: Point3) -> Point3 {
-    [0, 1, 2].map(|k| a[k] - b[k])
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use crate::Side;
 use crate::hull::{Hull, Light};
-use sightlines_geometry::vector::{cross, dot, sub};
-use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d};
+use sightlines_geometry::vector::sub;
+use sightlines_geometry::{Aabb, BoxTree, Point3, Random, orient3d, ray_box, ray_triangle};
 use sightlines_multifocal::Volume;
 use sightlines_visible_surface::Faces;
 use std::cell::Cell;
@@ -58,21 +58,12 @@ impl<'a> Blockers<'a> {
     /// Whether the way between two points is blocked by another face than `own`.
     pub(crate) fn is_blocked(&self, from: Point3, to: Point3, own: u32) -> bool {
         let way = sub(to, from);
-        let inverse = way.map(|x| 1.0 / x);
+        // An axis along which nothing changes is looked at on its own, so that sides of boxes count as inside.
+        let inverse = way.map(|x| if x == 0.0 { f64::NAN } else { 1.0 / x });
+        let is_between = |b: &Aabb<3>, k: usize| b.min[k] <= from[k] && from[k] <= b.max[k];
         let passes = |b: &Aabb<3>| {
-            let (mut first, mut last) = (0.0f64, 1.0f64);
-            for k in 0..3 {
-                if way[k] == 0.0 {
-                    if from[k] < b.min[k] || from[k] > b.max[k] {
-                        return false;
-                    }
-                    continue;
-                }
-                let (s, t) = ((b.min[k] - from[k]) * inverse[k], (b.max[k] - from[k]) * inverse[k]);
-                first = first.max(s.min(t));
-                last = last.min(s.max(t));
-            }
-            first <= last + ENDS
+            let [first, last] = ray_box(b, from, inverse);
+            first.max(0.0) <= last.min(1.0) + ENDS && (0..3).all(|k| way[k] != 0.0 || is_between(b, k))
         };
         let blocked = Cell::new(false);
         self.tree.visit(
@@ -135,33 +126,16 @@ pub(crate) fn point_of(light: &Volume, i: u32, seed: u64) -> Point3 {
     let b = light.bounds();
     let mut state = seed;
     std::array::from_fn(|k| {
-        state = mixed(state);
+        state = Random::new(state).bits();
         let start = (state >> 11) as f64 / (1u64 << 53) as f64;
         let part = (start + f64::from(i) * STEPS[k]).fract();
         (b.min[k] + (b.max[k] - b.min[k]) * part).clamp(b.min[k], b.max[k])
     })
 }
 
-/// A number that looks like chance.
-///
-/// Source: SplitMix: Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-fn mixed(state: u64) -> u64 {
-    let mut z = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
-}
-
 /// Whether a triangle is met, not at the very ends of the way.
-///
-/// Source: Möller and Trumbore, Journal of Graphics Tools 2(1), 1997.
-fn crosses(&[a, b, c]: &[Point3; 3], from: Point3, way: Point3) -> bool {
-    let (u, v) = (sub(b, a), sub(c, a));
-    let h = cross(way, v);
-    let whole = dot(u, h);
-    let s = sub(from, a);
-    let q = cross(s, u);
-    let [x, y, t] = [dot(s, h), dot(way, q), dot(v, q)].map(|n| n / whole);
+fn crosses(triangle: &[Point3; 3], from: Point3, way: Point3) -> bool {
+    let [x, y, t] = ray_triangle(triangle, from, way);
     x >= 0.0 && y >= 0.0 && x + y <= 1.0 && t > ENDS && t < 1.0 - ENDS
 }
 

@@ -1,6 +1,6 @@
 //! On which side of a portal's plane the eye is.
 
-use crate::side::{Vector, cross, dot, minus, norm};
+use crate::side::{Vector, cross, dot, norm, sub};
 use sightlines_geometry::{Point2, orient2d, orient3d};
 
 /// What a sum of a few products may be off by, as a share of their sizes: 32 times the unit roundoff, 2^-53.
@@ -46,8 +46,8 @@ impl Front {
         }
         let length = dot(normal, normal).sqrt();
         let normal = normal.map(|x| x / length);
-        let size = corners.iter().fold(0.0f64, |m, &c| m.max(norm(minus(c, point))));
-        let off = corners.iter().fold(0.0f64, |m, &c| m.max(dot(normal, minus(c, point)).abs()));
+        let size = corners.iter().fold(0.0f64, |m, &c| m.max(norm(sub(c, point))));
+        let off = corners.iter().fold(0.0f64, |m, &c| m.max(dot(normal, sub(c, point)).abs()));
         // Each of the cross products is off by some 8 u size², and the rest of the sum by less: 2^-48 has room for 32.
         let tilt = corners.len() as f64 * size * size / length * SMALL;
         let uneven = off + size * SMALL;
@@ -107,7 +107,7 @@ impl Front {
                 if if upwards { e < at } else { e > at } { Facing::Before } else { Facing::Behind }
             }
             Self::Plane { point, normal, uneven, tilt } => {
-                let v = minus(point, eye);
+                let v = sub(point, eye);
                 let margin = uneven + norm(v) * (SMALL + tilt) + 3.0 * slack;
                 let before = dot(normal, v);
                 if before > margin {
@@ -164,7 +164,7 @@ fn facing_line(eye: Vector, left: [f64; 2], right: [f64; 2], slack: f64) -> Faci
 fn towards(corners: &[Vector]) -> Vector {
     let mut sum = [0.0; 3];
     for pair in corners.windows(2) {
-        let n = cross(minus(pair[1], corners[0]), minus(pair[0], corners[0]));
+        let n = cross(sub(pair[1], corners[0]), sub(pair[0], corners[0]));
         (0..3).for_each(|k| sum[k] += n[k]);
     }
     sum

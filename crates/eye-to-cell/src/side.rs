@@ -26,6 +26,7 @@
 //! With numbers that overflow the tolerance is infinite or a comparison is one with NaN: nothing is let go.
 
 use sightlines_geometry::Aabb;
+pub(crate) use sightlines_geometry::vector::{cross, dot, sub};
 
 /// The most sides of a cone of sight, and corners of a portal, that are worked with; more are left out, which
 /// shows more.
@@ -167,19 +168,4 @@ pub(crate) fn mirrored(v: Vector, across: Vector) -> Vector {
 #[inline]
 pub(crate) fn norm(v: Vector) -> f64 {
     v[0].abs() + v[1].abs() + v[2].abs()
-}
-
-#[inline]
-pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline]
-pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline]
-pub(crate) fn minus(a: Vector, b: Vector) -> Vector {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

@@ -1,8 +1,9 @@
 //! Where the viewer is, and which directions the picture covers.
 
 use crate::front::Front;
-use crate::side::{MOST_SIDES, Reach, Side, Vector, cross, dot, minus, norm, radius};
+use crate::side::{MOST_SIDES, Reach, Side, Vector, cross, dot, norm, radius, sub};
 use sightlines_geometry::Aabb;
+use sightlines_geometry::vector::unit_of_any_size;
 use std::f64::consts::{PI, TAU};
 
 /// An eye and the cone of directions that it looks at, in the plane or in space.
@@ -63,7 +64,7 @@ impl View {
     /// # Errors
     /// [`ViewError`] for numbers out of range.
     pub fn planar(eye: [f64; 2], dir: [f64; 2], fov: f64) -> Result<Self, ViewError> {
-        let d = unit([dir[0], dir[1], 0.0])?;
+        let d = unit_of_any_size([dir[0], dir[1], 0.0]).ok_or(ViewError::Direction)?;
         check_fov(fov)?;
         let mut view = Self::all_round([eye[0], eye[1], 0.0])?;
         view.cut_by_wedge(d, [d[1], -d[0], 0.0], fov);
@@ -79,7 +80,7 @@ impl View {
     /// # Errors
     /// [`ViewError`] for numbers out of range.
     pub fn pinhole(eye: [f64; 3], dir: [f64; 3], up: [f64; 3], fov: f64, aspect: f64) -> Result<Self, ViewError> {
-        let forward = unit(dir)?;
+        let forward = unit_of_any_size(dir).ok_or(ViewError::Direction)?;
         check_fov(fov)?;
         if !(aspect.is_finite() && aspect > 0.0) {
             return Err(ViewError::Aspect(aspect));
@@ -93,7 +94,7 @@ impl View {
             let (sin, cos) = (0.5 * fov).sin_cos();
             for up_or_down in [1.0, -1.0] {
                 let normal = std::array::from_fn(|k| sin * forward[k] + up_or_down * aspect * cos * up[k]);
-                view.parts[0].add(Side::given(unit(normal)?));
+                view.parts[0].add(Side::given(unit_of_any_size(normal).ok_or(ViewError::Direction)?));
             }
         }
         Ok(view)
@@ -115,7 +116,7 @@ impl View {
     /// What is looked at in a mirror: the eye behind it, and the cone with these sides as the mirror shows it.
     pub(crate) fn mirrored(&self, mirror: &Front, cone: &[Side]) -> Self {
         let (point, across) = mirror.plane();
-        let v = minus(self.eye, point);
+        let v = sub(self.eye, point);
         let along = 2.0 * dot(v, across);
         let eye: Vector = std::array::from_fn(|k| self.eye[k] - along * across[k]);
         // Along an axis only the last subtraction of each of the two steps rounds. Any other unit normal is off by a few
@@ -190,18 +191,6 @@ fn check_fov(fov: f64) -> Result<(), ViewError> {
     if fov > 0.0 && fov <= TAU { Ok(()) } else { Err(ViewError::Fov(fov)) }
 }
 
-/// The vector with unit length; large and small ones do not over- or underflow.
-fn unit(v: Vector) -> Result<Vector, ViewError> {
-    let largest = v.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    // A NaN is passed over by `max`.
-    if !v.iter().all(|x| x.is_finite()) || largest == 0.0 {
-        return Err(ViewError::Direction);
-    }
-    let scaled = v.map(|x| x / largest);
-    let length = dot(scaled, scaled).sqrt();
-    Ok(scaled.map(|x| x / length))
-}
-
 /// The unit vector to the right of who looks along the unit vector `forward` with `up` above.
 fn right_of(forward: Vector, up: Vector) -> Vector {
     let flat = forward.map(f64::abs);
@@ -209,8 +198,8 @@ fn right_of(forward: Vector, up: Vector) -> Vector {
     let mut other = [0.0; 3];
     other[least] = 1.0;
     // Nearly parallel: the cross product would be mostly rounding.
-    let across = unit(up).map(|up| cross(forward, up)).ok().filter(|r| dot(*r, *r) > 1e-12);
-    unit(across.unwrap_or_else(|| cross(forward, other))).unwrap_or([1.0, 0.0, 0.0])
+    let across = unit_of_any_size(up).map(|up| cross(forward, up)).filter(|r| dot(*r, *r) > 1e-12);
+    unit_of_any_size(across.unwrap_or_else(|| cross(forward, other))).unwrap_or([1.0, 0.0, 0.0])
 }
 
 #[cfg(test)]

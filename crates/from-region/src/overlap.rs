@@ -4,6 +4,7 @@
 //! bodies are apart if and only if an axis separates them, and thirteen axes are enough. Ours: the bounds on
 //! rounding.
 
+use sightlines_geometry::vector::sub;
 use sightlines_geometry::{Aabb, Point3};
 
 /// What a computed side may be off by, as a part of the sum of the magnitudes of its terms.
@@ -59,10 +60,6 @@ fn separates(axis: Point3, sizes: Point3, corners: &[Point3; 3], half: Point3) -
         (side, reach + SLACK * slack)
     });
     sides.iter().all(|(side, reach)| side > reach) || sides.iter().all(|(side, reach)| -side > *reach)
-}
-
-fn sub(a: Point3, b: Point3) -> Point3 {
-    std::array::from_fn(|k| a[k] - b[k])
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! edges a line may pass, whatever the corners see. So occluders are never put together here; the shaft may be cut
 //! instead, and its parts asked one by one.
 
+use sightlines_geometry::vector::{cross, dot, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d};
 use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Occluder, Umbra, Volume};
 
@@ -218,18 +219,6 @@ impl Line {
 fn mean(points: &[Point3]) -> Point3 {
     let n = points.len() as f64;
     std::array::from_fn(|k| points.iter().map(|p| p[k] / n).sum())
-}
-
-fn sub(a: Point3, b: Point3) -> Point3 {
-    std::array::from_fn(|k| a[k] - b[k])
-}
-
-fn dot(a: Point3, b: Point3) -> f64 {
-    (0..3).map(|k| a[k] * b[k]).sum()
-}
-
-fn cross(a: Point3, b: Point3) -> Point3 {
-    std::array::from_fn(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
 /// Twice the area of a polygon, rounded.

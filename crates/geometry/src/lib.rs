@@ -4,7 +4,8 @@
 //!
 //! - **Owns**: the coordinate types ([`Point2`], [`Point3`], [`Segment2`], [`Aabb`]), the orientation predicate of
 //!   the plane in two forms with one meaning ([`Adaptive`], [`SmallGrid`]) and that of space ([`orient3d`]),
-//!   convex polygons in the plane, oriented portals of each kind, trees of boxes ([`BoxTree`]), places to sample ([`Random`]).
+//!   convex polygons in the plane, oriented portals of each kind, trees of boxes ([`BoxTree`]); and for estimates in plain doubles
+//!   vectors of space ([`vector`]), rays ([`ray_triangle`], [`ray_box`]) and pseudorandom numbers ([`Random`]).
 //! - **Out of scope**: walls, cells, portals, files.
 //! - **Invariants**: a predicate reads input coordinates only and its sign is exact for every coordinate that
 //!   [`check_coordinate`] accepts; nothing here compares with an epsilon.
@@ -19,6 +20,7 @@ pub mod polygon;
 pub mod portal;
 pub mod portal3;
 pub mod random;
+pub mod ray;
 pub mod segment;
 pub mod vector;
 
@@ -32,6 +34,7 @@ pub use polygon::{is_convex_ccw, polygon_contains, signed_area};
 pub use portal::Portal2;
 pub use portal3::Portal3;
 pub use random::Random;
+pub use ray::{ray_box, ray_triangle};
 pub use segment::Segment2;
 
 /// A point of the plane in scene units.

@@ -1,11 +1,11 @@
-//! Numbers that look random and are the same on every machine: for places and directions to sample.
+//! Pseudorandom numbers, the same on every machine: for places and directions to sample.
 
 use crate::{Aabb, Point3};
 
-/// The generator splitmix64. Equal seeds give equal numbers.
+/// The generator SplitMix64, the only one of the workspace. Equal seeds give equal numbers; not for secrets.
 ///
 /// # Source
-/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014. No use for secrets.
+/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
@@ -29,6 +29,12 @@ impl Random {
     #[inline]
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Strictly between 0 and 1: an odd multiple of 2^-53.
+    #[inline]
+    pub fn open_unit(&mut self) -> f64 {
+        ((self.bits() >> 12) as f64 + 0.5) / (1u64 << 52) as f64
     }
 
     /// A whole number from 0 to before `n`; 0 for `n` = 0.
@@ -80,12 +86,19 @@ mod tests {
     }
 
     #[test]
+    fn first_numbers_are_the_published_ones() {
+        let mut random = Random::new(0);
+        assert_eq!([random.bits(), random.bits()], [0xe220_a839_7b1d_cdaf, 0x6e78_9e6a_a1b9_65f4]);
+    }
+
+    #[test]
     fn points_stay_in_their_box() {
         let mut random = Random::new(2);
         let tiny = Aabb { min: [1.0, -3.0, 0.0], max: [1.0f64.next_up(), -3.0, 1e300] };
         for _ in 0..1000 {
             assert!(tiny.contains(random.point(&tiny)));
             assert!(random.below(3) < 3);
+            assert!(random.open_unit() > 0.0 && random.open_unit() < 1.0);
         }
         assert_eq!(random.below(0), 0);
     }

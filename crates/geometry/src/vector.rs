@@ -40,6 +40,28 @@ pub fn length(a: Point3) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// The vector of length 1 in the direction of `a`; `None` if its length is 0, infinite or NaN.
+///
+/// Squares of components must not leave the range of doubles; [`unit_of_any_size`] has no such limit.
+#[inline]
+pub fn unit(a: Point3) -> Option<Point3> {
+    let length = length(a);
+    (length > 0.0 && length.is_finite()).then(|| scale(a, 1.0 / length))
+}
+
+/// The vector of length 1 in the direction of `a`, without overflow or underflow; `None` if all components are 0 or one is not
+/// finite. Rounded differently from [`unit`], and slower.
+pub fn unit_of_any_size(a: Point3) -> Option<Point3> {
+    let largest = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    // `max` passes over NaN.
+    if largest == 0.0 || !a.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let scaled = a.map(|x| x / largest);
+    let length = length(scaled);
+    Some(scaled.map(|x| x / length))
+}
+
 /// The normal of a triangle by the right-hand rule, twice its area long.
 #[inline]
 pub fn normal([a, b, c]: [Point3; 3]) -> Point3 {
@@ -55,6 +77,10 @@ mod tests {
         let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         assert_eq!([cross(x, y), cross(y, z), cross(z, x)], [z, x, y]);
         assert_eq!(normal([x, y, z]), [1.0; 3]);
+        assert_eq!(unit([0.0, 0.0, -3.0]), Some([0.0, 0.0, -1.0]));
+        assert_eq!(unit_of_any_size([0.0, 1e-300, 0.0]), Some(y));
+        let bad = [[0.0; 3], [f64::NAN, 1.0, 0.0], [f64::INFINITY, 0.0, 0.0]];
+        assert!(bad.iter().all(|&v| unit(v).is_none() && unit_of_any_size(v).is_none()));
         assert_eq!((dot(add(x, scale(y, 3.0)), sub(y, z)), length([2.0, 3.0, 6.0])), (3.0, 7.0));
     }
 }

@@ -4,7 +4,7 @@
 //! smaller ones. Rays are traced in plain doubles.
 
 use crate::Volume;
-use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
+use sightlines_geometry::{Aabb, BoxTree, Point3, Random, ray_box, ray_triangle};
 
 /// The most rays towards one object: what so many do not reach is hidden, or hardly visible.
 const MOST_FOR_ONE: u32 = 64;
@@ -123,27 +123,13 @@ impl Witness {
 
 /// Where a ray enters a box; infinity if it does not.
 fn enters(b: &Aabb<3>, origin: Point3, inverse: Point3) -> f64 {
-    let (mut from, mut to) = (0.0f64, f64::INFINITY);
-    for k in 0..3 {
-        let (a, b) = ((b.min[k] - origin[k]) * inverse[k], (b.max[k] - origin[k]) * inverse[k]);
-        from = from.max(a.min(b));
-        to = to.min(a.max(b));
-    }
-    if from <= to { from } else { f64::INFINITY }
+    let [first, last] = ray_box(b, origin, inverse);
+    let first = first.max(0.0);
+    if first <= last { first } else { f64::INFINITY }
 }
 
 /// Where a ray meets a triangle; infinity if it does not.
-fn hit([a, b, c]: &[Point3; 3], origin: Point3, direction: Point3) -> f64 {
-    let sub = |a: &Point3, b: &Point3| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    let cross =
-        |a: Point3, b: Point3| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let dot = |a: Point3, b: Point3| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let (u, v, to) = (sub(b, a), sub(c, a), sub(&origin, a));
-    let p = cross(direction, v);
-    let det = dot(u, p);
-    let s = dot(to, p) / det;
-    let q = cross(to, u);
-    let t = dot(direction, q) / det;
-    let at = dot(v, q) / det;
+fn hit(triangle: &[Point3; 3], origin: Point3, direction: Point3) -> f64 {
+    let [s, t, at] = ray_triangle(triangle, origin, direction);
     if s >= 0.0 && t >= 0.0 && s + t <= 1.0 && at > 0.0 { at } else { f64::INFINITY }
 }

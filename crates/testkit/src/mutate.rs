@@ -1,17 +1,21 @@
 //! Breaking files: small changes that are likely to upset a reader.
 
-/// Steele, Lea and Flood's SplitMix64: the same numbers on every machine.
+use sightlines_geometry::Random;
+
+/// Pseudorandom integers: the generator of `geometry`, with remainders for ranges.
 #[derive(Debug, Clone)]
-pub struct SplitMix(pub u64);
+pub struct SplitMix(Random);
 
 impl SplitMix {
+    /// The stream of a seed.
+    pub const fn new(seed: u64) -> Self {
+        Self(Random::new(seed))
+    }
+
     /// The next number.
     #[expect(clippy::should_implement_trait, reason = "an endless sequence is no iterator here")]
     pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     /// A number below `n`, or 0.

@@ -1,7 +1,7 @@
 //! A ray tracer over the triangles of a scene: what a ray hits first.
 //!
 //! It knows no cells, portals or boxes of walls, so that nothing can be wrong in the same way here and
-//! in the code that it judges. It computes in doubles: [`RayScene::first_hit`] is exact up to rounding,
+//! in the code that it judges; its vectors and its tests of boxes and triangles are its own on purpose. It computes in doubles: [`RayScene::first_hit`] is exact up to rounding,
 //! and the samplers that use it leave out what a small shift would change.
 //!
 //! Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", Journal of Computer Graphics

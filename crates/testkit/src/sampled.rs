@@ -47,7 +47,7 @@ fn random_chords(bounds: &Aabb<2>, seed: u64, n: usize) -> Vec<Chord> {
         return Vec::new();
     }
     let step = snap(bounds);
-    let mut random = SplitMix(seed);
+    let mut random = SplitMix::new(seed);
     let mut next = || f64::from((random.next() >> 48) as u16) / 65536.0;
     let mut point = || {
         let [x, y] = [0, 1].map(|k| bounds.min[k] + (bounds.max[k] - bounds.min[k]) * next());

@@ -1,6 +1,7 @@
 //! An eye and its picture.
 
 use crate::vector::{cross, cross_size, dot, dot_size, sub};
+use sightlines_geometry::vector::unit_of_any_size;
 use sightlines_geometry::{Point3, check_coordinate};
 
 /// Unit of rounding of doubles, 2^-53.
@@ -63,14 +64,14 @@ impl Camera {
         if !(angle > 0.0 && angle < 180.0) {
             return Err(CameraError::Angle);
         }
-        let ahead = unit(sub(at, eye)).ok_or(CameraError::Direction)?;
-        let up = unit(up).ok_or(CameraError::Direction)?;
+        let ahead = unit_of_any_size(sub(at, eye)).ok_or(CameraError::Direction)?;
+        let up = unit_of_any_size(up).ok_or(CameraError::Direction)?;
         let right = cross(ahead, up);
         // Of two unit vectors that are nearly parallel only noise is left.
         if dot(right, right) < 1e-24 {
             return Err(CameraError::Direction);
         }
-        let right = unit(right).ok_or(CameraError::Direction)?;
+        let right = unit_of_any_size(right).ok_or(CameraError::Direction)?;
         let up = cross(right, ahead);
         let pixel = 2.0 * tangent(angle / 2.0) / f64::from(size[1].max(1));
         let half = size.map(|n| f64::from(n) / 2.0 * pixel);
@@ -272,16 +273,6 @@ fn tangent(degrees: f64) -> f64 {
             .fold(1.0, |sum, n| 1.0 - square / n * sum)
     };
     x * series(2) / series(1)
-}
-
-fn unit(v: Point3) -> Option<Point3> {
-    let largest = v.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    if !(largest > 0.0 && largest.is_finite()) {
-        return None;
-    }
-    let v = v.map(|x| x / largest);
-    let length = dot(v, v).sqrt();
-    Some(v.map(|x| x / length))
 }
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ fn tables(settings: &Settings) -> Result<Vec<(String, Table)>, ChartError> {
 
 /// Seconds that `ask` takes for random rows below `n`, on average; the least of several rounds.
 fn time(settings: &Settings, n_asked: usize, n: usize, mut ask: impl FnMut(usize)) -> f64 {
-    let mut random = SplitMix(1);
+    let mut random = SplitMix::new(1);
     let asked: Vec<usize> = (0..n_asked).map(|_| random.below(n)).collect();
     let mut round = || {
         let start = Instant::now();

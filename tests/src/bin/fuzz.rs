@@ -67,7 +67,7 @@ const TARGETS: [Target; 19] = [
 
 /// Bytes that stand for small worlds of triangles.
 fn small_worlds() -> Vec<Vec<u8>> {
-    let mut random = SplitMix(7);
+    let mut random = SplitMix::new(7);
     (0..8).map(|_| (0..140).map(|_| random.next() as u8).collect()).collect()
 }
 
@@ -494,7 +494,7 @@ fn fuzz(target: &Target, settings: &Settings) -> Result<(u64, u64), u64> {
     let (mut n_files, mut n_read) = (0, 0);
     loop {
         let number = settings.seed + n_files;
-        let mut random = SplitMix(number);
+        let mut random = SplitMix::new(number);
         let broken = mutate(&seeds[random.below(seeds.len())], &mut random);
         match catch_unwind(|| (target.check)(&broken)) {
             Ok(read) => n_read += u64::from(read),

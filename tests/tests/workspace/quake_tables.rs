@@ -60,7 +60,7 @@ struct Counts {
 /// Compares a table with descents over the bytes of its map: the first thing that is wrong.
 fn check(case: &Case, table: &Table, n_points: usize, counts: &mut Counts) -> Result<(), String> {
     let raw = RawMap::new(&case.bytes);
-    let (clusters, mut random) = (case.clusters(&raw), SplitMix(n_points as u64));
+    let (clusters, mut random) = (case.clusters(&raw), SplitMix::new(n_points as u64));
     let slack = table.planes().ok_or("no planes")?.slack();
     // Points around open leafs, on a grid of eighths.
     let open: Vec<usize> = (0..clusters.len()).filter(|&leaf| clusters[leaf].is_some()).collect();
@@ -242,7 +242,7 @@ fn tables_of_generated_maps_know_where_their_cells_are() {
 /// The worlds know the cell at a point themselves, from planes that were not rounded.
 #[test]
 fn tables_agree_with_the_worlds_that_maps_were_made_from() {
-    let (mut n_points, mut random) = (0, SplitMix(11));
+    let (mut n_points, mut random) = (0, SplitMix::new(11));
     for seed in 20..30 {
         let world = world(seed);
         let table = of_world(format!("{seed}"), &world, BspFormat::Bsp29).baked.table;

@@ -28,7 +28,7 @@ fn meet(eye: Point2, towards: Point2, a: Point2, b: Point2) -> Option<(f64, f64)
 /// Shoots rays from places in cells: the first wall that a ray meets is a mirror if and only if a part of it, as the cells
 /// there have it, is met at the place, from its side. How many rays met mirrors, and how many met other walls.
 fn check_plan(plan: &Plan, table: &Table, seed: u64) -> Result<[usize; 2], String> {
-    let (mut random, mut n_met) = (SplitMix(seed), [0, 0]);
+    let (mut random, mut n_met) = (SplitMix::new(seed), [0, 0]);
     let ends = |part: &MirrorRecord| [part.points[0], part.points[1]].map(|p| Point2::new(p[0], p[1]));
     for _ in 0..400 {
         let mut unit = || random.below(1 << 20) as f64 / f64::from(1 << 20);
@@ -210,7 +210,7 @@ fn check_scene(table: &Table, seed: u64) -> Result<usize, String> {
         (0, 10.0, [10.0, 0.0, 3.0], [10.0, 3.5, 8.0]),
         (1, 1.0, [3.0, 1.0, 2.0], [3.2, 1.0, 2.2]),
     ];
-    let (mut random, mut n_met) = (SplitMix(seed), 0);
+    let (mut random, mut n_met) = (SplitMix::new(seed), 0);
     for k in 0..3000 {
         let mut unit = || random.below(1 << 20) as f64 / f64::from(1 << 20);
         let (axis, at, min, max) = mirrors[k % 3];

@@ -24,7 +24,7 @@ use quake_files::{SMALL_PRTS, difference_besides_visibility, small_bsps};
 /// to wall.
 fn grid(columns: u32, rows: u32) -> Prt {
     let mut prt = Prt::new(columns * rows).unwrap();
-    let mut random = SplitMix(u64::from(columns * 100 + rows));
+    let mut random = SplitMix::new(u64::from(columns * 100 + rows));
     let mut place = || 1.0 + random.below(5) as f64;
     for y in 0..rows {
         for x in 0..columns {
@@ -286,7 +286,7 @@ proptest! {
         let key = StateKey::new(b"text", false);
         let bytes = encode(&key, &state);
         prop_assert_eq!(&decode(&key, &graph, &bytes).unwrap(), &state);
-        let mut random = SplitMix(seed);
+        let mut random = SplitMix::new(seed);
         for _ in 0..20 {
             let broken = hashed(mutate(&bytes, &mut random));
             if let Ok(read) = decode(&key, &graph, &broken) {

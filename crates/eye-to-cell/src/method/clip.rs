@@ -1,6 +1,6 @@
 //! What of a cone of sight gets through a portal.
 
-use crate::side::{MOST_SIDES, Reach, Side, Vector, minus};
+use crate::side::{MOST_SIDES, Reach, Side, Vector, sub};
 
 /// A convex polygon clipped by as many sides as there may be has one corner more for each.
 pub(super) const MOST_CORNERS: usize = 2 * MOST_SIDES;
@@ -90,7 +90,7 @@ impl Clipper {
         out: &mut Vec<Side>,
     ) -> Option<&[Vector]> {
         if let (true, &[left, right]) = (eye.planar, corners) {
-            let ends = narrow_segment(minus(left, eye.at), minus(right, eye.at), sides, eye.reach, out)?;
+            let ends = narrow_segment(sub(left, eye.at), sub(right, eye.at), sides, eye.reach, out)?;
             self.polygon.n = 0;
             for end in ends {
                 self.polygon.push(end, Edge::Portal(0));
@@ -110,7 +110,7 @@ impl Clipper {
         let (mut polygon, mut clipped) = (&mut self.polygon, &mut self.clipped);
         polygon.n = 0;
         for (i, &corner) in corners.iter().enumerate() {
-            polygon.push(minus(corner, eye.at), Edge::Portal(i as u8));
+            polygon.push(sub(corner, eye.at), Edge::Portal(i as u8));
         }
         for (k, side) in sides.iter().enumerate() {
             let mut n_out = 0;
@@ -131,7 +131,7 @@ impl Clipper {
                 Edge::Portal(i) => {
                     let i = usize::from(i);
                     let next = corners[if i + 1 == corners.len() { 0 } else { i + 1 }];
-                    Side::through(minus(corners[i], eye.at), minus(next, corners[i]), eye.reach)
+                    Side::through(sub(corners[i], eye.at), sub(next, corners[i]), eye.reach)
                 }
             });
         }

@@ -6,7 +6,7 @@ use crate::front::Facing;
 use crate::outlook::{LocalMirror, LocalWay, Outlook};
 use crate::scratch::Scratch;
 use crate::seen::{Reflection, Seen};
-use crate::side::{MOST_SIDES, Reach, Side, Vector, minus, radius};
+use crate::side::{MOST_SIDES, Reach, Side, Vector, radius, sub};
 use crate::view::{View, ViewPart};
 use sightlines_geometry::Aabb;
 
@@ -154,7 +154,7 @@ pub(super) fn excluded(sides: &[Side], bounds: &Aabb<3>, eye: Vector) -> bool {
 
 /// Whether no side certainly has all the corners outside.
 fn some_corner_inside_each(sides: &[Side], corners: &[Vector], eye: Vector) -> bool {
-    sides.iter().all(|side| corners.iter().any(|&c| !side.lets_go(side.value(minus(c, eye)))))
+    sides.iter().all(|side| corners.iter().any(|&c| !side.lets_go(side.value(sub(c, eye)))))
 }
 
 /// Notes what is seen in a whole mirror, within the sides of the view.

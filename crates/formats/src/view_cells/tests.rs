@@ -248,7 +248,7 @@ proptest! {
 fn damaged_texts_are_read_or_refused() {
     let (mut n_read, mut n_refused) = (0, 0);
     for number in 0..20_000 {
-        match agree(&mutate(SMALL.as_bytes(), &mut SplitMix(number))) {
+        match agree(&mutate(SMALL.as_bytes(), &mut SplitMix::new(number))) {
             Ok(true) => n_read += 1,
             Ok(false) => n_refused += 1,
             Err(difference) => panic!("seed {number}: {difference}"),

@@ -64,7 +64,7 @@ fn run(seed: &[u8], check: fn(&[u8]) -> Option<usize>) {
     let (rounds, first) = (setting("SIGHTLINES_FUZZ_ROUNDS", 20_000), setting("SIGHTLINES_FUZZ_SEED", 0));
     let mut accepted = 0;
     for number in first..first + rounds {
-        let broken = mutate(seed, &mut SplitMix(number));
+        let broken = mutate(seed, &mut SplitMix::new(number));
         let checked = std::panic::catch_unwind(|| check(&broken));
         let Ok(result) = checked else {
             panic!("replay with SIGHTLINES_FUZZ_ROUNDS=1 SIGHTLINES_FUZZ_SEED={number}: {broken:?}")

@@ -341,7 +341,7 @@ fn damaged_maps_are_read_or_refused() {
     let files = small_bsps();
     let accepted = (first..first + rounds)
         .filter(|&number| {
-            let broken = mutate(&files[number as usize % files.len()], &mut SplitMix(number));
+            let broken = mutate(&files[number as usize % files.len()], &mut SplitMix::new(number));
             std::panic::catch_unwind(|| check_bsp(&broken)).unwrap_or_else(|_| {
                 panic!("replay with SIGHTLINES_FUZZ_ROUNDS=1 SIGHTLINES_FUZZ_SEED={number}: {broken:?}")
             })

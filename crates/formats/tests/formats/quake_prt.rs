@@ -283,7 +283,7 @@ fn damaged_files_are_read_or_refused() {
     let first = crate::common::setting("SIGHTLINES_FUZZ_SEED", 0);
     let accepted = (first..first + rounds)
         .filter(|&number| {
-            let broken = mutate(SMALL_PRTS[number as usize % 3].as_bytes(), &mut SplitMix(number));
+            let broken = mutate(SMALL_PRTS[number as usize % 3].as_bytes(), &mut SplitMix::new(number));
             std::panic::catch_unwind(|| check_prt(&broken)).unwrap_or_else(|_| {
                 panic!("replay with SIGHTLINES_FUZZ_ROUNDS=1 SIGHTLINES_FUZZ_SEED={number}: {broken:?}")
             })

@@ -265,7 +265,7 @@ fn damaged_worlds_cause_no_panic() {
     let worlds = small_worlds();
     assert!(worlds.iter().all(|bytes| check_world(bytes)));
     let mut n_read = 0;
-    let mut random = SplitMix(29);
+    let mut random = SplitMix::new(29);
     for bytes in &worlds {
         n_read += flipped_bits(bytes).filter(|bytes| check_world(bytes)).count();
         for len in 0..bytes.len() {

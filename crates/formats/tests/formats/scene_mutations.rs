@@ -70,7 +70,7 @@ fn run(seed: &[u8], check: fn(&[u8]) -> Option<usize>) {
     let (rounds, first) = (setting("SIGHTLINES_FUZZ_ROUNDS", 20_000), setting("SIGHTLINES_FUZZ_SEED", 0));
     let mut accepted = 0;
     for number in first..first + rounds {
-        let broken = mutate(seed, &mut SplitMix(number));
+        let broken = mutate(seed, &mut SplitMix::new(number));
         let Ok(result) = std::panic::catch_unwind(|| check(&broken)) else {
             panic!("replay with SIGHTLINES_FUZZ_ROUNDS=1 SIGHTLINES_FUZZ_SEED={number}: {broken:?}")
         };

@@ -1,6 +1,7 @@
 //! The feature nearest to a point.
 
 use super::features::{Face, Features};
+use sightlines_geometry::vector::{cross, dot, sub};
 use sightlines_geometry::{Aabb, Point3};
 
 /// What is nearest to a point.
@@ -101,21 +102,6 @@ fn squared_to_box(p: Point3, b: &Aabb<3>) -> f64 {
     squared(std::array::from_fn(|k| (b.min[k] - p[k]).max(p[k] - b.max[k]).max(0.0)))
 }
 
-fn sub(a: Point3, b: Point3) -> Point3 {
-    std::array::from_fn(|k| a[k] - b[k])
-}
-
-fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 fn squared(a: Point3) -> f64 {
     dot(a, a)
-}
-
-fn cross(a: Point3, b: Point3) -> Point3 {
-    std::array::from_fn(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        a[i] * b[j] - a[j] * b[i]
-    })
 }

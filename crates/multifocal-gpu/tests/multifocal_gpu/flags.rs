@@ -92,7 +92,7 @@ fn flags_equality_with_a_plain_loop() {
     let Some(gpu) = gpu("flags as in a plain loop") else { return };
     let (mut n_hidden, mut n_visible) = (0, 0);
     for seed in 0..4 {
-        let mut chance = Chance(seed);
+        let mut chance = Chance::new(seed);
         let occluders = occluders(&mut chance, 150);
         let job = job(&occluders, Measure::SectionHeight, [120, 100], true);
         let way = [Way::Compute, Way::Raster][seed as usize % 2];
@@ -124,7 +124,7 @@ fn flags_equality_with_a_plain_loop() {
 #[test]
 fn flags_add_up_over_planes() {
     let Some(gpu) = gpu("flags of several planes") else { return };
-    let mut chance = Chance(9);
+    let mut chance = Chance::new(9);
     let occluders = occluders(&mut chance, 150);
     let job = job(&occluders, Measure::SectionHeight, [120, 100], false);
     let backend = GpuBackend::new(gpu.clone(), Way::Compute);
@@ -145,7 +145,7 @@ fn flags_add_up_over_planes() {
 #[test]
 fn footprints_that_leave_the_window_hide_nothing() {
     let Some(gpu) = gpu("footprints beyond the window") else { return };
-    let mut chance = Chance(10);
+    let mut chance = Chance::new(10);
     let occluders = occluders(&mut chance, 400);
     let job = job(&occluders, Measure::VertexHeight, [16, 16], false);
     let values = GpuBackend::new(gpu.clone(), Way::Compute).keep(&job).expect("it is done");
@@ -234,7 +234,7 @@ fn draw_points(frame: &Frame) -> Vec<u32> {
 #[test]
 fn flags_hidden_objects_are_not_drawn() {
     let Some(gpu) = gpu("an indirect draw") else { return };
-    let mut chance = Chance(12);
+    let mut chance = Chance::new(12);
     let occluders = occluders(&mut chance, 200);
     let job = job(&occluders, Measure::SectionHeight, [120, 100], false);
     let values = GpuBackend::new(gpu.clone(), Way::Compute).keep(&job).expect("it is done");

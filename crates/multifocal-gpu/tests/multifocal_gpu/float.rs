@@ -27,7 +27,7 @@ fn floats_never_exceed_the_reference_and_lose_little() {
     let mut backend = GpuBackend::new(gpu, Way::Float);
     let mut sum = [0; 3];
     for seed in 0..3 {
-        let occluders = occluders(&mut Chance(seed), 60);
+        let occluders = occluders(&mut Chance::new(seed), 60);
         let job = job(&occluders, Measure::VertexHeight, [40, 36], false);
         let counts = compare(&mut backend, &job, &format!("seed {seed}"));
         sum.iter_mut().zip(counts).for_each(|(sum, n)| *sum += n);
@@ -71,7 +71,7 @@ fn floats_never_exceed_the_reference_in_near_degenerate_scenes() {
 #[test]
 fn floats_carry_from_plane_to_plane() {
     let Some(gpu) = gpu("floats on sweeps") else { return };
-    let occluders = occluders(&mut Chance(20), 60);
+    let occluders = occluders(&mut Chance::new(20), 60);
     let sweep = job(&occluders, Measure::VertexHeight, [40, 36], true);
     let [floats, integers, _] = compare(&mut GpuBackend::new(gpu, Way::Float), &sweep, "sweep");
     assert!(floats * 100 > integers * 90 && floats > 100, "{floats} and {integers}");

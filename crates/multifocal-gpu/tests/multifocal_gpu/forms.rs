@@ -43,7 +43,7 @@ const SIZES: [[u32; 2]; 9] = [[1, 1], [1, 40], [33, 1], [16, 16], [32, 32], [64,
 fn forms_equality_on_one_plane_of_any_size() {
     let mut n_blocked = 0;
     for (seed, texels) in (0..5).flat_map(|seed| SIZES.map(|texels| (seed, texels))) {
-        let mut chance = Chance(seed);
+        let mut chance = Chance::new(seed);
         let n = [0, 1, 7, 60, 300][seed as usize];
         let planes = [PlaneForms { texels, forms: random_forms(&mut chance, texels, n), carry: None }];
         let Some(n) = check(&format!("one plane of {texels:?}, seed {seed}"), &planes) else { return };
@@ -56,7 +56,7 @@ fn forms_equality_on_one_plane_of_any_size() {
 fn forms_equality_on_sweeps() {
     let mut n_blocked = 0;
     for seed in 0..12 {
-        let mut chance = Chance(seed);
+        let mut chance = Chance::new(seed);
         let n_planes = 2 + seed as usize % 4;
         let mut planes: Vec<PlaneForms> = Vec::new();
         for i in 0..n_planes {
@@ -73,7 +73,7 @@ fn forms_equality_on_sweeps() {
 #[test]
 fn forms_what_is_carried_shows() {
     // Twin of the sweeps: with an empty second plane, whatever is there was carried.
-    let mut chance = Chance(3);
+    let mut chance = Chance::new(3);
     let texels = [90, 47];
     let first = PlaneForms { texels, forms: random_forms(&mut chance, texels, 60), carry: None };
     let carry = Some(random_carry(&mut chance, texels, texels));
@@ -85,7 +85,7 @@ fn forms_what_is_carried_shows() {
 
 #[test]
 fn forms_equality_beyond_one_round() {
-    let mut chance = Chance(11);
+    let mut chance = Chance::new(11);
     let texels = [70, 50];
     let planes = [PlaneForms { texels, forms: random_forms(&mut chance, texels, 3000), carry: None }];
     let Some(n) = check("three rounds", &planes) else { return };
@@ -94,7 +94,7 @@ fn forms_equality_beyond_one_round() {
 
 #[test]
 fn forms_equality_on_the_longest_rows() {
-    let mut chance = Chance(12);
+    let mut chance = Chance::new(12);
     let (before, after) = ([8192, 3], [5, 8192]);
     let first = PlaneForms { texels: before, forms: random_forms(&mut chance, before, 20), carry: None };
     let carry = Some(random_carry(&mut chance, before, after));
@@ -105,7 +105,7 @@ fn forms_equality_on_the_longest_rows() {
 #[test]
 fn forms_same_job_same_bits() {
     let Some(gpu) = gpu("same job, same bits") else { return };
-    let mut chance = Chance(13);
+    let mut chance = Chance::new(13);
     let texels = [150, 90];
     let planes = [PlaneForms { texels, forms: random_forms(&mut chance, texels, 500), carry: None }];
     for way in WAYS {
@@ -118,7 +118,7 @@ fn forms_same_job_same_bits() {
 
 #[test]
 fn impostor_one_unit_is_noticed() {
-    let mut chance = Chance(14);
+    let mut chance = Chance::new(14);
     let texels = [40, 40];
     let planes = [PlaneForms { texels, forms: random_forms(&mut chance, texels, 20), carry: None }];
     let right = expected(&planes);

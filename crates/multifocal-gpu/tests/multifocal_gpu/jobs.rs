@@ -15,7 +15,7 @@ fn jobs_equality_with_the_processor() {
     let Some(gpu) = gpu("jobs as on the processor") else { return };
     let (mut n_texels, mut n_blocked) = (0, 0);
     for seed in 0..4 {
-        let occluders = occluders(&mut Chance(seed), 80);
+        let occluders = occluders(&mut Chance::new(seed), 80);
         for measure in Measure::ALL {
             for sweep in [false, true] {
                 if !Fast::new().supports(measure) || sweep && !measure.is_height() {
@@ -42,7 +42,7 @@ fn jobs_equality_with_the_processor() {
 #[test]
 fn jobs_many_in_flight_come_back_each_with_its_own() {
     let Some(gpu) = gpu("many in flight") else { return };
-    let scenes: Vec<_> = (0..24).map(|seed| occluders(&mut Chance(seed), 30)).collect();
+    let scenes: Vec<_> = (0..24).map(|seed| occluders(&mut Chance::new(seed), 30)).collect();
     let jobs: Vec<_> = scenes.iter().map(|s| job(s, Measure::SectionHeight, [50, 40], false)).collect();
     let backends = WAYS.map(|way| GpuBackend::new(gpu.clone(), way));
     let mut open: Vec<_> =
@@ -72,7 +72,7 @@ fn jobs_come_from_many_threads() {
         for seed in 0..4 {
             let mut backend = GpuBackend::new(gpu.clone(), WAYS[seed as usize % 2]);
             threads.spawn(move || {
-                let occluders = occluders(&mut Chance(seed), 30);
+                let occluders = occluders(&mut Chance::new(seed), 30);
                 let job = job(&occluders, Measure::VertexHeight, [60, 33], true);
                 let (mut found, mut right) = (Vec::new(), Vec::new());
                 Fast::new().render(&job, &mut right).expect("the processor does it");
@@ -100,7 +100,7 @@ fn jobs_that_nothing_blocks() {
 #[test]
 fn jobs_of_measures_without_a_form_are_refused() {
     let Some(gpu) = gpu("measures without a form") else { return };
-    let occluders = occluders(&mut Chance(1), 3);
+    let occluders = occluders(&mut Chance::new(1), 3);
     let mut n_refused = 0;
     for (way, measure) in Way::ALL.into_iter().flat_map(|way| Measure::ALL.map(|measure| (way, measure))) {
         let mut backend = GpuBackend::new(gpu.clone(), way);
@@ -121,7 +121,7 @@ fn devices_that_are_lost_say_so_and_somebody_takes_over() {
         return;
     }
     let gpu = Gpu::open().expect("there is one");
-    let occluders = occluders(&mut Chance(5), 40);
+    let occluders = occluders(&mut Chance::new(5), 40);
     let job = job(&occluders, Measure::SectionHeight, [64, 64], true);
     let mut right = Vec::new();
     Fast::new().render(&job, &mut right).expect("the processor does it");
@@ -148,7 +148,7 @@ fn devices_lost_with_jobs_in_flight_give_an_answer_to_each() {
         return;
     }
     let gpu = Gpu::open().expect("there is one");
-    let occluders = occluders(&mut Chance(6), 200);
+    let occluders = occluders(&mut Chance::new(6), 200);
     let job = job(&occluders, Measure::SectionHeight, [300, 300], false);
     let backend = GpuBackend::new(gpu.clone(), Way::Compute);
     let tickets: Vec<_> = (0..4).map(|_| backend.submit(&job).expect("submitted")).collect();
@@ -166,7 +166,7 @@ fn devices_of_hosts_are_used_and_their_loss_is_noticed() {
     let host = Gpu::open().expect("there is one");
     let (device, queue) = (host.device().clone(), host.queue().clone());
     let mut backend = GpuBackend::from_device(device.clone(), queue, Way::Raster).expect("it has what is needed");
-    let occluders = occluders(&mut Chance(7), 40);
+    let occluders = occluders(&mut Chance::new(7), 40);
     let job = job(&occluders, Measure::VertexHeight, [40, 40], true);
     let (mut found, mut right) = (Vec::new(), Vec::new());
     Fast::new().render(&job, &mut right).expect("the processor does it");
@@ -194,7 +194,7 @@ fn jobs_too_large_for_a_device_are_refused_before_they_are_tried() {
         return;
     }
     let gpu = small_device();
-    let occluders = occluders(&mut Chance(8), 10);
+    let occluders = occluders(&mut Chance::new(8), 10);
     for way in Way::ALL {
         let mut backend = GpuBackend::new(gpu.clone(), way);
         let fits = job(&occluders, Measure::VertexHeight, [128, 128], false);

@@ -1,7 +1,6 @@
 //! Segments between two boxes: where they are, and what they cross.
 
-use super::vector::{cross, dot, sub};
-use sightlines_geometry::{Aabb, Point3, check_coordinate, orient3d};
+use sightlines_geometry::{Aabb, Point3, check_coordinate, orient3d, ray_triangle};
 
 /// How many segments are tried before walking: where one passes freely, nothing is hidden.
 pub(super) const N_SEGMENTS: u32 = 16;
@@ -41,15 +40,8 @@ pub(super) fn crosses(bounds: &Aabb<3>, [a, b, c]: [Point3; 3], &[p, q]: &[Point
 }
 
 /// Where on the segment from `p` along `d` a triangle is met.
-///
-/// Source: Möller and Trumbore, Journal of Graphics Tools 2(1), 1997.
-pub(super) fn meet([a, b, c]: [Point3; 3], p: Point3, d: Point3) -> Option<f64> {
-    let (u, v) = (sub(b, a), sub(c, a));
-    let h = cross(d, v);
-    let det = dot(u, h);
-    let s = sub(p, a);
-    let q = cross(s, u);
-    let [x, y, t] = [dot(s, h), dot(d, q), dot(v, q)].map(|n| n / det);
+pub(super) fn meet(triangle: [Point3; 3], p: Point3, d: Point3) -> Option<f64> {
     const SLACK: f64 = 1e-9;
+    let [x, y, t] = ray_triangle(&triangle, p, d);
     (x >= -SLACK && y >= -SLACK && x + y <= 1.0 + SLACK && (0.0..=1.0).contains(&t)).then_some(t)
 }

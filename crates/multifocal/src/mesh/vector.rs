@@ -1,13 +1,12 @@
 //! Vectors in doubles, for estimates only.
 
-use sightlines_geometry::{Point2, Point3, orient2d};
+use sightlines_geometry::{Point2, Point3, orient2d, vector as geometry};
 
 pub(super) use sightlines_geometry::vector::{add, cross, dot, length, normal, scale, sub};
 
-/// Of length 1, or zero for a vector that has no direction.
+/// The vector of length 1, or zero if there is no direction: a patch without area then faces nothing.
 pub(super) fn unit(a: Point3) -> Point3 {
-    let l = length(a);
-    if l > 0.0 { scale(a, 1.0 / l) } else { [0.0; 3] }
+    geometry::unit(a).unwrap_or_default()
 }
 
 /// Area of a loop along its right-hand normal.

@@ -2,7 +2,7 @@
 
 use sightlines_geometry::Point3;
 
-pub(super) use sightlines_geometry::vector::{cross, dot, scale, sub};
+pub(super) use sightlines_geometry::vector::{cross, dot, scale, sub, unit};
 
 /// `a + by * b`.
 pub(super) fn along(a: Point3, b: Point3, by: f64) -> Point3 {
@@ -12,10 +12,4 @@ pub(super) fn along(a: Point3, b: Point3, by: f64) -> Point3 {
 /// The sum of magnitudes. Of three vectors, the product of these bounds the determinant.
 pub(super) fn size(a: Point3) -> f64 {
     a[0].abs() + a[1].abs() + a[2].abs()
-}
-
-/// The vector of length 1, or `None` of no direction.
-pub(super) fn unit(a: Point3) -> Option<Point3> {
-    let length = dot(a, a).sqrt();
-    (length > 0.0 && length.is_finite()).then(|| scale(a, 1.0 / length))
 }

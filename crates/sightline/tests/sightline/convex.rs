@@ -3,33 +3,16 @@
 use num_bigint::BigInt;
 use num_traits::{Float, Signed, Zero};
 use proptest::prelude::*;
-use sightlines_geometry::{AxialDoor, Point3, Portal3};
+use sightlines_geometry::{AxialDoor, Point3, Portal3, Random};
 use sightlines_sightline::{
     BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexVerdict, LimitReached, Line3, PlaneProof, StabLimits,
     Verdict,
 };
 use sightlines_testkit::{axial_corridor, axial_stabbable_brute_force, straight_axial_corridor};
 
-/// Random numbers that are the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ x >> 31
-    }
-
-    /// From 0 to 1.
-    fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
+/// A number between two others.
+fn within(random: &mut Random, low: f64, high: f64) -> f64 {
+    low + (high - low) * random.unit()
 }
 
 /// Tilted polygons of 3 to 6 corners along a bent corridor; `noise` is added to each coordinate, and
@@ -40,17 +23,17 @@ fn corridor(random: &mut Random, n: usize, size: f64, grid: f64, noise: f64) -> 
     while portals.len() < n {
         k += 1;
         assert!(k < 100 * n + 100, "polygons without area");
-        let centre = [at[0] + random.within(-40.0, 40.0), at[1] + random.within(-40.0, 40.0), at[2]];
-        let tilt = [random.within(-0.6, 0.6), random.within(-0.6, 0.6)];
+        let centre = [at[0] + within(random, -40.0, 40.0), at[1] + within(random, -40.0, 40.0), at[2]];
+        let tilt = [within(random, -0.6, 0.6), within(random, -0.6, 0.6)];
         let corners = 3 + (random.bits() % 4) as usize;
         let turn = random.unit();
         let points: Vec<Point3> = (0..corners)
             .map(|i| {
-                let angle = (i as f64 + turn + random.within(-0.3, 0.3)) / corners as f64 * std::f64::consts::TAU;
+                let angle = (i as f64 + turn + within(random, -0.3, 0.3)) / corners as f64 * std::f64::consts::TAU;
                 let (x, y) = (angle.cos() * size, angle.sin() * size);
                 let p = [centre[0] + x, centre[1] + y, centre[2] + tilt[0] * x + tilt[1] * y];
                 let p = p.map(|x| if grid > 0.0 { (x / grid).round() * grid } else { x });
-                p.map(|x| x + random.within(-noise, noise))
+                p.map(|x| x + within(random, -noise, noise))
             })
             .collect();
         // Rounded to a grid they are as flat as they are.
@@ -58,7 +41,7 @@ fn corridor(random: &mut Random, n: usize, size: f64, grid: f64, noise: f64) -> 
             && portal.normal()[2] > 0.0
         {
             portals.push(portal);
-            at[2] += size * 2.0 + random.within(10.0, 150.0);
+            at[2] += size * 2.0 + within(random, 10.0, 150.0);
         }
     }
     portals
@@ -157,7 +140,7 @@ proptest! {
         noise in prop_oneof![Just(0.0), Just(1e-13)],
         far in prop_oneof![Just([0.0; 3]), Just([1e5, -9e4, 7e4])],
     ) {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let portals = moved(&corridor(&mut random, n, size.max(2.0 * grid), grid, noise), far);
         prop_assume!(portals.len() >= 2);
         let found = decide(&mut ConvexStabber::new(StabLimits::default()), &portals);
@@ -179,7 +162,7 @@ proptest! {
     /// Invariant: hints do not change what is so.
     #[test]
     fn hints_change_no_answer(seed: u64, n in 3usize..9, size in 20.0f64..60.0) {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let portals = corridor(&mut random, n, size, 0.0, 0.0);
         let hint = Line3::through(inside(&mut random, &portals[0]), inside(&mut random, &portals[n - 1])).unwrap();
         let mut stabber = ConvexStabber::new(StabLimits::default());
@@ -217,9 +200,9 @@ fn random_sequences_are_all_decided() {
     let mut found = [0; 2];
     for n in [2usize, 3, 5, 10, 20, 50] {
         let mut stabber = ConvexStabber::new(StabLimits::default());
-        let mut random = Random(n as u64);
+        let mut random = Random::new(n as u64);
         for _ in 0..100 {
-            let size = random.within(20.0, 80.0) * (1.0 + n as f64 / 20.0);
+            let size = within(&mut random, 20.0, 80.0) * (1.0 + n as f64 / 20.0);
             match decide(&mut stabber, &corridor(&mut random, n, size, 0.0, 0.0)) {
                 Found::Visible => found[0] += 1,
                 Found::Hidden => found[1] += 1,
@@ -239,7 +222,7 @@ fn random_sequences_are_all_decided() {
 fn sequences_near_the_critical_size_are_decided() {
     let mut cases = 0;
     for n in [3usize, 5, 10, 20] {
-        let mut random = Random(100 + n as u64);
+        let mut random = Random::new(100 + n as u64);
         let mut most = [0; 3];
         for _ in 0..25 {
             let portals = corridor(&mut random, n, 40.0, 0.0, 0.0);
@@ -296,7 +279,7 @@ fn few_axial_chains_stay_undecided() {
 
 /// Hidden sequences and their proofs.
 fn proofs(count: usize) -> Vec<(Vec<Portal3>, ConvexCertificate)> {
-    let mut random = Random(77);
+    let mut random = Random::new(77);
     let mut stabber = ConvexStabber::new(StabLimits::default());
     let mut proofs = Vec::new();
     while proofs.len() < count {
@@ -370,7 +353,7 @@ fn damaged_box_proofs_are_refused() {
 /// solver that forgets a row or a sign for the sequence that it was asked about.
 #[test]
 fn impostors_are_found_out() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let mut stabber = ConvexStabber::new(StabLimits::default());
     let (mut wider, mut forgotten) = (0, 0);
     for _ in 0..200 {

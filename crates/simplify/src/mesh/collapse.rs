@@ -177,6 +177,8 @@ impl Collapser {
     }
 }
 
+/// The vector of length 1, or zero if there is no direction. It divides, where `geometry::vector::unit` multiplies by the
+/// reciprocal: another rounding would choose other edges among equal ones.
 fn unit(v: Point3) -> Point3 {
     let length = length(v);
     if length > 0.0 && length.is_finite() { v.map(|x| x / length) } else { [0.0; 3] }

@@ -1,13 +1,13 @@
 //! Proofs of tables of plans: lines for what is visible, walks for what is hidden.
 
 use super::CertifyOptions;
-use crate::chords::SplitMix;
 use crate::search::ones;
 use sightlines_cells::{CellGraph, CellId, Exit, Planar};
 use sightlines_certificates::Pairs;
 use sightlines_certificates::plan::{
     LineForm, NetworkError, PlanBlock, PlanGuide, PlanLine, PlanMaker, PlanNetwork, PlanPortal, PlanProofs, PlanStep,
 };
+use sightlines_geometry::Random;
 use sightlines_geometry::{Adaptive, Point2, Portal2, check_coordinate};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, PlanarWitness};
@@ -85,7 +85,7 @@ fn short(x: f64) -> f64 {
 
 /// Lines through random points of portals, those that prove most first.
 fn shoot(graph: &CellGraph<Planar>, maker: &mut PlanMaker<'_>, per_portal: u32) {
-    let mut random = SplitMix(0x7072_6F6F_6673_0001);
+    let mut random = Random::new(0x7072_6F6F_6673_0001);
     let bounds = graph.cells().iter().flat_map(|c| &c.polygon).map(|p| [p.x, p.y]);
     let bounds = sightlines_geometry::Aabb::<2>::around(bounds);
     let extent = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
@@ -93,8 +93,8 @@ fn shoot(graph: &CellGraph<Planar>, maker: &mut PlanMaker<'_>, per_portal: u32) 
     for portal in graph.portals() {
         let (left, right) = (portal.shape.left, portal.shape.right);
         for _ in 0..per_portal {
-            let p = right + (left - right) * random.unit();
-            let q = p + Point2::new(random.unit() - 0.5, random.unit() - 0.5) * extent;
+            let p = right + (left - right) * random.open_unit();
+            let q = p + Point2::new(random.open_unit() - 0.5, random.open_unit() - 0.5) * extent;
             lines.push((portal.cells[0].0, [p, q].map(|p| [short(p.x), short(p.y)]), [p, q].map(|p| [p.x, p.y])));
         }
     }

@@ -1,7 +1,6 @@
 //! Proofs of tables of scenes in space: lines for what is visible, pairs of boxes for what is hidden.
 
 use super::CertifyOptions;
-use crate::chords::SplitMix;
 use crate::space::{AtomicBitMatrix, halves_first, on_threads, opaque_without_solid};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
@@ -9,6 +8,7 @@ use sightlines_certificates::space::{
     Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch as Proof,
     Bypass as ProvenBypass, Claim, Sum,
 };
+use sightlines_geometry::Random;
 use sightlines_geometry::{Aabb, BoxTree, check_coordinate};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, Target, Verdict};
@@ -99,17 +99,17 @@ fn take(maker: &mut BoxMaker<'_>, cell: u32, [p, q]: [[f64; 3]; 2], at_least: us
 
 /// Lines through random points of portals, those that prove most first.
 fn shoot(graph: &CellGraph<Axial>, maker: &mut BoxMaker<'_>, per_portal: u32) {
-    let mut random = SplitMix(0x7072_6F6F_6673_0002);
+    let mut random = Random::new(0x7072_6F6F_6673_0002);
     let all = Aabb::<3>::around(graph.cells().iter().flat_map(|c| [c.bounds.min, c.bounds.max]));
     let mut lines = Vec::new();
     for portal in graph.portals() {
         let extent = &portal.shape.extent;
         for k in 0..per_portal {
-            let p = [0, 1, 2].map(|k| extent.min[k] + (extent.max[k] - extent.min[k]) * random.unit());
+            let p = [0, 1, 2].map(|k| extent.min[k] + (extent.max[k] - extent.min[k]) * random.open_unit());
             // Rooms are wide and low: half of the lines are level, but for a little.
             let step = [0, 1, 2].map(|axis| {
                 let size = all.max[axis] - all.min[axis];
-                (random.unit() - 0.5) * size * if k.is_multiple_of(2) { 1.0 } else { 1.5 - 0.7 * axis as f64 }
+                (random.open_unit() - 0.5) * size * if k.is_multiple_of(2) { 1.0 } else { 1.5 - 0.7 * axis as f64 }
             });
             let q = [0, 1, 2].map(|k| p[k] + step[k]);
             lines.push((portal.cells[0].0, [p, q]));
@@ -237,7 +237,7 @@ impl<'a> Search<'a> {
 
     /// Finds lines between all cells that see each other and that no line joins yet.
     fn seek_all(&self, maker: &mut BoxMaker<'_>, shaft: &mut Shaft<'a>) {
-        let mut random = SplitMix(0x7072_6F6F_6673_0003);
+        let mut random = Random::new(0x7072_6F6F_6673_0003);
         for a in 0..self.cell_at.len() {
             for b in self.sees.ones(a).filter(|&b| b > a) {
                 self.seek([a, b], maker, shaft, &mut random);
@@ -246,7 +246,7 @@ impl<'a> Search<'a> {
     }
 
     /// Finds a line between two cells, by their places, if none joins them yet.
-    fn seek(&self, places: [usize; 2], maker: &mut BoxMaker<'_>, shaft: &mut Shaft<'a>, random: &mut SplitMix) {
+    fn seek(&self, places: [usize; 2], maker: &mut BoxMaker<'_>, shaft: &mut Shaft<'a>, random: &mut Random) {
         let cells = places.map(|place| self.cell_at[place]);
         if maker.visible().has(cells[0], cells[1]) {
             return;
@@ -263,7 +263,7 @@ impl<'a> Search<'a> {
         for k in 0..=MOST_TRIED {
             let mut beside = |p: [f64; 3], b: &Aabb<3>| {
                 [0, 1, 2].map(|i| {
-                    let to = b.min[i] + (b.max[i] - b.min[i]) * random.unit();
+                    let to = b.min[i] + (b.max[i] - b.min[i]) * random.open_unit();
                     if k == 0 { p[i] } else { p[i] + (to - p[i]) * width }
                 })
             };

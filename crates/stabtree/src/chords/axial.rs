@@ -1,8 +1,9 @@
 //! Chords of axial space: lines in doubles, followed with a bound on their rounding error.
 
-use super::{SplitMix, mark};
+use super::mark;
 use crate::zones::Zones;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Exit};
+use sightlines_geometry::Random;
 use sightlines_pvs::BitMatrix;
 
 /// A line through `p` in direction `d`; both are meant exactly.
@@ -40,7 +41,7 @@ impl Chord {
 /// from which: symmetric, with the diagonal set, a subset of what is visible. Deterministic.
 pub fn shoot_axial_chords(graph: &CellGraph<Axial>, zones: &Zones, per_exit: u32) -> BitMatrix {
     let mut seen = BitMatrix::identity(zones.n_zones());
-    let mut random = SplitMix(0x5167_6874_6C69_6E65);
+    let mut random = Random::new(0x5167_6874_6C69_6E65);
     let mut path = Vec::new();
     for from in graph.cell_ids() {
         for exit in graph.exits(from) {
@@ -62,12 +63,12 @@ pub fn shoot_axial_chords(graph: &CellGraph<Axial>, zones: &Zones, per_exit: u32
 }
 
 /// A line through a random point of the door in a random direction that crosses it.
-fn random_chord(door: &AxialDoor, random: &mut SplitMix) -> Chord {
+fn random_chord(door: &AxialDoor, random: &mut Random) -> Chord {
     let mut p = door.extent.min;
     let mut d = [0.0; 3];
     for k in 0..3 {
-        p[k] += (door.extent.max[k] - door.extent.min[k]) * random.unit();
-        d[k] = random.unit() - 0.5;
+        p[k] += (door.extent.max[k] - door.extent.min[k]) * random.open_unit();
+        d[k] = random.open_unit() - 0.5;
     }
     let a = usize::from(door.axis);
     p[a] = door.at();

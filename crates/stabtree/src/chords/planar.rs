@@ -1,8 +1,9 @@
 //! Chords of the plane: lines through two points in doubles, followed by exact orientations.
 
-use super::{SplitMix, mark};
+use super::mark;
 use crate::zones::Zones;
 use sightlines_cells::{CellGraph, CellId, Exit, Planar};
+use sightlines_geometry::Random;
 use sightlines_geometry::{Point2, orient2d};
 use sightlines_pvs::BitMatrix;
 
@@ -12,7 +13,7 @@ use sightlines_pvs::BitMatrix;
 /// Deterministic. Cost: a chord costs one exact test for each exit of each cell that it crosses.
 pub fn shoot_chords(graph: &CellGraph<Planar>, zones: &Zones, per_exit: u32) -> BitMatrix {
     let mut seen = BitMatrix::identity(zones.n_zones());
-    let mut random = SplitMix(0x5167_6874_6C69_6E65);
+    let mut random = Random::new(0x5167_6874_6C69_6E65);
     let extent = extent(graph);
     let mut path = Vec::new();
     for from in graph.cell_ids() {
@@ -22,8 +23,8 @@ pub fn shoot_chords(graph: &CellGraph<Planar>, zones: &Zones, per_exit: u32) -> 
             }
             for _ in 0..per_exit {
                 let door = graph.crossing(exit);
-                let p = door.right + (door.left - door.right) * random.unit();
-                let q = p + Point2::new(random.unit() - 0.5, random.unit() - 0.5) * extent;
+                let p = door.right + (door.left - door.right) * random.open_unit();
+                let q = p + Point2::new(random.open_unit() - 0.5, random.open_unit() - 0.5) * extent;
                 // Either direction of the line may be the one that crosses the door forwards.
                 let (p, q) = if orient2d(p, q, door.left) > 0.0 { (p, q) } else { (q, p) };
                 if passes(graph, exit, p, q) {

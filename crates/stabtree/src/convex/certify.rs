@@ -6,12 +6,12 @@ use super::gates::Gates;
 use super::pairs::SequenceTracer;
 use super::vector::{Point3, add, cross, dot, scale};
 use crate::certify::CertifyOptions;
-use crate::chords::SplitMix;
 use sightlines_cells::{CellGraph, Convex, Portal3};
 use sightlines_certificates::convex::{
     ConvexBlock, ConvexCut, ConvexGuide, ConvexLine, ConvexMaker, ConvexNetwork, ConvexNetworkError, ConvexPlane,
     ConvexPortal, ConvexProofs, ConvexStep, ConvexSums, ConvexTerm, ConvexTree,
 };
+use sightlines_geometry::Random;
 use sightlines_geometry::check_coordinate;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::convex::{Block, BoxProof, ConvexCertificate, ConvexNode, PlaneProof};
@@ -100,18 +100,18 @@ fn lines(gate: u32, points: [Point3; 2]) -> [ConvexLine; 2] {
 
 /// Lines through random points of portals, those that prove most first.
 fn shoot(gates: &Gates, maker: &mut ConvexMaker<'_>, per_portal: u32) {
-    let mut random = SplitMix(0x7072_6F6F_6673_0002);
+    let mut random = Random::new(0x7072_6F6F_6673_0002);
     let mut shot = Vec::new();
     for gate in (0..gates.len() as u32).step_by(2) {
         for _ in 0..per_portal {
             let (mut sum, mut weights) = ([0.0; 3], 0.0);
             for corner in gates.shape(gate).corners() {
-                let weight = random.unit();
+                let weight = random.open_unit();
                 sum = add(sum, scale(*corner, weight));
                 weights += weight;
             }
             let from = scale(sum, 1.0 / weights);
-            let way: Point3 = std::array::from_fn(|_| random.unit() - 0.5);
+            let way: Point3 = std::array::from_fn(|_| random.open_unit() - 0.5);
             let normal = gates.get(gate).normal;
             let is_back = dot(way, normal) < 0.0;
             shot.push(lines(gate ^ u32::from(is_back), [from, add(from, scale(way, 1024.0))]));

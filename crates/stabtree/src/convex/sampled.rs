@@ -2,6 +2,7 @@
 
 use super::gates::Gates;
 use super::vector::{Point3, add, dot, scale};
+use sightlines_geometry::Random;
 use sightlines_pvs::BitMatrix;
 
 /// Says that all cells on a line see each other. `chain` has the gates that the line passes, in order.
@@ -19,22 +20,14 @@ pub(super) fn mark(gates: &Gates, chain: &[u32], visible: &mut BitMatrix) {
     }
 }
 
-/// A source of chance that is the same everywhere (SplitMix64).
-struct Chance(u64);
+/// Pseudorandom lines.
+struct Chance(Random);
 
 impl Chance {
-    /// From 0 up to 1.
-    fn share(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 * 2f64.powi(-53)
-    }
-
     fn point_in(&mut self, corners: &[super::cut::Vertex]) -> Point3 {
         let (mut sum, mut weights) = ([0.0; 3], 0.0);
         for v in corners {
-            let weight = self.share() + 2f64.powi(-20);
+            let weight = self.0.unit() + 2f64.powi(-20);
             sum = add(sum, scale(v.at, weight));
             weights += weight;
         }
@@ -43,7 +36,7 @@ impl Chance {
 
     fn direction(&mut self) -> Point3 {
         loop {
-            let d: Point3 = std::array::from_fn(|_| 2.0 * self.share() - 1.0);
+            let d: Point3 = std::array::from_fn(|_| 2.0 * self.0.unit() - 1.0);
             let square = dot(d, d);
             if (0.01..1.0).contains(&square) {
                 return scale(d, 1.0 / square.sqrt());
@@ -54,7 +47,7 @@ impl Chance {
 
 /// Follows `n` lines through a gate, the same ones each time, and hands over what each passes.
 pub(super) fn shoot_through(gates: &Gates, gate: u32, n: u32, mut each: impl FnMut(&[u32])) {
-    let mut chance = Chance(u64::from(gate) << 32);
+    let mut chance = Chance(Random::new(u64::from(gate) << 32));
     let mut chain = Vec::new();
     for _ in 0..n {
         let origin = chance.point_in(gates.corners(gate));

@@ -1,10 +1,11 @@
 //! Points of space as plain arrays.
 
 pub(super) use sightlines_geometry::Point3;
+use sightlines_geometry::vector as geometry;
 pub(super) use sightlines_geometry::vector::{add, cross, dot, scale, sub};
 
-/// The vector of length 1 in the direction of `a`; not a number for zero.
+/// The vector of length 1 in the direction of `a`; NaN if there is none, with which every comparison is false.
 #[inline]
 pub(super) fn unit(a: Point3) -> Point3 {
-    scale(a, 1.0 / dot(a, a).sqrt())
+    geometry::unit(a).unwrap_or([f64::NAN; 3])
 }

@@ -1,6 +1,6 @@
 //! Lines through a world, against what is solid in it.
 
-use sightlines_geometry::Point3;
+use sightlines_geometry::{Point3, Random};
 use sightlines_scenes::world::{World, WorldLeaf};
 use std::collections::BTreeSet;
 
@@ -29,7 +29,7 @@ const CLEARANCE: f64 = 1.0 / (1u64 << 20) as f64;
 /// # Panics
 /// If the world has no cell.
 pub fn seen_by_rays(world: &World, n: usize, seed: u64) -> SeenByRays {
-    let mut chance = Chance(seed);
+    let mut chance = Chance(Random::new(seed));
     let cells = world.cells();
     let solids: Vec<&WorldLeaf> = world.solids().collect();
     let portals = world.graph.portals();
@@ -119,26 +119,18 @@ fn passes(line: [Point3; 2], leaf: &WorldLeaf, piece: [f64; 2], depth: f64) -> b
     inside(line, leaf, -depth, piece).is_some()
 }
 
-/// SplitMix64.
-struct Chance(u64);
+/// Pseudorandom points of leaves.
+struct Chance(Random);
 
 impl Chance {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
     fn below(&mut self, n: usize) -> usize {
-        (((self.next() >> 32) * n as u64) >> 32) as usize
+        (((self.0.bits() >> 32) * n as u64) >> 32) as usize
     }
 
     /// A point within the hull of some points: most of the weight goes to few of them, so that ends are tried too.
     fn point(&mut self, corners: &[Point3]) -> Point3 {
         let weights: Vec<f64> =
-            corners.iter().map(|_| ((self.next() >> 40) as f64 / (1u64 << 24) as f64).powi(4)).collect();
+            corners.iter().map(|_| ((self.0.bits() >> 40) as f64 / (1u64 << 24) as f64).powi(4)).collect();
         let total: f64 = weights.iter().sum::<f64>().max(f64::MIN_POSITIVE);
         [0, 1, 2].map(|k| corners.iter().zip(&weights).map(|(p, w)| p[k] * w).sum::<f64>() / total)
     }

@@ -1,18 +1,17 @@
 //! Chance that does not depend on threads.
 
-use crate::mutate::SplitMix;
 use crate::rays::length;
 use sightlines_cells::Point3;
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, Random as Bits};
 
 /// Every ray has numbers of its own, whichever thread casts it.
 #[derive(Debug, Clone)]
-pub struct Random(SplitMix);
+pub struct Random(Bits);
 
 impl Random {
     /// The numbers of one ray of the rays of one seed.
     pub fn new(seed: u64, ray: u64) -> Self {
-        Self(SplitMix(SplitMix(SplitMix(seed).next() ^ ray).next()))
+        Self(Bits::new(Bits::new(Bits::new(seed).bits() ^ ray).bits()))
     }
 
     /// From 0 to one less than `n`; uniform up to rounding.
@@ -26,7 +25,7 @@ impl Random {
 
     /// Strictly between 0 and 1.
     pub fn unit(&mut self) -> f64 {
-        ((self.0.next() >> 12) as f64 + 0.5) / (1u64 << 52) as f64
+        self.0.open_unit()
     }
 
     /// Uniform over a box.

@@ -1,4 +1,4 @@
-//! What is really there, ready for rays. Doubles propose segments; what [`Reality::proves`] says alone counts.
+//! What is really there, ready for rays. Vectors and rays are written out here on purpose, as this checks what others compute. Doubles propose segments; what [`Reality::proves`] says alone counts.
 
 mod climb;
 mod convex;

@@ -206,7 +206,8 @@ impl SolidWorld {
     }
 }
 
-/// Where a ray meets a triangle, as a multiple of its direction; rounded.
+/// Where a ray meets a triangle, as a multiple of its direction; rounded. Its own on purpose, not `geometry::ray_triangle`: what
+/// checks tables shares no code with what makes them.
 ///
 /// # Source
 /// Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", Journal of Graphics Tools 2(1), 1997.

@@ -4,6 +4,7 @@ use super::{BspOptions, Heuristic};
 use crate::faces::Faces;
 use crate::fragment::{Fragment, Relation};
 use crate::plane::Plane;
+use sightlines_geometry::Random;
 
 /// What a plane makes of a set of fragments; each part keeps their order.
 #[derive(Debug, Default)]
@@ -105,14 +106,16 @@ fn of_face(faces: &Faces, fragments: &[Fragment], options: &BspOptions, salt: u6
     let plane = |k: usize| Plane::of(faces, fragments[k].face());
     let [splits, balance] = match options.heuristic {
         Heuristic::FirstFace => return plane(0),
-        Heuristic::Random { seed } => return plane((mixed(seed ^ mixed(salt)) % n as u64) as usize),
+        Heuristic::Random { seed } => {
+            return plane((Random::new(seed ^ Random::new(salt).bits()).bits() % n as u64) as usize);
+        }
         // One split more outweighs any balance: both count fragments.
         Heuristic::FewestSplits => [n as f64 + 1.0, 1.0],
         Heuristic::Balanced => [1.0, n as f64 + 1.0],
         Heuristic::Weighted { splits, balance } => [splits, balance],
     };
     let n_tried = options.candidates.clamp(1, n);
-    let offset = (mixed(salt) % n as u64) as usize;
+    let offset = (Random::new(salt).bits() % n as u64) as usize;
     let tried: Vec<usize> = (0..n_tried).map(|i| (offset + i * n / n_tried) % n).collect();
     best(faces, fragments, tried.into_iter().map(plane), [splits, balance]).map_or_else(|| plane(0), |(plane, _)| plane)
 }
@@ -164,12 +167,4 @@ fn best(
 /// At most `n` of the fragments, evenly.
 fn sample(fragments: &[Fragment], n: usize) -> impl Iterator<Item = &Fragment> {
     fragments.iter().step_by(fragments.len().div_ceil(n).max(1))
-}
-
-/// Sebastiano Vigna's splitmix64: one step.
-fn mixed(x: u64) -> u64 {
-    let z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }

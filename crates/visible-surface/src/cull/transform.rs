@@ -17,6 +17,7 @@ use crate::camera::{Camera, U};
 use crate::vector::{cross, dot, sub};
 use sightlines_exact::{Dyadic, vector as exact};
 use sightlines_geometry::Point3;
+use sightlines_geometry::vector::unit_of_any_size;
 
 /// A 4 by 4 matrix, row by row.
 pub type Matrix = [[f64; 4]; 4];
@@ -52,7 +53,7 @@ pub fn normal(matrix: &Matrix, n: Point3) -> Option<Point3> {
     let sign = f64::from(determinant_sign(&linear).filter(|&s| s != 0)?);
     // The rows of cofactors of a matrix with rows a, b and c.
     let turned = [cross(b, c), cross(c, a), cross(a, b)].map(|row| sign * dot(row, n));
-    unit(turned)
+    unit_of_any_size(turned)
 }
 
 /// A triangle transformed by a matrix whose last row is (0, 0, 0, 1). A reflection turns the order of corners round, so they are
@@ -214,16 +215,4 @@ fn cofactors(m: &Matrix) -> Matrix {
             if (r + c) % 2 == 0 { minor } else { -minor }
         })
     })
-}
-
-/// The vector rescaled to length 1; none for what has no direction.
-fn unit(v: Point3) -> Option<Point3> {
-    let largest = v.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    if !(largest > 0.0 && v.iter().all(|x| x.is_finite())) {
-        return None;
-    }
-    // By the largest first, so that no square is out of range.
-    let v = v.map(|x| x / largest);
-    let length = dot(v, v).sqrt();
-    Some(v.map(|x| x / length))
 }

@@ -98,7 +98,7 @@ pub struct Rays<'a> {
     stack: Vec<(f64, u32)>,
 }
 
-/// A ray with bounds of its rounding.
+/// A ray with bounds of its rounding, which `geometry::ray_box` and `geometry::ray_triangle` do not have; so its tests are its own.
 struct Ray {
     eye: Point3,
     way: Point3,

@@ -1,5 +1,6 @@
 //! Openings between cells, as the older methods need them: lines through them, planes between them.
 
+use sightlines::geometry::vector::{cross, dot, sub};
 use sightlines::geometry::{Adaptive, Orient2d, Point2, Point3, Portal2, orient3d};
 use sightlines_testkit::rays::Random;
 
@@ -38,18 +39,6 @@ pub trait Opening: Clone + Send + Sync {
 
     /// Whether nothing of it is strictly before a barrier, decided exactly.
     fn is_behind(&self, barrier: &Self::Barrier) -> bool;
-}
-
-fn minus(a: Point3, b: Point3) -> Point3 {
-    [0, 1, 2].map(|k| a[k] - b[k])
-}
-
-fn cross(a: Point3, b: Point3) -> Point3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: Point3, b: Point3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// A segment of the plane.
@@ -120,7 +109,7 @@ impl Polygon {
     pub(super) fn new(corners: Vec<Point3>) -> Self {
         let n = corners.len();
         let length = |i: usize| {
-            let e = minus(corners[(i + 1) % n], corners[i]);
+            let e = sub(corners[(i + 1) % n], corners[i]);
             dot(e, e).sqrt()
         };
         let lengths = (0..n).map(length).collect();
@@ -167,7 +156,7 @@ impl Opening for Polygon {
 
     fn is_passed(&self, ray: &Ray, clearance: f64) -> bool {
         self.edges().zip(&self.lengths).all(|([a, b], length)| {
-            let moment = cross(minus(a, ray.origin), minus(b, ray.origin));
+            let moment = cross(sub(a, ray.origin), sub(b, ray.origin));
             dot(ray.direction, moment) > clearance * length
         })
     }
@@ -175,7 +164,7 @@ impl Opening for Polygon {
     fn front(&self) -> [Point3; 3] {
         let c = &self.corners;
         let area = |i: &usize| {
-            let n = cross(minus(c[*i], c[0]), minus(c[*i + 1], c[0]));
+            let n = cross(sub(c[*i], c[0]), sub(c[*i + 1], c[0]));
             dot(n, n)
         };
         let i = (1..c.len() - 1).max_by(|i, j| area(i).total_cmp(&area(j))).unwrap_or(1);

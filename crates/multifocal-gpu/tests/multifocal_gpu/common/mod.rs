@@ -2,6 +2,7 @@
 
 pub(crate) mod scene;
 
+use sightlines_geometry::Random;
 use sightlines_multifocal::{Buffer, Carry, Form, Forms};
 use sightlines_multifocal_gpu::{Gpu, PlaneForms};
 use std::io::Write;
@@ -28,16 +29,17 @@ pub(crate) fn gpu(test: &str) -> Option<Gpu> {
     }
 }
 
-/// Numbers that look random, the same for the same seed (SplitMix64).
+/// Pseudorandom numbers of ranges.
 #[derive(Debug, Clone)]
-pub(crate) struct Chance(pub(crate) u64);
+pub(crate) struct Chance(Random);
 
 impl Chance {
+    pub(crate) const fn new(seed: u64) -> Self {
+        Self(Random::new(seed))
+    }
+
     pub(crate) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     /// From `low` to before `high`.

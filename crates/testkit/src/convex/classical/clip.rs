@@ -1,4 +1,5 @@
-//! Polygons and planes in doubles, with a tolerance.
+//! Polygons and planes in doubles, with a tolerance. Vectors are written out here on purpose: the reference shares nothing with
+//! what it is measured against.
 
 use sightlines_geometry::Point3;
 
