@@ -13,6 +13,7 @@
 //! edges give no coordinates: a round outline would fall into as many splinters as it has corners, each of
 //! which would hide next to nothing and cost a piece of a portal.
 
+use crate::union_find::UnionFind;
 use sightlines_geometry::{Point2, orient2d};
 
 /// A rectangle of a plane, of positive extent along both directions, in scene units.
@@ -54,7 +55,7 @@ struct Edge {
 fn outlines(triangles: &[[Point2; 3]]) -> Vec<Edge> {
     let turned: Vec<[Point2; 3]> = triangles.iter().filter_map(|t| counter_clockwise(*t)).collect();
     let (corners, ids) = welded(&turned);
-    let mut meshes = Union::new(corners.len());
+    let mut meshes = UnionFind::new(corners.len());
     for [a, b, c] in &ids {
         meshes.join(*a, *b);
         meshes.join(*a, *c);
@@ -90,32 +91,6 @@ fn welded(triangles: &[[Point2; 3]]) -> (Vec<Point2>, Vec<[u32; 3]>) {
     let number = |p: Point2| corners.partition_point(|q| order(q, &p).is_lt()) as u32;
     let ids = triangles.iter().map(|t| t.map(number)).collect();
     (corners, ids)
-}
-
-/// Which things hang together; the least of them speaks for all.
-#[derive(Debug)]
-pub(crate) struct Union {
-    parent: Vec<u32>,
-}
-
-impl Union {
-    pub(crate) fn new(n: usize) -> Self {
-        Self { parent: (0..n as u32).collect() }
-    }
-
-    pub(crate) fn root(&mut self, mut i: u32) -> u32 {
-        while self.parent[i as usize] != i {
-            let above = self.parent[i as usize];
-            self.parent[i as usize] = self.parent[above as usize];
-            i = above;
-        }
-        i
-    }
-
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
 }
 
 fn sorted(coordinates: impl Iterator<Item = f64>) -> Vec<f64> {

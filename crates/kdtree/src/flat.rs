@@ -1,7 +1,8 @@
 //! Unions of rectangles of a plane, in scene units.
 
-use crate::coplanar::{FlatRect, Union};
+use crate::coplanar::FlatRect;
 use crate::region::{Rect, covers, unite};
+use crate::union_find::UnionFind;
 
 /// The coordinates of some rectangles of a plane, ascending and different.
 struct FlatRanks {
@@ -74,8 +75,8 @@ pub(crate) fn large_regions(rects: Vec<FlatRect>, size: f64) -> (Vec<FlatRect>, 
 
 /// Joins the parts of a union that share a border of positive length. As `unite` gives them, that is
 /// where one part ends along `u` and another begins.
-fn connected(parts: &[Rect]) -> Union {
-    let mut regions = Union::new(parts.len());
+fn connected(parts: &[Rect]) -> UnionFind {
+    let mut regions = UnionFind::new(parts.len());
     let mut by_end: Vec<u32> = (0..parts.len() as u32).collect();
     by_end.sort_unstable_by_key(|&i| (parts[i as usize].u[1], parts[i as usize].v));
     for ends in by_end.chunk_by(|&i, &j| parts[i as usize].u[1] == parts[j as usize].u[1]) {

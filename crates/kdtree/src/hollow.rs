@@ -3,8 +3,8 @@
 use crate::coplanar::FlatRect;
 use crate::face::AxialFace;
 use crate::flat::covered_by;
-use crate::matter::Rooms;
 use crate::mesh::{TriangleKind, kind_of, others};
+use crate::rooms::Rooms;
 use crate::scene_faces::Survey;
 use crate::touch::{Meets, visit_cells};
 use crate::tree::AxialTree;

@@ -28,31 +28,34 @@
 //! coordinates to ranks are our own.
 
 mod build;
+mod cache;
 mod coplanar;
 mod error;
 mod face;
 mod flat;
 mod hollow;
-mod kept;
-mod matter;
+mod left_out;
 mod mesh;
 mod plan;
 mod portals;
 mod ranks;
 mod region;
+mod rooms;
 mod scene;
 mod scene_faces;
+mod scene_options;
 mod skeleton;
 mod solid;
 mod split;
 mod touch;
 mod tree;
+mod union_find;
 
 pub use build::{Options, bounds_of, subdivide};
 pub use error::{FaceError, KdError};
 pub use face::{AxialFace, AxialPlane, FaceClass, classify, cleaves};
 pub use plan::{PlanFaces, PlanSubdivision, plan_faces, planar_graph, subdivide_plan};
-pub use portals::AxialPortal;
-pub use scene::{SceneCutter, SceneOptions, SceneSubdivision, SceneSummary, subdivide_scene};
+pub use scene::{SceneCutter, SceneSubdivision, SceneSummary, subdivide_scene};
 pub use scene_faces::{SceneFaces, default_detail_below, scene_faces};
-pub use tree::{AxialCell, AxialNode, AxialTree};
+pub use scene_options::SceneOptions;
+pub use tree::{AxialCell, AxialNode, AxialPortal, AxialTree};

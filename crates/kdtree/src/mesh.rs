@@ -1,6 +1,6 @@
 //! The pieces of an object: triangles that hang together by their corners.
 
-use crate::coplanar::Union;
+use crate::union_find::UnionFind;
 use sightlines_cells::{Point3, SceneObject};
 use sightlines_geometry::{Aabb, Point2, orient2d};
 
@@ -33,7 +33,7 @@ impl Mesh {
     pub(crate) fn of(object: &SceneObject) -> Self {
         let welded = welded(&object.vertices);
         let triangles: Vec<[u32; 3]> = object.triangles.iter().map(|t| t.map(|i| welded[i as usize])).collect();
-        let mut union = Union::new(welded.len());
+        let mut union = UnionFind::new(welded.len());
         for [a, b, c] in &triangles {
             union.join(*a, *b);
             union.join(*a, *c);

@@ -3,8 +3,7 @@
 use crate::build::{Options, subdivide};
 use crate::error::KdError;
 use crate::face::AxialFace;
-use crate::portals::AxialPortal;
-use crate::tree::{AxialCell, AxialTree};
+use crate::tree::{AxialCell, AxialPortal, AxialTree};
 use sightlines_cells::{CellGraph, ConvexCell2, LineId, Plan, PlanLine, Planar, Portal, Portal2};
 use sightlines_geometry::Point2;
 

@@ -8,24 +8,8 @@ use crate::face::across;
 use crate::ranks::{RankBox, Ranks};
 use crate::region::{Rect, unite};
 use crate::skeleton::{RankNode, Skeleton};
+use crate::tree::AxialPortal;
 use sightlines_pvs::CellId;
-
-/// An opening between two cells, or a piece of one: the inside of an interval (`D` = 2) or rectangle (`D` = 3).
-///
-/// Where the opening between two cells is no rectangle, several disjoint portals make it up exactly.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AxialPortal<const D: usize> {
-    /// The cells: the one at smaller coordinates of `axis`, then the other.
-    pub cells: [CellId; 2],
-    /// The axis that the portal is perpendicular to.
-    pub axis: usize,
-    /// Where on that axis it lies, in scene units.
-    pub at: f64,
-    /// Lower corner, in scene units; `min[axis] == at`.
-    pub min: [f64; D],
-    /// Upper corner, in scene units; `max[axis] == at`, and `min < max` on the other axes.
-    pub max: [f64; D],
-}
 
 /// A portal in ranks.
 type RankPortal<const D: usize> = ([CellId; 2], usize, RankBox<D>);

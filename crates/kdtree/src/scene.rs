@@ -1,43 +1,15 @@
 //! From a scene in space to a graph of boxes and rectangular portals.
 
 use crate::build::{Options, subdivide};
+use crate::cache::FaceCache;
 use crate::error::KdError;
-use crate::kept::Kept;
-use crate::matter::{LeftOut, left_out};
-use crate::portals::AxialPortal;
+use crate::left_out::{LeftOut, left_out};
 use crate::scene_faces::{SceneFaces, Survey};
-use crate::tree::AxialTree;
+use crate::scene_options::SceneOptions;
+use crate::tree::{AxialPortal, AxialTree};
 use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, Portal, Scene};
 use sightlines_geometry::{Aabb, check_coordinate};
 use sightlines_pvs::CellId;
-
-/// How to cut a scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SceneOptions {
-    /// Where a viewer can be, in scene units; the scene's box if none is given. What is cut is the box
-    /// around it and the scene. Rooms that no way leads to from a given region are left out.
-    pub view_region: Option<Aabb<3>>,
-    /// Obscuration threshold, see [`Options::tau`].
-    pub tau: f64,
-    /// Things that are smaller than this in every direction, in scene units, are drawn, but hide nothing
-    /// and divide nothing. 0 keeps everything; none takes
-    /// [`default_detail_below`](crate::default_detail_below).
-    pub detail_below: Option<f64>,
-    /// Limit for the number of cells, those that are left out included, see [`Options::max_cells`].
-    pub max_cells: u32,
-    /// Whether the insides of walls and other solid things stay cells.
-    pub keep_solid: bool,
-}
-
-/// Cells beyond which a table of who sees whom takes gigabytes: 2^32 bits are half of one.
-const MAX_CELLS: u32 = 1 << 16;
-
-impl Default for SceneOptions {
-    fn default() -> Self {
-        let (tau, max_cells) = (Options::default().tau, MAX_CELLS);
-        Self { view_region: None, tau, detail_below: None, max_cells, keep_solid: false }
-    }
-}
 
 /// What became of a scene.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -119,7 +91,7 @@ pub fn subdivide_scene(scene: &Scene, options: &SceneOptions) -> Result<SceneSub
 /// Memory: about that of the last scene.
 #[derive(Debug, Clone, Default)]
 pub struct SceneCutter {
-    kept: Kept,
+    cache: FaceCache,
 }
 
 impl SceneCutter {
@@ -134,9 +106,9 @@ impl SceneCutter {
         if let Some(size) = options.detail_below.filter(|s| s.is_nan() || *s < 0.0) {
             return Err(KdError::DetailBelow(size));
         }
-        let survey = Survey::of(scene, options, &mut self.kept);
+        let survey = Survey::of(scene, options, &mut self.cache);
         let bounds = root_box(survey.bounds(), options.view_region)?;
-        let found = survey.faces(&mut self.kept);
+        let found = survey.faces(&mut self.cache);
         let tree = subdivide(&found.faces, bounds, &Options { tau: options.tau, max_cells: options.max_cells })?;
         let out = match options.keep_solid {
             true => vec![None; tree.cells().len()],

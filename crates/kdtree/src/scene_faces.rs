@@ -1,11 +1,11 @@
 //! From triangles to faces: what of a scene hides, and what is only drawn.
 
+use crate::cache::{FaceCache, PlaneFaces, Shape, total_order};
 use crate::coplanar::{FlatRect, inner_rectangles};
 use crate::face::AxialFace;
 use crate::flat::{large_regions, united};
-use crate::kept::{Kept, PlaneFaces, Shape, total_order};
 use crate::mesh::{FlatTriangle, Mesh, others};
-use crate::scene::SceneOptions;
+use crate::scene_options::SceneOptions;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point2};
 use std::sync::Arc;
@@ -48,8 +48,8 @@ pub struct SceneFaces {
 ///
 /// Leaving out faces only shows more. O(n log n) for n triangles of ordinary meshes.
 pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
-    let mut kept = Kept::default();
-    Survey::of(scene, options, &mut kept).faces(&mut kept)
+    let mut cache = FaceCache::default();
+    Survey::of(scene, options, &mut cache).faces(&mut cache)
 }
 
 /// A size below which things are detail, from the scene alone: the smaller of
@@ -112,8 +112,8 @@ pub(crate) struct Survey {
 
 impl Survey {
     /// Sorts a scene; what is kept of the last one is used for objects that are the same, and replaced.
-    pub(crate) fn of(scene: &Scene, options: &SceneOptions, kept: &mut Kept) -> Self {
-        let shapes = kept.shapes_of(scene);
+    pub(crate) fn of(scene: &Scene, options: &SceneOptions, cache: &mut FaceCache) -> Self {
+        let shapes = cache.shapes_of(scene);
         let boxes: Vec<Aabb<3>> = shapes.iter().map(|shape| shape.bounds).collect();
         let detail_below = options.detail_below.unwrap_or_else(|| detail_below_of(&boxes));
         let detail: Vec<bool> = boxes.iter().map(|b| largest_side(b) < detail_below).collect();
@@ -143,7 +143,7 @@ impl Survey {
     }
 
     /// The faces; those of planes with the same triangles as in the last scene are taken from there.
-    pub(crate) fn faces(&self, kept: &mut Kept) -> SceneFaces {
+    pub(crate) fn faces(&self, cache: &mut FaceCache) -> SceneFaces {
         let mut out = SceneFaces {
             n_axial_triangles: self.shapes.iter().map(|shape| shape.flat.len()).sum(),
             n_empty_triangles: self.shapes.iter().map(|shape| shape.n_empty).sum(),
@@ -159,7 +159,7 @@ impl Survey {
         let mut order: Vec<(usize, u64, u32)> = (0u32..).zip(&hiding).map(key).collect();
         order.sort_unstable();
         let flat = |i: u32| hiding[i as usize].0;
-        let mut planes = kept.take_planes(self.detail_below);
+        let mut planes = cache.take_planes(self.detail_below);
         for group in order.chunk_by(|a, b| (a.0, flat(a.2).at) == (b.0, flat(b.2).at)) {
             let (axis, at) = (group[0].0, flat(group[0].2).at);
             let triangles = group.iter().map(|&(.., i)| (*hiding[i as usize].0, hiding[i as usize].1));
@@ -173,7 +173,7 @@ impl Survey {
             };
             out.n_small_regions += plane.n_small;
             out.faces.extend(plane.rects.iter().map(|r| on_plane(r, axis, at)));
-            kept.planes.insert((axis, group[0].1), plane);
+            cache.planes.insert((axis, group[0].1), plane);
         }
         out
     }

@@ -5,8 +5,8 @@
 //! of its triangles is inside of is as a whole inside or outside. The number is found on a ray: it grows
 //! where the ray leaves through a triangle's front, and sinks where it enters.
 
-use crate::matter::Rooms;
 use crate::mesh::FlatTriangle;
+use crate::rooms::Rooms;
 use crate::scene_faces::Survey;
 use crate::touch::{Meets, visit_cells};
 use crate::tree::AxialTree;

@@ -1,6 +1,5 @@
 //! The finished subdivision: cells, portals, and which cell a point is in.
 
-use crate::portals::AxialPortal;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::CellId;
 
@@ -27,6 +26,23 @@ pub enum AxialNode {
 pub struct AxialCell<const D: usize> {
     /// Its extent, in scene units.
     pub bounds: Aabb<D>,
+}
+
+/// An opening between two cells, or a piece of one: the inside of an interval (`D` = 2) or rectangle (`D` = 3).
+///
+/// Where the opening between two cells is no rectangle, several disjoint portals make it up exactly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxialPortal<const D: usize> {
+    /// The cells: the one at smaller coordinates of `axis`, then the other.
+    pub cells: [CellId; 2],
+    /// The axis that the portal is perpendicular to.
+    pub axis: usize,
+    /// Where on that axis it lies, in scene units.
+    pub at: f64,
+    /// Lower corner, in scene units; `min[axis] == at`.
+    pub min: [f64; D],
+    /// Upper corner, in scene units; `max[axis] == at`, and `min < max` on the other axes.
+    pub max: [f64; D],
 }
 
 /// A subdivision into boxes. Made by [`subdivide`](crate::subdivide); always consistent.

@@ -66,14 +66,14 @@ pub(crate) type Planes = BTreeMap<(usize, u64), PlaneFaces>;
 
 /// What is kept of a scene. Nothing that is found with it is other than without.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Kept {
+pub(crate) struct FaceCache {
     shapes: Vec<Arc<Shape>>,
     /// The size below which things were detail for these planes.
     detail_below: f64,
     pub(crate) planes: Planes,
 }
 
-impl Kept {
+impl FaceCache {
     /// The shapes of a scene's objects, which are kept now: those of the last one where objects are the same, wherever
     /// they stand in it.
     pub(crate) fn shapes_of(&mut self, scene: &Scene) -> Vec<Arc<Shape>> {

@@ -1,10 +1,10 @@
-//! Cells that nobody can be in or look into: the insides of walls, and rooms without a way to them.
+//! Cells that no viewer can be in or look into: the insides of walls, and rooms without a way to them.
 //!
-//! Cells that portals join are a room here. A room is left out as a whole or not at all, so no cell that
-//! stays loses a portal, and nothing that is seen from it changes.
+//! A room is left out as a whole or not at all, so no cell that stays loses a portal, and nothing that is
+//! seen from it changes.
 
-use crate::coplanar::Union;
 use crate::hollow::hollow_rooms;
+use crate::rooms::Rooms;
 use crate::scene_faces::{SceneFaces, Survey};
 use crate::solid::solid_rooms;
 use crate::tree::AxialTree;
@@ -20,42 +20,6 @@ pub(crate) enum LeftOut {
     Hollow,
     /// Closed, and not in the view region.
     Unreachable,
-}
-
-/// The rooms of a tree.
-#[derive(Debug)]
-pub(crate) struct Rooms {
-    /// The room of each cell.
-    pub(crate) of_cell: Vec<u32>,
-    /// The cells of each room, ascending.
-    pub(crate) cells: Vec<Vec<u32>>,
-}
-
-impl Rooms {
-    fn of(tree: &AxialTree<3>) -> Self {
-        let mut union = Union::new(tree.cells().len());
-        for portal in tree.portals() {
-            let [a, b] = portal.cells;
-            union.join(a.0, b.0);
-        }
-        let (mut of_cell, mut cells) = (Vec::new(), Vec::<Vec<u32>>::new());
-        for cell in 0..tree.cells().len() as u32 {
-            // The least cell of a room speaks for it, so it has its number before the others ask.
-            let root = union.root(cell);
-            let room = if root == cell { cells.len() as u32 } else { of_cell[root as usize] };
-            if root == cell {
-                cells.push(Vec::new());
-            }
-            of_cell.push(room);
-            cells[room as usize].push(cell);
-        }
-        Self { of_cell, cells }
-    }
-
-    /// Whether the room of each index has a cell that fulfils `holds`.
-    pub(crate) fn any(&self, mut holds: impl FnMut(u32) -> bool) -> Vec<bool> {
-        self.cells.iter().map(|cells| cells.iter().any(|&c| holds(c))).collect()
-    }
 }
 
 /// For each cell of the tree why it is left out, if it is.
