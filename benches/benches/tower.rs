@@ -12,7 +12,7 @@ use sightlines_benches::chart::{Panel, Series, exponent, svg};
 use sightlines_benches::child::{self, Job, Limits, Outcome, portals_of};
 use sightlines_benches::shares::{mean_share, share_of, triangles_of};
 use sightlines_benches::spec::SceneSpec;
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,7 +1,7 @@
 //! Random points on the triangles of objects.
 
 use sightlines::cells::{Point3, Scene};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 
 /// A scene whose objects can be aimed at.
 #[derive(Debug)]

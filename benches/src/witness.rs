@@ -11,7 +11,7 @@ use sightlines::cells::{Point3, Scene};
 use sightlines::geometry::Aabb;
 use sightlines::geometry::vector::sub;
 use sightlines::pvs::{CellId, Table};
-use sightlines_testkit::rays::{CellIndex, Random, RayScene};
+use sightlines_testkit::{CellIndex, Random, RayScene};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};

@@ -38,6 +38,14 @@ impl fmt::Display for Missing {
     }
 }
 
+impl std::error::Error for Missing {}
+
+impl From<Missing> for Failure {
+    fn from(missing: Missing) -> Self {
+        Self::Unavailable(missing.into())
+    }
+}
+
 fn own_folder() -> PathBuf {
     root().join("target").join("freedoom")
 }
@@ -61,7 +69,7 @@ pub(crate) fn find_or_fetch() -> Result<PathBuf, Failure> {
     let folder = own_folder();
     if lacking(&folder).is_some() {
         fetch(&folder).map_err(|failure| match failure {
-            Failure::NoDebian => Failure::Freedoom(Missing::Elsewhere),
+            Failure::NoDebian => Missing::Elsewhere.into(),
             other => other,
         })?;
     }
@@ -71,7 +79,7 @@ pub(crate) fn find_or_fetch() -> Result<PathBuf, Failure> {
 fn complete(folder: PathBuf) -> Result<PathBuf, Failure> {
     match lacking(&folder) {
         None => Ok(folder),
-        Some(wad) => Err(Failure::Freedoom(Missing::Wad { folder, wad })),
+        Some(wad) => Err(Missing::Wad { folder, wad }.into()),
     }
 }
 
@@ -96,7 +104,7 @@ fn downloaded(work: &Path, package: &'static str) -> Result<PathBuf, Failure> {
     let found = debian::files(work)?
         .into_iter()
         .find(|path| path.file_name().is_some_and(|name| is_package(&name.to_string_lossy(), package)));
-    found.ok_or(Failure::Freedoom(Missing::Version { package }))
+    found.ok_or_else(|| Missing::Version { package }.into())
 }
 
 fn is_package(file_name: &str, package: &str) -> bool {

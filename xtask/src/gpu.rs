@@ -48,7 +48,15 @@ impl fmt::Display for Missing {
     }
 }
 
-/// The variable that tells tests whether they need a GPU.
+impl std::error::Error for Missing {}
+
+impl From<Missing> for Failure {
+    fn from(missing: Missing) -> Self {
+        Self::Unavailable(missing.into())
+    }
+}
+
+/// The variable that says to tests whether they need a GPU.
 const VARIABLE: &str = "SIGHTLINES_GPU";
 
 type Environment = Vec<(&'static str, OsString)>;
@@ -87,7 +95,7 @@ fn find() -> Result<Environment, Failure> {
             Err(failure) => eprintln!("{}: {failure}", driver.name),
         }
     }
-    Err(Failure::Gpu(Missing::All))
+    Err(Missing::All.into())
 }
 
 /// A driver in software.
@@ -123,7 +131,7 @@ fn software(driver: Driver, probe: &Path) -> Result<Environment, Failure> {
     }
     let found = variables(&folder);
     let works = finds_adapter(probe, &found);
-    if works { Ok(found) } else { Err(Failure::Gpu(Missing::Broken { name: driver.name })) }
+    if works { Ok(found) } else { Err(Missing::Broken { name: driver.name }.into()) }
 }
 
 fn variables(folder: &Path) -> Environment {
@@ -146,7 +154,7 @@ fn fetch_swiftshader(work: &Path) -> Result<(), Failure> {
     const FOLDER: &str = "./usr/lib/chromium/";
     const FILES: [&str; 2] = ["libvk_swiftshader.so", "libvulkan.so.1"];
     debian::download(work, &["chromium-common"])?;
-    let package = packages(work)?.pop().ok_or(Failure::Gpu(Missing::Driver { name: SWIFTSHADER.name }))?;
+    let package = packages(work)?.pop().ok_or(Missing::Driver { name: SWIFTSHADER.name })?;
     debian::unpack_some(&package, work, &FILES.map(|file| format!("{FOLDER}{file}")))?;
     for file in FILES {
         let (from, to) = (work.join(FOLDER).join(file), work.join(LIBRARIES).join(file));
@@ -170,7 +178,7 @@ fn fetch_lavapipe(work: &Path) -> Result<(), Failure> {
     }
     // Everything from the folder that Debian keeps a processor's libraries in.
     let libraries = debian::files(&unpacked.join("usr/lib"))?.into_iter().find(|f| f.join(LIBRARY).is_file());
-    let libraries = libraries.ok_or(Failure::Gpu(Missing::Driver { name: LAVAPIPE.name }))?;
+    let libraries = libraries.ok_or(Missing::Driver { name: LAVAPIPE.name })?;
     for from in debian::files(&libraries)? {
         let to = work.join(LIBRARIES).join(from.file_name().expect("an entry has a name"));
         in_file(&from, fs::rename(&from, &to))?;

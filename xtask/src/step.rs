@@ -19,10 +19,8 @@ pub(crate) enum Failure {
     Tests,
     /// Packages are wanted, and this is no Debian.
     NoDebian,
-    /// The Freedoom WADs are not to be had.
-    Freedoom(crate::freedoom::Missing),
-    /// No GPU is to be had, not even one in software.
-    Gpu(crate::gpu::Missing),
+    /// Something that this machine lacks could not be fetched either.
+    Unavailable(Box<dyn std::error::Error>),
 }
 
 impl fmt::Display for Failure {
@@ -34,8 +32,7 @@ impl fmt::Display for Failure {
             Self::Found { what, n } => write!(f, "{n} {what}"),
             Self::Tests => f.write_str("tests failed"),
             Self::NoDebian => f.write_str("there are no apt-get and dpkg here"),
-            Self::Freedoom(missing) => missing.fmt(f),
-            Self::Gpu(missing) => missing.fmt(f),
+            Self::Unavailable(missing) => missing.fmt(f),
         }
     }
 }

@@ -23,6 +23,7 @@
 
 mod aimed;
 pub mod bound;
+mod collapse_budget;
 mod compared;
 pub mod estimate;
 mod geometric;
@@ -32,7 +33,6 @@ pub mod levels;
 mod measure;
 mod mesh;
 mod options;
-mod paid;
 mod rays;
 mod select;
 mod simplified;

@@ -1,6 +1,8 @@
 //! Which faces are left out within a budget.
 
 use crate::intercepts::Intercepts;
+use crate::mesh::{Mesh, State};
+use sightlines_visible_surface::Faces;
 
 /// What may still change of the view, for each part of the views. Sums are rounded up.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +52,12 @@ pub(crate) fn sum_up(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Takes faces, those that intercept least first, as long as their sum stays within `budget` in each part; tells them to `take`.
+/// The faces that are as they were in the scene.
+pub(crate) fn kept_faces<'a>(mesh: &'a Mesh, faces: &Faces) -> impl Iterator<Item = u32> + 'a {
+    faces.ids().filter(|&f| mesh.face(f).state == State::Kept)
+}
+
+/// Takes faces, those that intercept least first, as long as their sum stays within `budget` in each part, and calls `take` with each.
 pub(crate) fn least_visible(
     intercepts: &Intercepts,
     candidates: impl Iterator<Item = u32>,

@@ -1,12 +1,12 @@
 //! From a scene to one with fewer triangles.
 
+use crate::collapse_budget::CollapseBudget;
 use crate::estimate::Estimate;
 use crate::hidden::HiddenBy;
 use crate::intercepts::Intercepts;
 use crate::mesh::{Collapser, Left, Mesh, State, Weights, merge};
 use crate::options::{OptionsError, SimplifyOptions};
-use crate::paid::Paid;
-use crate::select::{Account, least_visible};
+use crate::select::{Account, kept_faces, least_visible};
 use crate::simplified::{Counts, Simplified};
 use crate::views::{Views, ViewsError};
 use crate::weigh::{Areas, Fronts};
@@ -250,7 +250,7 @@ pub(crate) fn within_budget(
     let [mut deviation, mut shift] = [0.0; 2];
     if kept > 0.0 {
         // Half of what is kept pays for what goes, the other for what comes.
-        let mut paid = Paid::choose(faces, views, intercepts, &mesh, options, account);
+        let mut paying = CollapseBudget::choose(faces, views, intercepts, &mesh, options, account);
         let estimate = Estimate::new(faces, views, options.n_rays);
         let fronts = Fronts::new(faces, views);
         let area = Areas::new(faces);
@@ -259,9 +259,9 @@ pub(crate) fn within_budget(
             may_be_silhouette: &|f, g| fronts.may_differ(f, g),
         };
         let mut collapser = Collapser::new(&mesh, &weights);
-        collapser.run(&mut mesh, &mut paid);
-        (deviation, shift) = (collapser.deviation(), paid.shift);
-        account = paid.settle(&mesh);
+        collapser.run(&mut mesh, &mut paying);
+        (deviation, shift) = (collapser.deviation(), paying.shift);
+        account = paying.settle(&mesh);
         counts.deleted += delete(&mut mesh, &mut account, budget);
     }
     if options.flat {
@@ -270,10 +270,6 @@ pub(crate) fn within_budget(
         counts.merged_away = before - mesh.n_left();
     }
     Simplified { hidden, ..finish(scene, &mesh, counts, account.most(), [deviation, shift]) }
-}
-
-pub(crate) fn kept_faces<'a>(mesh: &'a Mesh, faces: &Faces) -> impl Iterator<Item = u32> + 'a {
-    faces.ids().filter(|&f| mesh.face(f).state == State::Kept)
 }
 
 pub(crate) fn finish(

@@ -41,6 +41,7 @@ pub use eye::{EyeFan, EyeSector, EyeTouch, eye_fan};
 pub use eye_boxes::{BoxHit, directions_among_boxes, first_box, range_in_box};
 pub use from_region::{Glimpse, Glimpses, hidden_by_sampling};
 pub use plans::{axial_plan, convex_polygon, small_grid_plan};
+pub use ray_witness::{CellIndex, ClearLine, Random};
 pub use rays::{Hit, RayScene};
 pub use sampled::{Chord, chord_is_clear, clear_chords, sampled_sector_visibility};
 pub use sector_plans::{Sectors, small_sector_plan, small_sectors};

@@ -8,7 +8,6 @@
 //! Techniques 2(1), 2013: no ray slips through an edge that two triangles share.
 
 use crate::bvh::{Bvh, Ray};
-pub use crate::ray_witness::{CellIndex, ClearLine, Random};
 use sightlines_cells::{Point3, Scene};
 use sightlines_geometry::Aabb;
 

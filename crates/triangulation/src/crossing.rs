@@ -1,18 +1,10 @@
 //! The point at which two crossing lines are cut.
 
 use crate::grid::PointGrid;
-use crate::noding::{Cut, Piece, sweeps};
+use crate::piece::{Cut, Piece, reach_of, sweeps};
 use num_traits::ToPrimitive;
 use sightlines_exact::{BigInt, BigRational, Grid};
 use sightlines_geometry::{Point2, check_coordinate, orient2d};
-
-/// Bound on the distance between a crossing and the point that stands for it: 2^-49 of the larger
-/// coordinate. Rounding moves each coordinate by at most 2^-51 of itself (four roundings of 2^-53: of
-/// numerator, denominator, quotient and sum), a choice among neighbours by two units in the last place,
-/// 2^-51 again; both coordinates together by less than 2^-49.
-pub(crate) fn reach_of(p: Point2) -> f64 {
-    p.x.abs().max(p.y.abs()) * 8.0 * f64::EPSILON
-}
 
 /// How two crossing lines are cut, and whether a point off one of them was needed.
 #[derive(Debug, Clone, Copy, PartialEq)]

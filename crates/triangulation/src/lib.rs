@@ -21,6 +21,7 @@ mod grid;
 mod merge;
 mod mesh;
 pub mod noding;
+mod piece;
 mod regions;
 
 use sightlines_cells::{CellGraph, Plan, Planar};

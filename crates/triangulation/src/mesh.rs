@@ -1,7 +1,8 @@
 //! The triangulation: triangles, their neighbours, and which edges are lines.
 
 use crate::TriangulationError;
-use crate::noding::{Noded, Piece};
+use crate::noding::Noded;
+use crate::piece::Piece;
 use sightlines_cells::Plan;
 use sightlines_geometry::Point2;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};

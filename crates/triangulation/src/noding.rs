@@ -40,29 +40,13 @@
 //! wall may be counted to the cell on the other side of it.
 
 use crate::TriangulationError;
-use crate::crossing::{cuts_at_crossing, reach_of};
+use crate::crossing::cuts_at_crossing;
 use crate::grid::{PointGrid, SegmentGrid};
+use crate::piece::{Cut, reach_of, sweeps};
+
+pub use crate::piece::Piece;
 use sightlines_cells::Plan;
-use sightlines_geometry::{Point2, Segment2, orient2d};
-
-/// Part of a line of a plan, in the line's direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
-    /// Start.
-    pub a: Point2,
-    /// End, different from the start.
-    pub b: Point2,
-    /// Whether it blocks sight.
-    pub opaque: bool,
-    /// Index of the line.
-    pub line: u32,
-}
-
-impl Piece {
-    pub(crate) fn segment(&self) -> Segment2 {
-        Segment2::new(self.a, self.b)
-    }
-}
+use sightlines_geometry::{Point2, Segment2};
 
 /// Lines that touch in common end points only.
 #[derive(Debug, Clone, Default)]
@@ -170,15 +154,6 @@ fn meeting(segments: &[Segment2], i: usize, j: usize) -> Option<Meeting> {
     (crossing || touching()).then_some(Meeting { lines: [i, j], crossing })
 }
 
-/// Where a line is cut.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Cut {
-    /// One piece ends and the next begins at a point, which may be off the line by rounding.
-    At(Point2),
-    /// The line stops at the first point and goes on at the second.
-    Gap(Point2, Point2),
-}
-
 fn cut(plan: &Plan, noded: &mut Noded, meetings: &[Meeting]) {
     let lines = std::mem::take(&mut noded.pieces);
     let ends = PointGrid::new(lines.iter().flat_map(|l| [l.a, l.b]));
@@ -278,26 +253,6 @@ fn pieces(line: &Piece, mut cuts: Vec<Cut>) -> Vec<Piece> {
     }
     piece(from, line.b);
     pieces
-}
-
-/// Whether an end point that is not on `line` may lie between it and the part that became `piece`.
-///
-/// Both are within a rounding error of each other, so the test is one of sides: a point is between if
-/// the two disagree about its side, or if it lies on the piece.
-pub(crate) fn sweeps(line: &Piece, piece: &Piece, ends: &PointGrid) -> bool {
-    let side = |a: Point2, b: Point2, v: Point2| {
-        let o = orient2d(a, b, v);
-        i8::from(o > 0.0) - i8::from(o < 0.0)
-    };
-    if [piece.a, piece.b].iter().all(|&p| side(line.a, line.b, p) == 0) {
-        return false;
-    }
-    let slack = 4.0 * reach_of(piece.a).max(reach_of(piece.b));
-    ends.any_near(&piece.segment(), slack, |v| {
-        let known = v == piece.a || v == piece.b || v == line.a || v == line.b;
-        let own = side(line.a, line.b, v);
-        !known && own != 0 && own != side(piece.a, piece.b, v)
-    })
 }
 
 /// Takes out pieces until none cross or overlap any more. Their groups count as present everywhere.

@@ -3,7 +3,7 @@
 //! Made of the rows alone. Text names a generic family and is placed without looking at any font, so that the same
 //! rows make the same bytes on every machine.
 
-use super::sweep::Kind;
+use super::method::Kind;
 use super::table::{Row, number};
 use plotters::coord::Shift;
 use plotters::prelude::*;

@@ -18,17 +18,21 @@ pub mod buffers;
 pub mod convex;
 pub mod draw;
 pub mod draws;
+pub mod method;
 pub mod page;
+mod plain;
 pub mod plane;
 pub mod predicates;
 pub mod run;
+mod shader_float;
 pub mod solvers;
 pub mod surfaces;
 pub mod sweep;
 pub mod table;
 
+pub use method::{Answer, Decide, Kind, Method, Outcome, method};
 pub use run::{Options, RunError, run};
-pub use sweep::{Answer, Board, Decide, Finding, Kind, Method, Outcome, Sweep, method};
+pub use sweep::{Board, Finding, Sweep};
 pub use table::{Row, TableError};
 
 /// All sweeps, in the order of the page. `quick` has fewer levels and cases of each.

@@ -1,6 +1,6 @@
 //! The page about all sweeps, and the sums of each method.
 
-use super::sweep::Kind;
+use super::method::Kind;
 use super::table::Row;
 use std::fmt::Write;
 

@@ -1,8 +1,9 @@
 //! The whole of it: sweeps to CSV, CSV to pictures and a page, and whether all is as it must be.
 
 use super::draw::{DrawError, svg};
+use super::method::{Kind, Outcome};
 use super::page::{Part, page, summary, sums};
-use super::sweep::{Finding, Kind, Outcome, Sweep};
+use super::sweep::{Finding, Sweep};
 use super::table::{Row, TableError, from_csv, to_csv};
 use sightlines::formats::files::{WriteError, atomic_write};
 use std::fmt::Write;

@@ -1,6 +1,6 @@
 //! Linear programs given to three solvers of others, as their users would.
 
-use super::sweep::Answer;
+use super::method::Answer;
 use good_lp::{Expression, ProblemVariables, ResolutionError, Solution, SolverModel, variable};
 
 /// A solver.

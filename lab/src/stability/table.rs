@@ -1,6 +1,6 @@
 //! What was counted, as CSV.
 
-use super::sweep::Kind;
+use super::method::Kind;
 
 /// First line of every file.
 pub const HEADER: &str = "sweep,method,kind,parameter,cases,open,unsafe,loose,errors";

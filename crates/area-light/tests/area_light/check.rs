@@ -3,8 +3,8 @@
 use crate::common::{Triangle, scene_of};
 use sightlines_area_light::{Lighting, Side, State};
 use sightlines_geometry::{Point3, orient3d};
+use sightlines_testkit::Random;
 use sightlines_testkit::RayScene;
-use sightlines_testkit::rays::Random;
 
 /// Rays that were cast, and pieces that they contradict.
 #[derive(Debug, Default)]

@@ -4,8 +4,8 @@ use crate::common::{Triangle, cuboid, floor, method, scene_of, volume};
 use sightlines_area_light::{LightPicture, Options, Shade, Shadows, Sides, shown};
 use sightlines_geometry::{Point3, orient3d};
 use sightlines_multifocal::Volume;
+use sightlines_testkit::Random;
 use sightlines_testkit::RayScene;
-use sightlines_testkit::rays::Random;
 use sightlines_visible_surface::{Camera, Chosen, Faces, Image, NOTHING, RayCaster, Shot, VisibleSurface};
 
 const EYE: Point3 = [9.0, -11.0, 6.0];

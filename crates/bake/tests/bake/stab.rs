@@ -9,7 +9,7 @@ use sightlines_geometry::{Point2, Portal3, orient2d};
 use sightlines_pvs::{CellId, StabParts, StabTrees, Table};
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines_sightline::Line3;
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 
 /// Lines for each scene.
 const N_LINES: u64 = 1_000;

@@ -3,7 +3,7 @@
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::{Umbra, Volume};
-use sightlines_testkit::rays::{Random, RayScene};
+use sightlines_testkit::{Random, RayScene};
 
 pub(crate) fn block(min: [f64; 3], max: [f64; 3]) -> Aabb<3> {
     Aabb { min, max }

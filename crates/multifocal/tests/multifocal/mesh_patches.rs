@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use sightlines_geometry::{Point3, orient3d};
 use sightlines_multifocal::mesh::{Mesh, PatchOptions, patches};
 use sightlines_multifocal::{Occluder, Plane, Volume, mesh};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use sightlines_testkit::{RayScene, draw};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -5,8 +5,8 @@ use sightlines_formats::scene::read_scene;
 use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d};
 use sightlines_multifocal::Occluder;
 use sightlines_multifocal::mesh::{PatchOptions, Sheets, patches};
+use sightlines_testkit::Random;
 use sightlines_testkit::RayScene;
-use sightlines_testkit::rays::Random;
 use std::time::Instant;
 
 /// The scenes of these names; says loudly that the test skips if there is no data.

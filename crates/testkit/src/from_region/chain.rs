@@ -1,7 +1,8 @@
 //! The search for a clear segment between two boxes.
 
 use super::{Glimpse, is_clear};
-use crate::rays::{Hit, Random, RayScene, length, sub};
+use crate::ray_witness::Random;
+use crate::rays::{Hit, RayScene, length, sub};
 use sightlines_cells::{Point3, Scene};
 use sightlines_geometry::Aabb;
 

@@ -2,7 +2,7 @@
 
 use sightlines::geometry::vector::{cross, dot, sub};
 use sightlines::geometry::{Adaptive, Orient2d, Point2, Point3, Portal2, orient3d};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 
 /// A ray, in scene units; in the plane, the third coordinates are 0.
 #[derive(Debug, Clone, Copy, PartialEq)]

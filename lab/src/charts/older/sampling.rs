@@ -2,7 +2,7 @@
 
 use super::{Opening, Ray, Ways};
 use sightlines::pvs::BitMatrix;
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 
 /// Which cells see each other as `n_rays` random rays from each cell show, cells by cells; symmetric.
 ///

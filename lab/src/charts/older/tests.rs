@@ -11,7 +11,7 @@ use sightlines::pvs::BitMatrix;
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, maze, office, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, SearchOptions, Zones, plan_visibility};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use sightlines_testkit::small_grid_plan;
 use std::time::Duration;
 

@@ -1,9 +1,9 @@
 //! Who is asked about axis-aligned doors.
 
 use super::naive::passes;
+use crate::stability::method::{Answer, Decide, Kind, method};
 use crate::stability::plane::said;
 use crate::stability::solvers::{Program, Solver};
-use crate::stability::sweep::{Answer, Decide, Kind, method};
 use sightlines::geometry::{Aabb, AxialDoor};
 use sightlines::sightline::lp::{LpAnswer, stab_axial};
 use sightlines::sightline::{AxialStabber, Stabber, Verdict, stabbing_line_axial};

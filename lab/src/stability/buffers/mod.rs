@@ -6,7 +6,6 @@
 //!
 //! Sheets of a mesh are asked about whole boxes, see `sheets`.
 
-pub(crate) mod float;
 mod naive;
 mod scene;
 mod sheets;
@@ -16,6 +15,7 @@ mod truth;
 
 use super::predicates::cases::{Apart, Place};
 use super::predicates::powers_of_ten;
+use super::shader_float;
 use super::sweep::caught;
 use super::{Answer, Board, Kind, Method, Outcome, Sweep};
 use scene::{Gap, Scene, Sizes};
@@ -48,10 +48,10 @@ const EPSILON: f64 = 1e-6;
 const INTEGERS: (Method, Fill) = (Method { name: "buffer integers", kind: Kind::Shipped }, integers);
 const REFERENCE: (Method, Fill) = (Method { name: "buffer reference", kind: Kind::Reference }, reference);
 const FLOATS: (Method, Fill) = (Method { name: "buffer f32 margin", kind: Kind::Shipped }, |job| {
-    float::draw(job, &job.planes()[0], float::MARGIN)
+    shader_float::draw(job, &job.planes()[0], shader_float::MARGIN)
 });
 const NO_MARGIN: (Method, Fill) =
-    (Method { name: "buffer f32 no margin", kind: Kind::Naive }, |job| float::draw(job, &job.planes()[0], 0.0));
+    (Method { name: "buffer f32 no margin", kind: Kind::Naive }, |job| shader_float::draw(job, &job.planes()[0], 0.0));
 const DOUBLES: (Method, Fill) =
     (Method { name: "buffer f64", kind: Kind::Naive }, |job| naive::doubles(job, &job.planes()[0], 0.0));
 const EPSILONS: (Method, Fill) =

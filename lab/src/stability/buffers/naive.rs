@@ -1,7 +1,7 @@
 //! Buffers as one would fill them at first.
 
 use super::truth::grid_corners;
-use crate::stability::predicates::plain::{cross, dot, minus};
+use crate::stability::plain::{cross, dot, minus};
 use sightlines::geometry::{Point3, orient3d};
 use sightlines::multifocal::{Buffer, Job, Occluder, Plane};
 

@@ -1,8 +1,8 @@
 //! Who is asked about convex portals.
 
 use super::{edges, separators};
+use crate::stability::method::{Answer, Decide, Kind, method};
 use crate::stability::plane::said;
-use crate::stability::sweep::{Answer, Decide, Kind, method};
 use sightlines::geometry::Portal3;
 use sightlines::sightline::{ConvexStabber, StabLimits, Verdict};
 

@@ -4,7 +4,8 @@ use super::methods::{Doors, funnel, methods, said};
 use super::naive::{Doubles, passes};
 use super::truth::{is_chain, is_open};
 use crate::stability::draws::{between, nudged, powers_of_ten, signed_unit};
-use crate::stability::sweep::{Decide, Kind, Sweep, method};
+use crate::stability::method::{Decide, Kind, method};
+use crate::stability::sweep::Sweep;
 use sightlines::geometry::{Point2, Portal2, Random};
 
 type Grid = [i64; 2];

@@ -1,8 +1,8 @@
 //! Who is asked about doors in the plane.
 
 use super::naive::{Coefficients, Doubles, Epsilon, Singles, passes};
+use crate::stability::method::{Answer, Decide, Kind, method};
 use crate::stability::solvers::{Program, Solver};
-use crate::stability::sweep::{Answer, Decide, Kind, method};
 use sightlines::geometry::{Aabb, Adaptive, Point2, Portal2};
 use sightlines::sightline::lp::{LpAnswer, stab};
 use sightlines::sightline::{Funnel, Verdict, stabbing_line};

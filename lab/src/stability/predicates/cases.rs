@@ -136,6 +136,11 @@ pub(crate) fn segments(place: Place, random: &mut Random) -> Case {
     }
 }
 
+/// The eight corners of a box.
+pub(crate) fn corners(min: Point3, max: Point3) -> [Point3; 8] {
+    std::array::from_fn(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { min[k] } else { max[k] }))
+}
+
 /// The lower and the upper corner of a volume of eyes, the ends of an edge before it, and a point behind that nearly lies in the
 /// plane through the edge and the corner that decides.
 pub(crate) fn umbra(place: Place, random: &mut Random) -> Case {
@@ -144,7 +149,7 @@ pub(crate) fn umbra(place: Place, random: &mut Random) -> Case {
     let mut at =
         |depth: f64| place.put([2.0 * random.unit() - 1.0, 2.0 * random.unit() - 1.0, depth + 0.3 * random.unit()]);
     let (a, b) = (at(2.0), at(2.0));
-    let farthest = super::ways::corners(min, max).into_iter().reduce(|v, other| {
+    let farthest = corners(min, max).into_iter().reduce(|v, other| {
         let outside = orient3d(v, a, b, other) > 0.0;
         if outside { other } else { v }
     });

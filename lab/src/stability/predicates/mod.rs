@@ -5,7 +5,6 @@
 
 pub(crate) mod cases;
 pub(crate) mod exact;
-pub(crate) mod plain;
 #[cfg(test)]
 pub(crate) mod sharp;
 #[cfg(test)]
@@ -13,9 +12,9 @@ mod tests;
 mod ways;
 
 use super::{Decide, Kind, Method, Sweep};
+use cases::corners;
 use cases::{Apart, Case, Place};
 use sightlines::geometry::{Point3, Random};
-use ways::corners;
 
 /// A predicate and those who decide it.
 struct Ask {

@@ -3,9 +3,9 @@
 //! A case is a list of points, as [`cases`](super::cases) makes them. Each answers whether something is *hidden*; walls and occluders are
 //! closed, so what only touches them is hidden.
 
-use super::cases::Case;
-use super::plain::{self, Float, Kept, V, cross, dot, minus, rounded};
+use super::cases::{Case, corners};
 use crate::stability::Answer;
+use crate::stability::plain::{self, Float, Kept, V, cross, dot, minus, rounded};
 use sightlines::geometry::{Point2, Point3, Segment2, orient2d, orient3d, polygon::polygon_contains};
 
 /// What a program without a better idea takes for "on the line".
@@ -21,11 +21,6 @@ fn flat(p: Point3) -> Point2 {
 
 fn first<const N: usize>(case: &[Point3]) -> [Point3; N] {
     *case.first_chunk().expect("a case has all of its points")
-}
-
-/// The eight corners of a box.
-pub(crate) fn corners(min: Point3, max: Point3) -> [Point3; 8] {
-    std::array::from_fn(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { min[k] } else { max[k] }))
 }
 
 /// A wall ends in the third point and goes on to the left; it blocks the line through the first two if its end lies there.
@@ -146,7 +141,7 @@ pub(super) mod segments {
 /// this edge is concerned, if all lines from eyes to it pass the edge on the inner side.
 pub(super) mod umbra {
     use super::*;
-    use crate::stability::buffers::float;
+    use crate::stability::shader_float;
 
     pub(crate) fn exact(case: &Case) -> Answer {
         let [min, max, a, b, t] = first(case);
@@ -177,19 +172,19 @@ pub(super) mod umbra {
     /// The numbers of the shader.
     fn framed(case: &[Point3]) -> [V<f32>; 4] {
         let [min, max, a, b, t] = first(case);
-        let frame = float::Frame::new(min, max, [a, b, t]);
+        let frame = shader_float::Frame::new(min, max, [a, b, t]);
         [frame.half_size(min, max), frame.point(a), frame.point(b), frame.point(t)]
     }
 
     /// As the shader decides.
     pub(crate) fn margin(case: &Case) -> Answer {
         let [half, a, b, t] = framed(case);
-        answer(float::inner(half, [a, b], t, 1.0, float::MARGIN))
+        answer(shader_float::inner(half, [a, b], t, 1.0, shader_float::MARGIN))
     }
 
     /// The shader without its margin.
     pub(crate) fn no_margin(case: &Case) -> Answer {
         let [half, a, b, t] = framed(case);
-        answer(float::inner(half, [a, b], t, 1.0, 0.0))
+        answer(shader_float::inner(half, [a, b], t, 1.0, 0.0))
     }
 }

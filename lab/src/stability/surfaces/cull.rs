@@ -1,8 +1,8 @@
 //! Culling before anything is drawn: faces that turn their backs, and what lies outside of the picture.
 
+use crate::stability::plain::{self, Float, Kept, cross, dot, minus, rounded};
 use crate::stability::predicates::cases::{self, Apart, Place};
 use crate::stability::predicates::exact;
-use crate::stability::predicates::plain::{self, Float, Kept, cross, dot, minus, rounded};
 use crate::stability::predicates::powers_of_ten;
 use crate::stability::{Answer, Decide, Kind, Method, Sweep};
 use sightlines::geometry::{Point3, Random};

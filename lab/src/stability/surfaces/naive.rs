@@ -3,7 +3,7 @@
 //! Which pixels a face covers is exact here, as everywhere in the crate; of a piece of a face it is told by the planes that cut it, so
 //! that pieces of a face never overlap and leave no cracks. What goes wrong is therefore wrong order, and nothing else.
 
-use crate::stability::predicates::plain::{Float, Kept, V, dot, minus, rounded};
+use crate::stability::plain::{Float, Kept, V, dot, minus, rounded};
 use sightlines::visible_surface::{Camera, Faces, Fragment, NOTHING};
 use std::marker::PhantomData;
 

@@ -1,7 +1,8 @@
 //! The frame: that it can fail, that its files hold what was counted, that threads change nothing.
 
+use super::method::{Answer, Kind, Outcome, method};
 use super::run::{Options, RunError, complaints, run};
-use super::sweep::{Answer, Kind, Outcome, Sweep, caught, method};
+use super::sweep::{Sweep, caught};
 use super::table::{HEADER, Row, TableError, from_csv, to_csv};
 use super::{draw, page};
 use sightlines::geometry::Random;

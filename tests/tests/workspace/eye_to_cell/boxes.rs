@@ -9,7 +9,7 @@ use sightlines::eye_to_cell::{Doors, View};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::kdtree::SceneOptions;
 use sightlines::pvs::Table;
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use sightlines_testkit::{directions_among_boxes, first_box, range_in_box};
 
 /// Side of the room.

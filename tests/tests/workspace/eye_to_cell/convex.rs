@@ -11,7 +11,7 @@ use sightlines::scenes::world::{
     BspWorldOptions, QuakeLikeOptions, World, WorldLeaf, bsp_world, quake_like, world_families,
 };
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 
 /// The table of a world: boxes around leafs, portals, who sees whom; every cell is an object as well.
 fn table(world: &World) -> Table {

@@ -4,7 +4,7 @@ use crate::eye_to_cell::ask::{Asker, answer};
 use crate::eye_to_cell::plan_families::{eye, families, gaze, tables};
 use crate::eye_to_cell::plans::{reachable, some_doors};
 use sightlines::eye_to_cell::{Doors, Method};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 
 /// Invariant: the methods that follow portals show no cell that cannot be walked to; the two that do not are as
 /// with all portals open; opening all again gives the first answers, in the same order.

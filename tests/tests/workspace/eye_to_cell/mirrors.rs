@@ -7,7 +7,7 @@ use sightlines::cells::Plan;
 use sightlines::eye_to_cell::{Doors, Method, View};
 use sightlines::geometry::{Point2, orient2d};
 use sightlines::pvs::{CellId, MirrorRecord, Table};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 

@@ -7,7 +7,7 @@ use crate::eye_to_cell::plans::some_doors;
 use sightlines::eye_to_cell::{Doors, Method, View};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::pvs::{CellId, MirrorRecord, Table};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use sightlines_testkit::{directions_among_boxes, first_box, range_in_box};
 
 /// A rectangle that reflects what comes towards it along its axis.

@@ -2,7 +2,7 @@
 
 use sightlines::eye_to_cell::View;
 use sightlines::geometry::{Aabb, Point3};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use std::f64::consts::{PI, TAU};
 
 /// A view in space, kept so that directions can be compared with it.

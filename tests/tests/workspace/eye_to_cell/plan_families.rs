@@ -6,7 +6,7 @@ use sightlines::eye_to_cell::View;
 use sightlines::geometry::{Aabb, Point2};
 use sightlines::pvs::Table;
 use sightlines::scenes::{self, OfficeOptions};
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use std::f64::consts::TAU;
 
 /// The table of a plan; `None` if the plan has no region, or crossings had to be rounded: then cells are those of walls

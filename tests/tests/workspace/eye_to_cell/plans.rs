@@ -8,7 +8,7 @@ use sightlines::cells::{CellId, Plan};
 use sightlines::eye_to_cell::{Doors, View};
 use sightlines::geometry::Point2;
 use sightlines::pvs::Table;
-use sightlines_testkit::rays::Random;
+use sightlines_testkit::Random;
 use sightlines_testkit::{EyeFan, axial_plan, draw, eye_fan, small_grid_plan};
 use std::collections::BTreeSet;
 use std::ops::AddAssign;

@@ -9,7 +9,7 @@ use sightlines::formats::scene::read_scene;
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{TowerOptions, tower};
-use sightlines_testkit::rays::{CellIndex, Random, RayScene};
+use sightlines_testkit::{CellIndex, Random, RayScene};
 use sightlines_tests::data_folder;
 use std::collections::BTreeSet;
 

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3};
+use sightlines_testkit::Random;
 use sightlines_testkit::RayScene;
-use sightlines_testkit::rays::Random;
 
 pub(crate) type Soup = Vec<[Point3; 3]>;
 

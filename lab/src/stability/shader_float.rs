@@ -2,7 +2,7 @@
 //! written there, without fused or reordered operations. A device may order sums otherwise, which the shader's margin allows for; the
 //! real one is asked where there is a device, in the tests of `sightlines-multifocal-gpu`.
 
-use crate::stability::predicates::plain::{V, cross, dot, minus};
+use super::plain::{V, cross, dot, minus};
 use sightlines::geometry::Point3;
 use sightlines::multifocal::{Buffer, Job, Occluder, Plane};
 

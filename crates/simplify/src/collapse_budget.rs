@@ -1,18 +1,17 @@
-//! What a budget pays for when edges are collapsed.
+//! Which edges a budget allows to be collapsed.
 
 use crate::bound;
 use crate::intercepts::Intercepts;
 use crate::mesh::{Change, Mesh, Policy, State};
 use crate::options::SimplifyOptions;
-use crate::select::{Account, least_visible};
-use crate::simplify::kept_faces;
+use crate::select::{Account, kept_faces, least_visible};
 use crate::views::{View, Views};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_visible_surface::Faces;
 use std::collections::BTreeMap;
 
-/// Collapses what is paid for.
-pub(crate) struct Paid<'a> {
+/// Accepts changes of the mesh as long as what they may change of the view stays within the budget.
+pub(crate) struct CollapseBudget<'a> {
     faces: &'a Faces,
     views: &'a Views,
     intercepts: &'a Intercepts,
@@ -28,7 +27,7 @@ pub(crate) struct Paid<'a> {
     charges: BTreeMap<u32, Vec<f64>>,
 }
 
-impl<'a> Paid<'a> {
+impl<'a> CollapseBudget<'a> {
     pub(crate) fn choose(
         faces: &'a Faces,
         views: &'a Views,
@@ -79,7 +78,7 @@ impl<'a> Paid<'a> {
     }
 }
 
-impl Policy for Paid<'_> {
+impl Policy for CollapseBudget<'_> {
     fn may_touch(&self, _: &Mesh, face: u32) -> bool {
         self.may_go[face as usize]
     }
