@@ -5,9 +5,9 @@ use divan::{Bencher, black_box};
 use sightlines::cells::Plan;
 use sightlines::geometry::{Adaptive, Orient2d, Portal2};
 use sightlines::scenes;
-use sightlines::sightline::lp::{LpAnswer, stab};
 use sightlines::sightline::{Funnel, PlanarCertificate};
 use sightlines_benches::{corridors, graph};
+use sightlines_testkit::lp::{LpAnswer, stab};
 
 fn main() {
     divan::main();

@@ -7,10 +7,20 @@ use std::path::PathBuf;
 
 /// A from-region method that cannot be prepared for the scene of a file.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {source}", path.display())]
+#[error("{}: {source}{}", path.display(), remedy(source))]
 pub(crate) struct MethodFailed {
     pub(crate) path: PathBuf,
     pub(crate) source: MethodError,
+}
+
+/// The command that brings what this build of the program lacks.
+fn remedy(error: &MethodError) -> &'static str {
+    match error {
+        MethodError::NotBuiltIn(_) => {
+            "; from the project's folder, `cargo install --path crates/cli --features gpu` installs a program that has it"
+        }
+        _ => "",
+    }
 }
 
 /// How multifocal buffers and sheets are made.

@@ -5,7 +5,9 @@ use crate::output;
 use sightlines::pvs::{Axis, CellId, Table};
 use sightlines::report::DrawError;
 use sightlines::report::PngError;
-use sightlines::report::{DrawOptions, Up, plan_svg, svg_to_png};
+#[cfg(feature = "png")]
+use sightlines::report::svg_to_png;
+use sightlines::report::{DrawOptions, Up, plan_svg};
 use std::path::{Path, PathBuf};
 
 /// Why there is no picture.
@@ -17,6 +19,13 @@ pub(crate) enum PictureError {
     /// A picture whose name does not say which kind it is.
     #[error("{}: the name of a picture ends in .svg or .png", .0.display())]
     PictureKind(PathBuf),
+    /// A picture of a kind that this build of the program cannot write.
+    #[cfg(not(feature = "png"))]
+    #[error(
+        "{}: PNG is not part of this build of the program, which draws tables as SVG; from the project's folder, \
+         `cargo install --path crates/cli --features png` installs one that does both", .0.display()
+    )]
+    NoPng(PathBuf),
     /// A picture that is always PNG, and is not called so.
     #[error("{}: the picture is written as PNG; give a name that ends in .png", .0.display())]
     NotPng(PathBuf),
@@ -32,15 +41,25 @@ pub(crate) enum PictureError {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PictureKind {
     Svg,
+    #[cfg(feature = "png")]
     Png,
 }
 
 impl PictureKind {
-    /// Tells the kind of a picture by the end of its name.
+    /// The endings of the kinds that this build of the program writes.
+    pub(crate) const ENDINGS: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
+
+    /// The kind of a picture, by the end of its name.
+    ///
+    /// # Errors
+    /// If it is no kind of picture, or one that this build of the program cannot write.
     pub(crate) fn of(path: &Path) -> Result<Self, PictureError> {
         match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("svg") => Ok(Self::Svg),
+            #[cfg(feature = "png")]
             Some("png") => Ok(Self::Png),
+            #[cfg(not(feature = "png"))]
+            Some("png") => Err(PictureError::NoPng(path.to_owned())),
             _ => Err(PictureError::PictureKind(path.to_owned())),
         }
     }
@@ -55,6 +74,7 @@ pub(crate) fn draw_plan(source: &Path, table: &Table, options: &DrawOptions) -> 
 pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<(), PictureError> {
     match PictureKind::of(out)? {
         PictureKind::Svg => Ok(output::save(out, svg.as_bytes())?),
+        #[cfg(feature = "png")]
         PictureKind::Png => {
             let png = svg_to_png(svg).map_err(|error| PictureError::Png { path: out.to_owned(), source: error })?;
             Ok(output::save(out, &png)?)

@@ -3,8 +3,7 @@
 //! Pixels count row by row from the upper left corner.
 
 use crate::PngError;
-use crate::png::encode_pixels;
-use image::ExtendedColorType;
+use crate::png::{Pixels, encode_pixels};
 
 /// What a pixel shows where nothing is seen: an id that no face has.
 pub const NO_FACE: u32 = u32::MAX;
@@ -64,7 +63,7 @@ pub fn face_colour(face: u32) -> [u8; 3] {
 pub fn faces_png(size: [u32; 2], faces: &[u32]) -> Result<Vec<u8>, PngError> {
     assert_eq!(faces.len(), size[0] as usize * size[1] as usize, "one face for each pixel");
     let pixels: Vec<u8> = faces.iter().flat_map(|&face| face_colour(face)).collect();
-    encode_pixels(size, &pixels, ExtendedColorType::Rgb8)
+    encode_pixels(size, &pixels, Pixels::Rgb)
 }
 
 /// One of the pictures of a sheet.
@@ -98,7 +97,7 @@ pub fn sheet_png(size: [u32; 2], pictures: &[SheetPicture<'_>]) -> Result<Vec<u8
         sheet.number(k + 1, [x, y]);
         sheet.picture(size, picture, [x, y + DIGIT[1] * DOT + MARGIN / 2]);
     }
-    encode_pixels(whole, &sheet.pixels, ExtendedColorType::Rgb8)
+    encode_pixels(whole, &sheet.pixels, Pixels::Rgb)
 }
 
 /// Pixels to the right and down of a sheet of `n` pictures; `None` if there are too many pixels to be counted in 32 bits, or none.

@@ -3,7 +3,7 @@
 //! # Scope
 //!
 //! - **Owns**: drawings of cells and of what is visible, as a plan ([`plan_svg`]), as a floor plan of a
-//!   scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`], [`svg_to_png`]); the JSON export
+//!   scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`]), in SVG, and with the feature `png` in PNG (`svg_to_png`); the JSON export
 //!   ([`export_json`]); summary numbers of a table ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]);
 //!   pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]);
 //!   pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]);
@@ -33,7 +33,9 @@ pub use export::{export_json, write_json};
 pub use faces::{MARK, NO_FACE, NOWHERE, SheetPicture, face_colour, faces_png, sheet_png, sheet_size};
 pub use light::{LIT, LightPixel, UMBRA, light_png};
 pub use multifocal::{OPEN, buffer_png, distance_png, voronoi_png};
-pub use png::{PngError, svg_to_png};
+pub use png::PngError;
+#[cfg(feature = "png")]
+pub use png::svg_to_png;
 pub use share::ViewerShare;
 pub use summary::Summary;
 pub use walk::{WalkBar, walk_svg};

@@ -4,8 +4,7 @@
 
 use crate::PngError;
 use crate::faces::NOWHERE;
-use crate::png::encode_pixels;
-use image::ExtendedColorType;
+use crate::png::{Pixels, encode_pixels};
 
 /// The colour of what is wholly in umbra.
 pub const UMBRA: [u8; 3] = [28, 36, 96];
@@ -75,7 +74,7 @@ pub fn light_png(size: [u32; 2], pixels: &[LightPixel], is_grey: bool) -> Result
     assert_eq!(pixels.len(), size[0] as usize * size[1] as usize, "one value for each pixel");
     let colour = |pixel: &LightPixel| if is_grey { pixel.grey() } else { pixel.colour() };
     let colours: Vec<u8> = pixels.iter().flat_map(colour).collect();
-    encode_pixels(size, &colours, ExtendedColorType::Rgb8)
+    encode_pixels(size, &colours, Pixels::Rgb)
 }
 
 #[cfg(test)]

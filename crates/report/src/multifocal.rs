@@ -4,8 +4,7 @@
 //! picture.
 
 use crate::PngError;
-use crate::png::encode_pixels;
-use image::ExtendedColorType;
+use crate::png::{Pixels, encode_pixels};
 
 /// The colour of texels that nothing is known to block: no grey, so that it is not mistaken for a value.
 pub const OPEN: [u8; 3] = [24, 48, 160];
@@ -23,7 +22,7 @@ pub const OPEN: [u8; 3] = [24, 48, 160];
 /// # Panics
 /// If there are not as many values as texels.
 pub fn buffer_png(texels: [u32; 2], values: &[u32], white: u32) -> Result<Vec<u8>, PngError> {
-    encode(texels, values, ExtendedColorType::Rgb8, |&value| match value.checked_sub(1) {
+    encode(texels, values, Pixels::Rgb, |&value| match value.checked_sub(1) {
         None => OPEN,
         Some(value) => [grey(f64::from(value), f64::from(white)); 3],
     })
@@ -49,7 +48,7 @@ pub fn voronoi_png(
     first_edge: u32,
     first_face: u32,
 ) -> Result<Vec<u8>, PngError> {
-    encode(texels, features, ExtendedColorType::Rgb8, |feature| match *feature {
+    encode(texels, features, Pixels::Rgb, |feature| match *feature {
         None => [0; 3],
         Some(id) if id >= first_face => colour(id, 150, 105),
         Some(id) if id >= first_edge => colour(id, 40, 180),
@@ -69,7 +68,7 @@ pub fn voronoi_png(
 /// # Panics
 /// If there are not as many distances as texels.
 pub fn distance_png(texels: [u32; 2], distances: &[f64], white: f64) -> Result<Vec<u8>, PngError> {
-    encode(texels, distances, ExtendedColorType::L8, |&distance| [grey(distance, white)])
+    encode(texels, distances, Pixels::Grey, |&distance| [grey(distance, white)])
 }
 
 /// From 0 to 255, as `value` is from 0 to `white`.
@@ -101,7 +100,7 @@ fn colour(id: u32, base: u8, span: u8) -> [u8; 3] {
 fn encode<T, const N: usize>(
     [width, height]: [u32; 2],
     items: &[T],
-    kind: ExtendedColorType,
+    kind: Pixels,
     pixel: impl Fn(&T) -> [u8; N],
 ) -> Result<Vec<u8>, PngError> {
     assert_eq!(items.len(), width as usize * height as usize, "one item for each texel");

@@ -1,6 +1,7 @@
 //! SVG and pixels to PNG.
 
-use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use png::{BitDepth, ColorType, Compression, Encoder, Filter};
+#[cfg(feature = "png")]
 use resvg::{tiny_skia, usvg};
 
 /// Why a picture could not be rendered.
@@ -29,6 +30,7 @@ pub enum PngError {
 ///
 /// # Errors
 /// [`PngError`].
+#[cfg(feature = "png")]
 pub fn svg_to_png(svg: &str) -> Result<Vec<u8>, PngError> {
     let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).map_err(|e| PngError::Svg(e.into()))?;
     let size = tree.size().to_int_size();
@@ -38,28 +40,47 @@ pub fn svg_to_png(svg: &str) -> Result<Vec<u8>, PngError> {
     pixels.encode_png().map_err(|e| PngError::Encode(e.into()))
 }
 
+/// The pixels that are encoded: eight bits for each channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pixels {
+    Rgb,
+    Grey,
+}
+
 /// Encodes pixels, row by row from the upper left corner.
-pub(crate) fn encode_pixels(
-    [width, height]: [u32; 2],
-    pixels: &[u8],
-    kind: ExtendedColorType,
-) -> Result<Vec<u8>, PngError> {
+pub(crate) fn encode_pixels([width, height]: [u32; 2], pixels: &[u8], kind: Pixels) -> Result<Vec<u8>, PngError> {
     if pixels.is_empty() {
         return Err(PngError::Size { width, height });
     }
     let mut png = Vec::new();
-    let encoded = PngEncoder::new(&mut png).write_image(pixels, width, height, kind);
+    let mut encoder = Encoder::new(&mut png, width, height);
+    encoder.set_color(if kind == Pixels::Rgb { ColorType::Rgb } else { ColorType::Grayscale });
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    let encoded = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(pixels)?;
+        writer.finish()
+    });
     encoded.map(|()| png).map_err(|error| PngError::Encode(error.into()))
 }
 
-/// Size and pixels of a picture, for tests.
+/// Size and pixels of an RGB or grey picture, for tests.
 #[cfg(test)]
 pub(crate) fn decoded(png: &[u8]) -> ([u32; 2], Vec<[u8; 3]>) {
-    let picture = image::load_from_memory(png).unwrap().into_rgb8();
-    ([picture.width(), picture.height()], picture.pixels().map(|p| p.0).collect())
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(info.bit_depth, BitDepth::Eight);
+    let pixels = match info.color_type {
+        ColorType::Rgb => bytes.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect(),
+        ColorType::Grayscale => bytes.iter().map(|&grey| [grey; 3]).collect(),
+        other => panic!("{other:?}"),
+    };
+    ([info.width, info.height], pixels)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png"))]
 mod tests {
     use super::*;
 

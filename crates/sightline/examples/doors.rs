@@ -3,8 +3,8 @@
 //! Run as `cargo run -p sightlines-sightline --example doors`.
 
 use sightlines_geometry::{Adaptive, Point2, Portal2};
-use sightlines_sightline::lp::{LpAnswer, stab};
 use sightlines_sightline::{End, Funnel, PlanarCertificate, PlanarWitness, SightlineError, Verdict, stabbing_line};
+use sightlines_testkit::lp::{LpAnswer, stab};
 
 /// A door across a corridor that runs towards +x, from `low` to `high`.
 fn door(x: f64, low: f64, high: f64) -> Portal2 {

@@ -5,8 +5,7 @@
 //! - **Owns**: the [`Stabber`] contract that a search drives, the planar [`Funnel`] (exact, incremental), the
 //!   proofs of its answers ([`PlanarWitness`], [`PlanarCertificate`]) with checkers that share no code with it; the same
 //!   for axis-aligned rectangles in space ([`AxialStabber`], [`AxialWitness`], [`AxialCertificate`]) and for convex
-//!   polygons ([`ConvexStabber`], [`Line3`], [`ConvexCertificate`]); and the first two questions as linear
-//!   programs ([`lp`]), for reference.
+//!   polygons ([`ConvexStabber`], [`Line3`], [`ConvexCertificate`]).
 //! - **Out of scope**: cells, graphs, tables, files.
 //! - **Invariants**: every decision is exact for the coordinates given; a sequence that an open set of lines
 //!   passes is never reported blocked, and one that only grazing lines pass is never reported open.
@@ -16,7 +15,6 @@
 
 pub mod axial;
 pub mod convex;
-pub mod lp;
 pub mod planar;
 mod stabber;
 mod verdict;

@@ -2,8 +2,8 @@
 
 use super::clock::Start;
 use sightlines::geometry::{Aabb, Adaptive, AxialDoor, Orient2d, Point2, Portal2};
-use sightlines::sightline::lp::{self, LpAnswer};
 use sightlines::sightline::{LimitReached, Stabber, Verdict};
+use sightlines_testkit::lp::{self, LpAnswer};
 use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

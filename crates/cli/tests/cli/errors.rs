@@ -109,9 +109,9 @@ fn damaged_tables_are_refused() {
     let last = flipped.len() / 2;
     flipped[last] ^= 1;
     folder.write("flipped.pvs", &flipped);
-    let error = folder.refused(&["draw", "flipped.pvs", "-o", "out.png"]);
+    let error = folder.refused(&["draw", "flipped.pvs", "-o", "out.svg"]);
     assert!(error.starts_with("flipped.pvs: byte ") && error.contains("section "), "{error}");
-    assert!(!folder.path("out.json").exists() && !folder.path("out.png").exists());
+    assert!(!folder.path("out.json").exists() && !folder.path("out.svg").exists());
 }
 
 #[test]
@@ -294,7 +294,7 @@ fn outputs_are_all_or_nothing() {
         &["pack", "office.pvs", "-o", "no/out.pvz"],
         &["walk", "office.pvs", "--random", "5", "-o", "no/out.svg"],
         &["draw", "office.pvs", "-o", "no/out.svg"],
-        &["explain", "office.pvs", "0", "1", "--draw", "no/out.png"],
+        &["explain", "office.pvs", "0", "1", "--draw", "no/out.svg"],
         &["demo", "--out", "office.pvs/folder"],
     ] {
         let error = folder.refused(args);

@@ -1,6 +1,7 @@
 //! `light`: what the picture shows is what is printed, more depth decides more, and what cannot be drawn is refused in one line.
 
 use crate::common::Folder;
+use crate::common::picture::Picture;
 use serde_json::Value;
 
 /// A floor, and a board over it.
@@ -35,9 +36,9 @@ fn more_halves_decide_more() {
     // The share of the light is the same to the eye whatever is proven: pictures of shares differ by what rays estimate.
     let grey = ["2", "10"].map(|depth| {
         light(&folder, &["--depth", depth, "--grey", "--rays", "256"]);
-        image::load_from_memory(&folder.read("out.png")).expect("a picture").into_rgb8()
+        Picture::decode(&folder.read("out.png"))
     });
-    let [a, b] = grey.each_ref().map(|g| g.pixels().map(|p| i32::from(p.0[0])).collect::<Vec<_>>());
+    let [a, b] = grey.each_ref().map(|g| g.pixels.iter().map(|p| i32::from(p[0])).collect::<Vec<_>>());
     let far = a.iter().zip(&b).filter(|(a, b)| (*a - *b).abs() > 64).count();
     assert!(far * 100 < a.len(), "{far}");
 }

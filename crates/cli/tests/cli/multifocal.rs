@@ -1,6 +1,7 @@
 //! Pictures of multifocal buffers and of what is nearest: as blessed, as exact arithmetic says, and refused with clear words.
 
 use crate::common::Folder;
+use crate::common::picture::Picture;
 use sightlines::geometry::{Point3, orient3d};
 use sightlines::report::OPEN;
 use std::path::PathBuf;
@@ -14,26 +15,6 @@ const TWO: &str = "v -3 -2 6\nv 1 -2 6\nv -1 2 6\nv -1 -2 8\nv 5 -3 7\nv 2 4 8\n
 
 const VOLUME: [&str; 4] = ["--volume", "-0.25,-0.25,-0.25,0.25,0.25,0.25", "--texels", "64"];
 const PLANE: [&str; 2] = ["--plane", "z=10:-8,-8,8,8"];
-
-/// A decoded picture: its size, and its pixels from the upper left.
-#[derive(Debug, Clone, PartialEq)]
-struct Picture {
-    size: [u32; 2],
-    pixels: Vec<[u8; 3]>,
-}
-
-impl Picture {
-    fn decode(png: &[u8]) -> Self {
-        let picture = image::load_from_memory(png).expect("a picture").into_rgb8();
-        Self { size: [picture.width(), picture.height()], pixels: picture.pixels().map(|p| p.0).collect() }
-    }
-
-    /// How many pixels differ from those of another picture; all, if the size does.
-    fn differs(&self, other: &Self) -> usize {
-        let differ = self.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count();
-        if self.size == other.size { differ } else { self.pixels.len() }
-    }
-}
 
 fn golden(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/multifocal").join(name)
@@ -165,6 +146,15 @@ fn the_gpu_and_the_cpu_draw_the_same() {
     };
     folder.run(&args("cpu")).expect(0);
     let cpu = folder.read("depth.png");
+    if !cfg!(feature = "gpu") {
+        let refused = folder.refused(&args("gpu"));
+        let command = "`cargo install --path crates/cli --features gpu`";
+        assert!(
+            refused.starts_with("two.obj: the backend gpu is not part of this build") && refused.contains(command),
+            "{refused}"
+        );
+        return;
+    }
     let run = folder.run(&args("gpu")).expect(0);
     assert!(cpu == folder.read("depth.png"));
     if run.json()["backend"] == "cpu" {

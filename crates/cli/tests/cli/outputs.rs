@@ -1,6 +1,7 @@
 //! Outputs that cannot be written are told first.
 
 use crate::common::Folder;
+use crate::common::picture::DRAWN;
 
 /// The arguments with the name of an output behind the last option.
 fn naming(args: &[&str], output: &str) -> Vec<String> {
@@ -45,6 +46,7 @@ fn outputs_are_checked_first() {
         let ending = match args[0] {
             "simplify" | "generate" => "glb",
             "levels" => "lod",
+            "verify" | "explain" | "draw" => DRAWN,
             _ => "png",
         };
         for bad in [format!("no/out.{ending}"), format!("file/out.{ending}"), "taken.png".to_owned()] {

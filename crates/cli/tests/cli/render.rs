@@ -3,6 +3,7 @@
 
 use crate::common::Folder;
 use crate::common::looks::table;
+use crate::common::picture::Picture;
 use serde_json::Value;
 use sightlines::pvs::Table;
 use sightlines::report::{MARK, NOWHERE, face_colour};
@@ -16,28 +17,6 @@ const ROOM: [&str; 6] = ["--eye", "1.3,1.61,1.9", "--look-at", "6.1,1.17,2.3", "
 const FRONT: [&str; 6] = ["--eye", "0,0,0", "--look-at", "0,0,1", "--size", "96x72"];
 /// Those that are exact.
 const EXACT: [&str; 6] = ["newell", "schumacker", "bsp", "bsp-front", "zbuffer", "raycast"];
-
-#[derive(Debug, Clone, PartialEq)]
-struct Picture {
-    size: [u32; 2],
-    pixels: Vec<[u8; 3]>,
-}
-
-impl Picture {
-    fn of(folder: &Folder, name: &str) -> Self {
-        let picture = image::load_from_memory(&folder.read(name)).expect("a picture").into_rgb8();
-        Self { size: [picture.width(), picture.height()], pixels: picture.pixels().map(|p| p.0).collect() }
-    }
-
-    fn count(&self, colour: [u8; 3]) -> usize {
-        self.pixels.iter().filter(|p| **p == colour).count()
-    }
-
-    fn differs(&self, other: &Self) -> usize {
-        assert_eq!(self.size, other.size);
-        self.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count()
-    }
-}
 
 fn with_cycle() -> Folder {
     let folder = Folder::new();
@@ -81,7 +60,7 @@ fn exact_methods_draw_the_same_picture_in_the_colours_of_faces() {
         for method in EXACT {
             let info = render(folder, scene, &view, &["--method", method]);
             let made = folder.read("out.png");
-            let picture = Picture::of(folder, "out.png");
+            let picture = Picture::decode(&folder.read("out.png"));
             assert_eq!(picture.size, [96, 72]);
             let row = &info["pictures"][0];
             assert_eq!(number(&row["covered"]) as usize, picture.pixels.len() - picture.count(NOWHERE), "{method}");
@@ -100,7 +79,7 @@ fn exact_methods_draw_the_same_picture_in_the_colours_of_faces() {
 fn the_painter_is_wrong_and_the_sheet_marks_where() {
     let folder = with_cycle();
     let info = render(&folder, "cycle.obj", &FRONT, &["--compare"]);
-    let sheet = Picture::of(&folder, "out.png");
+    let sheet = Picture::decode(&folder.read("out.png"));
     let rows = info["pictures"].as_array().expect("rows");
     let mut wrong = 0;
     for row in rows {
@@ -113,9 +92,9 @@ fn the_painter_is_wrong_and_the_sheet_marks_where() {
     assert_eq!(sheet.count(MARK), wrong);
     // Of the painter's own picture as many pixels are unlike.
     render(&folder, "cycle.obj", &FRONT, &["--method", "painter"]);
-    let painted = Picture::of(&folder, "out.png");
+    let painted = Picture::decode(&folder.read("out.png"));
     render(&folder, "cycle.obj", &FRONT, &["--method", "raycast"]);
-    assert_eq!(painted.differs(&Picture::of(&folder, "out.png")), wrong);
+    assert_eq!(painted.differs(&Picture::decode(&folder.read("out.png"))), wrong);
     // The impostor: one changed pixel is a difference.
     let mut changed = painted.clone();
     changed.pixels[7][1] ^= 1;
@@ -242,7 +221,7 @@ fn back_faces_go_and_outside_of_all_cells_nothing_does() {
 fn objects_have_colours_too() {
     let folder = Folder::with_tower();
     let info = render(&folder, "tower.glb", &ROOM, &["--method", "zbuffer", "--by-object"]);
-    let picture = Picture::of(&folder, "out.png");
+    let picture = Picture::decode(&folder.read("out.png"));
     let known: BTreeSet<[u8; 3]> = (0..number(&info["n_objects"]) as u32).map(face_colour).collect();
     let seen: BTreeSet<[u8; 3]> = picture.pixels.iter().copied().filter(|p| *p != NOWHERE).collect();
     assert!(seen.len() > 1 && seen.is_subset(&known));

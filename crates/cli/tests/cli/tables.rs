@@ -1,5 +1,6 @@
 //! Building, asking, exporting, drawing and explaining tables.
 
+use crate::common::picture::{DRAWN, is_drawn};
 use crate::common::{Folder, doom_map, maze_text, wad};
 use serde_json::{Value, json};
 use sightlines::pvs::{CellId, Table};
@@ -208,9 +209,10 @@ fn explain_speaks_and_draws() {
         "{seen}"
     );
     assert!(String::from_utf8(folder.read("line.svg")).unwrap().contains("<circle"));
-    let why = folder.run(&["explain", "office.pvs", "0", &hidden, "--draw", "why.png"]).expect(1).out;
+    let picture = format!("why.{DRAWN}");
+    let why = folder.run(&["explain", "office.pvs", "0", &hidden, "--draw", &picture]).expect(1).out;
     assert!(why.contains("does not see") && why.contains("no line separates these points"), "{why}");
-    assert!(folder.read("why.png").starts_with(b"\x89PNG"));
+    assert!(is_drawn(&folder.read(&picture)));
     let given_up = folder.run(&["explain", "office.pvs", "0", &hidden, "--max-visits", "0"]).expect(1).out;
     assert!(given_up.contains("given up") && given_up.contains("do not see each other"), "{given_up}");
 }
@@ -233,16 +235,27 @@ fn draw_makes_pictures_of_both_kinds() {
     folder.run(&["draw", "office.pvs", "-o", "plan.svg"]).expect(0);
     folder.run(&["draw", "office.pvs", "-o", "cell.SVG", "--cell", "0"]).expect(0);
     let at = eye(&table.cells()[0]);
-    folder.run(&["draw", "office.pvs", "-o", "eye.png", "--eye", &at, "--size", "300"]).expect(0);
     let svg = |name: &str| String::from_utf8(folder.read(name)).unwrap();
     assert!(svg("plan.svg").starts_with("<svg ") && svg("plan.svg") != svg("cell.SVG"));
+    // Nothing to draw from outside.
+    let outside = folder.run(&["draw", "office.pvs", "-o", "no.svg", "--eye", "-9,-9"]).expect(1);
+    assert_eq!(outside.out, "the point (-9, -9) is outside every cell\n");
+    assert!(!folder.path("no.svg").exists());
+    let args = ["draw", "office.pvs", "-o", "eye.png", "--eye", &at, "--size", "300"];
+    if !cfg!(feature = "png") {
+        let refused = folder.refused(&args);
+        let command = "`cargo install --path crates/cli --features png`";
+        assert!(
+            refused.starts_with("eye.png: PNG is not part of this build") && refused.contains(command),
+            "{refused}"
+        );
+        assert!(!folder.path("eye.png").exists());
+        return;
+    }
+    folder.run(&args).expect(0);
     let png = folder.read("eye.png");
     let side = |at: usize| u32::from_be_bytes([png[at], png[at + 1], png[at + 2], png[at + 3]]);
     assert!(png.starts_with(b"\x89PNG") && side(16).max(side(20)) == 300);
-    // Nothing to draw from outside.
-    let outside = folder.run(&["draw", "office.pvs", "-o", "no.png", "--eye", "-9,-9"]).expect(1);
-    assert_eq!(outside.out, "the point (-9, -9) is outside every cell\n");
-    assert!(!folder.path("no.png").exists());
 }
 
 #[test]
@@ -274,9 +287,10 @@ fn the_demo_writes_what_it_names() {
     let folder = Folder::new();
     let told = folder.run(&["demo"]).expect(0).out;
     let names = crate::common::names(&folder.path("sightlines-demo"));
-    let expected = ["plan.geojson", "plan.png", "plan.pvs", "plan.svg", "seen-little.png", "seen-little.svg"];
-    assert_eq!(names[..6], expected);
-    assert_eq!(names.len(), 10);
+    let all = ["plan.geojson", "plan.png", "plan.pvs", "plan.svg", "seen-little.png", "seen-little.svg"];
+    let expected: Vec<_> = all.into_iter().filter(|name| cfg!(feature = "png") || !name.ends_with(".png")).collect();
+    assert_eq!(names[..expected.len()], expected);
+    assert_eq!(names.len(), if cfg!(feature = "png") { 10 } else { 6 });
     assert!(names.iter().all(|name| told.contains(name.as_str())), "{told}");
     for word in ["cells", "portals", "visible pairs", "time", "of the floor on average"] {
         assert!(told.contains(word), "{word} in {told}");

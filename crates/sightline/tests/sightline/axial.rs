@@ -3,10 +3,10 @@
 use num_bigint::BigInt;
 use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Adaptive, AxialDoor, Point2, Portal2};
-use sightlines_sightline::lp::{LpAnswer, stab_axial};
 use sightlines_sightline::{
     AxialCertificate, AxialStabber, Funnel, OctantProof, SightlineError, Stabber, Verdict, stabbing_line_axial,
 };
+use sightlines_testkit::lp::{LpAnswer, stab_axial};
 use sightlines_testkit::{
     AXIS_ORDERS, any_axial_doors, axial_corridor, axial_meets_brute_force, axial_moved, axial_stabbable_brute_force,
     straight_axial_corridor,

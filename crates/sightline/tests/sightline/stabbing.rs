@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use sightlines_geometry::{Adaptive, Point2, Portal2, orient2d};
-use sightlines_sightline::lp::{LpAnswer, stab};
 use sightlines_sightline::{Funnel, PlanarCertificate, SightlineError, Verdict, stabbing_line};
+use sightlines_testkit::lp::{LpAnswer, stab};
 use sightlines_testkit::{PortalPair, Stab, any_portals, as_portals, corridor, stabbable_brute_force};
 
 /// The funnel's answer to a whole sequence.

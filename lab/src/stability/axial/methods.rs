@@ -5,8 +5,8 @@ use crate::stability::method::{Answer, Decide, Kind, method};
 use crate::stability::plane::said;
 use crate::stability::solvers::{Program, Solver};
 use sightlines::geometry::{Aabb, AxialDoor};
-use sightlines::sightline::lp::{LpAnswer, stab_axial};
 use sightlines::sightline::{AxialStabber, Stabber, Verdict, stabbing_line_axial};
+use sightlines_testkit::lp::{LpAnswer, stab_axial};
 
 /// A sequence of doors.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,8 +4,8 @@ use super::naive::{Coefficients, Doubles, Epsilon, Singles, passes};
 use crate::stability::method::{Answer, Decide, Kind, method};
 use crate::stability::solvers::{Program, Solver};
 use sightlines::geometry::{Aabb, Adaptive, Point2, Portal2};
-use sightlines::sightline::lp::{LpAnswer, stab};
 use sightlines::sightline::{Funnel, Verdict, stabbing_line};
+use sightlines_testkit::lp::{LpAnswer, stab};
 
 /// A sequence of doors.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use crate::Answer;
 use crate::commands::build::{BakeArgs, plan};
 use crate::input;
 use crate::output::{self, bytes, percent};
-use crate::picture::{draw_plan, save_picture};
+use crate::picture::{PictureKind, draw_plan, save_picture};
 use serde::Serialize;
 use sightlines::formats::geojson;
 use sightlines::pvs::{CellId, Table};
@@ -28,7 +28,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     let mut files = vec!["plan.geojson".to_owned(), "plan.pvs".to_owned()];
     for (name, view) in views(&baked.table) {
         let options = DrawOptions { view, ..DrawOptions::default() };
-        for kind in ["svg", "png"] {
+        for kind in PictureKind::ENDINGS {
             let file = format!("{name}.{kind}");
             let svg = draw_plan(&table_path, &baked.table, &options)?;
             save_picture(&svg, &folder.join(&file))?;

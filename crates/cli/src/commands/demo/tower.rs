@@ -6,8 +6,7 @@ use crate::Answer;
 use crate::commands::build::{BakeArgs, space};
 use crate::glb::save_glb;
 use crate::output::{self, bytes, percent};
-use crate::picture::PictureError;
-use crate::picture::{self, save_picture};
+use crate::picture::{self, PictureError, PictureKind, save_picture};
 use serde::Serialize;
 use sightlines::formats::scene::read_scene;
 use sightlines::pvs::{CellId, Table};
@@ -29,7 +28,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     output::save(&table_path, &baked.table.to_bytes())?;
     let mut files = vec!["tower.glb".to_owned(), "tower.pvs".to_owned()];
     for (name, svg) in pictures(&table_path, &baked.table)? {
-        for kind in ["svg", "png"] {
+        for kind in PictureKind::ENDINGS {
             let picture = format!("tower-{name}.{kind}");
             save_picture(&svg, &args.out.join(&picture))?;
             files.push(picture);

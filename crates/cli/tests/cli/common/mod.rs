@@ -1,6 +1,7 @@
 //! Runs the built program on generated files.
 
 pub(crate) mod looks;
+pub(crate) mod picture;
 pub(crate) mod quake;
 
 use sightlines::formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine};

@@ -1,4 +1,4 @@
-//! The same question as a linear program, as the literature puts it: for reference and for teaching.
+//! The question of a stabbing line as a linear program, as the literature puts it: for reference and for teaching.
 //!
 //! Unknown is a line `a x + b y + c`; every left end asks for a value of at least `margin`, every right
 //! end for at most `-margin`, and the largest margin is wanted. The solver works in doubles with
@@ -59,7 +59,7 @@ pub fn stab(portals: &[Portal2]) -> LpAnswer {
 }
 
 /// The same for axis-aligned doors in space: the best of the programs of all octants of directions, with
-/// slownesses between the margin and 1 and four rows for each door (see [`axial`](crate::axial)). An
+/// slownesses between the margin and 1 and four rows for each door (see `axial` of `sightlines-sightline`). An
 /// empty sequence is open with margin 1.
 pub fn stab_axial(doors: &[AxialDoor]) -> LpAnswer {
     if doors.is_empty() {
