@@ -1,6 +1,6 @@
 //! From-region methods by name: which there are, and how each is prepared for a scene.
 //!
-//! A new method is a module here with an [`Entry`], one variant of [`OcclusionMethod`] and one line in its table. A new
+//! A new method is a module here with an `Entry`, one variant of [`OcclusionMethod`] and one line in its table. A new
 //! backend of multifocal buffers is one variant of [`Backend`] and one line in the table of the module `backend`.
 
 mod backend;
