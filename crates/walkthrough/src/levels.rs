@@ -1,7 +1,8 @@
-//! Simplified levels of a scene for the cells that the viewer is in.
+//! Simplified levels of a scene for the cells of the eye.
 //!
-//! A level is a variant of a scene that was made for the eyes of some cells: drawn from there it is the scene, but for what it was allowed
-//! to leave out. How it is made, stored and read is not known here; a [`LoadLevel`] reads it, on another thread.
+//! A level is a variant of a scene for the eyes of some cells: drawn from there, it looks like the scene except for
+//! what its budget allowed to change. How it is made, stored and read is up to a [`LoadLevel`], which reads it on
+//! another thread.
 
 use crate::prefetch::{Prefetcher, Prepare};
 use sightlines_pvs::CellId;
@@ -9,12 +10,12 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// What a level takes.
+/// The size of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LevelSize {
     /// Bytes in memory.
     pub bytes: u64,
-    /// Triangles that are drawn.
+    /// Number of triangles.
     pub n_triangles: u64,
 }
 
@@ -23,11 +24,11 @@ pub struct LevelSize {
 pub struct LevelIndex {
     level_of_cell: Vec<Option<u32>>,
     levels: Vec<LevelSize>,
-    /// By level: the first cell that has it, by which it is asked for.
+    /// By level: the first cell that has it, the key by which it is requested.
     first_cell: Vec<Option<CellId>>,
 }
 
-/// Why an index is none.
+/// Why an index is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LevelError {
@@ -75,20 +76,20 @@ impl LevelIndex {
         self.level_of_cell.get(cell.idx()).copied().flatten()
     }
 
-    /// The level of a viewer who is in these cells: one that all of them have. `None` if there is none, or no cell: outside every
-    /// cell a level is for nobody.
+    /// The level for an eye in these cells: the one that all of them share. `None` if they share none, or if there is
+    /// no cell.
     pub fn level_at(&self, cells: &[CellId]) -> Option<u32> {
         let (&first, others) = cells.split_first()?;
         let level = self.level_of(first)?;
         others.iter().all(|&cell| self.level_of(cell) == Some(level)).then_some(level)
     }
 
-    /// The triangles that are drawn for a viewer in these cells, if the original has `n_original`.
+    /// The number of triangles drawn for an eye in these cells, if the original has `n_original`.
     pub fn n_triangles_at(&self, cells: &[CellId], n_original: u64) -> u64 {
         self.level_at(cells).map_or(n_original, |level| self.levels[level as usize].n_triangles)
     }
 
-    /// From now on these cells have no level. Levels keep their numbers.
+    /// Removes the levels of these cells. Levels keep their numbers.
     pub fn forget(&mut self, cells: impl IntoIterator<Item = CellId>) {
         for cell in cells {
             if let Some(level) = self.level_of_cell.get_mut(cell.idx()) {
@@ -102,13 +103,13 @@ impl LevelIndex {
 pub trait LoadLevel: Send + 'static {
     /// What is drawn.
     type Level: Send + Sync + 'static;
-    /// Why it is not there.
+    /// Why a level cannot be read.
     type Error: Send + 'static;
 
     /// Reads a level.
     ///
     /// # Errors
-    /// If it cannot be read. It is asked for again while a viewer still needs it.
+    /// If it cannot be read. It is requested again while it is needed.
     fn load(&mut self, level: u32) -> Result<Self::Level, Self::Error>;
 }
 
@@ -135,7 +136,7 @@ impl<L> Clone for Draw<L> {
     }
 }
 
-/// Reads the level of a cell: levels are asked for by the first cell that had them.
+/// Reads the level of a cell: levels are requested by the first cell that had them.
 struct OfCells<L> {
     loader: L,
     /// By that cell: the level, and its bytes.
@@ -170,14 +171,14 @@ pub struct LevelCounters {
     pub frames: u64,
     /// Frames with a level.
     pub with_level: u64,
-    /// Frames with the original, as the level had not come yet.
+    /// Frames with the original because the level had not arrived yet.
     pub late: u64,
 }
 
-/// The levels that a viewer draws, read before he needs them.
+/// The levels to draw along a walk, read in advance.
 ///
-/// A frame never waits: while the level of his cells has not come, he draws the original. A level that does not fit the budget is
-/// never read.
+/// A frame never waits: until the level of the eye's cells has arrived, the original is drawn. A level that does not
+/// fit the budget is never read.
 pub struct Levels<L: LoadLevel> {
     index: LevelIndex,
     budget: u64,
@@ -187,8 +188,9 @@ pub struct Levels<L: LoadLevel> {
 }
 
 impl<L: LoadLevel> Levels<L> {
-    /// Begins with nothing read. `budget` bounds the bytes of the levels that are kept, as the index tells them; that of the viewer's cells
-    /// stays in any case, so that one that was on its way when he turned aside may come on top until the next is read.
+    /// Starts with nothing read. `budget` bounds the bytes of the levels in memory, according to the index. The level
+    /// of the eye's cells always stays, so a level that was being read when the eye turned aside may exceed the budget
+    /// until the next one is read.
     pub fn new(index: LevelIndex, loader: L, budget: u64) -> Self {
         let first = (0u32..).zip(&index.first_cell).zip(&index.levels);
         let levels = first.filter_map(|((level, cell), size)| Some(((*cell)?, (level, size.bytes)))).collect();
@@ -197,12 +199,12 @@ impl<L: LoadLevel> Levels<L> {
         Self { index, budget, levels, wishes: Vec::new(), counters: LevelCounters::default() }
     }
 
-    /// What to draw for a viewer who is in the cells `at`, and asks for what will be drawn in the cells `ahead`, the most urgent first:
+    /// What to draw for an eye in the cells `at`. Requests the levels of the cells `ahead`, the most urgent first:
     /// [`crate::Frame::at`] and [`crate::Frame::ahead`].
     ///
-    /// A level is drawn only if all cells that the eye is in have the same; else, and outside every cell, the original. A level was made
-    /// for eyes in its cells, so what is seen in mirrors, by eyes behind them, is to be drawn from the original. So is whatever moves,
-    /// besides.
+    /// A level is drawn only if all cells that contain the eye share it; otherwise, and outside every cell, the
+    /// original is. A level is valid for eyes in its cells, so draw what is seen in mirrors, by eyes behind them, from
+    /// the original. Draw moving objects separately.
     pub fn frame(&mut self, at: &[CellId], ahead: &[CellId]) -> Draw<L::Level> {
         self.counters.frames += 1;
         self.levels.poll();
@@ -219,7 +221,7 @@ impl<L: LoadLevel> Levels<L> {
         self.levels.pin(&self.wishes[..n_here]);
         self.levels.wish(&self.wishes);
         let Some((level, cell)) = level.zip(here) else { return Draw::Original };
-        // Those ahead count as used now too, so that what nobody needs goes first.
+        // Levels ahead count as used now too, so that unneeded ones are evicted first.
         for k in (1..self.wishes.len()).rev() {
             self.levels.get(self.wishes[k]);
         }
@@ -235,7 +237,7 @@ impl<L: LoadLevel> Levels<L> {
         }
     }
 
-    /// Wishes for a level, once, if there is room for it beside those that are more urgent; gives the cell by which it is asked for.
+    /// Requests a level, once, if there is room for it beside the more urgent ones. Returns the cell that is its key.
     fn wish(&mut self, level: u32, room: &mut u64) -> Option<CellId> {
         let cell = self.index.first_cell[level as usize]?;
         if !self.wishes.contains(&cell) {
@@ -245,8 +247,8 @@ impl<L: LoadLevel> Levels<L> {
         Some(cell)
     }
 
-    /// From now on these cells have no level, as the scene has changed for who is there: those that see a wall that was added or taken away,
-    /// or a door that was cut.
+    /// Removes the levels of these cells, because the scene changed for eyes in them: cells that see a wall that was
+    /// added or removed, or a door that was cut.
     pub fn forget(&mut self, cells: impl IntoIterator<Item = CellId>) {
         self.index.forget(cells);
     }
@@ -256,25 +258,26 @@ impl<L: LoadLevel> Levels<L> {
         &self.index
     }
 
-    /// Whether all that the last frame asked for is there, for who would rather wait.
+    /// Whether everything that the last frame requested has arrived, for callers that prefer to wait.
     pub fn is_idle(&mut self) -> bool {
         self.levels.is_idle()
     }
 
-    /// What went wrong last while a level was read, and which; asking takes it away. Until it goes right the original is drawn.
+    /// Takes the last error of reading a level, with the number of the level. Until reading succeeds, the original is
+    /// drawn.
     pub fn take_error(&mut self) -> Option<(u32, L::Error)> {
         let (cell, error) = self.levels.take_error()?;
-        // The cell may have been forgotten since; the level is still the one that was asked for by it.
+        // The cell may have been forgotten since; it is still the key of that level.
         let level = self.index.first_cell.iter().position(|&first| first == Some(cell))?;
         Some((level as u32, error))
     }
 
-    /// Bytes of the levels that are kept, and their number.
+    /// Bytes and number of the levels in memory.
     pub fn kept(&self) -> (u64, usize) {
         (self.levels.n_bytes() as u64, self.levels.n_kept())
     }
 
-    /// Levels read so far, and dropped again to keep to the budget.
+    /// Numbers of levels read so far, and of levels evicted to stay within the budget.
     pub fn read(&self) -> (u64, u64) {
         (self.levels.n_made(), self.levels.n_dropped())
     }

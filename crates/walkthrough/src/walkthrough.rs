@@ -58,7 +58,7 @@ pub struct Frame<'a> {
     pub ahead: &'a [CellId],
 }
 
-/// What was done so far.
+/// Counters of the work done so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WalkCounters {
     /// Frames.
@@ -306,7 +306,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         &self.doors
     }
 
-    /// What was done so far.
+    /// Counters of the work done so far.
     pub fn counters(&self) -> WalkCounters {
         self.counters
     }

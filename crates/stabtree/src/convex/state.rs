@@ -53,7 +53,7 @@ pub struct ConvexState {
     pub through: BitMatrix,
     /// Pairs (lower id first, in any order) that count as visible unless a line is found.
     pub undecided: Vec<[u32; 2]>,
-    /// What was done so far.
+    /// Counters of the work done so far.
     pub counters: ConvexCounters,
 }
 

@@ -1,4 +1,4 @@
-//! A frame: who is asked, who is seen, who may sleep.
+//! One frame: which movers are queried, which are visible, which may sleep.
 
 use super::motion::is_box;
 use super::{Broken, BrokenPromise, Mover, MoverError, MoverId, Movers, Places, State, flat, is_within};
@@ -7,30 +7,31 @@ use sightlines_eye_to_cell::Seen;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::CellId;
 
-/// Why a mover is asked.
+/// Why a mover is queried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Why {
     /// It was awake.
     Awake,
-    /// Its volume touches a cell that is seen.
+    /// Its volume touches a visible cell.
     Touched,
-    /// Its volume ran out.
+    /// Its volume expired.
     Expired,
 }
 
 impl<P: Places> Movers<P> {
-    /// The movers that are seen at the time `now` (any unit, the same as that of speeds), by ascending slot: those whose box touches a cell
-    /// that is seen, or reaches beyond [`super::MoverOptions::solid_within`]. `place` is asked for the boxes that some movers
-    /// have now, each at most once; a mover that sleeps is not asked. Outside every cell all movers are seen, and none is asked.
+    /// The movers visible at the time `now` (in the time unit of their speeds), by ascending slot: those whose box
+    /// touches a visible cell, or reaches beyond [`super::MoverOptions::solid_within`]. `place` returns the current box
+    /// of a mover; it is called at most once for each mover, and not for sleeping ones. Outside every cell all movers
+    /// are visible, and none is queried.
     ///
-    /// Errs towards seen. The frame must be one of the table that the movers are in. With [`Answer::Late`] more is seen, as
-    /// with everything else. Who is seen in mirrors is not told; see [`Movers::also`].
+    /// Errs towards visible. The frame must belong to the table that the movers are in. With [`Answer::Late`] more
+    /// movers are visible, as with everything else. Movers seen in mirrors are not included; see [`Movers::also`].
     ///
-    /// Positions are held against what was promised without any slack but that of our own rounding: a caller who adds up steps should
-    /// promise a little more than his steps.
+    /// Positions are compared with the promise without any slack except for our own rounding: a caller that accumulates
+    /// steps should promise slightly more than their sum.
     ///
     /// # Errors
-    /// [`MoverError::Time`]; then nothing is done.
+    /// [`MoverError::Time`]; then nothing changes.
     pub fn frame(
         &mut self,
         now: f64,
@@ -62,7 +63,7 @@ impl<P: Places> Movers<P> {
         Ok(&self.seen)
     }
 
-    /// Puts together who is to be asked: whose volume ran out, whose volume is in view, who is awake.
+    /// Collects the movers to query: those whose volume expired or is in view, and those that are awake.
     fn find_due(&mut self, seen: &Seen) {
         self.round += 1;
         let round = self.round;
@@ -85,7 +86,7 @@ impl<P: Places> Movers<P> {
                 }
             }
         };
-        // Whichever are fewer.
+        // The smaller set is enumerated.
         if lists.occupied().len() <= seen.cells().len() {
             lists.occupied().iter().filter(|&&cell| seen.has_cell(CellId(cell))).for_each(|&cell| look(cell));
         } else {
@@ -93,7 +94,7 @@ impl<P: Places> Movers<P> {
         }
     }
 
-    /// Asks a mover, reports it if it is seen, and lets it sleep if it is not.
+    /// Queries a mover, reports it if it is visible, and lets it sleep otherwise.
     fn meet(&mut self, slot: u32, why: Why, seen: &Seen, place: &mut dyn FnMut(MoverId) -> Aabb<3>) {
         let bounds = self.ask(slot, place);
         if bounds.is_none_or(|bounds| self.is_seen(&bounds, |cell| seen.has_cell(cell))) {
@@ -118,15 +119,15 @@ impl<P: Places> Movers<P> {
         self.lay_down(slot, seen);
     }
 
-    /// Lets a mover, who is not seen, sleep in the longest volume from its level downwards that touches no cell that is seen; wakes it if
-    /// there is none, or too many were tried in this frame.
+    /// Lets a hidden mover sleep in the longest volume, from its level downwards, that touches no visible cell; wakes
+    /// it if there is none, or if too many were attempted in this frame.
     fn lay_down(&mut self, slot: u32, seen: &Seen) {
         self.rise(slot);
         let Some(tries_left) = self.tries_left.checked_sub(1) else { return };
         self.tries_left = tries_left;
         let &mut Mover { motion, bounds, level, .. } = self.at(slot);
         let dimension = self.places.dimension();
-        // Spread over a quarter of the time, so that those who fall asleep together do not wake together.
+        // Spread over a quarter of the duration, so that movers that fall asleep together do not wake together.
         let share = 1.0 - 0.25 * f64::from(slot.reverse_bits()) / f64::from(u32::MAX);
         let has_times = motion.top_speed().is_some();
         for level in (0..=level).rev() {
@@ -161,7 +162,7 @@ impl<P: Places> Movers<P> {
         }
     }
 
-    /// The box of a mover, who is asked for it, and whose promise is checked; `None` if it has none.
+    /// Queries the box of a mover and checks its promise; `None` if it has no box.
     fn ask(&mut self, slot: u32, place: &mut dyn FnMut(MoverId) -> Aabb<3>) -> Option<Aabb<3>> {
         let (id, now, dimension) = (self.id_of(slot), self.now, self.places.dimension());
         let bounds = flat(place(id), dimension);
@@ -191,7 +192,7 @@ impl<P: Places> Movers<P> {
         (!is_lost).then_some(bounds)
     }
 
-    /// Whether a box is seen if these cells are.
+    /// Whether a box is visible if these cells are.
     fn is_seen(&mut self, bounds: &Aabb<3>, sees: impl Fn(CellId) -> bool) -> bool {
         let mut hit = !is_within(bounds, &self.solid_within);
         if !hit {
@@ -203,20 +204,21 @@ impl<P: Places> Movers<P> {
         hit
     }
 
-    /// Whether a box (scene units) is seen in a frame: what is asked for each mover, for a box that is none.
+    /// Whether a box (scene units) that is no mover is visible in a frame, by the same test as for movers.
     pub fn sees(&mut self, frame: &Frame<'_>, bounds: &Aabb<3>) -> bool {
         let bounds = flat(*bounds, self.places.dimension());
         frame.answer == Answer::Outside || !is_box(&bounds) || self.is_seen(&bounds, |cell| frame.seen.has_cell(cell))
     }
 
-    /// The movers that are seen if these cells are, at the time of the last frame, by ascending slot: for what is seen in a mirror
-    /// ([`sightlines_eye_to_cell::Image::cells`]). Who was asked in this frame is not asked again. Nobody falls asleep.
+    /// The movers visible in these cells at the time of the last frame, by ascending slot; for what is seen in a mirror
+    /// ([`sightlines_eye_to_cell::Image::cells`]). Movers queried in this frame are not queried again. None falls
+    /// asleep.
     ///
     /// An image that is not complete may show any mover.
     pub fn also(&mut self, cells: &[CellId], place: &mut dyn FnMut(MoverId) -> Aabb<3>) -> &[MoverId] {
         self.also.clear();
         if self.is_outside {
-            // Also those that came since, and not those that went.
+            // Includes movers added since, without those removed.
             let there = (0..).zip(&self.slots).filter(|(_, slot)| slot.mover.is_some());
             self.also.extend(there.map(|(slot, place)| MoverId { slot, generation: place.generation }));
             return &self.also;
@@ -243,7 +245,7 @@ impl<P: Places> Movers<P> {
                 false => {
                     let n_broken = self.broken.len();
                     let bounds = self.ask(slot, place);
-                    // The volume is not to be relied upon.
+                    // The volume is no longer reliable.
                     if self.broken.len() > n_broken {
                         self.rise(slot);
                     }

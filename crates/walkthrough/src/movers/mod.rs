@@ -1,17 +1,19 @@
 //! Moving objects in a table, by temporal bounding volumes.
 //!
-//! A mover is asked for its place only while it is seen, or near to what is seen. When it is out of sight, a box is made that it does
-//! not leave for a while, and that touches no cell in view; the box is entered into the cells that it touches, and the mover sleeps: it
-//! costs nothing until one of these cells comes into view, or its time runs out. The longer it is hidden, the longer the next box holds;
-//! when a box came into view for nothing, the next one is smaller.
+//! The position of a mover is queried only while it is visible or nearly so. When it is out of sight, it gets a box
+//! that it does not leave for a while and that touches no cell in view. The box is registered in the cells that it
+//! touches, and the mover sleeps: it costs nothing until one of these cells comes into view, or the box expires. The
+//! longer a mover stays hidden, the longer its next box lasts; if a box came into view but the mover was not visible,
+//! the next one is smaller.
 //!
-//! What lies in no cell is solid, as far as a box reaches that is [`MoverOptions::solid_within`]; whatever reaches beyond it may be seen
-//! from everywhere, and never sleeps. So a mover that stays in the scene should promise that too ([`Movers::bounds`]): else its volumes
-//! grow only until they reach the scene's border, roof or ground.
+//! Within the box [`MoverOptions::solid_within`], space outside every cell is solid; a mover that reaches beyond that
+//! box may be visible from everywhere, and never sleeps. So a mover that stays in the scene should promise that
+//! ([`Movers::bounds`]); otherwise its volumes grow only until they reach the scene's border, roof or ground.
 //!
-//! Source: Sudarsky and Gotsman, "Dynamic scene occlusion culling", IEEE TVCG 5(1), 1999: the volumes, and that their time adapts.
-//! Ours: cells of a table in place of a tree over the scene; movers that are seen are in no cell at all; a volume is made as long as it
-//! can be without touching what is in view; regions that are never left; promises that are checked.
+//! Source: Sudarsky and Gotsman, "Dynamic scene occlusion culling", IEEE TVCG 5(1), 1999: temporal bounding volumes and
+//! their adaptive duration. Ours: cells of a table in place of a tree over the scene; visible movers are in no cell at
+//! all; a volume lasts as long as possible without touching anything in view; regions that are never left; promises
+//! that are checked.
 
 mod expiry;
 mod frame;
@@ -31,25 +33,26 @@ use sightlines_geometry::Aabb;
 use sightlines_pvs::CellId;
 use std::fmt;
 
-/// How to keep movers.
+/// Parameters of [`Movers`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MoverOptions {
-    /// The shortest time for which a volume is made, in the units of [`Movers::frame`]; longer ones are twice, four times, … as long. To make
-    /// a volume and enter it costs as much as asking a mover in some fifty frames, so shorter times than these do not pay. If it is not above 0 and
-    /// finite, only movers sleep whose region is out of sight.
+    /// Shortest duration of a volume, in the units of [`Movers::frame`]; longer ones last twice, four times, … as long.
+    /// Making and registering a volume costs as much as querying a mover in some fifty frames, so shorter durations do
+    /// not pay. If this is not positive and finite, only movers whose region is out of sight sleep.
     pub least: f64,
-    /// The longest time; regions that are out of sight hold forever.
+    /// Longest duration; regions that are out of sight last forever.
     pub most: f64,
-    /// The most cells that a volume is entered into; one that touches more is not made.
+    /// Maximum number of cells in which a volume is registered; a volume that touches more is not made.
     pub cells: usize,
-    /// Frames for which a mover is out of sight before a volume is made for it, and between tries, so that a view that turns back finds it
-    /// awake.
+    /// Number of frames out of sight before a volume is made for a mover, and between attempts, so that a view that
+    /// turns back finds it awake.
     pub patience: u32,
-    /// The most movers for which volumes are tried in a frame; the others stay awake until it is their turn.
+    /// Maximum number of movers for which volumes are attempted in a frame; the others stay awake until their turn.
     pub tries: usize,
-    /// Within this box whatever lies in no cell is solid, so nothing there is seen; beyond it everything may be seen from everywhere.
-    /// `None`: the box around all cells. That is right where the cells fill that box but for what is solid, or where walls are all around.
-    /// It is not for cells whose border is open to places in no cell: such as the hull of a plan without walls around it.
+    /// Within this box, space outside every cell is solid and nothing there is visible; beyond it everything may be
+    /// visible from everywhere. `None`: the box around all cells. That is correct if the cells fill that box except for
+    /// solids, or if walls enclose them. It is wrong for cells whose border is open to space outside every cell, such
+    /// as the hull of a plan without outer walls.
     pub solid_within: Option<Aabb<3>>,
 }
 
@@ -60,29 +63,29 @@ impl Default for MoverOptions {
     }
 }
 
-/// A mover and what is known of it.
+/// The state of a mover.
 #[derive(Debug, Clone)]
 struct Mover {
     motion: Motion,
     /// Its box at the time `known_at`.
     bounds: Aabb<3>,
     known_at: f64,
-    /// The box was nonsense when it was asked for.
+    /// The last queried box was invalid.
     is_lost: bool,
-    /// For how long to make the next volume: `least` times a power of two; the last level is forever.
+    /// Duration of the next volume: `least` times a power of two; the last level is forever.
     level: u8,
     /// Frames since it was seen.
     hidden_for: u32,
-    /// The frame in which it was asked last.
+    /// The frame of its last query.
     asked_in: u64,
-    /// The round in which it was found to be due last.
+    /// The round in which it was last found due.
     due_in: u64,
     state: State,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum State {
-    /// Asked in each frame; its place among those.
+    /// Queried in each frame; its index in the list of these.
     Awake(u32),
     /// In the cells of its volume.
     Asleep(Aabb<3>),
@@ -97,11 +100,12 @@ struct Slot {
 
 /// The movers in a table.
 ///
-/// Each frame reports those whose box touches a cell that is seen. As long as the movers keep what their [`Motion`] promises, that is what
-/// asking each of them would report; a promise that is broken is noticed when the mover is asked again ([`Movers::broken`]).
+/// Each frame reports the movers whose box touches a visible cell. As long as the movers keep the promises of their
+/// [`Motion`], the report equals that of querying each of them; a broken promise is noticed at the next query
+/// ([`Movers::broken`]).
 ///
-/// A frame costs, for each mover that is awake, as much as asking for its cells; for each cell in view that has volumes, O(1) and
-/// its volumes. Those that are hidden cost only when their time runs out, which is more seldom the longer they are hidden.
+/// A frame costs one search for cells for each awake mover, and O(1) plus its volumes for each cell in view that has
+/// volumes. Hidden movers cost only when their volumes expire, which is rarer the longer they stay hidden.
 pub struct Movers<P> {
     places: P,
     options: MoverOptions,
@@ -167,7 +171,7 @@ impl<P: Places> Movers<P> {
         }
     }
 
-    /// Adds a mover whose box is `bounds` (scene units; z is not looked at in a plane) at the time `now`. It is awake at first.
+    /// Adds a mover whose box is `bounds` (scene units; z is ignored in the plane) at the time `now`. It starts awake.
     ///
     /// # Errors
     /// [`MoverError::Box`], [`MoverError::Time`], [`MoverError::TooMany`].
@@ -201,7 +205,7 @@ impl<P: Places> Movers<P> {
         Ok(MoverId { slot, generation: place.generation })
     }
 
-    /// Removes a mover; whether it was there.
+    /// Removes a mover. Returns whether it existed.
     pub fn remove(&mut self, id: MoverId) -> bool {
         if self.get(id).is_none() {
             return false;
@@ -219,8 +223,8 @@ impl<P: Places> Movers<P> {
         true
     }
 
-    /// Says that a mover is somewhere else since `now`, whatever was promised: it was teleported, or made anew. It is asked in the next frame.
-    /// Whether there is such a mover.
+    /// Moves a mover at the time `now`, regardless of its promise: it was teleported or respawned. It is queried in the
+    /// next frame. Returns whether there is such a mover.
     ///
     /// # Errors
     /// [`MoverError::Box`], [`MoverError::Time`].
@@ -234,8 +238,8 @@ impl<P: Places> Movers<P> {
         Ok(true)
     }
 
-    /// Replaces what is promised about a mover, from the time on when its place was known last ([`Movers::last_known`]). It is asked in the next
-    /// frame. Whether there is such a mover.
+    /// Replaces the promise of a mover, starting at the time of its last known position ([`Movers::last_known`]). It is
+    /// queried in the next frame. Returns whether there is such a mover.
     pub fn promise(&mut self, id: MoverId, motion: Motion) -> bool {
         let motion = motion.flat(self.places.dimension());
         let Some(mover) = self.get_mut(id) else { return false };
@@ -244,9 +248,10 @@ impl<P: Places> Movers<P> {
         true
     }
 
-    /// Goes on in another table, such as one in which a wall was added or a door cut: all volumes are entered into its cells. Nobody is
-    /// asked; who has no place there wakes. Ids stay. What the last frame reported is forgotten. In a table of another dimension nobody has a
-    /// known place (it is anywhere) nor a region until he is asked and promises anew, as one of both had no height.
+    /// Switches to another table, for example after a wall was added or a door cut: all volumes are registered in its
+    /// cells. No mover is queried; movers whose volume does not fit there wake. Ids stay valid. The report of the last
+    /// frame is cleared. In a table of another dimension a mover has neither a known position (it may be anywhere) nor
+    /// a region until it is queried and makes a new promise, because one of the two had no height.
     ///
     /// O(cells + entries of the volumes).
     pub fn replace(&mut self, places: P) {
@@ -273,13 +278,13 @@ impl<P: Places> Movers<P> {
         }
     }
 
-    /// Where the movers are.
+    /// The cells in which the movers are registered.
     pub fn places(&self) -> &P {
         &self.places
     }
 
-    /// The box within which whatever lies in no cell is solid, in scene units: [`MoverOptions::solid_within`], or that around all cells. The
-    /// region to promise ([`Motion::within`]) for movers that do not leave the scene.
+    /// The box within which space outside every cell is solid, in scene units: [`MoverOptions::solid_within`], or the
+    /// box around all cells. This is the region to promise ([`Motion::within`]) for movers that do not leave the scene.
     pub fn bounds(&self) -> Aabb<3> {
         self.solid_within
     }
@@ -294,17 +299,17 @@ impl<P: Places> Movers<P> {
         self.n_movers == 0
     }
 
-    /// Movers that are asked in the next frame, whatever it sees.
+    /// Number of movers that will be queried in the next frame regardless of the view.
     pub fn n_awake(&self) -> usize {
         self.awake.len()
     }
 
-    /// Pairs of a volume and a cell that it is entered into.
+    /// Number of pairs of a volume and a cell in which it is registered.
     pub fn n_entries(&self) -> usize {
         self.lists.n_entries()
     }
 
-    /// The box of a mover when its place was known last, and when that was.
+    /// The last known box of a mover, and its time.
     pub fn last_known(&self, id: MoverId) -> Option<(Aabb<3>, f64)> {
         self.get(id).map(|mover| (mover.bounds, mover.known_at))
     }
@@ -322,7 +327,7 @@ impl<P: Places> Movers<P> {
         &self.broken
     }
 
-    /// What was done so far.
+    /// Counters of the work done so far.
     pub fn counters(&self) -> MoverCounters {
         self.counters
     }
@@ -358,7 +363,7 @@ impl<P: Places> Movers<P> {
         self.slots[slot as usize].mover.as_mut().expect("lists hold only slots with a mover")
     }
 
-    /// Wakes a mover: from now on it is asked in each frame.
+    /// Wakes a mover: from now on it is queried in each frame.
     fn rise(&mut self, slot: u32) {
         let place = self.awake.len() as u32;
         let mover = self.at(slot);
@@ -371,7 +376,7 @@ impl<P: Places> Movers<P> {
         }
     }
 
-    /// Takes a mover that is awake out of the list of these.
+    /// Removes an awake mover from the list of awake ones.
     fn leave_awake(&mut self, slot: u32) {
         if let State::Awake(place) = self.at(slot).state {
             self.awake.swap_remove(place as usize);
@@ -381,7 +386,8 @@ impl<P: Places> Movers<P> {
         }
     }
 
-    /// Puts the cells that a box touches into `found`, each once; whether they are few enough, and none of them is refused.
+    /// Collects the cells that a box touches into `found`, each once. Returns whether they are few enough and none is
+    /// refused.
     fn find_cells(&mut self, bounds: &Aabb<3>, refuse: impl Fn(CellId) -> bool) -> bool {
         self.round += 1;
         self.found.clear();

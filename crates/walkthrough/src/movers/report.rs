@@ -58,7 +58,7 @@ impl fmt::Display for Broken {
     }
 }
 
-/// What was done so far.
+/// Counters of the work done so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct MoverCounters {
