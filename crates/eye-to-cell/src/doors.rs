@@ -29,7 +29,7 @@ impl Doors {
         was_open
     }
 
-    /// Opens a portal; whether it was closed.
+    /// Opens a portal. Returns whether it was closed.
     pub fn open(&mut self, portal: u32) -> bool {
         let was_closed = !self.is_open(portal);
         if was_closed {

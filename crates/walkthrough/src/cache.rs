@@ -1,19 +1,19 @@
-//! What was prepared, within a budget of bytes.
+//! Prepared data within a byte budget.
 
 use sightlines_pvs::CellId;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Prepared things by cell; when they take more than the budget, those that were not used for longest go first.
+/// Prepared data by cell; when it exceeds the budget, the least recently used items are evicted first.
 #[derive(Debug)]
 pub(crate) struct Cache<T> {
     budget: usize,
     n_bytes: usize,
-    /// By cell: the thing, its bytes, and when it was used last.
+    /// By cell: the data, its bytes, and the time of its last use.
     things: BTreeMap<CellId, (Arc<T>, usize, u64)>,
-    /// The cells by when they were used last. No two have the same time.
+    /// The cells by the time of their last use. No two have the same time.
     by_use: BTreeMap<u64, CellId>,
-    /// Cells that stay whatever the budget says.
+    /// Pinned cells, which stay regardless of the budget.
     pinned: Vec<CellId>,
     now: u64,
     n_dropped: u64,
@@ -32,7 +32,7 @@ impl<T> Cache<T> {
         }
     }
 
-    /// What was prepared for a cell, which counts as used now. O(log n).
+    /// The data of a cell, which counts as used now. O(log n).
     pub(crate) fn get(&mut self, cell: CellId) -> Option<&Arc<T>> {
         self.now += 1;
         let (thing, _, used) = self.things.get_mut(&cell)?;
@@ -47,14 +47,14 @@ impl<T> Cache<T> {
         self.things.contains_key(&cell)
     }
 
-    /// From now on these cells stay whatever the budget says, and no others.
+    /// Pins these cells, and no others, regardless of the budget.
     pub(crate) fn pin(&mut self, cells: &[CellId]) {
         self.pinned.clear();
         self.pinned.extend_from_slice(cells);
     }
 
-    /// Adds what was prepared for a cell, which counts as used now. Others are dropped until the budget is kept or only
-    /// this one and pinned ones are left.
+    /// Adds the data of a cell, which counts as used now. Others are evicted until the budget holds or only this one
+    /// and pinned ones are left.
     pub(crate) fn add(&mut self, cell: CellId, thing: T, n_bytes: usize) {
         self.remove(cell);
         self.now += 1;

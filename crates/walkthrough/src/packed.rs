@@ -1,4 +1,4 @@
-//! Packed tables, for both sides: what is at hand, and what is read on demand.
+//! Packed tables, for both sides: the resident part, and what is read on demand.
 
 use crate::resident::Resident;
 use sightlines_eye_to_cell::{CellSource, MirrorWay, StabStep, Way};
@@ -101,7 +101,7 @@ impl<S: Source> Resident for PackedCells<S> {
 
     fn locate(&self, eye: [f64; 3], _pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
         let n = usize::from(self.0.dimension());
-        // What is resident is read and checked when the file is opened; a place is not refused.
+        // The resident part is read and checked when the file is opened; locating a point cannot fail.
         if self.0.locate(&eye[..n], out).is_err() {
             out.clear();
         }

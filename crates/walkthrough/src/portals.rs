@@ -4,13 +4,14 @@ use sightlines_eye_to_cell::CellSource;
 use sightlines_pvs::CellId;
 use std::collections::BTreeMap;
 
-/// The corners of a portal, from the least on and in the order that is less, so that they are the same from both sides.
+/// The corners of a portal, starting with the least one and in the lesser direction, so that they are equal from both
+/// sides.
 type Corners = Vec<[u64; 3]>;
 
 /// For each portal of `old`, by number, the portal of `new` with the same corners, bit for bit; in any direction. `None` where there is none,
 /// or several, or several in `old`. Zeros of both signs are the same.
 ///
-/// Reads the ways of all cells of both tables: O(portals · log portals), not for a frame.
+/// Reads the exits of all cells of both tables: O(portals · log portals); too slow for every frame.
 ///
 /// # Errors
 /// The first of a source.
@@ -35,7 +36,7 @@ fn by_corners<S: CellSource + ?Sized>(source: &S) -> Result<BTreeMap<Corners, Ve
     let mut all: BTreeMap<Corners, Vec<u32>> = BTreeMap::new();
     for cell in (0..source.n_cells() as u32).map(CellId) {
         source.ways(cell, &mut |way| {
-            // Each portal is a way out of both its cells; one is enough.
+            // Each portal is an exit of both its cells; one is enough.
             if way.forward {
                 all.entry(canonical(way.corners)).or_default().push(way.portal);
             }
@@ -65,7 +66,7 @@ mod tests {
     use sightlines_eye_to_cell::TableCells;
     use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 
-    /// Rooms in a row with these doors: their lower ends, and whether they are told from the other side.
+    /// Rooms in a row with these doors: their lower ends, and whether they are listed from the other side.
     fn row(doors: &[(u32, f64, bool)]) -> TableCells<Table> {
         let cells: Vec<CellRecord> = (0..4u32)
             .map(|i| CellRecord {

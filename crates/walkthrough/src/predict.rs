@@ -1,6 +1,6 @@
-//! Where the viewer will be.
+//! Prediction of the eye's path.
 
-/// Follows an eye and says where it goes if it goes on like this.
+/// Follows an eye and extrapolates its motion.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Path {
     last: Option<[f64; 3]>,
@@ -14,14 +14,14 @@ impl Path {
         if let Some(last) = self.last {
             for k in 0..3 {
                 let step = eye[k] - last[k];
-                // Half of the old: a turn is followed within a few frames, and a tremble evens out.
+                // Half of the old value: a turn is followed within a few frames, and jitter averages out.
                 self.velocity[k] = 0.5 * (self.velocity[k] + step);
             }
         }
         self.last = Some(eye);
     }
 
-    /// The eye's place some frames ahead.
+    /// The predicted position of the eye some frames ahead.
     pub(crate) fn ahead(&self, frames: f64) -> Option<[f64; 3]> {
         let last = self.last?;
         let place = std::array::from_fn(|k| last[k] + frames * self.velocity[k]);

@@ -1,7 +1,7 @@
-//! A thread that prepares what a viewer in a cell will need.
+//! A thread that prepares data for the viewers of a cell.
 //!
-//! Nothing here knows what is prepared: [`crate::Walkthrough`] prepares outlooks, and anything else that is made for
-//! the viewers of a cell, such as a buffer of what hides what, can be prepared in the same way.
+//! The data can be of any kind: [`crate::Walkthrough`] prepares outlooks, and other data for the viewers of a cell,
+//! such as an occlusion buffer, can be prepared in the same way.
 
 use crate::cache::Cache;
 use sightlines_pvs::CellId;
@@ -10,47 +10,46 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 
-/// Makes what the viewers of a cell need. May be slow: it is called on a thread of its own.
+/// Makes the data for the viewers of a cell. May be slow: it is called on a thread of its own.
 pub trait Prepare: Send + 'static {
     /// What is made.
     type Prepared: Send + Sync + 'static;
-    /// Why it is not.
+    /// Why it cannot be made.
     type Error: Send + 'static;
 
     /// Makes it for the viewers of one cell.
     ///
     /// # Errors
-    /// If it cannot be made. It is asked for again when a viewer still needs it.
+    /// If it cannot be made. It is requested again while it is needed.
     fn prepare(&mut self, cell: CellId) -> Result<Self::Prepared, Self::Error>;
 
-    /// The memory that it takes, in bytes.
+    /// Its size in memory, in bytes.
     fn n_bytes(prepared: &Self::Prepared) -> usize;
 }
 
-/// What was made for a cell, with its bytes.
+/// The data of a cell, with its size in bytes.
 type Made<P> = (CellId, Result<(<P as Prepare>::Prepared, usize), <P as Prepare>::Error>);
 
-/// Things made for cells on another thread, and kept within a budget of bytes.
+/// Makes data for cells on another thread, and keeps it within a byte budget.
 ///
-/// No method waits: not for the thread, not for a lock.
+/// No method waits, neither for the thread nor for a lock.
 pub struct Prefetcher<P: Prepare> {
     cache: Cache<P::Prepared>,
     /// Lists of cells, the most urgent first; a list replaces the one before. `None` once the thread is gone.
     wishes: Option<Sender<Vec<CellId>>>,
     made: Receiver<Made<P>>,
-    /// The last list, to send no list twice.
+    /// The last list, so that no list is sent twice.
     last: Vec<CellId>,
-    /// Cells of the last list that have not come yet.
+    /// Cells of the last list that have not arrived yet.
     awaited: BTreeSet<CellId>,
     error: Option<(CellId, P::Error)>,
     n_made: u64,
 }
 
 impl<P: Prepare> Prefetcher<P> {
-    /// Starts the thread. `budget` bounds the bytes of what is kept, besides the last thing
-    /// made and what is pinned.
+    /// Starts the thread. `budget` bounds the bytes in memory, except for the last item made and pinned items.
     ///
-    /// The thread ends when this is dropped, after what it is about to make.
+    /// The thread ends when this is dropped, after the item that it is making.
     pub fn new(maker: P, budget: usize) -> Self {
         let (wishes, wished) = channel();
         let (done, made) = channel();
@@ -66,7 +65,7 @@ impl<P: Prepare> Prefetcher<P> {
         }
     }
 
-    /// Takes in what was made in the meantime.
+    /// Receives what was made in the meantime.
     pub fn poll(&mut self) {
         loop {
             match self.made.try_recv() {
@@ -77,7 +76,7 @@ impl<P: Prepare> Prefetcher<P> {
                 }
                 Ok((cell, Err(error))) => {
                     self.awaited.remove(&cell);
-                    // It may be wished for again.
+                    // It may be requested again.
                     self.last.clear();
                     self.error = Some((cell, error));
                 }
@@ -91,27 +90,27 @@ impl<P: Prepare> Prefetcher<P> {
         }
     }
 
-    /// What was made for a cell, if it is there; it counts as used now.
+    /// The data of a cell, if it is in memory; it counts as used now.
     pub fn get(&mut self, cell: CellId) -> Option<Arc<P::Prepared>> {
         self.cache.get(cell).cloned()
     }
 
-    /// Whether a cell's is there.
+    /// Whether the data of a cell is in memory.
     pub fn has(&self, cell: CellId) -> bool {
         self.cache.has(cell)
     }
 
-    /// From now on what was made for these cells stays whatever the budget says: those that are needed at the same time must not
-    /// drop each other.
+    /// Pins the data of these cells regardless of the budget: items that are needed at the same time must not evict
+    /// each other.
     pub fn pin(&mut self, cells: &[CellId]) {
         self.cache.pin(cells);
     }
 
-    /// Says which cells will be needed, the most urgent first. Those that are not there are made in this order; what
-    /// was wished for before and is not wished for now is forgotten.
+    /// Requests data for cells, the most urgent first. Missing data is made in this order; earlier requests that are
+    /// not repeated are dropped.
     pub fn wish(&mut self, cells: &[CellId]) {
         let wanted = || cells.iter().copied().filter(|&cell| !self.cache.has(cell));
-        // Nothing new since the last list: what is left of it is being made.
+        // Nothing new since the last list: the rest of it is being made.
         if wanted().next().is_none() || wanted().eq(self.last.iter().copied().filter(|c| self.awaited.contains(c))) {
             return;
         }
@@ -123,48 +122,48 @@ impl<P: Prepare> Prefetcher<P> {
         }
     }
 
-    /// Takes in what was made, and tells whether all that was wished for last is there.
+    /// Receives what was made, and returns whether everything in the last request is in memory.
     pub fn is_idle(&mut self) -> bool {
         self.poll();
         self.awaited.is_empty()
     }
 
-    /// The last failure, and of which cell; asking takes it away.
+    /// Takes the last failure, with its cell.
     pub fn take_error(&mut self) -> Option<(CellId, P::Error)> {
         self.error.take()
     }
 
-    /// Whether the thread is still there. It goes only if making something panics.
+    /// Whether the thread is still running. It ends early only if making an item panics.
     pub fn is_working(&self) -> bool {
         self.wishes.is_some()
     }
 
-    /// Bytes of what is kept.
+    /// Bytes in memory.
     pub fn n_bytes(&self) -> usize {
         self.cache.n_bytes()
     }
 
-    /// Number of things kept.
+    /// Number of items in memory.
     pub fn n_kept(&self) -> usize {
         self.cache.len()
     }
 
-    /// Things made so far.
+    /// Number of items made so far.
     pub fn n_made(&self) -> u64 {
         self.n_made
     }
 
-    /// Things dropped so far, to keep to the budget.
+    /// Number of items evicted so far to stay within the budget.
     pub fn n_dropped(&self) -> u64 {
         self.cache.n_dropped()
     }
 }
 
-/// The thread: makes what is on the newest list, until nobody listens.
+/// The thread: makes the items of the newest list until the receiver is gone.
 fn work<P: Prepare>(mut maker: P, wished: &Receiver<Vec<CellId>>, done: &Sender<Made<P>>) {
     let mut list: VecDeque<CellId> = VecDeque::new();
     loop {
-        // With nothing to do it waits for a list; else it only looks whether there is a newer one.
+        // If idle, it waits for a list; otherwise it only checks for a newer one.
         let newer = match list.is_empty() {
             true => wished.recv().map_err(|_| TryRecvError::Disconnected),
             false => wished.try_recv(),

@@ -1,11 +1,12 @@
-//! What is at hand in every frame, whatever is still on its way.
+//! The part of a table that is available in every frame.
 
 use sightlines_eye_to_cell::TableCells;
 use sightlines_pvs::{CellId, Table};
 use std::borrow::Borrow;
 use std::sync::Arc;
 
-/// The part of a table that a frame may ask without waiting: no disk, no lock that another thread may hold for long.
+/// The part of a table that a frame can query without waiting: no disk, and no lock that another thread may hold for
+/// long.
 pub trait Resident {
     /// Number of cells.
     fn n_cells(&self) -> usize;
@@ -13,14 +14,14 @@ pub trait Resident {
     /// Number of objects.
     fn n_objects(&self) -> usize;
 
-    /// Puts the cells at a point (z is 0 in a plane) into `out`, which is cleared; ascending; none outside. `pending` is
-    /// room to work in.
+    /// Collects the cells at a point (z is 0 in the plane) into `out`, which is cleared first; ascending; none outside.
+    /// `pending` is scratch space.
     fn locate(&self, eye: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>);
 
-    /// Shows cells that contain all that `cell` may see, and perhaps more.
+    /// Visits a superset of the cells that `cell` may see.
     fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId));
 
-    /// Shows objects that contain all that `cell` may see, and perhaps more; `false` if it cannot tell which.
+    /// Visits a superset of the objects that `cell` may see; `false` if it is unknown.
     fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(u32)) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! Frame by frame: what to draw.
+//! What to draw, frame by frame.
 
 use crate::predict::Path;
 use crate::prefetch::{Prefetcher, Prepare};
@@ -9,17 +9,17 @@ use sightlines_eye_to_cell::{
 use sightlines_pvs::CellId;
 use std::fmt;
 
-/// How to follow a viewer.
+/// Parameters of a [`Walkthrough`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WalkOptions {
-    /// Bytes of prepared outlooks to keep at most. Those of the cells that the eye is in, and of cells with mirrors that it looks
-    /// into, are kept whatever they take, and the last one made.
+    /// Maximum size of the prepared outlooks, in bytes. Those of the eye's cells, of cells with mirrors in view, and
+    /// the last one made are kept regardless.
     pub budget: usize,
-    /// How many frames ahead to prepare for, if the viewer goes on as he does.
+    /// Number of frames ahead to prepare for, if the eye keeps its current motion.
     pub frames_ahead: u32,
-    /// Places on the way ahead that are looked up in each frame.
+    /// Number of points on the predicted path that are located in each frame.
     pub places_per_frame: u32,
-    /// Mirrors that a line may meet one after the other; 0 for no mirrors.
+    /// Maximum number of reflections in a row; 0 for no mirrors.
     pub bounces: usize,
 }
 
@@ -29,15 +29,15 @@ impl Default for WalkOptions {
     }
 }
 
-/// Whether a frame's answer is the method's.
+/// How a frame's answer relates to the method's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// It is what the method says.
+    /// It is the method's answer.
     Full,
-    /// Something was not prepared yet: the cells and objects are more than the method says, and never less. What is
-    /// seen in mirrors is not all told.
+    /// Something was not prepared yet: the cells and objects are a superset of the method's. What is seen in mirrors is
+    /// incomplete.
     Late,
-    /// The eye is outside every cell: everything.
+    /// The eye is outside every cell: draw everything.
     Outside,
 }
 
@@ -46,15 +46,15 @@ pub enum Answer {
 pub struct Frame<'a> {
     /// The cells and objects.
     pub seen: &'a Seen,
-    /// The cells that the eye is in, ascending: several on a border, none outside.
+    /// The cells that contain the eye, ascending: several on a border, none outside.
     pub at: &'a [CellId],
-    /// Whether that is the method's answer.
+    /// How that relates to the method's answer.
     pub answer: Answer,
-    /// What is seen in mirrors, if [`WalkOptions::bounces`] asks for it. All of it with [`Answer::Full`] only: otherwise anything
-    /// may be seen in any mirror, listed or not.
+    /// What is seen in mirrors, if [`WalkOptions::bounces`] is above 0. Complete only with [`Answer::Full`]; otherwise
+    /// anything may be seen in any mirror, listed or not.
     pub images: &'a [Image],
-    /// The cells that the eye is in, those with mirrors that it looks into, and those that it will be in if it goes on like this: the
-    /// most urgent first, each once. For whatever else is prepared for the viewers of a cell.
+    /// The cells of the eye, those with mirrors in view, and those on the predicted path: the most urgent first, each
+    /// once. For any other data that is prepared for the viewers of a cell.
     pub ahead: &'a [CellId],
 }
 
@@ -63,7 +63,7 @@ pub struct Frame<'a> {
 pub struct WalkCounters {
     /// Frames.
     pub frames: u64,
-    /// Frames with nothing changed since the one before: the answer was at hand.
+    /// Frames without a change since the one before, which reused its answer.
     pub repeated: u64,
     /// Frames with [`Answer::Late`].
     pub late: u64,
@@ -87,13 +87,13 @@ impl<S: CellSource<Error: Send + 'static> + Send + 'static> Prepare for Outlooks
     }
 }
 
-/// Follows a viewer over frames.
+/// Follows an eye over frames.
 ///
-/// `R` is what can be asked at once (where a point is, and a superset of what a cell sees); `S` is the source that may be slow,
-/// and is read by another thread only. Both may be the same table.
+/// `R` answers at once (point location, and a superset of what a cell sees). `S` is a source that may be slow; only
+/// another thread reads it. Both may be the same table.
 ///
-/// A frame never waits. If the outlook of the viewer's cell has not come yet, the frame gets a superset; outlooks of
-/// the cells ahead are prepared before he is there.
+/// A frame never waits. If the outlook of the eye's cell has not arrived yet, the frame gets a superset. Outlooks of
+/// the cells ahead are prepared in advance.
 pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static> {
     resident: R,
     options: WalkOptions,
@@ -104,7 +104,7 @@ pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static>
     seen: Seen,
     images: Vec<Image>,
     at: Vec<CellId>,
-    /// Cells with mirrors that are looked into.
+    /// Cells with mirrors in view.
     mirrored: Vec<CellId>,
     /// Cells to come, the most urgent first.
     wishes: Vec<CellId>,
@@ -114,7 +114,7 @@ pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static>
     counters: WalkCounters,
 }
 
-/// What the last answer was an answer to.
+/// The query of the last answer.
 struct Last {
     view: View,
     method: Method,
@@ -123,7 +123,7 @@ struct Last {
 }
 
 impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthrough<R, S> {
-    /// Begins with nothing prepared.
+    /// Starts with nothing prepared.
     pub fn new(resident: R, source: S, options: WalkOptions) -> Self {
         Self {
             resident,
@@ -144,9 +144,10 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         }
     }
 
-    /// What a viewer sees now, by `method`, and asks for what he will need next.
+    /// What an eye sees now, by `method`. Requests the data that it will need next.
     ///
-    /// Errs towards more: see [`Answer`]. Costs what the method costs; nothing, if nothing changed since the last frame.
+    /// Errs towards visible: see [`Answer`]. Costs as much as the method; nothing, if nothing changed since the last
+    /// frame.
     pub fn frame(&mut self, view: &View, method: Method) -> Frame<'_> {
         self.counters.frames += 1;
         self.outlooks.poll();
@@ -222,14 +223,14 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         answer
     }
 
-    /// Asks for the outlooks of the viewer's cells, of cells with mirrors that he looks into, and of the cells ahead.
+    /// Requests the outlooks of the eye's cells, of cells with mirrors in view, and of the cells ahead.
     fn look_ahead(&mut self) {
         self.wishes.clear();
         self.wishes.extend_from_slice(&self.at);
         self.wishes.extend_from_slice(&self.mirrored);
         self.outlooks.pin(&self.wishes);
         let n = self.options.places_per_frame;
-        // Places near by come in each frame, those farther ahead in turn.
+        // Nearby points are looked up in each frame, those farther ahead in turn.
         let turn = (self.counters.frames % 8) as f64 / 8.0;
         for k in 0..n {
             let share = (f64::from(k) + turn) / f64::from(n);
@@ -240,7 +241,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
             self.resident.locate(place, &mut self.pending, &mut self.found);
             self.wishes.extend_from_slice(&self.found);
         }
-        // Each once, where it comes first. The list is short.
+        // Each once, at its first position. The list is short.
         let mut k = 0;
         while k < self.wishes.len() {
             if self.wishes[..k].contains(&self.wishes[k]) {
@@ -252,13 +253,13 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         self.outlooks.wish(&self.wishes);
     }
 
-    /// Closes a portal; whether it was open.
+    /// Closes a portal. Returns whether it was open.
     pub fn close(&mut self, portal: u32) -> bool {
         let changed = self.doors.close(portal);
         self.note_doors(changed)
     }
 
-    /// Opens a portal; whether it was closed.
+    /// Opens a portal. Returns whether it was closed.
     pub fn open(&mut self, portal: u32) -> bool {
         let changed = self.doors.open(portal);
         self.note_doors(changed)
@@ -271,13 +272,13 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         changed
     }
 
-    /// Goes on in another table, such as one in which a wall was added or taken away. Outlooks and mirrors of the old one
-    /// are dropped, and what its thread still makes is not looked at; the first frames are [`Answer::Late`] as at the beginning. The
-    /// viewer's path and the counters go on.
+    /// Switches to another table, for example after a wall was added or removed. Outlooks and mirrors of the old one
+    /// are dropped, and pending results of its thread are ignored; the first frames are [`Answer::Late`], as at the
+    /// start. The path of the eye and the counters continue.
     ///
-    /// `keep` says which portal of the new table a closed portal of the old one is; it stays closed. Those that are none (`None`) are forgotten,
-    /// and what took their place is open, which errs towards visible. `Some` keeps the numbers; [`crate::same_portals`]
-    /// compares corners. O(closed portals), and a new thread.
+    /// `keep` maps a closed portal of the old table to the same portal of the new one, which stays closed. Portals
+    /// mapped to `None` are forgotten, and whatever took their place is open, which errs towards visible. `Some` keeps
+    /// the numbers; [`crate::same_portals`] compares corners. O(closed portals), and a new thread.
     ///
     /// Movers follow by [`crate::Movers::replace`], simplified levels by [`crate::Levels::forget`].
     pub fn replace(&mut self, resident: R, source: S, keep: impl Fn(u32) -> Option<u32>) {
@@ -296,7 +297,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         self.last = None;
     }
 
-    /// What can be asked at once.
+    /// The part that answers at once.
     pub fn resident(&self) -> &R {
         &self.resident
     }
@@ -311,29 +312,30 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         self.counters
     }
 
-    /// Whether all that the last frame asked for is prepared: for who would rather wait, such as before the first frame.
+    /// Whether everything that the last frame requested is prepared, for callers that prefer to wait, for example
+    /// before the first frame.
     pub fn is_idle(&mut self) -> bool {
         self.outlooks.is_idle()
     }
 
-    /// What went wrong last while an outlook was prepared, and of which cell; asking takes it away. Until it goes right,
-    /// frames there are [`Answer::Late`].
+    /// Takes the last error of preparing an outlook, with its cell. Until preparing succeeds, frames there are
+    /// [`Answer::Late`].
     pub fn take_error(&mut self) -> Option<(CellId, S::Error)> {
         self.outlooks.take_error()
     }
 
-    /// Bytes of the outlooks that are kept, and their number. Counts anew with [`Walkthrough::replace`], as the next one does.
+    /// Bytes and number of the outlooks in memory. [`Walkthrough::replace`] resets these, and those of the next method.
     pub fn kept(&self) -> (usize, usize) {
         (self.outlooks.n_bytes(), self.outlooks.n_kept())
     }
 
-    /// Outlooks prepared so far, and dropped again to keep to the budget.
+    /// Numbers of outlooks prepared so far, and evicted to stay within the budget.
     pub fn prepared(&self) -> (u64, u64) {
         (self.outlooks.n_made(), self.outlooks.n_dropped())
     }
 }
 
-/// Adds all that a cell may see, and more.
+/// Adds a superset of what a cell may see.
 fn coarse(resident: &impl Resident, cell: CellId, seen: &mut Seen) {
     resident.coarse(cell, &mut |cell| {
         seen.add_cell(cell);

@@ -1,4 +1,4 @@
-//! When volumes run out.
+//! When volumes expire.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,8 +1,8 @@
-//! Which volumes are in which cells.
+//! Which volumes are registered in which cells.
 
 use sightlines_pvs::CellId;
 
-/// Where a slot is entered: the cell, and its place in the list of that cell.
+/// An entry of a slot: the cell, and its index in the list of that cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Entry {
     cell: u32,
@@ -24,12 +24,12 @@ pub(super) struct Lists {
 }
 
 impl Lists {
-    /// Nobody is in any of `n_cells` cells.
+    /// Empty lists for `n_cells` cells.
     pub(super) fn new(n_cells: usize) -> Self {
         Self { by_cell: vec![Vec::new(); n_cells], place_of: vec![0; n_cells], ..Self::default() }
     }
 
-    /// Enters a slot, which is nowhere, into cells, each once.
+    /// Registers a slot that has no entries in cells, each once.
     pub(super) fn enter(&mut self, slot: u32, cells: &[CellId]) {
         if self.by_slot.len() <= slot as usize {
             self.by_slot.resize(slot as usize + 1, Vec::new());
@@ -49,7 +49,7 @@ impl Lists {
         self.n_entries += cells.len();
     }
 
-    /// Takes a slot out of all its cells.
+    /// Removes a slot from all its cells.
     pub(super) fn leave(&mut self, slot: u32) {
         let Some(entries) = self.by_slot.get_mut(slot as usize) else { return };
         let mut entries = std::mem::take(entries);
@@ -68,7 +68,7 @@ impl Lists {
                 }
             }
         }
-        // The memory is kept for the next time.
+        // The memory is kept for reuse.
         entries.clear();
         self.by_slot[slot as usize] = entries;
     }

@@ -1,34 +1,34 @@
-//! What is promised about a mover, and the box that it does not leave until some time.
+//! The promised motion of a mover, and the box that it does not leave until a given time.
 
 use sightlines_geometry::Aabb;
 
-/// What is promised about the motion of a mover: how fast it is at most, where it stays, or both.
+/// The promised motion of a mover: a top speed, a region that it stays in, or both.
 ///
-/// With neither it may be anywhere at any time.
+/// Without either it may be anywhere at any time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Motion {
     speed: Option<f64>,
     region: Option<Aabb<3>>,
 }
 
-/// Why a motion, or a box, cannot be worked with.
+/// Why a motion or a box is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
-    /// NaN, an infinity, or below 0.
+    /// The speed is NaN, infinite or negative.
     #[error("a top speed of {0} is not a finite number from 0")]
     Speed(f64),
-    /// A region with a corner that is not finite, or without any point.
+    /// The region is empty or has a corner that is not finite.
     #[error("the region of a mover is empty or not finite")]
     Region,
 }
 
 impl Motion {
-    /// Nothing is promised.
+    /// No promise.
     pub const ANY: Self = Self { speed: None, region: None };
 
-    /// No point of the mover moves by more than `speed` scene units along any axis in a unit of time. Turns and
-    /// growth count too; a speed as usually measured is never less than that.
+    /// No point of the mover moves by more than `speed` scene units along any axis in a unit of time, including
+    /// rotation and growth. The ordinary Euclidean speed is an upper bound for this.
     ///
     /// # Errors
     /// [`MotionError::Speed`].
@@ -36,7 +36,7 @@ impl Motion {
         Self::ANY.and_speed(speed)
     }
 
-    /// The mover never leaves `region` (scene units; z is not looked at in a plane).
+    /// The mover never leaves `region` (scene units; z is ignored in the plane).
     ///
     /// # Errors
     /// [`MotionError::Region`].
@@ -44,7 +44,7 @@ impl Motion {
         Self::ANY.and_within(region)
     }
 
-    /// As well as what was promised, what [`Motion::speed`] says.
+    /// Adds the promise of [`Motion::speed`].
     ///
     /// # Errors
     /// [`MotionError::Speed`].
@@ -55,7 +55,7 @@ impl Motion {
         }
     }
 
-    /// As well as what was promised, what [`Motion::within`] says.
+    /// Adds the promise of [`Motion::within`].
     ///
     /// # Errors
     /// [`MotionError::Region`].
@@ -76,18 +76,18 @@ impl Motion {
         self.region.as_ref()
     }
 
-    /// The same without a region.
+    /// The same promise without a region.
     pub(super) fn anywhere(self) -> Self {
         Self { region: None, ..self }
     }
 
-    /// The same in a table of `dimension` coordinates.
+    /// The same promise in a table of `dimension` coordinates.
     pub(super) fn flat(self, dimension: u8) -> Self {
         Self { region: self.region.map(|region| flat(region, dimension)), ..self }
     }
 
-    /// The box that what is in `bounds` at the time `from` does not leave until the time `until`, the temporal bounding volume; `None`
-    /// if there is no bound. Rounded outwards.
+    /// The temporal bounding volume: the box that a mover in `bounds` at the time `from` does not leave until the time
+    /// `until`; `None` if there is no bound. Rounded outwards.
     ///
     /// With u the rounding of a double: the span `until - from` and its product with the speed are each rounded to the
     /// nearest and then up to the next double, so the way is no less than the true one; adding and subtracting it is rounded to
@@ -95,7 +95,7 @@ impl Motion {
     pub(super) fn volume(&self, bounds: &Aabb<3>, from: f64, until: f64, dimension: u8) -> Option<Aabb<3>> {
         let grown = self.speed.map(|speed| {
             let span = (until - from).max(0.0);
-            // Who does not move, or has no time, needs no room for rounding.
+            // Without motion or time, no margin for rounding is needed.
             let way = if span == 0.0 || speed == 0.0 { 0.0 } else { (span.next_up() * speed).next_up() };
             let (mut min, mut max) = (bounds.min, bounds.max);
             if way > 0.0 {
@@ -125,7 +125,7 @@ pub(super) fn is_within(inner: &Aabb<3>, outer: &Aabb<3>) -> bool {
     (0..3).all(|k| outer.min[k] <= inner.min[k] && inner.max[k] <= outer.max[k])
 }
 
-/// The box without the coordinates that a table of `dimension` coordinates does not have.
+/// The box with the coordinates beyond `dimension` set to 0.
 pub(super) fn flat(mut bounds: Aabb<3>, dimension: u8) -> Aabb<3> {
     for k in usize::from(dimension)..3 {
         (bounds.min[k], bounds.max[k]) = (0.0, 0.0);

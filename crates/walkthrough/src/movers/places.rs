@@ -6,7 +6,7 @@ use sightlines_pvs::{CellId, Table};
 use std::borrow::Borrow;
 use std::sync::Arc;
 
-/// Where the cells of a table are, at hand without waiting.
+/// The positions of a table's cells, available without waiting.
 pub trait Places {
     /// 2 or 3.
     fn dimension(&self) -> u8;
@@ -14,13 +14,13 @@ pub trait Places {
     /// Number of cells; ids are below it.
     fn n_cells(&self) -> usize;
 
-    /// The box around all cells; [`Aabb::EMPTY`] without cells. May take long; it is asked for once.
+    /// The box around all cells; [`Aabb::EMPTY`] without cells. May be slow; it is called once.
     fn bounds(&self) -> Aabb<3>;
 
-    /// Calls `visit` with every cell that the closed box touches (z is 0 in a plane), until it says `false`. A cell may come more than
-    /// once, in no particular order. `pending` is room to work in.
+    /// Calls `visit` with every cell that the closed box touches (z is 0 in the plane), until it returns `false`. A
+    /// cell may be visited more than once, in any order. `pending` is scratch space.
     ///
-    /// Errs towards touching, by rounding; what truly touches a box is told for every larger one too.
+    /// Errs towards touching, by rounding; cells that truly touch a box are visited for every larger box too.
     fn touching(&self, bounds: &Aabb<3>, pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool);
 }
 
@@ -60,10 +60,10 @@ impl<P: Places + ?Sized> Places for Arc<P> {
     }
 }
 
-/// The boxes of all cells of any source, such as a packed table, read once and kept in a tree.
+/// The boxes of all cells of any source, for example a packed table, read once and kept in a tree.
 ///
-/// Cells count as their boxes: where they are polygons, or cut by planes, more cells are touched than by the table itself.
-/// About 200 bytes for each cell.
+/// Cells count as their boxes: where cells are polygons, or cut by planes, a box touches more of them than in the table
+/// itself. About 200 bytes for each cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellBoxes {
     dimension: u8,

@@ -1,8 +1,8 @@
-//! What movers tell about themselves.
+//! Ids, counters, errors and broken promises of movers.
 
 use std::fmt;
 
-/// A mover. Ids are not used again; those of removed movers are known to be so.
+/// The id of a mover. Ids are not reused, and ids of removed movers are recognized.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MoverId {
     pub(super) slot: u32,
@@ -10,7 +10,7 @@ pub struct MoverId {
 }
 
 impl MoverId {
-    /// A place in a list of things that belong to movers: small, different for movers that are there at the same time, and used again.
+    /// An index for data that belongs to movers: small, different for movers that exist at the same time, and reused.
     pub const fn slot(self) -> usize {
         self.slot as usize
     }
@@ -22,28 +22,28 @@ impl fmt::Display for MoverId {
     }
 }
 
-/// How a mover's place is not what was promised.
+/// How a mover broke its promise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BrokenPromise {
     /// It moved faster than its top speed.
     Speed,
-    /// It left its region, which is not relied upon any more.
+    /// It left its region, which is ignored from now on.
     Region,
-    /// Its box is empty or not finite; the mover counts as seen.
+    /// Its box is empty or not finite; the mover counts as visible.
     NoBox,
 }
 
-/// A mover that was found where it should not be. While it was hidden it may have been missed.
+/// A mover that was found outside its promise. While it was hidden it may have been missed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Broken {
     /// Which.
     pub mover: MoverId,
-    /// When it was asked.
+    /// The time of the query.
     pub at: f64,
-    /// When its place was known last.
+    /// The time of its last known position.
     pub known_at: f64,
-    /// What was broken.
+    /// The broken promise.
     pub promise: BrokenPromise,
 }
 
@@ -64,21 +64,21 @@ impl fmt::Display for Broken {
 pub struct MoverCounters {
     /// Frames.
     pub frames: u64,
-    /// Cells that were looked at for volumes.
+    /// Cells that were searched for volumes.
     pub cells: u64,
-    /// Volumes that a frame found in cells that are seen.
+    /// Volumes that a frame found in visible cells.
     pub touched: u64,
-    /// Of these, movers that were not seen themselves: their volume came into view for nothing.
+    /// Of these, movers that were not visible themselves: false positives of their volumes.
     pub in_vain: u64,
-    /// Volumes that ran out.
+    /// Volumes that expired.
     pub expired: u64,
-    /// Times that a mover was asked for its place.
+    /// Queries of a mover's position.
     pub asked: u64,
-    /// Times that a mover was reported as seen.
+    /// Reports of a visible mover.
     pub seen: u64,
-    /// Volumes that were entered into the cells.
+    /// Volumes that were registered in cells.
     pub entered: u64,
-    /// Volumes that were tried, whether entered or not.
+    /// Volumes that were attempted, registered or not.
     pub tried: u64,
     /// Promises that were found broken.
     pub broken: u64,
