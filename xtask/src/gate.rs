@@ -11,7 +11,7 @@ pub(crate) fn docs() -> Result<(), Failure> {
     // The library and the program share a name, and with it a folder: the program first, alone, so that
     // the library's pages are the ones that stay.
     doc(&["-p", "sightlines-cli"])?;
-    doc(&["--workspace", "--exclude", "sightlines-cli"])
+    doc(&["--workspace", "--exclude", "sightlines-cli", "--features", "sightlines/png,sightlines/multifocal-gpu"])
 }
 
 fn doc(packages: &[&str]) -> Result<(), Failure> {
@@ -27,7 +27,18 @@ pub(crate) fn alone() -> Result<(), Failure> {
     for name in names {
         step::run(cargo().args(["check", "-p", &name, "--all-features"]))?;
     }
-    step::run(cargo().args(["check", "-p", "sightlines"]))
+    // Those with features that are off by default: without them, and the program with each alone.
+    for options in [
+        &["sightlines"][..],
+        &["sightlines-report"],
+        &["sightlines-bake"],
+        &["sightlines-cli"],
+        &["sightlines-cli", "--features", "png"],
+        &["sightlines-cli", "--features", "gpu"],
+    ] {
+        step::run(cargo().args(["check", "-p"]).args(options))?;
+    }
+    Ok(())
 }
 
 /// Names of the published packages below `crates/`, and of that of the shaders, sorted.
@@ -62,16 +73,22 @@ fn demo() -> Result<(), Failure> {
     step::run(cargo().args(["run", "--release", "--", "demo"]))
 }
 
+/// The tests of the program as it is installed by default: without the features that the step of all tests turns on.
+fn default_program() -> Result<(), Failure> {
+    step::run(cargo().args(["test", "--release", "-p", "sightlines-cli", "--test", "cli"]))
+}
+
 /// Everything, up to the first failure; the tests last, so that their summary is the last line.
 ///
 /// * `gpu`: which device the tests on one are run on
 pub(crate) fn ci(gpu: Wish) -> Result<(), Failure> {
     type Step = (&'static str, fn() -> Result<(), Failure>);
-    let steps: [Step; 7] = [
+    let steps: [Step; 8] = [
         ("tidy", tidy::tidy),
         ("docs", docs),
         ("alone", alone),
         ("demo", demo),
+        ("program", default_program),
         ("benches", benches_once),
         ("stability", lab::quick_stability),
         ("charts", lab::quick_charts),

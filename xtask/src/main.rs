@@ -44,7 +44,7 @@ enum Task {
         /// Where chance begins, to replay a run.
         #[arg(long)]
         seed: Option<u64>,
-        /// Lists the targets and stops.
+        /// Lists the targets and stops; compiles nothing.
         #[arg(long)]
         list: bool,
     },
@@ -89,6 +89,9 @@ enum Task {
     Freedoom,
 }
 
+/// What the fuzzing program can break, one name in each line; a test of that program compares.
+const FUZZ_TARGETS: &str = include_str!("../../tests/fuzz-targets.txt");
+
 fn main() -> ExitCode {
     match run(Cli::parse().task) {
         Ok(()) => ExitCode::SUCCESS,
@@ -126,6 +129,10 @@ fn run(task: Task) -> Result<(), Failure> {
 }
 
 fn fuzz(target: Option<String>, seconds: Option<u64>, seed: Option<u64>, list: bool) -> Result<(), Failure> {
+    if list {
+        FUZZ_TARGETS.lines().for_each(|name| println!("{name}"));
+        return Ok(());
+    }
     let mut command = cargo();
     command.args(["run", "--release", "-p", "sightlines-tests", "--bin", "fuzz", "--"]);
     let numbers = [("--seconds", seconds), ("--seed", seed)];
@@ -133,7 +140,6 @@ fn fuzz(target: Option<String>, seconds: Option<u64>, seed: Option<u64>, list: b
     for (name, value) in options {
         command.args(value.iter().flat_map(|v| [name, v]));
     }
-    command.args(list.then_some("--list"));
     step::run(&mut command)
 }
 

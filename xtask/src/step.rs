@@ -37,6 +37,9 @@ impl fmt::Display for Failure {
     }
 }
 
+/// The features of the program that are off by default, as an option of a command on the whole workspace.
+pub(crate) const FULL_PROGRAM: &str = "sightlines-cli/png,sightlines-cli/gpu";
+
 /// The folder of the workspace.
 pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace")

@@ -2,19 +2,21 @@
 
 use crate::freedoom;
 use crate::gpu::{self, Wish};
-use crate::step::{Failure, announce, cargo, start_failure};
+use crate::step::{FULL_PROGRAM, Failure, announce, cargo, start_failure, typed};
 use std::fmt;
 use std::io::{BufRead, BufReader, Write};
-use std::process::Stdio;
+use std::process::Command;
 
 /// What all test programs said together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Tally {
     passed: usize,
     failed: usize,
     ignored: usize,
-    /// Test programs that came to an end.
-    programs: usize,
+    /// Test programs that came to an end, and the seconds that each ran.
+    programs: Vec<(String, f64)>,
+    /// The program that runs.
+    running: String,
     /// Tests that passed without having looked at anything, for want of a GPU.
     without_gpu: usize,
 }
@@ -33,6 +35,14 @@ impl Tally {
     /// `test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s`.
     fn add(&mut self, line: &str) {
         self.without_gpu += usize::from(line.starts_with(WITHOUT_GPU));
+        // `     Running tests/pvs/main.rs (target/debug/deps/pvs-0123456789abcdef)`, `   Doc-tests sightlines_pvs`
+        if let Some((_, program)) = line.split_once("Running ").filter(|(before, _)| before.trim().is_empty()) {
+            let file = program.trim_end().rsplit(['/', '\\', '(']).next().unwrap_or_default();
+            let (source, name) = (program.split(" (").next().unwrap_or_default(), file.rsplit_once('-'));
+            self.running = format!("{} ({source})", name.map_or(file, |(name, _)| name));
+        } else if let Some(name) = line.trim_start().strip_prefix("Doc-tests ") {
+            self.running = format!("{} (examples in the documentation)", name.trim_end());
+        }
         // A program without a line break at the end of its output puts its result behind it.
         let Some((_, result)) = line.split_once("test result: ") else { return };
         let number = |what: &str| {
@@ -46,7 +56,16 @@ impl Tally {
         self.passed += passed;
         self.failed += failed;
         self.ignored += ignored;
-        self.programs += 1;
+        let seconds = line.rsplit("finished in ").next().and_then(|t| t.trim_end().strip_suffix('s')?.parse().ok());
+        self.programs.push((self.running.clone(), seconds.unwrap_or(0.0)));
+    }
+
+    /// The programs that ran longest, at most `n`, the slowest one first.
+    fn slowest(&self, n: usize) -> Vec<(&str, f64)> {
+        let mut programs: Vec<_> = self.programs.iter().map(|(name, seconds)| (name.as_str(), *seconds)).collect();
+        programs.sort_by(|a, b| b.1.total_cmp(&a.1));
+        programs.truncate(n);
+        programs
     }
 
     /// Takes in how cargo ended: a failure without a failed test is a build that broke, or a test
@@ -76,24 +95,50 @@ impl Tally {
     }
 }
 
-/// Runs `cargo test --workspace`, shows its output, and adds up the results.
+/// Runs all tests of the workspace, with all parts of the program; shows their output, and adds up the results.
+///
+/// Examples are compiled by the lints, and not again here.
 ///
 /// * `gpu`: which device the tests on one are run on
 pub(crate) fn test(gpu: Wish) -> Result<Tally, Failure> {
-    let mut command = cargo();
-    for (name, value) in gpu::environment(gpu)? {
+    let mut environment = gpu::environment(gpu)?;
+    for (name, value) in &environment {
         eprintln!("{name}={}", value.to_string_lossy());
-        command.env(name, value);
     }
-    command.args(["test", "--workspace", "--no-fail-fast"]).stdout(Stdio::piped());
     if let Some(folder) = freedoom::at_hand() {
         eprintln!("{}={}", freedoom::VARIABLE, folder.display());
-        command.env(freedoom::VARIABLE, folder);
+        environment.push((freedoom::VARIABLE, folder.into_os_string()));
     }
-    announce(&command);
-    let mut child = command.spawn().map_err(|error| start_failure(&command, error))?;
+    // Everything is compiled at once, so incremental builds would cost more than they save.
+    if std::env::var_os("CARGO_INCREMENTAL").is_none() {
+        environment.push(("CARGO_INCREMENTAL", "0".into()));
+    }
     let mut tally = Tally::default();
-    let mut output = BufReader::new(child.stdout.take().expect("standard output is piped"));
+    for kind in ["--tests", "--doc"] {
+        let mut command = cargo();
+        command.args(["test", "--workspace", "--no-fail-fast", "--features", FULL_PROGRAM, kind]);
+        command.envs(environment.iter().map(|(name, value)| (name, value)));
+        run(command, &mut tally)?;
+    }
+    println!("\n{} test programs; the slowest ones:", tally.programs.len());
+    for (name, seconds) in tally.slowest(10) {
+        println!("{seconds:8.1} s  {name}");
+    }
+    Ok(tally)
+}
+
+/// Runs a command of tests, shows all its output on standard output, and adds up the results.
+fn run(mut command: Command, tally: &mut Tally) -> Result<(), Failure> {
+    announce(&command);
+    let typed = typed(&command);
+    let failure = |error| Failure::Start { program: typed.clone(), error };
+    // One pipe for both: the names of programs are on standard error, their results on standard output.
+    let (output, input) = std::io::pipe().map_err(failure)?;
+    command.stdout(input.try_clone().map_err(failure)?).stderr(input);
+    let mut child = command.spawn().map_err(|error| start_failure(&command, error))?;
+    // The command holds the ends that are written to; the output ends when all of them are closed.
+    drop(command);
+    let mut output = BufReader::new(output);
     let mut line = Vec::new();
     while output.read_until(b'\n', &mut line).is_ok_and(|n| n > 0) {
         // A closed pipe behind us must not stop the tests.
@@ -101,10 +146,9 @@ pub(crate) fn test(gpu: Wish) -> Result<Tally, Failure> {
         tally.add(&String::from_utf8_lossy(&line));
         line.clear();
     }
-    let status = child.wait().map_err(|error| start_failure(&command, error))?;
+    let status = child.wait().map_err(failure)?;
     tally.close(status.success());
-    println!("\n{} test programs", tally.programs);
-    Ok(tally)
+    Ok(())
 }
 
 #[cfg(test)]
@@ -120,13 +164,17 @@ mod tests {
     #[test]
     fn results_are_added_up() {
         let sum = tally(&[
+            "     Running unittests src/lib.rs (target/debug/deps/sightlines_pvs-0123456789abcdef)\n",
             "running 3 tests",
-            "test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s",
-            "noisetest result: FAILED. 10 passed; 2 failed; 1 ignored; 0 measured; 0 filtered out; finished in 0.01s",
+            "test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s\n",
+            "   Doc-tests sightlines_pvs\n",
+            "noisetest result: FAILED. 10 passed; 2 failed; 1 ignored; 0 measured; 0 filtered out; finished in 2.50s",
             "test result: who knows",
             "GPU test not run: forms of any size: SIGHTLINES_GPU=off",
         ]);
-        assert_eq!(sum, Tally { passed: 13, failed: 2, ignored: 1, programs: 2, without_gpu: 1 });
+        let names = ["sightlines_pvs (unittests src/lib.rs)", "sightlines_pvs (examples in the documentation)"];
+        assert_eq!(sum.slowest(9), [(names[1], 2.5), (names[0], 0.01)]);
+        assert_eq!((sum.passed, sum.failed, sum.ignored, sum.without_gpu), (13, 2, 1, 1));
         assert_eq!(sum.to_string(), "13 passed, 2 failed");
         assert!(!sum.is_good());
     }
@@ -136,7 +184,7 @@ mod tests {
         assert!(!Tally::default().is_good(), "no tests at all");
         let good = Tally { passed: 5, ..Tally::default() };
         assert!(good.is_good());
-        assert!(!Tally { ignored: 1, ..good }.is_good());
+        assert!(!Tally { ignored: 1, ..good.clone() }.is_good());
         let mut broken = good;
         broken.close(false);
         assert_eq!((broken.failed, broken.is_good()), (1, false));

@@ -26,7 +26,8 @@ pub(crate) fn tidy() -> Result<(), Failure> {
     step::run(cargo().args(["fmt", "--all", "--check"]))?;
     texts()?;
     circles::check()?;
-    step::run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+    let clippy = ["clippy", "--workspace", "--all-targets", "--features", step::FULL_PROGRAM, "--", "-D", "warnings"];
+    step::run(cargo().args(clippy))
 }
 
 fn texts() -> Result<(), Failure> {

@@ -536,3 +536,14 @@ fn main() -> ExitCode {
     }
     ExitCode::SUCCESS
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_of_targets_is_complete() {
+        let listed: Vec<&str> = include_str!("../../fuzz-targets.txt").lines().collect();
+        assert_eq!(listed, TARGETS.each_ref().map(|target| target.name));
+    }
+}
