@@ -106,7 +106,7 @@ fn real(args: &Args) -> Vec<Case> {
 type Make = Box<dyn Fn(&Case) -> Box<dyn FromRegion>>;
 
 /// A method's name, how it is made, and how often cells are cut.
-struct Way {
+struct Contender {
     name: String,
     make: Make,
     depth: u32,
@@ -128,10 +128,10 @@ fn shipped(case: &Case) -> Box<dyn FromRegion> {
     Box::new(Together::new(vec![Box::new(buffers(case, Layout::default())), Box::new(sheets)]))
 }
 
-fn ways(args: &Args) -> Vec<Way> {
-    let mut ways = Vec::new();
+fn contenders(args: &Args) -> Vec<Contender> {
+    let mut contenders = Vec::new();
     let mut add = |name: String, depth: u32, make: Make| {
-        ways.push(Way { name, make, depth });
+        contenders.push(Contender { name, make, depth });
     };
     for &n_levels in &args.planes {
         for measure in [Measure::Euclid, Measure::VertexHeight, Measure::SectionHeight] {
@@ -153,14 +153,14 @@ fn ways(args: &Args) -> Vec<Way> {
     add("shafts".to_owned(), 0, Box::new(move |case| Box::new(cut(case))));
     let voxels = |case: &Case| Voxels::new(&case.scene, VoxelOptions::default()).expect("few voxels");
     add("voxels, closed".to_owned(), 0, Box::new(move |case| Box::new(voxels(case))));
-    ways
+    contenders
 }
 
 /// Asks one method about all cells of a scene.
-fn ask(case: &Case, seen: &[Vec<bool>], way: &Way) -> Found {
+fn ask(case: &Case, seen: &[Vec<bool>], contender: &Contender) -> Found {
     let mut found = Found::default();
     let start = Instant::now();
-    let mut method = (way.make)(case);
+    let mut method = (contender.make)(case);
     found.make = start.elapsed();
     let objects: Vec<Vec<[Point3; 3]>> = case.scene.objects().iter().map(|o| o.corners().collect()).collect();
     let witness = Witness::new(objects.iter().map(|o| &o[..]));
@@ -168,7 +168,7 @@ fn ask(case: &Case, seen: &[Vec<bool>], way: &Way) -> Found {
     for (cell, seen) in case.cells.iter().zip(seen) {
         let volume = Volume::new(*cell).expect("cells are boxes");
         let mut visible = vec![true; occludees.len()];
-        let split = Split { depth: way.depth, ..Split::default() };
+        let split = Split { depth: contender.depth, ..Split::default() };
         let start = Instant::now();
         adaptive::see(&mut *method, &occludees, &witness, &volume, &split, &mut visible, &mut |_| ())
             .expect("the CPU does not fail");
@@ -196,8 +196,8 @@ fn table(args: &Args, cases: &[Case]) -> usize {
         let seen: Vec<Vec<bool>> = case.cells.iter().map(seen_from).collect();
         let n_seen = seen.iter().flatten().filter(|s| **s).count();
         let n_pairs = case.cells.len() * case.scene.objects().len();
-        for way in ways(args) {
-            let found = ask(case, &seen, &way);
+        for contender in contenders(args) {
+            let found = ask(case, &seen, &contender);
             n_wrong += found.wrong;
             println!(
                 "| {} | {} | {} | {} | {:.1} % | {} | {:.1} % | {:.2} | {:.2} | {:.0} |",
@@ -206,7 +206,7 @@ fn table(args: &Args, cases: &[Case]) -> usize {
                 case.cells.len(),
                 case.scene.objects().len(),
                 100.0 * n_seen as f64 / n_pairs as f64,
-                way.name,
+                contender.name,
                 100.0 * found.reported as f64 / n_pairs as f64,
                 found.reported as f64 / n_seen as f64,
                 found.make.as_secs_f64(),

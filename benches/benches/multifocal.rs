@@ -10,7 +10,7 @@ use sightlines::multifocal::{
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines::scenes::{Occlusion, OcclusionOptions, occlusion};
-use sightlines_testkit::{Glimpses, hidden_by_sampling};
+use sightlines_testkit::{SampledView, sampled_view};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -50,7 +50,7 @@ struct Args {
 struct Case {
     made: Occlusion,
     volume: Aabb<3>,
-    seen: Glimpses,
+    seen: SampledView,
 }
 
 /// What one way finds in several benchmarks.
@@ -90,7 +90,7 @@ fn cases(args: &Args, tilt: u32, half: f64) -> Vec<Case> {
         let made =
             occlusion(OcclusionOptions { seed, tilt, ..OcclusionOptions::default() }).expect("tilts are checked");
         let volume = Occlusion::volume(half);
-        let seen = hidden_by_sampling(&made.scene, &volume, &made.occludees, args.rays, seed);
+        let seen = sampled_view(&made.scene, &volume, &made.occludees, args.rays, seed);
         Case { made, volume, seen }
     };
     args.seeds.iter().map(case).collect()

@@ -14,7 +14,7 @@ use sightlines::kdtree::SceneOptions;
 use sightlines::pvs::Table;
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines_benches::child::portals_of;
-use sightlines_benches::path::{Stand, walk};
+use sightlines_benches::path::{CameraPose, walk};
 use sightlines_benches::raster::{Camera, Drawn, Picture};
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -110,12 +110,12 @@ fn run(args: &Args) -> Result<usize, Box<dyn Error>> {
     let &[width, height] = &size[..] else { return Err("--size takes two numbers".into()) };
     let scene = tower(options)?;
     let table = table(args, &scene)?;
-    let stands = walk(&scene, options, n_frames)?;
+    let poses = walk(&scene, options, n_frames)?;
     let mut show = Show::new(&scene, &table, [width, height]);
-    let frames: Vec<[Frame; N_WAYS]> = stands.iter().map(|stand| show.frame(stand)).collect();
+    let frames: Vec<[Frame; N_WAYS]> = poses.iter().map(|pose| show.frame(pose)).collect();
     for (k, frame) in frames.iter().enumerate() {
         for (way, f) in WAYS.iter().zip(frame).filter(|(_, f)| f.n_wrong > 0) {
-            eprintln!("WRONG frame {k}, {way}: {} pixels differ, at {:?}", f.n_wrong, stands[k]);
+            eprintln!("WRONG frame {k}, {way}: {} pixels differ, at {:?}", f.n_wrong, poses[k]);
         }
     }
     if let Some(path) = &args.csv {
@@ -123,7 +123,7 @@ fn run(args: &Args) -> Result<usize, Box<dyn Error>> {
     }
     report(&scene, &frames, [width, height]);
     if args.test {
-        check(&scene, &table, &stands, &frames);
+        check(&scene, &table, &poses, &frames);
     }
     Ok(frames.iter().flatten().map(|f| f.n_wrong).sum())
 }
@@ -183,10 +183,10 @@ impl<'a> Show<'a> {
     }
 
     /// Draws one frame in every way. What the table is asked for counts to the time.
-    fn frame(&mut self, stand: &Stand) -> [Frame; N_WAYS] {
-        let camera = Camera::new(stand.eye, stand.ahead);
+    fn frame(&mut self, pose: &CameraPose) -> [Frame; N_WAYS] {
+        let camera = Camera::new(pose.eye, pose.ahead);
         let n = self.scene.objects().len() as u32;
-        for cell in self.table.locate(&stand.eye) {
+        for cell in self.table.locate(&pose.eye) {
             let prepare = || Outlook::prepare(&self.cells, cell).unwrap_or_else(|never| match never {});
             self.outlooks.entry(cell).or_insert_with(prepare);
         }
@@ -197,7 +197,7 @@ impl<'a> Show<'a> {
             let start = Instant::now();
             let drawn = if let Some(method) = way.checked_sub(4).map(|k| METHODS[k]) {
                 self.seen.clear(self.table.n_cells(), n as usize);
-                for cell in self.table.locate(&stand.eye) {
+                for cell in self.table.locate(&pose.eye) {
                     let outlook = &self.outlooks[&cell];
                     method.look(outlook, &view, &Doors::all_open(), &mut self.scratch, &mut self.seen);
                 }
@@ -206,7 +206,7 @@ impl<'a> Show<'a> {
             } else if way % 2 == 0 {
                 picture.draw(self.scene, &self.first, 0..n, boxes, &camera)
             } else {
-                let objects = self.table.visible_objects_from(&stand.eye);
+                let objects = self.table.visible_objects_from(&pose.eye);
                 picture.draw(self.scene, &self.first, objects, boxes, &camera)
             };
             let time = start.elapsed();
@@ -264,7 +264,7 @@ fn report(scene: &Scene, frames: &[[Frame; N_WAYS]], [width, height]: [usize; 2]
 }
 
 /// Pictures are alike, less is drawn, and a table that lacks something is found out.
-fn check(scene: &Scene, table: &Table, stands: &[Stand], frames: &[[Frame; N_WAYS]]) {
+fn check(scene: &Scene, table: &Table, poses: &[CameraPose], frames: &[[Frame; N_WAYS]]) {
     assert!(frames.len() >= 30 && frames.iter().flatten().all(|f| f.n_wrong == 0), "the pictures are the same");
     let drawn = |way: usize| frames.iter().map(|f| f[way].drawn.n_triangles).sum::<u64>();
     assert!(drawn(1) < drawn(0) && drawn(2) < drawn(0) && drawn(3) < drawn(1).min(drawn(2)), "less is drawn");
@@ -276,6 +276,6 @@ fn check(scene: &Scene, table: &Table, stands: &[Stand], frames: &[[Frame; N_WAY
     }
     let spoilt = Table::new(parts).unwrap_or_else(|e| panic!("{e}"));
     let mut show = Show::new(scene, &spoilt, [96, 72]);
-    let n_wrong: usize = stands.iter().map(|stand| show.frame(stand)[1].n_wrong).sum();
+    let n_wrong: usize = poses.iter().map(|pose| show.frame(pose)[1].n_wrong).sum();
     assert!(n_wrong > 0, "a table without what is seen from afar makes other pictures");
 }

@@ -20,25 +20,25 @@ const LOOK: usize = 6;
 
 /// An eye on its way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stand {
+pub struct CameraPose {
     /// Where it is.
     pub eye: Point3,
     /// Where it looks.
     pub ahead: Point3,
 }
 
-/// `n` stands on walks through the lowest, the middle and the highest floor of a tower, evenly spread over
+/// `n` poses on walks through the lowest, the middle and the highest floor of a tower, evenly spread over
 /// the way from room to room.
 ///
 /// # Errors
 /// If the options are wrong.
-pub fn walk(scene: &Scene, options: TowerOptions, n: usize) -> Result<Vec<Stand>, SceneError> {
+pub fn walk(scene: &Scene, options: TowerOptions, n: usize) -> Result<Vec<CameraPose>, SceneError> {
     let (rooms, rays) = (tower_rooms(options)?, RayScene::new(scene));
     let mut floors = vec![0, options.floors / 2, options.floors - 1];
     floors.dedup();
     let ways: Vec<Vec<Point3>> = floors.iter().map(|&floor| way_on_floor(&rays, &rooms, floor)).collect();
     let share = |k: usize| n / ways.len() + usize::from(k < n % ways.len());
-    Ok(ways.iter().enumerate().flat_map(|(k, way)| stands(way, share(k))).collect())
+    Ok(ways.iter().enumerate().flat_map(|(k, way)| poses(way, share(k))).collect())
 }
 
 /// Points from room to room of a floor, a step apart.
@@ -131,15 +131,15 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// `n` stands on a way, evenly spread.
-fn stands(way: &[Point3], n: usize) -> Vec<Stand> {
+/// `n` poses on a way, evenly spread.
+fn poses(way: &[Point3], n: usize) -> Vec<CameraPose> {
     let Some(last) = way.len().checked_sub(1) else { return Vec::new() };
     let at = |s: f64| {
         let i = (s as usize).min(last);
         let (p, q) = (way[i], way[(i + 1).min(last)]);
         [0, 1, 2].map(|k| p[k] + (q[k] - p[k]) * (s - i as f64))
     };
-    let stand = |k: usize| {
+    let pose = |k: usize| {
         let s = (k as f64 + 0.37) / n as f64 * last as f64;
         let eye = at(s);
         // Looks turn slowly; the tilt keeps walls from being parallel to the picture.
@@ -147,9 +147,9 @@ fn stands(way: &[Point3], n: usize) -> Vec<Stand> {
         let tilt = 0.011 + 0.05 * ((k % 17) as f64 - 8.0) / 8.0;
         let mean = |axis: usize| to.iter().map(|p| p[axis] - eye[axis]).sum::<f64>();
         let [x, z] = [mean(0) + 0.0173, mean(2) + 0.0291];
-        Stand { eye, ahead: [x, tilt * x.hypot(z), z] }
+        CameraPose { eye, ahead: [x, tilt * x.hypot(z), z] }
     };
-    (0..n).map(stand).collect()
+    (0..n).map(pose).collect()
 }
 
 #[cfg(test)]
@@ -174,6 +174,6 @@ mod tests {
         let visited = rooms.iter().filter(|r| walk.iter().any(|s| r.bounds.contains(s.eye))).count();
         assert!(visited * 2 >= rooms.len(), "{visited} of {} rooms", rooms.len());
         let outside = walk.iter().filter(|s| !rooms.iter().any(|r| r.bounds.contains(s.eye))).count();
-        assert!(outside > 20, "{outside} stands in corridors and doors");
+        assert!(outside > 20, "{outside} poses in corridors and doors");
     }
 }

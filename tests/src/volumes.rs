@@ -8,7 +8,7 @@ use sightlines::multifocal::{
     Buffer, Chosen, FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, Plane, Together, Volume,
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
-use sightlines_testkit::hidden_by_sampling;
+use sightlines_testkit::sampled_view;
 use std::sync::Arc;
 
 /// A volume, things that hide, and boxes that may be hidden.
@@ -71,7 +71,7 @@ impl SmallWorld {
         let mut umbra = method.umbra(&volume).expect("the CPU does not fail");
         let hidden: Vec<usize> = (0..self.targets.len()).filter(|&i| umbra.hides(&self.targets[i])).collect();
         if !hidden.is_empty() {
-            let seen = hidden_by_sampling(&self.scene, &self.volume, &self.targets, n_rays, 1);
+            let seen = sampled_view(&self.scene, &self.volume, &self.targets, n_rays, 1);
             assert_eq!(seen.refuted(hidden), [], "what is called hidden is seen in {self:?}");
         }
     }

@@ -85,7 +85,7 @@ struct Targets<'a> {
 }
 
 /// A ray.
-struct Shot {
+struct AimedRay {
     way: Point3,
     cause: Cause,
     /// What a change along it counts.
@@ -106,7 +106,7 @@ impl<'a> Targets<'a> {
         Self { sums: causes.iter().map(add).collect(), causes, eye }
     }
 
-    fn any(&self, compared: &Compared, random: &mut Random) -> Option<Shot> {
+    fn any(&self, compared: &Compared, random: &mut Random) -> Option<AimedRay> {
         let all = self.sums.last().copied().filter(|sum| *sum > 0.0)?;
         let at = random.unit() * all;
         let k = self.sums.partition_point(|&s| s <= at).min(self.sums.len() - 1);
@@ -116,7 +116,7 @@ impl<'a> Targets<'a> {
         let (s, u) = (random.unit(), random.unit());
         let (s, u) = if s + u > 1.0 { (1.0 - s, 1.0 - u) } else { (s, u) };
         let way = [0, 1, 2].map(|k| t[0][k] + s * (t[1][k] - t[0][k]) + u * (t[2][k] - t[0][k]) - self.eye[k]);
-        Some(Shot { way, cause, weight: share(t, way) / chance })
+        Some(AimedRay { way, cause, weight: share(t, way) / chance })
     }
 }
 

@@ -1,6 +1,6 @@
 //! A scene before and after, looked at along the same rays.
 
-use crate::estimate::Places;
+use crate::estimate::EyeSampler;
 use crate::rays::{FirstHits, Traced};
 use crate::simplified::Simplified;
 use crate::simplify::SimplifyError;
@@ -13,13 +13,13 @@ use sightlines_visible_surface::Faces;
 /// Fresh eyes in views.
 pub(crate) struct Eyes<'a> {
     views: &'a Views,
-    places: Places<'a>,
+    places: EyeSampler<'a>,
     seed: u64,
 }
 
 impl<'a> Eyes<'a> {
     pub(crate) fn new(views: &'a Views, seed: u64) -> Self {
-        Self { views, places: Places::new(views), seed }
+        Self { views, places: EyeSampler::new(views), seed }
     }
 
     /// Where an eye is, and what its rays are drawn by. Every other eye is in one part after the other, so that flat parts get some

@@ -36,7 +36,7 @@ impl Estimate {
     }
 
     pub(crate) fn of(traced: &Traced<'_>, n_faces: usize, views: &Views, n_rays: u64) -> Self {
-        let (places, step) = (Places::new(views), step_of(n_rays));
+        let (places, step) = (EyeSampler::new(views), step_of(n_rays));
         let task = |task: u64| {
             let (mut random, mut rays) = (Random::new(task), traced.rays());
             (task * PER_TASK..((task + 1) * PER_TASK).min(n_rays))
@@ -130,13 +130,13 @@ fn direction_in_strip(i: u64, n: u64, random: &mut Random) -> Point3 {
 }
 
 /// Eyes anywhere in views.
-pub(crate) struct Places<'a> {
+pub(crate) struct EyeSampler<'a> {
     views: &'a Views,
     /// Sums of volumes.
     sums: Vec<f64>,
 }
 
-impl<'a> Places<'a> {
+impl<'a> EyeSampler<'a> {
     pub(crate) fn new(views: &'a Views) -> Self {
         let volume = |v: &crate::View| {
             let b = v.volume.bounds();
@@ -235,11 +235,11 @@ mod tests {
     fn eyes_are_where_there_is_room() {
         let volume = |min: [f64; 3], max: [f64; 3]| Volume::new(Aabb { min, max }).unwrap();
         let views = Views::new([volume([0.0; 3], [1.0; 3]), volume([2.0; 3], [4.0, 3.0, 3.5])]).unwrap();
-        let (places, mut random) = (Places::new(&views), Random::new(4));
+        let (places, mut random) = (EyeSampler::new(&views), Random::new(4));
         let n = (0..4000).filter(|_| places.any(&mut random)[0] < 2.0).count();
         assert!((800..1200).contains(&n), "{n}");
         let flat = Views::new([volume([0.0; 3], [0.0; 3]), volume([2.0; 3], [2.0, 3.0, 3.5])]).unwrap();
-        let places = Places::new(&flat);
+        let places = EyeSampler::new(&flat);
         let n = (0..4000).filter(|_| places.any(&mut random)[0] < 1.0).count();
         assert!((1800..2200).contains(&n), "{n}");
     }

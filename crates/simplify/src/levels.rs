@@ -78,7 +78,7 @@ pub fn levels(
     in_threads(options.simplify.threads, || {
         let faces = Faces::of_scene(scene)?;
         let hider = Hider::new(&faces, &HiddenBy { method: by.method, table: Some(table) });
-        let maker = Maker { scene, table, faces: &faces, hider, mesh: Mesh::new(scene), options };
+        let maker = LevelBuilder { scene, table, faces: &faces, hider, mesh: Mesh::new(scene), options };
         let all: Vec<CellId> = (0..table.n_cells() as u32).map(CellId).collect();
         let asked = all.par_iter().map(|&cell| maker.kept(cell)).collect::<Result<Vec<_>, SimplifyError>>()?;
         let (visible, kept): (Vec<Vec<bool>>, Vec<Bits>) = asked.into_iter().unzip();
@@ -123,8 +123,8 @@ impl Levels {
     }
 }
 
-/// Makes levels.
-struct Maker<'a> {
+/// What levels are made from.
+struct LevelBuilder<'a> {
     scene: &'a Scene,
     table: &'a Table,
     faces: &'a Faces,
@@ -133,7 +133,7 @@ struct Maker<'a> {
     options: &'a LevelOptions,
 }
 
-impl Maker<'_> {
+impl LevelBuilder<'_> {
     /// What may be visible for the eyes of one cell, and what is left of it, without collapsing: near enough to choose what to merge.
     fn kept(&self, cell: CellId) -> Result<(Vec<bool>, Bits), SimplifyError> {
         let views = Views::of_cells(self.table, &[cell])?;

@@ -19,7 +19,7 @@ const BATCH: u64 = 256;
 
 /// A segment that nothing blocks, nor its four parallels one [`RayScene::shift`] beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Glimpse {
+pub struct ClearSegment {
     /// In the volume.
     pub eye: Point3,
     /// In the target.
@@ -28,21 +28,21 @@ pub struct Glimpse {
 
 /// What rays from a volume found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Glimpses {
-    /// For each target the first glimpse of it, if there was one.
-    pub first: Vec<Option<Glimpse>>,
+pub struct SampledView {
+    /// For each target the first segment of it, if there was one.
+    pub first: Vec<Option<ClearSegment>>,
     /// How many rays were cast.
     pub n_rays: u64,
 }
 
-impl Glimpses {
+impl SampledView {
     /// Targets that no ray reached, ascending: all that are hidden, and some that are not.
     pub fn unseen(&self) -> impl Iterator<Item = usize> + '_ {
-        self.first.iter().enumerate().filter(|(_, glimpse)| glimpse.is_none()).map(|(i, _)| i)
+        self.first.iter().enumerate().filter(|(_, segment)| segment.is_none()).map(|(i, _)| i)
     }
 
     /// Of the targets called hidden, those that were seen: none, if the caller is sound.
-    pub fn refuted(&self, hidden: impl IntoIterator<Item = usize>) -> Vec<(usize, Glimpse)> {
+    pub fn refuted(&self, hidden: impl IntoIterator<Item = usize>) -> Vec<(usize, ClearSegment)> {
         hidden.into_iter().filter_map(|i| Some((i, self.first[i]?))).collect()
     }
 }
@@ -55,10 +55,10 @@ impl Glimpses {
 /// * `n_rays`: about how many rays to cast in all; the targets not yet seen share them equally, each at least 256
 ///
 /// The same seed gives the same answer with any number of threads.
-pub fn hidden_by_sampling(scene: &Scene, volume: &Aabb<3>, targets: &[Aabb<3>], n_rays: u64, seed: u64) -> Glimpses {
+pub fn sampled_view(scene: &Scene, volume: &Aabb<3>, targets: &[Aabb<3>], n_rays: u64, seed: u64) -> SampledView {
     let rays = RayScene::new(scene);
     let boxes: Vec<Aabb<3>> = scene.objects().iter().map(|o| Aabb::around(o.corners().flatten())).collect();
-    let mut found = Glimpses { first: vec![None; targets.len()], n_rays: 0 };
+    let mut found = SampledView { first: vec![None; targets.len()], n_rays: 0 };
     let mut left: Vec<usize> = (0..targets.len()).filter(|&i| !targets[i].is_empty() && !volume.is_empty()).collect();
     for round in 0u64.. {
         let planned = BATCH * left.len() as u64;
@@ -67,10 +67,10 @@ pub fn hidden_by_sampling(scene: &Scene, volume: &Aabb<3>, targets: &[Aabb<3>], 
         }
         let seek = |&i: &usize| {
             let mut chain = Chain::new(&rays, scene, &boxes, [*volume, targets[i]], seed, round << 32 | i as u64);
-            (i, chain.glimpse(BATCH), chain.n_rays())
+            (i, chain.segment(BATCH), chain.n_rays())
         };
-        for (i, glimpse, n) in left.par_iter().map(seek).collect::<Vec<_>>() {
-            found.first[i] = glimpse;
+        for (i, segment, n) in left.par_iter().map(seek).collect::<Vec<_>>() {
+            found.first[i] = segment;
             found.n_rays += n;
         }
         left.retain(|&i| found.first[i].is_none());

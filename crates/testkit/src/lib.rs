@@ -4,7 +4,7 @@
 //!
 //! - **Owns**: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
 //!   [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`], [`eye_fan`]), what a
-//!   point among boxes sees ([`directions_among_boxes`]), sampled lower bounds (from a volume: [`hidden_by_sampling`]), what is known of worlds of convex
+//!   point among boxes sees ([`directions_among_boxes`]), sampled lower bounds (from a volume: [`sampled_view`]), what is known of worlds of convex
 //!   cells ([`convex`]), stabbing lines as linear programs ([`lp`]), and strategies that draw from small grids.
 //! - **Out of scope**: the code under test; an oracle that shares a method with it proves nothing.
 //! - **Invariants**: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
@@ -40,7 +40,7 @@ pub use axial::{
 pub use corridor::{PortalPair, any_portals, as_portals, corridor, kd_corridor, strip_corridor};
 pub use eye::{EyeFan, EyeSector, EyeTouch, eye_fan};
 pub use eye_boxes::{BoxHit, directions_among_boxes, first_box, range_in_box};
-pub use from_region::{Glimpse, Glimpses, hidden_by_sampling};
+pub use from_region::{ClearSegment, SampledView, sampled_view};
 pub use plans::{axial_plan, convex_polygon, small_grid_plan};
 pub use ray_witness::{CellIndex, ClearLine, Random};
 pub use rays::{Hit, RayScene};

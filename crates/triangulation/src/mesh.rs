@@ -68,15 +68,15 @@ impl HasPosition for Vertex {
     }
 }
 
-/// Marks of all pieces between two vertices: the lower index first.
+/// What the pieces between two vertices say together, along the edge from the lower index to the higher.
 #[derive(Debug, Clone, Default)]
-struct Marks {
+struct EdgeAttributes {
     opaque: bool,
     left: Vec<u32>,
     right: Vec<u32>,
 }
 
-impl Marks {
+impl EdgeAttributes {
     fn add(&mut self, plan: &Plan, noded: &Noded, piece: &Piece, forward: bool) {
         let line = &plan.lines()[piece.line as usize];
         let extra = &noded.extra[piece.line as usize];
@@ -107,7 +107,7 @@ fn index_of(points: &[Point2], p: &Point2) -> u32 {
 /// Triangulates the convex hull of all pieces and of the points of `frame`.
 pub(crate) fn triangulate(plan: &Plan, noded: &Noded, frame: &[Point2]) -> Result<Mesh, TriangulationError> {
     let vertices = distinct(&noded.pieces, frame);
-    let mut lines: BTreeMap<(u32, u32), Marks> = BTreeMap::new();
+    let mut lines: BTreeMap<(u32, u32), EdgeAttributes> = BTreeMap::new();
     for piece in &noded.pieces {
         let (a, b) = (index_of(&vertices, &piece.a), index_of(&vertices, &piece.b));
         lines.entry((a.min(b), a.max(b))).or_default().add(plan, noded, piece, a < b);
@@ -140,7 +140,7 @@ fn constrained<'a>(
     Cdt::try_bulk_load_cdt(all, edges, |_| {}).map_err(|_| TriangulationError::Vertex { x: first.x, y: first.y })
 }
 
-fn mesh_of(cdt: &Cdt, vertices: Vec<Point2>, lines: &BTreeMap<(u32, u32), Marks>) -> Mesh {
+fn mesh_of(cdt: &Cdt, vertices: Vec<Point2>, lines: &BTreeMap<(u32, u32), EdgeAttributes>) -> Mesh {
     let mut slot = vec![OUTSIDE; cdt.num_directed_edges()];
     for (triangle, face) in (0u32..).zip(cdt.inner_faces()) {
         for (k, edge) in (0u32..).zip(face.adjacent_edges()) {

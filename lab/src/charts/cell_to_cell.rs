@@ -1,6 +1,9 @@
 //! Which cells see which: in the plane, among boxes, through convex portals; exact methods and those that came before.
 
-use super::older::{Opening, Ways, axial_ways, connected, convex_ways, planar_ways, sampled, shadow_volumes};
+use super::older::{
+    Opening, PortalGraph, axial_portal_graph, connected, convex_portal_graph, planar_portal_graph, sampled,
+    shadow_volumes,
+};
 use super::panels::time_against_over;
 use super::plot::Panel;
 use super::row::Row;
@@ -215,19 +218,19 @@ impl Case<'_> {
     }
 
     /// What came before.
-    fn add_older<O: Opening>(&mut self, ways: &Ways<O>, tree: &str) {
-        let (all, seconds, repeats) = self.settings.best_of(|| connected(ways));
+    fn add_older<O: Opening>(&mut self, graph: &PortalGraph<O>, tree: &str) {
+        let (all, seconds, repeats) = self.settings.best_of(|| connected(graph));
         self.add(&format!("view volumes ({tree})"), &all, seconds, repeats, "");
         let limit = self.settings.pick(LIMIT[0], LIMIT[1]);
-        let limited = || shadow_volumes(ways, Duration::from_secs_f64(limit));
+        let limited = || shadow_volumes(graph, Duration::from_secs_f64(limit));
         let (lit, seconds, repeats) = self.settings.best_of(limited);
         match lit {
             Some(lit) => self.add("shadow volumes", &lit, seconds, repeats, ""),
             None => self.give_up("shadow volumes", limit),
         }
         let most = self.settings.pick(MOST_RAYS[0], MOST_RAYS[1]);
-        for n_rays in RAYS.into_iter().filter(|n| n * ways.n_cells() as u64 <= most) {
-            let (found, seconds, repeats) = self.settings.best_of(|| sampled(ways, n_rays, 1));
+        for n_rays in RAYS.into_iter().filter(|n| n * graph.n_cells() as u64 <= most) {
+            let (found, seconds, repeats) = self.settings.best_of(|| sampled(graph, n_rays, 1));
             self.add(&format!("random rays: {n_rays} a cell"), &found, seconds, repeats, "");
         }
     }
@@ -254,7 +257,7 @@ fn in_the_plane(settings: &Settings, name: &str, plan: &Plan, rows: &mut Vec<Row
     let network: Network<Portal2, _> = Network::planar(&graph, &zones);
     case.add_limited("funnel", &network, &Funnel::new(Adaptive));
     case.add_limited("linear program", &network, &ByProgram::<Portal2>::new());
-    case.add_older(&planar_ways(&graph), "quadtree");
+    case.add_older(&planar_portal_graph(&graph), "quadtree");
     Ok(())
 }
 
@@ -292,7 +295,7 @@ fn among_boxes(
         case.add_limited("sequences (axial stabber)", &network, &AxialStabber::new());
         case.add_limited("sequences (linear program)", &network, &ByProgram::<AxialDoor>::new());
     }
-    case.add_older(&axial_ways(graph), "octree");
+    case.add_older(&axial_portal_graph(graph), "octree");
     Ok(())
 }
 
@@ -322,7 +325,7 @@ fn through_polygons(settings: &Settings, spec: &MapSpec, rows: &mut Vec<Row>) ->
             case.add(title, &answer.table, seconds, repeats, "");
         }
     }
-    case.add_older(&convex_ways(&graph), "octree");
+    case.add_older(&convex_portal_graph(&graph), "octree");
     Ok(())
 }
 

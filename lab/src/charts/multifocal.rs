@@ -51,7 +51,7 @@ impl Family for MultifocalFamily {
         let mut rows = Vec::new();
         for case in cases(settings)? {
             let failed = |e: Failure| ChartError::measure(NAME, &case.name, e);
-            all_methods(settings, &case, ways(settings, &case), &mut rows).map_err(failed)?;
+            all_methods(settings, &case, contenders(settings, &case), &mut rows).map_err(failed)?;
         }
         Ok(rows)
     }
@@ -110,7 +110,7 @@ fn cases(settings: &Settings) -> Result<Vec<Case>, ChartError> {
 type Make<'a> = Box<dyn Fn() -> Result<Box<dyn FromRegion>, Failure> + 'a>;
 
 /// A method's name, how it is made, and how often boxes are cut.
-struct Way<'a> {
+struct Contender<'a> {
     name: String,
     make: Make<'a>,
     depth: u32,
@@ -135,9 +135,9 @@ fn chosen(case: &Case) -> Arc<Chosen> {
     Arc::new(Chosen::new(patches(&triangles(case), &PatchOptions::default()), 500))
 }
 
-fn ways<'a>(settings: &Settings, case: &'a Case) -> Vec<Way<'a>> {
-    let mut ways: Vec<Way<'a>> = Vec::new();
-    let mut add = |name: String, depth: u32, make: Make<'a>| ways.push(Way { name, make, depth });
+fn contenders<'a>(settings: &Settings, case: &'a Case) -> Vec<Contender<'a>> {
+    let mut contenders: Vec<Contender<'a>> = Vec::new();
+    let mut add = |name: String, depth: u32, make: Make<'a>| contenders.push(Contender { name, make, depth });
     let fast = |layout: Layout| -> Make<'a> {
         Box::new(move || Ok(Box::new(buffers(case, Fast::new(), chosen(case), layout))))
     };
@@ -183,7 +183,7 @@ fn ways<'a>(settings: &Settings, case: &'a Case) -> Vec<Way<'a>> {
         || -> Result<Box<dyn FromRegion>, Failure> { Ok(Box::new(Voxels::new(&case.scene, VoxelOptions::default())?)) };
     add("voxels".to_owned(), 0, Box::new(voxels));
     add("graphics device".to_owned(), 0, Box::new(|| on_device(case)));
-    ways
+    contenders
 }
 
 /// Buffers by the first graphics device that is found, as compute.
@@ -205,7 +205,12 @@ fn on_device(_: &Case) -> Result<Box<dyn FromRegion>, Failure> {
 #[error("{0}")]
 struct NoDevice(String);
 
-fn all_methods(settings: &Settings, case: &Case, ways: Vec<Way<'_>>, rows: &mut Vec<Row>) -> Result<(), Failure> {
+fn all_methods(
+    settings: &Settings,
+    case: &Case,
+    contenders: Vec<Contender<'_>>,
+    rows: &mut Vec<Row>,
+) -> Result<(), Failure> {
     let n_rays = settings.pick(20_000, 300_000);
     let rays = RayScene::new(&case.scene);
     let seen_from = |b: &Aabb<3>| {
@@ -218,14 +223,14 @@ fn all_methods(settings: &Settings, case: &Case, ways: Vec<Way<'_>>, rows: &mut 
     let objects: Vec<Vec<[Point3; 3]>> = case.scene.objects().iter().map(|o| o.corners().collect()).collect();
     let witness = Witness::new(objects.iter().map(|o| &o[..]));
     let occludees = Occludees::new(objects.clone());
-    for way in ways {
+    for contender in contenders {
         let row = Row {
             size: case.scene.n_triangles() as u64,
             size_of: "triangles".to_owned(),
-            ..settings.row(NAME, &way.name, &case.name)
+            ..settings.row(NAME, &contender.name, &case.name)
         };
         let start = Instant::now();
-        let mut method = match (way.make)() {
+        let mut method = match (contender.make)() {
             Ok(method) => method,
             Err(error) if error.is::<NoDevice>() => {
                 rows.push(Row { note: super::row::clean(&error.to_string()), ..row });
@@ -234,7 +239,7 @@ fn all_methods(settings: &Settings, case: &Case, ways: Vec<Way<'_>>, rows: &mut 
             Err(error) => return Err(error),
         };
         let prepare = start.elapsed().as_secs_f64();
-        let split = Split { depth: way.depth, ..Split::default() };
+        let split = Split { depth: contender.depth, ..Split::default() };
         let mut ask = || -> Result<[u64; 2], Failure> {
             let mut found = [0; 2];
             for (b, seen) in case.boxes.iter().zip(&seen) {
@@ -272,11 +277,11 @@ mod tests {
         let options = CityOptions { blocks_x: 2, blocks_z: 2, ..CityOptions::default() };
         let boxes = some(city_crossings(options).unwrap(), 1);
         let case = Case { name: "city".into(), scene: city(options).unwrap(), boxes };
-        let mut ways = ways(&settings, &case);
+        let mut contenders = contenders(&settings, &case);
         // The reference is slow on purpose.
-        ways.retain(|way| !way.name.contains("reference") && !way.name.contains("resolution"));
+        contenders.retain(|contender| !contender.name.contains("reference") && !contender.name.contains("resolution"));
         let mut rows = Vec::new();
-        all_methods(&settings, &case, ways, &mut rows).unwrap();
+        all_methods(&settings, &case, contenders, &mut rows).unwrap();
         let measured: Vec<&Row> = rows.iter().filter(|r| r.seconds.is_some()).collect();
         assert!(measured.len() >= 9 && measured.iter().all(|r| r.missed == Some(0)), "{rows:?}");
         let of = |name: &str| measured.iter().find(|r| r.method.starts_with(name)).unwrap().reported.unwrap();

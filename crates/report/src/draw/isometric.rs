@@ -1,9 +1,9 @@
 //! Isometric views of the cells of a scene in space.
 
 use super::order::back_to_front;
-use super::seen::Seen;
 use super::slice::{look, title};
 use super::space::Up;
+use super::visible_set::VisibleSet;
 use super::{DrawError, View, svg};
 use crate::frame::{Frame, Px};
 use crate::theme;
@@ -109,16 +109,16 @@ enum Look {
     /// Nothing is said of it.
     Plain,
     From,
-    Seen,
+    VisibleSet,
     Hidden,
 }
 
 impl Look {
-    fn of(cell: CellId, seen: Option<&Seen>) -> Self {
+    fn of(cell: CellId, seen: Option<&VisibleSet>) -> Self {
         match seen {
             None => Self::Plain,
             Some(seen) if seen.is_from(cell) => Self::From,
-            Some(seen) if seen.sees(cell) => Self::Seen,
+            Some(seen) if seen.sees(cell) => Self::VisibleSet,
             Some(_) => Self::Hidden,
         }
     }
@@ -128,7 +128,7 @@ impl Look {
         match self {
             Self::Plain => Some((theme::CELL_SHADES, ".45")),
             Self::From => Some((theme::FROM_SHADES, ".85")),
-            Self::Seen => Some((theme::SEEN_SHADES, ".3")),
+            Self::VisibleSet => Some((theme::SEEN_SHADES, ".3")),
             Self::Hidden => None,
         }
     }

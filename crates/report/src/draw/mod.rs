@@ -5,10 +5,10 @@ mod isometric;
 mod order;
 mod picture;
 mod plan;
-mod seen;
 mod slice;
 mod space;
 mod svg;
+mod visible_set;
 
 pub use isometric::{IsometricOptions, isometric_svg};
 pub use plan::{DrawOptions, plan_svg};

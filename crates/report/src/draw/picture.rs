@@ -1,8 +1,8 @@
 //! The drawing of a planar figure.
 
 use super::figure::{Figure, Shape};
-use super::seen::Seen;
 use super::svg::{self, fill, stroke};
+use super::visible_set::VisibleSet;
 use crate::frame::{Frame, Px};
 use crate::theme::{self, Strokes};
 use sightlines_geometry::{Aabb, Point2, signed_area};
@@ -11,7 +11,7 @@ use std::fmt::Write;
 
 /// What is marked in a picture.
 #[derive(Debug, Default)]
-pub(super) struct Marks<'a> {
+pub(super) struct Annotations<'a> {
     /// The cell looked for.
     pub(super) target: Option<CellId>,
     /// Indices of portals.
@@ -28,12 +28,12 @@ pub(super) struct Picture<'a> {
     frame: Frame,
     strokes: Strokes,
     /// `None` for a plan alone.
-    seen: Option<&'a Seen>,
+    seen: Option<&'a VisibleSet>,
 }
 
 impl<'a> Picture<'a> {
     /// A picture of which the longer side has `size` pixels.
-    pub(super) fn new(figure: &'a Figure, seen: Option<&'a Seen>, size: u32) -> Self {
+    pub(super) fn new(figure: &'a Figure, seen: Option<&'a VisibleSet>, size: u32) -> Self {
         let frame = Frame::around(figure.bounds(), size);
         let area: f64 = figure.cells.iter().map(|c| signed_area(&c.corners)).sum();
         let cell = (frame.area(area) / (figure.cells.len().max(1) as f64)).sqrt();
@@ -41,14 +41,20 @@ impl<'a> Picture<'a> {
     }
 
     /// The whole picture.
-    pub(super) fn draw(&self, title: &str, marks: &Marks<'_>, objects: bool, group_colours: bool) -> String {
+    pub(super) fn draw(
+        &self,
+        title: &str,
+        annotations: &Annotations<'_>,
+        objects: bool,
+        group_colours: bool,
+    ) -> String {
         let mut out = svg::open(title, [self.frame.width, self.frame.height]);
-        self.fills(&mut out, marks.target, group_colours);
+        self.fills(&mut out, annotations.target, group_colours);
         self.lines(&mut out);
         if objects {
             self.objects(&mut out);
         }
-        self.marks(&mut out, marks);
+        self.annotations(&mut out, annotations);
         out.push_str(svg::CLOSE);
         out
     }
@@ -130,9 +136,9 @@ impl<'a> Picture<'a> {
     }
 
     /// Rings around cells too thin to be seen, marked doors, the line of sight, the eye.
-    fn marks(&self, out: &mut String, marks: &Marks<'_>) {
+    fn annotations(&self, out: &mut String, annotations: &Annotations<'_>) {
         for cell in &self.figure.cells {
-            if marks.target == Some(cell.id) {
+            if annotations.target == Some(cell.id) {
                 self.ring_if_thin(out, cell, theme::TARGET);
             }
         }
@@ -140,7 +146,7 @@ impl<'a> Picture<'a> {
             self.ring_if_thin(out, cell, theme::FROM);
         }
         let mut doors = String::new();
-        for &portal in marks.portals {
+        for &portal in annotations.portals {
             // Doors are in the order of their portals.
             if let Ok(i) = self.figure.doors.binary_search_by_key(&portal, |(id, _)| *id) {
                 let door = self.figure.doors[i].1;
@@ -148,13 +154,13 @@ impl<'a> Picture<'a> {
             }
         }
         stroke(out, &doors, theme::SIGHTLINE, self.strokes.wall * 1.2);
-        if let Some(line) = marks.line {
+        if let Some(line) = annotations.line {
             let mut path = String::new();
             self.frame.polyline(&mut path, &line);
             stroke(out, &path, theme::PAPER, 2.2 * self.strokes.line);
             stroke(out, &path, theme::SIGHTLINE, self.strokes.line);
         }
-        for point in marks.line.into_iter().flatten().chain(marks.eye) {
+        for point in annotations.line.into_iter().flatten().chain(annotations.eye) {
             svg::dot(out, self.frame.place(point), self.strokes.mark, theme::SIGHTLINE);
         }
     }

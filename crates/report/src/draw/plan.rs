@@ -1,8 +1,8 @@
 //! Plans: the whole of a planar table.
 
 use super::figure::Figure;
-use super::picture::{Marks, Picture};
-use super::seen::Seen;
+use super::picture::{Annotations, Picture};
+use super::visible_set::VisibleSet;
 use super::{DrawError, View, check_cells, check_size, svg};
 use sightlines_geometry::Point2;
 use sightlines_pvs::{CellId, Table};
@@ -53,17 +53,17 @@ pub fn plan_svg(table: &Table, options: &DrawOptions) -> Result<String, DrawErro
     let figure = Figure::of_plan(table);
     let (seen, eye) = match options.view {
         View::Plan => (None, None),
-        View::Cell(cell) => (Some(Seen::from_cell(table, cell)), None),
-        View::Eye(eye) => (Some(Seen::from_point(table, &[eye.x, eye.y])), Some(eye)),
+        View::Cell(cell) => (Some(VisibleSet::from_cell(table, cell)), None),
+        View::Eye(eye) => (Some(VisibleSet::from_point(table, &[eye.x, eye.y])), Some(eye)),
     };
-    let marks = Marks { target: options.target, portals: &options.marked_portals, line: options.line, eye };
+    let annotations = Annotations { target: options.target, portals: &options.marked_portals, line: options.line, eye };
     let title = match options.view {
         View::Plan => "Cells and portals".to_owned(),
         View::Cell(cell) => svg::seen_from_cell(cell),
         View::Eye(eye) => svg::seen_from_point(&[eye.x, eye.y]),
     };
     let picture = Picture::new(&figure, seen.as_ref(), options.size);
-    Ok(picture.draw(&title, &marks, options.objects, options.group_colours))
+    Ok(picture.draw(&title, &annotations, options.objects, options.group_colours))
 }
 
 fn check(table: &Table, options: &DrawOptions) -> Result<(), DrawError> {

@@ -1,9 +1,9 @@
 //! Floor plans of scenes in space.
 
 use super::figure::Figure;
-use super::picture::{Marks, Picture};
-use super::seen::Seen;
+use super::picture::{Annotations, Picture};
 use super::space::Up;
+use super::visible_set::VisibleSet;
 use super::{DrawError, View, check_cells, check_size, svg};
 use sightlines_geometry::Point2;
 use sightlines_pvs::Table;
@@ -51,9 +51,10 @@ pub fn slice_svg(table: &Table, options: &SliceOptions) -> Result<String, DrawEr
         return Err(DrawError::NoCellAt { height, low, high });
     }
     let on_floor = |p: [f64; 3]| Point2::from(up.on_floor(p));
-    let marks = Marks { eye: eye.map(on_floor), line: line.map(|ends| ends.map(on_floor)), ..Marks::default() };
+    let annotations =
+        Annotations { eye: eye.map(on_floor), line: line.map(|ends| ends.map(on_floor)), ..Annotations::default() };
     let title = format!("{} at height {height}", title(view));
-    Ok(Picture::new(&figure, seen.as_ref(), size).draw(&title, &marks, false, true))
+    Ok(Picture::new(&figure, seen.as_ref(), size).draw(&title, &annotations, false, true))
 }
 
 /// What a picture of a scene in space is called.
@@ -70,7 +71,7 @@ pub(super) fn look(
     table: &Table,
     view: View<[f64; 3]>,
     size: u32,
-) -> Result<(Option<Seen>, Option<[f64; 3]>), DrawError> {
+) -> Result<(Option<VisibleSet>, Option<[f64; 3]>), DrawError> {
     if table.dimension() != 3 {
         return Err(DrawError::NotSpatial(table.dimension()));
     }
@@ -79,9 +80,11 @@ pub(super) fn look(
         View::Plan => Ok((None, None)),
         View::Cell(cell) => {
             check_cells(table, [cell])?;
-            Ok((Some(Seen::from_cell(table, cell)), None))
+            Ok((Some(VisibleSet::from_cell(table, cell)), None))
         }
-        View::Eye(eye) if eye.iter().all(|x| x.is_finite()) => Ok((Some(Seen::from_point(table, &eye)), Some(eye))),
+        View::Eye(eye) if eye.iter().all(|x| x.is_finite()) => {
+            Ok((Some(VisibleSet::from_point(table, &eye)), Some(eye)))
+        }
         View::Eye(_) => Err(DrawError::NotFinite),
     }
 }

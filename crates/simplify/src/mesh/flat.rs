@@ -32,11 +32,11 @@ fn keeps_the_surface(mesh: &Mesh, change: &Change) -> bool {
     while let Some(&first) = rest.first() {
         let object = mesh.face(first).object;
         let [a, b, c] = mesh.corners(first);
-        let Some(seen) = Seen::new([a, b, c]) else { return false };
+        let Some(projection) = Projection::new([a, b, c]) else { return false };
         let in_plane =
             |f: &u32| mesh.face(*f).object == object && mesh.corners(*f).iter().all(|&p| orient3d(a, b, c, p) == 0.0);
         let (fan, others): (Vec<u32>, Vec<u32>) = rest.iter().partition(|f| in_plane(f));
-        if !keeps_fan(mesh, change, &fan, &seen) {
+        if !keeps_fan(mesh, change, &fan, &projection) {
             return false;
         }
         rest = others;
@@ -44,16 +44,16 @@ fn keeps_the_surface(mesh: &Mesh, change: &Change) -> bool {
     true
 }
 
-/// A plane as it is seen from its front, along an axis.
-struct Seen {
+/// The projection of a plane along an axis, such that its front is counter-clockwise.
+struct Projection {
     axes: [usize; 2],
 }
 
-impl Seen {
-    /// The axes that see a triangle turn counter-clockwise; none if it has no area.
+impl Projection {
+    /// One in which a triangle is counter-clockwise; none if it has no area.
     fn new([a, b, c]: [Point3; 3]) -> Option<Self> {
         let all = [[0, 1], [1, 0], [1, 2], [2, 1], [2, 0], [0, 2]];
-        all.into_iter().map(|axes| Self { axes }).find(|seen| seen.turn([a, b, c]) > 0.0)
+        all.into_iter().map(|axes| Self { axes }).find(|projection| projection.turn([a, b, c]) > 0.0)
     }
 
     fn point(&self, p: Point3) -> Point2 {
@@ -66,7 +66,7 @@ impl Seen {
     }
 }
 
-fn keeps_fan(mesh: &Mesh, change: &Change, fan: &[u32], seen: &Seen) -> bool {
+fn keeps_fan(mesh: &Mesh, change: &Change, fan: &[u32], projection: &Projection) -> bool {
     let centre = mesh.place(change.from);
     // The rim's edges, each counter-clockwise around the centre.
     let edge = |f: &u32| {
@@ -75,11 +75,11 @@ fn keeps_fan(mesh: &Mesh, change: &Change, fan: &[u32], seen: &Seen) -> bool {
         Some([corners[(at + 1) % 3], corners[(at + 2) % 3]])
     };
     let Some(edges) = fan.iter().map(edge).collect::<Option<Vec<[u32; 2]>>>() else { return false };
-    if edges.iter().any(|e| seen.turn([centre, mesh.place(e[0]), mesh.place(e[1])]) <= 0.0) {
+    if edges.iter().any(|e| projection.turn([centre, mesh.place(e[0]), mesh.place(e[1])]) <= 0.0) {
         return false;
     }
     // All edges turn one way, so the rim goes round as often as it gets from below to above.
-    let above = |p: u32| seen.point(mesh.place(p)).y >= seen.point(centre).y;
+    let above = |p: u32| projection.point(mesh.place(p)).y >= projection.point(centre).y;
     if edges.iter().filter(|e| !above(e[0]) && above(e[1])).count() > 1 {
         return false;
     }
@@ -93,7 +93,7 @@ fn keeps_fan(mesh: &Mesh, change: &Change, fan: &[u32], seen: &Seen) -> bool {
     };
     let to = mesh.place(change.to);
     let mut left = edges.iter().filter(|e| !e.contains(&change.to));
-    fits && left.all(|e| seen.turn([to, mesh.place(e[0]), mesh.place(e[1])]) > 0.0)
+    fits && left.all(|e| projection.turn([to, mesh.place(e[0]), mesh.place(e[1])]) > 0.0)
 }
 
 /// Whether the place that goes lies on the segment between where it goes and another place.

@@ -87,7 +87,7 @@ fn changed_pixels(scene: &Scene, left: &Simplified, views: &Views, n_eyes: usize
         first += object.triangles.len() as u32;
     }
     let casters = [&before, &after].map(RayCaster::build);
-    let places = crate::estimate::Places::new(views);
+    let places = crate::estimate::EyeSampler::new(views);
     let mut random = Random::new(77);
     let (mut changed, mut all) = (0, 0);
     for _ in 0..n_eyes {

@@ -1,6 +1,6 @@
 //! The search for a clear segment between two boxes.
 
-use super::{Glimpse, is_clear};
+use super::{ClearSegment, is_clear};
 use crate::ray_witness::Random;
 use crate::rays::{Hit, RayScene, length, sub};
 use sightlines_cells::{Point3, Scene};
@@ -57,14 +57,14 @@ impl<'a> Chain<'a> {
     }
 
     /// A clear segment, sought with about `n` rays.
-    pub(super) fn glimpse(&mut self, n: u64) -> Option<Glimpse> {
+    pub(super) fn segment(&mut self, n: u64) -> Option<ClearSegment> {
         while self.n_rays < n {
             let mut segment = self.begin();
             for _ in 0..TURNS {
                 let [eye, point] = segment;
                 self.n_rays += 1;
                 match self.first_hit(segment) {
-                    None if is_clear(self.rays, eye, point) => return Some(Glimpse { eye, point }),
+                    None if is_clear(self.rays, eye, point) => return Some(ClearSegment { eye, point }),
                     // It grazes something that it passes.
                     None => segment = self.ends_at_random(segment),
                     Some(hit) => segment = self.turned(segment, &hit),

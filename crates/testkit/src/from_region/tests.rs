@@ -1,4 +1,4 @@
-//! Glimpses against exact arithmetic, and how well slits are found.
+//! Clear segments against exact arithmetic, and how well slits are found.
 
 use super::*;
 use sightlines_cells::SceneObject;
@@ -42,13 +42,13 @@ fn meets([a, b, c]: [Point3; 3], p: Point3, q: Point3) -> bool {
     around.iter().all(|&s| s >= 0) || around.iter().all(|&s| s <= 0)
 }
 
-fn assert_glimpses_hold(scene: &Scene, volume: &Aabb<3>, targets: &[Aabb<3>], glimpses: &Glimpses) -> usize {
+fn assert_segments_are_clear(scene: &Scene, volume: &Aabb<3>, targets: &[Aabb<3>], view: &SampledView) -> usize {
     let mut n = 0;
-    for (target, glimpse) in targets.iter().zip(&glimpses.first) {
-        let Some(Glimpse { eye, point }) = *glimpse else { continue };
-        assert!(volume.contains(eye) && target.contains(point), "{glimpse:?}");
+    for (target, segment) in targets.iter().zip(&view.first) {
+        let Some(ClearSegment { eye, point }) = *segment else { continue };
+        assert!(volume.contains(eye) && target.contains(point), "{segment:?}");
         let blocked = scene.objects().iter().flat_map(SceneObject::corners).any(|t| meets(t, eye, point));
-        assert!(!blocked, "{glimpse:?}");
+        assert!(!blocked, "{segment:?}");
         n += 1;
     }
     n
@@ -59,9 +59,9 @@ fn what_a_wall_covers_is_not_seen_and_what_is_beside_it_is() {
     let beside = Aabb { min: [7.0, 0.0, 10.0], max: [8.0, 1.0, 11.0] };
     let scene = rectangles(&[[-3., -3., 3., 3., 5.]]);
     let targets = [behind(), beside, Aabb::EMPTY, Aabb { min: [0., 0., 2.], max: [0., 0., 2.] }];
-    let found = hidden_by_sampling(&scene, &VOLUME, &targets, 20_000, 1);
+    let found = sampled_view(&scene, &VOLUME, &targets, 20_000, 1);
     assert_eq!(found.unseen().collect::<Vec<_>>(), [0, 2]);
-    assert_eq!(assert_glimpses_hold(&scene, &VOLUME, &targets, &found), 2);
+    assert_eq!(assert_segments_are_clear(&scene, &VOLUME, &targets, &found), 2);
     assert!((15_000..25_000).contains(&found.n_rays), "{}", found.n_rays);
     assert_eq!(found.refuted([0, 2]), []);
     // The impostor: who calls hidden what is beside the wall is refuted.
@@ -69,9 +69,9 @@ fn what_a_wall_covers_is_not_seen_and_what_is_beside_it_is() {
     // The back of the wall blocks like its front, and an eye may be a point.
     let back = Aabb { min: [-0.5, -0.5, -9.0], max: [0.5, 0.5, -9.0] };
     let eye = Aabb { min: [0., 0., 9.], max: [0., 0., 9.] };
-    assert_eq!(hidden_by_sampling(&scene, &eye, &[back, beside], 5_000, 1).unseen().collect::<Vec<_>>(), [0]);
-    assert_eq!(hidden_by_sampling(&scene, &Aabb::EMPTY, &[beside], 5_000, 1).n_rays, 0);
-    let nothing = hidden_by_sampling(&Scene::default(), &eye, &[beside], 5_000, 1);
+    assert_eq!(sampled_view(&scene, &eye, &[back, beside], 5_000, 1).unseen().collect::<Vec<_>>(), [0]);
+    assert_eq!(sampled_view(&scene, &Aabb::EMPTY, &[beside], 5_000, 1).n_rays, 0);
+    let nothing = sampled_view(&Scene::default(), &eye, &[beside], 5_000, 1);
     assert_eq!((nothing.unseen().count(), nothing.n_rays), (0, 1));
 }
 
@@ -80,8 +80,8 @@ fn what_a_wall_covers_is_not_seen_and_what_is_beside_it_is() {
 fn slits_are_found() {
     for seed in 0..20 {
         let scene = slits([0.2, 0.21], [-0.11, -0.1]);
-        let found = hidden_by_sampling(&scene, &VOLUME, &[behind()], 20_000, seed);
-        assert_eq!(assert_glimpses_hold(&scene, &VOLUME, &[behind()], &found), 1, "seed {seed}");
+        let found = sampled_view(&scene, &VOLUME, &[behind()], 20_000, seed);
+        assert_eq!(assert_segments_are_clear(&scene, &VOLUME, &[behind()], &found), 1, "seed {seed}");
         assert!(found.n_rays < 20_000, "seed {seed}");
     }
 }
@@ -90,25 +90,25 @@ fn slits_are_found() {
 fn cracks_are_no_slits() {
     for crack in [[0.2, 0.2], [0.2, 0.2 + 1e-6]] {
         let scene = slits(crack, [-0.11, -0.1]);
-        let found = hidden_by_sampling(&scene, &VOLUME, &[behind()], 50_000, 3);
+        let found = sampled_view(&scene, &VOLUME, &[behind()], 50_000, 3);
         assert_eq!(found.first, [None]);
     }
 }
 
 /// Behind a slit it is known which targets are seen: exactly those are, on every run, with any number of threads.
 #[test]
-fn glimpses_are_of_all_that_is_seen_and_can_be_repeated() {
+fn segments_reach_all_that_is_seen_and_repeat() {
     let scene = slits([0.2, 0.21], [-0.4, 0.3]);
     let target = |i: i32| {
         let x = 0.15 * f64::from(i) - 3.0;
         Aabb { min: [x, -0.5, 9.0], max: [x + 0.1, 0.5, 12.0] }
     };
     let targets: Vec<Aabb<3>> = (0..40).map(target).collect();
-    let ask = || hidden_by_sampling(&scene, &VOLUME, &targets, 100_000, 5);
+    let ask = || sampled_view(&scene, &VOLUME, &targets, 100_000, 5);
     let many = ask();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     assert_eq!(pool.install(ask), many);
-    let n_seen = assert_glimpses_hold(&scene, &VOLUME, &targets, &many);
+    let n_seen = assert_segments_are_clear(&scene, &VOLUME, &targets, &many);
     // The outermost lines, from the near face to the far end: from -0.5 through 0.21, and from 0.5 through 0.2.
     let is_seen = |b: &Aabb<3>| b.min[0] < 0.21 + 0.71 * 8.0 / 3.5 && b.max[0] > 0.2 - 0.3 * 8.0 / 3.5;
     let hidden: Vec<usize> = (0..40).filter(|&i| !is_seen(&targets[i])).collect();
@@ -137,8 +137,8 @@ fn the_benchmark_hides_about_half() {
         let n = made.occludees.len();
         let mut unseen = |half: f64, n_rays: u64| {
             let volume = Occlusion::volume(half);
-            let found = hidden_by_sampling(&made.scene, &volume, &made.occludees, n_rays, seed);
-            n_seen += assert_glimpses_hold(&made.scene, &volume, &made.occludees, &found);
+            let found = sampled_view(&made.scene, &volume, &made.occludees, n_rays, seed);
+            n_seen += assert_segments_are_clear(&made.scene, &volume, &made.occludees, &found);
             found.unseen().collect::<Vec<_>>()
         };
         let [small, more, large] = [(0.25, 60_000), (0.25, 400_000), (0.5, 60_000)].map(|(half, n)| unseen(half, n));

@@ -7,7 +7,7 @@
 //! | [`sampled`] | random rays | towards hidden: it misses what no ray happens to meet |
 //! | [`BoxTreeN`] | boxes in a quadtree or octree against one view volume, from an eye | towards visible |
 //!
-//! All work on [`Ways`]: cells and the openings between them, in the plane and in space alike.
+//! All work on [`PortalGraph`]: cells and the openings between them, in the plane and in space alike.
 
 mod octree;
 mod opening;
@@ -22,9 +22,9 @@ pub use shadow::shadow_volumes;
 use sightlines::cells::{Axial, CellGraph, Convex, Exit, Planar, Space};
 use sightlines::geometry::{AxialDoor, Portal3};
 
-/// One way out of a cell.
+/// A portal as an edge: one way out of a cell.
 #[derive(Debug, Clone)]
-pub struct Way<O> {
+pub struct PortalEdge<O> {
     /// The opening, as who leaves sees it.
     pub opening: O,
     /// The cell entered.
@@ -35,35 +35,35 @@ pub struct Way<O> {
     pub entry_side: u32,
 }
 
-/// Cells, and all ways out of each.
+/// Cells, and the portals out of each.
 #[derive(Debug, Clone)]
-pub struct Ways<O> {
-    ways: Vec<Way<O>>,
-    /// Ways out of cell `c` are `ways[first[c]..first[c + 1]]`.
+pub struct PortalGraph<O> {
+    edges: Vec<PortalEdge<O>>,
+    /// Edges out of cell `c` are `edges[first[c]..first[c + 1]]`.
     first: Vec<usize>,
     /// By how much rays keep clear of edges, in scene units.
     clearance: f64,
 }
 
-impl<O: Opening> Ways<O> {
+impl<O: Opening> PortalGraph<O> {
     fn new<S: Space>(graph: &CellGraph<S>, opening: impl Fn(&Exit) -> O) -> Self {
-        let way = |exit: &Exit| Way {
+        let edge = |exit: &Exit| PortalEdge {
             opening: opening(exit),
             to: exit.to.idx(),
             side: exit.side,
             entry_side: exit.entry_side,
         };
-        let ways: Vec<Way<O>> = graph.all_exits().iter().map(way).collect();
+        let edges: Vec<PortalEdge<O>> = graph.all_exits().iter().map(edge).collect();
         let mut first = vec![0];
         first.extend(graph.cell_ids().map(|cell| graph.exit_range(cell).end));
-        let corners = || ways.iter().flat_map(|w| w.opening.corners());
+        let corners = || edges.iter().flat_map(|w| w.opening.corners());
         let size = (0..3)
             .map(|k| corners().map(|p| p[k]).fold([f64::MAX, f64::MIN], |[l, h], x| [l.min(x), h.max(x)]))
             .map(|[low, high]| high - low)
             .fold(0.0, f64::max);
         let magnitude = corners().flatten().fold(size, |m: f64, x| m.max(x.abs()));
         // A million times what doubles lose at this magnitude.
-        Self { ways, first, clearance: magnitude / f64::from(1u32 << 20) / 16.0 }
+        Self { edges, first, clearance: magnitude / f64::from(1u32 << 20) / 16.0 }
     }
 
     /// Number of cells.
@@ -71,9 +71,9 @@ impl<O: Opening> Ways<O> {
         self.first.len() - 1
     }
 
-    /// The ways out of a cell.
-    pub fn out_of(&self, cell: usize) -> &[Way<O>] {
-        &self.ways[self.places_of(cell)]
+    /// The edges out of a cell.
+    pub fn out_of(&self, cell: usize) -> &[PortalEdge<O>] {
+        &self.edges[self.places_of(cell)]
     }
 
     fn places_of(&self, cell: usize) -> std::ops::Range<usize> {
@@ -82,18 +82,18 @@ impl<O: Opening> Ways<O> {
 }
 
 /// Cells of the plane.
-pub fn planar_ways(graph: &CellGraph<Planar>) -> Ways<Gap> {
-    Ways::new(graph, |exit| Gap(graph.crossing(exit)))
+pub fn planar_portal_graph(graph: &CellGraph<Planar>) -> PortalGraph<Gap> {
+    PortalGraph::new(graph, |exit| Gap(graph.crossing(exit)))
 }
 
 /// Boxes in space.
-pub fn axial_ways(graph: &CellGraph<Axial>) -> Ways<Polygon> {
-    Ways::new(graph, |exit| Polygon::new(corners_of(&graph.door(exit))))
+pub fn axial_portal_graph(graph: &CellGraph<Axial>) -> PortalGraph<Polygon> {
+    PortalGraph::new(graph, |exit| Polygon::new(corners_of(&graph.door(exit))))
 }
 
 /// Convex cells in space.
-pub fn convex_ways(graph: &CellGraph<Convex>) -> Ways<Polygon> {
-    Ways::new(graph, |exit| {
+pub fn convex_portal_graph(graph: &CellGraph<Convex>) -> PortalGraph<Polygon> {
+    PortalGraph::new(graph, |exit| {
         let shape: &Portal3 = &graph.portal(exit.portal).shape;
         Polygon::new(if exit.forward { shape.corners().to_vec() } else { shape.reversed().corners().to_vec() })
     })

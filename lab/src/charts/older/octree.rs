@@ -1,6 +1,6 @@
 //! Culling by the view volume: boxes in a quadtree or octree against one view, and what that knows of whole cells.
 
-use super::{Opening, Ways};
+use super::{Opening, PortalGraph};
 use sightlines::geometry::Aabb;
 use sightlines::pvs::BitMatrix;
 
@@ -86,8 +86,8 @@ impl<const N: usize> BoxTreeN<N> {
 
 /// What culling by view volumes says about whole cells, cells by cells: eyes anywhere in a cell, looking anywhere, have all of
 /// space in their views, so whoever can be reached at all counts as visible. O(cells²) bits.
-pub fn connected<O: Opening>(ways: &Ways<O>) -> BitMatrix {
-    let n = ways.n_cells();
+pub fn connected<O: Opening>(graph: &PortalGraph<O>) -> BitMatrix {
+    let n = graph.n_cells();
     let mut seen = BitMatrix::identity(n);
     let mut is_done = vec![false; n];
     for first in 0..n {
@@ -98,9 +98,9 @@ pub fn connected<O: Opening>(ways: &Ways<O>) -> BitMatrix {
         is_done[first] = true;
         let mut k = 0;
         while let Some(&cell) = part.get(k) {
-            for way in ways.out_of(cell) {
-                if !std::mem::replace(&mut is_done[way.to], true) {
-                    part.push(way.to);
+            for edge in graph.out_of(cell) {
+                if !std::mem::replace(&mut is_done[edge.to], true) {
+                    part.push(edge.to);
                 }
             }
             k += 1;

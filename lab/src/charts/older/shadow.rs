@@ -6,7 +6,7 @@
 //! cost is polynomial, and what is hidden by three portals together, or by two that do not follow each other, is not
 //! found. Source: after Airey, Rohlf and Brooks, I3D 1990; passing each pair once is our own choice.
 
-use super::{Opening, Ways};
+use super::{Opening, PortalGraph};
 use crate::charts::clock::Start;
 use sightlines::pvs::BitMatrix;
 use std::time::Duration;
@@ -17,35 +17,35 @@ use std::time::Duration;
 /// `None` if the process works longer than `limit` on it.
 ///
 /// O(exits² · edges³) at worst.
-pub fn shadow_volumes<O: Opening>(ways: &Ways<O>, limit: Duration) -> Option<BitMatrix> {
+pub fn shadow_volumes<O: Opening>(graph: &PortalGraph<O>, limit: Duration) -> Option<BitMatrix> {
     let start = Start::now();
-    let n = ways.n_cells();
+    let n = graph.n_cells();
     let mut seen = BitMatrix::identity(n);
-    let mut is_lit = vec![u32::MAX; ways.ways.len()];
+    let mut is_lit = vec![u32::MAX; graph.edges.len()];
     let mut barriers = Vec::new();
     let mut next: Vec<usize> = Vec::new();
     let mut source_number = 0;
     for cell in 0..n {
-        for source in ways.places_of(cell) {
+        for source in graph.places_of(cell) {
             if start.is_over(limit) {
                 return None;
             }
-            let from = &ways.ways[source].opening;
+            let from = &graph.edges[source].opening;
             let front = from.front();
             next.push(source);
             while let Some(place) = next.pop() {
-                let via = &ways.ways[place];
+                let via = &graph.edges[place];
                 seen.set(cell, via.to, true);
                 barriers.clear();
                 if place != source {
                     from.barriers(&via.opening, &mut barriers);
                 }
-                for k in ways.places_of(via.to) {
-                    let way = &ways.ways[k];
+                for k in graph.places_of(via.to) {
+                    let edge = &graph.edges[k];
                     if is_lit[k] != source_number
-                        && way.side != via.entry_side
-                        && !way.opening.is_behind(&front)
-                        && !barriers.iter().any(|barrier| way.opening.is_behind(barrier))
+                        && edge.side != via.entry_side
+                        && !edge.opening.is_behind(&front)
+                        && !barriers.iter().any(|barrier| edge.opening.is_behind(barrier))
                     {
                         is_lit[k] = source_number;
                         next.push(k);

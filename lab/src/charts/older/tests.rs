@@ -26,9 +26,9 @@ fn exact_planar(graph: &CellGraph<Planar>) -> BitMatrix {
 }
 
 /// Checks sampled ⊆ exact ⊆ shadows ⊆ connected.
-fn check<O: Opening>(ways: &Ways<O>, exact: &BitMatrix, n_rays: u64) -> Result<[u64; 4], TestCaseError> {
-    let (few, all) = (sampled(ways, n_rays, 7), connected(ways));
-    let shadows = shadow_volumes(ways, Duration::MAX).expect("there is time enough");
+fn check<O: Opening>(graph: &PortalGraph<O>, exact: &BitMatrix, n_rays: u64) -> Result<[u64; 4], TestCaseError> {
+    let (few, all) = (sampled(graph, n_rays, 7), connected(graph));
+    let shadows = shadow_volumes(graph, Duration::MAX).expect("there is time enough");
     prop_assert_eq!(n_only(&few, exact), 0, "rays see what is visible only");
     prop_assert_eq!(n_only(exact, &shadows), 0, "shadow volumes hide nothing that is visible");
     prop_assert_eq!(n_only(&shadows, &all), 0, "nobody sees whom he cannot reach");
@@ -39,7 +39,7 @@ proptest! {
     #[test]
     fn plans_are_within_their_bounds(plan in small_grid_plan(2..14)) {
         if let Ok((graph, _)) = sightlines::triangulation::subdivide(&plan) {
-            check(&planar_ways(&graph), &exact_planar(&graph), 16)?;
+            check(&planar_portal_graph(&graph), &exact_planar(&graph), 16)?;
         }
     }
 }
@@ -55,7 +55,7 @@ fn each_method_finds_something_in_plans() {
     let mut all_few = [0; 2];
     for plan in plans {
         let graph = graph(&plan);
-        let [few, exact, shadows, all] = check(&planar_ways(&graph), &exact_planar(&graph), 100).unwrap();
+        let [few, exact, shadows, all] = check(&planar_portal_graph(&graph), &exact_planar(&graph), 100).unwrap();
         assert!(few * 2 > exact, "rays find much: {few} of {exact}");
         assert!(shadows < exact * 4 && shadows < all, "shadows hide much: {shadows}, {exact} of {all}");
         all_few = [all_few[0] + few, all_few[1] + exact];
@@ -70,7 +70,7 @@ fn each_method_finds_something_among_boxes() {
     let cut = subdivide_scene(&scene, &SceneOptions::default()).unwrap();
     let options = SceneBakeOptions { portals: PortalMode::Exact, threads: 1, ..SceneBakeOptions::default() };
     let exact = bake_scene(&scene, &options).unwrap().table.parts().rows.clone();
-    let [few, exact, shadows, all] = check(&axial_ways(&cut.graph), &exact, 200).unwrap();
+    let [few, exact, shadows, all] = check(&axial_portal_graph(&cut.graph), &exact, 200).unwrap();
     assert!(few * 4 > exact && few < exact && shadows < all, "{few} {exact} {shadows} {all}");
 }
 
@@ -80,22 +80,22 @@ fn each_method_finds_something_in_worlds() {
     let mut search = ConvexSearch::new(&world.graph, ConvexOptions { fast: false, threads: 1 });
     while search.advance() {}
     let exact = search.finish().cells;
-    let [few, exact, shadows, all] = check(&convex_ways(&world.graph), &exact, 200).unwrap();
+    let [few, exact, shadows, all] = check(&convex_portal_graph(&world.graph), &exact, 200).unwrap();
     assert!(few * 4 > exact && few < exact && shadows < all, "{few} {exact} {shadows} {all}");
 }
 
 #[test]
 fn spoilt_answers_are_noticed() {
     let graph = graph(&maze(2, 5, 5).unwrap());
-    let (ways, exact) = (planar_ways(&graph), exact_planar(&graph));
+    let (portals, exact) = (planar_portal_graph(&graph), exact_planar(&graph));
     let mut more = exact.clone();
     let [a, b] = (0..more.n_rows()).flat_map(|a| (0..a).map(move |b| [a, b])).find(|&[a, b]| !exact.get(a, b)).unwrap();
     more.set(a, b, true);
     // Were that pair visible, shadows or rays would have to say so.
-    assert!(check(&ways, &exact, 50).is_ok());
+    assert!(check(&portals, &exact, 50).is_ok());
     assert_eq!(n_only(&more, &exact), 1);
-    let full = connected(&ways);
-    assert!(check(&ways, &full, 50).is_err(), "who calls everything visible hides by shadows");
+    let full = connected(&portals);
+    assert!(check(&portals, &full, 50).is_err(), "who calls everything visible hides by shadows");
 }
 
 #[test]

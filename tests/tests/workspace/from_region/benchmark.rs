@@ -3,13 +3,13 @@
 use crate::from_region::common::{around, buffers, hidden, triangles};
 use sightlines::multifocal::{FromRegion, Layout, Measure};
 use sightlines::scenes::occlusion::{Occlusion, OcclusionOptions, occlusion};
-use sightlines_testkit::from_region::hidden_by_sampling;
+use sightlines_testkit::from_region::sampled_view;
 
 /// Boxes that are called hidden, of those that no ray of 3 million reaches; and that none of them was reached.
 fn found(half: f64, tilt: u32, seed: u64, layout: Layout) -> (usize, usize) {
     let benchmark = occlusion(OcclusionOptions { seed, tilt, ..OcclusionOptions::default() }).expect("in range");
     let volume = Occlusion::volume(half);
-    let seen = hidden_by_sampling(&benchmark.scene, &volume, &benchmark.occludees, 1_500_000, seed);
+    let seen = sampled_view(&benchmark.scene, &volume, &benchmark.occludees, 1_500_000, seed);
     let triangles = triangles(&benchmark.scene);
     let mut method = buffers(&triangles, around(&benchmark.scene, &benchmark.occludees), layout);
     let found = hidden(&mut method, &volume, &benchmark.occludees);

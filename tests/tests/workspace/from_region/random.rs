@@ -7,7 +7,7 @@ use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, patches};
 use sightlines::multifocal::{FromRegion, Layout, Measure};
-use sightlines_testkit::from_region::hidden_by_sampling;
+use sightlines_testkit::from_region::sampled_view;
 
 const BOX: [[u32; 3]; 12] = [
     [0, 2, 1],
@@ -111,7 +111,7 @@ proptest! {
             if hidden.is_empty() {
                 continue;
             }
-            let seen = seen.get_or_insert_with(|| hidden_by_sampling(&scene, &volume, &boxes, 20_000, seed));
+            let seen = seen.get_or_insert_with(|| sampled_view(&scene, &volume, &boxes, 20_000, seed));
             let wrong = seen.refuted(hidden);
             prop_assert!(wrong.is_empty(), "{} is wrong: {wrong:?}", method.name());
         }
@@ -151,7 +151,7 @@ fn impostor_that_calls_all_behind_something_hidden_is_caught() {
             })
         };
         let hidden: Vec<usize> = (0..targets.len()).filter(|&i| behind(&targets[i])).collect();
-        caught += hidden_by_sampling(&scene, &volume, &targets, 20_000, 5).refuted(hidden).len();
+        caught += sampled_view(&scene, &volume, &targets, 20_000, 5).refuted(hidden).len();
     }
     assert!(caught > 3, "{caught}");
 }

@@ -4,7 +4,7 @@ use sightlines_pvs::{CellId, Table};
 
 /// What a cell or a viewer sees.
 #[derive(Debug)]
-pub(super) struct Seen {
+pub(super) struct VisibleSet {
     /// The cells looked from, ascending; none for a viewer outside every cell.
     pub(super) from: Vec<CellId>,
     /// For each cell of the table whether it is seen.
@@ -13,7 +13,7 @@ pub(super) struct Seen {
     objects: Vec<u32>,
 }
 
-impl Seen {
+impl VisibleSet {
     /// What a cell of the table sees.
     pub(super) fn from_cell(table: &Table, cell: CellId) -> Self {
         Self::new(table, vec![cell], table.visible(cell), table.visible_objects(cell))
