@@ -186,6 +186,71 @@ fn impostor_a_missing_heading_or_symbol_is_caught() {
     }
 }
 
+// --- Modules ---------------------------------------------------------------------------------------
+
+/// Paths of modules that a document names between backticks, such as `sightline::planar`; the first part is a crate's folder.
+fn module_paths(markdown: &str) -> Vec<&str> {
+    let is_part =
+        |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_lowercase() || "_-0123456789".contains(c));
+    let codes = markdown.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
+    codes.filter(|code| code.contains("::") && code.split("::").all(is_part)).collect()
+}
+
+/// Whether a Rust file re-exports something.
+fn re_exports(rust: &str, symbol: &str) -> bool {
+    let words = |item: &str| item.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == symbol);
+    rust.split(';').filter_map(|item| item.rsplit_once("pub use ")).any(|(_, item)| words(item))
+}
+
+/// Whether a path leads to a module, or to an item in one; `None` if its first part is no crate's folder.
+fn module_exists(path: &str) -> Option<bool> {
+    let mut parts = path.split("::");
+    let first = parts.next()?;
+    let folder = ["crates", "."].map(|place| root().join(place).join(first).join("src"));
+    let mut folder = folder.into_iter().find(|src| src.is_dir())?;
+    let mut file = folder.join("lib.rs");
+    for part in parts {
+        let [alone, inside] = [folder.join(format!("{part}.rs")), folder.join(part).join("mod.rs")];
+        folder = folder.join(part);
+        file = match (alone.is_file(), inside.is_file()) {
+            (true, _) => alone,
+            (_, true) => inside,
+            _ => {
+                let text = fs::read_to_string(&file).unwrap_or_default();
+                return Some(defines(&text, part) || re_exports(&text, part));
+            }
+        };
+    }
+    Some(true)
+}
+
+#[test]
+fn modules_that_documents_name_exist() {
+    let is_document = |p: &PathBuf| p.extension().is_some_and(|e| e == "md");
+    let (mut n_paths, mut complaints) = (0, Vec::new());
+    for document in files_of_workspace().into_iter().filter(is_document) {
+        let text = fs::read_to_string(&document).expect("a document is readable");
+        for (path, exists) in module_paths(&text).into_iter().filter_map(|path| Some((path, module_exists(path)?))) {
+            n_paths += 1;
+            if !exists {
+                complaints.push(format!("{}: {path}", document.display()));
+            }
+        }
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    assert!(n_paths >= 40, "{n_paths} paths");
+}
+
+#[test]
+fn impostor_a_module_that_does_not_exist_is_caught() {
+    let text = "`pvs::format` and `pvs::ghost`, `std::fs`, `Table::new`, `eye-to-cell`, `geometry::orient2d`";
+    let paths = module_paths(text);
+    assert_eq!(paths, ["pvs::format", "pvs::ghost", "std::fs", "geometry::orient2d"]);
+    let exist: Vec<_> = paths.into_iter().map(module_exists).collect();
+    assert_eq!(exist, [Some(true), Some(false), None, Some(true)]);
+    assert!(re_exports("mod a;\npub use a::{b, c};\n", "c") && !re_exports("pub use a::b;\nuse a::c;\n", "c"));
+}
+
 // --- READMEs ---------------------------------------------------------------------------------------
 
 /// What a crate's README lacks: its title, an example, or the whole.
