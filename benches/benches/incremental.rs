@@ -227,7 +227,8 @@ fn see_closed(live: &LiveScene, threads: usize) -> Result<SpaceVisibility, Box<d
     let boxes = live.scene().objects().iter().map(|o| Aabb::around(o.corners().flatten()));
     let boxes: Vec<Aabb<3>> = boxes.collect();
     let search = SearchOptions { threads, ..SearchOptions::default() };
-    Ok(space_visibility(&graph, &cut.left_out(), &boxes, &VisibilityBounds::nothing(graph.n_cells()), &search))
+    Ok(space_visibility(&graph, &cut.left_out(), &boxes, &VisibilityBounds::nothing(graph.n_cells()), &search)
+        .expect("nobody cancels"))
 }
 
 /// Whether a table says what was found.

@@ -171,7 +171,7 @@ pub fn measure(graph: &CellGraph<Convex>, method: Method, threads: usize, limit:
             if is_over(&search) {
                 search.state().visible.clone()
             } else if is_going {
-                measured.done = search.share_done();
+                measured.done = search.progress().share;
                 search.state().possible.clone()
             } else {
                 let seen = search.finish();

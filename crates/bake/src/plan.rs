@@ -3,8 +3,9 @@
 use crate::mirrors;
 use crate::table::{TableOptions, table_of};
 use sightlines_cells::{CellGraph, Plan, PlanError, Planar};
+use sightlines_progress::{Cancelled, Observer};
 use sightlines_pvs::{Table, TableError, TableKind, TableParts};
-use sightlines_stabtree::{Progress, SearchOptions, Zones, plan_visibility};
+use sightlines_stabtree::{SearchOptions, Zones, plan_visibility};
 use sightlines_triangulation::TriangulationError;
 use std::fmt;
 use std::str::FromStr;
@@ -65,7 +66,7 @@ pub struct BakeOptions<'a> {
     /// Chords shot through each exit before the search. Changes nothing but the time.
     pub chords: u32,
     /// Told how many cells of how many are done.
-    pub progress: Option<Progress<'a>>,
+    pub progress: Option<&'a dyn Observer>,
 }
 
 impl Default for BakeOptions<'_> {
@@ -100,6 +101,9 @@ pub enum BakeError {
     /// The lines of a map do not make a plan.
     #[error(transparent)]
     Plan(#[from] PlanError),
+    /// The observer cancelled the search.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The parts of the table do not fit together: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),
@@ -160,7 +164,7 @@ pub fn bake_plan(plan: &Plan, options: &BakeOptions<'_>) -> Result<Baked, BakeEr
     summary.cut_time = start.elapsed();
     let search = SearchOptions { threads: options.threads, chords: options.chords, progress: options.progress };
     let start = Instant::now();
-    let (rows, found) = plan_visibility(&graph, &Zones::cells(&graph), &search);
+    let (rows, found) = plan_visibility(&graph, &Zones::cells(&graph), &search)?;
     summary.see_time = start.elapsed();
     summary.n_cells = graph.n_cells();
     summary.n_portals = graph.portals().len();

@@ -23,8 +23,9 @@ use crate::plan::BakeError;
 use crate::sectors::see_groups;
 use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, list_maps};
 use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};
+use sightlines_progress::Observer;
 use sightlines_pvs::BitMatrix;
-use sightlines_stabtree::{Progress, SearchOptions};
+use sightlines_stabtree::SearchOptions;
 use std::time::{Duration, Instant};
 
 /// How to build REJECT lumps.
@@ -37,7 +38,7 @@ pub struct RejectOptions<'a> {
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
     /// Told how many zones of how many are done, for each map anew.
-    pub progress: Option<Progress<'a>>,
+    pub progress: Option<&'a dyn Observer>,
 }
 
 impl std::fmt::Debug for RejectOptions<'_> {

@@ -5,12 +5,13 @@ use crate::plan::BakeError;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Portal, Scene};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
+use sightlines_progress::Observer;
 use sightlines_pvs::{
     CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, SceneMethods, Table, TableError, TableKind,
     TableParts,
 };
 use sightlines_sightline::ShaftCounters;
-use sightlines_stabtree::{Progress, SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
+use sightlines_stabtree::{SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
 use std::time::{Duration, Instant};
 
 /// Which portals the search goes through.
@@ -33,7 +34,7 @@ pub struct SceneBakeOptions<'a> {
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
     /// Told how many cells of how many are done.
-    pub progress: Option<Progress<'a>>,
+    pub progress: Option<&'a dyn Observer>,
 }
 
 impl std::fmt::Debug for SceneBakeOptions<'_> {
@@ -98,7 +99,7 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
         PortalMode::Bounding => merge_portals(&cut.graph),
         PortalMode::Exact => cut.graph,
     };
-    let seen = space_visibility(&graph, &solid, &boxes, &nothing, &search);
+    let seen = space_visibility(&graph, &solid, &boxes, &nothing, &search)?;
     let see_time = start.elapsed();
     let n_visible_pairs = (seen.cells.count_ones() - graph.n_cells() as u64) / 2;
     let (n_objects_seen, counters) = (seen.objects.count_ones(), seen.counters);

@@ -28,7 +28,7 @@ pub fn see_groups(plan: &Plan, n_groups: u32, options: &SearchOptions<'_>) -> Re
         Err(error) => return Err(error.into()),
     };
     let (zones, groups) = Zones::by_groups(&graph);
-    let (visible, _) = plan_visibility(&graph, &zones, options);
+    let (visible, _) = plan_visibility(&graph, &zones, options)?;
     for (zone, own) in groups.iter().enumerate() {
         for other in visible.iter_ones(zone) {
             for &a in own {

@@ -1,11 +1,10 @@
 //! Stab trees for a finished table.
 
 use crate::{axial_graph_of, convex_graph_of, graph_of};
+use sightlines_progress::{Cancelled, Observer};
 use sightlines_pvs::{BitMatrix, StabError, StabParts, StabTrees, Table, TableError};
 use sightlines_sightline::StabLimits;
-use sightlines_stabtree::{
-    Progress, StabTreesOptions, StabTreesSummary, stab_trees_axial, stab_trees_convex, stab_trees_planar,
-};
+use sightlines_stabtree::{StabTreesOptions, StabTreesSummary, stab_trees_axial, stab_trees_convex, stab_trees_planar};
 use std::fmt;
 use std::time::{Duration, Instant};
 
@@ -18,7 +17,7 @@ pub struct StabOptions<'a> {
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
     /// Told how many trees of how many are done.
-    pub progress: Option<Progress<'a>>,
+    pub progress: Option<&'a dyn Observer>,
 }
 
 impl fmt::Debug for StabOptions<'_> {
@@ -35,6 +34,9 @@ pub enum StabBakeError {
     /// The table does not have the cells and portals that it was made from.
     #[error("stab trees need the cells and portals that the table was made from, and it does not have them")]
     NoGraph,
+    /// The observer cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The trees do not fit the table: a defect of this crate.
     #[error("the stab trees are inconsistent: {0}")]
     Stab(#[from] StabError),
@@ -80,7 +82,11 @@ impl Graph {
         }
     }
 
-    fn trees(&self, rows: &BitMatrix, options: &StabTreesOptions<'_>) -> (StabParts, StabTreesSummary) {
+    fn trees(
+        &self,
+        rows: &BitMatrix,
+        options: &StabTreesOptions<'_>,
+    ) -> Result<(StabParts, StabTreesSummary), Cancelled> {
         match self {
             Self::Planar(graph) => stab_trees_planar(graph, rows, options),
             Self::Axial(graph) => stab_trees_axial(graph, rows, options),
@@ -112,7 +118,7 @@ pub fn with_stab_trees(table: Table, options: &StabOptions<'_>) -> Result<BakedS
     let max_nodes = options.max_nodes.unwrap_or_else(|| graph.most_nodes());
     let how = StabTreesOptions { max_nodes, threads: options.threads, progress: options.progress };
     let mut parts = table.into_parts();
-    let (trees, summary) = graph.trees(&parts.rows, &how);
+    let (trees, summary) = graph.trees(&parts.rows, &how)?;
     let time = start.elapsed();
     parts.stab = Some(StabTrees::new(trees, &parts.portals, parts.cells.len())?);
     Ok(BakedStab { table: Table::new(parts)?, max_nodes, trees: summary, time })

@@ -1,69 +1,63 @@
 //! A bar on standard error while something takes long, if a person is there to see it.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use sightlines::progress::{Observer, Progress};
 use std::io::IsTerminal;
+use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A bar that is told how much of how much is done.
+/// A bar with the share that is done and the time that is left, of something that may have been begun by an earlier run.
+/// It is an observer and cancels nothing.
 #[derive(Debug)]
-pub(crate) struct Bar(ProgressBar);
+pub(crate) struct Bar {
+    bar: ProgressBar,
+    pace: Mutex<Option<Pace>>,
+}
 
 impl Bar {
+    /// Steps of the bar.
+    const STEPS: u64 = 1000;
+
     /// A bar for `what`; an invisible one if `show` is false or standard error is no terminal.
     pub(crate) fn new(what: &'static str, show: bool) -> Self {
-        Self::with_template(what, show, "{msg} {wide_bar} {pos}/{len} {eta}")
-    }
-
-    fn with_template(what: &'static str, show: bool, template: &str) -> Self {
         let visible = show && std::io::stderr().is_terminal();
         let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(None, target);
-        if let Ok(style) = ProgressStyle::with_template(template) {
+        if let Ok(style) = ProgressStyle::with_template("{prefix} {wide_bar} {percent} % {msg}") {
             bar.set_style(style);
         }
-        bar.set_message(what);
-        Self(bar)
+        bar.set_prefix(what);
+        bar.set_length(Self::STEPS);
+        Self { bar, pace: Mutex::new(None) }
     }
 
     /// `done` of `all` are done; from any thread.
     pub(crate) fn set(&self, done: usize, all: usize) {
-        self.0.set_length(all as u64);
-        self.0.set_position(done as u64);
+        self.show(Progress::new("", done as u64, all as u64));
+    }
+
+    fn show(&self, Progress { share, .. }: Progress) {
+        let now = Instant::now();
+        let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        // What the first report says was done before.
+        let pace = pace.get_or_insert(Pace { since: now, before: share });
+        let left = pace.left(share, now - pace.since);
+        self.bar.set_position((share.clamp(0.0, 1.0) * Self::STEPS as f64) as u64);
+        self.bar.set_message(left.map_or_else(String::new, |left| format!("about {} left", rough(left))));
+    }
+}
+
+impl Observer for Bar {
+    fn report(&self, progress: Progress) -> ControlFlow<()> {
+        self.show(progress);
+        ControlFlow::Continue(())
     }
 }
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
-    }
-}
-
-/// A bar that is told which share is done, of something that may have been begun by an earlier run.
-#[derive(Debug)]
-pub(crate) struct ShareBar {
-    bar: Bar,
-    pace: Option<Pace>,
-}
-
-impl ShareBar {
-    /// Steps of the bar.
-    const STEPS: u64 = 1000;
-
-    pub(crate) fn new(what: &'static str, show: bool) -> Self {
-        let bar = Bar::with_template(what, show, "{prefix} {wide_bar} {percent} % {msg}");
-        bar.0.set_prefix(what);
-        bar.0.set_message("");
-        bar.0.set_length(Self::STEPS);
-        Self { bar, pace: None }
-    }
-
-    /// The share that is done, from 0 to 1. The first that is told was done before.
-    pub(crate) fn set(&mut self, share: f64) {
-        let now = Instant::now();
-        let pace = self.pace.get_or_insert(Pace { since: now, before: share });
-        let left = pace.left(share, now - pace.since);
-        self.bar.0.set_position((share.clamp(0.0, 1.0) * Self::STEPS as f64) as u64);
-        self.bar.0.set_message(left.map_or_else(String::new, |left| format!("about {} left", rough(left))));
+        self.bar.finish_and_clear();
     }
 }
 
@@ -76,7 +70,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// The time left if the rest goes as what was done in this run; `None` until there is something to tell from.
+    /// The time left if the rest goes as what was done in this run; `None` until there is something to estimate it from.
     fn left(self, share: f64, elapsed: Duration) -> Option<Duration> {
         let done = share - self.before;
         let left = elapsed.as_secs_f64() * (1.0 - share) / done;
@@ -84,7 +78,7 @@ impl Pace {
     }
 }
 
-/// A duration as an estimate is worth telling.
+/// A duration, as roughly as an estimate deserves.
 fn rough(time: Duration) -> String {
     match time.as_secs() {
         s @ 0..90 => format!("{s} s"),
@@ -98,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_time_left_is_told_from_this_run() {
+    fn the_time_left_is_estimated_from_this_run() {
         let left = |before: f64, share: f64, seconds: u64| {
             let pace = Pace { since: Instant::now(), before };
             pace.left(share, Duration::from_secs(seconds)).map(|left| left.as_secs_f64())

@@ -36,6 +36,8 @@ pub use sightlines_multifocal_cpu as multifocal_cpu;
 pub use sightlines_multifocal_gpu as multifocal_gpu;
 #[cfg(feature = "packed")]
 pub use sightlines_packed as packed;
+#[cfg(feature = "progress")]
+pub use sightlines_progress as progress;
 #[cfg(feature = "pvs")]
 pub use sightlines_pvs as pvs;
 #[cfg(feature = "report")]

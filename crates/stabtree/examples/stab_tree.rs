@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         office(OfficeOptions { seed: 3, rooms_x: 8, rooms_y: 2, furniture: false, ..OfficeOptions::default() })?;
     let (graph, _) = sightlines_triangulation::subdivide(&floor)?;
     let zones = Zones::cells(&graph);
-    let (seen, summary) = plan_visibility(&graph, &zones, &SearchOptions::default());
+    let (seen, summary) = plan_visibility(&graph, &zones, &SearchOptions::default())?;
     let n = graph.n_cells() as u64;
     let n_visible = (seen.count_ones() - n) / 2;
     println!("{n} cells, {} portals: {n_visible} of {} pairs see each other", graph.portals().len(), n * (n - 1) / 2);

@@ -33,7 +33,7 @@ pub use convex::{
 };
 pub use explain::{BlockedSequence, Explanation, explain};
 pub use network::Network;
-pub use search::{Progress, SearchOptions, SearchSummary, VisibilityBounds, ZoneVisibility, visible_zones};
+pub use search::{SearchOptions, SearchSummary, VisibilityBounds, ZoneVisibility, visible_zones};
 pub use space::{
     BoxVisibility, LiveSpace, PairMask, SpaceExplanation, SpaceUpdate, SpaceVisibility, box_visibility, explain_space,
     space_visibility,
@@ -46,6 +46,7 @@ pub use zones::Zones;
 
 use sightlines_cells::{CellGraph, Planar};
 use sightlines_geometry::Adaptive;
+use sightlines_progress::Cancelled;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Funnel;
 
@@ -56,16 +57,19 @@ use sightlines_sightline::Funnel;
 /// set of lines leads from a cell of one zone through portals into a cell of the other.
 ///
 /// Cost: see [`visible_zones`].
+///
+/// # Errors
+/// [`Cancelled`] by the observer.
 pub fn plan_visibility(
     graph: &CellGraph<Planar>,
     zones: &Zones,
     options: &SearchOptions<'_>,
-) -> (BitMatrix, SearchSummary) {
+) -> Result<(BitMatrix, SearchSummary), Cancelled> {
     let known = VisibilityBounds { visible: shoot_chords(graph, zones, options.chords), possible: None };
     let network = Network::planar(graph, zones);
     let seen = match graph.small_grid() {
         Some(grid) => visible_zones(&network, &Funnel::new(grid), &known, options),
         None => visible_zones(&network, &Funnel::new(Adaptive), &known, options),
-    };
-    (seen.zones, seen.summary)
+    }?;
+    Ok((seen.zones, seen.summary))
 }

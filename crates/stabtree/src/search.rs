@@ -17,12 +17,10 @@
 //! spirit of the "might see" vectors of Quake's vis, made exact and symmetric.
 
 use crate::network::{NO_ZONE, Network, Step};
+use sightlines_progress::{Cancelled, Counter, Observer};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Stabber;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
-
-/// Called with the number of finished zones and of all zones; from any thread.
-pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// How to search. None of it changes the answer.
 #[derive(Clone, Copy)]
@@ -31,8 +29,8 @@ pub struct SearchOptions<'a> {
     pub threads: usize,
     /// Chords shot through each exit before the search.
     pub chords: u32,
-    /// Told how far the search is.
-    pub progress: Option<Progress<'a>>,
+    /// Receives a report for each finished unit (zone, box, or group of pairs and object), and may cancel the search.
+    pub progress: Option<&'a dyn Observer>,
 }
 
 impl Default for SearchOptions<'_> {
@@ -99,6 +97,9 @@ pub struct ZoneVisibility {
 /// Exact if the stabber is. Cost: output-sensitive in practice and exponential at worst, as every
 /// search over portal sequences; memory is a few bit matrices.
 ///
+/// # Errors
+/// [`Cancelled`] by the observer.
+///
 /// # Panics
 /// If a matrix of `known` is not about as many zones and objects as the network.
 pub fn visible_zones<S>(
@@ -106,7 +107,7 @@ pub fn visible_zones<S>(
     stabber: &S,
     known: &VisibilityBounds,
     options: &SearchOptions<'_>,
-) -> ZoneVisibility
+) -> Result<ZoneVisibility, Cancelled>
 where
     S: Stabber,
     S::Portal: Sync,
@@ -120,13 +121,13 @@ where
     // Zones that see little are finished quickly and then cut the searches of those that see much.
     order.sort_by_key(|&z| (known.visible.count_row(z as usize), z));
     let shared = Shared::new(network, stabber, known);
+    let counter = Counter::new(options.progress, "zones", n);
     let work = |stabber: S| {
         let mut worker = Worker::new(&shared, stabber);
         while let Some(&zone) = order.get(shared.next.fetch_add(1, Relaxed)) {
             worker.finish(zone);
-            let done = shared.done.fetch_add(1, Relaxed) + 1;
-            if let Some(progress) = options.progress {
-                progress(done, n);
+            if counter.step().is_err() {
+                break;
             }
         }
         worker.summary
@@ -148,8 +149,9 @@ where
             })
         })
     };
+    counter.check()?;
     let (zones, objects) = shared.into_matrices();
-    ZoneVisibility { zones, objects, summary }
+    Ok(ZoneVisibility { zones, objects, summary })
 }
 
 /// A row of ones, with the bits past the last one clear.
@@ -209,7 +211,6 @@ struct Shared<'a, P, B> {
     /// Zones and objects not yet proven hidden.
     might: Vec<AtomicU64>,
     next: AtomicUsize,
-    done: AtomicUsize,
 }
 
 impl<'a, P: Clone, B> Shared<'a, P, B> {
@@ -232,7 +233,7 @@ impl<'a, P: Clone, B> Shared<'a, P, B> {
             }
         }
         let front = Front::build(network, stabber);
-        Self { network, width, zone_width, front, seen, might, next: AtomicUsize::new(0), done: AtomicUsize::new(0) }
+        Self { network, width, zone_width, front, seen, might, next: AtomicUsize::new(0) }
     }
 
     fn into_matrices(self) -> (BitMatrix, BitMatrix) {

@@ -207,7 +207,7 @@ impl Case<'_> {
         let ((answer, is_over), seconds, repeats) = self.settings.best_of(|| {
             let limited = Limited::new(stabber.clone(), Duration::from_secs_f64(limit));
             let nothing = VisibilityBounds::nothing(network.n_zones());
-            let seen = visible_zones(network, &limited, &nothing, &one_thread());
+            let seen = visible_zones(network, &limited, &nothing, &one_thread()).expect("nobody cancels");
             (seen.zones, limited.is_over())
         });
         if is_over {
@@ -251,7 +251,8 @@ fn in_the_plane(settings: &Settings, name: &str, plan: &Plan, rows: &mut Vec<Row
     say(settings, name);
     let graph: CellGraph<Planar> = sightlines::triangulation::subdivide(plan).map_err(|e| failed(name)(e.into()))?.0;
     let zones = Zones::cells(&graph);
-    let (truth, seconds, repeats) = settings.best_of(|| plan_visibility(&graph, &zones, &one_thread()).0);
+    let (truth, seconds, repeats) =
+        settings.best_of(|| plan_visibility(&graph, &zones, &one_thread()).expect("nobody cancels").0);
     let mut case = Case { settings, name, truth: truth.clone(), truth_by: "funnel", rows };
     case.add("funnel after chords (shipped)", &truth, seconds, repeats, "");
     let network: Network<Portal2, _> = Network::planar(&graph, &zones);
@@ -272,8 +273,9 @@ fn among_boxes(
     let cut = subdivide_scene(scene, &SceneOptions::default()).map_err(|e| failed(name)(e.into()))?;
     let (graph, solid) = (&cut.graph, cut.left_out());
     let nothing = VisibilityBounds::nothing(graph.n_cells());
-    let see =
-        |graph: &CellGraph<Axial>| settings.best_of(|| space_visibility(graph, &solid, &[], &nothing, &one_thread()));
+    let see = |graph: &CellGraph<Axial>| {
+        settings.best_of(|| space_visibility(graph, &solid, &[], &nothing, &one_thread()).expect("nobody cancels"))
+    };
     let (seen, seconds, repeats) = see(graph);
     let options = SceneBakeOptions { portals: PortalMode::Bounding, ..SceneBakeOptions::default() };
     let table = bake_scene(scene, &options).map_err(|e| failed(name)(e.into()))?.table;
@@ -363,10 +365,12 @@ mod tests {
         let graph = sightlines::triangulation::subdivide(&maze(1, 6, 6).unwrap()).unwrap().0;
         let network: Network<Portal2, _> = Network::planar(&graph, &Zones::cells(&graph));
         let stabber = Limited::new(Funnel::new(Adaptive), Duration::ZERO);
-        visible_zones(&network, &stabber, &VisibilityBounds::nothing(network.n_zones()), &one_thread());
+        visible_zones(&network, &stabber, &VisibilityBounds::nothing(network.n_zones()), &one_thread())
+            .expect("nobody cancels");
         assert!(stabber.is_over());
         let patient = Limited::new(Funnel::new(Adaptive), Duration::from_secs(3600));
-        visible_zones(&network, &patient, &VisibilityBounds::nothing(network.n_zones()), &one_thread());
+        visible_zones(&network, &patient, &VisibilityBounds::nothing(network.n_zones()), &one_thread())
+            .expect("nobody cancels");
         assert!(!patient.is_over());
     }
 }

@@ -68,7 +68,7 @@ impl LiveScene {
         let cut = Cut::of(&mut cutter, &scene, &cutting, portals)?;
         let search = SearchOptions { threads, progress: options.progress, ..SearchOptions::default() };
         let boxes = boxes_of(&scene);
-        let space = LiveSpace::new(cut.graph.clone(), &cut.solid, boxes.clone(), &search);
+        let space = LiveSpace::new(cut.graph.clone(), &cut.solid, boxes.clone(), &search)?;
         let table = tabulate(&scene, &boxes, &cut, &space, &cutting, portals)?;
         Ok(Self { cutting, portals, threads, scene, boxes, cutter, cut, closed: Vec::new(), space, table })
     }

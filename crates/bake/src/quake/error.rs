@@ -2,6 +2,7 @@
 
 use super::StateError;
 use sightlines_formats::quake::{BspError, VisibilityError};
+use sightlines_progress::Cancelled;
 use sightlines_pvs::TableError;
 
 /// Why portals, or a map with them, could not be baked.
@@ -20,6 +21,9 @@ pub enum PrtBakeError {
     /// The map cannot be written with its visibility.
     #[error(transparent)]
     Bsp(#[from] BspError),
+    /// The observer cancelled the search; its state after the last step was given to `after_step`.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The state to begin with is none of these portals.
     #[error(transparent)]
     State(#[from] StateError),

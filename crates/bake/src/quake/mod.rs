@@ -18,6 +18,7 @@ pub use world::{BakedMap, WorldSummary, bake_map};
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::visibility::{check_portals, lump};
 use sightlines_formats::quake::{Bsp, Prt, graph_of_prt};
+use sightlines_progress::Observer;
 use sightlines_pvs::Table;
 use sightlines_stabtree::{ConvexOptions, ConvexSearch, ConvexState, ConvexVisibility};
 use std::fmt;
@@ -30,8 +31,10 @@ pub struct PrtOptions<'a> {
     pub search: ConvexOptions,
     /// Where to begin, instead of at the beginning: how far another run with the same portals and options came.
     pub from: Option<ConvexState>,
-    /// Shown the search before its first step and after each.
-    pub watch: Option<&'a mut dyn FnMut(&ConvexSearch)>,
+    /// Receives a report before the first step of the search and after each, and may cancel it.
+    pub progress: Option<&'a dyn Observer>,
+    /// Called after each step, for example to store [`ConvexSearch::state`].
+    pub after_step: Option<&'a mut dyn FnMut(&ConvexSearch)>,
 }
 
 impl fmt::Debug for PrtOptions<'_> {
@@ -130,18 +133,13 @@ fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
 }
 
 fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<SeenClusters, PrtBakeError> {
-    let PrtOptions { search, from, watch } = options;
+    let PrtOptions { search, from, progress, after_step } = options;
     let start = Instant::now();
     let mut running = match from {
         None => ConvexSearch::new(graph, search),
         Some(state) => ConvexSearch::resume(graph, search, state).ok_or(StateError::Unfit)?,
     };
     let mut nobody = |_: &ConvexSearch| {};
-    let watch = watch.unwrap_or(&mut nobody);
-    watch(&running);
-    while running.advance() {
-        watch(&running);
-    }
-    watch(&running);
+    running.run(progress, after_step.unwrap_or(&mut nobody))?;
     Ok(SeenClusters { seen: running.finish(), n_portals: graph.portals().len(), see_time: start.elapsed() })
 }

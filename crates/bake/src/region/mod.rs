@@ -19,10 +19,11 @@ use sightlines_formats::ViewCells;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{SceneOptions, SceneSubdivision, subdivide_scene};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Split, Volume, VolumeError, Witness};
+use sightlines_progress::{Cancelled, Observer};
 use sightlines_pvs::{
     BitMatrix, CellRecord, Locator, ObjectRecord, SceneMethods, Table, TableError, TableKind, TableParts,
 };
-use sightlines_stabtree::{BoxVisibility, PairMask, Progress, SearchOptions, box_visibility};
+use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
 use std::time::{Duration, Instant};
 
@@ -56,7 +57,7 @@ pub struct RegionBakeOptions<'a> {
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
     /// Told how many cells of how many are done.
-    pub progress: Option<Progress<'a>>,
+    pub progress: Option<&'a dyn Observer>,
 }
 
 impl fmt::Debug for RegionBakeOptions<'_> {
@@ -88,6 +89,9 @@ pub enum RegionBakeError {
     /// The method failed.
     #[error(transparent)]
     Backend(#[from] BackendError),
+    /// The observer cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl From<TableError> for RegionBakeError {
@@ -224,7 +228,7 @@ fn past_walls(
     let loose = (options.portals == PortalMode::Bounding).then(|| merge_portals(&cut.graph));
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
     let graph = loose.as_ref().unwrap_or(&cut.graph);
-    Ok(box_visibility(graph, &cut.left_out(), cells, objects, doubt, &search))
+    Ok(box_visibility(graph, &cut.left_out(), cells, objects, doubt, &search)?)
 }
 
 fn volumes(cells: &[Aabb<3>]) -> Result<Vec<Volume>, RegionBakeError> {

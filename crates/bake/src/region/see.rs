@@ -1,12 +1,12 @@
 //! Who sees whom, cell by cell.
 
-use super::{MakeMethod, RegionBakeOptions};
+use super::{MakeMethod, RegionBakeError, RegionBakeOptions};
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Umbra, Volume, Witness, adaptive};
+use sightlines_progress::Counter;
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rays to a cell before the method is asked: most pairs of cells that see each other do so in many ways.
 const RAYS_TO_A_CELL: u32 = 24;
@@ -42,19 +42,17 @@ pub(super) fn see(
     options: &RegionBakeOptions<'_>,
     mut rows: BitMatrix,
     mut objects: BitMatrix,
-) -> Result<Seen, BackendError> {
+) -> Result<Seen, RegionBakeError> {
     let n = scene.volumes.len();
-    let done = AtomicUsize::new(0);
+    let counter = Counter::new(options.progress, "cells", n);
     let one = |method: &mut Box<dyn FromRegion + Send>, cell: usize| {
-        let row = see_from(scene, &mut **method, options, cell, &rows, &objects);
-        if let Some(progress) = options.progress {
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, n);
-        }
-        row
+        let row = see_from(scene, &mut **method, options, cell, &rows, &objects)?;
+        counter.step()?;
+        Ok(row)
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
     let found: Vec<Row> =
-        pool.install(|| (0..n).into_par_iter().map_init(make, one).collect::<Result<_, BackendError>>())?;
+        pool.install(|| (0..n).into_par_iter().map_init(make, one).collect::<Result<_, RegionBakeError>>())?;
     let mut effort = Effort::default();
     let mut proven = PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, scene.occludees.len()) };
     for (a, row) in found.iter().enumerate() {

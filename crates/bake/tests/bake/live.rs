@@ -169,7 +169,8 @@ fn portals_close_and_open() {
         let graph = CellGraph::new(cut.graph.cells().to_vec(), portals.map(|(_, p)| p.clone()).collect());
         let search = SearchOptions { threads: 1, ..SearchOptions::default() };
         let seen =
-            space_visibility(&graph, &cut.left_out(), &boxes, &VisibilityBounds::nothing(graph.n_cells()), &search);
+            space_visibility(&graph, &cut.left_out(), &boxes, &VisibilityBounds::nothing(graph.n_cells()), &search)
+                .expect("nobody cancels");
         for cell in graph.cell_ids() {
             assert!(live.table().visible(cell).map(|c| c.idx()).eq(seen.cells.iter_ones(cell.idx())));
             let objects = live.table().visible_objects(cell);

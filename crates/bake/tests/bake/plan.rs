@@ -5,10 +5,12 @@ use sightlines_bake::{BakeError, BakeOptions, Baked, Subdivide, bake_plan, graph
 use sightlines_cells::{CellGraph, CellId, Plan, PlanLine, PlanObject, Planar};
 use sightlines_geometry::{Aabb, Point2, Segment2, signed_area};
 use sightlines_kdtree::KdError;
+use sightlines_progress::{Cancelled, Progress};
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, Table, TableKind, TableParts};
 use sightlines_scenes::{OfficeOptions, doom_like, maze, office, turned_pillared_hall};
 use sightlines_testkit::{axial_plan, small_grid_plan};
 use sightlines_triangulation::TriangulationError;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 const METHODS: [Subdivide; 2] = [Subdivide::KdTree, Subdivide::Triangulation];
@@ -145,15 +147,25 @@ fn bytes_are_the_same_with_any_number_of_threads_and_chords() {
 fn progress_counts_every_cell_once() {
     let calls = AtomicUsize::new(0);
     let largest = AtomicUsize::new(0);
-    let progress = |done: usize, of: usize| {
-        assert!(1 <= done && done <= of);
+    let progress = |Progress { done, total, .. }: Progress| {
+        assert!(1 <= done && done <= total);
         calls.fetch_add(1, Relaxed);
-        largest.fetch_max(done, Relaxed);
+        largest.fetch_max(done as usize, Relaxed);
+        ControlFlow::Continue(())
     };
     let plan = maze(1, 4, 4).unwrap();
     let options = BakeOptions { threads: 2, progress: Some(&progress), ..BakeOptions::default() };
     let n_cells = bake_plan(&plan, &options).unwrap().summary.n_cells;
     assert_eq!((calls.load(Relaxed), largest.load(Relaxed)), (n_cells, n_cells));
+}
+
+#[test]
+fn a_cancelled_bake_gives_no_table() {
+    let stop = |_: Progress| ControlFlow::Break(());
+    for threads in [1, 3] {
+        let options = BakeOptions { threads, progress: Some(&stop), ..BakeOptions::default() };
+        assert_eq!(bake_plan(&maze(1, 4, 4).unwrap(), &options).unwrap_err(), BakeError::Cancelled(Cancelled));
+    }
 }
 
 // --- From tables back to graphs ----------------------------------------------------------------------

@@ -170,7 +170,7 @@ fn a_search_can_be_stopped_anywhere() {
             let bytes = encode(&key, one.state());
             let state = decode(&key, &graph, &bytes).unwrap();
             assert_eq!(&state, one.state());
-            let options = PrtOptions { search: options(1 + n_stops % 3), from: Some(state), watch: None };
+            let options = PrtOptions { search: options(1 + n_stops % 3), from: Some(state), ..PrtOptions::default() };
             assert_eq!(bake_prt(&prt, options).unwrap().clusters.seen, whole, "stopped after {n_stops}");
             // Through bytes after every step.
             n_stops += 1;

@@ -54,10 +54,9 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Erro
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let wad = Wad::read(&args.input)?;
-    let bar = Bar::new("which sectors see which", show_progress);
-    let progress = |done, all| bar.set(done, all);
+    let bar = Bar::new("visibility of sectors", show_progress);
     let options =
-        RejectOptions { maps: args.map.clone(), force: args.force, threads: args.threads, progress: Some(&progress) };
+        RejectOptions { maps: args.map.clone(), force: args.force, threads: args.threads, progress: Some(&bar) };
     let outcome = reject_wad(&wad, &options);
     drop(bar);
     let outcome = outcome.map_err(|source| Error::Reject { path: args.input.clone(), source })?;

@@ -42,8 +42,10 @@ use beams::BeamTracer;
 use gates::Gates;
 use pairs::{SequenceTracer, cells_of};
 use sightlines_cells::{CellGraph, Convex};
+use sightlines_progress::{Cancelled, Observer, Progress};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{LimitReached, Verdict};
+use std::ops::ControlFlow;
 
 /// The stages; their number also says that all are done.
 const N_STAGES: u32 = 4;
@@ -121,19 +123,47 @@ impl ConvexSearch {
         &self.state
     }
 
-    /// Done share of the whole, from 0 to 1, as an estimate of time.
-    pub fn share_done(&self) -> f64 {
+    /// How far the search is. The share is an estimate of time.
+    pub fn progress(&self) -> Progress {
         let ConvexState { stage, done, .. } = self.state;
-        let part = |all: usize| if all == 0 { 1.0 } else { (done as f64 / all as f64).min(1.0) };
-        match stage {
-            0 => 0.02 * part(self.gates.len()),
-            1 => 0.02 + 0.03 * part(self.gates.len() / 2),
-            // Gates come in the order of what is behind them; on maps, time grows with the square of their number.
-            2 => 0.05 + 0.4 * part(self.gates.len()).powi(2),
-            // Between a half and twice the time of all before, on the maps that were looked at.
-            3 => 0.45 + 0.55 * part(self.gates.n_cells()),
+        let (phase, total) = match stage {
+            0 => ("bounds", self.gates.len()),
+            1 => ("lines", self.gates.len() / 2),
+            2 => ("beams", self.gates.len()),
+            3 => ("sequences", self.gates.n_cells()),
+            _ => ("done", 0),
+        };
+        let progress = Progress::new(phase, done, total as u64);
+        let part = progress.share.min(1.0);
+        progress.with_share(match stage {
+            0 => 0.02 * part,
+            1 => 0.02 + 0.03 * part,
+            // Gates are in the order of what lies behind them; on maps, time grows with the square of their number.
+            2 => 0.05 + 0.4 * part.powi(2),
+            // Between a half and twice the time of all before, on the maps that were measured.
+            3 => 0.45 + 0.55 * part,
             _ => 1.0,
+        })
+    }
+
+    /// Takes all steps that are left, with a report before the first and after each. `after_step` may store the state
+    /// ([`ConvexSearch::state`]), to resume it if the process is stopped.
+    ///
+    /// # Errors
+    /// [`Cancelled`] by the observer. The search can go on from where it stands.
+    pub fn run(&mut self, observer: Option<&dyn Observer>, mut after_step: impl FnMut(&Self)) -> Result<(), Cancelled> {
+        let report = |search: &Self| match observer.map(|observer| observer.report(search.progress())) {
+            Some(ControlFlow::Break(())) => Err(Cancelled),
+            Some(ControlFlow::Continue(())) | None => Ok(()),
+        };
+        report(self)?;
+        let mut more = true;
+        while more {
+            more = self.advance();
+            after_step(self);
+            report(self)?;
         }
+        Ok(())
     }
 
     /// Does a step; whether more is left.

@@ -16,9 +16,9 @@ use crate::search::{SearchOptions, ones};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_progress::{Cancelled, Counter};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Blockers, FreeLine, Shaft, ShaftCounters, Target, Verdict};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// What is asked about boxes: pairs of boxes, which has to be symmetric, and of a box and an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,6 +61,9 @@ pub struct BoxVisibility {
 /// visible. The same pairs for any number of threads. Cost: O(log n) questions for each hidden group; what is visible is mostly found in the
 /// same cell, or on lines found before. Memory: four bits for each pair.
 ///
+/// # Errors
+/// [`Cancelled`] by the observer.
+///
 /// # Panics
 /// If a matrix of `asked` is not about as many boxes and objects.
 pub fn box_visibility(
@@ -70,7 +73,7 @@ pub fn box_visibility(
     objects: &[Aabb<3>],
     asked: &PairMask,
     options: &SearchOptions<'_>,
-) -> BoxVisibility {
+) -> Result<BoxVisibility, Cancelled> {
     let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == boxes.len() && m.n_cols() == n_cols;
     assert!(fits(&asked.boxes, boxes.len()) && fits(&asked.objects, objects.len()), "a row for each box");
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
@@ -85,7 +88,7 @@ pub fn box_visibility(
         of_objects: &of_objects,
         blockers: &blockers,
     };
-    let done = AtomicUsize::new(0);
+    let counter = Counter::new(options.progress, "boxes", boxes.len());
     let one = |shaft: &mut Shaft<'_>, eye: usize| {
         let before = shaft.counters();
         let mut from = BoxSearch { own: &boxes[eye], thick: &thick[eye], id: eye, known: &known, shaft, n_assumed: 0 };
@@ -94,13 +97,18 @@ pub fn box_visibility(
         from.settle_all(Kind::Box, &places, later);
         from.settle_all(Kind::Object, &places, asked.objects.iter_ones(eye));
         let n_assumed = from.n_assumed;
-        options.progress.iter().for_each(|progress| progress(done.fetch_add(1, Relaxed) + 1, thick.len()));
-        (n_assumed, shaft.counters() - before)
+        counter.step()?;
+        Ok((n_assumed, shaft.counters() - before))
     };
-    let found: Vec<(u64, ShaftCounters)> = on_threads(options.threads, |_| {
+    let found = on_threads(options.threads, |_| {
         known.mark_within(graph, &places);
-        (0..boxes.len()).into_par_iter().with_max_len(1).map_init(|| Shaft::new(&blockers), one).collect()
+        (0..boxes.len())
+            .into_par_iter()
+            .with_max_len(1)
+            .map_init(|| Shaft::new(&blockers), one)
+            .collect::<Result<_, Cancelled>>()
     });
+    let found: Vec<(u64, ShaftCounters)> = found?;
     let mut answer = BoxVisibility {
         boxes: asked.boxes.clone(),
         objects: asked.objects.clone(),
@@ -116,7 +124,7 @@ pub fn box_visibility(
         // A box sees itself, if that was asked.
         answer.boxes.set(eye, eye, asked.boxes.get(eye, eye));
     }
-    answer
+    Ok(answer)
 }
 
 /// What is known to be seen: it only grows, and all threads see it.

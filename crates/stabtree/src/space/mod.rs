@@ -35,10 +35,11 @@ use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_geometry::BoxTree;
+use sightlines_progress::{Cancelled, Counter};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Shaft;
 use sightlines_sightline::{Blockers, ShaftCounters};
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::AtomicU64;
 use witness_log::{WitnessLog, Worker};
 
 /// The answer for a graph in space.
@@ -136,6 +137,9 @@ const FEW_TASKS_PER_THREAD: usize = 16;
 /// Cost: in practice near-linear in the number of cells as long as each sees only those near it; cells
 /// that see each other cost a few bits each. Memory: two bit matrices.
 ///
+/// # Errors
+/// [`Cancelled`] by the observer.
+///
 /// # Panics
 /// If a matrix of `known` is not about as many cells and objects.
 pub fn space_visibility(
@@ -144,15 +148,15 @@ pub fn space_visibility(
     objects: &[Aabb<3>],
     known: &VisibilityBounds,
     options: &SearchOptions<'_>,
-) -> SpaceVisibility {
+) -> Result<SpaceVisibility, Cancelled> {
     let n = graph.n_cells();
     let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == n && m.n_cols() == n_cols;
     let possible_fits = known.possible.iter().all(|(c, o)| fits(c, n) && fits(o, objects.len()));
     assert!(fits(&known.visible, n) && possible_fits, "what is known is about these cells and objects");
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
     let search = SpaceSearch::new(graph, objects, &blockers, known);
-    let (counters, _) = on_threads(options.threads, |threads| search.answer(threads, options));
-    search.into_seen(counters)
+    let (counters, _) = on_threads(options.threads, |threads| search.answer(threads, options))?;
+    Ok(search.into_seen(counters))
 }
 
 /// Runs something on so many threads, told how many; 0 for one for each core.
@@ -254,10 +258,10 @@ impl<'a> SpaceSearch<'a> {
     }
 
     /// Decides all that is asked; returns what it took, and what was noted.
-    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> (ShaftCounters, WitnessLog) {
+    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> Result<(ShaftCounters, WitnessLog), Cancelled> {
         let n = self.cell_at.len();
         if n == 0 {
-            return (ShaftCounters::default(), WitnessLog::default());
+            return Ok((ShaftCounters::default(), WitnessLog::default()));
         }
         let mut first = self.worker();
         let mut tasks = vec![[0, 0]];
@@ -270,11 +274,7 @@ impl<'a> SpaceSearch<'a> {
                 break;
             }
         }
-        let (done, all) = (AtomicUsize::new(0), tasks.len() + self.boxes.len());
-        let step = || {
-            let done = done.fetch_add(1, Relaxed) + 1;
-            options.progress.iter().for_each(|progress| progress(done, all));
-        };
+        let counter = Counter::new(options.progress, "pairs and objects", tasks.len() + self.boxes.len());
         let pairs = tasks.into_par_iter().with_max_len(1).map_init(
             || self.worker(),
             |worker, task| {
@@ -283,11 +283,11 @@ impl<'a> SpaceSearch<'a> {
                 while let Some(pair) = stack.pop() {
                     self.settle(pair, worker, &mut |p| stack.push(p));
                 }
-                step();
-                (worker.shaft.counters() - before, worker.take_log())
+                counter.step()?;
+                Ok((worker.shaft.counters() - before, worker.take_log()))
             },
         );
-        let pairs: Vec<(ShaftCounters, WitnessLog)> = pairs.collect();
+        let pairs: Vec<(ShaftCounters, WitnessLog)> = pairs.collect::<Result<_, Cancelled>>()?;
         let survey = (0..n).into_par_iter().map(|place| {
             let mut log = self.logging.then(WitnessLog::default);
             self.survey_objects(place, log.as_mut());
@@ -299,17 +299,17 @@ impl<'a> SpaceSearch<'a> {
             |(worker, stack), object| {
                 let before = worker.shaft.counters();
                 self.settle_object(object, worker, stack);
-                step();
-                (worker.shaft.counters() - before, worker.take_log())
+                counter.step()?;
+                Ok((worker.shaft.counters() - before, worker.take_log()))
             },
         );
-        let objects: Vec<(ShaftCounters, WitnessLog)> = objects.collect();
+        let objects: Vec<(ShaftCounters, WitnessLog)> = objects.collect::<Result<_, Cancelled>>()?;
         let mut all = (first.shaft.counters(), first.take_log());
         for (counters, log) in pairs.into_iter().chain(survey).chain(objects) {
             all.0 = all.0 + counters;
             all.1.append(log);
         }
-        all
+        Ok(all)
     }
 
     fn into_seen(self, counters: ShaftCounters) -> SpaceVisibility {

@@ -4,12 +4,11 @@ use super::follow::{ByStabber, Follower, gate_of};
 use super::grow::{Grown, grow};
 use super::share::Shared;
 use crate::convex::{ByPolygons, Workers};
-use crate::search::Progress;
 use sightlines_cells::{Axial, CellGraph, CellId, Convex, Planar, Space};
 use sightlines_geometry::{Adaptive, AxialDoor, Portal2};
+use sightlines_progress::{Cancelled, Counter, Observer};
 use sightlines_pvs::{BitMatrix, StabParts};
 use sightlines_sightline::{AxialStabber, Funnel, StabLimits};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Cells whose trees are in memory at a time, for each that is being grown.
 const BATCH: usize = 64;
@@ -24,8 +23,8 @@ pub struct StabTreesOptions<'a> {
     pub max_nodes: usize,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Told how many trees of how many are done.
-    pub progress: Option<Progress<'a>>,
+    /// Receives a report for each finished tree, and may cancel.
+    pub progress: Option<&'a dyn Observer>,
 }
 
 impl Default for StabTreesOptions<'_> {
@@ -165,6 +164,9 @@ impl Shared {
 /// Cost: a push for each sequence and about as many again for those that come to nothing, and for taking the
 /// follower from one end of a tree to the other; memory is the graph, and a batch of trees.
 ///
+/// # Errors
+/// [`Cancelled`] by the observer.
+///
 /// # Panics
 /// If `rows` has another size.
 ///
@@ -175,20 +177,17 @@ pub fn stab_trees<C: Space, F: Follower>(
     rows: &BitMatrix,
     follower: &F,
     options: &StabTreesOptions<'_>,
-) -> (StabParts, StabTreesSummary) {
+) -> Result<(StabParts, StabTreesSummary), Cancelled> {
     let n = graph.n_cells();
     assert_eq!((rows.n_rows(), rows.n_cols()), (n, n), "rows are cells by cells");
     let ways = Ways::new(graph, rows);
     let workers = Workers::new(options.threads);
     let max_nodes = options.max_nodes.clamp(1, MOST);
-    let n_done = AtomicUsize::new(0);
-    let one = |follower: &mut F, cell: usize| {
+    let counter = Counter::new(options.progress, "stab trees", n);
+    let one = |follower: &mut F, cell: usize| -> Result<Folded, Cancelled> {
         let folded = Folded::new(&grow(&ways, CellId(cell as u32), follower, max_nodes));
-        let done = n_done.fetch_add(1, Relaxed) + 1;
-        if let Some(progress) = options.progress {
-            progress(done, n);
-        }
-        folded
+        counter.step()?;
+        Ok(folded)
     };
     let mut shared = Shared::default();
     let mut forest = StabParts { first_root: vec![0], ..StabParts::default() };
@@ -196,6 +195,7 @@ pub fn stab_trees<C: Space, F: Follower>(
     for first in (0..n).step_by(BATCH) {
         // In the order of cells, so that ids do not depend on who was done first.
         for tree in workers.map(first..n.min(first + BATCH), || follower.clone(), one) {
+            let tree = tree?;
             let fits = shared.len() + tree.shared.len() <= MOST
                 && shared.children.len() + tree.shared.children.len() <= MOST
                 && forest.roots.len() + tree.roots.len() <= MOST;
@@ -214,7 +214,7 @@ pub fn stab_trees<C: Space, F: Follower>(
     }
     forest.first_child = shared.first_child();
     (forest.gates, forest.children, forest.open) = (shared.gates, shared.children, shared.open);
-    (forest, summary)
+    Ok((forest, summary))
 }
 
 impl std::ops::AddAssign for StabTreesSummary {
@@ -228,11 +228,14 @@ impl std::ops::AddAssign for StabTreesSummary {
 }
 
 /// [`stab_trees`] of a planar graph: exact.
+///
+/// # Errors
+/// [`Cancelled`] by the observer.
 pub fn stab_trees_planar(
     graph: &CellGraph<Planar>,
     rows: &BitMatrix,
     options: &StabTreesOptions<'_>,
-) -> (StabParts, StabTreesSummary) {
+) -> Result<(StabParts, StabTreesSummary), Cancelled> {
     let seen = |p: &Portal2, forward: bool| if forward { *p } else { p.reversed() };
     match graph.small_grid() {
         Some(grid) => stab_trees(graph, rows, &ByStabber::new(graph, Funnel::new(grid), seen), options),
@@ -241,21 +244,27 @@ pub fn stab_trees_planar(
 }
 
 /// [`stab_trees`] of a graph of boxes: exact.
+///
+/// # Errors
+/// [`Cancelled`] by the observer.
 pub fn stab_trees_axial(
     graph: &CellGraph<Axial>,
     rows: &BitMatrix,
     options: &StabTreesOptions<'_>,
-) -> (StabParts, StabTreesSummary) {
+) -> Result<(StabParts, StabTreesSummary), Cancelled> {
     let seen = |p: &AxialDoor, forward: bool| if forward { *p } else { p.reversed() };
     stab_trees(graph, rows, &ByStabber::new(graph, AxialStabber::new(), seen), options)
 }
 
 /// [`stab_trees`] of a graph of convex cells. Sequences that are not decided within `limits` count as passed.
+///
+/// # Errors
+/// [`Cancelled`] by the observer.
 pub fn stab_trees_convex(
     graph: &CellGraph<Convex>,
     rows: &BitMatrix,
     limits: StabLimits,
     options: &StabTreesOptions<'_>,
-) -> (StabParts, StabTreesSummary) {
+) -> Result<(StabParts, StabTreesSummary), Cancelled> {
     stab_trees(graph, rows, &ByPolygons::new(graph, limits), options)
 }

@@ -26,7 +26,7 @@ fn search() -> SearchOptions<'static> {
 }
 
 fn rows_of_plan(graph: &CellGraph<Planar>) -> BitMatrix {
-    plan_visibility(graph, &Zones::cells(graph), &search()).0
+    plan_visibility(graph, &Zones::cells(graph), &search()).expect("nobody cancels").0
 }
 
 /// Proofs for these rows, through their bytes and the checker.
@@ -107,7 +107,7 @@ proptest! {
         out in prop::collection::vec(prop::bool::weighted(0.25), 1..7),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = space_visibility(&graph, &solid, &objects, &VisibilityBounds::nothing(graph.n_cells()), &search());
+        let seen = space_visibility(&graph, &solid, &objects, &VisibilityBounds::nothing(graph.n_cells()), &search()).expect("nobody cancels");
         prop_assert_eq!(seen.n_assumed, 0);
         assert_proven(&seen.cells, &proven_space(&graph, &seen.cells));
     }
@@ -119,7 +119,7 @@ proptest! {
         pick in any::<prop::sample::Index>(),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = space_visibility(&graph, &solid, &[], &VisibilityBounds::nothing(graph.n_cells()), &search());
+        let seen = space_visibility(&graph, &solid, &[], &VisibilityBounds::nothing(graph.n_cells()), &search()).expect("nobody cancels");
         if graph.n_cells() > 1 {
             let (a, b) = pair(pick, graph.n_cells());
             assert_nothing_wrong(&seen.cells, &proven_space(&graph, &flipped(&seen.cells, a, b)));

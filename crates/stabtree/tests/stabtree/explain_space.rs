@@ -44,7 +44,9 @@ fn every_pair_is_explained() {
     for faces in draw(&faces(), 150) {
         let graph = cut(&faces);
         let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-        let seen = space_visibility(&graph, &[], &[], &VisibilityBounds::nothing(graph.n_cells()), &options).cells;
+        let seen = space_visibility(&graph, &[], &[], &VisibilityBounds::nothing(graph.n_cells()), &options)
+            .expect("nobody cancels")
+            .cells;
         for (a, b) in graph.cell_ids().flat_map(|a| graph.cell_ids().map(move |b| (a, b))) {
             let explanation = explain_space(&graph, &[], a, b, 2_000);
             let visible = matches!(explanation, SpaceExplanation::Same | SpaceExplanation::Visible { .. });

@@ -119,6 +119,7 @@ fn anew(state: &State) -> SpaceVisibility {
         &VisibilityBounds::nothing(state.graph.n_cells()),
         &options(1),
     )
+    .expect("nobody cancels")
 }
 
 fn same(a: &SpaceVisibility, b: &SpaceVisibility) -> bool {
@@ -137,7 +138,8 @@ fn updates_equal_answers_found_anew() {
     let result = runner.run(&strategy, |(faces, objects, edits, threads)| {
         let states = states(&faces, &objects, &edits);
         let first = states[0].clone();
-        let mut live = LiveSpace::new(first.graph, &first.solid, first.objects, &options(threads));
+        let mut live =
+            LiveSpace::new(first.graph, &first.solid, first.objects, &options(threads)).expect("nobody cancels");
         prop_assert!(same(live.seen(), &anew(&states[0])), "before any edit");
         for (step, state) in states.iter().enumerate().skip(1) {
             let before = live.seen().clone();
@@ -188,7 +190,8 @@ fn rooms(doors: [Option<f64>; 2]) -> State {
 fn what_an_update_forgets_is_noticed() {
     let [shut, open] = [rooms([Some(0.0), None]), rooms([Some(0.0), Some(0.0)])];
     for (before, after) in [(&open, &shut), (&shut, &open)] {
-        let mut live = LiveSpace::new(before.graph.clone(), &before.solid, before.objects.clone(), &options(1));
+        let mut live = LiveSpace::new(before.graph.clone(), &before.solid, before.objects.clone(), &options(1))
+            .expect("nobody cancels");
         let forgetful = transferred(before, live.seen(), after);
         let update = live.update(after.graph.clone(), &after.solid, after.objects.clone(), &options(1));
         let expected = anew(after);
@@ -219,7 +222,8 @@ fn transferred(before: &State, seen: &SpaceVisibility, after: &State) -> BitMatr
 #[test]
 fn a_door_leaves_most_as_it_is() {
     let open = rooms([Some(0.0), Some(2.0)]);
-    let mut live = LiveSpace::new(open.graph.clone(), &open.solid, open.objects.clone(), &options(1));
+    let mut live =
+        LiveSpace::new(open.graph.clone(), &open.solid, open.objects.clone(), &options(1)).expect("nobody cancels");
     let asked = live.seen().counters.n_asked;
     let same_again = live.update(open.graph.clone(), &open.solid, open.objects.clone(), &options(1));
     assert_eq!((same_again.n_lines_cut, same_again.counters.n_asked, same_again.n_cells_new), (0, 0, 0));

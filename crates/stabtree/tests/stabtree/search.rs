@@ -108,7 +108,7 @@ fn enumerate<S: Stabber<Portal = Portal2>>(graph: &CellGraph<Planar>, stabber: &
 
 fn search(graph: &CellGraph<Planar>, threads: usize, chords: u32) -> BitMatrix {
     let options = SearchOptions { threads, chords, progress: None };
-    plan_visibility(graph, &Zones::cells(graph), &options).0
+    plan_visibility(graph, &Zones::cells(graph), &options).expect("nobody cancels").0
 }
 
 proptest! {
@@ -134,11 +134,11 @@ proptest! {
         let options = SearchOptions { threads: 1, ..SearchOptions::default() };
         let network = Network::planar(&graph, &zones);
         let nothing = VisibilityBounds::nothing(graph.n_cells());
-        let adaptive = visible_zones(&network, &Funnel::new(Adaptive), &nothing, &options);
+        let adaptive = visible_zones(&network, &Funnel::new(Adaptive), &nothing, &options).expect("nobody cancels");
         prop_assert_eq!(&adaptive.zones, &all);
         // The truth is a valid superset of itself, and of nothing less.
         let told = VisibilityBounds { possible: Some((all.clone(), BitMatrix::new(graph.n_cells(), 0))), ..nothing };
-        prop_assert_eq!(&visible_zones(&network, &Funnel::new(Adaptive), &told, &options).zones, &all);
+        prop_assert_eq!(&visible_zones(&network, &Funnel::new(Adaptive), &told, &options).expect("nobody cancels").zones, &all);
     }
 
     /// Invariant: an explanation says what the table says, and proves it.

@@ -16,12 +16,14 @@ use std::cell::Cell;
 fn by_pairs(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> SpaceVisibility {
     let options = SearchOptions { threads, ..SearchOptions::default() };
     space_visibility(graph, solid, objects, &VisibilityBounds::nothing(graph.n_cells()), &options)
+        .expect("nobody cancels")
 }
 
 fn by_sequences(graph: &CellGraph<Axial>, objects: &[Aabb<3>]) -> (BitMatrix, BitMatrix) {
     let network = Network::axial(graph, &Zones::cells(graph), objects);
     let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-    let seen = visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(graph.n_cells()), &options);
+    let seen = visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(graph.n_cells()), &options)
+        .expect("nobody cancels");
     (seen.zones, seen.objects)
 }
 

@@ -155,7 +155,7 @@ fn cut_plan(plan: &Plan) -> CellGraph<Planar> {
 
 fn rows_of_plan(graph: &CellGraph<Planar>) -> BitMatrix {
     let options = SearchOptions { threads: 1, chords: 8, progress: None };
-    plan_visibility(graph, &Zones::cells(graph), &options).0
+    plan_visibility(graph, &Zones::cells(graph), &options).expect("nobody cancels").0
 }
 
 /// The plain trees of all cells; `None` if one is too large to compare.
@@ -185,12 +185,19 @@ fn plans_unfold_to_plain_trees() {
         let graph = cut_plan(&plan);
         let Some(plain) = plain_planar(&graph) else { return Ok(()) };
         let rows = rows_of_plan(&graph);
-        compare(&plain, |max_nodes, threads| stab_trees_planar(&graph, &rows, &options(max_nodes, threads)), &counts)?;
+        compare(
+            &plain,
+            |max_nodes, threads| {
+                stab_trees_planar(&graph, &rows, &options(max_nodes, threads)).expect("nobody cancels")
+            },
+            &counts,
+        )?;
         // Rows that hide nothing make no difference but to the time.
         let n = graph.n_cells();
         let mut all = BitMatrix::new(n, n);
         (0..n).for_each(|i| (0..n).for_each(|j| all.set(i, j, true)));
-        let [narrow, wide] = [&rows, &all].map(|rows| stab_trees_planar(&graph, rows, &options(MAX_NODES, 1)));
+        let [narrow, wide] =
+            [&rows, &all].map(|rows| stab_trees_planar(&graph, rows, &options(MAX_NODES, 1)).expect("nobody cancels"));
         prop_assert_eq!(narrow, wide);
         Ok(())
     });
@@ -238,9 +245,14 @@ fn boxes_unfold_to_plain_trees() {
         let Some(plain) = graph.cell_ids().map(tree).collect::<Option<Vec<_>>>() else { return Ok(()) };
         let network = Network::axial(&graph, &Zones::cells(&graph), &[]);
         let search = SearchOptions { threads: 1, ..SearchOptions::default() };
-        let rows =
-            visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(graph.n_cells()), &search).zones;
-        compare(&plain, |max_nodes, threads| stab_trees_axial(&graph, &rows, &options(max_nodes, threads)), &counts)
+        let rows = visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(graph.n_cells()), &search)
+            .expect("nobody cancels")
+            .zones;
+        compare(
+            &plain,
+            |max_nodes, threads| stab_trees_axial(&graph, &rows, &options(max_nodes, threads)).expect("nobody cancels"),
+            &counts,
+        )
     });
     result.unwrap_or_else(|e| panic!("boxes_unfold_to_plain_trees: {e}"));
     assert!(counts.sequences.get() > 10 * cases && counts.cut.get() > cases / 2, "{counts:?}");
@@ -297,8 +309,10 @@ fn worlds_unfold_to_plain_trees() {
         let plain: Option<Vec<_>> = graph.cell_ids().map(|cell| plain_convex(graph, cell, &mut stabber)).collect();
         let Some(plain) = plain else { continue };
         let rows = rows_of_world(graph);
-        let forest_of =
-            |max_nodes, threads| stab_trees_convex(graph, &rows, StabLimits::default(), &options(max_nodes, threads));
+        let forest_of = |max_nodes, threads| {
+            stab_trees_convex(graph, &rows, StabLimits::default(), &options(max_nodes, threads))
+                .expect("nobody cancels")
+        };
         compare(&plain, forest_of, &counts).unwrap_or_else(|e| panic!("world {n_worlds}: {e}"));
         n_worlds += 1;
     }
@@ -319,7 +333,7 @@ fn pillars() -> CellGraph<Planar> {
 fn damaged_trees_are_noticed() {
     let graph = pillars();
     let plain = plain_planar(&graph).expect("a small plan");
-    let (forest, _) = stab_trees_planar(&graph, &rows_of_plan(&graph), &options(MAX_NODES, 1));
+    let (forest, _) = stab_trees_planar(&graph, &rows_of_plan(&graph), &options(MAX_NODES, 1)).expect("nobody cancels");
     let wrong = |forest: &StabParts, max_nodes| {
         let defects = graph.cell_ids().map(|c| defect(&unfold(forest, c), &plain[c.idx()], max_nodes));
         defects.flatten().collect::<Vec<_>>()
@@ -343,13 +357,14 @@ fn damaged_trees_are_noticed() {
     assert!(!wrong(&turned, MAX_NODES).is_empty());
 
     let max_nodes = 3;
-    let (cut, summary) = stab_trees_planar(&graph, &rows_of_plan(&graph), &options(max_nodes, 1));
+    let (cut, summary) =
+        stab_trees_planar(&graph, &rows_of_plan(&graph), &options(max_nodes, 1)).expect("nobody cancels");
     assert!(summary.n_cut_cells > 0 && wrong(&cut, max_nodes).is_empty(), "{:?}", wrong(&cut, max_nodes));
     let mut closed = cut.clone();
     closed.open.fill(false);
     closed.root_open.fill(false);
     assert!(wrong(&closed, max_nodes).iter().any(|w| w.ends_with("is lost")));
     // A tree that stops sooner than it has to.
-    let (short, _) = stab_trees_planar(&graph, &rows_of_plan(&graph), &options(1, 1));
+    let (short, _) = stab_trees_planar(&graph, &rows_of_plan(&graph), &options(1, 1)).expect("nobody cancels");
     assert!(wrong(&short, MAX_NODES).iter().any(|w| w.ends_with("left out")));
 }

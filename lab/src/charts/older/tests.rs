@@ -22,7 +22,9 @@ fn n_only(a: &BitMatrix, b: &BitMatrix) -> u64 {
 }
 
 fn exact_planar(graph: &CellGraph<Planar>) -> BitMatrix {
-    plan_visibility(graph, &Zones::cells(graph), &SearchOptions { threads: 1, ..SearchOptions::default() }).0
+    plan_visibility(graph, &Zones::cells(graph), &SearchOptions { threads: 1, ..SearchOptions::default() })
+        .expect("nobody cancels")
+        .0
 }
 
 /// Checks sampled ⊆ exact ⊆ shadows ⊆ connected.

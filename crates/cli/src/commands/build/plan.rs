@@ -15,13 +15,12 @@ use std::path::Path;
 /// Builds the table of a plan that came from `path`.
 pub(crate) fn bake(path: &Path, file: &PlanFile, args: &BakeArgs, show_progress: bool) -> Result<Baked, Error> {
     args.check_for_plan(path)?;
-    let bar = Bar::new("who sees whom", show_progress);
-    let progress = |done, all| bar.set(done, all);
+    let bar = Bar::new("visibility", show_progress);
     let options = BakeOptions {
         subdivide: args.subdivide.unwrap_or_default(),
         tau: args.tau(),
         threads: args.threads,
-        progress: Some(&progress),
+        progress: Some(&bar),
         ..BakeOptions::default()
     };
     let baked = bake_plan(&file.plan, &options);

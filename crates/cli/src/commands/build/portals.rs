@@ -4,11 +4,11 @@ use super::BakeArgs;
 use super::Error;
 use crate::clusters::Clusters;
 use crate::output::bytes;
-use crate::progress::ShareBar;
+use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::{BakedPrt, PrtOptions, bake_prt};
 use sightlines::formats::Prt;
-use sightlines::stabtree::{ConvexOptions, ConvexSearch};
+use sightlines::stabtree::ConvexOptions;
 use std::fmt;
 use std::path::Path;
 
@@ -21,10 +21,9 @@ pub(crate) fn bake(path: &Path, prt: &Prt, args: &BakeArgs, show_progress: bool)
 
 /// Runs a search with the options of the command, and shows how far it is.
 pub(super) fn with_progress<T>(args: &BakeArgs, show_progress: bool, run: impl FnOnce(PrtOptions<'_>) -> T) -> T {
-    let mut bar = ShareBar::new("which clusters see which", show_progress);
-    let mut watch = |search: &ConvexSearch| bar.set(search.share_done());
+    let bar = Bar::new("visibility of clusters", show_progress);
     let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    run(PrtOptions { search, from: None, watch: Some(&mut watch) })
+    run(PrtOptions { search, progress: Some(&bar), ..PrtOptions::default() })
 }
 
 /// Tells how it was found out which clusters of what see which, and what came out of it.

@@ -130,8 +130,7 @@ pub(super) fn bake(
     let prepare = |method| OcclusionMethodFactory::new(method, &file.scene, &options).map_err(unfit);
     let factory = method_of_cells.map(prepare).transpose()?;
     let make = || factory.as_ref().expect("only called if there is one").instance();
-    let bar = Bar::new("who sees whom", show_progress);
-    let progress = |done, all| bar.set(done, all);
+    let bar = Bar::new("visibility", show_progress);
     let options = RegionBakeOptions {
         cells: &cells,
         method: factory.is_some().then_some(&make),
@@ -140,7 +139,7 @@ pub(super) fn bake(
         cut,
         portals: args.portal_mode(),
         threads: args.threads,
-        progress: Some(&progress),
+        progress: Some(&bar),
     };
     let baked = bake_regions(&file.scene, &options);
     drop(bar);

@@ -18,14 +18,9 @@ use std::path::Path;
 /// Builds the table of a scene that came from `path`. The table says which way is up, and the unit.
 pub(crate) fn bake(path: &Path, file: &SceneFile, args: &BakeArgs, show_progress: bool) -> Result<BakedScene, Error> {
     args.check_for_space(path)?;
-    let bar = Bar::new("who sees whom", show_progress);
-    let progress = |done, all| bar.set(done, all);
-    let options = SceneBakeOptions {
-        cut: args.cut(),
-        portals: args.portal_mode(),
-        threads: args.threads,
-        progress: Some(&progress),
-    };
+    let bar = Bar::new("visibility", show_progress);
+    let options =
+        SceneBakeOptions { cut: args.cut(), portals: args.portal_mode(), threads: args.threads, progress: Some(&bar) };
     let baked = bake_scene(&file.scene, &options);
     drop(bar);
     let failed = |source| Error::Bake { path: path.to_owned(), map: None, source };

@@ -20,9 +20,8 @@ pub(super) fn add(
 ) -> Result<(Table, Option<Added>), Error> {
     let Some(max_nodes) = wanted else { return Ok((table, None)) };
     let bar = Bar::new("stab trees", show_progress);
-    let progress = |done, all| bar.set(done, all);
     let max_nodes = max_nodes.map(|n| n as usize);
-    let baked = with_stab_trees(table, &StabOptions { max_nodes, threads, progress: Some(&progress) });
+    let baked = with_stab_trees(table, &StabOptions { max_nodes, threads, progress: Some(&bar) });
     drop(bar);
     let baked = baked.map_err(|source| Error::Stab { path: path.to_owned(), source })?;
     let added = Added::new(&baked);

@@ -9,7 +9,7 @@ use crate::Answer;
 use crate::error::InputError;
 use crate::input::{self, Kind};
 use crate::output;
-use crate::progress::{Bar, ShareBar};
+use crate::progress::Bar;
 use certify::certify;
 use error::Error;
 use outcome::Outcome;
@@ -82,13 +82,10 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
     let every = Duration::from_secs(args.save_every);
     let (mut saved, from) = Saved::open(state_path, every, key, &graph_of_prt(&prt), args.resume)?;
     let resumed = from.is_some();
-    let mut bar = ShareBar::new("which clusters see which", show_progress);
-    let mut watch = |search: &ConvexSearch| {
-        bar.set(search.share_done());
-        saved.save(search.state());
-    };
+    let bar = Bar::new("visibility of clusters", show_progress);
+    let mut save = |search: &ConvexSearch| saved.save(search.state());
     let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    let map = vis_map(&bsp, &prt, PrtOptions { search, from, watch: Some(&mut watch) });
+    let map = vis_map(&bsp, &prt, PrtOptions { search, from, progress: Some(&bar), after_step: Some(&mut save) });
     drop(bar);
     let map = map.map_err(|source| explained(source, args, &prt_path, &saved))?;
     // Before anything is written: a table that is proven wrong should not be.

@@ -31,6 +31,7 @@ use matching::{Matching, heirs, same_boxes};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_progress::{Cancelled, Observer, Uncancelled};
 use sightlines_sightline::{Blockers, ShaftCounters};
 use std::cell::Cell;
 
@@ -77,13 +78,21 @@ pub struct SpaceUpdate {
 impl LiveSpace {
     /// Finds which cells of a graph see each other and which objects they see, as [`space_visibility`](super::space_visibility)
     /// does, and keeps what an update needs. Arguments, exactness and cost as there.
-    pub fn new(graph: CellGraph<Axial>, solid: &[Aabb<3>], objects: Vec<Aabb<3>>, options: &SearchOptions<'_>) -> Self {
+    ///
+    /// # Errors
+    /// [`Cancelled`] by the observer.
+    pub fn new(
+        graph: CellGraph<Axial>,
+        solid: &[Aabb<3>],
+        objects: Vec<Aabb<3>>,
+        options: &SearchOptions<'_>,
+    ) -> Result<Self, Cancelled> {
         let (seen, walls, log) = on_threads(options.threads, |threads| {
             let walls = Walls::of(&graph, solid, &Walls::default());
-            let (seen, log) = anew(&graph, &walls, &objects, threads, options);
-            (seen, walls, log)
-        });
-        Self { graph, objects, seen, walls, log }
+            let (seen, log) = anew(&graph, &walls, &objects, threads, options)?;
+            Ok((seen, walls, log))
+        })?;
+        Ok(Self { graph, objects, seen, walls, log })
     }
 
     /// The graph that the answer is about.
@@ -106,6 +115,8 @@ impl LiveSpace {
     /// Whatever they are, the answer is the one for them; if most cells and objects have the bounds that they had, it is
     /// found quickly. Ids of cells and objects need not be the same.
     ///
+    /// The observer receives reports, but cannot cancel an update.
+    ///
     /// Cost: O(cells + portals + objects + visible pairs), with small constants, and what it takes to decide about pairs
     /// whose line is cut, pairs that see the same opened rectangle, and new cells and objects.
     pub fn update(
@@ -116,8 +127,12 @@ impl LiveSpace {
         options: &SearchOptions<'_>,
     ) -> SpaceUpdate {
         let log = std::mem::take(&mut self.log);
-        let run = |threads| self.updated(log, &graph, solid, &objects, threads, options);
-        let (seen, walls, log, update) = on_threads(options.threads, run);
+        // Half an update would be none, and the last answer is gone by then.
+        let observer = options.progress.map(Uncancelled);
+        let options =
+            SearchOptions { progress: observer.as_ref().map(|observer| observer as &dyn Observer), ..*options };
+        let run = |threads| self.updated(log, &graph, solid, &objects, threads, &options);
+        let (seen, walls, log, update) = on_threads(options.threads, run).expect("the observer does not cancel");
         *self = Self { graph, objects, seen, walls, log };
         update
     }
@@ -130,7 +145,7 @@ impl LiveSpace {
         boxes: &[Aabb<3>],
         threads: usize,
         options: &SearchOptions<'_>,
-    ) -> (SpaceVisibility, Walls, WitnessLog, SpaceUpdate) {
+    ) -> Result<(SpaceVisibility, Walls, WitnessLog, SpaceUpdate), Cancelled> {
         let walls = Walls::of(graph, solid, &self.walls);
         let same_objects = same_boxes(&self.objects, boxes);
         let cells = self.same_cells(graph);
@@ -146,9 +161,9 @@ impl LiveSpace {
             ..SpaceUpdate::default()
         };
         if n_cells_kept < graph.n_cells() / 2 || change.opened.len() > MOST_OPENED {
-            let (seen, log) = anew(graph, &walls, boxes, threads, options);
+            let (seen, log) = anew(graph, &walls, boxes, threads, options)?;
             (update.rebuilt, update.n_lines_cut, update.counters) = (true, update.n_lines, seen.counters);
-            return (seen, walls, log, update);
+            return Ok((seen, walls, log, update));
         }
         let blockers = Blockers::new(walls.rectangles());
         let nothing = VisibilityBounds::nothing(graph.n_cells());
@@ -158,11 +173,11 @@ impl LiveSpace {
         let (doubt, mut kept, n_cut) = step.prepare(log, &change, &same_objects);
         update.n_lines_cut = n_cut;
         search.doubt = Some(doubt);
-        let (counters, found) = search.answer(threads, options);
+        let (counters, found) = search.answer(threads, options)?;
         kept.append(found);
         update.counters = counters;
         kept.compact();
-        (search.into_seen(counters), walls, kept, update)
+        Ok((search.into_seen(counters), walls, kept, update))
     }
 
     /// The cells that have the same bounds and are no slivers.
@@ -180,13 +195,13 @@ fn anew(
     objects: &[Aabb<3>],
     threads: usize,
     options: &SearchOptions<'_>,
-) -> (SpaceVisibility, WitnessLog) {
+) -> Result<(SpaceVisibility, WitnessLog), Cancelled> {
     let blockers = Blockers::new(walls.rectangles());
     let nothing = VisibilityBounds::nothing(graph.n_cells());
     let mut search = SpaceSearch::new(graph, objects, &blockers, &nothing);
     search.logging = true;
-    let (counters, log) = search.answer(threads, options);
-    (search.into_seen(counters), log)
+    let (counters, log) = search.answer(threads, options)?;
+    Ok((search.into_seen(counters), log))
 }
 
 /// Whether the free part of a line may meet any box of a tree: certain if it says no.

@@ -1,0 +1,167 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # Scope
+//!
+//! - **Owns**: the [`Observer`] trait, its reports ([`Progress`]), the error of a cancelled search ([`Cancelled`]), and
+//!   the counter that threads of a search share ([`Counter`]).
+//! - **Out of scope**: time, terminals, what is searched.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+
+/// How far a search is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// What is being done, in a word or two, for people.
+    pub phase: &'static str,
+    /// Units of this phase that are done. Their kind depends on the search: cells, pairs, objects.
+    pub done: u64,
+    /// Units of this phase.
+    pub total: u64,
+    /// The share of the whole search that is done, from 0 to 1, as an estimate of time.
+    pub share: f64,
+}
+
+impl Progress {
+    /// A report of a search with one phase; the share is that of its units.
+    pub fn new(phase: &'static str, done: u64, total: u64) -> Self {
+        let share = if total == 0 { 1.0 } else { done as f64 / total as f64 };
+        Self { phase, done, total, share }
+    }
+
+    /// The same report with another estimate of the share.
+    #[must_use]
+    pub const fn with_share(self, share: f64) -> Self {
+        Self { share, ..self }
+    }
+}
+
+/// Is told the progress of a search, and may cancel it.
+pub trait Observer: Sync {
+    /// Takes a report. [`ControlFlow::Break`] cancels the search as soon as its threads have finished the units that
+    /// they are at; further reports may come until then. Called from any thread, several at once; reports of different
+    /// threads may come out of order.
+    fn report(&self, progress: Progress) -> ControlFlow<()>;
+}
+
+impl<F: Fn(Progress) -> ControlFlow<()> + Sync> Observer for F {
+    fn report(&self, progress: Progress) -> ControlFlow<()> {
+        self(progress)
+    }
+}
+
+/// A search was cancelled by its [`Observer`]: there is no answer.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, thiserror::Error)]
+#[error("the search was cancelled")]
+pub struct Cancelled;
+
+/// Counts the finished units of a phase for an observer. Threads share it by reference.
+pub struct Counter<'a> {
+    observer: Option<&'a dyn Observer>,
+    phase: &'static str,
+    total: u64,
+    done: AtomicU64,
+    cancelled: AtomicBool,
+}
+
+impl std::fmt::Debug for Counter<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Counter")
+            .field("phase", &self.phase)
+            .field("total", &self.total)
+            .field("done", &self.done)
+            .field("cancelled", &self.cancelled)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Counter<'a> {
+    /// None of `total` units are done. Without an observer nothing is reported, and nothing cancels.
+    pub const fn new(observer: Option<&'a dyn Observer>, phase: &'static str, total: usize) -> Self {
+        let (done, cancelled) = (AtomicU64::new(0), AtomicBool::new(false));
+        Self { observer, phase, total: total as u64, done, cancelled }
+    }
+
+    /// Counts a unit and reports it.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the observer cancels, or has cancelled before.
+    pub fn step(&self) -> Result<(), Cancelled> {
+        let done = self.done.fetch_add(1, Relaxed) + 1;
+        if let Some(observer) = self.observer
+            && observer.report(Progress::new(self.phase, done, self.total)).is_break()
+        {
+            self.cancelled.store(true, Relaxed);
+        }
+        self.check()
+    }
+
+    /// Whether to go on; for threads before a unit, and at the end.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the observer has cancelled.
+    pub fn check(&self) -> Result<(), Cancelled> {
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+
+    /// Whether the observer has cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Relaxed)
+    }
+}
+
+/// Passes reports on, and does not let them cancel: for work of which a part is worth nothing and that leaves nothing
+/// behind when it is stopped.
+#[derive(Clone, Copy)]
+pub struct Uncancelled<'a>(pub &'a dyn Observer);
+
+impl std::fmt::Debug for Uncancelled<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Uncancelled").finish_non_exhaustive()
+    }
+}
+
+impl Observer for Uncancelled<'_> {
+    fn report(&self, progress: Progress) -> ControlFlow<()> {
+        let _ = self.0.report(progress);
+        ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn every_step_is_reported_and_none_after_a_cancellation_succeeds() {
+        let seen = Mutex::new(Vec::new());
+        let observer = |progress: Progress| {
+            seen.lock().expect("no panic").push(progress.done);
+            if progress.done == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let counter = Counter::new(Some(&observer), "units", 5);
+        let steps: Vec<bool> = (0..5).map(|_| counter.step().is_ok()).collect();
+        assert_eq!(steps, [true, true, false, false, false]);
+        assert_eq!(*seen.lock().expect("no panic"), [1, 2, 3, 4, 5]);
+        assert_eq!((counter.check(), counter.is_cancelled()), (Err(Cancelled), true));
+    }
+
+    #[test]
+    fn without_an_observer_nothing_cancels() {
+        let counter = Counter::new(None, "units", 2);
+        assert_eq!([counter.step(), counter.step(), counter.check()], [Ok(()); 3]);
+    }
+
+    #[test]
+    fn shares_are_those_of_units_unless_given() {
+        assert_eq!([Progress::new("", 1, 4).share, Progress::new("", 0, 0).share], [0.25, 1.0]);
+        assert_eq!(Progress::new("", 1, 4).with_share(0.5), Progress { phase: "", done: 1, total: 4, share: 0.5 });
+    }
+
+    #[test]
+    fn what_must_not_be_cancelled_is_not() {
+        let stop = |_: Progress| ControlFlow::Break(());
+        assert!(Uncancelled(&stop).report(Progress::new("", 0, 1)).is_continue());
+    }
+}
