@@ -121,7 +121,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What is measured unless told otherwise.
+/// The default scenes.
 fn choice() -> Vec<String> {
     let generated = ["office", "tower:1", "tower:4"].map(str::to_owned);
     let files = [

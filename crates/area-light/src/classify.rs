@@ -9,10 +9,10 @@ use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate};
 use sightlines_multifocal::{BackendError, FromRegion, Umbra, Volume};
 use sightlines_visible_surface::{Chosen, Faces};
 
-/// Faces in a leaf of the tree of what is asked about.
+/// Number of faces in a leaf of the tree of faces to classify.
 const PER_LEAF: usize = 4;
 
-/// A scene whose surfaces are asked about: all of its faces block, and hide from both sides.
+/// A scene whose surfaces are classified: all of its faces block light from both sides.
 #[derive(Debug)]
 pub struct Shadows<'a> {
     pub(crate) faces: &'a Faces,
@@ -27,9 +27,10 @@ impl<'a> Shadows<'a> {
 
     /// Says of the chosen faces which parts are in umbra, lit, or in doubt.
     ///
-    /// A point of the light lights a point of a face's side if it is strictly in front of that side's plane, and no face is
-    /// met between the two. A light shines from all of its points to all sides; what lies on its border, such as the ceiling
-    /// that a lamp is flush with, hides nothing from it that other points of the light see; of points of the light on a surface nothing is said. What is meant by a piece of a face is said at [`Piece`].
+    /// A point of the light lights a point of a face's side if it is strictly in front of that side's plane, and no
+    /// face is met between the two. A light shines from all of its points to all sides; what lies on its border, such
+    /// as the ceiling that a lamp is flush with, hides nothing from it that other points of the light see; nothing is
+    /// guaranteed for points of the light on a surface. [`Piece`] defines a piece of a face.
     ///
     /// * *umbra*: the light is behind the side's plane or on it, or `method` says that the piece is hidden. This
     ///   is as sure as [`FromRegion::guarantee`] says, and as complete as the method is. The method has to be made for the same faces, or some of them.
@@ -109,7 +110,7 @@ impl Asking<'_, '_> {
         let mut stack = if ids.is_empty() { Vec::new() } else { vec![0] };
         while let Some(n) = stack.pop() {
             let node = &tree.nodes()[n as usize];
-            // What cannot be hidden is not asked about.
+            // What cannot be hidden is not tested.
             let v = self.light.volume.bounds();
             let meets = (0..3).all(|k| v.min[k] <= node.bounds.max[k] && node.bounds.min[k] <= v.max[k]);
             self.counters.n_asked += u64::from(!meets);

@@ -1,4 +1,4 @@
-//! No more than a scene needs: what a scene in space is like, and which methods and buffers that asks for.
+//! Chooses methods and buffers from measured properties of a scene in space, and no more than it needs.
 //!
 //! Nothing here decides what is hidden; a bad choice costs time, or hides less than another one would.
 
@@ -29,7 +29,7 @@ pub struct SceneFacts {
     pub object_size: f64,
 }
 
-/// Rays by which it is told how open a scene is: the share is within 0.02 of the truth in 98 scenes of 100.
+/// Number of rays that measure how open a scene is: the share is within 0.02 of the truth in 98 scenes of 100.
 const N_RAYS: u32 = 4096;
 
 impl SceneFacts {
@@ -102,7 +102,8 @@ fn openness(scene: &Scene) -> f64 {
     (0..N_RAYS).filter(leaves).count() as f64 / f64::from(N_RAYS)
 }
 
-/// From which share of axial walls on sightlines alone are asked: what little is slanted then hides little that the rest does not.
+/// Share of axial walls from which sight lines alone are used: the few slanted walls then hide little that the others
+/// do not.
 const AXIAL: f64 = 0.9;
 
 /// From which share of loose pieces in the open on buffers are drawn: they put pieces together that do not touch, as sheets cannot.
@@ -118,7 +119,7 @@ const OPEN: f64 = 0.5;
 /// by default.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneChoice {
-    /// Whether sheets are asked as well: surfaces in any direction.
+    /// Whether sheets are used as well: surfaces in any direction.
     pub sheets: bool,
     /// Planes of buffers on each side of a cell; 0 for none.
     pub planes: u32,
@@ -194,7 +195,7 @@ impl SceneChoice {
         Ok(choice)
     }
 
-    /// Whether anything but sightlines is asked.
+    /// Whether a from-region method is used besides sight lines.
     pub fn asks_a_method(&self) -> bool {
         self.sheets || self.planes > 0
     }

@@ -65,7 +65,7 @@ pub struct BakeOptions<'a> {
     pub threads: usize,
     /// Chords shot through each exit before the search. Changes nothing but the time.
     pub chords: u32,
-    /// Told how many cells of how many are done.
+    /// Called with the number of finished cells and their total.
     pub progress: Option<&'a dyn Observer>,
 }
 
@@ -143,7 +143,7 @@ pub struct BakeSummary {
     pub n_lost_mirrors: usize,
     /// Time to cut the plan.
     pub cut_time: Duration,
-    /// Time to decide who sees whom.
+    /// Time to compute the visibility.
     pub see_time: Duration,
     /// Portals pushed by the search.
     pub n_pushes: u64,

@@ -37,7 +37,7 @@ pub struct RejectOptions<'a> {
     pub force: bool,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Told how many zones of how many are done, for each map anew.
+    /// Called with the number of finished zones and their total, separately for each map.
     pub progress: Option<&'a dyn Observer>,
 }
 

@@ -33,7 +33,7 @@ pub struct SceneBakeOptions<'a> {
     pub portals: PortalMode,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Told how many cells of how many are done.
+    /// Called with the number of finished cells and their total.
     pub progress: Option<&'a dyn Observer>,
 }
 
@@ -171,7 +171,7 @@ pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(S
     ]
 }
 
-/// The table of a scene that was cut, when it is known who sees whom.
+/// The table of a subdivided scene and its visibility.
 pub(crate) fn scene_table(
     graph: &CellGraph<Axial>,
     seen: SpaceVisibility,

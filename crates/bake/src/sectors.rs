@@ -23,7 +23,7 @@ pub fn see_groups(plan: &Plan, n_groups: u32, options: &SearchOptions<'_>) -> Re
     let mut seen = BitMatrix::identity(n);
     let (graph, summary) = match subdivide(plan) {
         Ok(cut) => cut,
-        // Without groups, lines along one line enclose no region: nobody sees anybody.
+        // Without groups, collinear lines enclose no region, so nothing is visible.
         Err(TriangulationError::Flat) => return Ok((seen, Summary::default())),
         Err(error) => return Err(error.into()),
     };

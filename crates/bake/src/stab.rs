@@ -16,7 +16,7 @@ pub struct StabOptions<'a> {
     pub max_nodes: Option<usize>,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Told how many trees of how many are done.
+    /// Called with the number of finished trees and their total.
     pub progress: Option<&'a dyn Observer>,
 }
 
@@ -73,7 +73,7 @@ impl Graph {
         graph_of(table).map(Self::Planar).or_else(convex).or_else(axial)
     }
 
-    /// Nodes of a tree, unless told otherwise.
+    /// Default maximum number of nodes of a tree.
     fn most_nodes(&self) -> usize {
         match self {
             Self::Planar(_) => 65_536,
@@ -95,12 +95,12 @@ impl Graph {
     }
 }
 
-/// How many nodes the tree of a cell of this table may have, unless told otherwise: 65,536 in the plane, 16,384 for
-/// boxes, 4,096 for convex cells. A sequence takes some hundred nanoseconds in the plane, ten times as long for boxes, a
-/// hundred times for polygons. Of the scenes that were measured (the bench `stab_trees`), the limits cut no tree of a
-/// plan, up to an eighth of those of boxes, and up to half of those of a Quake map; less than that saves
-/// time, but fewer bytes than sequences, as trees that are cut are seldom equal. `None` if the table does not have the cells
-/// and portals that it was made from.
+/// Default maximum number of nodes of a cell's tree in this table: 65,536 in the plane, 16,384 for boxes, 4,096 for
+/// convex cells. A sequence takes some hundred nanoseconds in the plane, ten times as long for boxes, a hundred times
+/// for polygons. Of the scenes that were measured (the bench `stab_trees`), the limits cut no tree of a plan, up to an
+/// eighth of those of boxes, and up to half of those of a Quake map; less than that saves time, but fewer bytes than
+/// sequences, as trees that are cut are seldom equal. `None` if the table does not have the cells and portals that it
+/// was made from.
 pub fn most_nodes(table: &Table) -> Option<usize> {
     Graph::of(table).map(|graph| graph.most_nodes())
 }

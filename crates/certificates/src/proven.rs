@@ -60,7 +60,7 @@ pub enum Refusal {
         /// The cell.
         from: u32,
     },
-    /// A chain that is said to be blocked, and it is not shown.
+    /// A chain is claimed to be blocked without a valid reason.
     #[error("walk {walk}, from cell {from}: reason {block} does not show that the chain is blocked")]
     Block {
         /// Which walk.
@@ -70,7 +70,7 @@ pub enum Refusal {
         /// Which of its reasons.
         block: usize,
     },
-    /// A chain of gates that nothing stops enters a cell that is said to be hidden.
+    /// A chain of gates that nothing blocks enters a cell that is claimed to be hidden.
     #[error("walk {walk}, from cell {from}: a chain of portals enters cell {cell}, which should be hidden")]
     Entered {
         /// Which walk.

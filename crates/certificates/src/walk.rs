@@ -58,7 +58,8 @@ pub(crate) trait Director {
 
 /// Which cells reach in front of a gate.
 pub(crate) trait Fronts {
-    /// Whether cells may be met again, gates are asked whether they may follow others, and the order of blocked gates counts.
+    /// Whether chains may re-enter cells; gates are then tested whether they may follow others, and the order of
+    /// blocked gates counts.
     const IS_ORDERED: bool = false;
 
     /// A bit for each cell: `false` only for cells that no line enters after it passed the gate, as those that lie wholly behind it or

@@ -17,10 +17,10 @@ pub struct WriteError {
 
 /// Replaces the file at `path` by `bytes`, or leaves it as it was.
 ///
-/// The bytes go into a new file in the same folder, which is then renamed: whoever opens `path` finds
-/// the old content or the new, never a part. A symbolic link is followed, permissions of a file that
-/// is replaced are kept. What is there but not a regular file (a pipe, a terminal, `/dev/null`) has no
-/// old content to save and is written to directly.
+/// The bytes go into a new file in the same folder, which is then renamed: a reader of `path` finds the old content or
+/// the new, never a part. Symbolic links are followed, and the permissions of a replaced file are kept. An existing
+/// target that is not a regular file (a pipe, a terminal, `/dev/null`) has no old content to preserve and is written
+/// directly.
 ///
 /// # Errors
 /// [`WriteError`] with the system's reason; the new file is removed again.

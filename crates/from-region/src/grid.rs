@@ -136,7 +136,7 @@ mod tests {
     }
 
     proptest! {
-        /// Invariant: planes are where they are said to be, without rounding, and the scene is inside a free layer.
+        /// Invariant: planes are at their nominal positions, without rounding, and the scene is inside a free layer.
         #[test]
         fn planes_are_exact_and_leave_a_layer(b in boxes(), n in 1usize..70) {
             let grid = Grid::around(&b, n);

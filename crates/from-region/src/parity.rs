@@ -4,7 +4,7 @@ use crate::overlap::may_meet;
 use crate::surface::Chain;
 use sightlines_geometry::{Aabb, BoxTree, Point2, Point3, orient2d, orient3d};
 
-/// The triangles of all closed chains, ready to be asked.
+/// The triangles of all closed chains, prepared for parity tests.
 #[derive(Debug, Clone)]
 pub(crate) struct Parity {
     /// Corners, and the chain that they belong to.
@@ -121,8 +121,8 @@ mod tests {
         (prop::collection::vec(solid, 1..4), prop::collection::vec(point(), 30))
     }
 
-    /// For each solid and point not on it: what is said, and what is true. Rays run along edges and through corners all
-    /// the time on so small a grid.
+    /// For each solid and point not on it: the answer, and the truth. Rays run along edges and through corners all the
+    /// time on so small a grid.
     fn judged((solids, points): &Case) -> Vec<(bool, bool)> {
         let chains: Vec<_> = solids.iter().copied().map(chain).collect();
         let parity = Parity::new(&chains);
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    /// The property saw points inside; and a surface with a face missing is told from a whole one.
+    /// The property saw points inside; and a surface with a face missing is distinguished from a whole one.
     #[test]
     fn impostor_a_surface_that_is_not_closed_is_wrong_somewhere() {
         let cases = sightlines_testkit::draw(&case(), 300);

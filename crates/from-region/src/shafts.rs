@@ -9,7 +9,7 @@ use sightlines_geometry::vector::{cross, dot, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d};
 use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Occluder, Umbra, Volume};
 
-/// Occluders, ready to be asked about shafts.
+/// Occluders, prepared for shaft tests.
 #[derive(Debug, Clone)]
 pub struct ViewShafts {
     occluders: Vec<Occluder>,
@@ -32,7 +32,7 @@ impl ViewShafts {
     /// Cuts shafts that no occluder cuts, up to this many times one after the other: the longer of volume and target in two halves. 0 is
     /// the classical method, and what [`Self::new`] begins with.
     ///
-    /// All halves have to be hidden, each by an occluder of its own, so this stays sound. A shaft is asked about up to
+    /// All halves have to be hidden, each by an occluder of its own, so this stays sound. A shaft is tested in up to
     /// `2^n` parts.
     #[must_use]
     pub fn with_halvings(mut self, n: u32) -> Self {
@@ -94,8 +94,8 @@ impl ShaftUmbra<'_> {
         if let Some(last) = self.last.filter(|&i| cuts(i)) {
             return Some(last);
         }
-        // Whoever cuts the shaft cuts the line between the middles, which lie in the two hulls. Rounded, this may
-        // miss an occluder, and never adds one.
+        // An occluder that cuts the shaft cuts the line between the middles, which lie in the two hulls. Rounded, this
+        // may miss an occluder, and never adds one.
         let line = Line { from: mean(&eyes), to: mean(points) };
         let mut found = std::mem::take(&mut self.candidates);
         found.clear();

@@ -79,7 +79,7 @@ impl GpuBackend {
     /// [`Self::submit_forms`] that can be done elsewhere.
     ///
     /// # Errors
-    /// [`BackendError`], for what can be told at once
+    /// [`BackendError`], for errors that are known at once
     pub fn submit(&self, job: &Job<'_>) -> Result<Ticket, BackendError> {
         let values = self.keep(job)?;
         self.gpu.fetch(self.way.name(), &values)
@@ -98,7 +98,7 @@ impl GpuBackend {
     /// done.
     ///
     /// # Errors
-    /// [`BackendError`], for what can be told at once
+    /// [`BackendError`], for errors that are known at once
     pub fn keep(&self, job: &Job<'_>) -> Result<Values, BackendError> {
         if !self.supports(job.measure()) {
             return Err(BackendError::Unsupported { backend: self.way.name(), measure: job.measure() });

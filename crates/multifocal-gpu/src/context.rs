@@ -107,7 +107,7 @@ impl Gpu {
         }
     }
 
-    /// Finds out whether the device is lost, of which only its callback is told. On a device that is, nothing can be made,
+    /// Finds out whether the device is lost, which only its callback learns. On a device that is, nothing can be made,
     /// and what was made is not complained about until it is used.
     fn notice_loss(&self) {
         // Whatever comes of it: this is what calls the callback, if it is ours.

@@ -18,7 +18,7 @@ pub struct Ticket {
 }
 
 impl Gpu {
-    /// Asks for the values of all planes, copied to where the host can read them.
+    /// Requests the values of all planes, copied to memory that the host can read.
     pub(crate) fn fetch(&self, name: &'static str, values: &Values) -> Result<Ticket, BackendError> {
         let size = values.buffer.size();
         let state = Arc::new(Mutex::new(None));

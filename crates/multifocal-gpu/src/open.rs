@@ -70,8 +70,9 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Works on the device and the queue of a host. If the device is lost, results fail; that it was lost is then told
-    /// from the failure, or by [`Self::tell_lost`], since a device calls only one callback, and that is the host's.
+    /// Works on the device and the queue of a host. If the device is lost, results fail; the loss is then recognized
+    /// from the failure, or reported by [`Self::tell_lost`], since a device calls only one callback, and that is the
+    /// host's.
     ///
     /// # Errors
     /// [`OpenError::Limit`], [`OpenError::Shaders`]

@@ -26,7 +26,7 @@ impl Default for Split {
 /// What was done for a volume.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Effort {
-    /// Volumes that the method was asked about.
+    /// Volumes that the method was run for.
     pub n_volumes: u64,
     /// Questions about boxes and triangles.
     pub asked: Asked,
@@ -40,8 +40,8 @@ impl std::ops::Add for Effort {
     }
 }
 
-/// Finds the objects that may be visible from a volume: clears `visible` for those that the method proves hidden,
-/// from the whole volume or from all of its parts; objects that are not visible at the start are not asked about.
+/// Finds the objects that may be visible from a volume: clears `visible` for those that the method proves hidden, from
+/// the whole volume or from all of its parts; objects that are not visible at the start are skipped.
 ///
 /// * `also`: asked once about the whole volume, for whatever else is of interest
 ///
@@ -63,8 +63,8 @@ pub fn see(
     see_and_note(method, occludees, witness, volume, split, visible, &mut seen, also)
 }
 
-/// The same as [`see`](fn@see), and notes in `seen` which objects rays were seen to hit: nothing proves those hidden, so nobody else has to be
-/// asked about them.
+/// The same as [`see`](fn@see), and records in `seen` the objects that rays hit: nothing can prove those hidden, so
+/// they need no further test.
 ///
 /// # Errors
 /// [`BackendError`], from the method.
@@ -108,7 +108,7 @@ impl Search<'_> {
         self.effort.asked = self.effort.asked + did;
     }
 
-    /// Asks about the halves of a volume that has been asked about, if it is worth it.
+    /// Tests the halves of a volume that has been tested, if it is worth it.
     ///
     /// `seen`: what rays were seen to hit, from this volume or a part of one that it belongs to; grows.
     fn see_parts(
@@ -129,7 +129,7 @@ impl Search<'_> {
         let start: Vec<bool> = visible.to_vec();
         visible.iter_mut().zip(&*seen).for_each(|(visible, seen)| *visible &= seen);
         for half in &halves {
-            // What the other half sees need not be asked about again.
+            // What the other half sees need not be tested again.
             let mut of_half: Vec<bool> = start.iter().zip(&*visible).map(|(start, known)| *start && !known).collect();
             self.witness.see(half, self.split.n_rays, &of_half, seen);
             self.effort.n_volumes += 1;

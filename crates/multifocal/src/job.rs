@@ -1,4 +1,4 @@
-//! What a backend is asked to do.
+//! The input of a backend.
 
 use crate::plane::power_of_two_at_most;
 use crate::{Measure, Occluder, Plane, PlaneError, Volume};

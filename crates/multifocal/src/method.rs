@@ -21,7 +21,7 @@ pub struct Multifocal<B> {
 
 impl<B: MultifocalBackend> Multifocal<B> {
     /// * `occluders`: what hides
-    /// * `scene`: the box of everything that is asked about
+    /// * `scene`: the box of everything that will be tested
     pub fn new(backend: B, occluders: Arc<Chosen>, scene: Aabb<3>, layout: Layout) -> Self {
         Self { backend, occluders, scene, layout, buffers: Default::default(), surround: None }
     }

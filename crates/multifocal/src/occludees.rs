@@ -1,9 +1,9 @@
-//! What may be hidden: objects made of triangles, in trees that are asked from the top.
+//! Occludees: objects made of triangles, in trees that are tested top-down.
 
 use crate::Umbra;
 use sightlines_geometry::{Aabb, BoxTree, Point3};
 
-/// Triangles in a leaf of an object's tree: they are asked about one by one only if their box is not hidden.
+/// Triangles in a leaf of an object's tree: they are tested one by one only if their box is not hidden.
 const PER_LEAF: usize = 4;
 
 /// Objects as occludees: a tree over their boxes, and for each object a tree over its triangles.
@@ -82,8 +82,8 @@ impl Occludees {
         &self.objects[object].triangles
     }
 
-    /// Finds the objects that `umbra` does not prove hidden: sets `visible` for them, among those for which it is asked
-    /// by `candidates`; all others are left as they are.
+    /// Finds the objects that `umbra` does not prove hidden: sets `visible` for them, among the `candidates`; all
+    /// others are left unchanged.
     ///
     /// # Panics
     /// If the lists are shorter than the objects.

@@ -26,7 +26,7 @@ pub trait FromRegion: fmt::Debug {
         false
     }
 
-    /// Works out whatever is needed to ask about one volume.
+    /// Prepares the umbra of one volume.
     ///
     /// # Errors
     /// [`BackendError`], if a backend is used and nothing could take over.
@@ -39,8 +39,8 @@ pub trait Umbra {
     /// an eye to a point of it meets an occluder before that point. A box that meets the volume never is.
     fn hides(&mut self, target: &Aabb<3>) -> bool;
 
-    /// Whether all of a polygon, or of the convex hull of points, is certainly hidden. Asks about the box around it
-    /// if a method knows nothing better.
+    /// Whether all of a polygon, or of the convex hull of points, is certainly hidden. By default tests the box around
+    /// it.
     fn hides_points(&mut self, points: &[sightlines_geometry::Point3]) -> bool {
         self.hides(&Aabb::around(points.iter().copied()))
     }

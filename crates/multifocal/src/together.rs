@@ -3,7 +3,8 @@
 use crate::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
-/// What any of several methods calls hidden is hidden. They are asked in order, so the quick one comes first.
+/// Combines several methods: what any of them reports hidden is hidden. They run in order, so the fastest should come
+/// first.
 #[derive(Debug)]
 pub struct Together {
     methods: Vec<Box<dyn FromRegion + Send>>,
@@ -11,15 +12,14 @@ pub struct Together {
 }
 
 impl Together {
-    /// The methods, in the order in which they are asked. Without methods nothing is hidden.
+    /// The methods, in the order in which they run. Without methods nothing is hidden.
     ///
-    /// About single polygons only the first is asked: where boxes are asked about before, most that is hidden is known
-    /// to be by then.
+    /// Single polygons are tested by the first method only: after tests of boxes, most hidden ones are known by then.
     pub fn new(methods: Vec<Box<dyn FromRegion + Send>>) -> Self {
         Self { methods, n_about_points: 1 }
     }
 
-    /// The same, with all methods asked about single polygons too: for who asks about nothing else.
+    /// The same, but tests single polygons by all methods too, for callers that test nothing else.
     pub fn about_pieces(methods: Vec<Box<dyn FromRegion + Send>>) -> Self {
         Self { n_about_points: methods.len(), methods }
     }

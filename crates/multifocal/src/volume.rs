@@ -45,7 +45,7 @@ impl Volume {
         &self.0
     }
 
-    /// Its eight corners; bit `k` of the index tells lower (0) or upper along axis `k`.
+    /// Its eight corners; bit `k` of the index selects lower (0) or upper along axis `k`.
     pub fn corners(&self) -> [Point3; 8] {
         corners(&self.0)
     }
@@ -67,7 +67,7 @@ impl Volume {
     }
 }
 
-/// The eight corners of a box; bit `k` of the index tells lower (0) or upper along axis `k`.
+/// The eight corners of a box; bit `k` of the index selects lower (0) or upper along axis `k`.
 pub(crate) fn corners(b: &Aabb<3>) -> [Point3; 8] {
     std::array::from_fn(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { b.min[k] } else { b.max[k] }))
 }

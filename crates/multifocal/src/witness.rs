@@ -1,7 +1,7 @@
 //! What rays from a volume are seen to hit: a quick lower bound of what is visible.
 //!
-//! Decides nothing but where work is worth while: what a ray hits need not be asked about again when a volume is cut into
-//! smaller ones. Rays are traced in plain doubles.
+//! Only steers the work: what a ray hits need not be tested again when a volume is cut into smaller ones. Rays are
+//! traced in plain doubles.
 
 use crate::Volume;
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random, ray_box, ray_triangle};

@@ -22,7 +22,7 @@ fn rooms(n: usize, reach: usize) -> Result<Table, Box<dyn Error>> {
     Ok(Table::new(parts)?)
 }
 
-/// Walks from cell to cell and asks what is seen from each.
+/// Walks from cell to cell and looks up what each sees.
 fn walk<S: Source>(packed: &Packed<S>) -> Result<(), Box<dyn Error>> {
     let (mut here, mut seen, mut at_once) = (Vec::new(), Vec::new(), Vec::new());
     let n = packed.n_cells();

@@ -15,9 +15,9 @@
 //! 24+24n     4  CRC-32 of all bytes before
 //! ```
 //!
-//! The sections follow in the order of the table, without gaps, and then the blocks of all stores, without
-//! gaps either. Sections are resident: read and checked as a whole when the file is opened. Blocks are read
-//! when something in them is asked for, each with a CRC-32 of its own, kept in `BLKS`.
+//! The sections follow in the order of the table, without gaps, and then the blocks of all stores, without gaps either.
+//! Sections are resident: read and checked as a whole when the file is opened. Blocks are read on demand, each with a
+//! CRC-32 of its own, kept in `BLKS`.
 //!
 //! | section | content |
 //! | --- | --- |
@@ -58,9 +58,9 @@ pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the least that has all that is in a table, so that files
 /// without what is new stay as they were.
 pub const MINOR: u16 = 2;
-/// Bytes that a block may have when it is unpacked: a file cannot ask for more memory at once.
+/// Maximum size of an unpacked block, in bytes: a file cannot claim more memory at once.
 pub const MAX_BLOCK: u32 = 1 << 24;
-/// Bytes that rows of bits may take in [`crate::Packed::to_table`]: few bytes of a file can tell of many.
+/// Bytes that rows of bits may take in [`crate::Packed::to_table`]: a small file can describe a large table.
 pub const MAX_TABLE: u64 = 1 << 32;
 
 pub(crate) const HEAD: SectionId = SectionId(*b"HEAD");

@@ -125,7 +125,7 @@ impl Whole {
     }
 }
 
-/// What is seen, packed.
+/// The visibility, packed.
 struct Visibility {
     /// Classes of cells by rows, by rows of objects, and of objects.
     n_classes: [u32; 3],
@@ -179,7 +179,7 @@ impl Visibility {
     }
 }
 
-/// Everything but what is seen, packed.
+/// Everything except the visibility, packed.
 struct Frame {
     sections: Vec<(SectionId, Vec<u8>)>,
     stores: Vec<Store>,

@@ -1,4 +1,4 @@
-//! An opened file, and what it can be asked.
+//! An opened file and its queries.
 
 use crate::bytes::{Place, Reader, u32_at, u64_at, words_of};
 use crate::cache::{Block, Cache, PackedStats};
@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 /// A packed table that is read piece by piece, and keeps to a budget of memory.
 ///
-/// What is resident is read when it is opened; rows, exits and objects are read when they are asked for, in
-/// blocks that are kept until others need their place. Any number of threads may ask at once.
+/// The resident part is read when it is opened; rows, exits and objects are read on demand, in blocks that are kept
+/// until others need their place. Any number of threads may query it at once.
 #[derive(Debug)]
 pub struct Packed<S: Source> {
     pub(crate) source: S,

@@ -143,7 +143,7 @@ impl<S: Source> Packed<S> {
         })
     }
 
-    /// Whether [`Packed::cell_name`] has names to tell. Reads nothing.
+    /// Whether the table has names of cells ([`Packed::cell_name`]). Reads nothing.
     pub fn has_cell_names(&self) -> bool {
         self.names.is_some()
     }

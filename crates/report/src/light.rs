@@ -28,7 +28,7 @@ pub enum LightPixel {
 }
 
 impl LightPixel {
-    /// The colour that tells what is certain: [`UMBRA`], [`LIT`], reds in doubt, [`NOWHERE`].
+    /// The colour of the proven state: [`UMBRA`], [`LIT`], reds in doubt, [`NOWHERE`].
     pub fn colour(self) -> [u8; 3] {
         match self {
             Self::Nothing => NOWHERE,

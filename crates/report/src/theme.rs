@@ -2,11 +2,11 @@
 
 /// Behind everything.
 pub(crate) const PAPER: &str = "#ffffff";
-/// A cell of which nothing is said.
+/// A cell whose visibility is not shown.
 pub(crate) const CELL: &str = "#e8ecf1";
 /// A cell that is not seen.
 pub(crate) const HIDDEN: &str = "#eceef1";
-/// A cell that is seen. Blue against orange is told apart by colour-blind eyes too.
+/// A cell that is seen. Colour-blind eyes can distinguish blue from orange too.
 pub(crate) const SEEN: &str = "#8fc4f5";
 /// The cell looked from.
 pub(crate) const FROM: &str = "#f0701a";
@@ -20,7 +20,7 @@ pub(crate) const PORTAL: &str = "#12a594";
 pub(crate) const PORTAL_FAINT: &str = "#ffffff";
 /// A line of sight and the doors that it passes.
 pub(crate) const SIGHTLINE: &str = "#d6246e";
-/// An object that is seen, or of which nothing is said.
+/// An object that is visible, or whose visibility is not shown.
 pub(crate) const OBJECT: &str = "#51616f";
 /// An object that is not seen.
 pub(crate) const OBJECT_HIDDEN: &str = "#c3cad2";
@@ -29,7 +29,7 @@ pub(crate) const OBJECT_HIDDEN: &str = "#c3cad2";
 pub(crate) const GROUPS: [&str; 8] =
     ["#dbe9f6", "#fbe6cf", "#dcefdc", "#eee0f2", "#fdf3c8", "#d7eef0", "#f8dfe0", "#e6e6e0"];
 
-/// The top, the left and the right face of a box of which nothing is said.
+/// The top, the left and the right face of a box whose visibility is not shown.
 pub(crate) const CELL_SHADES: [&str; 3] = ["#eef2f6", "#c9d3de", "#dbe2ea"];
 /// The faces of a box that is seen.
 pub(crate) const SEEN_SHADES: [&str; 3] = ["#b4d9fa", "#5b9fdc", "#8fc4f5"];

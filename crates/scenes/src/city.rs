@@ -50,7 +50,7 @@ pub fn city(options: CityOptions) -> Result<Scene, SceneError> {
     let [n_x, n_z, detail] = checked(&options)?;
     let mut rng = Rng::new(options.seed, 12);
     let wide = |n: i32| n * PITCH + 3;
-    // The ground is not cut into bays: nobody looks at it from below.
+    // The ground is not cut into bays: no eye sees it from below.
     let mut objects = vec![cuboid("ground".to_owned(), [-3, -1, -3], [wide(n_x), 1, wide(n_z)], [1; 3])];
     for (bz, bx) in (0..n_z).flat_map(|z| (0..n_x).map(move |x| (z, x))) {
         for lot in 0..4 {

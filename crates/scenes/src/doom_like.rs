@@ -230,7 +230,7 @@ impl Builder {
         for (i, &(a, beyond)) in ring.iter().enumerate() {
             let b = ring[(i + 1) % ring.len()].0;
             match beyond {
-                // Whoever goes the other way round has the room on the right.
+                // In the other direction, the room is on the right.
                 None => self.line(b, a, sector, None),
                 Some(other) => self.line(a, b, other, Some(sector)),
             }
@@ -358,7 +358,7 @@ mod tests {
         }
     }
 
-    /// The impostor: one side told wrong, and the checks above notice.
+    /// The impostor: one wrong side, and the checks above notice.
     #[test]
     fn doom_like_checks_can_fail() {
         let mut map = DoomLike::generate(1, 3).unwrap();

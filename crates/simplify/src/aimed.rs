@@ -27,9 +27,10 @@ pub struct Aimed {
 /// Measures as [`measure`](crate::measure) does, by rays towards the triangles that were taken away or put in: only such can have changed, so
 /// that small shares are found with few rays.
 ///
-/// For each eye, half of the rays go to points of triangles that are said to be hidden, half to those of the others, to each about as often as it takes up of the view. A changed
-/// ray counts for the triangle that it was aimed at if that is the one which made the change, weighted by one over how likely it was sent. The mean is
-/// the share that changes; eyes within a triangle's plane do not count it.
+/// For each eye, half of the rays go to points of triangles that are reported hidden, half to those of the others, to
+/// each about as often as it takes up of the view. A changed ray counts for the triangle that it was aimed at if that
+/// is the one which made the change, weighted by one over how likely it was sent. The mean is the share that changes;
+/// eyes within a triangle's plane do not count it.
 ///
 /// Deterministic for a seed. O(n log n), and for each eye O(m) for m such triangles and two traced rays for each ray.
 ///

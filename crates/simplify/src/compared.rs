@@ -78,8 +78,8 @@ impl Compared {
         [Traced::new(&self.before), Traced::new(&self.after.faces)]
     }
 
-    /// What may make a difference: triangles with an area that are gone, or new; and such that should not, as they are said to be
-    /// hidden.
+    /// What may make a difference: triangles with an area that are gone, or new; and those that should not, because
+    /// they are reported hidden.
     pub(crate) fn causes(&self) -> [Vec<Cause>; 2] {
         let gone = self.before.ids().filter(|&f| !self.is_kept[f as usize] && self.before.has_area(f));
         let (hidden, gone): (Vec<u32>, Vec<u32>) = gone.partition(|&f| self.is_hidden[f as usize]);

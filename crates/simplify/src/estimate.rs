@@ -26,9 +26,10 @@ pub struct Interval {
 }
 
 impl Estimate {
-    /// Sends rays. Eyes are spread over the parts of the views, as many in each as its volume asks for (all parts count alike if all
-    /// are flat); directions are spread over the sphere: ray `i` of `n` has its direction anywhere in strip `i` of `n` equal strips of
-    /// latitude, which are taken in a scattered order. So the rays are independent, and fewer are needed than of directions anywhere.
+    /// Sends rays. Eyes are spread over the parts of the views, in proportion to their volumes (all parts count alike
+    /// if all are flat); directions are spread over the sphere: ray `i` of `n` has its direction anywhere in strip `i`
+    /// of `n` equal strips of latitude, which are taken in a scattered order. So the rays are independent, and fewer
+    /// are needed than of directions anywhere.
     ///
     /// Deterministic, whatever the number of threads. O(n log n) for each ray in practice.
     pub fn new(faces: &Faces, views: &Views, n_rays: u64) -> Self {

@@ -7,8 +7,9 @@ use crate::weigh::Areas;
 use sightlines_cells::Scene;
 use sightlines_visible_surface::Faces;
 
-/// Simplifies a scene by its shape alone, to at most `target` triangles as far as edges can be collapsed: the ordinary metric, which
-/// knows no eyes, to compare with. Each object is a mesh of its own. Nothing is promised of what is seen.
+/// Simplifies a scene by its shape alone, to at most `target` triangles as far as edges can be collapsed: the ordinary
+/// metric, which knows no eyes, to compare with. Each object is a mesh of its own. Gives no guarantee about what is
+/// visible.
 ///
 /// # Errors
 /// [`SimplifyError::Faces`]

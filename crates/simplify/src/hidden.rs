@@ -16,7 +16,7 @@ pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
 pub struct HiddenBy<'a> {
     /// A from-region method, such as the multifocal z-buffer with sheets.
     pub method: Option<MakeMethod<'a>>,
-    /// A table of the scene; asked about views that are cells of it, see [`Views::of_cells`].
+    /// A table of the scene, used for views that are its cells, see [`Views::of_cells`].
     pub table: Option<&'a Table>,
 }
 
@@ -29,10 +29,10 @@ impl fmt::Debug for HiddenBy<'_> {
     }
 }
 
-/// Rays from each box towards what is not yet seen: what they hit need not be asked about.
+/// Rays from each box towards what is not yet seen: what they hit need not be tested.
 const N_RAYS_PER_FACE: u32 = 8;
 
-/// What hides faces of a scene, made ready to be asked about any views.
+/// The occluders of a scene, prepared for queries about any views.
 pub(crate) struct Hider<'a> {
     faces: &'a Faces,
     table: Option<TableFaces<'a>>,

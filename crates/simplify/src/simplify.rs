@@ -186,7 +186,8 @@ fn check_views(views: &Views, table: &Table) -> Result<(), SimplifyError> {
     Ok(())
 }
 
-/// Whether a table has the objects of a scene, by their number, names and boxes; what is within a box is not told by a table.
+/// Whether a table has the objects of a scene, by their number, names and boxes; a table does not contain what is
+/// within a box.
 pub(crate) fn check_table(scene: &Scene, table: &Table) -> Result<(), SimplifyError> {
     let other = |what: String| Err(SimplifyError::OtherScene(what));
     if table.dimension() != 3 {

@@ -1,4 +1,4 @@
-//! Sees through an office floor: who sees whom, the stab tree of one cell, and why a pair is hidden.
+//! Cell-to-cell visibility of an office floor, the stab tree of one cell, and why a pair is hidden.
 //!
 //! Run as `cargo run -p sightlines-stabtree --example stab_tree`.
 

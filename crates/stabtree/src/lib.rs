@@ -52,9 +52,9 @@ use sightlines_sightline::Funnel;
 
 /// Which zones of a planar graph see each other: chords first, then the exact search.
 ///
-/// `graph` is cut by any method; `zones` says which cells are asked about together. Returns a
-/// symmetric matrix, zones by zones, with the diagonal set. Exact: a bit is set if and only if an open
-/// set of lines leads from a cell of one zone through portals into a cell of the other.
+/// `graph` is cut by any method; `zones` groups the cells that are searched for together. Returns a symmetric matrix,
+/// zones by zones, with the diagonal set. Exact: a bit is set if and only if an open set of lines leads from a cell of
+/// one zone through portals into a cell of the other.
 ///
 /// Cost: see [`visible_zones`].
 ///

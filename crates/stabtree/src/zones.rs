@@ -1,12 +1,12 @@
-//! Cells that are asked about together.
+//! Cells that are searched for together.
 
 use sightlines_cells::{CellGraph, CellId, Planar, Space};
 use std::collections::BTreeMap;
 
 /// A partition of some of the cells of a graph into zones, numbered from 0.
 ///
-/// A zone is a single cell when every cell is asked about, or all cells with the same groups when only
-/// groups (Doom sectors) are. Cells without a zone are only looked through.
+/// A zone is a single cell in a search for every cell, or all cells with the same groups in a search for groups (Doom
+/// sectors). Cells without a zone only let sight pass.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Zones {
     of_cell: Vec<u32>,

@@ -251,7 +251,7 @@ pub struct Findings {
     pub no_rays: Option<&'static str>,
     /// All violations, those of one kind after the other, the first [`VerifyOptions::MOST_VIOLATIONS`] of each.
     pub violations: Vec<Violation>,
-    /// Number of violations that were found, also of those that are not told.
+    /// Number of violations that were found, including those that are not listed.
     pub n_violations: usize,
     /// The same for each kind ([`Violation::kind`]).
     pub by_kind: BTreeMap<&'static str, usize>,

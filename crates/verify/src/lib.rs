@@ -34,8 +34,8 @@ use sightlines_pvs::Table;
 
 /// Checks a table against what is really there.
 ///
-/// First its structure, then random rays, then rays aimed at what the table hides, most suspicious first. Of violations the
-/// first [`VerifyOptions::MOST_VIOLATIONS`] of each kind are told, and no more rays are shot once there are so many.
+/// First its structure, then random rays, then rays aimed at what the table hides, most suspicious first. Lists the
+/// first [`VerifyOptions::MOST_VIOLATIONS`] violations of each kind, and stops shooting rays once there are that many.
 ///
 /// # Errors
 /// [`VerifyError`] for a table that cannot be of such a scene: of another dimension, or another kind.

@@ -16,7 +16,7 @@ pub struct VerifyOptions {
 }
 
 impl VerifyOptions {
-    /// Violations of one kind that are told; beyond, they are counted, and no more rays are shot.
+    /// Maximum number of listed violations of one kind; further ones are counted, and no more rays are shot.
     pub const MOST_VIOLATIONS: usize = 1000;
 }
 

@@ -1,8 +1,9 @@
 //! Are the walls of a table's cells walls of the scene? Exactly, and area by area.
 //!
-//! Proofs speak of cells and portals. What ties them to the scene is this: wherever the border of a cell is no portal, sight has to end
-//! there, so it has to be covered by opaque lines or by triangles; then whoever sees from cell to cell sees through portals. Borders of the
-//! convex hull of all cells need no cover, as who leaves through it does not come back; in space the box around all cells is taken for it.
+//! Proofs are about cells and portals. This module checks their relation to the scene: wherever the border of a cell is
+//! no portal, sight has to end there, so opaque lines or triangles must cover it; then all lines from cell to cell pass
+//! portals. Borders of the convex hull of all cells need no cover, because a line that leaves through it does not come
+//! back; in space the box around all cells takes its place.
 //!
 //! A line or triangle covers a border if it lies on its line or plane, exactly. So borders along walls whose crossings had to be rounded are not
 //! found to be covered, although they are.

@@ -1,4 +1,4 @@
-//! What a viewer sees of what his cell may see: the five methods, and culling by the view volume in a tree of boxes.
+//! What one eye sees of its cell's visible set: the five methods, and frustum culling in a tree of boxes.
 
 use super::older::BoxTreeN;
 use super::panels::time_against_over;

@@ -138,7 +138,7 @@ pub struct Task {
     pub only: Option<String>,
 }
 
-/// Measures what is asked for, then draws all families that have a CSV.
+/// Measures the requested families, then draws all that have a CSV.
 ///
 /// # Errors
 /// [`ChartError`]; what was measured before is kept.
@@ -195,7 +195,7 @@ fn is_in_front(family: &str, title: &str) -> bool {
     first.iter().any(|first| title.starts_with(first))
 }
 
-/// Writes a file beside and renames it, so that nobody sees half of one.
+/// Writes a file beside and renames it, so that no reader sees half of one.
 fn save(path: &Path, text: &str) -> Result<(), ChartError> {
     let beside = path.with_extension("part");
     let saved = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));

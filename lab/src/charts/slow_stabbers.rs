@@ -22,7 +22,7 @@ impl<P> ByProgram<P> {
     }
 }
 
-/// A portal that a linear program can be asked about.
+/// A portal that can be a constraint of a linear program.
 pub(crate) trait Programmed: Copy + Send + Sync {
     type Bounds;
     fn solve(sequence: &[Self]) -> LpAnswer;

@@ -1,6 +1,7 @@
-//! The arithmetic of the shader in 32-bit floats, `float.wgsl`, on the processor: operation by operation, in the order in which it is
-//! written there, without fused or reordered operations. A device may order sums otherwise, which the shader's margin allows for; the
-//! real one is asked where there is a device, in the tests of `sightlines-multifocal-gpu`.
+//! The arithmetic of the shader in 32-bit floats, `float.wgsl`, on the processor: operation by operation, in the order
+//! in which it is written there, without fused or reordered operations. A device may order sums otherwise, which the
+//! shader's margin allows for; the real one is tested where there is a device, in the tests of
+//! `sightlines-multifocal-gpu`.
 
 use super::plain::{V, cross, dot, minus};
 use sightlines::geometry::Point3;
@@ -124,7 +125,7 @@ pub(crate) fn draw(job: &Job<'_>, plane: &Plane, margin: f32) -> Buffer {
         })
         .collect();
     let mut out = Buffer::new(plane);
-    // Each corner of the grid is asked once for each occluder.
+    // Each corner of the grid is tested once for each occluder.
     let row = w as usize + 1;
     for o in &occluders {
         let blocked: Vec<bool> = (0..row * (h as usize + 1))

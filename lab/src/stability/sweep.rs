@@ -110,7 +110,7 @@ pub fn caught(answer: impl FnOnce() -> Answer) -> Answer {
 /// One batch of cases at a level: draws them and asks all methods.
 type Batch = Box<dyn Fn(f64, &mut Random, &mut Board) + Send + Sync>;
 
-/// A parameter with its levels, and methods that are asked at each.
+/// A parameter with its levels, and methods that run at each.
 pub struct Sweep {
     /// Name of its files: lower-case words with hyphens, the family first, as `plane-distance`.
     pub name: &'static str,
@@ -122,7 +122,7 @@ pub struct Sweep {
     pub levels: Vec<f64>,
     /// Calls of `batch` at each level; they run in parallel, each with its own seed.
     pub batches: usize,
-    /// Who is asked.
+    /// The methods.
     pub methods: Vec<Method>,
     /// Asks.
     pub batch: Batch,

@@ -1,11 +1,10 @@
 //! The table of a scene that changes: doors that close and open, walls that are built, moved and torn down, furniture
 //! that is carried about.
 //!
-//! The scene is cut with what the last one leaves of its faces ([`SceneCutter`]); who sees whom is brought up to date by
-//! [`LiveSpace`] where walls differ. The table is the one that
-//! [`bake_scene`](crate::bake_scene) makes of the new scene, byte for byte, unless pairs are given up
-//! ([`BakedScene::n_assumed`](crate::BakedScene::n_assumed)): of those, an update may know that they are hidden, from the
-//! time when they were easier.
+//! The scene is cut with what the last one leaves of its faces ([`SceneCutter`]); [`LiveSpace`] updates the visibility
+//! where walls differ. The table is the one that [`bake_scene`](crate::bake_scene) makes of the new scene, byte for
+//! byte, unless pairs are given up ([`BakedScene::n_assumed`](crate::BakedScene::n_assumed)): an update may know from
+//! an easier earlier search that these are hidden.
 //!
 //! Doors of the run-time are portals by id. A portal that is closed is a wall, for the rows of the table only: its
 //! portals stay, so that ids mean the same when it is opened.

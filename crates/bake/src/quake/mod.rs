@@ -1,4 +1,4 @@
-//! Quake maps: from a portal file to who sees whom, and from there into the map or a table.
+//! Quake maps: from a portal file to visibility, and from there into the map or a table.
 //!
 //! The graph of clusters comes from the file ([`graph_of_prt`]); [`ConvexSearch`] finds out which clusters see
 //! which. [`vis_map`] puts the answer into the map, [`bake_prt`] into a table, [`bake_map`] into one that also knows

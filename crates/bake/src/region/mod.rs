@@ -1,10 +1,10 @@
 //! Baking a scene by what is hidden from whole volumes: view cells as volumes, objects as occludees.
 //!
-//! A from-region method ([`FromRegion`]) says for each cell which objects are hidden from all of it, and which other
-//! cells. Sightlines say the same in another way, of the cells of a k-d tree ([`bake_scene`]) or of given boxes
-//! ([`box_visibility`]); what either calls hidden is hidden, so the two can be put together. Of given boxes the method is asked first, and
-//! sightlines only where neither it nor a ray has told. Rays are traced in doubles: what one seems to reach through the crack
-//! between two surfaces is left visible.
+//! A from-region method ([`FromRegion`]) finds the objects and other cells that are hidden from all of a cell. Sight
+//! lines give the same answer in another way, for the cells of a k-d tree ([`bake_scene`]) or of given boxes
+//! ([`box_visibility`]); what either reports hidden is hidden, so the two can be combined. For given boxes the method
+//! runs first, and sight lines only where neither it nor a ray has decided. Rays are traced in doubles: what one seems
+//! to reach through the crack between two surfaces stays visible.
 
 mod boxes;
 mod see;
@@ -56,7 +56,7 @@ pub struct RegionBakeOptions<'a> {
     pub portals: PortalMode,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Told how many cells of how many are done.
+    /// Called with the number of finished cells and their total.
     pub progress: Option<&'a dyn Observer>,
 }
 
@@ -119,7 +119,7 @@ pub struct BakedRegions {
     pub time: Duration,
 }
 
-/// What is known before a method is asked.
+/// What is known before a method runs.
 struct Start {
     cells: Vec<Aabb<3>>,
     /// Which cells may see each other: symmetric, with ones on the diagonal.

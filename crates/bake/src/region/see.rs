@@ -1,4 +1,4 @@
-//! Who sees whom, cell by cell.
+//! Visibility, cell by cell.
 
 use super::{MakeMethod, RegionBakeError, RegionBakeOptions};
 use rayon::prelude::*;
@@ -8,10 +8,10 @@ use sightlines_progress::Counter;
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
 
-/// Rays to a cell before the method is asked: most pairs of cells that see each other do so in many ways.
+/// Number of rays to a cell before the method runs: most visible pairs of cells are joined by many lines.
 const RAYS_TO_A_CELL: u32 = 24;
 
-/// What all cells are asked about.
+/// The input shared by the queries of all cells.
 pub(super) struct Scene<'a> {
     pub(super) occludees: &'a Occludees,
     pub(super) witness: &'a Witness,

@@ -91,7 +91,7 @@ fn a_few_boxes() -> impl Strategy<Value = Scene> {
     })
 }
 
-/// Updates along `edits`, each compared with a table baked anew; how many tables differed in who sees whom.
+/// Updates along `edits`, each compared with a table baked anew; returns how many tables differed in visibility.
 fn follow(scene: &Scene, edits: &[Edit], options: &SceneBakeOptions<'_>) -> Result<u64, TestCaseError> {
     let mut live = LiveScene::new(scene.clone(), options).expect("a table");
     let mut now = scene.clone();

@@ -64,7 +64,7 @@ fn auto_follows_axes_by_kd_tree_and_anything_else_by_triangulation() {
     assert_eq!(used(&slanted, Subdivide::Auto), triangulation);
     let grouped = boxed(&[PlanLine { left: Some(0), ..line(4., 0., 4., 3.) }]);
     assert_eq!(used(&grouped, Subdivide::Auto), triangulation);
-    // Who asks for one gets it.
+    // An explicit choice is used.
     assert_eq!(used(&axial, Subdivide::Triangulation), triangulation);
     assert_eq!(used(&slanted, Subdivide::KdTree), kd);
 }

@@ -133,8 +133,8 @@ fn open_ways_without_a_line_through_them_are_rejected() {
     assert_eq!(visible(&map(ML_TWOSIDED)), [(0, 1), (0, 2), (1, 2)], "through a slit of one unit");
 }
 
-/// All lines of sector 1 have it on both sides: it is seen from the room around it and from what sees
-/// that part of the room, and by nobody else.
+/// All lines of sector 1 have it on both sides: it is visible from the room around it and from whatever sees that part
+/// of the room, and from nowhere else.
 #[test]
 fn self_referencing_sectors_are_seen_from_around_and_from_what_sees_them() {
     // A door in the low third of the wall between rooms 0 and 2, a closed room 3.
@@ -203,8 +203,8 @@ fn one_sided_lines_with_two_sides_are_opaque() {
     assert_eq!(flagged(BLOCKING | ML_TWOSIDED), [(0, 1)]);
 }
 
-/// Lines along one line enclose nothing but the outside: sectors that are named towards it see each other
-/// there, and where no side names a sector, nobody sees anybody.
+/// Lines along one line enclose nothing but the outside: sectors that are named towards it see each other there, and
+/// where no side names a sector, nothing is visible.
 #[test]
 fn maps_of_lines_along_one_line_have_the_outside_only() {
     let named = Sketch::new(3).walls(&[[0, 0], [8, 8], [16, 16]], 0).walls(&[[16, 16], [24, 24]], 1);
@@ -403,7 +403,7 @@ fn all_other_lumps_stay_byte_for_byte() {
     assert_eq!(other_lumps(&one), other_lumps(&wad));
     let (before, after) = (rejects(&wad), rejects(&one));
     assert_eq!(before[..2], after[..2]);
-    // Rows 011, 101 and 110, bit 0 first: the rooms do not see each other, and nobody sees sector 2.
+    // Rows 011, 101 and 110, bit 0 first: the rooms do not see each other, and nothing sees sector 2.
     assert_eq!(after[2], Some(vec![0b1110_1110, 0b0]));
     // What was built is built the same again, now in place.
     let again = build(&all, &[], true).unwrap();

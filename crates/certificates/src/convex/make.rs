@@ -1,4 +1,4 @@
-//! Proofs of maps, made with the help of who can tell whether a chain is blocked.
+//! Makes proofs of maps with the help of a solver for single chains.
 
 use super::front::Front;
 use super::{ConvexBlock, ConvexLine, ConvexNetwork, ConvexProofs, ConvexWalk, candidates};
@@ -16,7 +16,7 @@ pub enum ConvexStep {
     GiveUp,
 }
 
-/// Tells whether chains of gates are blocked: a solver. What it says is checked, so it may be wrong.
+/// A solver that decides whether chains of gates are blocked. Its answers are checked, so it may be wrong.
 pub trait ConvexGuide {
     /// A chain begins with this gate.
     fn start(&mut self, gate: u32);

@@ -1,10 +1,9 @@
 //! Proofs of tables of maps: cells joined by convex polygons in space.
 //!
 //! *Visible* pairs are proven by lines, each followed exactly through the portals that it passes: all cells on it see
-//! each other. *Hidden* pairs are proven by walks, one or more from each cell, through all chains of gates that could lead
-//! from it to a cell that it does not see: where a chain ends, a plane that stands between three of its gates says why, or sides of
-//! edges that cannot all be positive.
-//! Pairs that neither kind proves are left *open*, and it is said so.
+//! each other. *Hidden* pairs are proven by walks, one or more from each cell, through all chains of gates that could
+//! lead from it to a cell that it does not see: where a chain ends, a plane that stands between three of its gates says
+//! why, or sides of edges that cannot all be positive. Pairs that neither kind proves are left *open*, and reported.
 //!
 //! Of cells nothing is known but their portals, so that they are convex is not used: [`ConvexNetwork`] says what is.
 

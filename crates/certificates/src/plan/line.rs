@@ -30,7 +30,7 @@ impl PlanLine {
     }
 }
 
-/// A line whose sides can be told.
+/// A line whose sides can be distinguished.
 pub(super) enum Line {
     Points(Point, Point),
     Whole([Dyadic; 3]),

@@ -1,4 +1,4 @@
-//! Proofs of plans, made with the help of who can tell whether a chain is blocked.
+//! Makes proofs of plans with the help of a solver for single chains.
 
 use super::front::Front;
 use super::{PlanBlock, PlanLine, PlanNetwork, PlanProofs, PlanWalk, candidates};
@@ -16,7 +16,7 @@ pub enum PlanStep {
     GiveUp,
 }
 
-/// Tells whether chains of gates are blocked: a solver. What it says is checked, so it may be wrong.
+/// A solver that decides whether chains of gates are blocked. Its answers are checked, so it may be wrong.
 pub trait PlanGuide {
     /// A chain begins with this gate.
     fn start(&mut self, gate: u32);

@@ -1,9 +1,9 @@
 //! Proofs of tables of plans.
 //!
 //! *Visible* pairs are proven by lines, each followed exactly through the portals that it crosses: all cells on it see
-//! each other. *Hidden* pairs are proven by walks, one from each cell, through all chains of gates that could lead
-//! from it to a cell that it does not see: where a chain ends, four ends of gates that no line separates say why.
-//! Pairs that neither kind proves are left *open*, and it is said so.
+//! each other. *Hidden* pairs are proven by walks, one from each cell, through all chains of gates that could lead from
+//! it to a cell that it does not see: where a chain ends, four ends of gates that no line separates say why. Pairs that
+//! neither kind proves are left *open*, and reported.
 
 mod block;
 mod bytes;

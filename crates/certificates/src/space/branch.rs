@@ -1,11 +1,12 @@
 //! Why nothing leads from one box to another past rectangles: proofs about pairs of boxes, and their checker.
 //!
 //! # What is shown
-//! A line with a direction along every axis reaches each coordinate on an axis at some time, and times are linear in the
-//! coordinate: on axis `k` it reaches `x` at `s_k |x| + q_k`, with a positive slowness `s_k`, where `|x|` is `x`, or `-x` if the
-//! line goes towards smaller coordinates. Who passes the inside of a box enters its extent along each axis before he leaves that
-//! along any other. Who crosses the plane of a rectangle and does not meet it goes *past* it in one of six ways: beside one of
-//! its four edges, before he leaves the first box, or after he enters the second.
+//! A line with a direction along every axis reaches each coordinate on an axis at some time, and times are linear in
+//! the coordinate: on axis `k` it reaches `x` at `s_k |x| + q_k`, with a positive slowness `s_k`, where `|x|` is `x`,
+//! or `-x` if the line goes towards smaller coordinates. A line that passes the inside of a box enters its extent along
+//! each axis before it leaves that along any other. A line that crosses the plane of a rectangle and does not meet it
+//! goes *past* it in one of six ways: beside one of its four edges, before it leaves the first box, or after it enters
+//! the second.
 //!
 //! For each choice of directions a tree shows that no way is left: a node names a rectangle and has a branch for each way past
 //! it that lines can take; on its leaves, positive multiples of comparisons of times that hold there add up to

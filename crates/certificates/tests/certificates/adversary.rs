@@ -1,4 +1,4 @@
-//! Someone who wants to prove as much as the checker lets him, true or not: whatever he gets accepted, no line refutes it.
+//! An adversary that tries to prove as much as the checker accepts, true or not: no line refutes what is accepted.
 
 use proptest::prelude::*;
 use sightlines_certificates::plan::{PlanBlock, PlanLine, PlanNetwork, PlanPortal, PlanProofs, PlanWalk};

@@ -1,4 +1,5 @@
-//! Someone who wants to prove as much of a map as the checker lets him, true or not: whatever he gets accepted, no line refutes it.
+//! An adversary that tries to prove as much of a map as the checker accepts, true or not: no line refutes what is
+//! accepted.
 
 use proptest::prelude::*;
 use sightlines_certificates::convex::{
@@ -146,7 +147,7 @@ proptest! {
     }
 }
 
-/// He gets something accepted, by reasons too.
+/// Some of its proofs are accepted, including reasons.
 #[test]
 fn something_is_accepted() {
     use proptest::strategy::ValueTree;

@@ -190,7 +190,7 @@ fn any_proofs() -> impl Strategy<Value = PlanProofs> {
 }
 
 proptest! {
-    /// Whatever is said, what is taken is true.
+    /// Whatever is claimed, only true claims are accepted.
     #[test]
     fn nothing_wrong_is_proven(proofs in any_proofs()) {
         prop_assert!(is_true(&proofs), "{proofs:?}");

@@ -49,11 +49,11 @@ impl fmt::Display for MapLump {
 pub enum MapFormat {
     /// Binary, lines of 14 bytes.
     Doom,
-    /// Binary, lines of 16 bytes, told by a BEHAVIOR lump.
+    /// Binary, lines of 16 bytes, recognized by a BEHAVIOR lump.
     Hexen,
-    /// Text, told by a TEXTMAP lump.
+    /// Text, recognized by a TEXTMAP lump.
     Udmf,
-    /// Binary with other records, told by a LEAFS lump: Doom 64 and the PlayStation.
+    /// Binary with other records, recognized by a LEAFS lump: Doom 64 and the PlayStation.
     Console,
 }
 

@@ -9,7 +9,7 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("line {line} column {column}: {place}{kind}")]
 pub struct GeoJsonError {
-    /// Line in the text where reading stopped, from 1; for what is seen only in a whole feature, its end.
+    /// Line of the text where reading stopped, from 1; for errors that concern a whole feature, its end.
     pub line: usize,
     /// Column in that line.
     pub column: usize,

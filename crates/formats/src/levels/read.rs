@@ -19,7 +19,7 @@ pub fn parse_levels_index(text: &[u8]) -> Result<LevelsIndex, LevelsIndexError> 
     let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     let syntax = |error: serde_json::Error| {
         let place = LevelsPlace::Text(error.line(), error.column());
-        // The position is told by us, in front.
+        // Our message starts with the position.
         let said = error.to_string();
         let kind = Kind::Syntax(said.split(" at line ").next().unwrap_or_default().to_owned());
         LevelsIndexError { place, kind }

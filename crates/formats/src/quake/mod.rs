@@ -5,10 +5,10 @@
 //! | portals ([`prt`]) | `PRT1`, `PRT2`, `PRT1-AM` | anything else |
 //! | maps ([`bsp`]) | Quake's version 29, `BSP2`, `2PSB`, Quake II's `IBSP` 38 | other versions |
 //!
-//! Words of these files: a *leaf* is a cell of the map's tree; a *cluster* is one leaf, or several that
-//! are seen as one. Portal files count leafs from 0, maps from 1, because their leaf 0 is what is solid.
-//! Who sees whom is said for clusters here ([`LeafClusters`] leads from one to the other), and written in the
-//! form that engines load by [`visibility`] and [`rle`].
+//! Words of these files: a *leaf* is a cell of the map's tree; a *cluster* is one leaf, or several that share a
+//! visibility row. Portal files count leafs from 0, maps from 1, because leaf 0 of a map is solid. Visibility is stored
+//! for clusters here ([`LeafClusters`] maps between the two), and [`visibility`] and [`rle`] write it in the form that
+//! engines load.
 
 pub mod bsp;
 mod leafs;

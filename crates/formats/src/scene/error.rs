@@ -178,7 +178,7 @@ pub enum NodeErrorKind {
     /// Its rotation is a quaternion of length zero.
     #[error("its rotation is the zero quaternion")]
     ZeroRotation,
-    /// Its mesh is bent by a skin or by morph weights, so its rest shape is not what is seen.
+    /// Its mesh is bent by a skin or by morph weights, so its rest shape is not the visible one.
     #[error("its mesh is deformed by a skin or by morph weights")]
     Deformed,
 }

@@ -66,8 +66,8 @@ pub(super) struct Origin<'a> {
 /// What was read of buffers outside a file, by buffer.
 pub(super) type Loaded = Vec<Option<Vec<u8>>>;
 
-/// Reads a scene, and tells `watch` of each node with a mesh, in the order of objects; returns also what was read of
-/// buffers outside the file.
+/// Reads a scene, and calls `watch` for each node with a mesh, in the order of objects. Also returns the buffers that
+/// were read from other files.
 pub(super) fn parse(
     bytes: &[u8],
     folder: Option<&Path>,
@@ -197,7 +197,7 @@ fn is_deformed(node: &Node, mesh: &Mesh) -> bool {
     node.skin.is_some() || weights.is_some_and(|weights| weights.iter().any(|&w| w != 0.0))
 }
 
-/// Refuses scenes that are too large before any object is made: a small file can ask for a large one.
+/// Refuses scenes that are too large before any object is made: a small file can describe a large scene.
 fn check_size(document: &Document, placed: &[Placed<'_>]) -> Result<(), SceneReadError> {
     let count = |accessor: usize| document.accessors.get(accessor).map_or(0, |a| a.count);
     let mut sum = [("triangles", 0_usize, MAX_ELEMENTS), ("corners", 0, MAX_ELEMENTS), ("objects", 0, MAX_OBJECTS)];

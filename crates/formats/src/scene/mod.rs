@@ -9,10 +9,9 @@
 //! | left out | materials, animations, cameras | materials, normals, lines, curves |
 //! | written again | with fewer triangles, and all else as it was ([`GltfSource::rewrite`]) | as GLB, without materials |
 //!
-//! Objects keep their order, which gives them their ids, even those that are only points or lines and have
-//! no triangles. Corners that nothing uses are left out, and so are triangles without area. What bends a
-//! mesh (skins, morph weights) or packs it in a way that is not understood is refused: a wall that is
-//! somewhere else would be an error that nobody sees.
+//! Objects keep their order, which gives them their ids, even those that are only points or lines and have no
+//! triangles. Corners that nothing uses are left out, and so are triangles without area. Deformed meshes (skins, morph
+//! weights) and unknown compressions are refused: a wall in the wrong place would be a silent error.
 
 mod accessor;
 mod buffers;

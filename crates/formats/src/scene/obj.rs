@@ -21,9 +21,8 @@ use std::borrow::Cow;
 /// [`SceneReadError::Obj`] with the line, or [`SceneReadError::NoTriangles`].
 ///
 /// # Source
-/// Wavefront Technologies, Advanced Visualizer manual, appendix B1 (the format of `.obj`).
-/// Chosen here: materials do not split objects; outlines that cross themselves are refused, because
-/// nobody can tell where such a face is.
+/// Wavefront Technologies, Advanced Visualizer manual, appendix B1 (the format of `.obj`). Chosen here: materials do
+/// not split objects; self-intersecting outlines are refused, because the extent of such a face is undefined.
 pub fn parse_obj(bytes: &[u8]) -> Result<SceneFile, SceneReadError> {
     let obj = Obj::read(bytes)?;
     let mut builder = Builder::default();

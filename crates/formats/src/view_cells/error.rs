@@ -7,7 +7,7 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("line {line} column {column}: {place}{kind}")]
 pub struct ViewCellsError {
-    /// Line in the text where reading stopped, from 1; for what is seen only in a whole cell, its end.
+    /// Line of the text where reading stopped, from 1; for errors that concern a whole cell, its end.
     pub line: usize,
     /// Column in that line.
     pub column: usize,

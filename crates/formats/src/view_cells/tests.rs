@@ -143,7 +143,7 @@ fn files_are_refused_by_name() {
     assert!(read_view_cells(folder.path().join("none.json")).unwrap_err().to_string().contains("none.json: "));
 }
 
-/// The oracle: the whole as a tree of values, looked at afterwards. It cannot tell members that are there twice.
+/// The oracle: the whole as a tree of values, looked at afterwards. It cannot detect duplicate members.
 fn by_value(text: &[u8]) -> Option<ViewCells> {
     let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
     let whole: Value = serde_json::from_slice(text).ok()?;

@@ -160,7 +160,7 @@ fn voxels_blockers_fuse_through_hidden_space() {
     assert!(!hides(&[sides[0], sides[1]]) && !hides(&[sides[0], plug]) && !hides(&[sides[1], plug]) && !hides(&[plug]));
 }
 
-/// A house without a floor hides from whoever is above its rim, and nothing from whoever may look in from below.
+/// A house without a floor hides from eyes above its rim, and nothing from eyes that may look in from below.
 #[test]
 fn voxels_open_ends_are_used_where_lines_cannot() {
     let house = block([-10., 0., 8.], [10., 9., 16.]);

@@ -1,9 +1,9 @@
 //! From which value on an occluder blocks a texel.
 //!
-//! What is asked for is the least measure of the points where segments from the texel to the volume meet the occluder.
-//! It is only asked for texels that [`Hiding::hides`] blocks: so on every segment there is a point of the
-//! occluder on the plane of one of its facets, with the eye strictly in front of all their planes and the point of the
-//! texel behind or on them. Such a point lies between the eye and the texel, in front of the buffer's plane or on it.
+//! The value is the least measure of the points where segments from the texel to the volume meet the occluder. It is
+//! computed only for texels that [`Hiding::hides`] blocks: so on every segment there is a point of the occluder on the
+//! plane of one of its facets, with the eye strictly in front of all their planes and the point of the texel behind or
+//! on them. Such a point lies between the eye and the texel, in front of the buffer's plane or on it.
 //!
 //! * Heights therefore are at least 0, however far an occluder reaches behind the plane: that part is met by no segment.
 //!   They are at least that of the occluder's lowest corner, being heights of points of it.

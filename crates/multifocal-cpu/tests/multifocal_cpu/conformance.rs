@@ -1,4 +1,4 @@
-//! The contract of backends, kept by the reference and by nobody who does worse.
+//! The contract of backends: the reference keeps it, and worse impostors do not.
 
 use sightlines_multifocal::conformance::impostors::{Fault, Impostor};
 use sightlines_multifocal::conformance::{Clause, Effort, Slack, Violation, run};

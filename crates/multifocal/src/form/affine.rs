@@ -106,7 +106,7 @@ impl<'a> Window<'a> {
 pub(super) enum Edge {
     /// It holds in all of the bounds.
     Superfluous,
-    /// It holds nowhere, or cannot be told to.
+    /// It holds nowhere, or this cannot be decided.
     Nowhere,
     /// `A, B, C`.
     Integers([i32; 3]),

@@ -29,7 +29,7 @@ use super::vector::{basis, dot, sub, unit};
 use super::weld::Mesh;
 use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d};
 
-/// A mesh, ready to be asked what it separates. Can be shared by threads.
+/// A mesh, prepared for separation tests. Can be shared by threads.
 #[derive(Debug)]
 pub struct Sheets {
     mesh: Mesh,
@@ -68,7 +68,7 @@ impl Sheets {
         &self.mesh
     }
 
-    /// What many questions are asked with: its memory is used again.
+    /// A reusable workspace for many tests.
     pub fn asker(&self) -> Asker<'_> {
         let n = self.mesh.triangles().len();
         Asker {

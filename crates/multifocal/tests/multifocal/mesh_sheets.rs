@@ -39,8 +39,8 @@ proptest! {
     }
 }
 
-/// How many pairs were asked about, called hidden, never reached by a ray, and both reached and called hidden, with sheets
-/// of what `heard` makes of the meshes.
+/// How many pairs were tested, reported hidden, never reached by a ray, and both reached and reported hidden, with
+/// sheets of what `heard` makes of the meshes.
 fn judged(heard: impl Fn(&Soup) -> Soup) -> [usize; 4] {
     let mut counts = [0; 4];
     for (i, (soup, pairs)) in draw(&(soup(), prop::collection::vec(boxes(), 12)), 400).iter().enumerate() {

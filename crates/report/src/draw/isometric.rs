@@ -106,7 +106,7 @@ fn outline(b: &Aabb<3>, up: Up) -> [Point2; 6] {
 /// How a cell is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Look {
-    /// Nothing is said of it.
+    /// Its visibility is not shown.
     Plain,
     From,
     VisibleSet,

@@ -1,4 +1,4 @@
-//! Each family is what it is said to be: decided by exact predicates.
+//! Each family has its documented properties, decided by exact predicates.
 
 use super::*;
 use crate::error::SceneError;

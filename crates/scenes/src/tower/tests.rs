@@ -130,7 +130,7 @@ fn tower_faults_are_found() {
 fn tower_walls_are_axial_rectangles_of_two_triangles() {
     for thickness in THICKNESSES {
         let scene = tower(small(4, thickness)).unwrap();
-        // Which of the two diagonals rectangles are cut along, told by the slope of the longest edge.
+        // Which of the two diagonals rectangles are cut along, recognized by the slope of the longest edge.
         let mut diagonals = [0, 0];
         for object in scene.objects().iter().filter(|o| is_structure(&o.name)) {
             let flat = thickness == 0.0 && !object.name.contains("pillar");

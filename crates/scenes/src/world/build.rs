@@ -22,8 +22,8 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    /// Grows a whole tree from a convex region. `decide` says for a piece what to do with it, given what it was
-    /// told with it; a cut has to leave something on both sides.
+    /// Grows a whole tree from a convex region. `decide` decides what to do with a piece and the data that came with
+    /// it; a cut has to leave something on both sides.
     pub(super) fn grow<T>(region: Polytope, told: T, mut decide: impl FnMut(&Polytope, T) -> Decision<T>) -> World {
         let mut builder = Self { planes: Vec::new(), nodes: Vec::new(), sections: Vec::new(), leafs: Vec::new() };
         // Pieces wait with the place that has to name them.

@@ -69,7 +69,7 @@ pub fn slivers() -> World {
     windows(&[[thin(10), wide], [wide, thin(15)], [thin(20), wide], [thin(24), thin(24)], [thin(27), wide]])
 }
 
-/// A room round a pillar with eight sides: whoever goes round comes back.
+/// A room around a pillar with eight sides: walking around it leads back to the start.
 pub fn pillar_ring() -> World {
     let pillar = Brush::solid([-48, -48, 0], [48, 48, 96]);
     let corners = [[1, 1], [-1, 1], [1, -1], [-1, -1]];

@@ -128,8 +128,8 @@ impl World {
         self.transformed(plane, |p| p.map(|x| x * factor))
     }
 
-    /// The world under a linear map with the rows of `matrix`: who sees whom stays the same. Exact for coordinates
-    /// that are whole numbers or fractions of a power of two, as far as doubles hold the result.
+    /// The world under a linear map with the rows of `matrix`: visibility stays the same. Exact for coordinates that
+    /// are whole numbers or fractions of a power of two, as far as doubles hold the result.
     ///
     /// # Panics
     /// If the determinant is not 1: normals would not stay integers, or outside would become inside.

@@ -87,8 +87,8 @@ impl WorldPlane {
         [beyond[0].then_some(front), beyond[1].then_some(back)].map(|half| half.filter(|h| h.len() >= 3))
     }
 
-    /// Where an edge crosses, from a point in front to one behind: whoever asks gets the same bits. On an axial
-    /// plane it lies exactly.
+    /// Where an edge crosses, from a point in front to one behind: every call gives the same bits. On an axial plane it
+    /// lies exactly.
     fn crossing(&self, [p, q]: [Point3; 2], [d, e]: [f64; 2]) -> Point3 {
         let t = d / (d - e);
         let mut cut = [0, 1, 2].map(|k| p[k] + t * (q[k] - p[k]));

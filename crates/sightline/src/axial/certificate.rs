@@ -47,8 +47,8 @@ pub enum AxialCertificate {
     Opposed([usize; 2]),
     /// A proof for all signs of a direction.
     Rows {
-        /// For each axis, a door, by index, that tells the sign of the direction along it; `None` if
-        /// both signs are considered.
+        /// For each axis, a door, by index, that determines the sign of the direction along it; `None` if both signs
+        /// are considered.
         guards: [Option<usize>; 3],
         /// For each vector of signs that the guards leave, at least one proof.
         proofs: Vec<OctantProof>,

@@ -1,8 +1,8 @@
 //! Proof that no line passes a sequence of convex polygons, and its checker.
 //!
-//! The checker computes in integers only and shares no code with what finds proofs. Every double is an
-//! integer times a power of two, so after two scalings, one for places and one for coordinates of boxes,
-//! there is nothing left to round. Why the proof proves is said in the [module above](super).
+//! The checker computes in integers only and shares no code with what finds proofs. Every double is an integer times a
+//! power of two, so after two scalings, one for places and one for coordinates of boxes, there is nothing left to
+//! round. The [module above](super) explains why the proof is valid.
 
 use crate::stabber::Proof;
 use num_bigint::BigInt;

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ConvexCounters {
-    /// Sequences asked about.
+    /// Sequences decided.
     pub n_asked: u64,
     /// Linear programs solved.
     pub n_programs: u64,

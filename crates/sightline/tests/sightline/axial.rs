@@ -29,7 +29,7 @@ fn affine(doors: &[AxialDoor], factor: f64, by: [f64; 3]) -> Vec<AxialDoor> {
     doors.iter().map(|d| AxialDoor { extent: extent(&d.extent), ..*d }).collect()
 }
 
-/// What tells two stabbers apart, besides counters.
+/// The state that distinguishes two stabbers, besides counters.
 fn state(stabber: &mut AxialStabber) -> String {
     let witness = stabber.witness();
     format!("{:?} {witness:?}", stabber.doors())

@@ -349,8 +349,8 @@ fn damaged_box_proofs_are_refused() {
     assert!(terms > 60 && blocks > 60 && refused > terms, "{terms} {blocks} {refused}");
 }
 
-/// Impostors: a proof for one sequence proves nothing for a wider one, nor a line for a narrower one, nor a
-/// solver that forgets a row or a sign for the sequence that it was asked about.
+/// Impostors: a proof for one sequence proves nothing for a wider one, nor a line for a narrower one, nor a solver that
+/// forgets a row or a sign for the sequence that it was given.
 #[test]
 fn impostors_are_found_out() {
     let mut random = Random::new(5);

@@ -17,7 +17,7 @@ fn is_open(pairs: &[PortalPair]) -> bool {
     matches!(stabbable_brute_force(pairs), Stab::Open)
 }
 
-/// Chains, fronts and all: what tells two funnels apart.
+/// Chains, fronts and all: the state that distinguishes two funnels.
 fn state(funnel: &Funnel<Adaptive>) -> String {
     format!("{:?} {:?} {}", funnel.clockwise_limit(), funnel.counter_clockwise_limit(), funnel.n_live())
 }

@@ -222,7 +222,7 @@ fn aimed_rays_agree_with_others() {
         assert!(aimed.worst_error <= aimed.worst / 20.0, "{aimed:?}");
         assert_eq!(aimed.worst > 0.0, budget > 0.0);
     }
-    // And what is left out for a budget ten times as large is told.
+    // And a budget that is exceeded tenfold is detected.
     let tenfold = simplified(&scene, &views, &SimplifyOptions::default().with_budget(1e-3));
     let options = MeasureOptions { n_eyes: 6, n_rays: 2000, ..MeasureOptions::default() };
     let aimed = measure_aimed(&scene, &tenfold, &views, &options).unwrap();
@@ -250,7 +250,7 @@ fn budgets_are_used() {
     assert!(tenth.counts.new > 0 && tenth.counts.collapsed > tenth.counts.new, "{:?}", tenth.counts);
 }
 
-/// Simplification that breaks its promise is told by the same measurement.
+/// Simplification that breaks its guarantee is detected by the same measurement.
 #[test]
 fn a_broken_promise_is_measured() {
     let scene = Scene::new(vec![terrain(16, 9.0, 1.0, 3)]).unwrap();

@@ -1,4 +1,4 @@
-//! Proofs of whole tables: who sees whom is known, and is to be proven.
+//! Proofs of whole tables whose visibility is already known.
 //!
 //! What is found here is handed to the makers of `sightlines-certificates`, which check each piece with code of their own; so
 //! a defect here can leave pairs without a proof, and prove nothing wrong.

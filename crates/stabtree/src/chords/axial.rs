@@ -20,9 +20,9 @@ impl Chord {
 
     /// Whether the line certainly passes the door strictly and in its direction.
     ///
-    /// On the door's plane the line is at p_b + (X - p_a) d_b / d_a. The difference, the quotient and
-    /// the product round by 2^-53 of themselves each, the sum by 2^-53 of the result, together by less
-    /// than 2^-50 (|p_b| + |product|); that much of a margin is asked for.
+    /// On the door's plane the line is at p_b + (X - p_a) d_b / d_a. The difference, the quotient and the product round
+    /// by 2^-53 of themselves each, the sum by 2^-53 of the result, together by less than 2^-50 (|p_b| + |product|);
+    /// the margin is that much.
     fn passes(&self, door: &AxialDoor) -> bool {
         let a = usize::from(door.axis);
         if self.d[a] == 0.0 || (self.d[a] > 0.0) != door.forward {

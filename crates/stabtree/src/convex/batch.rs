@@ -28,7 +28,7 @@ impl Workers {
             let mut scratch = scratch();
             return units.map(|unit| work(&mut scratch, unit)).collect();
         };
-        // As many as there are threads are made, whoever takes which unit.
+        // One for each thread is made.
         let spare = Mutex::new(Vec::new());
         let one = |unit: usize| {
             let taken = lock(&spare).pop();

@@ -68,7 +68,7 @@ pub(super) struct BeamTracer {
 /// What was found out about one gate.
 #[derive(Debug, Default)]
 pub(super) struct Traced {
-    /// Cells that nobody sees through the gate, of those that were in doubt.
+    /// Cells that are not visible through the gate, of those that were in doubt.
     pub(super) hidden: Vec<u64>,
     /// Lines that show that cells see each other: the gates that each passes.
     pub(super) chains: Vec<Vec<u32>>,

@@ -160,14 +160,14 @@ fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
     }
 }
 
-/// Asks for a line through each chain, and for the reason why there is none.
+/// Searches for a line through each chain, or the reason why there is none.
 struct Guide<'a> {
     gates: &'a Gates,
     network: &'a ConvexNetwork,
     stabber: ConvexStabber,
     /// For each gate of the chain, a line up to there, if one is known.
     lines: Vec<Option<Line3>>,
-    /// Questions that may still be asked.
+    /// Queries left.
     left: u64,
 }
 

@@ -12,11 +12,11 @@
 //!   of the larger of the edge's ends and `step = 2^-49 m` more; along the edge, it is placed beyond the plane, see
 //!   [`Cutter::cut`].
 //! * Each vertex carries its `clearance`: the radius and `eps`.
-//! * Planes between two parts ([`Cutter::separators`]) have the first on one side and the second on the
-//!   other, *strictly and by more than these errors*, but for one point that both have in common (a corner
-//!   of two portals, the same bits), where the plane is exactly zero. So a line that passes the first, then
-//!   the second, is on the second side ever after: exactly, not up to a tolerance. Where two parts share
-//!   more than a corner, or come closer than errors, there is no such plane and nothing is cut.
+//! * Planes between two parts ([`Cutter::separators`]) have the first on one side and the second on the other,
+//!   *strictly and by more than these errors*, but for one point that both have in common (a corner of two portals, the
+//!   same bits), where the plane is exactly zero. So a line that passes the first, then the second, stays on the second
+//!   side afterwards: exactly, not up to a tolerance. Where two parts share more than a corner, or come closer than
+//!   errors, there is no such plane and nothing is cut.
 //!
 //! Source: the planes are those of Quake's vis (Abrash, Graphics Programming Black Book, chapter 70), there
 //! with a tolerance of a tenth of a unit; Teller, PhD thesis, 1992, section 5.4. The margins are ours.

@@ -121,7 +121,7 @@ pub enum ConvexExplanation {
     },
 }
 
-/// Questions after which [`explain_convex`] gives up, unless told otherwise.
+/// Default number of queries after which [`explain_convex`] gives up.
 pub const MOST_EXPLAINED: u64 = 100_000;
 
 /// Finds explanations for the cells of one graph.

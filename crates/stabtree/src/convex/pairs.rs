@@ -18,7 +18,7 @@ use sightlines_pvs::bits::ones;
 use sightlines_sightline::{ConvexStabber, LimitReached, Line3, StabLimits, Verdict};
 use std::collections::HashMap;
 
-/// How many questions about sequences may be asked for a pair; one that takes more counts as visible.
+/// Maximum number of queries about sequences for a pair; a pair that takes more counts as visible.
 const MOST_QUESTIONS: u64 = 20_000;
 
 /// How many planes of earlier gates cut a gate: the last ones cut most, the others hardly any more.
@@ -27,7 +27,7 @@ const PLANES: usize = 20;
 /// Of how many gates, without the last, it is remembered that no line passes them all.
 const MOST_LEARNT: usize = 5;
 
-/// How many sequences are looked at behind one before it is asked whether it can lead to the goal.
+/// Number of sequences examined behind one before testing whether it can lead to the goal.
 const WORTH_ASKING: u64 = 32;
 
 /// One gate of the sequence that is followed.
@@ -141,7 +141,7 @@ impl SequenceTracer {
         if !self.is_learnt(depth + 1, pair.goal) && self.narrow(gates, depth) {
             let (first, mut has_asked) = (self.counted.sequences, false);
             for &exit in gates.exits(gates.get(self.levels[depth].gate).to) {
-                // Where much lies behind a sequence, it is asked whether its lines lead to the goal at all.
+                // Where much lies behind a sequence, test whether its lines lead to the goal at all.
                 if !has_asked && self.counted.sequences > first + WORTH_ASKING {
                     has_asked = true;
                     found = self.ask(gates, depth, Some(pair.goal));

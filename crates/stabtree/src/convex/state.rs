@@ -1,4 +1,4 @@
-//! What a search is asked, where it stands, and what it answers.
+//! The options, the state and the result of a search.
 
 use sightlines_pvs::BitMatrix;
 

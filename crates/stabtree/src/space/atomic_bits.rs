@@ -29,7 +29,7 @@ impl AtomicBitMatrix {
         }
     }
 
-    /// Sets a bit; whether it was not set. Of several threads that set the same bit one is told so.
+    /// Sets a bit and returns whether it was clear before; of several threads that set the same bit, one gets `true`.
     #[inline]
     pub(crate) fn set(&self, row: usize, col: usize) -> bool {
         let (word, bit) = (&self.words[row * self.width + col / 64], 1 << (col % 64));

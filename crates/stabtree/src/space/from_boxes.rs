@@ -1,10 +1,10 @@
-//! What boxes see that are no cells: each is asked about as a whole, past the walls of a graph.
+//! From-region queries for boxes that are no cells, past the walls of a graph.
 //!
-//! Such a box may lie anywhere among the cells, with walls inside of it. They do not count: an eye is between any of them and
-//! the side by which a line leaves the box, so what is asked is what stands between the box and a target ([`Shaft`]). That is exact: a line that is
-//! free from where it leaves the box on is seen by eyes just before that place, and what an eye in the box sees is
-//! seen along a line that is free from there on. Groups of targets are asked about first, then their halves; what shares a cell with the box
-//! is seen, and what lies on a line that was found is.
+//! Such a box may lie anywhere among the cells, with walls inside of it. They do not count: an eye is between any of
+//! them and the side by which a line leaves the box, so only what lies between the box and a target matters
+//! ([`Shaft`]). That is exact: a line that is free from where it leaves the box on is seen by eyes just before that
+//! place, and what an eye in the box sees is seen along a line that is free from there on. Groups of targets are tested
+//! first, then their halves; what shares a cell with the box, or lies on a line that was found, is visible.
 
 use super::atomic_bits::AtomicBitMatrix;
 use super::objects::touch;
@@ -20,7 +20,7 @@ use sightlines_progress::{Cancelled, Counter};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Blockers, FreeLine, Shaft, ShaftCounters, Target, Verdict};
 
-/// What is asked about boxes: pairs of boxes, which has to be symmetric, and of a box and an object.
+/// The pairs to decide: of two boxes, which has to be symmetric, and of a box and an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PairMask {
     /// Boxes by boxes.
@@ -92,7 +92,7 @@ pub fn box_visibility(
     let one = |shaft: &mut Shaft<'_>, eye: usize| {
         let before = shaft.counters();
         let mut from = BoxSearch { own: &boxes[eye], thick: &thick[eye], id: eye, known: &known, shaft, n_assumed: 0 };
-        // Who sees whom is asked once, of the lower number.
+        // Each pair is decided once, from the lower number.
         let later = asked.boxes.iter_ones(eye).filter(|&other| other > eye);
         from.settle_all(Kind::Box, &places, later);
         from.settle_all(Kind::Object, &places, asked.objects.iter_ones(eye));
@@ -235,7 +235,7 @@ impl CellLocator {
         Self { all, thin: longest * THIN, extents, tree, component: components(graph) }
     }
 
-    /// The box, and a little around it along axes on which it is too thin to be asked about.
+    /// The box, widened slightly along axes on which it is too thin to be decided.
     fn thickened(&self, b: &Aabb<3>) -> Aabb<3> {
         let mut thick = *b;
         for k in 0..3 {
@@ -268,11 +268,11 @@ impl CellLocator {
     }
 }
 
-/// What is asked about, all of one kind.
+/// Targets, all of one kind.
 struct Targets<'a> {
     /// What has to be reached.
     boxes: &'a [Aabb<3>],
-    /// What is seen if it is touched.
+    /// Boxes that are visible if they are touched.
     own: &'a [Aabb<3>],
     target: Target,
     tree: BoxTree<3>,
@@ -311,7 +311,7 @@ struct BoxSearch<'a, 's, 'b> {
 }
 
 impl BoxSearch<'_, '_, '_> {
-    /// Marks which of the targets asked about may be seen.
+    /// Marks which of the given targets may be visible.
     fn settle_all(&mut self, kind: Kind, places: &CellLocator, asked: impl Iterator<Item = usize>) {
         let known = self.known;
         let (targets, marks) = match kind {

@@ -1,15 +1,14 @@
 //! Which boxes of a graph in space see each other, and which objects: from pairs of groups to pairs of
 //! cells.
 //!
-//! Not sequences of portals are followed here: in open space that is cut into many cells there are
-//! more of them than can be counted. What is asked is what stands *between* two boxes
-//! ([`Shaft`]), first for large groups of cells, then for their halves, until a wall hides one group
-//! from the other or single cells are left. Lines found on the way are followed through all cells that
-//! they pass, all of which see each other.
+//! Not sequences of portals are followed here: in open space that is cut into many cells there are more of them than
+//! can be counted. What matters is what lies *between* two boxes ([`Shaft`]), first for large groups of cells, then for
+//! their halves, until a wall hides one group from the other or single cells are left. Lines found on the way are
+//! followed through all cells that they pass, all of which see each other.
 //!
-//! A group is asked about with the box around its cells, so when nothing of its box is visible, none of
-//! its cells is; when something is, nothing follows, and its halves are asked about. Single cells are
-//! decided exactly, but for [`slivers`]. So the answer does not depend on how cells are grouped, nor on the order of work.
+//! A group is tested with the box around its cells, so when nothing of its box is visible, none of its cells is; when
+//! something is, nothing follows, and its halves are tested. Single cells are decided exactly, but for [`slivers`]. So
+//! the answer does not depend on how cells are grouped, nor on the order of work.
 
 mod atomic_bits;
 mod explain;
@@ -90,7 +89,7 @@ struct SpaceSearch<'a> {
     objects: AtomicBitMatrix,
     /// Objects by places: which may see it.
     maybe: AtomicBitMatrix,
-    /// The only pairs that are asked about, if not all are.
+    /// The only pairs to decide, if not all.
     doubt: Option<PairsInDoubt>,
     /// Whether lines are kept for later.
     logging: bool,
@@ -112,13 +111,13 @@ fn components(graph: &CellGraph<Axial>) -> Vec<u32> {
     of
 }
 
-/// The place of a cell that is too thin to be asked about.
+/// The index of a cell that is too thin to be decided.
 const SLIVER: u32 = u32::MAX;
 
 /// Pairs of groups are halved on one thread until there are this many for each thread.
 const TASKS_PER_THREAD: usize = 256;
 
-/// The same where few pairs are asked about.
+/// The same where few pairs are to be decided.
 const FEW_TASKS_PER_THREAD: usize = 16;
 
 /// Finds which cells of a graph see each other, and which objects they see.
@@ -159,7 +158,7 @@ pub fn space_visibility(
     Ok(search.into_seen(counters))
 }
 
-/// Runs something on so many threads, told how many; 0 for one for each core.
+/// Runs something on this many threads and passes their number; 0 uses one for each core.
 pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T + Send) -> T {
     let threads = match threads {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
@@ -257,7 +256,7 @@ impl<'a> SpaceSearch<'a> {
         Worker { shaft: Shaft::new(self.blockers), log: self.logging.then(WitnessLog::default) }
     }
 
-    /// Decides all that is asked; returns what it took, and what was noted.
+    /// Decides all requested pairs; returns the effort, and the log of lines.
     fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> Result<(ShaftCounters, WitnessLog), Cancelled> {
         let n = self.cell_at.len();
         if n == 0 {

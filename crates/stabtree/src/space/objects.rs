@@ -99,8 +99,8 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// Where groups were not all asked, as only some pairs are in doubt: whether one with a cell, by its place, does not see an object. Who
-    /// asks about all pairs has asked these, and never came to the cell.
+    /// Where groups were not all asked, as only some pairs are in doubt: whether one with a cell, by its place, does
+    /// not see an object. A search over all pairs has tested these, and did not reach the cell.
     fn is_object_hidden_in_groups(&self, object: usize, place: usize, worker: &mut Worker<'_>) -> bool {
         if self.doubt.is_none() {
             return false;

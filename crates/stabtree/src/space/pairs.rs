@@ -13,10 +13,10 @@ pub(super) const GROUP_BUDGET: u32 = 64;
 /// Linear programs spent on a pair of single cells, or a cell and an object, before it counts as visible.
 pub(super) const CELL_BUDGET: u32 = 2000;
 
-/// The same where only some pairs are asked about: less depends on the answer.
+/// The same where only some pairs are to be decided: less depends on the answer.
 pub(super) const FEW_BUDGET: u32 = 12;
 
-/// Where only some pairs are asked about, groups with no more of them than this are halved at once.
+/// Where only some pairs are to be decided, groups with no more of them than this are halved at once.
 pub(super) const FEW: u32 = 3;
 
 /// Two nodes of the tree of cells, the first not after the second.
@@ -72,8 +72,9 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// Where groups were not all asked, as only some pairs are in doubt: whether one of those with two cells, by their places in order,
-    /// is hidden from the other. Who asks about all pairs has asked these, and never came to the cells.
+    /// Where groups were not all asked, as only some pairs are in doubt: whether one of those with two cells, by their
+    /// places in order, is hidden from the other. A search over all pairs has tested these, and did not reach the
+    /// cells.
     fn is_hidden_in_groups(&self, [first, second]: [usize; 2], worker: &mut Worker<'_>) -> bool {
         if self.doubt.is_none() {
             return false;
@@ -131,8 +132,8 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// Marks two cells, by their places, as seeing each other; whether they were not. Of several threads that join
-    /// the same cells one is told so.
+    /// Marks two cells, by index, as seeing each other and returns whether they were not before; of several threads
+    /// that join the same cells, one gets `true`.
     pub(super) fn join(&self, a: usize, b: usize) -> bool {
         let new = self.cells.set(a.min(b), a.max(b));
         self.cells.set(a.max(b), a.min(b));

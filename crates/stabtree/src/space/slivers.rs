@@ -1,17 +1,16 @@
 //! Cells so thin that programs in doubles cannot tell their sides apart.
 //!
-//! Coordinates of real buildings differ by rounding where they are meant to be equal, and a subdivision
-//! that is exact has cells of that thickness. No viewer gets into one, but it must not be called hidden
-//! where it is not. Every line through a cell that is not in it altogether comes through a portal from a
-//! neighbour, so what a sliver sees, its neighbours together see; and that is what it is said to see.
+//! Coordinates of real buildings differ by rounding where they are meant to be equal, and a subdivision that is exact
+//! has cells of that thickness. No eye gets into one, but it must not be reported hidden wrongly. Every line through a
+//! cell that is not in it altogether comes through a portal from a neighbour, so the visible set of a sliver is the
+//! union of its neighbours' visible sets: slivers inherit their neighbours' visibility.
 
 use sightlines_cells::{Axial, CellGraph, CellId};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::BitMatrix;
 
-/// A cell thinner than this share of the longest side of the box around all cells is a sliver. What is
-/// said of slivers is sound whatever this is; doubles resolve 2^-52 of the box, and programs lose some
-/// twenty bits of them.
+/// A cell thinner than this share of the longest side of the box around all cells is a sliver. The rule for slivers is
+/// sound for any value; doubles resolve 2^-52 of the box, and programs lose some twenty bits of them.
 pub(super) const THIN: f64 = 1.0 / (1u64 << 32) as f64;
 
 /// Which cells are slivers.

@@ -48,7 +48,7 @@ pub struct ByStabber<S: Stabber> {
 }
 
 impl<S: Stabber> ByStabber<S> {
-    /// For the portals of a graph; `turned` gives a portal's shape as seen from its second cell, if told `false`.
+    /// For the portals of a graph; `turned` gives a portal's shape as seen from its second cell for `false`.
     pub fn new<C: Space>(graph: &CellGraph<C>, stabber: S, turned: impl Fn(&C::Portal, bool) -> S::Portal) -> Self {
         let both = |shape: &C::Portal| [turned(shape, true), turned(shape, false)];
         let portals = graph.portals().iter().flat_map(|p| both(&p.shape)).collect();

@@ -84,7 +84,7 @@ fn every_pair_is_explained() {
     assert!(n_ends > 1000 && n_edges > 0 && n_hidden > 500 && n_apart > 0, "{n_ends} {n_edges} {n_hidden} {n_apart}");
 }
 
-/// Without a budget, it is said that nothing is known.
+/// Without a budget, the result is unknown.
 #[test]
 fn a_budget_is_kept_to() {
     let wall = AxialFace::new(0, [2.0, 0.0, 0.0], [2.0, 2.0, 4.0]);

@@ -188,7 +188,7 @@ fn cube(at: [f64; 3], size: f64) -> Aabb<3> {
     Aabb { min: at, max: at.map(|x| x + size) }
 }
 
-/// Only what is asked is answered; a box that reaches out of the cells sees all that is asked.
+/// Only requested pairs are answered; a box that reaches out of the cells sees everything requested.
 #[test]
 fn only_what_is_asked_is_answered() {
     let graph = door();

@@ -218,7 +218,7 @@ fn transferred(before: &State, seen: &SpaceVisibility, after: &State) -> BitMatr
     cells
 }
 
-/// One door costs what depends on it: most lines are kept, and little is asked.
+/// One door costs what depends on it: most lines are kept, and few pairs are decided again.
 #[test]
 fn a_door_leaves_most_as_it_is() {
     let open = rooms([Some(0.0), Some(2.0)]);

@@ -93,7 +93,7 @@ impl Stabber for Checked {
     }
 }
 
-/// Who sees whom by full enumeration; `None` if a tree is too large to enumerate.
+/// Visibility by full enumeration; `None` if a tree is too large to enumerate.
 fn enumerate<S: Stabber<Portal = Portal2>>(graph: &CellGraph<Planar>, stabber: &mut S) -> Option<BitMatrix> {
     let mut rows = BitMatrix::new(graph.n_cells(), graph.n_cells());
     for cell in graph.cell_ids() {

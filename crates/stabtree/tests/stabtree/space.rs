@@ -155,7 +155,7 @@ fn objects_behind_slivers_are_seen() {
     assert!((0..3).all(|cell| seen.objects.get(cell, 0) && (0..3).all(|other| seen.cells.get(cell, other))));
 }
 
-/// Cells thinner than doubles can tell see what their neighbours see, and are seen by whom those see.
+/// Cells thinner than doubles can tell inherit their neighbours' visibility.
 #[test]
 fn slivers_take_after_their_neighbours() {
     let ulp = f64::EPSILON;

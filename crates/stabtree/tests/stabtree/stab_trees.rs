@@ -258,7 +258,7 @@ fn boxes_unfold_to_plain_trees() {
     assert!(counts.sequences.get() > 10 * cases && counts.cut.get() > cases / 2, "{counts:?}");
 }
 
-/// The sequences out of a cell that are not proven to be blocked: depth first, each asked about afresh.
+/// The sequences out of a cell that are not proven to be blocked: depth first, each decided from scratch.
 fn plain_convex(graph: &CellGraph<Convex>, root: CellId, stabber: &mut ConvexStabber) -> Option<BTreeSet<Sequence>> {
     let shape = |gate: u32| {
         let (portal, forward) = portal_of(gate);

@@ -6,7 +6,7 @@ use sightlines_geometry::{Aabb, Point3, Random};
 /// Moves the ends of a segment within their boxes, by steps of any order of magnitude, and keeps what does not make `openness`
 /// less. Stops at the first segment that is good.
 ///
-/// * `openness`: how little is in the way, 1 for nothing as far as doubles tell; then `is_good` is asked.
+/// * `openness`: how little is in the way; at 1, nothing as far as doubles tell, `is_good` decides.
 pub(crate) fn climb(
     start: [Point3; 2],
     boxes: [&Aabb<3>; 2],

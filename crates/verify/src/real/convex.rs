@@ -101,8 +101,8 @@ impl PortalWorld {
         clear.then_some(t)
     }
 
-    /// Follows a line from a cell through gates behind `p`; `visit` is told each cell with where the line enters and
-    /// leaves it, and says whether to go on.
+    /// Follows a line from a cell through gates behind `p`; `visit` gets each cell with the points where the line
+    /// enters and leaves it, and returns whether to continue.
     fn follow(&self, from: u32, p: Point3, d: Point3, mut visit: impl FnMut(u32, f64, Option<f64>) -> bool) {
         let (mut cell, mut enters) = (from, 0.0);
         for _ in 0..LONGEST {

@@ -17,7 +17,7 @@ use sightlines_pvs::Table;
 
 /// A scene with the cells of a table in it.
 pub(crate) trait Reality: Sync {
-    /// A ray in a random direction from a random place inside of a cell; `visit` is told what may be seen along it, as
+    /// A ray in a random direction from a random place inside of a cell; `visit` gets what may be visible along it, as
     /// proposals. `None` if no place was found.
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()>;
 

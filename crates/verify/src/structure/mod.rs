@@ -1,5 +1,5 @@
-//! Is the table put together as one of such a scene has to be? What the format promises (symmetry, the diagonal, ids) is
-//! checked by whoever reads it (`pvs`); here it is compared with the scene.
+//! Checks that the structure of a table matches its scene. The promises of the format (symmetry, the diagonal, ids) are
+//! checked when it is read (`pvs`).
 
 mod objects;
 mod planar;

@@ -1,4 +1,4 @@
-//! Proofs of tables, checked against the tables: every pair of cells that is told wrongly is caught.
+//! Proofs of tables, checked against the tables: every wrong pair of cells is caught.
 
 use sightlines_bake::{
     BakeOptions, CertifyError, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, certify_table,
@@ -122,7 +122,7 @@ fn every_flipped_pair_of_maps_is_caught() {
     assert!(sum[0] > 150 && sum[1] > 80, "{sum:?}");
 }
 
-/// Proofs of another table, or of none, are told apart from wrong ones.
+/// Proofs of another table, or of none, are distinguished from wrong ones.
 #[test]
 fn proofs_of_something_else_are_refused() {
     let plan = |seed| {
@@ -146,7 +146,7 @@ fn proofs_of_something_else_are_refused() {
     assert_eq!(stripped.unwrap_err(), CertifyError::NoGraph);
 }
 
-/// Without effort nothing much is proven; that is said, and only the strict call it wrong.
+/// Without effort little is proven; that is reported, and only strict mode counts it as a violation.
 #[test]
 fn what_is_not_proven_is_counted() {
     let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();

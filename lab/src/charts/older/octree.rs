@@ -70,8 +70,8 @@ impl<const N: usize> BoxTreeN<N> {
         place
     }
 
-    /// Adds the boxes that `may_meet` lets through, and whose nodes it lets through, to `found`. It is asked about boxes and
-    /// about boxes around them, and must let through what is around something that it lets through. O(nodes) at worst.
+    /// Adds the boxes that `may_meet` lets through, and whose nodes it lets through, to `found`. It is called for boxes
+    /// and for boxes around them, and must let through every box around one that it lets through. O(nodes) at worst.
     pub fn cull(&self, may_meet: impl Fn(&Aabb<3>) -> bool, found: &mut Vec<u32>) {
         let mut next = vec![0];
         while let Some(node) = next.pop().map(|place: usize| &self.nodes[place]) {
@@ -84,8 +84,8 @@ impl<const N: usize> BoxTreeN<N> {
     }
 }
 
-/// What culling by view volumes says about whole cells, cells by cells: eyes anywhere in a cell, looking anywhere, have all of
-/// space in their views, so whoever can be reached at all counts as visible. O(cells²) bits.
+/// What culling by view volumes says about whole cells, cells by cells: eyes anywhere in a cell, looking anywhere, have
+/// all of space in their views, so every cell that can be reached at all counts as visible. O(cells²) bits.
 pub fn connected<O: Opening>(graph: &PortalGraph<O>) -> BitMatrix {
     let n = graph.n_cells();
     let mut seen = BitMatrix::identity(n);

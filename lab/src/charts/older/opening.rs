@@ -16,7 +16,7 @@ pub struct Ray {
 /// An opening, as who leaves through it sees it.
 pub trait Opening: Clone + Send + Sync {
     /// A line of the plane, or a plane in space, with the source of a beam behind it and the opening that the beam
-    /// passes next before it. Whoever has passed both stays before it, as a straight line crosses it once.
+    /// passes next before it. A line that has passed both stays before it, as it crosses it once.
     type Barrier;
 
     /// Its corners.

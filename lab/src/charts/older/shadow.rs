@@ -1,10 +1,10 @@
 //! Portals seen through pairs of portals: shadow volumes without clipping.
 //!
 //! Light falls through a source portal and a second one; of what lies behind, only the volume between the planes that
-//! separate the two is lit. A portal outside of it is not reached. Each portal is asked against the source and the portal
-//! that the light came by, and no light is ever clipped, so that a pair of source and portal is gone through once: the
-//! cost is polynomial, and what is hidden by three portals together, or by two that do not follow each other, is not
-//! found. Source: after Airey, Rohlf and Brooks, I3D 1990; passing each pair once is our own choice.
+//! separate the two is lit. A portal outside of it is not reached. Each portal is tested against the source and the
+//! portal that the light came through, and no light is ever clipped, so that a pair of source and portal is gone
+//! through once: the cost is polynomial, and what is hidden by three portals together, or by two that do not follow
+//! each other, is not found. Source: after Airey, Rohlf and Brooks, I3D 1990; passing each pair once is our own choice.
 
 use super::{Opening, PortalGraph};
 use crate::charts::clock::Start;
@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// Which cells are seen from which, cells by cells. Errs towards visible: barriers are decided exactly, so in the plane
 /// and between axis-aligned doors nothing visible is left out; where the corners of polygons are off their planes by
-/// rounding, planes through three corners are too. Of a pair, each cell is asked for itself, and the two may disagree.
+/// rounding, planes through three corners are too. The two cells of a pair are tested separately, and may disagree.
 /// `None` if the process works longer than `limit` on it.
 ///
 /// O(exits² · edges³) at worst.

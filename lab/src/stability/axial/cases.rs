@@ -1,4 +1,4 @@
-//! The sweeps with axis-aligned doors, and the sequences that they ask about.
+//! The sweeps with axis-aligned doors, and the sequences that they test.
 
 use super::methods::{AxialDoors, methods};
 use crate::stability::draws::{between, nudged, powers_of_ten, signed_unit, up_by};

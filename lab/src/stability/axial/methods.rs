@@ -1,4 +1,4 @@
-//! Who is asked about axis-aligned doors.
+//! The methods for axis-aligned doors.
 
 use super::naive::passes;
 use crate::stability::method::{Answer, Decide, Kind, method};

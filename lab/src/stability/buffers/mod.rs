@@ -4,7 +4,7 @@
 //! (`truth`); and if it is blocked, but by something less high above the plane than is stored, for then what lies between
 //! is called hidden. Exact heights are the reference backend's.
 //!
-//! Sheets of a mesh are asked about whole boxes, see `sheets`.
+//! Sheets of a mesh are tested with whole boxes, see `sheets`.
 
 mod naive;
 mod scene;
@@ -63,7 +63,7 @@ const CENTRES: (Method, Fill) =
 const ONE_EYE: (Method, Fill) =
     (Method { name: "buffer one eye", kind: Kind::Naive }, |job| naive::one_eye(job, &job.planes()[0]));
 
-/// Those who are asked about all scenes.
+/// The methods that run on all scenes.
 const ALL: [(Method, Fill); 9] = [INTEGERS, FLOATS, REFERENCE, NO_MARGIN, DOUBLES, EPSILONS, NEAREST, CENTRES, ONE_EYE];
 
 /// Counts all texels of a buffer. `hidden`: the truth; `exact`: the values that must not be exceeded, if they count.

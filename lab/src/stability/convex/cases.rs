@@ -1,4 +1,4 @@
-//! The sweeps with convex portals, and the sequences that they ask about.
+//! The sweeps with convex portals, and the sequences that they test.
 
 use super::methods::{ConvexPortals, methods};
 use crate::stability::draws::{between, nudged, powers_of_ten, signed_unit};

@@ -1,4 +1,4 @@
-//! Who is asked about convex portals.
+//! The methods for convex portals.
 
 use super::{edges, separators};
 use crate::stability::method::{Answer, Decide, Kind, method};

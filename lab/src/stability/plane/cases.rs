@@ -1,4 +1,4 @@
-//! The sweeps in the plane, and the sequences that they ask about.
+//! The sweeps in the plane, and the sequences that they test.
 
 use super::methods::{Doors, funnel, methods, said};
 use super::naive::{Doubles, passes};

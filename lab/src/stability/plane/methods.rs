@@ -1,4 +1,4 @@
-//! Who is asked about doors in the plane.
+//! The methods for doors in the plane.
 
 use super::naive::{Coefficients, Doubles, Epsilon, Singles, passes};
 use crate::stability::method::{Answer, Decide, Kind, method};

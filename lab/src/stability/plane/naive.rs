@@ -2,7 +2,7 @@
 
 use sightlines::geometry::{Point2, Portal2};
 
-/// How an end point is told to be left of a line.
+/// How an end point is decided to be left of a line.
 pub trait Side {
     /// Positive if `c` is left of the line from `a` to `b`, as far as this arithmetic knows.
     fn side(&self, a: Point2, b: Point2, c: Point2) -> f64;

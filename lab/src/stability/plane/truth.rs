@@ -26,7 +26,7 @@ fn moved_to_origin(pairs: &[(Point2, Point2)]) -> Option<Vec<(Point2, Point2)>> 
 }
 
 /// Whether each door leads into a convex cell that the next one leads out of, which is what the funnel may rely on.
-/// That decides which sequences are asked about, not what is true of them.
+/// This decides which sequences are tested, not what is true of them.
 pub fn is_chain(doors: &[Portal2]) -> bool {
     let beyond = |door: Portal2, q: Point2| orient2d(door.left, door.right, q);
     doors.iter().all(|d| d.left != d.right)

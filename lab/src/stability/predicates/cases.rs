@@ -2,7 +2,7 @@
 
 use sightlines::geometry::{Point2, Point3, Random, orient3d, polygon::is_convex_ccw};
 
-/// The points that a predicate is asked about.
+/// The points that a predicate is tested with.
 pub(crate) type Case = Vec<Point3>;
 
 /// Where cases lie, and how near to undecided.

@@ -17,7 +17,7 @@ pub(crate) struct Answer {
 /// What the methods say, in the order of [`Method::ALL`].
 pub(crate) type Answers = [Answer; 5];
 
-/// A table that is asked again and again.
+/// A table with a reusable workspace for queries.
 pub(crate) struct Asker<'t> {
     cells: TableCells<&'t Table>,
     outlooks: BTreeMap<CellId, Rc<Outlook>>,

@@ -13,7 +13,7 @@ use sightlines::scenes::world::{
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 use sightlines_testkit::Random;
 
-/// The table of a world: boxes around leafs, portals, who sees whom; every cell is an object as well.
+/// The table of a world: boxes around leafs, portals, visibility; every cell is an object as well.
 fn table(world: &World) -> Table {
     let mut search = ConvexSearch::new(&world.graph, ConvexOptions { threads: 1, ..ConvexOptions::default() });
     while search.advance() {}

@@ -1,4 +1,4 @@
-//! Methods, and how they are asked.
+//! The methods, and how they are run.
 
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, patches};

@@ -17,7 +17,7 @@ use sightlines_testkit::RayScene;
 use sightlines_tests::data_folder;
 use sightlines_tests::scenes::scene_witness;
 
-/// Who is asked.
+/// The methods.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum By {
     Sightlines,

@@ -3,8 +3,7 @@
 use super::{Bsp, LeafClusters, VisibilityError};
 use crate::quake::Prt;
 
-/// Checks that portals and map are of the same map, as far as their counts tell: leafs that can be seen (Quake),
-/// or clusters (Quake II).
+/// Checks by their counts that portals and map belong together: visible leafs (Quake), or clusters (Quake II).
 ///
 /// # Errors
 /// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`].
@@ -21,9 +20,9 @@ pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityErro
 /// because two maps may have as many leafs. Each portal should lie within the bounds of the leafs on both its
 /// sides; if most do not, the map is another. O(leafs + points).
 ///
-/// Portals do stick out where a cluster has solid detail, which is not in its leafs: one in twenty sides on the
-/// maps that were looked at, none on maps without detail, and all of them with the portals of another map. So half
-/// of them is taken as the limit. It protects from a mistake and decides nothing about who sees whom.
+/// Portals do stick out where a cluster has solid detail, which is not in its leafs: one in twenty sides on the maps
+/// that were examined, none on maps without detail, and all of them with the portals of another map. So the limit is
+/// half of them. It catches mistakes and does not affect visibility.
 ///
 /// # Errors
 /// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`], [`VisibilityError::OtherMap`].

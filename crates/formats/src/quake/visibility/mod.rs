@@ -1,4 +1,4 @@
-//! Who sees whom, as engines load it: the visibility lump of a map.
+//! The visibility lump of a map, in the form that engines load.
 //!
 //! Quake has a row of leafs for each leaf; the leafs of a cluster share theirs. Quake II has a row of clusters
 //! for each cluster, and a second one for what can be heard. Rows are coded by [`rle`].
@@ -100,9 +100,10 @@ fn quake_lump(leafs: &LeafClusters, seen: &BitMatrix) -> Result<(Vec<u8>, Vec<u3
     Ok((bytes, leaf_rows))
 }
 
-/// Quake II's lump: the number of clusters, two places for each, rows of what is seen, rows of what is heard.
+/// Quake II's lump: the number of clusters, two offsets for each, the rows of visible clusters, the rows of audible
+/// ones.
 ///
-/// Heard in a cluster is what is seen from any cluster that it sees.
+/// Audible in a cluster is everything visible from a cluster that it sees.
 fn quake2_lump(seen: &BitMatrix) -> Result<VisibilityLump, VisibilityError> {
     let n = seen.n_rows();
     check_square(seen, n)?;

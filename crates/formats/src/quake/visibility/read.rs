@@ -1,4 +1,4 @@
-//! From a map's visibility lump to who sees whom.
+//! Reads a map's visibility lump.
 
 use super::{Bsp, LeafClusters, VisibilityError, check_match, rle};
 use crate::quake::bsp::LeafRow;

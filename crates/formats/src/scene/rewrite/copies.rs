@@ -77,7 +77,7 @@ impl<'a> Copies<'a> {
         let object = as_object(&mut primitive, || place.to_owned())?;
         extensions::adapt(object, || place.to_owned())?;
         if as_list {
-            // A list of triangles is what is drawn if nothing is said.
+            // Without a mode, a list of triangles is drawn.
             object.remove("mode");
         }
         let indices = self.indices(indices, used.len())?;

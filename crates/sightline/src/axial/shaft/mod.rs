@@ -60,7 +60,7 @@ pub type ShaftVerdict = Verdict<FreeLine, (), LimitReached>;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ShaftCounters {
-    /// Pairs of boxes asked about.
+    /// Pairs of boxes decided.
     pub n_asked: u64,
     /// Linear programs solved in doubles.
     pub n_programs: u64,
@@ -151,8 +151,8 @@ impl<'a> Shaft<'a> {
     /// Whether an open set of lines leads from inside of `from` to `to` without meeting a rectangle in
     /// between.
     ///
-    /// * `from`, `to`: boxes in scene units. Along some axis they must not overlap (touching is fine).
-    ///   `from` must have an inside; `to` may be flat along one axis if its surface is asked for.
+    /// * `from`, `to`: boxes in scene units. Along some axis they must not overlap (touching is fine). `from` must have
+    ///   an inside; `to` may be flat along one axis if the target is its surface.
     /// * `budget`: linear programs after which it gives up; the answer for a budget does not depend on
     ///   anything else.
     ///

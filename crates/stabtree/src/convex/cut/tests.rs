@@ -107,7 +107,7 @@ proptest! {
         }
     }
 
-    /// Who passes two parts is above their separators ever after: exactly.
+    /// A line that passes two parts stays above their separators afterwards: exactly.
     #[test]
     fn separators_hold_for_all_lines(
         first in start(0),

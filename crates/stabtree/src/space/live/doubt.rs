@@ -1,4 +1,4 @@
-//! Which pairs have to be asked about again.
+//! Which pairs have to be decided again.
 
 use super::super::SLIVER;
 use super::super::SpaceSearch;
@@ -55,7 +55,7 @@ impl PairsInDoubt {
     }
 
     /// What may have come into sight through a place where a wall was: pairs that see it, or touch it, from either
-    /// side, and objects near whoever does.
+    /// side, and objects near such cells.
     ///
     /// If an open set of lines joins a pair that was hidden, each of them met a wall that is none any more; as the
     /// rectangles are few and closed, an open set of them meets the same one.

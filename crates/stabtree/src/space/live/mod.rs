@@ -7,12 +7,12 @@
 //! * a cell that was none before sees at most what those saw that it overlaps, what those rectangles show, and what
 //!   lies with it where no cells were. Lines that are not cut and pass it show what it sees.
 //!
-//! All other pairs are asked about as ever, groups first; groups without such pairs are passed over. Lines that are
-//! cut are followed once more on both sides of the cut, and those that ended at a wall that is gone, further on; those
-//! that proved what cells see that are gone show much of what the cells see that are there instead.
+//! All other pairs are decided as usual, groups first; groups without such pairs are skipped. Lines that are cut are
+//! followed once more on both sides of the cut, and those that ended at a wall that is gone, further on; those that
+//! proved what cells see that are gone show much of what the cells see that are there instead.
 //!
 //! The answer is that of [`space_visibility`](super::space_visibility): both are exact, but for pairs that are given up
-//! ([`SpaceVisibility::n_assumed`]). Such a pair is asked about again with every update, but a pair that was proven to be
+//! ([`SpaceVisibility::n_assumed`]). Such a pair is decided again with every update, but a pair that was proven to be
 //! hidden stays hidden, though a new search, which meets other groups and rectangles, might give it up.
 
 mod change;

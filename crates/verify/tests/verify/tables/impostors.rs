@@ -6,7 +6,8 @@ use sightlines_pvs::BitMatrix;
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_verify::{Truth, VerifyError, VerifyOptions, verify};
 
-/// A table in which every cell sees itself alone has as many violations as are told, and it does not take long to tell.
+/// A table in which every cell sees itself alone has the maximum number of listed violations, and they are found
+/// quickly.
 #[test]
 fn a_table_that_hides_everything_is_wrong_everywhere() {
     for case in cases() {

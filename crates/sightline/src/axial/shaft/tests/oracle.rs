@@ -205,8 +205,8 @@ fn slit() -> impl Strategy<Value = Vec<Aabb<3>>> {
     })
 }
 
-/// Boxes on a small grid, one after the other along some axis, and up to five rectangles. On some axes
-/// the second box is flat if its surface is asked for.
+/// Boxes on a small grid, one after the other along some axis, and up to five rectangles. On some axes the second box
+/// is flat if the target is its surface.
 pub(super) fn any_case() -> impl Strategy<Value = Case> {
     let from = (range(0, 3), range(1, 5), range(1, 5)).prop_map(|(x, y, z)| boxed([x, y, z]));
     let to = (range(3, 8), range(1, 5), range(1, 5)).prop_map(|(x, y, z)| boxed([x, y, z]));
