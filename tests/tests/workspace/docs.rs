@@ -186,6 +186,34 @@ fn impostor_a_missing_heading_or_symbol_is_caught() {
     }
 }
 
+/// The tasks of a page's section "Where do I…", each with how many files and symbols it leads to.
+fn tasks(markdown: &str) -> Vec<(String, usize, usize)> {
+    let section = markdown.lines().skip_while(|line| *line != "## Where do I…").skip(1);
+    let rows = section.take_while(|line| !line.starts_with("## ")).filter(|line| line.starts_with("| "));
+    let task = |row: &str| {
+        let (name, place) = row.trim_matches(['|', ' ']).split_once(" | ")?;
+        let leads = targets(place);
+        let n_symbols = leads.iter().filter(|(_, anchor)| anchor.is_some()).count();
+        Some((name.to_owned(), leads.len(), n_symbols))
+    };
+    rows.skip(2).filter_map(task).collect()
+}
+
+#[test]
+fn where_do_i_leads_somewhere_for_fifteen_tasks() {
+    let text = fs::read_to_string(root().join("docs/ARCHITECTURE.md")).expect("docs/ARCHITECTURE.md is readable");
+    let tasks = tasks(&text);
+    assert!(tasks.iter().all(|(_, n_files, _)| *n_files > 0), "{tasks:?}");
+    let n_symbols: usize = tasks.iter().map(|(_, _, n_symbols)| n_symbols).sum();
+    assert!(tasks.len() >= 15 && n_symbols >= 20, "{} tasks, {n_symbols} symbols", tasks.len());
+}
+
+#[test]
+fn impostor_a_task_without_a_place_is_noticed() {
+    let text = "# A\n\n## Where do I…\n\n| task | place |\n| --- | --- |\n| add | [a](b.rs#c), [d](e.rs) |\n| take | `f` |\n\n## B\n";
+    assert_eq!(tasks(text), [("add".to_owned(), 2, 1), ("take".to_owned(), 0, 0)]);
+}
+
 // --- Modules ---------------------------------------------------------------------------------------
 
 /// Paths of modules that a document names between backticks, such as `sightline::planar`; the first part is a crate's folder.
