@@ -1,9 +1,9 @@
 //! What the eye-to-cell methods cost, and what they leave: queries on walks through a tower and a Quake map; and that
 //! no frame waits for a source that is slow.
 //!
-//! Each query is run three times in a row, and the least time counts: what the first takes longer is the machine's
-//! caches and whoever else runs on it. Beside it stands the time of the first. The bars are those that a frame can
-//! spare: 5 µs for the disjoint cell, 50 µs in the median and 500 µs at the 99th percentile for the exact method.
+//! Each query is run three times in a row, and the least time counts: the extra time of the first comes from the
+//! machine's caches and other load. Beside it stands the time of the first. The bars are those that a frame can spare:
+//! 5 µs for the disjoint cell, 50 µs in the median and 500 µs at the 99th percentile for the exact method.
 
 use clap::Parser;
 use sightlines::bake::quake::bake_map;

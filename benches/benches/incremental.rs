@@ -218,7 +218,7 @@ fn keep(best: &mut [f64; 5], update: &LiveUpdate, seconds: f64) {
     }
 }
 
-/// Who sees whom in a live scene, found anew with the portals that are closed as walls.
+/// The visibility of a live scene, computed from scratch with closed portals as walls.
 fn see_closed(live: &LiveScene, threads: usize) -> Result<SpaceVisibility, Box<dyn Error>> {
     let cut = subdivide_scene(live.scene(), &SceneOptions::default())?;
     let closed = live.closed_portals();

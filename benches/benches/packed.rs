@@ -112,7 +112,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
 type Named = (String, Table);
 
-/// The tables that are asked for: given ones, and real ones, or generated ones without the data.
+/// The requested tables: given ones, and real ones, or generated ones without the data.
 fn tables(args: &Args) -> Result<Vec<Named>, Box<dyn Error>> {
     let mut tables = Vec::new();
     for path in &args.tables {

@@ -182,7 +182,7 @@ impl<'a> Show<'a> {
         }
     }
 
-    /// Draws one frame in every way. What the table is asked for counts to the time.
+    /// Draws one frame in every way. Lookups in the table count towards the time.
     fn frame(&mut self, pose: &CameraPose) -> [Frame; N_WAYS] {
         let camera = Camera::new(pose.eye, pose.ahead);
         let n = self.scene.objects().len() as u32;

@@ -1,4 +1,4 @@
-//! Small scenes made of bytes, and what has to hold for whoever says what an eye sees of them.
+//! Small scenes made of bytes, and the properties that every method for one eye must have.
 
 use crate::numbers::Numbers;
 use sightlines::geometry::Point3;

@@ -1,4 +1,4 @@
-//! Small worlds of triangles made of bytes, and what has to hold for whoever says what is hidden in them.
+//! Small worlds of triangles made of bytes, and the properties that every from-region method must have.
 
 use crate::numbers::Numbers;
 use sightlines::cells::{Scene, SceneObject};

@@ -35,7 +35,7 @@ pub(crate) struct Row {
     pub(crate) moved: f64,
     pub(crate) rays_per_eye: u64,
     pub(crate) n_eyes: usize,
-    /// Without what is asked once for all budgets: what is hidden.
+    /// Without finding what is hidden, which is done once for all budgets.
     pub(crate) seconds: f64,
 }
 

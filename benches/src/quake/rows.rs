@@ -229,7 +229,7 @@ pub fn markdown(rows: &[Row]) -> String {
     text
 }
 
-/// What is said of a method on a map, where the exact search took so long.
+/// The columns of a method on a map, given the time of the exact search.
 fn fields(row: &Row, exact: Option<f64>) -> [String; 9] {
     let m = &row.measured;
     let mut method = row.method.title().to_owned();

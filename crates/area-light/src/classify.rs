@@ -152,8 +152,8 @@ impl Asking<'_, '_> {
         }
     }
 
-    /// Decides a piece as a whole, if that can be. A face that may stand in the way of light is returned, to be asked first for
-    /// its halves.
+    /// Decides a piece as a whole, if that can be. A face that may stand in the way of light is returned, to be tested
+    /// first for its halves.
     fn decide(&mut self, piece: &mut Piece, turned: &[Point3; 3], may_be_lit: bool, hint: Option<u32>) -> Option<u32> {
         let blockers = &self.shadows.blockers;
         let probe = blockers.probe(&self.light, turned, &piece.corners, piece.face);

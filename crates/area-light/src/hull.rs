@@ -285,7 +285,8 @@ mod tests {
             prop_assert!(!hull.misses(&t), "{:?}", t);
         }
 
-        /// Invariant: what is apart from the hull along some direction, or touches it in a plane of its own, is said to miss it.
+        /// Invariant: what is apart from the hull along some direction, or touches it in a plane of its own, is
+        /// reported to miss it.
         #[test]
         fn hull_what_is_apart_is_said_to_miss(
             light in light(), face in [grid(5), grid(5), grid(5)], t in [grid(9), grid(9), grid(9)],

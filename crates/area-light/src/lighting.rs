@@ -69,7 +69,7 @@ impl Lighting {
         &self.light
     }
 
-    /// On which side the method errs that was asked what is hidden. What is said to be lit is proven in any case.
+    /// On which side the from-region method errs. What is classified as lit is proven in any case.
     pub fn guarantee(&self) -> Guarantee {
         self.guarantee
     }

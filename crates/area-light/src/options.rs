@@ -1,4 +1,4 @@
-//! What is asked, and how finely.
+//! What to classify, and how finely.
 
 use sightlines_geometry::{Point3, orient3d};
 
@@ -30,7 +30,7 @@ impl Side {
     }
 }
 
-/// Which sides of faces are asked about.
+/// Which sides of faces are classified.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Sides {
     /// Fronts: enough for closed surfaces that face outwards.
@@ -60,7 +60,7 @@ impl Sides {
 /// How finely faces are cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Which sides are asked about.
+    /// Which sides are classified.
     pub sides: Sides,
     /// How often a piece is halved at most: a face becomes up to `2^max_depth` pieces for each side.
     pub max_depth: u32,

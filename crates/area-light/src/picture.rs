@@ -70,7 +70,7 @@ impl Shadows<'_> {
     /// piece of the face is met that the pixel shows, rays are cast to the point that the pixel shows.
     ///
     /// * `image`: the face in each pixel, by any method
-    /// * `lighting`: of this scene, with the sides that the eye sees. Faces that were not asked about are in doubt.
+    /// * `lighting`: of this scene, with the sides that the eye sees. Faces that were not classified are in doubt.
     /// * `n_rays`: for each pixel in doubt
     ///
     /// # Panics

@@ -31,7 +31,7 @@ impl<'a> Blockers<'a> {
         Self { faces, ids, tree: BoxTree::build(&boxes, PER_LEAF), boxes }
     }
 
-    /// A face that may meet the interior of a hull; `hint` is asked first. None if certainly none does.
+    /// A face that may meet the interior of a hull; `hint` is tested first. `None` if certainly none does.
     pub(crate) fn any_in(&self, hull: &Hull<'_>, own: u32, hint: Option<u32>, n_asked: &mut u64) -> Option<u32> {
         if let Some(hint) = hint {
             *n_asked += 1;

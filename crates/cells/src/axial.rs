@@ -130,7 +130,7 @@ mod tests {
         graph.assert_well_formed();
         let [exit] = graph.exits(CellId(1)) else { panic!("one door") };
         assert_eq!((exit.side, exit.entry_side, graph.door(exit)), (0, 1, door().shape.reversed()));
-        // The same door told from the other cell.
+        // The same door listed from the other cell.
         let turned = Portal { cells: [CellId(1), CellId(0)], sides: [0, 1], shape: door().shape.reversed() };
         assert_eq!(check(vec![cell(0.0), cell(2.0)], turned), Ok(()));
     }

@@ -18,8 +18,8 @@ impl Space for Planar {
 pub struct ConvexCell2 {
     /// Corners, counter-clockwise; straight angles are allowed.
     pub polygon: Vec<Point2>,
-    /// The groups (Doom sectors) that the region around the cell is said to belong to, ascending.
-    /// Empty where no line names one; more than one where the lines around the region disagree.
+    /// The groups (Doom sectors) that the lines assign to the region around the cell, ascending. Empty where no line
+    /// names one; more than one where the lines around the region disagree.
     pub groups: Vec<u32>,
 }
 

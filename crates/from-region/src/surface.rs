@@ -1,9 +1,9 @@
 //! Closed surfaces among the triangles of a scene.
 //!
-//! A *chain* is a set of triangles in which every edge lies on an even number of them. Whoever is inside
-//! (a ray from there crosses it an odd number of times) and whoever is outside are kept apart by it: the
-//! parity is the same all along a path that does not meet the chain. That holds whatever else the triangles
-//! do, such as cutting each other, and it holds for sets that share triangles.
+//! A *chain* is a set of triangles in which every edge lies on an even number of them. It separates points inside (a
+//! ray from there crosses it an odd number of times) from points outside: the parity is the same all along a path that
+//! does not meet the chain. That holds whatever else the triangles do, such as cutting each other, and it holds for
+//! sets that share triangles.
 //!
 //! A surface that is open at one end, such as a house without a floor, is a chain as well once its hole is
 //! closed by triangles that are not in the scene. It hides as long as lines cannot use the hole: if a

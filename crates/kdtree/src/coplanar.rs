@@ -7,11 +7,11 @@
 //! all across the slab, one that takes away counts wherever it may have been passed. Where the bound is
 //! positive the triangles cover everything, and there are the rectangles.
 //!
-//! Every coordinate of a rectangle is one of an end of an axis-parallel edge of the outline; whether a
-//! slanted edge has been passed is asked of the exact predicate. So no rectangle sticks out, not by one
-//! unit in the last place, and an outline without slanted edges is filled completely. Ends of slanted
-//! edges give no coordinates: a round outline would fall into as many splinters as it has corners, each of
-//! which would hide next to nothing and cost a piece of a portal.
+//! Every coordinate of a rectangle is one of an end of an axis-parallel edge of the outline; the exact predicate
+//! decides whether a slanted edge has been passed. So no rectangle sticks out, not by one unit in the last place, and
+//! an outline without slanted edges is filled completely. Ends of slanted edges give no coordinates: a round outline
+//! would fall into as many splinters as it has corners, each of which would hide next to nothing and cost a piece of a
+//! portal.
 
 use crate::union_find::UnionFind;
 use sightlines_geometry::{Point2, orient2d};

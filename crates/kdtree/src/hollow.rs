@@ -11,8 +11,8 @@ use crate::tree::AxialTree;
 use sightlines_cells::{Point3, Scene};
 use sightlines_geometry::{Aabb, Point2, orient2d};
 
-/// For each room that is asked about whether it is hollow: closed on all sides, also where the tree ends; nothing
-/// inside of its cells; and no triangle turns its front to them. Errs towards "no".
+/// For each given room, whether it is hollow: closed on all sides, also where the tree ends; nothing inside of its
+/// cells; and no triangle turns its front to them. Errs towards "no".
 pub(crate) fn hollow_rooms(
     scene: &Scene,
     survey: &Survey,

@@ -4,7 +4,7 @@ use crate::union_find::UnionFind;
 use sightlines_cells::{Point3, SceneObject};
 use sightlines_geometry::{Aabb, Point2, orient2d};
 
-/// An object, told apart into pieces.
+/// An object, separated into pieces.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Mesh {
     /// The piece of each triangle.

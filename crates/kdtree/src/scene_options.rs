@@ -21,7 +21,7 @@ pub struct SceneOptions {
     pub keep_solid: bool,
 }
 
-/// Cells beyond which a table of who sees whom takes gigabytes: 2^32 bits are half of one.
+/// Number of cells beyond which a visibility table takes gigabytes: 2^32 bits are half of one.
 const MAX_CELLS: u32 = 1 << 16;
 
 impl Default for SceneOptions {

@@ -237,8 +237,8 @@ impl Index {
         if needed == found { Ok(*store) } else { Err(PackedError::new(Some(id), at, Kind::Value { value: found })) }
     }
 
-    /// As [`Index::need`], of a store of records: each block must have room for the four bytes with which a record's
-    /// place is told, so that memory for each record stays below that of the blocks. O(blocks).
+    /// As [`Index::need`], of a store of records: each block must have room for the four bytes that store a record's
+    /// position, so that memory for each record stays below that of the blocks. O(blocks).
     pub(crate) fn need_records(&self, id: SectionId, n_records: u32) -> Result<StoreIndex, PackedError> {
         let store = self.need(id, n_records)?;
         for block in 0..store.n_blocks {

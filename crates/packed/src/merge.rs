@@ -27,7 +27,7 @@ pub(crate) struct Sight<'a> {
     pub(crate) object_weights: &'a [u64],
 }
 
-/// The order in which to merge, down to one class: who stays, and who goes into it.
+/// The order in which to merge, down to one class: the class that stays, and the one merged into it.
 ///
 /// The next merge is the one that adds the least weight for each changed bit that is saved, among classes
 /// that are neighbours in the order of cells; ties go to the first. Prices are computed anew when they come

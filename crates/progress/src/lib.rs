@@ -36,7 +36,7 @@ impl Progress {
     }
 }
 
-/// Is told the progress of a search, and may cancel it.
+/// Receives the progress of a search, and may cancel it.
 pub trait Observer: Sync {
     /// Takes a report. [`ControlFlow::Break`] cancels the search as soon as its threads have finished the units that
     /// they are at; further reports may come until then. Called from any thread, several at once; reports of different

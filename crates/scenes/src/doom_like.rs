@@ -18,7 +18,7 @@ pub struct DoomLikeLine {
     pub start: u16,
     /// Index of the end vertex.
     pub end: u16,
-    /// Sector on the right hand of who goes from start to end.
+    /// Sector on the right, going from start to end.
     pub right: u16,
     /// Sector on the left hand; a line without one is a wall.
     pub left: Option<u16>,

@@ -12,14 +12,14 @@
 //!   with a budget of 0 nothing changes.
 //!
 //! # The promise
-//! Let a direction's first hit be the face that its ray from the eye meets first. Faces are kept, taken away, or put in. If
-//! a ray's first hit before is a kept face and its first hit after is no new one, they are the same face: a kept face that is
-//! nearer after was as near before. So a direction can only change if its first hit before was taken away, or if its
-//! first hit after is new. Therefore the share that changes is at most the sum of what faces taken away and new faces
-//! take up of the sphere of directions, each counted where it is not proven hidden; and this holds for every eye of a box if each
-//! term is a bound for every eye of it. That a face is hidden is said of the scene before; for a new face it may be used as well, as a ray
-//! that reaches it has passed a place where a face was taken away, and counts already. Merging faces in one plane changes no surface, and so
-//! no first hit but in its name.
+//! Let a direction's first hit be the face that its ray from the eye meets first. Faces are kept, taken away, or put
+//! in. If a ray's first hit before is a kept face and its first hit after is no new one, they are the same face: a kept
+//! face that is nearer after was as near before. So a direction can only change if its first hit before was taken away,
+//! or if its first hit after is new. Therefore the share that changes is at most the sum of what faces taken away and
+//! new faces take up of the sphere of directions, each counted where it is not proven hidden; and this holds for every
+//! eye of a box if each term is a bound for every eye of it. A face is hidden in terms of the scene before; for a new
+//! face it may be used as well, as a ray that reaches it has passed a place where a face was taken away, and counts
+//! already. Merging faces in one plane changes no surface, and so no first hit but in its name.
 
 mod aimed;
 pub mod bound;

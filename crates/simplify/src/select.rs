@@ -20,7 +20,7 @@ impl Account {
         self.spent.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Spends what `cost` says for each part, if no part gets above `budget`; whether it did.
+    /// Spends `cost` for each part, if no part exceeds `budget`. Returns whether it did.
     pub(crate) fn spend(&mut self, budget: f64, cost: impl Fn(usize) -> f64) -> bool {
         if (0..self.spent.len()).any(|part| sum_up(self.spent[part], cost(part)) > budget) {
             return false;

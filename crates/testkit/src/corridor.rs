@@ -86,7 +86,7 @@ fn strip_walk(steps: &[(bool, usize)]) -> Vec<[Grid; 2]> {
         let ahead = edge[0][0].max(edge[1][0]);
         let middle = (edge[0][1] + edge[1][1]) / 2;
         let near = (0..=2).flat_map(|dx| (-3..=3).map(move |dy| [ahead + dx, middle + dy]));
-        // Beyond the edge is on the left of whoever goes along it from its left to its right end.
+        // Beyond the edge means on the left, going along it from its left to its right end.
         let beyond: Vec<Grid> = near.filter(|&q| turn(edge[0], edge[1], q) > 0).collect();
         if beyond.is_empty() {
             break;

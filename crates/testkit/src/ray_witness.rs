@@ -48,7 +48,7 @@ impl ClearLine {
     }
 }
 
-/// Boxes of cells, ready to be asked which of them a line passes through.
+/// Boxes of cells, prepared to find those that a line passes through.
 #[derive(Debug)]
 pub struct CellIndex {
     /// Without what is within a shift of the borders.
@@ -345,7 +345,7 @@ mod tests {
         assert!(in_parallel(0, |i, seen: &mut BTreeSet<u64>| seen.extend([i])).is_empty());
     }
 
-    /// The impostor: a scene that lacks an object is told from the whole one by its witnesses.
+    /// The impostor: the witnesses distinguish a scene that lacks an object from the whole one.
     #[test]
     fn witnesses_notice_a_missing_wall() {
         let objects = vec![

@@ -39,9 +39,9 @@ pub(crate) fn cuts_at_crossing(l: &Piece, m: &Piece, ends: &PointGrid) -> Crossi
     Crossing { at: p, cuts, rounded: true }
 }
 
-/// An end point of either line that is within 4 `reach` of the other line's carrier. What is computed in
-/// doubles has an error of a few units in the last place, so 8 `reach` is asked for: more end points
-/// than necessary are taken, which is allowed for any.
+/// An end point of either line that is within 4 `reach` of the other line's carrier. What is computed in doubles has an
+/// error of a few units in the last place, so the test uses 8 `reach`: more end points than necessary are taken, which
+/// is allowed for any.
 fn near_end(l: &Piece, m: &Piece, reach: f64) -> Option<Point2> {
     let near = |end: Point2, line: &Piece| {
         let d = line.b - line.a;

@@ -1,7 +1,6 @@
 //! Buckets on a square grid, to find segments and points that may be near each other.
 //!
-//! Buckets only narrow a search down: what is near shares a bucket, and what shares one is tested
-//! exactly by who asks.
+//! Buckets only narrow a search down: what is near shares a bucket, and the caller tests exactly what shares one.
 
 use sightlines_geometry::{Aabb, Point2, Segment2};
 

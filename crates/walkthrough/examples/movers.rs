@@ -1,8 +1,8 @@
 //! Things that move in an office tower while a viewer walks through it: what the movers of a frame cost with temporal bounding volumes, and
 //! with the plain method that asks each mover for its place and each place for its cells.
 //!
-//! `movers [FLOORS] [FRAMES] [CELLS]`: a tower of 6 floors, 900 frames at 60 frames a second, and as many cells for a volume at most as
-//! [`MoverOptions`] say, if nothing else is said.
+//! `movers [FLOORS] [FRAMES] [CELLS]`: a tower of 6 floors, 900 frames at 60 frames a second, and as many cells for a
+//! volume at most as [`MoverOptions`] allow by default.
 
 use sightlines_bake::{SceneBakeOptions, bake_scene};
 use sightlines_eye_to_cell::{Method, Seen, TableCells, View};

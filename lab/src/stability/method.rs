@@ -31,7 +31,7 @@ impl Kind {
 /// What a method says about a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// It is seen, or that is not known, which is the same for who asks.
+    /// It is visible, or unknown, which is the same for the caller.
     Seen,
     /// Nobody sees it.
     Hidden,

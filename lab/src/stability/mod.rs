@@ -6,8 +6,8 @@
 //! are made of the CSV alone ([`draw`], [`page`]). [`run()`] is the whole of it, for the program `stability`.
 //!
 //! # Kinds of failures
-//! * *unsafe*: hidden is said of what an open set of lines sees. A shipped method may never do that.
-//! * *loose*: seen, or not known, is said of what is hidden. That costs time, nothing else.
+//! * *unsafe*: an answer of hidden for something that an open set of lines sees. A shipped method may never do that.
+//! * *loose*: an answer of visible or unknown for something hidden. That costs time, nothing else.
 //! * *error*: no answer: a panic, an error, a number that is none.
 //!
 //! Shipped methods must have no unsafe failure and no error; each naive method must have an unsafe failure in some

@@ -90,9 +90,9 @@ fn covered(table: &Table, eye: &Aabb<3>) -> f64 {
 
 /// Invariant: on a real building, what rays from places where people walk hit first is shown.
 ///
-/// The places of the data folder reach into slabs and walls a little, where there are no cells and an eye
-/// sees nothing that matters. So our own rays are shot from them, which leave such eyes out; and what the
-/// data folder says was seen is asked for where a place is all cells.
+/// The places of the data folder reach into slabs and walls a little, where there are no cells and an eye sees nothing
+/// that matters. So our own rays are shot from them, which leave such eyes out; and the ground truth of the data folder
+/// is required where a place is all cells.
 #[test]
 fn a_real_building_shows_what_was_seen() {
     const RAYS: u64 = 4_000;

@@ -17,8 +17,8 @@ fn scenes(test: &str) -> Option<PathBuf> {
     folder
 }
 
-/// Invariant: no ray contradicts what is said of an atrium under a panel, by thousands of rays, and a good part is decided.
-/// The same is held against generated rooms in `scenes`.
+/// Invariant: no ray of thousands contradicts the classification of an atrium under a panel, and a good part is
+/// decided. `scenes` does the same with generated rooms.
 #[test]
 fn an_atrium_is_right() {
     let Some(folder) = scenes("an_atrium_is_right") else { return };

@@ -94,7 +94,7 @@ fn blocks_over_a_floor() {
         last = in_doubt;
     }
     assert!(last < 0.3);
-    // Buffers, whose texels round: they are right as well. How much they find is asked in `closed_form`.
+    // Buffers, whose texels round: they are right as well. `closed_form` measures how much they find.
     let faces = Faces::new(triangles.clone()).unwrap();
     let lighting = classify(&faces, &light, &mut multifocal(&triangles), &front(9));
     let checked = check(&triangles, &lighting, 2, 12);

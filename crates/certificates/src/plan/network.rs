@@ -15,7 +15,7 @@ pub struct PlanPortal {
     pub cells: [u32; 2],
     /// The side of each cell that it lies on. Portals on one side of a cell lie on one line.
     pub sides: [u32; 2],
-    /// The left end, as seen by who goes from the first cell to the second.
+    /// The left end, seen when going from the first cell to the second.
     pub left: Point,
     /// The right end.
     pub right: Point,

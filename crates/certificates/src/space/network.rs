@@ -19,7 +19,7 @@ pub struct BoxPortal {
     pub extent: Box3,
     /// The axis that it is perpendicular to.
     pub axis: u8,
-    /// Whether who goes from the first cell to the second goes towards larger coordinates.
+    /// Whether the way from the first cell to the second leads towards larger coordinates.
     pub forward: bool,
 }
 
@@ -229,7 +229,7 @@ fn passes([p, q]: [Point3; 2], extent: &Box3, side: u32) -> bool {
         && (0..3).filter(|&b| b != axis).all(|b| {
             let flat = |r: Point3| [r[axis], r[b]];
             let sides = extent.map(|corner| turn(flat(p), flat(q), flat(corner)));
-            // Larger coordinates are on the left of who goes forward.
+            // Going forward, larger coordinates are on the left.
             let [low, high] = if forward { sides } else { [sides[1], sides[0]] };
             low == Ordering::Less && high == Ordering::Greater
         })

@@ -181,7 +181,7 @@ fn networks_are_checked() {
     assert!(others.iter().all(|n| n.as_ref().unwrap().checksum() != network().checksum()));
 }
 
-/// What is on a plane is decided by signs, or by the flatness that is asked for.
+/// What is on a plane is decided by signs, or by the given flatness.
 #[test]
 fn gates_follow_each_other_as_planes_tell() {
     // Both doors face each other; the second leans forward by a little, over the lower edge of which the first one reaches.

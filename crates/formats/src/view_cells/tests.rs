@@ -269,7 +269,7 @@ fn every_prefix_and_flipped_bit_is_read_or_refused() {
     }
 }
 
-/// The comparison can fail: an oracle that is told of another text differs.
+/// The comparison can fail: an oracle with another text differs.
 #[test]
 fn impostor_one_bit_is_noticed() {
     let other = SMALL.replace("0.53266", "0.5326600000000001");

@@ -62,7 +62,8 @@ fn portals_fit_their_maps_and_are_written_again() {
         assert_eq!(words(&text).len(), n_words);
         assert!(n_same > n_words / 100 * 99, "{}: {n_same} of {n_words}", path.display());
         n_listed += usize::from(prt.dialect() != PrtDialect::Prt1);
-        // The portals of any other map are told from its own: two maps have as many leafs, so places count too.
+        // The portals of any other map are distinguished from a map's own: two maps have equally many leafs, so
+        // positions count too.
         let others = maps.iter().filter(|(other, _, _)| check_portals(bsp, other).is_err()).count();
         assert_eq!(others + 1, maps.len(), "{}", path.display());
     }

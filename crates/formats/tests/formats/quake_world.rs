@@ -231,7 +231,7 @@ fn deep_trees_and_shared_lists_are_refused() {
     );
 }
 
-/// More nodes than 15 bits count: children are told from leafs by how many nodes there are.
+/// More nodes than 15 bits count: children are distinguished from leafs by the number of nodes.
 #[test]
 fn wide_children_of_version_29_are_read() {
     // A tree as flat as it can be: node `k` has the nodes `2 k + 1` and `2 k + 2`, or leafs.

@@ -273,8 +273,8 @@ fn change(o: &sightlines_cells::SceneObject, seed: u64) -> Option<Vec<[u32; 3]>>
 }
 
 proptest! {
-    /// Invariant: what is asked for, in its order, with all attributes; all else of the document stays; and the same again
-    /// gives the same bytes.
+    /// Invariant: the requested triangles, in their order, with all attributes; everything else in the document stays;
+    /// and the same again gives the same bytes.
     #[test]
     fn documents_get_the_triangles_that_they_should_have(
         doc in documents(),
@@ -472,7 +472,7 @@ fn extensions_are_kept_or_refused() {
         "extensions: extension ACME_things is not understood, and may depend on what is to be changed"
     );
 
-    // What is said of the triangles that are to change.
+    // Metadata of the triangles that are to change.
     let mut doc = rich_doc();
     doc.json["meshes"][0]["primitives"][0]["extensions"] = json!({"ACME_edges": {"indices": 3}});
     let source = with_source(&doc).1;

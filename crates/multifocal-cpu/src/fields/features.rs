@@ -14,7 +14,7 @@ pub enum FeatureKind {
     Face,
 }
 
-/// The features of triangles, ready to be asked for the nearest.
+/// The features of triangles, prepared for nearest-feature queries.
 ///
 /// Corners at the same place are one vertex, and edges between the same two vertices are one edge, whichever
 /// triangles they belong to. Ids are dense: first vertices, then edges, both in the order in which the

@@ -4,7 +4,7 @@ use super::scene::Scene;
 use super::{Place, Report, Slack, Violation, sweep};
 use crate::{BackendError, Buffer, Job, Measure, MultifocalBackend};
 
-/// Who is compared with whom.
+/// The two results that are compared.
 pub(super) struct Pair<'a> {
     pub(super) backend: &'a mut dyn MultifocalBackend,
     pub(super) reference: &'a mut dyn MultifocalBackend,

@@ -274,9 +274,9 @@ mod tests {
             prop_assert!(!shaft.certainly_misses(a, b), "{:?} {:?}", a, b);
         }
 
-        /// Invariant: points on a grid are outside if and only if a half-space or box says so: by separation
-        /// from the hull of the sixteen corners along the directions of all pairs of edges. Of a hull that lies in a
-        /// plane no half-spaces are known, and less is said to miss it.
+        /// Invariant: points on a grid are outside if and only if a half-space or box says so: by separation from the
+        /// hull of the sixteen corners along the directions of all pairs of edges. Of a hull that lies in a plane no
+        /// half-spaces are known, and fewer points are reported to miss it.
         #[test]
         fn shaft_misses_what_is_clearly_outside(v in boxes(), e in boxes(), a in point(), b in point()) {
             let shaft = Shaft::new(&v, &e);

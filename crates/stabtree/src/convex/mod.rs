@@ -68,8 +68,8 @@ pub struct ConvexSearch {
     order: Vec<u32>,
     /// The places of cells in an order of the same kind.
     rank: Vec<u32>,
-    /// All cells in an order without meaning, so that neighbours, which take alike, are far from each other and what
-    /// is left can be told from what is done.
+    /// All cells in an order without meaning, so that neighbours, which take alike, are far from each other and the
+    /// remaining work can be estimated from what is done.
     scattered: Vec<u32>,
     workers: Workers,
 }

@@ -136,7 +136,7 @@ struct FoundVisible<'a> {
     blockers: &'a Blockers,
 }
 
-/// What is asked about.
+/// The kind of target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Box,

@@ -23,8 +23,8 @@ pub(super) fn find(extents: &[Aabb<3>]) -> Vec<bool> {
 
 /// For each cell the objects that touch it or a sliver that lines from it lead into.
 ///
-/// A line that reaches an object in a sliver came into that sliver from a neighbour; so who asks only the
-/// neighbours misses nothing.
+/// A line that reaches an object in a sliver came into that sliver from a neighbour; so testing only the neighbours
+/// misses nothing.
 pub(super) fn within_reach(graph: &CellGraph<Axial>, slivers: &[bool], touching: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let mut reach = touching.to_vec();
     for sliver in (0..slivers.len()).filter(|&cell| slivers[cell]) {

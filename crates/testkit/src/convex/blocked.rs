@@ -6,7 +6,7 @@
 //! drawn on the plane in perspective, so within the hull of its corners' images. If all of the hull is solid, the
 //! piece is blocked. Which plane is tried, a segment through the middle says.
 //!
-//! Nothing is said of what lies between the two but by the tree: portals on the way are not looked at.
+//! What lies between the two comes from the tree alone: portals on the way are ignored.
 
 use sightlines_cells::CellId;
 use sightlines_geometry::{Point3, Portal3};

@@ -1,4 +1,4 @@
-//! Who sees whom in a world of convex cells, by methods that follow no sequence of portals.
+//! Visibility in a world of convex cells, by methods that follow no sequence of portals.
 //!
 //! | | method | what is proven |
 //! | --- | --- | --- |

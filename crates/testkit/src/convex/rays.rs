@@ -21,7 +21,7 @@ pub struct SeenByRays {
 const CLEARANCE: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// Shoots `n` lines: half of them through two random points of random cells, half through two random portals. A lower
-/// bound of who sees whom. O(n · planes of leafs).
+/// bound of the visibility. O(n · planes of leafs).
 ///
 /// Portals only say where to aim; what is free the faces of the solid leafs say, and which cells are passed those of
 /// the empty ones.

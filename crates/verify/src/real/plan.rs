@@ -32,7 +32,7 @@ pub(crate) struct PlanWorld {
     cell_tree: BoxTree<2>,
     objects: Vec<Aabb<2>>,
     next: Vec<Vec<u32>>,
-    /// For each cell its portals: where they lead, and their left and right ends for who goes there.
+    /// For each cell its portals: where they lead, and their left and right ends going there.
     gates: Vec<Vec<(u32, Point2, Point2)>>,
     /// Around boxes in rounded questions.
     slack: f64,

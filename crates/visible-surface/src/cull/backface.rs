@@ -85,7 +85,7 @@ mod tests {
     }
 
     proptest! {
-        /// All eyes on a grid in the box are asked, not only its corners.
+        /// All eyes on a grid in the box are tested, not only its corners.
         #[test]
         fn a_region_sees_what_its_eyes_see(face in [point(), point(), point()], a in point(), b in point()) {
             let region = Aabb::around([real(a), real(b)]);

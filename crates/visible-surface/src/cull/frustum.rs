@@ -34,9 +34,9 @@ struct Side {
 
 /// What a camera sees, as a convex volume: the sides of the picture, the least depth and the greatest.
 ///
-/// Answers may say [`Cover::Across`] of something that is outside near an edge of the volume: each side is asked for
-/// itself, and the smallest box around the volume besides. No answer is wrong the other way. What has coordinates that no
-/// scene may have, or none, is [`Cover::Across`]; what is empty is outside.
+/// Answers may say [`Cover::Across`] of something that is outside near an edge of the volume: each side is tested
+/// separately, and the smallest box around the volume besides. No answer is wrong the other way. What has coordinates
+/// that no scene may have, or none, is [`Cover::Across`]; what is empty is outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frustum {
     eye: Point3,

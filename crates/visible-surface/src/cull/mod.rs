@@ -1,8 +1,8 @@
 //! Culling: which faces need not be drawn, whatever draws them.
 //!
-//! Each function takes faces away from a [`Chosen`] and says how many. What it takes away covers no pixel ([`frustum()`]),
-//! shows only its back ([`backface()`]), or belongs to objects that someone who knows says cannot be seen ([`objects`]).
-//! What hides behind other faces is the subject of [`hierarchical`](crate::hierarchical).
+//! Each function takes faces away from a [`Chosen`] and says how many. What it takes away covers no pixel
+//! ([`frustum()`]), shows only its back ([`backface()`]), or belongs to objects that the caller knows to be hidden
+//! ([`objects`]). What hides behind other faces is the subject of [`hierarchical`](crate::hierarchical).
 
 mod backface;
 mod frustum;
@@ -16,8 +16,8 @@ use crate::faces::Faces;
 use sightlines_geometry::coordinate::MAX_MAGNITUDE;
 use sightlines_geometry::{Aabb, Point3};
 
-/// Keeps the faces of those objects for which `keep` says so: for whoever has a table of what is potentially visible. How
-/// many went.
+/// Keeps the faces of the objects for which `keep` returns `true`, for callers with a visibility table. Returns the
+/// number of removed faces.
 pub fn objects(faces: &Faces, chosen: &mut Chosen, keep: impl Fn(u32) -> bool) -> u64 {
     chosen.retain(|face| keep(faces.object(face)))
 }

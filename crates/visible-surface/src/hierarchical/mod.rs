@@ -1,8 +1,9 @@
 //! Hierarchical z: what hides behind what an eye has already been shown to see.
 //!
 //! A [`DepthPyramid`] keeps for each pixel of a picture from which depth on everything is hidden, and for squares of
-//! pixels, of squares of squares and so on the farthest of these depths. What lies behind that in all pixels that it may
-//! cover is hidden. Few numbers answer for a large box; where the coarse ones are in doubt, finer ones are asked.
+//! pixels, of squares of squares and so on the farthest of these depths. What lies behind that in all pixels that it
+//! may cover is hidden. Few numbers answer for a large box; where the coarse ones are inconclusive, finer ones are
+//! read.
 //!
 //! What "a pixel" is, is a matter of choice: [`Rays`].
 //!
@@ -39,7 +40,7 @@ pub enum Rays {
 /// Takes away the faces that a pyramid hides, first by the boxes of objects and then one by one; how many went. What is
 /// outside of the picture or of the depths that the camera sees goes as well, for nothing would change.
 ///
-/// What made the pyramid may be asked about too: a face does not hide itself, and what is seen stays.
+/// The faces of the pyramid may be tested too: a face does not hide itself, and visible faces stay.
 pub fn cull(faces: &Faces, chosen: &mut Chosen, pyramid: &DepthPyramid) -> u64 {
     let hidden: Vec<bool> = object_boxes(faces, chosen).iter().map(|b| pyramid.hides(b)).collect();
     chosen.retain(|face| !hidden[faces.object(face) as usize] && !pyramid.hides_hull(faces.of(face)))

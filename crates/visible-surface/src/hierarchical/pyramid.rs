@@ -25,7 +25,7 @@ pub struct Level {
     nearness: Vec<f64>,
 }
 
-/// A footprint is first asked about in at most so many squares along each side.
+/// A footprint is first tested in at most this many squares along each side.
 const AT_FIRST: u32 = 4;
 
 impl DepthPyramid {
@@ -50,7 +50,7 @@ impl DepthPyramid {
         Self::with_neighbours(faces, &Neighbours::of(faces), camera, chosen)
     }
 
-    /// The same, for whoever keeps what is the same for all eyes.
+    /// The same, for callers that keep the data shared by all eyes.
     ///
     /// `neighbours`: of these very faces
     pub fn with_neighbours(faces: &Faces, neighbours: &Neighbours, camera: &Camera, chosen: &Chosen) -> Self {
@@ -181,7 +181,7 @@ mod tests {
         (0..32).for_each(|y| base.row_mut(y)[..15].fill(0.5));
         let of = |farthest| DepthPyramid::of(&camera, Rays::All, base.clone(), farthest);
         let behind = |from: f64, to: f64| Aabb { min: [from, -3.5, 4.0], max: [to, 3.5, 5.0] };
-        // Which half of the picture the wall covers is not what is asked here. It leaves the column next to the middle open.
+        // Which half of the picture the wall covers does not matter here. It leaves the column next to the middle open.
         let (wall, open) = if of(f64::min).hides(&behind(-3.5, -0.5)) {
             (behind(-3.5, -0.5), behind(-3.5, -0.05))
         } else {

@@ -119,7 +119,7 @@ impl Schumacker {
     /// The chosen faces' fragments in the order of the eye.
     fn ordered(&self, shot: &Shot<'_>, counters: &mut Counters) -> Vec<Fragment> {
         let eye = shot.camera.eye();
-        // Of faces that were not asked about yet, nothing.
+        // Nothing for faces that were not tested yet.
         let mut sides = vec![None; shot.faces.len()];
         let mut out = Emitted::new(shot);
         let mut n_copies = 0;

@@ -50,8 +50,8 @@ impl Side {
         Self::new(camera, cross(u, v), cross_size(u, v), Source::Edge(p, q), flip)
     }
 
-    /// The line in which two planes meet: the sign says, times the product of the signs of the eye against both, whether
-    /// rays meet `first` before `second`. Both must be met in front of the eye where this is asked.
+    /// The line in which two planes meet: the sign says, times the product of the signs of the eye against both,
+    /// whether rays meet `first` before `second`. Both must be met in front of the eye where this is used.
     pub(crate) fn cut(camera: &Camera, faces: &Faces, first: Plane, second: Plane) -> Self {
         let ((n, n_size), (m, m_size)) = (first.normal(faces), second.normal(faces));
         let ((v, v_size), (w, w_size)) = (depth_value(camera, faces, &first), depth_value(camera, faces, &second));

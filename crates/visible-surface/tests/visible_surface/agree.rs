@@ -73,7 +73,7 @@ fn exact_methods_show_what_is_seen() {
         Ok(())
     });
     assert_eq!(run, Ok(()));
-    // The property asked about what is hard, and left little out.
+    // The property covers hard cases, and few are left out.
     assert!(covered.get() > 100 && on_edge.get() > 10, "{} {}", covered.get(), on_edge.get());
     assert!(ties.get() * 10 < covered.get(), "{} of {}", ties.get(), covered.get());
 }

@@ -250,7 +250,7 @@ fn failures_are_told_and_frames_stay_right() {
         }
     };
     assert_eq!(error, (CellId(0), "cell 0 is broken".to_owned()));
-    // The next cell is right again, and the broken one is asked for each time.
+    // The next cell is right again, and the broken one is requested each time.
     until_full(&mut walk, &looking_right(1.5), Method::Exact);
     while walk.take_error().is_none() {
         walk.frame(&looking_right(0.5), Method::Exact);

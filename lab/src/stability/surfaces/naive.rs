@@ -1,7 +1,8 @@
 //! The same orders of faces with sides decided by plain floats, and a z-buffer of 16 bits.
 //!
-//! Which pixels a face covers is exact here, as everywhere in the crate; of a piece of a face it is told by the planes that cut it, so
-//! that pieces of a face never overlap and leave no cracks. What goes wrong is therefore wrong order, and nothing else.
+//! Which pixels a face covers is exact here, as everywhere in the crate; for a piece of a face it follows from the
+//! planes that cut it, so that pieces of a face never overlap and leave no cracks. What goes wrong is therefore wrong
+//! order, and nothing else.
 
 use crate::stability::plain::{Float, Kept, V, dot, minus, rounded};
 use sightlines::visible_surface::{Camera, Faces, Fragment, NOTHING};

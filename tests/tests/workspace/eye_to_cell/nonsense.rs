@@ -146,8 +146,8 @@ fn view(source: &Garbage, eye: [f64; 3], dir: [f64; 3], fov: f64) -> Result<View
 }
 
 proptest! {
-    /// Invariant: whatever the numbers, a view is an error or every method answers, with the viewer's own cell and
-    /// nothing that his cell cannot see, and so do the mirrors.
+    /// Invariant: whatever the numbers, a view is an error or every method answers, with the eye's own cell and nothing
+    /// that this cell cannot see, and so do the mirrors.
     #[test]
     fn strange_numbers_make_no_panic(
         source in garbage(), eye in point(), dir in point(), fov in number(), root in 0u32..5

@@ -1,4 +1,4 @@
-//! Pictures, told by their rectangle: which directions are in one.
+//! Pictures, given by their rectangle: which directions are in one.
 
 use sightlines::eye_to_cell::View;
 use sightlines::geometry::{Aabb, Point3};

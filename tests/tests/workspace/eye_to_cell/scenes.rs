@@ -52,7 +52,7 @@ impl Stage {
         }
     }
 
-    /// Adds what a ray passes and meets; whether it told anything.
+    /// Adds what a ray passes and meets. Returns whether it found anything.
     fn shoot(&self, eye: Point3, direction: Point3, seen: &mut Answer) -> bool {
         let Some(mut line) = self.rays.clear_line(eye, direction) else { return false };
         // Only what is ahead.

@@ -29,8 +29,8 @@ pub struct VisibilityLump {
 /// Makes the lump for a map, and the loudness of its leafs.
 ///
 /// * `leafs`: the leafs of the clusters, as the portal file says; Quake II ignores them.
-/// * `seen`: row `a` has the clusters that cluster `a` sees. Written as it is: that everything sees itself, and
-///   that who is seen sees, is the caller's promise.
+/// * `seen`: row `a` has the clusters that cluster `a` sees. Written as it is: the caller guarantees that everything
+///   sees itself and that visibility is symmetric.
 ///
 /// Rows are in the order of clusters, those of Quake II's second kind behind all of the first; a cluster without
 /// leafs has none. Clusters that see the same have equal rows, but not one row. O(clusters × leafs / 8).

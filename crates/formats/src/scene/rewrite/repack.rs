@@ -107,8 +107,8 @@ enum Fate {
     New(NewAccessor),
 }
 
-/// Decides what becomes of the document's accessors: what is used stays with its buffer view if everybody who is in
-/// there stays, and is taken out of it otherwise.
+/// Decides what becomes of the document's accessors: a used accessor stays in its buffer view if everything in that
+/// view stays, and is moved out of it otherwise.
 ///
 /// * `whole`: the buffer views that stay in any case.
 fn fates(

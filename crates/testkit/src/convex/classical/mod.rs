@@ -97,8 +97,8 @@ impl ClassicalSeen {
     }
 }
 
-/// Who sees whom, by the classical method, on one thread. `stop` is asked now and then whether to give up; what is not
-/// finished then keeps its first bound. Exponential in bad cases.
+/// Visibility by the classical method, on one thread. `stop` is called now and then and returns whether to give up;
+/// unfinished portals keep their first bound. Exponential in bad cases.
 pub fn classical(
     graph: &CellGraph<Convex>,
     options: ClassicalOptions,

@@ -106,7 +106,7 @@ impl Grid {
     }
 }
 
-/// A grid of `n` cells along each axis; `solid` says which have no cell, `see` who sees whom.
+/// A grid of `n` cells along each axis; `solid` selects those without a cell, `see` is the visibility.
 pub(crate) fn grid(
     kind: Kind,
     n: [usize; 3],

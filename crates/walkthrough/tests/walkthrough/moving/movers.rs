@@ -186,7 +186,8 @@ proptest! {
         }
     }
 
-    /// Invariant: what is seen in mirrors is what the plain method says for the cells seen there, and nobody is asked twice.
+    /// Invariant: what is seen in mirrors is what the plain method says for the cells seen there, and no mover is
+    /// queried twice.
     #[test]
     fn movers_in_mirrors_are_those_of_the_plain_method(grid in any_grid(), seed in any::<u64>()) {
         let mut game = Game::new(grid, seed);
@@ -260,7 +261,7 @@ fn in_room(i: usize) -> Aabb<3> {
     Aabb { min: [x + 0.25, 0.25, 0.25], max: [x + 0.75, 0.75, 0.75] }
 }
 
-/// Frames of a viewer who stays in the first room, with movers in far rooms: how often they are asked in each.
+/// Frames of a viewer that stays in the first room, with movers in far rooms: the number of queries in each.
 fn asked_in_frames(n_movers: usize, n_frames: usize, motion: impl Fn(usize) -> Motion) -> Vec<u64> {
     let grid = row(64);
     let mut movers = Movers::new(grid.cells(), MoverOptions { tries: usize::MAX, ..MoverOptions::default() });

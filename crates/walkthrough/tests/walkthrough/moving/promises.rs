@@ -10,8 +10,8 @@ fn at(x: f64) -> Aabb<3> {
     Aabb { min: [x, 0.25, 0.25], max: [x + 0.25, 0.75, 0.75] }
 }
 
-/// A mover comes along the row by one room a second, to a viewer who sees the first four rooms, and stays with him: the frames in which it is in them and is
-/// missed, and what was told of its promise.
+/// A mover comes along the row by one room a second, to a viewer that sees the first four rooms, and stays there: the
+/// frames in which it is in them and is missed, and the reports about its promise.
 fn missed(promised: f64) -> (usize, Vec<Broken>) {
     let grid = row(40);
     let mut movers = Movers::new(grid.cells(), MoverOptions::default());

@@ -25,7 +25,7 @@ pub(super) struct Case {
     pub(super) rectangles: Vec<Aabb<3>>,
 }
 
-/// Where a box begins and ends on an axis for who goes a certain way.
+/// Where a box begins and ends on an axis, in a given direction.
 fn first_last(b: &Aabb<3>, forward: [bool; 3], axis: usize) -> (f64, f64) {
     if forward[axis] { (b.min[axis], b.max[axis]) } else { (b.max[axis], b.min[axis]) }
 }
