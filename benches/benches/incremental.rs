@@ -357,7 +357,7 @@ fn for_people(rows: &[Row]) -> String {
 
 A *door* is closed by a box in the opening, and opened by taking the box away; a *wall* is moved by its thickness, and
 back. Both are other scenes: they are cut anew, and the table is brought up to date. A *portal* is closed and opened by its
-id, and nothing is cut. *Rebuild* is `bake_scene` of the same scene (for portals: cutting it and finding who sees whom without
+id, and nothing is cut. *Rebuild* is `bake_scene` of the same scene (for portals: cutting it and computing its visibility without
 them, and no table), in the same run, right after the update. Every table is compared with the rebuilt one, byte for byte. Times are
 medians over the edits of the quickest of some rounds; *least* is the edit that gains least, mostly a wall of the facade: moved, it stands out of
 the box around the scene, and all rooms of that side look out into a new layer of air. Only the ratios of one run say something. All columns:
