@@ -7,7 +7,7 @@ pub enum Kind {
     Shipped,
     /// Kept for comparison, and known to decide nothing.
     Reference,
-    /// A solver of others, asked plainly; charted, nothing is expected of it.
+    /// A solver of others, used plainly; charted, nothing is expected of it.
     Solver,
     /// The warning example: an unsafe failure somewhere is expected of it.
     Naive,

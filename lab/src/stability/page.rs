@@ -71,30 +71,30 @@ const INTRODUCTION: &str = "\
 # Where methods fail
 
 Made by `cargo xtask stability` from the CSV files in [stability/](stability/); same input, same bytes. Each sweep has a
-parameter that makes questions harder for numbers that are rounded. For each case the truth is known exactly, by a method
-that shares no code with those that are asked.
+parameter that makes questions harder for rounded numbers. For each case the truth is known exactly, by a method
+that shares no code with those under test.
 
-* *unsafe*: something that an open set of lines sees is called hidden. Shipped methods have none.
-* *loose*: something hidden is called seen, or is not decided, which counts as seen.
-* *errors*: no answer: a panic, an error, a number that is none.
+* *unsafe*: something that an open set of lines sees is reported hidden. Shipped methods have none.
+* *loose*: something hidden is reported visible, or is undecided, which counts as visible.
+* *errors*: no answer: a panic, an error, or not a number.
 
-Shipped methods are what users get. References are kept for comparison and decide nothing. Solvers are those of others,
-asked plainly. Naive methods are the warning examples: the same questions in plain floating point.
+Shipped methods are what users get. References are kept for comparison and decide nothing. Solvers are packages of others,
+used plainly. Naive methods are the warning examples: the same questions in plain floating point.
 
 Numbers are rounded like this: a case is rounded to doubles first, and its truth is that of the rounded case. A method
-in single precision rounds what it is given, as its user would; its truth stays that of the doubles.
+in single precision rounds its input, as its user would; the truth remains that of the doubles.
 
 ## Methods along sequences of portals
 
 * `funnel`, `axial`, `convex`: the shipped stabbers, pushed portal by portal as a search does; `… proven` is the question
-  about one sequence, whose witness or certificate is checked. What `convex` leaves undecided counts as seen.
+  about one sequence, whose witness or certificate is checked. What `convex` leaves undecided counts as visible.
 * `lp good_lp` is the program of the literature given to good_lp with its feature `minilp`, which is microlp 0.6;
   `lp minilp` to minilp 0.2.2, `lp microlp` to microlp 0.7. With `unit` the portals are first moved and scaled into the
   unit box. A margin above 1e-9 is taken for a line, none for a proof that there is none. `axial lp` are those of the
-  octants of directions. `lp checked` is how this project asks, and hides nothing.
+  octants of directions. `lp checked` is how this project uses them, and hides nothing visible.
 * `funnel f64`, `f32`: the shipped algorithm with sides computed from differences of coordinates in plain numbers;
-  `coefficients` computes the line first; so do `strict 1e-9`, which takes what is nearer than that to the limit for
-  blocked, and `lenient 1e-9`, which takes it for open. `… of stored f32` is the shipped, exact method given coordinates that were stored in single
+  `coefficients` computes the line first; so do `strict 1e-9`, which treats anything nearer than that to the limit as
+  blocked, and `lenient 1e-9`, which treats it as open. `… of stored f32` is the shipped, exact method given coordinates that were stored in single
   precision.
 * `axial clipping`: slownesses clipped by all that doors ask of them, right in exact numbers, here in plain ones.
 * `separators`: separating planes along the sequence, as Quake's programs clip, with their tolerance 0.1, a smaller one,
