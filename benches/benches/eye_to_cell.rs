@@ -8,14 +8,14 @@
 use clap::Parser;
 use sightlines::bake::quake::bake_map;
 use sightlines::bake::{PrtOptions, SceneBakeOptions, StabOptions, bake_scene, with_stab_trees};
-use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
 use sightlines::packed::{PackOptions, Packed, Source, pack};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{TowerOptions, tower};
-use sightlines::walkthrough::{Answer, PackedCells, Stand, WalkOptions, Walkthrough, wander};
+use sightlines::walkthrough::{Answer, CameraPose, PackedCells, WalkOptions, Walkthrough, wander};
 use sightlines_tests::data_folder;
 use std::convert::Infallible;
 use std::error::Error;
@@ -113,7 +113,7 @@ fn diagonal(table: &Table) -> f64 {
     (0..3).map(|k| (around.max[k] - around.min[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-fn view(stand: &Stand, up: [f64; 3], fov: f64) -> Result<View, Box<dyn Error>> {
+fn view(stand: &CameraPose, up: [f64; 3], fov: f64) -> Result<View, Box<dyn Error>> {
     Ok(View::pinhole(stand.eye, stand.dir, up, fov.to_radians(), 4.0 / 3.0)?)
 }
 
@@ -130,22 +130,22 @@ struct Measured {
     n_polygons: u64,
 }
 
-fn measure(table: &Table, up: [f64; 3], n_frames: usize, fov: f64) -> Result<Vec<Stand>, Box<dyn Error>> {
+fn measure(table: &Table, up: [f64; 3], n_frames: usize, fov: f64) -> Result<Vec<CameraPose>, Box<dyn Error>> {
     let cells = TableCells::new(table);
     let start = Instant::now();
-    let all: Result<Vec<Outlook>, Infallible> =
-        (0..table.n_cells() as u32).map(|cell| Outlook::prepare(&cells, CellId(cell))).collect();
+    let all: Result<Vec<VisibleSubgraph>, Infallible> =
+        (0..table.n_cells() as u32).map(|cell| VisibleSubgraph::prepare(&cells, CellId(cell))).collect();
     let (all, time) = (all?, start.elapsed());
-    let bytes: usize = all.iter().map(Outlook::n_bytes).sum();
+    let bytes: usize = all.iter().map(VisibleSubgraph::n_bytes).sum();
     println!(
-        "{} cells, {} objects; an outlook takes {:.0} us and {:.1} KiB on average",
+        "{} cells, {} objects; an subgraph takes {:.0} us and {:.1} KiB on average",
         table.n_cells(),
         table.objects().len(),
         time.as_secs_f64() * 1e6 / all.len().max(1) as f64,
         bytes as f64 / 1024.0 / all.len().max(1) as f64
     );
     let stands = wander(&cells, n_frames, diagonal(table) / 400.0, 1)?;
-    let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
+    let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
     let mut measured = Vec::new();
     for method in Method::ALL {
         let mut m = Measured { method, times: Vec::new(), n_cells: 0, n_objects: 0, n_polygons: 0 };
@@ -153,7 +153,7 @@ fn measure(table: &Table, up: [f64; 3], n_frames: usize, fov: f64) -> Result<Vec
         for warm in [false, true] {
             for stand in &stands {
                 let view = view(stand, up, fov)?;
-                let at = table.locate(&stand.eye);
+                let at = table.in_dimension().expect("it is of space").at(stand.eye).cells().to_vec();
                 let times = [0; 3].map(|_| {
                     let start = Instant::now();
                     seen.clear(table.n_cells(), table.objects().len());
@@ -229,7 +229,7 @@ impl Source for Slow {
 
 /// Walks with a packed table in a file that takes 20 ms for each block, and keeps hardly any: at full speed, and with time between the
 /// frames.
-fn slow_source(table: &Table, stands: &[Stand], fov: f64) -> Result<(), Box<dyn Error>> {
+fn slow_source(table: &Table, stands: &[CameraPose], fov: f64) -> Result<(), Box<dyn Error>> {
     let bytes = pack(table, &PackOptions::default())?;
     for pause in [Duration::ZERO, Duration::from_millis(2)] {
         let packed = Packed::open(Slow(bytes.clone(), Duration::from_millis(20)), 1 << 16)?;

@@ -11,7 +11,9 @@ use sightlines::formats::doom::{DoomMap, list_maps};
 use sightlines::formats::quake::read_prt;
 use sightlines::formats::scene::read_scene;
 use sightlines::kdtree::SceneOptions;
-use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
+use sightlines::pvs::{
+    BitMatrix, CellId, CellRecord, Locator, PlaceBuffer, PortalRecord, Table, TableKind, TableParts,
+};
 use sightlines::scenes;
 use sightlines_benches::codings::{CodedRows, RowCoding, unpack_runs, zero_runs};
 use sightlines_benches::spec::SceneSpec;
@@ -335,13 +337,13 @@ fn large(args: &Args) -> Result<String, Box<dyn Error>> {
         for _ in 0..31 {
             let (min, max) = table.parts().cell_bounds()[random.below(table.n_cells())];
             let eye: [f64; 3] = std::array::from_fn(|k| f64::midpoint(min[k], max[k]));
-            let (mut cells, mut seen) = (Vec::new(), Vec::new());
+            let (mut buffer, mut seen) = (PlaceBuffer::new(), Vec::new());
             let start = Instant::now();
             let packed = Packed::open(std::fs::File::open(&path)?, 16 << 20)?;
-            packed.locate(&eye, &mut cells)?;
+            let cells = packed.cells_at(eye, &mut buffer).inside().expect("the middle of a cell is inside");
             packed.visible(cells[0], &mut seen)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
-            assert!(cells == table.locate(&eye) && seen.iter().copied().eq(table.visible(cells[0])));
+            assert!(cells == table.place_at(eye).cells() && seen.iter().copied().eq(table.visible(cells[0])));
             (resident, read) = (packed.resident_bytes(), packed.stats().bytes_read);
         }
         Ok(())

@@ -181,10 +181,18 @@ fn shares(scene: &Scene, table: &Table, floors: u32) -> [f64; 3] {
         let mut random = Random::new(1, try_);
         let mut eye = random.point(&bounds);
         eye[1] = STOREY * random.below(floors as usize) as f64 + EYES[0] + (EYES[1] - EYES[0]) * random.unit();
-        if table.locate(&eye).is_empty() {
+        if table.in_dimension().expect("it is of space").at(eye).is_outside() {
             continue;
         }
-        let share = share_of(&triangles, table.visible_objects_from(&eye));
+        let share = share_of(
+            &triangles,
+            table
+                .in_dimension()
+                .expect("it is of space")
+                .at(eye)
+                .inside()
+                .map_or(Vec::new(), |at| at.visible_objects()),
+        );
         (sum, worst, n) = (sum + share, worst.max(share), n + 1);
     }
     [mean_share(table, &triangles, |c| table.visible_objects(c)), sum / n.max(1) as f64, worst]

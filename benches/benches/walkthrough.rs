@@ -8,7 +8,7 @@
 use clap::Parser;
 use sightlines::bake::{PortalMode, SceneBakeOptions, bake_scene};
 use sightlines::cells::{CellId, Scene};
-use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, VisibleSet, VisibleSubgraph};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
 use sightlines::pvs::Table;
@@ -152,9 +152,9 @@ struct Show<'a> {
     other: Picture,
     cells: TableCells<&'a Table>,
     /// Of the cells that were visited; made before the time is taken, as a run-time would.
-    outlooks: BTreeMap<CellId, Outlook>,
+    subgraphs: BTreeMap<CellId, VisibleSubgraph>,
     scratch: Scratch,
-    seen: Seen,
+    seen: VisibleSet,
 }
 
 impl<'a> Show<'a> {
@@ -176,9 +176,9 @@ impl<'a> Show<'a> {
             whole: picture.clone(),
             other: picture,
             cells: TableCells::new(table),
-            outlooks: BTreeMap::new(),
+            subgraphs: BTreeMap::new(),
             scratch: Scratch::new(),
-            seen: Seen::new(),
+            seen: VisibleSet::new(),
         }
     }
 
@@ -186,9 +186,9 @@ impl<'a> Show<'a> {
     fn frame(&mut self, pose: &CameraPose) -> [Frame; N_WAYS] {
         let camera = Camera::new(pose.eye, pose.ahead);
         let n = self.scene.objects().len() as u32;
-        for cell in self.table.locate(&pose.eye) {
-            let prepare = || Outlook::prepare(&self.cells, cell).unwrap_or_else(|never| match never {});
-            self.outlooks.entry(cell).or_insert_with(prepare);
+        for cell in self.table.in_dimension().expect("it is of space").at(pose.eye).cells().iter().copied() {
+            let prepare = || VisibleSubgraph::prepare(&self.cells, cell).unwrap_or_else(|never| match never {});
+            self.subgraphs.entry(cell).or_insert_with(prepare);
         }
         let view = camera.view(self.whole.aspect());
         std::array::from_fn(|way| {
@@ -197,16 +197,22 @@ impl<'a> Show<'a> {
             let start = Instant::now();
             let drawn = if let Some(method) = way.checked_sub(4).map(|k| METHODS[k]) {
                 self.seen.clear(self.table.n_cells(), n as usize);
-                for cell in self.table.locate(&pose.eye) {
-                    let outlook = &self.outlooks[&cell];
-                    method.look(outlook, &view, &Doors::all_open(), &mut self.scratch, &mut self.seen);
+                for cell in self.table.in_dimension().expect("it is of space").at(pose.eye).cells().iter().copied() {
+                    let subgraph = &self.subgraphs[&cell];
+                    method.look(subgraph, &view, &Doors::all_open(), &mut self.scratch, &mut self.seen);
                 }
                 self.seen.sort();
                 picture.draw(self.scene, &self.first, self.seen.objects().iter().copied(), boxes, &camera)
             } else if way % 2 == 0 {
                 picture.draw(self.scene, &self.first, 0..n, boxes, &camera)
             } else {
-                let objects = self.table.visible_objects_from(&pose.eye);
+                let objects = self
+                    .table
+                    .in_dimension()
+                    .expect("it is of space")
+                    .at(pose.eye)
+                    .inside()
+                    .map_or(Vec::new(), |at| at.visible_objects());
                 picture.draw(self.scene, &self.first, objects, boxes, &camera)
             };
             let time = start.elapsed();

@@ -2,7 +2,7 @@
 
 use allocation_counter::measure;
 use sightlines::bake::{BakeOptions, SceneBakeOptions, StabOptions, bake_plan, bake_scene, with_stab_trees};
-use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{TowerOptions, maze, tower};
 
@@ -29,23 +29,23 @@ fn frames(table: &Table) -> Vec<(CellId, View)> {
 const WARM_UP: usize = 3;
 
 /// The allocations of all methods for all frames, after they have been asked before: by the queries, and by
-/// preparing the outlook, which has to allocate.
+/// preparing the subgraph, which has to allocate.
 fn allocations(table: &Table) -> (usize, u64, u64) {
     let cells = TableCells::new(table);
     let frames = frames(table);
-    let (mut seen, mut scratch, mut doors) = (Seen::new(), Scratch::new(), Doors::all_open());
+    let (mut seen, mut scratch, mut doors) = (VisibleSet::new(), Scratch::new(), Doors::all_open());
     doors.close(2);
-    let prepare = |root| Outlook::prepare(&cells, root).unwrap_or_else(|never| match never {});
+    let prepare = |root| VisibleSubgraph::prepare(&cells, root).unwrap_or_else(|never| match never {});
     let (mut n_queries, mut by_queries, mut by_preparing) = (0, 0, 0);
     for round in 0..=WARM_UP {
         for (root, view) in &frames {
-            let mut outlook = None;
-            let preparing = measure(|| outlook = Some(prepare(*root)));
-            let outlook = outlook.expect("it was prepared");
+            let mut subgraph = None;
+            let preparing = measure(|| subgraph = Some(prepare(*root)));
+            let subgraph = subgraph.expect("it was prepared");
             for method in Method::ALL {
                 let query = measure(|| {
                     seen.clear(table.n_cells(), table.objects().len());
-                    method.look(&outlook, view, &doors, &mut scratch, &mut seen);
+                    method.look(&subgraph, view, &doors, &mut scratch, &mut seen);
                     seen.sort();
                 });
                 if round == WARM_UP {

@@ -6,7 +6,7 @@ use sightlines::bake::{
     see_groups,
 };
 use sightlines::cells::Scene;
-use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::ViewCells;
 use sightlines::formats::view_cells::ViewCell;
 use sightlines::geometry::{Aabb, Adaptive, AxialDoor, Point3, Portal3};
@@ -186,19 +186,19 @@ fn read_table(rates: &Rates, table: &Table) -> Path {
 /// What a viewer sees, by the exact method: each cell that is entered is entered through a portal, of which a side at least is compared.
 fn eye_to_cell(rates: &Rates, table: &Table) -> Path {
     let cells = TableCells::new(table);
-    let outlooks: Vec<Outlook> = (0..table.n_cells() as u32)
-        .map(|cell| Outlook::prepare(&cells, CellId(cell)).expect("memory does not fail"))
+    let subgraphs: Vec<VisibleSubgraph> = (0..table.n_cells() as u32)
+        .map(|cell| VisibleSubgraph::prepare(&cells, CellId(cell)).expect("memory does not fail"))
         .collect();
     let stands = wander(&cells, 300, 0.1, 1).expect("memory does not fail");
-    let (mut scratch, mut seen, mut n_seen) = (Scratch::new(), Seen::new(), 0);
+    let (mut scratch, mut seen, mut n_seen) = (Scratch::new(), VisibleSet::new(), 0);
     let seconds = least(|| {
         n_seen = 0;
         for stand in &stands {
             let view =
                 View::pinhole(stand.eye, stand.dir, [0.0, 1.0, 0.0], 75f64.to_radians(), 4.0 / 3.0).expect("a view");
             seen.clear(table.n_cells(), table.objects().len());
-            for cell in table.locate(&stand.eye) {
-                Method::Exact.look(&outlooks[cell.idx()], &view, &Doors::all_open(), &mut scratch, &mut seen);
+            for cell in table.in_dimension().expect("it is of space").at(stand.eye).cells().iter().copied() {
+                Method::Exact.look(&subgraphs[cell.idx()], &view, &Doors::all_open(), &mut scratch, &mut seen);
             }
             n_seen += seen.cells().len();
         }

@@ -24,13 +24,18 @@ pub(crate) fn print(test: bool, size: [u32; 2]) -> Result<(), Box<dyn Error>> {
     for (k, room) in tower_rooms(options)?.iter().enumerate().step_by(if test { 1 } else { 5 }) {
         let b = room.bounds;
         let eye = [0, 1, 2].map(|i| b.min[i] + [0.43, 0.57, 0.51][i] * (b.max[i] - b.min[i]));
-        if table.locate(&eye).is_empty() {
+        if table.in_dimension().expect("it is of space").at(eye).is_outside() {
             // In a piece of furniture.
             continue;
         }
         let (sin, cos) = (k as f64).sin_cos();
         let camera = Camera::look_at(eye, [eye[0] + cos, eye[1] - 0.1, eye[2] + sin], [0.0, 1.0, 0.0], 60.0, size)?;
-        let seen = table.visible_objects_from(&eye);
+        let seen = table
+            .in_dimension()
+            .expect("it is of space")
+            .at(eye)
+            .inside()
+            .map_or(Vec::new(), |at| at.visible_objects());
         let mut chosen = all.clone();
         cull::objects(&faces, &mut chosen, |object| seen.binary_search(&object).is_ok());
         let mut images = Vec::new();

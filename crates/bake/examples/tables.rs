@@ -5,7 +5,7 @@
 use sightlines_bake::{BakeOptions, MapStatus, RejectOptions, bake_plan, reject_wad};
 use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine, list_maps, write_doom_map};
 use sightlines_formats::{DoomMap, LumpName, RejectTable, Wad};
-use sightlines_pvs::Table;
+use sightlines_pvs::{Place, Table};
 use sightlines_scenes::{OfficeOptions, office};
 use std::error::Error;
 
@@ -28,10 +28,13 @@ fn office_table() -> Result<(), Box<dyn Error>> {
     let table = Table::from_bytes(&bytes)?;
     let bounds = floor.bounds();
     let eye = [0, 1].map(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
-    let seen = table.visible_from(&eye);
-    println!("a viewer at {eye:?} is in cell {:?}", table.locate(&eye));
-    println!("  and sees {} of {} cells", seen.len(), table.n_cells());
-    let objects = table.objects_in(&seen);
+    let Place::Inside(here) = table.in_dimension()?.at(eye) else {
+        println!("a viewer at {eye:?} is outside every cell");
+        return Ok(());
+    };
+    println!("a viewer at {eye:?} is in cell {:?}", here.cells());
+    println!("  and sees {} of {} cells", here.visible_cells().count(), table.n_cells());
+    let objects = here.visible_objects();
     println!("  with {} of {} objects", objects.len(), table.objects().len());
     for &object in objects.iter().take(3) {
         println!("  such as {}", table.objects()[object as usize].name);

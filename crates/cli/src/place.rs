@@ -69,6 +69,12 @@ impl Point {
         }
     }
 
+    /// The point with z = 0 in a plane, if it has as many coordinates as the table has dimensions.
+    pub(crate) fn lifted(&self, table: &Table, path: &Path) -> Result<[f64; 3], LookupError> {
+        let coordinates = self.of(table, path)?;
+        Ok(std::array::from_fn(|k| coordinates.get(k).copied().unwrap_or(0.0)))
+    }
+
     /// The point in the plane, if it is one.
     pub(crate) fn planar(&self, table: &Table, path: &Path) -> Result<Point2, LookupError> {
         let coordinates = self.of(table, path)?;
@@ -124,7 +130,7 @@ impl Place {
     pub(crate) fn cells(&self, table: &Table, path: &Path) -> Result<Vec<CellId>, LookupError> {
         match self {
             Self::Cell(id) => Ok(vec![cell(*id, table, path)?]),
-            Self::Point(point) => Ok(table.locate(point.of(table, path)?)),
+            Self::Point(point) => Ok(table.place_at(point.lifted(table, path)?).cells().to_vec()),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::input::{self, Kind};
 use sightlines::eye_to_cell::{CellSource, TableCells};
 use sightlines::packed::{Packed, PackedError};
 use sightlines::pvs::{Axis, CellId, Table};
-use sightlines::walkthrough::{PackedCells, Resident};
+use sightlines::walkthrough::{CoarseVisibility, PackedCells};
 use std::convert::Infallible;
 use std::fs::File;
 use std::path::Path;
@@ -33,7 +33,7 @@ pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>, In
 }
 
 /// A table of either kind. Clones share it.
-pub(crate) trait Cells: CellSource<Error: Send + 'static> + Resident + Clone + Send + 'static {
+pub(crate) trait Cells: CellSource<Error: Send + 'static> + CoarseVisibility + Clone + Send + 'static {
     /// What went wrong, with the file's name.
     fn fail(path: &Path, error: Self::Error) -> InputError;
 

@@ -6,7 +6,7 @@ use crate::tables::Cells;
 use sightlines::eye_to_cell::{Method, UnknownMethod, View, ViewError};
 use sightlines::formats::scene::Axis;
 use sightlines::geometry::check_coordinate;
-use sightlines::walkthrough::Stand;
+use sightlines::walkthrough::CameraPose;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -92,7 +92,7 @@ pub(crate) struct Lens {
 
 impl Lens {
     /// What a viewer sees in the picture.
-    pub(crate) fn view(&self, Stand { eye, dir }: Stand) -> Result<View, ViewError> {
+    pub(crate) fn view(&self, CameraPose { eye, dir }: CameraPose) -> Result<View, ViewError> {
         let fov = self.fov.to_radians().min(std::f64::consts::TAU);
         match self.in_space {
             None => View::planar([eye[0], eye[1]], [dir[0], dir[1]], fov),

@@ -9,7 +9,9 @@
 //! +---+---+---+---+
 //! ```
 
-use sightlines_eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View, follow_reflections};
+use sightlines_eye_to_cell::{
+    Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
+};
 use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, Locator, MirrorRecord, PortalRecord, Table, TableKind, TableParts,
 };
@@ -49,8 +51,8 @@ fn house() -> TableParts {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let table = Table::new(house())?;
     let cells = TableCells::new(&table);
-    let outlooks = (0..4).map(|cell| Outlook::prepare(&cells, CellId(cell))).collect::<Result<Vec<_>, _>>()?;
-    let (mut seen, mut scratch, mut doors) = (Seen::new(), Scratch::new(), Doors::all_open());
+    let subgraphs = (0..4).map(|cell| VisibleSubgraph::prepare(&cells, CellId(cell))).collect::<Result<Vec<_>, _>>()?;
+    let (mut seen, mut scratch, mut doors) = (VisibleSet::new(), Scratch::new(), Doors::all_open());
     let eye = [3.5, 0.5];
     for degrees in [0, 60, 90, 180] {
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
@@ -65,12 +67,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             for method in Method::ALL {
                 seen.clear(table.n_cells(), 0);
                 // On the border between rooms there would be more than one.
-                for root in table.locate(&eye) {
-                    method.look(&outlooks[root.idx()], &view, &doors, &mut scratch, &mut seen);
+                for root in table.in_dimension().unwrap().at(eye).cells().iter().copied() {
+                    method.look(&subgraphs[root.idx()], &view, &doors, &mut scratch, &mut seen);
                 }
                 seen.sort();
-                let outlook = |cell: CellId| outlooks.get(cell.idx());
-                let images = follow_reflections(&method, &seen, 1, &doors, &mut scratch, [4, 0], outlook);
+                let subgraph = |cell: CellId| subgraphs.get(cell.idx());
+                let images = follow_reflections(method, &seen, 1, &doors, &mut scratch, [4, 0], subgraph);
                 let images: Vec<u32> = images.iter().flat_map(|image| &image.cells).map(|cell| cell.0).collect();
                 let state = if shut { "second door shut" } else { "all doors open" };
                 println!("  {state:16}  {method:20} rooms {:?}, in the mirror {images:?}", seen.cells());

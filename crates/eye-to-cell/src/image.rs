@@ -6,10 +6,9 @@
 //! A line goes on in the cell that the mirror is in, so what it may meet there is what that cell may see.
 
 use crate::doors::Doors;
-use crate::method::EyeToCell;
-use crate::outlook::Outlook;
-use crate::scratch::Scratch;
-use crate::seen::{Reflection, Seen};
+use crate::method::{Method, Scratch};
+use crate::subgraph::VisibleSubgraph;
+use crate::visible_set::{Reflection, VisibleSet};
 use sightlines_pvs::CellId;
 use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,23 +25,23 @@ pub struct Image {
     pub cells: Vec<CellId>,
     /// The objects, ascending.
     pub objects: Vec<u32>,
-    /// Whether that is all. If not, an outlook was missing or there were too many views: anything may be seen by way of
+    /// Whether that is all. If not, an subgraph was missing or there were too many views: anything may be seen by way of
     /// these mirrors, and of any others after them, which are not listed then.
     pub complete: bool,
 }
 
-/// Follows reflections, of `bounces` mirrors at most: the first are what [`EyeToCell::look`] left in `seen`.
+/// Follows reflections, of `bounces` mirrors at most: the first are what [`Method::look`] left in `seen`.
 ///
-/// `outlook` gives the outlook of a cell, or none if it is not there; what is seen in that mirror is then not
+/// `subgraph` gives the subgraph of a cell, or none if it is not there; what is seen in that mirror is then not
 /// complete. Images come by ascending mirrors. Allocates.
-pub fn follow_reflections<O: Borrow<Outlook>>(
-    method: &impl EyeToCell,
-    first: &Seen,
+pub fn follow_reflections<O: Borrow<VisibleSubgraph>>(
+    method: Method,
+    first: &VisibleSet,
     bounces: usize,
     doors: &Doors,
     scratch: &mut Scratch,
     [n_cells, n_objects]: [usize; 2],
-    mut outlook: impl FnMut(CellId) -> Option<O>,
+    mut subgraph: impl FnMut(CellId) -> Option<O>,
 ) -> Vec<Image> {
     let mut images: BTreeMap<Vec<u32>, (BTreeSet<u32>, BTreeSet<u32>, bool)> = BTreeMap::new();
     let step = |mirrors: &[u32], next: &Reflection| ([mirrors, &[next.face]].concat(), next.clone());
@@ -50,13 +49,13 @@ pub fn follow_reflections<O: Borrow<Outlook>>(
         0 => Vec::new(),
         _ => first.reflections.iter().map(|r| step(&[], r)).collect(),
     };
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     let mut n_views = 0;
     while let Some((mirrors, reflection)) = pending.pop() {
         let (cells, objects, complete) =
             images.entry(mirrors.clone()).or_insert_with(|| (BTreeSet::new(), BTreeSet::new(), true));
         n_views += 1;
-        let there = outlook(reflection.cell).filter(|_| n_views <= MOST_VIEWS);
+        let there = subgraph(reflection.cell).filter(|_| n_views <= MOST_VIEWS);
         let Some(there) = there else {
             *complete = false;
             continue;

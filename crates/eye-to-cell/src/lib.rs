@@ -2,8 +2,8 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the viewer's cone ([`View`]), what is gathered from a table for the viewers of one cell ([`Outlook`]), the
-//!   four methods of Teller and Séquin and the zeroth ([`Method`], behind [`EyeToCell`]), portals that are closed
+//! - **Owns**: the viewer's cone ([`View`]), what is gathered from a table for the viewers of one cell ([`VisibleSubgraph`]), the
+//!   four methods of Teller and Séquin and the zeroth ([`Method`]), portals that are closed
 //!   for now ([`Doors`]), what is seen in mirrors ([`Reflection`]).
 //! - **Out of scope**: how the table was made, files, threads, frames.
 //! - **Invariants**: answers err towards visible, by rounding only, and each tolerance is derived ([`side`](self));
@@ -13,25 +13,23 @@
 #![forbid(unsafe_code)]
 
 mod doors;
+mod epoch_set;
 mod front;
 mod image;
-mod marks;
 mod method;
-mod outlook;
-mod scratch;
-mod seen;
 mod side;
 mod source;
+mod subgraph;
 mod table;
 mod trees;
 mod view;
+mod visible_set;
 
 pub use doors::Doors;
 pub use image::{Image, follow_reflections};
-pub use method::{EyeToCell, Method, UnknownMethod};
-pub use outlook::Outlook;
-pub use scratch::Scratch;
-pub use seen::{Reflection, Seen};
-pub use source::{CellSource, MirrorWay, StabStep, Way};
+pub use method::{Method, Scratch, UnknownMethod};
+pub use source::{CellSource, MirrorPiece, PortalEdge, StabStep};
+pub use subgraph::VisibleSubgraph;
 pub use table::TableCells;
 pub use view::{View, ViewError};
+pub use visible_set::{Reflection, VisibleSet};

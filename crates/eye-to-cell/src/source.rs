@@ -5,7 +5,7 @@ use sightlines_pvs::CellId;
 
 /// A way out of a cell.
 #[derive(Debug, Clone, Copy)]
-pub struct Way<'a> {
+pub struct PortalEdge<'a> {
     /// The portal, as the table counts them.
     pub portal: u32,
     /// Whether it is crossed from its first cell into its second.
@@ -19,14 +19,14 @@ pub struct Way<'a> {
 
 /// A piece of a mirror in a cell.
 #[derive(Debug, Clone, Copy)]
-pub struct MirrorWay<'a> {
+pub struct MirrorPiece<'a> {
     /// The mirror; pieces in several cells may have the same.
     pub face: u32,
     /// Its corners as seen from the cell: in a plane left end, right end; in space counter-clockwise.
     pub corners: &'a [[f64; 3]],
 }
 
-/// A table, in memory or not, as preparing an [`crate::Outlook`] reads it.
+/// A table, in memory or not, as preparing an [`crate::VisibleSubgraph`] reads it.
 pub trait CellSource {
     /// What may go wrong.
     type Error;
@@ -56,7 +56,7 @@ pub trait CellSource {
     ///
     /// # Errors
     /// As [`CellSource::cell_box`].
-    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), Self::Error>;
+    fn portal_edges(&self, cell: CellId, show: &mut dyn FnMut(PortalEdge<'_>)) -> Result<(), Self::Error>;
 
     /// Puts the objects that touch a cell into `out`, which is cleared; ascending.
     ///
@@ -80,7 +80,7 @@ pub trait CellSource {
     ///
     /// # Errors
     /// As [`CellSource::cell_box`].
-    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), Self::Error>;
+    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), Self::Error>;
 
     /// Puts the nodes of the stab trees with which the sequences out of a cell begin into `out`, which is cleared, ascending: whether the
     /// tree was cut at once, so that any way may follow. `None` without stab trees.

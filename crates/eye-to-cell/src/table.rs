@@ -1,6 +1,6 @@
 //! Tables in memory as a source.
 
-use crate::source::{CellSource, MirrorWay, StabStep, Way};
+use crate::source::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, Table};
 use std::borrow::Borrow;
@@ -77,12 +77,12 @@ impl<T: Borrow<Table>> CellSource for TableCells<T> {
         Ok(())
     }
 
-    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), Infallible> {
+    fn portal_edges(&self, cell: CellId, show: &mut dyn FnMut(PortalEdge<'_>)) -> Result<(), Infallible> {
         for way in &self.ways[self.first_way[cell.idx()] as usize..self.first_way[cell.idx() + 1] as usize] {
             let (portal, second) = (way / 2, way % 2);
             let record = &self.table().portals()[portal as usize];
             let to = record.cells[1 - second as usize];
-            show(Way { portal, forward: second == 0, to, corners: &record.points });
+            show(PortalEdge { portal, forward: second == 0, to, corners: &record.points });
         }
         Ok(())
     }
@@ -104,10 +104,10 @@ impl<T: Borrow<Table>> CellSource for TableCells<T> {
         Ok(Aabb { min: object.min, max: object.max })
     }
 
-    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), Infallible> {
+    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), Infallible> {
         for &i in &self.mirrors[self.first_mirror[cell.idx()] as usize..self.first_mirror[cell.idx() + 1] as usize] {
             let mirror = &self.table().parts().mirrors[i as usize];
-            show(MirrorWay { face: mirror.face, corners: &mirror.points });
+            show(MirrorPiece { face: mirror.face, corners: &mirror.points });
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
-//! The stab tree of one cell, in the numbers of its outlook.
+//! The stab tree of one cell, in the numbers of its subgraph.
 
-use crate::outlook::Outlook;
 use crate::source::CellSource;
+use sightlines_pvs::CellId;
 use std::collections::BTreeMap;
 
 /// No node of a stab tree.
@@ -20,13 +20,18 @@ pub(crate) struct LocalTrees {
 }
 
 impl LocalTrees {
-    /// The tree of the root of the outlook, as far as it leads through its cells and ways; `None` if the source has no trees.
-    pub(crate) fn of<S: CellSource + ?Sized>(source: &S, outlook: &Outlook) -> Result<Option<Self>, S::Error> {
+    /// The tree of the root of a subgraph, by its id and its number, as far as it leads along edges of the subgraph; `None` if the
+    /// source has no trees. `edge_through` finds the edge out of a cell through a portal, and the cell that it leads into.
+    pub(crate) fn of<S: CellSource + ?Sized>(
+        source: &S,
+        (root_id, root): (CellId, u32),
+        edge_through: impl Fn(u32, u32) -> Option<(u32, u32)>,
+    ) -> Result<Option<Self>, S::Error> {
         let mut list = Vec::new();
-        let Some(open) = source.stab_roots(outlook.root(), &mut list)? else { return Ok(None) };
+        let Some(open) = source.stab_roots(root_id, &mut list)? else { return Ok(None) };
         let mut tree = Self { ways: vec![0], first_child: Vec::new(), children: Vec::new(), open: vec![open] };
         // The cell that each node leads into, and its children in the numbers of the source.
-        let mut nodes: Vec<(u32, Vec<u32>)> = vec![(outlook.root, list)];
+        let mut nodes: Vec<(u32, Vec<u32>)> = vec![(root, list)];
         let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
         let mut next = 0;
         while next < nodes.len() {
@@ -39,12 +44,11 @@ impl LocalTrees {
                 }
                 let mut list = Vec::new();
                 let step = source.stab_node(child, &mut list)?;
-                let mut ways = outlook.ways_of(cell);
-                // What leads out of the outlook leads nowhere: the rows say that it is hidden.
-                let Some(way) = ways.find(|&w| outlook.ways[w as usize].portal == step.portal) else { continue };
+                // What leads out of the subgraph leads nowhere: by the rows it is hidden.
+                let Some((way, to)) = edge_through(cell, step.portal) else { continue };
                 let number = nodes.len() as u32;
                 numbers.insert(child, number);
-                nodes.push((outlook.ways[way as usize].to, list));
+                nodes.push((to, list));
                 tree.ways.push(way);
                 tree.open.push(step.open);
                 tree.children.push(number);

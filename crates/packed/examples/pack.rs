@@ -3,7 +3,7 @@
 //! `pack IN.pvs OUT.pvz [MAX_BYTES]`; without arguments it packs a row of rooms and keeps it in memory.
 
 use sightlines_packed::{PackOptions, Packed, Source, pack_report};
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, Table, TableKind, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, Place, PlaceBuffer, Table, TableKind, TableParts};
 use std::error::Error;
 
 /// `n` rooms in a row, each of which sees up to `reach` rooms to both sides.
@@ -24,13 +24,14 @@ fn rooms(n: usize, reach: usize) -> Result<Table, Box<dyn Error>> {
 
 /// Walks from cell to cell and looks up what each sees.
 fn walk<S: Source>(packed: &Packed<S>) -> Result<(), Box<dyn Error>> {
-    let (mut here, mut seen, mut at_once) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut buffer, mut seen, mut at_once) = (PlaceBuffer::new(), Vec::new(), Vec::new());
     let n = packed.n_cells();
     for cell in (0..n).step_by(1 + n / 8) {
         let (min, max) = packed.cell_box(CellId(cell as u32))?;
-        let eye: Vec<f64> = (0..usize::from(packed.dimension())).map(|k| f64::midpoint(min[k], max[k])).collect();
-        packed.locate(&eye, &mut here)?;
-        for &cell in &here {
+        let eye = std::array::from_fn(|k| f64::midpoint(min[k], max[k]));
+        // Outside every cell nothing is known; the middle of a cell is inside.
+        let Place::Inside(here) = packed.cells_at(eye, &mut buffer) else { continue };
+        for &cell in here {
             packed.coarse(cell, &mut at_once)?;
             packed.visible(cell, &mut seen)?;
             println!("in cell {cell}: {} cells are seen ({} by the coarse table)", seen.len(), at_once.len());

@@ -2,14 +2,14 @@
 
 use crate::bytes::{Place, Reader, u32_at, u64_at};
 use crate::error::{PackedError, PackedErrorKind as Kind};
-use crate::format::{self, ENTRY, FIXED, MAGIC, MAJOR, MAX_BLOCK, OPTIONAL, SECTIONS};
+use crate::format::{self, ENTRY, FIXED, MAGIC, MAJOR, MAX_UNPACKED_BLOCK, OPTIONAL, SECTIONS};
 use crate::source::Source;
 use sightlines_pvs::SectionId;
 use std::ops::Range;
 
 /// The resident part of a file: all sections, one after the other.
 #[derive(Debug)]
-pub(crate) struct Resident {
+pub(crate) struct ResidentPart {
     bytes: Vec<u8>,
     /// Offset of the first section in the file.
     base: u64,
@@ -32,7 +32,7 @@ impl Section<'_> {
     }
 }
 
-impl Resident {
+impl ResidentPart {
     /// Reads and checks header, section table and sections; also returns the length of the file.
     ///
     /// Takes no more memory than the file is long.
@@ -96,7 +96,7 @@ impl Resident {
         Some(Section { bytes: &self.bytes[range], place })
     }
 
-    /// Where a section lies in [`Resident::bytes`].
+    /// Where a section lies in [`ResidentPart::bytes`].
     pub(crate) fn range(&self, id: SectionId) -> Option<Range<usize>> {
         SECTIONS.iter().position(|(known, _)| *known == id).and_then(|known| self.found[known].clone())
     }
@@ -189,7 +189,7 @@ pub(crate) struct Index {
 
 impl Index {
     /// Reads `BLKS`; the blocks must fill the rest of the file. O(blocks).
-    pub(crate) fn read(resident: &Resident, len: u64) -> Result<Self, PackedError> {
+    pub(crate) fn read(resident: &ResidentPart, len: u64) -> Result<Self, PackedError> {
         let section = resident.need(format::BLOCKS)?;
         let mut r = Reader::new(section.bytes, section.place);
         let (mut stores, mut entries) = (Vec::<(SectionId, StoreIndex)>::new(), Vec::new());
@@ -206,7 +206,7 @@ impl Index {
             stores.push((id, StoreIndex { n_records, per_block, first: entries.len(), n_blocks }));
             for _ in 0..n_blocks {
                 let (n, raw, crc) = (r.u32()?, r.u32()?, r.u32()?);
-                if raw > MAX_BLOCK || n > raw {
+                if raw > MAX_UNPACKED_BLOCK || n > raw {
                     return Err(r.fail(Kind::Value { value: u64::from(raw.max(n)) }));
                 }
                 entries.push(Entry { offset, len: n, raw, crc });
@@ -252,7 +252,7 @@ impl Index {
         Ok(store)
     }
 
-    /// Reads and unpacks a block. Takes at most twice [`MAX_BLOCK`], whatever the file says.
+    /// Reads and unpacks a block. Takes at most twice [`MAX_UNPACKED_BLOCK`], whatever the file says.
     pub(crate) fn unpack(&self, source: &impl Source, id: SectionId, number: usize) -> Result<Vec<u8>, PackedError> {
         let Entry { offset, len, raw, crc } = self.entries[number];
         let place = Place { section: id, offset };

@@ -170,21 +170,13 @@ pub enum PackedErrorKind {
         /// Number of nodes.
         n_nodes: u32,
     },
-    /// A point with too few or too many coordinates was asked for.
-    #[error("a point of this table has {dimension} coordinates, not {given}")]
-    Coordinates {
-        /// Coordinates that it should have.
-        dimension: u8,
-        /// Coordinates that it has.
-        given: usize,
-    },
 }
 
 impl PackedErrorKind {
     /// Whether the question was wrong and not the file.
     fn is_question(&self) -> bool {
-        use PackedErrorKind::{Coordinates, NoCell, NoNode, NoObject, NoPortal};
-        matches!(self, NoCell { .. } | NoObject { .. } | NoPortal { .. } | NoNode { .. } | Coordinates { .. })
+        use PackedErrorKind::{NoCell, NoNode, NoObject, NoPortal};
+        matches!(self, NoCell { .. } | NoObject { .. } | NoPortal { .. } | NoNode { .. })
     }
 }
 
@@ -201,7 +193,10 @@ pub enum PackError {
         smallest: u64,
     },
     /// One record (the row or the lists of a cell, an object, a portal) is larger than a block may be.
-    #[error("a record of store {store} has {bytes} bytes; a block holds no more than {}", crate::format::MAX_BLOCK)]
+    #[error(
+        "a record of store {store} has {bytes} bytes; a block holds no more than {}",
+        crate::format::MAX_UNPACKED_BLOCK
+    )]
     Record {
         /// The store.
         store: SectionId,

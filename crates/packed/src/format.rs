@@ -58,8 +58,13 @@ pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the least that has all that is in a table, so that files
 /// without what is new stay as they were.
 pub const MINOR: u16 = 2;
-/// Maximum size of an unpacked block, in bytes: a file cannot claim more memory at once.
-pub const MAX_BLOCK: u32 = 1 << 24;
+/// Bytes that a reader accepts in an unpacked block, so that no file can demand more memory at once. How large blocks are *written*
+/// is [`BLOCK_BYTES`] and [`ROW_BLOCK_BYTES`].
+pub const MAX_UNPACKED_BLOCK: u32 = 1 << 24;
+/// Bytes that an unpacked block of records is written with, about: the unit that is read from a file at once.
+pub const BLOCK_BYTES: usize = 16 << 10;
+/// Bytes that an unpacked block of rows of bits is written with, at most. Rows are read one by one, but pack better together.
+pub const ROW_BLOCK_BYTES: usize = 64 << 10;
 /// Bytes that rows of bits may take in [`crate::Packed::to_table`]: a small file can describe a large table.
 pub const MAX_TABLE: u64 = 1 << 32;
 
@@ -130,3 +135,12 @@ pub(crate) const NONE: u32 = u32::MAX;
 pub(crate) const PAGE: usize = 64;
 /// Pages that the coarse table may have before they are made larger: with so many it has half a megabyte.
 pub(crate) const MAX_PAGES: usize = 2048;
+
+/// Cells in a page of the coarse table.
+pub(crate) fn page_size(n_cells: usize) -> usize {
+    let mut page = PAGE;
+    while n_cells.div_ceil(page) > MAX_PAGES {
+        page *= 2;
+    }
+    page
+}

@@ -41,6 +41,6 @@ pub use classes::Distinct;
 pub use error::{PackError, PackedError, PackedErrorKind};
 pub use pack::{PackOptions, PackReport, pack, pack_report};
 pub use packed::Packed;
-pub use query::{ExitVisitor, StabNode};
+pub use query::{ExitVisitor, PackedQuery, StabNode};
 pub use sizes::PartSize;
 pub use source::Source;

@@ -1,7 +1,7 @@
 //! Which cells a point is in, from the bytes of the resident part.
 
 use crate::bytes::{Reader, f64_at, u32_at, u64_at};
-use crate::container::{Resident, Section};
+use crate::container::{ResidentPart, Section};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, NONE};
 use sightlines_pvs::{CellId, Locator, LocatorNode, PlaneChild, PlaneNode, PlaneTree, polygon_may_contain};
@@ -12,7 +12,7 @@ const NODE: usize = 16;
 
 /// Boxes, polygons, locator and planes, where they lie in the resident part.
 #[derive(Debug)]
-pub(crate) struct Places {
+pub(crate) struct PointLocation {
     d: usize,
     boxes: Range<usize>,
     /// The numbers of corners before each cell, then the corners.
@@ -22,11 +22,11 @@ pub(crate) struct Places {
     pub(crate) planes: Option<PlaneTree>,
 }
 
-impl Places {
+impl PointLocation {
     /// Checks the sections: sizes, that the locator is a tree, that its cells exist. O(bytes).
     ///
     /// That the locator misses no cell is left to [`crate::Packed::verify`].
-    pub(crate) fn read(resident: &Resident, d: usize, n_cells: u32) -> Result<Self, PackedError> {
+    pub(crate) fn read(resident: &ResidentPart, d: usize, n_cells: u32) -> Result<Self, PackedError> {
         resident.need(format::BOXES)?.expect(16 * d as u64 * u64::from(n_cells))?;
         let polygons = resident.find(format::POLYGONS).map(|section| polygons(section, d, n_cells)).transpose()?;
         let (n_nodes, n_entries) = check_locator(resident.need(format::LOCATOR)?, d, n_cells)?;
@@ -49,7 +49,7 @@ impl Places {
 
     /// The box of a cell, which the caller knows to exist.
     #[inline]
-    pub(crate) fn cell_box(&self, resident: &Resident, cell: usize) -> ([f64; 3], [f64; 3]) {
+    pub(crate) fn cell_box(&self, resident: &ResidentPart, cell: usize) -> ([f64; 3], [f64; 3]) {
         let bytes = &resident.bytes()[self.boxes.clone()];
         let at = 16 * self.d * cell;
         let corner = |k: usize| {
@@ -66,7 +66,7 @@ impl Places {
     #[inline]
     pub(crate) fn polygon<'a>(
         &self,
-        resident: &'a Resident,
+        resident: &'a ResidentPart,
         cell: usize,
     ) -> impl ExactSizeIterator<Item = [f64; 2]> + use<'a> {
         let range = self.polygons.as_ref().map_or(0..0, |(starts, corners)| {
@@ -77,16 +77,12 @@ impl Places {
         resident.bytes()[range].chunks_exact(16).map(|c| [f64_at(c, 0), f64_at(c, 8)])
     }
 
-    /// As [`sightlines_pvs::Table::locate`], into `out`, which is cleared.
-    pub(crate) fn locate(&self, resident: &Resident, p: [f64; 3], out: &mut Vec<CellId>) {
-        out.clear();
-        if !p.iter().all(|x| x.is_finite()) {
-            return;
-        }
+    /// Puts the cells at a point with finite coordinates into `out`, in any order and repeated or not. `pending` is scratch.
+    pub(crate) fn locate(&self, resident: &ResidentPart, p: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
         if let Some(planes) = &self.planes {
-            planes.for_each_cell(p, &mut Vec::new(), |cell| out.push(cell));
+            planes.for_each_cell(p, pending, |cell| out.push(cell));
         } else {
-            self.for_each_candidate(resident, p, |cell| {
+            self.for_each_candidate(resident, p, pending, |cell| {
                 let (min, max) = self.cell_box(resident, cell.idx());
                 let in_box = (0..3).all(|k| min[k] <= p[k] && p[k] <= max[k]);
                 if in_box && polygon_may_contain(self.polygon(resident, cell.idx()), [p[0], p[1]]) {
@@ -94,21 +90,25 @@ impl Places {
                 }
             });
         }
-        out.sort_unstable();
-        out.dedup();
     }
 
-    fn node(&self, resident: &Resident, node: usize) -> (u32, u32, u64) {
+    fn node(&self, resident: &ResidentPart, node: usize) -> (u32, u32, u64) {
         let bytes = &resident.bytes()[self.nodes.clone()];
         (u32_at(bytes, NODE * node), u32_at(bytes, NODE * node + 4), u64_at(bytes, NODE * node + 8))
     }
 
-    fn entry(&self, resident: &Resident, entry: usize) -> CellId {
+    fn entry(&self, resident: &ResidentPart, entry: usize) -> CellId {
         CellId(u32_at(&resident.bytes()[self.entries.clone()], 4 * entry))
     }
 
-    fn for_each_candidate(&self, resident: &Resident, p: [f64; 3], mut visit: impl FnMut(CellId)) {
-        let mut pending: Vec<usize> = Vec::new();
+    fn for_each_candidate(
+        &self,
+        resident: &ResidentPart,
+        p: [f64; 3],
+        pending: &mut Vec<u32>,
+        mut visit: impl FnMut(CellId),
+    ) {
+        pending.clear();
         let mut at = 0;
         loop {
             let (axis, second, rest) = self.node(resident, at);
@@ -116,7 +116,7 @@ impl Places {
                 let first = rest as usize;
                 (first..first + second as usize).for_each(|entry| visit(self.entry(resident, entry)));
                 match pending.pop() {
-                    Some(next) => at = next,
+                    Some(next) => at = next as usize,
                     None => return,
                 }
                 continue;
@@ -127,7 +127,7 @@ impl Places {
             } else {
                 // On the split, both ways.
                 if x == split {
-                    pending.push(second as usize);
+                    pending.push(second);
                 }
                 at += 1;
             }
@@ -135,7 +135,7 @@ impl Places {
     }
 
     /// The nodes of the locator.
-    pub(crate) fn locator_nodes(&self, resident: &Resident) -> Vec<LocatorNode> {
+    pub(crate) fn locator_nodes(&self, resident: &ResidentPart) -> Vec<LocatorNode> {
         let node = |i: usize| {
             let (axis, second, rest) = self.node(resident, i);
             if axis == NONE {

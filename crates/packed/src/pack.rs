@@ -230,7 +230,7 @@ impl Frame {
     fn write(&self, table: &Table, visibility: &Visibility, n_merges: usize) -> (Vec<u8>, PackReport) {
         let [n_rows, n_seen_rows, n_seen_columns] = visibility.n_classes;
         let [n_cells, n_objects, n_portals, n_nodes, flags] = write::counts(table.parts());
-        let page = page_size(table.n_cells()) as u32;
+        let page = format::page_size(table.n_cells()) as u32;
         let fields = [
             u32::from(table.dimension()),
             n_cells,
@@ -286,13 +286,4 @@ impl Frame {
         };
         (out.0, report)
     }
-}
-
-/// Cells in a page of the coarse table.
-pub(crate) fn page_size(n_cells: usize) -> usize {
-    let mut page = format::PAGE;
-    while n_cells.div_ceil(page) > format::MAX_PAGES {
-        page *= 2;
-    }
-    page
 }

@@ -3,10 +3,10 @@
 use crate::bytes::{Place, Reader, u32_at, u64_at, words_of};
 use crate::cache::{Block, Cache, PackedStats};
 use crate::classes::Members;
-use crate::container::{Index, Resident, StoreIndex};
+use crate::container::{Index, ResidentPart, StoreIndex};
 use crate::error::{PackedError, PackedErrorKind as Kind};
-use crate::format::{self, HAS_SEEN, HEAD_LEN, MAX_BLOCK, NONE};
-use crate::locate::Places;
+use crate::format::{self, HAS_SEEN, HEAD_LEN, MAX_UNPACKED_BLOCK, NONE};
+use crate::locate::PointLocation;
 use crate::source::Source;
 use sightlines_pvs::bits::ones;
 use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
@@ -20,10 +20,10 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Packed<S: Source> {
     pub(crate) source: S,
-    pub(crate) resident: Resident,
+    pub(crate) resident: ResidentPart,
     pub(crate) index: Index,
     pub(crate) head: Head,
-    pub(crate) places: Places,
+    pub(crate) places: PointLocation,
     info: Vec<(String, String)>,
     kind: TableKind,
     up: Option<Axis>,
@@ -53,7 +53,7 @@ pub(crate) struct Head {
 }
 
 impl Head {
-    fn read(resident: &Resident) -> Result<Self, PackedError> {
+    fn read(resident: &ResidentPart) -> Result<Self, PackedError> {
         let section = resident.need(format::HEAD)?;
         section.expect(HEAD_LEN as u64)?;
         let field = |k: usize| u32_at(section.bytes, 4 * k);
@@ -96,7 +96,7 @@ pub(crate) struct RowStore {
 impl RowStore {
     /// `sections` have the classes of rows and of columns, `n` the numbers of rows, items, row classes and column classes.
     fn read(
-        resident: &Resident,
+        resident: &ResidentPart,
         index: &Index,
         (id, coding): (SectionId, u32),
         sections: [SectionId; 2],
@@ -158,7 +158,7 @@ impl RowStore {
 }
 
 /// The classes of `n` things, all below `n_classes`; `None` if each is its own.
-fn classes(resident: &Resident, id: SectionId, n: u32, n_classes: u32) -> Result<Option<Vec<u32>>, PackedError> {
+fn classes(resident: &ResidentPart, id: SectionId, n: u32, n_classes: u32) -> Result<Option<Vec<u32>>, PackedError> {
     let section = resident.need(id)?;
     if section.bytes.is_empty() && n == n_classes {
         return Ok(None);
@@ -166,7 +166,7 @@ fn classes(resident: &Resident, id: SectionId, n: u32, n_classes: u32) -> Result
     let place = section.place;
     let raw = if section.bytes.len() < 4 { return Err(place.fail(Kind::Cut)) } else { u32_at(section.bytes, 0) };
     // Each takes a byte at least, so that no more things are taken for true than fit a block.
-    if raw > MAX_BLOCK || raw < n {
+    if raw > MAX_UNPACKED_BLOCK || raw < n {
         return Err(place.fail(Kind::Value { value: u64::from(raw) }));
     }
     let bytes = zstd::bulk::decompress(&section.bytes[4..], raw as usize);
@@ -194,11 +194,11 @@ impl<S: Source> Packed<S> {
     /// # Errors
     /// [`PackedError`], with section and byte offset.
     pub fn open(source: S, cache_bytes: usize) -> Result<Self, PackedError> {
-        let (resident, len) = Resident::read(&source)?;
+        let (resident, len) = ResidentPart::read(&source)?;
         let head = Head::read(&resident)?;
         let index = Index::read(&resident, len)?;
         let Head { n_cells, n_objects, codings, n_classes, .. } = head;
-        let places = Places::read(&resident, usize::from(head.dimension), n_cells)?;
+        let places = PointLocation::read(&resident, usize::from(head.dimension), n_cells)?;
         let sections = [format::CLASSES; 2];
         let n = [n_cells, n_cells, n_classes[0], n_classes[0]];
         let rows = RowStore::read(&resident, &index, (format::ROWS, codings[0]), sections, n)?;
@@ -399,7 +399,7 @@ impl<S: Source> Packed<S> {
     }
 }
 
-fn info(resident: &Resident) -> Result<Vec<(String, String)>, PackedError> {
+fn info(resident: &ResidentPart) -> Result<Vec<(String, String)>, PackedError> {
     let section = resident.need(format::INFO)?;
     let mut r = Reader::new(section.bytes, section.place);
     let n = r.count(2)?;
@@ -413,7 +413,7 @@ fn info(resident: &Resident) -> Result<Vec<(String, String)>, PackedError> {
 
 /// Kind and upward axis; a file of a later minor version may have values that are not known here.
 fn kind(
-    resident: &Resident,
+    resident: &ResidentPart,
     dimension: u8,
     info: &[(String, String)],
 ) -> Result<(TableKind, Option<Axis>), PackedError> {
@@ -426,7 +426,7 @@ fn kind(
     }
 }
 
-fn mirrors(resident: &Resident, head: &Head) -> Result<Vec<MirrorRecord>, PackedError> {
+fn mirrors(resident: &ResidentPart, head: &Head) -> Result<Vec<MirrorRecord>, PackedError> {
     let Some(section) = resident.find(format::MIRRORS) else { return Ok(Vec::new()) };
     let d = usize::from(head.dimension);
     let mut r = Reader::new(section.bytes, section.place);

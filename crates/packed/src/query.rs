@@ -5,7 +5,7 @@ use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, POLYGONS_KNOWN};
 use crate::packed::Packed;
 use crate::source::Source;
-use sightlines_pvs::{CellId, ObjectRecord, PlaneTree, PortalRecord};
+use sightlines_pvs::{CellId, DimensionError, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalRecord};
 
 /// What [`Packed::exits`] calls: portal, whether it is crossed from its first cell into its second, the cell it
 /// leads to, its corners.
@@ -20,6 +20,20 @@ pub struct StabNode {
     pub forward: bool,
     /// Whether the tree was cut here: any sequence may follow.
     pub open: bool,
+}
+
+/// A packed table in `D` dimensions, 2 or 3: [`Packed::in_dimension`].
+#[derive(Debug, Clone, Copy)]
+pub struct PackedQuery<'a, S: Source, const D: usize> {
+    packed: &'a Packed<S>,
+}
+
+impl<S: Source, const D: usize> PackedQuery<'_, S, D> {
+    /// The cells that may contain a point (scene units), ascending: the same as [`sightlines_pvs::Query::at`]. Reads nothing from the
+    /// source, and allocates nothing once `buffer` is warm.
+    pub fn cells_at<'b>(&self, p: [f64; D], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+        self.packed.cells_at(std::array::from_fn(|k| p.get(k).copied().unwrap_or(0.0)), buffer)
+    }
 }
 
 impl<S: Source> Packed<S> {
@@ -48,21 +62,25 @@ impl<S: Source> Packed<S> {
         self.places.planes.as_ref()
     }
 
-    /// Puts every cell that may contain the point `p` (scene units) into `out`, which is cleared, ascending:
-    /// the same as [`sightlines_pvs::Table::locate`]. Reads nothing.
+    /// The packed table for points of `D` coordinates, 2 or 3, checked once.
     ///
     /// # Errors
-    /// If `p` does not have [`Packed::dimension`] coordinates.
-    pub fn locate(&self, p: &[f64], out: &mut Vec<CellId>) -> Result<(), PackedError> {
-        out.clear();
-        let dimension = self.dimension();
-        if p.len() != usize::from(dimension) {
-            return Err(PackedError::asked(Kind::Coordinates { dimension, given: p.len() }));
+    /// [`DimensionError`] if the table has another dimension.
+    pub fn in_dimension<const D: usize>(&self) -> Result<PackedQuery<'_, S, D>, DimensionError> {
+        if usize::from(self.dimension()) == D {
+            Ok(PackedQuery { packed: self })
+        } else {
+            Err(DimensionError { table: self.dimension(), points: D })
         }
-        let mut point = [0.0; 3];
-        point[..p.len()].copy_from_slice(p);
-        self.places.locate(&self.resident, point, out);
-        Ok(())
+    }
+
+    /// As [`PackedQuery::cells_at`], for code that serves both dimensions: in a plane the third coordinate does not count.
+    pub fn cells_at<'b>(&self, p: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+        let p = if self.dimension() == 2 { [p[0], p[1], 0.0] } else { p };
+        if !self.has_places() || !p.iter().all(|x| x.is_finite()) {
+            return Place::Outside;
+        }
+        buffer.fill(|pending, found| self.places.locate(&self.resident, p, pending, found))
     }
 
     /// Puts the cells that `cell` may see, itself included, into `out`, which is cleared, ascending.

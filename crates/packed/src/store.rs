@@ -2,15 +2,11 @@
 
 use crate::bytes::{Writer, bytes_of};
 use crate::error::PackError;
-use crate::format::MAX_BLOCK;
+use crate::format::{BLOCK_BYTES, MAX_UNPACKED_BLOCK, ROW_BLOCK_BYTES};
 use sightlines_pvs::{BitMatrix, SectionId};
 
 /// How hard zstd tries. Higher levels save a few per cent and cost several times the time.
 pub(crate) const LEVEL: i32 = 15;
-/// Bytes that an unpacked block of records should have, about.
-const RECORDS: usize = 16 << 10;
-/// Bytes that an unpacked block of rows should have, at most.
-const ROWS: usize = 64 << 10;
 /// Rows in a block, at most.
 const MAX_ROWS: usize = 256;
 
@@ -31,7 +27,7 @@ impl Store {
 
     fn push(&mut self, zstd: &mut zstd::bulk::Compressor<'_>, raw: &[u8]) -> Result<(), PackError> {
         let large = || PackError::Record { store: self.id, bytes: raw.len() as u64 };
-        let n_raw = u32::try_from(raw.len()).ok().filter(|n| *n <= MAX_BLOCK).ok_or_else(large)?;
+        let n_raw = u32::try_from(raw.len()).ok().filter(|n| *n <= MAX_UNPACKED_BLOCK).ok_or_else(large)?;
         let packed = zstd.compress(raw).map_err(|_| PackError::Zstd { store: self.id })?;
         let kept = if packed.len() < raw.len() { &packed } else { raw };
         self.index.push([kept.len() as u32, n_raw, crc32fast::hash(kept)]);
@@ -42,7 +38,7 @@ impl Store {
     /// Packs records of bytes.
     pub(crate) fn of_records(id: SectionId, records: &[Vec<u8>]) -> Result<Self, PackError> {
         let mean = records.iter().map(Vec::len).sum::<usize>() / records.len().max(1) + 4;
-        let per_block = (RECORDS / mean).clamp(1, 1024);
+        let per_block = (BLOCK_BYTES / mean).clamp(1, 1024);
         let mut store = Self::new(id, records.len(), per_block)?;
         let mut zstd = compressor(id)?;
         for block in records.chunks(per_block) {
@@ -89,7 +85,7 @@ impl Store {
 
 /// Rows in a block: as many as a block should hold, a power of two.
 fn rows_per_block(n_cols: usize) -> usize {
-    let fit = ROWS / (8 * n_cols.div_ceil(64)).max(1);
+    let fit = ROW_BLOCK_BYTES / (8 * n_cols.div_ceil(64)).max(1);
     let power = if fit == 0 { 1 } else { 1 << fit.ilog2() };
     power.clamp(16, MAX_ROWS)
 }

@@ -3,8 +3,7 @@
 use crate::bytes::{Writer, bytes_of};
 use crate::classes::{Classes, Distinct};
 use crate::error::PackError;
-use crate::format::{HAS_SEEN, MAX_BLOCK, NONE, POLYGONS_KNOWN};
-use crate::pack::page_size;
+use crate::format::{HAS_SEEN, MAX_UNPACKED_BLOCK, NONE, POLYGONS_KNOWN, page_size};
 use crate::store::LEVEL;
 use sightlines_pvs::{
     BitMatrix, CellRecord, Locator, LocatorNode, PlaneChild, PlaneTree, SectionId, StabTrees, TableParts,
@@ -120,7 +119,7 @@ pub(crate) fn classes(id: SectionId, classes: &Classes) -> Result<Vec<u8>, PackE
         next = next.max(class + 1);
     }
     let mut out = Writer::default();
-    let n_raw = u32::try_from(raw.0.len()).ok().filter(|n| *n <= MAX_BLOCK);
+    let n_raw = u32::try_from(raw.0.len()).ok().filter(|n| *n <= MAX_UNPACKED_BLOCK);
     out.u32(n_raw.ok_or(PackError::Record { store: id, bytes: raw.0.len() as u64 })?);
     out.0.extend(zstd::bulk::compress(&raw.0, LEVEL).map_err(|_| PackError::Zstd { store: id })?);
     Ok(out.0)

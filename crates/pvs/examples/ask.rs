@@ -9,7 +9,7 @@
 //! ```
 
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Place, PortalRecord, Table, TableKind, TableParts,
 };
 
 fn room(i: u32) -> CellRecord {
@@ -49,11 +49,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let bytes = Table::new(house())?.to_bytes();
     let table = Table::from_bytes(&bytes)?;
     println!("{} bytes, {} without portals and polygons", bytes.len(), table.strip_geometry().to_bytes().len());
+    let query = table.in_dimension::<2>()?;
     for eye in [[1.0, 2.0], [9.0, 2.0], [4.0, 0.5], [1.0, 5.0]] {
-        let seen = table.visible_from(&eye);
-        let rooms: Vec<u32> = seen.iter().map(|cell| cell.0).collect();
-        let names = table.objects_in(&seen).into_iter().map(|o| table.objects()[o as usize].name.as_str());
-        println!("at {eye:?}: in {:?}, sees rooms {rooms:?}, {:?}", table.locate(&eye), names.collect::<Vec<_>>());
+        match query.at(eye) {
+            Place::Outside => println!("at {eye:?}: outside every room, so everything is drawn"),
+            Place::Inside(here) => {
+                let rooms: Vec<u32> = here.visible_cells().map(|cell| cell.0).collect();
+                let names = here.visible_objects().into_iter().map(|o| table.objects()[o as usize].name.as_str());
+                println!("at {eye:?}: in {:?}, sees rooms {rooms:?}, {:?}", here.cells(), names.collect::<Vec<_>>());
+            }
+        }
     }
     println!("a viewer draws {:.0} % of the rooms on average", 100.0 * table.mean_visible_share());
     Ok(())

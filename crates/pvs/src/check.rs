@@ -1,6 +1,7 @@
 //! What must be true of a table's parts.
 
-use crate::parts::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord, TableParts};
+use crate::parts::TableParts;
+use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
 use crate::{BitMatrix, CellId, LocatorError, PlaneError, StabError, TableKind, side};
 
 /// A kind of thing with coordinates.

@@ -1,6 +1,7 @@
 //! The table and what it can be asked.
 
-use crate::parts::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord, TableParts};
+use crate::parts::TableParts;
+use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
 use crate::{Axis, CellId, CellSet, Locator, PlaneTree, StabTrees, TableError, TableKind, bits, side};
 
 /// Which cells of a scene can be seen from which: checked, and never changed.
@@ -188,18 +189,6 @@ impl Table {
         }
     }
 
-    /// The objects that a viewer at `p` may see, ascending: the union over all cells that contain `p`.
-    /// Empty if `p` is outside every cell.
-    ///
-    /// # Panics
-    /// As [`Table::locate`].
-    pub fn visible_objects_from(&self, p: &[f64]) -> Vec<u32> {
-        let mut objects: Vec<u32> = self.locate(p).into_iter().flat_map(|cell| self.visible_objects(cell)).collect();
-        objects.sort_unstable();
-        objects.dedup();
-        objects
-    }
-
     /// The objects that touch a cell of the set, ascending.
     ///
     /// # Panics
@@ -215,51 +204,24 @@ impl Table {
         objects
     }
 
-    /// Every cell that contains the point `p`, ascending; none if `p` is outside the scene or has a
-    /// coordinate that is not finite.
-    ///
-    /// A cell contains the points of its closed polygon, or of its box if it has no polygon. If the table
-    /// has a [`PlaneTree`], that alone decides. A point on the border between cells is in all of them: a
-    /// viewer there sees what any of them sees. Decided in plain doubles with an error bound that errs
-    /// towards "inside": a point within rounding of a border may be found in cells on both sides of it,
-    /// never in none of them. O(log n + candidates), with planes O(depth of the tree).
-    ///
-    /// # Panics
-    /// If `p` does not have [`Table::dimension`] coordinates (scene units).
-    pub fn locate(&self, p: &[f64]) -> Vec<CellId> {
-        let mut found = Vec::new();
-        self.locate_into(p, &mut Vec::new(), &mut found);
-        found
-    }
-
-    /// As [`Table::locate`], into `found`, which is cleared first; `pending` is scratch. Who keeps the two
-    /// asks without any new memory after a while.
-    ///
-    /// # Panics
-    /// As [`Table::locate`].
-    pub fn locate_into(&self, p: &[f64], pending: &mut Vec<u32>, found: &mut Vec<CellId>) {
-        let point = self.point(p);
-        found.clear();
-        if !point.iter().all(|x| x.is_finite()) {
-            return;
-        }
+    /// Calls `visit` with every cell that contains the point, see [`crate::Query::at`]; a cell may come more than once, in no
+    /// particular order. The coordinates are finite, and z is 0 in a plane. `pending` is scratch.
+    pub(crate) fn for_each_cell_at(&self, p: [f64; 3], pending: &mut Vec<u32>, mut visit: impl FnMut(CellId)) {
         match &self.parts.planes {
-            Some(planes) => planes.for_each_cell(point, pending, |id| found.push(id)),
-            None => self.parts.locator.for_each_candidate_in(point, pending, |id| {
-                if self.may_contain(&self.parts.cells[id.idx()], point) {
-                    found.push(id);
+            Some(planes) => planes.for_each_cell(p, pending, visit),
+            None => self.parts.locator.for_each_candidate_in(p, pending, |id| {
+                if self.may_contain(&self.parts.cells[id.idx()], p) {
+                    visit(id);
                 }
             }),
         }
-        found.sort_unstable();
-        found.dedup();
     }
 
     /// Calls `visit` with every cell that the closed box from `min` to `max` (scene units; z is 0 in a plane) touches, until it says
     /// `false`; a cell may come more than once, in no particular order. `pending` is scratch.
     ///
-    /// Cells are closed polygons, or boxes, or what a [`PlaneTree`] says, as for [`Table::locate`]. Errs towards touching, by
-    /// rounding only: a box that touches a cell is never told otherwise. A NaN bounds nothing. O(cells near the box).
+    /// Cells are closed polygons, or boxes, or what a [`PlaneTree`] says, as for [`crate::Query::at`]. Errs towards touching, by
+    /// rounding only: every cell that the box touches is visited. A NaN bounds nothing. O(cells near the box).
     #[inline]
     pub fn for_each_touching(
         &self,
@@ -278,30 +240,11 @@ impl Table {
         });
     }
 
-    /// What a viewer at `p` may see: the union of the rows of all cells that contain `p`. Empty if `p`
-    /// is outside every cell.
-    ///
-    /// # Panics
-    /// As [`Table::locate`].
-    pub fn visible_from(&self, p: &[f64]) -> CellSet {
-        let mut seen = CellSet::empty(self.n_cells());
-        self.locate(p).into_iter().for_each(|cell| seen.unite(self.row(cell)));
-        seen
-    }
-
     /// The share of all cells that a cell sees, averaged over all cells: what a viewer has to draw, if
     /// all cells are alike. 0 for a table without cells.
     pub fn mean_visible_share(&self) -> f64 {
         let n = self.n_cells() as f64;
         if n == 0.0 { 0.0 } else { self.parts.rows.count_ones() as f64 / (n * n) }
-    }
-
-    fn point(&self, p: &[f64]) -> [f64; 3] {
-        let n = usize::from(self.parts.dimension);
-        assert!(p.len() == n, "a point of this table has {n} coordinates, not {}", p.len());
-        let mut point = [0.0; 3];
-        point[..n].copy_from_slice(p);
-        point
     }
 
     fn may_contain(&self, cell: &CellRecord, p: [f64; 3]) -> bool {

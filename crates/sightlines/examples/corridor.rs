@@ -5,6 +5,7 @@
 use sightlines::bake::{BakeOptions, bake_plan};
 use sightlines::cells::Plan;
 use sightlines::geometry::Point2;
+use sightlines::pvs::Place;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Rooms of 4 by 4 above a corridor of 12 by 2; each has a door of width 1 in the middle of its wall.
@@ -18,9 +19,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{} cells, {} portals", baked.summary.n_cells, baked.summary.n_portals);
     let places =
         [("left room", [2., 5.]), ("middle room", [6., 5.]), ("right room", [10., 5.]), ("corridor", [6., 1.])];
+    let query = baked.table.in_dimension::<2>()?;
     for (name, at) in places {
-        let seen = baked.table.visible_from(&at);
-        let shows = |p: [f64; 2]| baked.table.locate(&p).iter().any(|&cell| seen.contains(cell));
+        let Place::Inside(here) = query.at(at) else { continue };
+        let shows = |p: [f64; 2]| query.at(p).cells().iter().any(|&cell| here.sees(cell));
         let names: Vec<&str> = places.iter().filter(|&&(_, p)| shows(p)).map(|&(n, _)| n).collect();
         println!("from the {name}: {}", names.join(", "));
     }

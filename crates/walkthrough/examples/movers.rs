@@ -5,12 +5,12 @@
 //! volume at most as [`MoverOptions`] allow by default.
 
 use sightlines_bake::{SceneBakeOptions, bake_scene};
-use sightlines_eye_to_cell::{Method, Seen, TableCells, View};
+use sightlines_eye_to_cell::{Method, TableCells, View, VisibleSet};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::Table;
 use sightlines_scenes::{TowerOptions, tower, tower_rooms};
 use sightlines_walkthrough::{
-    Answer, Frame, Motion, MoverId, MoverOptions, Movers, Stand, WalkOptions, Walkthrough, wander,
+    Answer, CameraPose, Frame, Motion, MoverId, MoverOptions, Movers, WalkOptions, Walkthrough, wander,
 };
 use std::error::Error;
 use std::sync::Arc;
@@ -91,11 +91,11 @@ fn things(n: usize, kind: Kind, rooms: &[Aabb<3>], all: &Aabb<3>) -> Vec<(Thing,
 
 /// A frame of the walk, kept: what it sees does not depend on movers.
 struct Kept {
-    seen: Seen,
+    seen: VisibleSet,
     answer: Answer,
 }
 
-fn frames_of(cells: &Cells, stands: &[Stand]) -> Result<Vec<Kept>, Box<dyn Error>> {
+fn frames_of(cells: &Cells, stands: &[CameraPose]) -> Result<Vec<Kept>, Box<dyn Error>> {
     let mut walk = Walkthrough::new(cells.clone(), cells.clone(), WalkOptions::default());
     let mut frames = Vec::new();
     for stand in stands {

@@ -14,24 +14,24 @@
 #![forbid(unsafe_code)]
 
 mod cache;
+mod coarse;
 mod levels;
 mod movers;
 mod packed;
 mod portals;
 mod predict;
 mod prefetch;
-mod resident;
 mod walkthrough;
 mod wander;
 
+pub use coarse::CoarseVisibility;
 pub use levels::{Draw, LevelCounters, LevelError, LevelIndex, LevelSize, Levels, LoadLevel};
 pub use movers::{
-    Broken, BrokenPromise, CellBoxes, Motion, MotionError, MoverCounters, MoverError, MoverId, MoverOptions, Movers,
-    Places,
+    Broken, BrokenPromise, CellBoxes, CellLocator, Motion, MotionError, MoverCounters, MoverError, MoverId,
+    MoverOptions, Movers,
 };
 pub use packed::PackedCells;
 pub use portals::same_portals;
 pub use prefetch::{Prefetcher, Prepare};
-pub use resident::Resident;
 pub use walkthrough::{Answer, Frame, WalkCounters, WalkOptions, Walkthrough};
-pub use wander::{Stand, wander};
+pub use wander::{CameraPose, wander};

@@ -1,10 +1,10 @@
 //! Packed tables, for both sides: the resident part, and what is read on demand.
 
-use crate::resident::Resident;
-use sightlines_eye_to_cell::{CellSource, MirrorWay, StabStep, Way};
+use crate::coarse::CoarseVisibility;
+use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{Packed, PackedError, Source};
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, Place, PlaceBuffer};
 use std::sync::Arc;
 
 /// A packed table, shared by the frames and the thread that reads ahead.
@@ -56,8 +56,8 @@ impl<S: Source> CellSource for PackedCells<S> {
         self.0.visible(cell, out)
     }
 
-    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), PackedError> {
-        self.0.exits(cell, &mut |portal, forward, to, corners| show(Way { portal, forward, to, corners }))
+    fn portal_edges(&self, cell: CellId, show: &mut dyn FnMut(PortalEdge<'_>)) -> Result<(), PackedError> {
+        self.0.exits(cell, &mut |portal, forward, to, corners| show(PortalEdge { portal, forward, to, corners }))
     }
 
     fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
@@ -72,9 +72,9 @@ impl<S: Source> CellSource for PackedCells<S> {
         self.0.object_box(object).map(bounds)
     }
 
-    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), PackedError> {
+    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), PackedError> {
         for mirror in self.0.mirrors().iter().filter(|mirror| mirror.cell == cell) {
-            show(MirrorWay { face: mirror.face, corners: &mirror.points });
+            show(MirrorPiece { face: mirror.face, corners: &mirror.points });
         }
         Ok(())
     }
@@ -90,7 +90,7 @@ impl<S: Source> CellSource for PackedCells<S> {
     }
 }
 
-impl<S: Source> Resident for PackedCells<S> {
+impl<S: Source> CoarseVisibility for PackedCells<S> {
     fn n_cells(&self) -> usize {
         self.0.n_cells()
     }
@@ -99,12 +99,8 @@ impl<S: Source> Resident for PackedCells<S> {
         self.0.n_objects()
     }
 
-    fn locate(&self, eye: [f64; 3], _pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
-        let n = usize::from(self.0.dimension());
-        // The resident part is read and checked when the file is opened; locating a point cannot fail.
-        if self.0.locate(&eye[..n], out).is_err() {
-            out.clear();
-        }
+    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+        self.0.cells_at(eye, buffer)
     }
 
     fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId)) {

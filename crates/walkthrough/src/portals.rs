@@ -35,7 +35,7 @@ where
 fn by_corners<S: CellSource + ?Sized>(source: &S) -> Result<BTreeMap<Corners, Vec<u32>>, S::Error> {
     let mut all: BTreeMap<Corners, Vec<u32>> = BTreeMap::new();
     for cell in (0..source.n_cells() as u32).map(CellId) {
-        source.ways(cell, &mut |way| {
+        source.portal_edges(cell, &mut |way| {
             // Each portal is an exit of both its cells; one is enough.
             if way.forward {
                 all.entry(canonical(way.corners)).or_default().push(way.portal);

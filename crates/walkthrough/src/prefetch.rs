@@ -1,6 +1,6 @@
 //! A thread that prepares data for the viewers of a cell.
 //!
-//! The data can be of any kind: [`crate::Walkthrough`] prepares outlooks, and other data for the viewers of a cell,
+//! The data can be of any kind: [`crate::Walkthrough`] prepares subgraphs, and other data for the viewers of a cell,
 //! such as an occlusion buffer, can be prepared in the same way.
 
 use crate::cache::Cache;

@@ -1,18 +1,18 @@
 //! What to draw, frame by frame.
 
+use crate::coarse::CoarseVisibility;
 use crate::predict::Path;
 use crate::prefetch::{Prefetcher, Prepare};
-use crate::resident::Resident;
 use sightlines_eye_to_cell::{
-    CellSource, Doors, EyeToCell, Image, Method, Outlook, Scratch, Seen, View, follow_reflections,
+    CellSource, Doors, Image, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, Place, PlaceBuffer};
 use std::fmt;
 
 /// Parameters of a [`Walkthrough`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WalkOptions {
-    /// Maximum size of the prepared outlooks, in bytes. Those of the eye's cells, of cells with mirrors in view, and
+    /// Maximum size of the prepared subgraphs, in bytes. Those of the eye's cells, of cells with mirrors in view, and
     /// the last one made are kept regardless.
     pub budget: usize,
     /// Number of frames ahead to prepare for, if the eye keeps its current motion.
@@ -45,7 +45,7 @@ pub enum Answer {
 #[derive(Debug)]
 pub struct Frame<'a> {
     /// The cells and objects.
-    pub seen: &'a Seen,
+    pub seen: &'a VisibleSet,
     /// The cells that contain the eye, ascending: several on a border, none outside.
     pub at: &'a [CellId],
     /// How that relates to the method's answer.
@@ -71,18 +71,18 @@ pub struct WalkCounters {
     pub outside: u64,
 }
 
-/// Prepares outlooks from a source.
-struct Outlooks<S>(S);
+/// Prepares subgraphs from a source.
+struct VisibleSubgraphs<S>(S);
 
-impl<S: CellSource<Error: Send + 'static> + Send + 'static> Prepare for Outlooks<S> {
-    type Prepared = Outlook;
+impl<S: CellSource<Error: Send + 'static> + Send + 'static> Prepare for VisibleSubgraphs<S> {
+    type Prepared = VisibleSubgraph;
     type Error = S::Error;
 
-    fn prepare(&mut self, cell: CellId) -> Result<Outlook, S::Error> {
-        Outlook::prepare(&self.0, cell)
+    fn prepare(&mut self, cell: CellId) -> Result<VisibleSubgraph, S::Error> {
+        VisibleSubgraph::prepare(&self.0, cell)
     }
 
-    fn n_bytes(prepared: &Outlook) -> usize {
+    fn n_bytes(prepared: &VisibleSubgraph) -> usize {
         prepared.n_bytes()
     }
 }
@@ -92,24 +92,23 @@ impl<S: CellSource<Error: Send + 'static> + Send + 'static> Prepare for Outlooks
 /// `R` answers at once (point location, and a superset of what a cell sees). `S` is a source that may be slow; only
 /// another thread reads it. Both may be the same table.
 ///
-/// A frame never waits. If the outlook of the eye's cell has not arrived yet, the frame gets a superset. Outlooks of
+/// A frame never waits. If the subgraph of the eye's cell has not arrived yet, the frame gets a superset. VisibleSubgraphs of
 /// the cells ahead are prepared in advance.
 pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static> {
     resident: R,
     options: WalkOptions,
-    outlooks: Prefetcher<Outlooks<S>>,
+    subgraphs: Prefetcher<VisibleSubgraphs<S>>,
     path: Path,
     doors: Doors,
     scratch: Scratch,
-    seen: Seen,
+    seen: VisibleSet,
     images: Vec<Image>,
     at: Vec<CellId>,
     /// Cells with mirrors in view.
     mirrored: Vec<CellId>,
     /// Cells to come, the most urgent first.
     wishes: Vec<CellId>,
-    found: Vec<CellId>,
-    pending: Vec<u32>,
+    buffer: PlaceBuffer,
     last: Option<Last>,
     counters: WalkCounters,
 }
@@ -122,23 +121,22 @@ struct Last {
     doors_changed: bool,
 }
 
-impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthrough<R, S> {
+impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthrough<R, S> {
     /// Starts with nothing prepared.
     pub fn new(resident: R, source: S, options: WalkOptions) -> Self {
         Self {
             resident,
             options,
-            outlooks: Prefetcher::new(Outlooks(source), options.budget),
+            subgraphs: Prefetcher::new(VisibleSubgraphs(source), options.budget),
             path: Path::default(),
             doors: Doors::all_open(),
             scratch: Scratch::new(),
-            seen: Seen::new(),
+            seen: VisibleSet::new(),
             images: Vec::new(),
             at: Vec::new(),
             mirrored: Vec::new(),
             wishes: Vec::new(),
-            found: Vec::new(),
-            pending: Vec::new(),
+            buffer: PlaceBuffer::new(),
             last: None,
             counters: WalkCounters::default(),
         }
@@ -150,7 +148,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
     /// frame.
     pub fn frame(&mut self, view: &View, method: Method) -> Frame<'_> {
         self.counters.frames += 1;
-        self.outlooks.poll();
+        self.subgraphs.poll();
         self.path.follow(view.eye());
         let repeats = |last: &Last| {
             last.answer != Answer::Late && !last.doors_changed && last.method == method && last.view == *view
@@ -176,38 +174,43 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         self.seen.clear(n_cells, n_objects);
         self.images.clear();
         self.mirrored.clear();
-        self.resident.locate(view.eye(), &mut self.pending, &mut self.at);
-        let mut answer = Answer::Full;
+        self.at.clear();
+        let mut answer = match self.resident.cells_at(view.eye(), &mut self.buffer) {
+            Place::Inside(cells) => {
+                self.at.extend_from_slice(cells);
+                Answer::Full
+            }
+            Place::Outside => Answer::Outside,
+        };
         for &cell in &self.at {
-            match self.outlooks.get(cell) {
-                Some(outlook) => method.look(&outlook, view, &self.doors, &mut self.scratch, &mut self.seen),
+            match self.subgraphs.get(cell) {
+                Some(subgraph) => method.look(&subgraph, view, &self.doors, &mut self.scratch, &mut self.seen),
                 None => {
                     answer = Answer::Late;
                     coarse(&self.resident, cell, &mut self.seen);
                 }
             }
         }
-        if self.at.is_empty() {
-            answer = Answer::Outside;
+        if answer == Answer::Outside {
             self.seen.add_cells((0..n_cells as u32).map(CellId));
             self.seen.add_objects(0..n_objects as u32);
         } else if self.options.bounces > 0 {
-            let (outlooks, mirrored) = (&mut self.outlooks, &mut self.mirrored);
-            let outlook = |cell| {
+            let (subgraphs, mirrored) = (&mut self.subgraphs, &mut self.mirrored);
+            let subgraph = |cell| {
                 if !mirrored.contains(&cell) {
                     mirrored.push(cell);
                 }
-                outlooks.get(cell)
+                subgraphs.get(cell)
             };
             let sizes = [n_cells, n_objects];
             self.images = follow_reflections(
-                &method,
+                method,
                 &self.seen,
                 self.options.bounces,
                 &self.doors,
                 &mut self.scratch,
                 sizes,
-                outlook,
+                subgraph,
             );
             if self.images.iter().any(|image| !image.complete) {
                 answer = Answer::Late;
@@ -223,12 +226,12 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         answer
     }
 
-    /// Requests the outlooks of the eye's cells, of cells with mirrors in view, and of the cells ahead.
+    /// Requests the subgraphs of the eye's cells, of cells with mirrors in view, and of the cells ahead.
     fn look_ahead(&mut self) {
         self.wishes.clear();
         self.wishes.extend_from_slice(&self.at);
         self.wishes.extend_from_slice(&self.mirrored);
-        self.outlooks.pin(&self.wishes);
+        self.subgraphs.pin(&self.wishes);
         let n = self.options.places_per_frame;
         // Nearby points are looked up in each frame, those farther ahead in turn.
         let turn = (self.counters.frames % 8) as f64 / 8.0;
@@ -238,8 +241,10 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
             if !self.path.moves() {
                 break;
             }
-            self.resident.locate(place, &mut self.pending, &mut self.found);
-            self.wishes.extend_from_slice(&self.found);
+            // Outside there is nothing to prepare.
+            if let Place::Inside(cells) = self.resident.cells_at(place, &mut self.buffer) {
+                self.wishes.extend_from_slice(cells);
+            }
         }
         // Each once, at its first position. The list is short.
         let mut k = 0;
@@ -250,7 +255,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
                 k += 1;
             }
         }
-        self.outlooks.wish(&self.wishes);
+        self.subgraphs.wish(&self.wishes);
     }
 
     /// Closes a portal. Returns whether it was open.
@@ -272,7 +277,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         changed
     }
 
-    /// Switches to another table, for example after a wall was added or removed. Outlooks and mirrors of the old one
+    /// Switches to another table, for example after a wall was added or removed. VisibleSubgraphs and mirrors of the old one
     /// are dropped, and pending results of its thread are ignored; the first frames are [`Answer::Late`], as at the
     /// start. The path of the eye and the counters continue.
     ///
@@ -288,7 +293,7 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
         });
         self.doors = doors;
         self.resident = resident;
-        self.outlooks = Prefetcher::new(Outlooks(source), self.options.budget);
+        self.subgraphs = Prefetcher::new(VisibleSubgraphs(source), self.options.budget);
         self.seen.clear(0, 0);
         self.images.clear();
         self.at.clear();
@@ -315,28 +320,28 @@ impl<R: Resident, S: CellSource<Error: Send + 'static> + Send + 'static> Walkthr
     /// Whether everything that the last frame requested is prepared, for callers that prefer to wait, for example
     /// before the first frame.
     pub fn is_idle(&mut self) -> bool {
-        self.outlooks.is_idle()
+        self.subgraphs.is_idle()
     }
 
-    /// Takes the last error of preparing an outlook, with its cell. Until preparing succeeds, frames there are
+    /// Takes the last error of preparing an subgraph, with its cell. Until preparing succeeds, frames there are
     /// [`Answer::Late`].
     pub fn take_error(&mut self) -> Option<(CellId, S::Error)> {
-        self.outlooks.take_error()
+        self.subgraphs.take_error()
     }
 
-    /// Bytes and number of the outlooks in memory. [`Walkthrough::replace`] resets these, and those of the next method.
+    /// Bytes and number of the subgraphs in memory. [`Walkthrough::replace`] resets these, and those of the next method.
     pub fn kept(&self) -> (usize, usize) {
-        (self.outlooks.n_bytes(), self.outlooks.n_kept())
+        (self.subgraphs.n_bytes(), self.subgraphs.n_kept())
     }
 
-    /// Numbers of outlooks prepared so far, and evicted to stay within the budget.
+    /// Numbers of subgraphs prepared so far, and evicted to stay within the budget.
     pub fn prepared(&self) -> (u64, u64) {
-        (self.outlooks.n_made(), self.outlooks.n_dropped())
+        (self.subgraphs.n_made(), self.subgraphs.n_dropped())
     }
 }
 
 /// Adds a superset of what a cell may see.
-fn coarse(resident: &impl Resident, cell: CellId, seen: &mut Seen) {
+fn coarse(resident: &impl CoarseVisibility, cell: CellId, seen: &mut VisibleSet) {
     resident.coarse(cell, &mut |cell| {
         seen.add_cell(cell);
     });

@@ -6,7 +6,7 @@ use sightlines_pvs::CellId;
 
 /// Where the viewer of a frame is, and looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stand {
+pub struct CameraPose {
     /// The eye, in scene units; z is 0 in a plane.
     pub eye: [f64; 3],
     /// The direction of view; of any length but zero.
@@ -29,7 +29,7 @@ pub fn wander<S: CellSource + ?Sized>(
     n_frames: usize,
     step: f64,
     seed: u64,
-) -> Result<Vec<Stand>, S::Error> {
+) -> Result<Vec<CameraPose>, S::Error> {
     let mut chance = Random::new(seed);
     let mut frames = Vec::with_capacity(n_frames);
     let n_cells = source.n_cells();
@@ -63,7 +63,14 @@ pub fn wander<S: CellSource + ?Sized>(
 }
 
 /// Goes straight to `goal`, a frame at each step.
-fn go(place: &mut [f64; 3], dir: &mut [f64; 3], goal: [f64; 3], step: f64, n_frames: usize, frames: &mut Vec<Stand>) {
+fn go(
+    place: &mut [f64; 3],
+    dir: &mut [f64; 3],
+    goal: [f64; 3],
+    step: f64,
+    n_frames: usize,
+    frames: &mut Vec<CameraPose>,
+) {
     let way: [f64; 3] = std::array::from_fn(|k| goal[k] - place[k]);
     let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
     if !(length > 0.0 && length.is_finite() && step > 0.0) {
@@ -79,7 +86,7 @@ fn go(place: &mut [f64; 3], dir: &mut [f64; 3], goal: [f64; 3], step: f64, n_fra
         // The last step ends where it should, without rounding.
         *place = if k as f64 == n { goal } else { std::array::from_fn(|i| start[i] + way[i] * (k as f64 / n)) };
         let looks = if dir.iter().all(|x| x.abs() < 1e-3) { way } else { *dir };
-        frames.push(Stand { eye: *place, dir: looks });
+        frames.push(CameraPose { eye: *place, dir: looks });
     }
 }
 
@@ -94,7 +101,7 @@ struct Door {
 
 fn doors<S: CellSource + ?Sized>(source: &S, cell: CellId) -> Result<Vec<Door>, S::Error> {
     let mut doors = Vec::new();
-    source.ways(cell, &mut |way| {
+    source.portal_edges(cell, &mut |way| {
         if let Some(at) = mean(way.corners.iter().copied()) {
             doors.push(Door { portal: way.portal, to: way.to, at });
         }

@@ -8,13 +8,13 @@ use super::{ChartError, Family, Settings};
 use sightlines::bake::quake::bake_map;
 use sightlines::bake::{BakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_scene};
 use sightlines::cells::Scene;
-use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{OfficeOptions, office};
 use sightlines::visible_surface::{Camera, Chosen, Faces, RayCaster, Shot, VisibleSurface};
-use sightlines::walkthrough::{Stand, wander};
+use sightlines::walkthrough::{CameraPose, wander};
 use sightlines_benches::spec::SceneSpec;
 use std::convert::Infallible;
 use std::hint::black_box;
@@ -111,7 +111,7 @@ fn fov() -> f64 {
     2.0 * ((ANGLE.to_radians() / 2.0).tan() * ASPECT).atan()
 }
 
-fn view(place: &Place, stand: &Stand) -> Result<View, Failure> {
+fn view(place: &Place, stand: &CameraPose) -> Result<View, Failure> {
     let ([x, y, _], [dx, dy, _]) = (stand.eye, stand.dir);
     Ok(match place.table.dimension() {
         2 => View::planar([x, y], [dx, dy], fov())?,
@@ -141,8 +141,8 @@ impl Found {
 fn one_place(settings: &Settings, place: &Place, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let table = &place.table;
     let cells = TableCells::new(table);
-    let outlooks: Vec<Outlook> = (0..table.n_cells() as u32)
-        .map(|cell| Outlook::prepare(&cells, CellId(cell)))
+    let subgraphs: Vec<VisibleSubgraph> = (0..table.n_cells() as u32)
+        .map(|cell| VisibleSubgraph::prepare(&cells, CellId(cell)))
         .collect::<Result<_, Infallible>>()?;
     let bounds = |min: [f64; 3], max: [f64; 3]| Aabb { min, max };
     let boxes: Vec<Aabb<3>> = table.cells().iter().map(|c| bounds(c.min, c.max)).collect();
@@ -152,7 +152,7 @@ fn one_place(settings: &Settings, place: &Place, rows: &mut Vec<Row>) -> Result<
     let shown = shown(place, &stands)?;
     let polygons = |o: &u32| u64::from(table.polygons_of(*o));
     let needed: u64 = shown.iter().flatten().flatten().map(polygons).sum();
-    let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
+    let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
     let mut exact_cells: Vec<Vec<u32>> = Vec::new();
     let mut all: Vec<(String, Found)> = Vec::new();
     // The exact method comes first here, as the others are held against it.
@@ -160,12 +160,12 @@ fn one_place(settings: &Settings, place: &Place, rows: &mut Vec<Row>) -> Result<
         let mut found = Found::default();
         for (k, stand) in stands.iter().enumerate() {
             let view = view(place, stand)?;
-            let at = table.locate(&stand.eye[..usize::from(table.dimension())]);
+            let at = table.place_at(stand.eye).cells().to_vec();
             let time = (0..3).map(|_| {
                 let start = Instant::now();
                 seen.clear(table.n_cells(), table.objects().len());
                 for cell in &at {
-                    method.look(&outlooks[cell.idx()], &view, &Doors::all_open(), &mut scratch, &mut seen);
+                    method.look(&subgraphs[cell.idx()], &view, &Doors::all_open(), &mut scratch, &mut seen);
                 }
                 start.elapsed().as_secs_f64()
             });
@@ -258,12 +258,12 @@ impl Tree {
 }
 
 /// For frames that are drawn, the objects that a picture shows, ascending. Who looks straight up or down has no picture.
-fn shown(place: &Place, stands: &[Stand]) -> Result<Vec<Option<Vec<u32>>>, Failure> {
+fn shown(place: &Place, stands: &[CameraPose]) -> Result<Vec<Option<Vec<u32>>>, Failure> {
     let Some(scene) = &place.scene else { return Ok(Vec::new()) };
     let faces = Faces::of_scene(scene)?;
     let caster = RayCaster::build(&faces);
     let chosen = Chosen::all(&faces);
-    let one = |stand: &Stand| -> Option<Vec<u32>> {
+    let one = |stand: &CameraPose| -> Option<Vec<u32>> {
         let at = [0, 1, 2].map(|k| stand.eye[k] + stand.dir[k]);
         let camera = Camera::look_at(stand.eye, at, place.up, ANGLE, [192, 144]).ok()?;
         let image = caster.picture(&Shot { faces: &faces, camera: &camera, chosen: &chosen }).0;

@@ -20,7 +20,7 @@ use sightlines::formats::wad::WadKind;
 use sightlines::formats::{LumpName, Wad, WadBuilder};
 use sightlines::geometry::check_coordinate;
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{CellId, PlaceBuffer, Table};
 use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
 use sightlines_packed::{PackOptions, Packed, pack};
@@ -371,7 +371,7 @@ fn check_packed(bytes: &[u8]) -> bool {
         let (mut cells, mut numbers) = (Vec::new(), Vec::new());
         for cell in (0..packed.n_cells().min(50) as u32).map(CellId) {
             let (min, _) = packed.cell_box(cell).expect("boxes are resident");
-            packed.locate(&min[..usize::from(packed.dimension())], &mut cells).expect("so is the locator");
+            let _ = packed.cells_at(min, &mut PlaceBuffer::new());
             packed.coarse(cell, &mut cells).expect("and the coarse table");
             let _ = packed.exits(cell, &mut |_, _, to, _| assert!(to.idx() < packed.n_cells()));
             let _ = packed.objects_seen(cell, &mut numbers);

@@ -76,7 +76,7 @@ fn check(case: &Case, table: &Table, n_points: usize, counts: &mut Counts) -> Re
             continue;
         }
         let (leaf, nearest) = raw.leaf_at(p);
-        let found = table.locate(&p);
+        let found = table.in_dimension().unwrap().at(p).cells().to_vec();
         let wanted = clusters[leaf].map(CellId);
         if wanted.is_some_and(|cell| !found.contains(&cell)) {
             return Err(format!("{p:?} is in {wanted:?}, and not found there: {found:?}"));
@@ -105,7 +105,7 @@ fn check(case: &Case, table: &Table, n_points: usize, counts: &mut Counts) -> Re
         // Details of a cluster are solid, and may lie in the way.
         let is_solid = |p: Point| raw.leafs_near(p, slack).iter().all(|&leaf| clusters[leaf].is_none());
         for p in inner.chain([middle]) {
-            let found = table.locate(&p);
+            let found = table.in_dimension().unwrap().at(p).cells().to_vec();
             let sides = portal.cells.iter().filter(|cell| found.contains(cell)).count();
             let all = raw.leafs_near(p, slack);
             let has_detail = all.iter().any(|&leaf| clusters[leaf].is_none());
@@ -253,7 +253,7 @@ fn tables_agree_with_the_worlds_that_maps_were_made_from() {
                 (1.0 - t) * around.min[k] + t * around.max[k]
             });
             if let Some(cell) = world.leafs[world.leaf_at(p)].cell {
-                assert!(table.locate(&p).contains(&cell), "{seed}: {p:?} is in {cell}");
+                assert!(table.in_dimension().unwrap().at(p).cells().contains(&cell), "{seed}: {p:?} is in {cell}");
                 n_points += 1;
             }
         }

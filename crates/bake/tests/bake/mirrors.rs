@@ -38,7 +38,7 @@ fn check_plan(plan: &Plan, table: &Table, seed: u64) -> Result<[usize; 2], Strin
             bounds.min[1] + unit() * (bounds.max[1] - bounds.min[1]),
         );
         let towards = Point2::new(unit() - 0.5, unit() - 0.5);
-        if table.locate(&[eye.x, eye.y]).is_empty() {
+        if table.in_dimension().unwrap().at([eye.x, eye.y]).is_outside() {
             continue;
         }
         let walls = (0u32..).map(LineId).zip(plan.lines()).filter(|(_, line)| line.opaque);
@@ -51,7 +51,7 @@ fn check_plan(plan: &Plan, table: &Table, seed: u64) -> Result<[usize; 2], Strin
             continue;
         }
         let before = eye + towards * (t * (1.0 - 1e-7));
-        let cells = table.locate(&[before.x, before.y]);
+        let cells = table.in_dimension().unwrap().at([before.x, before.y]).cells().to_vec();
         let is_met = |part: &&MirrorRecord| {
             let [left, right] = ends(part);
             let near = meet(eye, towards, left, right).is_some_and(|(at, _)| (at / t - 1.0).abs() < 1e-9);
@@ -222,7 +222,7 @@ fn check_scene(table: &Table, seed: u64) -> Result<usize, String> {
         if (eye[axis] - at).abs() < 1e-3 || is_near_end {
             continue;
         }
-        let cells = table.locate(&before);
+        let cells = table.in_dimension().unwrap().at(before).cells().to_vec();
         let is_met = |part: &&MirrorRecord| {
             let corners = &part.points;
             let within = |j: usize| corners.iter().any(|c| c[j] <= hit[j]) && corners.iter().any(|c| c[j] >= hit[j]);

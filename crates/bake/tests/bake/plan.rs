@@ -39,9 +39,10 @@ fn boxed(more: &[PlanLine]) -> Plan {
 
 /// Whether some cell at `p` sees some cell at `q`.
 fn joins(table: &Table, p: [f64; 2], q: [f64; 2]) -> bool {
-    let seen = table.visible_from(&p);
-    let at_q = table.locate(&q);
-    assert!(!seen.is_empty() && !at_q.is_empty(), "{p:?} and {q:?} are inside");
+    let seen = table.in_dimension().unwrap().at(p).inside().map(|at| at.visible_set());
+    let at_q = table.in_dimension().unwrap().at(q).cells().to_vec();
+    assert!(!at_q.is_empty(), "{q:?} is inside");
+    let seen = seen.unwrap_or_else(|| panic!("{p:?} is inside"));
     at_q.iter().any(|&cell| seen.contains(cell))
 }
 
@@ -73,7 +74,7 @@ fn auto_follows_axes_by_kd_tree_and_anything_else_by_triangulation() {
 fn groups_are_in_the_table_of_a_triangulation() {
     let door = PlanLine { opaque: false, left: Some(3), right: Some(5), ..line(4., 0., 4., 4.) };
     let table = bake(&boxed(&[door]), Subdivide::Auto).table;
-    let group = |p: [f64; 2]| table.cells()[table.locate(&p)[0].idx()].group;
+    let group = |p: [f64; 2]| table.cells()[table.in_dimension().unwrap().at(p).cells()[0].idx()].group;
     assert_eq!((group([2., 2.]), group([6., 2.])), (Some(3), Some(5)));
 }
 
@@ -343,7 +344,7 @@ fn objects_land_in_the_cells_that_they_touch() {
     for subdivide in METHODS {
         let table = bake(&plan, subdivide).table;
         let names = |at: [f64; 2]| {
-            let seen = table.objects_in(&table.visible_from(&at));
+            let seen = table.in_dimension().unwrap().at(at).inside().expect("inside").visible_objects();
             seen.iter().map(|&o| table.objects()[o as usize].name.as_str()).collect::<Vec<_>>()
         };
         assert_eq!(names([1., 1.]), ["west", "across", "on the wall"], "{subdivide}");

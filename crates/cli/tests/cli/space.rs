@@ -68,7 +68,10 @@ fn build_is_deterministic_and_options_matter() {
     assert!(fine.info_value("detail-below") == Some("0") && fine.n_cells() >= plain.n_cells());
     // Outside the walls is a cell too if a viewer can be there.
     let outside = build(&["--view-region", "-5,0,-5,-4,2,-4"]);
-    assert!(plain.locate(&[-4.5, 1.0, -4.5]).is_empty() && !outside.locate(&[-4.5, 1.0, -4.5]).is_empty());
+    assert!(
+        plain.in_dimension().unwrap().at([-4.5, 1.0, -4.5]).is_outside()
+            && !outside.in_dimension().unwrap().at([-4.5, 1.0, -4.5]).is_outside()
+    );
     assert!(folder.refused(&["build", "tower.glb", "-o", "out.pvs", "--max-cells", "5"]).contains("more than 5 cells"));
 }
 

@@ -4,7 +4,7 @@ use super::exact::by_sequences;
 use super::missing::list_missing;
 use super::query::Query;
 use super::sweep::{sweep, sweep_within};
-use crate::{Doors, Outlook, Scratch, Seen, TableCells, View};
+use crate::{Doors, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use proptest::prelude::*;
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use std::f64::consts::TAU;
@@ -102,12 +102,12 @@ fn all_see_all(dimension: u8, cells: Vec<CellRecord>, portals: Vec<PortalRecord>
     Table::new(parts).unwrap()
 }
 
-fn seen_by(outlook: &Outlook, view: &View, way: fn(&mut Query<'_>) -> bool) -> Vec<u32> {
-    let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
+fn seen_by(subgraph: &VisibleSubgraph, view: &View, way: fn(&mut Query<'_>) -> bool) -> Vec<u32> {
+    let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
     seen.clear(1 << 10, 0);
     for part in view.parts() {
         let doors = Doors::all_open();
-        let mut query = Query::new(outlook, view, part, &doors, &mut scratch, &mut seen);
+        let mut query = Query::new(subgraph, view, part, &doors, &mut scratch, &mut seen);
         list_missing(&mut query);
         assert!(way(&mut query), "boxes have an order from front to back");
     }
@@ -121,10 +121,10 @@ fn compare(doors: &[[u8; 4]], eye: [f64; 3], dir: [f64; 3], fov: f64) -> Result<
 
 fn compare_in(table: &Table, view: &View) -> Result<usize, TestCaseError> {
     let mut n_seen = 0;
-    for root in table.locate(&view.eye()[..usize::from(table.dimension())]) {
-        let outlook = Outlook::prepare(&TableCells::new(table), root).unwrap_or_else(|never| match never {});
-        let sequences = seen_by(&outlook, view, |query| by_sequences(query, u64::MAX));
-        let pieces = seen_by(&outlook, view, sweep);
+    for root in table.place_at(view.eye()).cells().iter().copied() {
+        let subgraph = VisibleSubgraph::prepare(&TableCells::new(table), root).unwrap_or_else(|never| match never {});
+        let sequences = seen_by(&subgraph, view, |query| by_sequences(query, u64::MAX));
+        let pieces = seen_by(&subgraph, view, sweep);
         prop_assert_eq!(&sequences, &pieces);
         n_seen += pieces.len();
     }
@@ -163,15 +163,15 @@ proptest! {
 fn limits_are_told() {
     let table = plan(&[[0, 0, 0, 0], [2, 6, 1, 5], [0, 0, 0, 0], [3, 8, 0, 4]], 5);
     let view = View::all_round([2.3, 2.6, 0.0]).unwrap();
-    let root = table.locate(&[2.3, 2.6])[0];
-    let outlook = Outlook::prepare(&TableCells::new(&table), root).unwrap_or_else(|never| match never {});
-    let all = seen_by(&outlook, &view, |query| by_sequences(query, u64::MAX));
-    let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
+    let root = table.in_dimension().unwrap().at([2.3, 2.6]).cells()[0];
+    let subgraph = VisibleSubgraph::prepare(&TableCells::new(&table), root).unwrap_or_else(|never| match never {});
+    let all = seen_by(&subgraph, &view, |query| by_sequences(query, u64::MAX));
+    let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
     let mut n_done = 0;
     for most in 0..100 {
         seen.clear(1 << 10, 0);
         let doors = Doors::all_open();
-        let mut query = Query::new(&outlook, &view, &view.parts()[0], &doors, &mut scratch, &mut seen);
+        let mut query = Query::new(&subgraph, &view, &view.parts()[0], &doors, &mut scratch, &mut seen);
         list_missing(&mut query);
         let done = sweep_within(&mut query, most);
         seen.sort();

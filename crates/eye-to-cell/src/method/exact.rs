@@ -1,12 +1,11 @@
 //! The exact method: all sequences of portals that the eye looks through.
 
+use super::Scratch;
 use super::missing::{list_missing, meets};
-use super::query::{Query, reflection};
+use super::query::{Query, keep_mirrors};
 use super::reach;
 use super::sweep::sweep;
 use crate::front::Facing;
-use crate::scratch::Scratch;
-use crate::side::Side;
 use crate::trees::NO_NODE;
 
 /// Portals that are looked at sequence by sequence, before the method turns to putting pieces together.
@@ -65,7 +64,7 @@ struct Search<'q, 'a> {
 
 impl<'q, 'a> Search<'q, 'a> {
     fn begin(query: &'q mut Query<'a>) -> Self {
-        let n_cells = query.outlook.cells.len();
+        let n_cells = query.subgraph.cells.len();
         let scratch = &mut *query.scratch;
         scratch.frames.clear();
         scratch.sides.clear();
@@ -78,9 +77,9 @@ impl<'q, 'a> Search<'q, 'a> {
     /// Goes through all sequences; `false` if they are more than `limit` allows.
     fn run(&mut self, limit: u64) -> bool {
         self.enter(
-            self.query.outlook.root,
+            self.query.subgraph.root,
             u32::MAX,
-            self.query.outlook.trees.as_ref().map_or(NO_NODE, |t| t.root()),
+            self.query.subgraph.trees.as_ref().map_or(NO_NODE, |t| t.root()),
             0,
         );
         while let Some((way, node)) = self.next_way() {
@@ -96,13 +95,13 @@ impl<'q, 'a> Search<'q, 'a> {
     /// The next way to try, and the node that it leads to; leaves cells that are done. `None` at the end.
     fn next_way(&mut self) -> Option<(u32, u32)> {
         loop {
-            let outlook = self.query.outlook;
+            let subgraph = self.query.subgraph;
             let scratch = &mut *self.query.scratch;
             let frame = scratch.frames.last_mut()?;
             if frame.next < frame.end {
                 frame.next += 1;
                 let at = frame.next - 1;
-                return Some(match &outlook.trees {
+                return Some(match &subgraph.trees {
                     Some(trees) if !frame.by_ways => {
                         let node = trees.child(at);
                         (trees.way(node), node)
@@ -110,10 +109,10 @@ impl<'q, 'a> Search<'q, 'a> {
                     _ => (at, NO_NODE),
                 });
             }
-            match &outlook.trees {
+            match &subgraph.trees {
                 // The tree was cut here: whatever it has not, the ways have.
                 Some(trees) if !frame.by_ways && trees.is_open(frame.node) => {
-                    let ways = outlook.ways_of(frame.cell);
+                    let ways = subgraph.ways_of(frame.cell);
                     (frame.by_ways, frame.next, frame.end) = (true, ways.start, ways.end);
                 }
                 _ => {
@@ -126,18 +125,18 @@ impl<'q, 'a> Search<'q, 'a> {
     }
 
     fn step(&mut self, index: u32, node: u32) {
-        let (outlook, view) = (self.query.outlook, self.query.view);
-        let way = &outlook.ways[index as usize];
+        let (subgraph, view) = (self.query.subgraph, self.query.view);
+        let way = &subgraph.ways[index as usize];
         let Some(&Frame { entry, first_side, .. }) = self.query.scratch.frames.last() else { return };
         // A line goes through a convex cell once, and not back through the portal it came by.
         if way.portal == entry || self.query.scratch.on_way[way.to as usize] || !self.query.way_in_view(index) {
             return;
         }
         let (first, end) = (first_side as usize, self.query.scratch.sides.len());
-        let passes = match way.front.facing(outlook.corners(way.first_corner, way.n_corners), view.eye, view.slack) {
+        let passes = match way.front.facing(subgraph.corners(way.first_corner, way.n_corners), view.eye, view.slack) {
             Facing::Behind => false,
             Facing::Before => {
-                let corners = outlook.corners(way.first_corner, way.n_corners);
+                let corners = subgraph.corners(way.first_corner, way.n_corners);
                 let eye = self.query.eye();
                 let Scratch { sides, cone, clipper, .. } = &mut *self.query.scratch;
                 cone.clear();
@@ -151,8 +150,8 @@ impl<'q, 'a> Search<'q, 'a> {
                 true
             }
         };
-        let Query { outlook, view, scratch, seen, .. } = &mut *self.query;
-        if passes && meets(&mut scratch.missing, &scratch.sides[end..], outlook, view, seen) {
+        let Query { subgraph, view, scratch, seen, .. } = &mut *self.query;
+        if passes && meets(&mut scratch.missing, &scratch.sides[end..], subgraph, view, seen) {
             self.enter(way.to, way.portal, node, end as u32);
         } else {
             scratch.sides.truncate(end);
@@ -161,9 +160,9 @@ impl<'q, 'a> Search<'q, 'a> {
 
     /// Enters a cell with the cone of the sides from `first_side` on, and keeps what that meets there.
     fn enter(&mut self, cell: u32, entry: u32, node: u32, first_side: u32) {
-        let outlook = self.query.outlook;
-        let ways = outlook.ways_of(cell);
-        let (by_ways, range) = match &outlook.trees {
+        let subgraph = self.query.subgraph;
+        let ways = subgraph.ways_of(cell);
+        let (by_ways, range) = match &subgraph.trees {
             Some(trees) if node != NO_NODE => (false, trees.children_range(node)),
             _ => (true, ways),
         };
@@ -174,34 +173,13 @@ impl<'q, 'a> Search<'q, 'a> {
     }
 
     fn keep(&mut self, cell: u32, first_side: usize) {
-        let outlook = self.query.outlook;
-        self.query.seen.add_cell(outlook.cells[cell as usize]);
+        let subgraph = self.query.subgraph;
+        self.query.seen.add_cell(subgraph.cells[cell as usize]);
         // Nothing that is asked now adds sides.
         let sides = std::mem::take(&mut self.query.scratch.sides);
         let cone = &sides[first_side..];
         self.query.keep_objects_in(cell, cone);
         keep_mirrors(self.query, cell, cone);
         self.query.scratch.sides = sides;
-    }
-}
-
-/// Notes what the eye sees in the mirrors of a cell, within the cone by which it sees the cell.
-pub(super) fn keep_mirrors(query: &mut Query<'_>, cell: u32, cone: &[Side]) {
-    let (outlook, eye) = (query.outlook, query.eye());
-    let Query { view, scratch, seen, .. } = query;
-    for mirror in outlook.mirrors_of(cell) {
-        let corners = outlook.corners(mirror.first_corner, mirror.n_corners);
-        let mut window = Vec::new();
-        let seen_in = match mirror.front.facing(corners, view.eye, view.slack) {
-            Facing::Behind => false,
-            Facing::Before => scratch.clipper.narrow(eye, corners, cone, &mut window),
-            Facing::Level => {
-                window.extend_from_slice(cone);
-                true
-            }
-        };
-        if seen_in {
-            seen.reflections.push(reflection(outlook, view, cell, mirror, &window));
-        }
     }
 }

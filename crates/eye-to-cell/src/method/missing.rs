@@ -5,17 +5,17 @@
 
 use super::query::{Query, excluded};
 use super::reach;
-use crate::outlook::Outlook;
-use crate::seen::Seen;
 use crate::side::Side;
+use crate::subgraph::VisibleSubgraph;
 use crate::view::View;
+use crate::visible_set::VisibleSet;
 
 /// Something that a line from the eye may lead to.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Missing {
-    /// A cell of the outlook.
+    /// A cell of the subgraph.
     Cell(u32),
-    /// An object of the outlook.
+    /// An object of the subgraph.
     Object(u32),
     /// A cell with a mirror, which is never done with: each way to it shows something else.
     Mirror(u32),
@@ -24,16 +24,16 @@ pub(crate) enum Missing {
 /// Lists what the exact method may find, as `wanted` cells, and as what is missing of it.
 pub(super) fn list_missing(query: &mut Query<'_>) {
     reach::incident_cells(query);
-    let outlook = query.outlook;
+    let subgraph = query.subgraph;
     query.scratch.missing.clear();
     for k in 0..query.scratch.wanted.list().len() {
         let cell = query.scratch.wanted.list()[k];
         query.scratch.missing.push(Missing::Cell(cell));
-        if !outlook.mirrors_of(cell).is_empty() {
+        if !subgraph.mirrors_of(cell).is_empty() {
             query.scratch.missing.push(Missing::Mirror(cell));
         }
-        for &object in outlook.objects_of(cell) {
-            if !query.seen.has_object(outlook.objects[object as usize]) && query.object_in_view(object) {
+        for &object in subgraph.objects_of(cell) {
+            if !query.seen.has_object(subgraph.objects[object as usize]) && query.object_in_view(object) {
                 query.scratch.missing.push(Missing::Object(object));
             }
         }
@@ -41,15 +41,21 @@ pub(super) fn list_missing(query: &mut Query<'_>) {
 }
 
 /// Whether a cone may meet anything that is missing. Strikes off what was found.
-pub(super) fn meets(missing: &mut Vec<Missing>, cone: &[Side], outlook: &Outlook, view: &View, seen: &Seen) -> bool {
+pub(super) fn meets(
+    missing: &mut Vec<Missing>,
+    cone: &[Side],
+    subgraph: &VisibleSubgraph,
+    view: &View,
+    seen: &VisibleSet,
+) -> bool {
     let mut k = 0;
     while let Some(&item) = missing.get(k) {
         let (found, bounds) = match item {
-            Missing::Cell(cell) => (seen.has_cell(outlook.cells[cell as usize]), &outlook.bounds[cell as usize]),
+            Missing::Cell(cell) => (seen.has_cell(subgraph.cells[cell as usize]), &subgraph.bounds[cell as usize]),
             Missing::Object(object) => {
-                (seen.has_object(outlook.objects[object as usize]), &outlook.object_bounds[object as usize])
+                (seen.has_object(subgraph.objects[object as usize]), &subgraph.object_bounds[object as usize])
             }
-            Missing::Mirror(cell) => (false, &outlook.bounds[cell as usize]),
+            Missing::Mirror(cell) => (false, &subgraph.bounds[cell as usize]),
         };
         if found {
             missing.swap_remove(k);

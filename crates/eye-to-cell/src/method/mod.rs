@@ -7,40 +7,76 @@ mod query;
 mod reach;
 mod sweep;
 
-pub(crate) use clip::Clipper;
-pub(crate) use exact::Frame;
-pub(crate) use missing::Missing;
-pub(crate) use sweep::Pieces;
-
 use crate::doors::Doors;
-use crate::outlook::Outlook;
-use crate::scratch::Scratch;
-use crate::seen::Seen;
+use crate::epoch_set::{Decided, EpochSet};
+use crate::side::Side;
+use crate::subgraph::VisibleSubgraph;
 use crate::view::View;
+use crate::visible_set::VisibleSet;
+use clip::Clipper;
+use exact::Frame;
+use missing::Missing;
 use query::Query;
 use std::fmt;
 use std::str::FromStr;
+use sweep::Pieces;
 
-/// A way to find what a viewer sees of the cells that his cell may see.
-///
-/// Every implementation errs towards visible: what can be seen through an open set of lines from the eye, within
-/// the view, through open portals, is in the answer.
-pub trait EyeToCell {
-    /// What it is called.
-    fn name(&self) -> &'static str;
+/// Room to work in, kept from frame to frame: once warm, a query allocates nothing.
+#[derive(Debug, Clone, Default)]
+pub struct Scratch {
+    /// The sides of the view.
+    pub(crate) view: Vec<Side>,
+    /// Cells of the subgraph: whether the view meets them.
+    pub(crate) cell_in_view: Decided,
+    /// Objects of the subgraph: whether the view meets them.
+    pub(crate) object_in_view: Decided,
+    /// Ways of the subgraph: whether the view meets them.
+    pub(crate) way_in_view: Decided,
+    /// Cells of the subgraph that were kept with all that is in them.
+    pub(crate) kept: EpochSet,
+    /// Cells of the subgraph that were reached.
+    pub(crate) reached: EpochSet,
+    /// Nodes of stab trees that were reached.
+    pub(crate) reached_nodes: EpochSet,
+    /// What is to be followed.
+    pub(crate) pending: Vec<u32>,
+    /// Nodes of stab trees that are to be followed.
+    pub(crate) nodes: Vec<u32>,
+    /// For each cell of the subgraph, whether it is on the way from the eye.
+    pub(crate) on_way: Vec<bool>,
+    /// The cones of sight on the way from the eye, one behind the other.
+    pub(crate) sides: Vec<Side>,
+    /// Cells that the exact method may find.
+    pub(crate) wanted: EpochSet,
+    /// Boxes of what it has not found yet.
+    pub(crate) missing: Vec<Missing>,
+    pub(crate) clipper: Clipper,
+    /// What the exact method puts together.
+    pub(crate) pieces: Pieces,
+    /// The cone that is being made.
+    pub(crate) cone: Vec<Side>,
+    pub(crate) frames: Vec<Frame>,
+    /// Steps of the exact method since this was made.
+    pub(crate) n_steps: u64,
+}
 
-    /// Adds to `seen` the cells and objects that a viewer sees who is in the root cell of `outlook`, and the
-    /// mirrors.
-    ///
-    /// `seen` has room for the table's cells and objects ([`Seen::clear`]). A viewer on the border between cells is asked
-    /// about with the outlook of each of them.
-    fn look(&self, outlook: &Outlook, view: &View, doors: &Doors, scratch: &mut Scratch, seen: &mut Seen);
+impl Scratch {
+    /// Not warm yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Portals that the exact method has looked at, of all queries together.
+    pub fn n_steps(&self) -> u64 {
+        self.n_steps
+    }
 }
 
 /// The methods of the literature, each no more than the one before.
 ///
-/// Cells without any portal, such as boxes that were given instead of cut, are asked about by their boxes by all methods but the zeroth, and
-/// what is seen from such a cell by the objects' boxes: no sequence of portals leads there, and none is needed.
+/// Every method errs towards visible: what can be seen through an open set of lines from the eye, within the view, through open
+/// portals, is in the answer. Cells without any portal, such as given boxes, are tested by their boxes by all methods but the
+/// zeroth, and what is visible from such a cell by the boxes of the objects: no sequence of portals leads there.
 ///
 /// Source: Teller and Séquin, "Visibility Preprocessing for Interactive Walkthroughs", SIGGRAPH 1991, section
 /// "eye-to-cell visibility"; the names are from there. Portals are crossed only from the side that the eye is on,
@@ -65,10 +101,9 @@ impl Method {
     /// All, each no more than the one before.
     pub const ALL: [Self; 5] =
         [Self::CellToCell, Self::DisjointCell, Self::ConnectedComponent, Self::IncidentPortals, Self::Exact];
-}
 
-impl EyeToCell for Method {
-    fn name(&self) -> &'static str {
+    /// The name by which [`Method::from_str`] finds it, such as `incident-portals`.
+    pub const fn name(self) -> &'static str {
         match self {
             Self::CellToCell => "cell-to-cell",
             Self::DisjointCell => "disjoint-cell",
@@ -78,12 +113,23 @@ impl EyeToCell for Method {
         }
     }
 
-    fn look(&self, outlook: &Outlook, view: &View, doors: &Doors, scratch: &mut Scratch, seen: &mut Seen) {
-        if *self == Self::CellToCell {
-            return query::all(outlook, view, seen);
+    /// Adds to `seen` the cells, objects and mirrors that a viewer in the root cell of `subgraph` sees.
+    ///
+    /// `seen` has room for the table's cells and objects ([`VisibleSet::clear`]). On the border between cells, look once with
+    /// the subgraph of each of them. Allocates nothing once `scratch` and `seen` are warm, but for mirrors.
+    pub fn look(
+        self,
+        subgraph: &VisibleSubgraph,
+        view: &View,
+        doors: &Doors,
+        scratch: &mut Scratch,
+        seen: &mut VisibleSet,
+    ) {
+        if self == Self::CellToCell {
+            return query::all(subgraph, view, seen);
         }
         for part in view.parts() {
-            let mut query = Query::new(outlook, view, part, doors, scratch, seen);
+            let mut query = Query::new(subgraph, view, part, doors, scratch, seen);
             match self {
                 Self::CellToCell | Self::DisjointCell => reach::disjoint(&mut query),
                 Self::ConnectedComponent => reach::connected(&mut query),

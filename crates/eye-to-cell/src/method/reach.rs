@@ -4,7 +4,7 @@ use super::query::Query;
 
 /// Keeps the cells whose box the view may meet.
 pub(super) fn disjoint(query: &mut Query<'_>) {
-    for cell in 0..query.outlook.cells.len() as u32 {
+    for cell in 0..query.subgraph.cells.len() as u32 {
         if query.cell_in_view(cell) {
             query.keep(cell);
         }
@@ -27,7 +27,7 @@ pub(super) fn incident(query: &mut Query<'_>) {
 
 /// The cells that are reached through open portals that the view may meet, into `scratch.wanted`, each once.
 pub(super) fn incident_cells(query: &mut Query<'_>) {
-    query.scratch.wanted.clear(query.outlook.cells.len());
+    query.scratch.wanted.clear(query.subgraph.cells.len());
     follow(query, &|query, way| query.way_in_view(way), &|query, cell| {
         query.scratch.wanted.add(cell);
     });
@@ -35,10 +35,10 @@ pub(super) fn incident_cells(query: &mut Query<'_>) {
 
 /// Keeps the cells that are reached from the root through ways that pass: along the stab trees, if there are any.
 fn follow(query: &mut Query<'_>, passes: &impl Fn(&mut Query<'_>, u32) -> bool, keep: &impl Fn(&mut Query<'_>, u32)) {
-    query.scratch.reached.clear(query.outlook.cells.len());
-    let root = query.outlook.root;
+    query.scratch.reached.clear(query.subgraph.cells.len());
+    let root = query.subgraph.root;
     keep(query, root);
-    match &query.outlook.trees {
+    match &query.subgraph.trees {
         None => {
             query.scratch.reached.add(root);
             query.scratch.pending.clear();
@@ -52,7 +52,7 @@ fn follow(query: &mut Query<'_>, passes: &impl Fn(&mut Query<'_>, u32) -> bool, 
 /// Goes on from the pending cells through all ways that pass.
 fn flood(query: &mut Query<'_>, passes: &impl Fn(&mut Query<'_>, u32) -> bool, keep: &impl Fn(&mut Query<'_>, u32)) {
     while let Some(cell) = query.scratch.pending.pop() {
-        for way in query.outlook.ways_of(cell) {
+        for way in query.subgraph.ways_of(cell) {
             let to = query.way(way).to;
             if !query.scratch.reached.has(to) && passes(query, way) {
                 query.scratch.reached.add(to);
@@ -69,14 +69,14 @@ fn follow_trees(
     passes: &impl Fn(&mut Query<'_>, u32) -> bool,
     keep: &impl Fn(&mut Query<'_>, u32),
 ) {
-    let Some(trees) = &query.outlook.trees else { return };
+    let Some(trees) = &query.subgraph.trees else { return };
     query.scratch.reached_nodes.clear(trees.n_nodes());
     query.scratch.pending.clear();
     let mut nodes = std::mem::take(&mut query.scratch.nodes);
     nodes.clear();
     nodes.push(trees.root());
     while let Some(node) = nodes.pop() {
-        let cell = if node == trees.root() { query.outlook.root } else { query.way(trees.way(node)).to };
+        let cell = if node == trees.root() { query.subgraph.root } else { query.way(trees.way(node)).to };
         for &child in trees.children(node) {
             let way = trees.way(child);
             if !query.scratch.reached_nodes.has(child) && passes(query, way) {

@@ -3,7 +3,7 @@
 //! Sequence by sequence, what is seen of a portal falls into as many pieces as there are ways for the eye to look
 //! at it, and open space that is cut into many cells has many. But pieces that came by different ways often lie
 //! side by side, and together are convex again: then they are one piece from there on. For that, all pieces of a portal
-//! have to be known before anything behind it is looked at. Seen from a point, the cells of a k-d or BSP tree have an order
+//! have to be known before anything behind it is looked at. VisibleSet from a point, the cells of a k-d or BSP tree have an order
 //! from front to back; where cells have none, this way gives up.
 //!
 //! Putting together errs towards visible: the cone of the whole is that of the outer sides. Each of them is a side of both
@@ -11,14 +11,13 @@
 //! what a corner may be off, and both are set aside for this ([`crate::side`]). Sides are taken over as they are, so nothing adds
 //! up however often it is done.
 
+use super::Scratch;
 use super::clip::MOST_CORNERS;
-use super::exact::keep_mirrors;
 use super::missing::meets;
-use super::query::Query;
+use super::query::{Query, keep_mirrors};
 use crate::front::Facing;
-use crate::outlook::{LocalWay, Outlook};
-use crate::scratch::Scratch;
 use crate::side::{MOST_SIDES, Side, Vector, cross, dot, norm};
+use crate::subgraph::{LocalEdge, VisibleSubgraph};
 use std::ops::Range;
 
 /// The most pieces that are made for one view before the method gives up.
@@ -68,9 +67,9 @@ pub(crate) struct Pieces {
 type Part = (Vec<Vector>, Vec<Side>);
 
 impl Pieces {
-    fn clear(&mut self, outlook: &Outlook) {
-        let (n_cells, n_ways) = (outlook.cells.len(), outlook.ways.len());
-        self.planar = outlook.planar;
+    fn clear(&mut self, subgraph: &VisibleSubgraph) {
+        let (n_cells, n_ways) = (subgraph.cells.len(), subgraph.ways.len());
+        self.planar = subgraph.planar;
         // As much as two parts put together may have; they change places, so both.
         for part in [&mut self.whole, &mut self.spare] {
             part.0.reserve(MOST_CORNERS.saturating_sub(part.0.len()));
@@ -244,9 +243,9 @@ pub(super) fn sweep(query: &mut Query<'_>) -> bool {
 
 /// The same with another limit on the number of pieces: more than that are never passed on from a cell.
 pub(super) fn sweep_within(query: &mut Query<'_>, most: usize) -> bool {
-    let outlook = query.outlook;
+    let subgraph = query.subgraph;
     let mut pieces = std::mem::take(&mut query.scratch.pieces);
-    pieces.clear(outlook);
+    pieces.clear(subgraph);
     let done = Sweep { query, pieces: &mut pieces, most }.run();
     query.scratch.pieces = pieces;
     done
@@ -261,18 +260,18 @@ struct Sweep<'q, 'a> {
 
 impl Sweep<'_, '_> {
     fn run(&mut self) -> bool {
-        let outlook = self.query.outlook;
+        let subgraph = self.query.subgraph;
         let n_wanted = self.query.scratch.wanted.list().len();
         for k in 0..n_wanted {
             let cell = self.query.scratch.wanted.list()[k];
-            for way in outlook.ways_of(cell) {
+            for way in subgraph.ways_of(cell) {
                 if self.leads_on(way) {
-                    self.pieces.to_come[outlook.ways[way as usize].to as usize] += 1;
+                    self.pieces.to_come[subgraph.ways[way as usize].to as usize] += 1;
                 }
             }
         }
         let view = std::mem::take(&mut self.query.scratch.view);
-        self.pieces.push(outlook.root, NONE, &[], &view);
+        self.pieces.push(subgraph.root, NONE, &[], &view);
         self.query.scratch.view = view;
         // Cells that nothing leads into any more; the root may be led into only where cells have no order.
         let mut ready = std::mem::take(&mut self.query.scratch.pending);
@@ -286,9 +285,9 @@ impl Sweep<'_, '_> {
             }
             n_done += 1;
             self.visit(cell);
-            for way in outlook.ways_of(cell) {
+            for way in subgraph.ways_of(cell) {
                 if self.leads_on(way) {
-                    let to = outlook.ways[way as usize].to;
+                    let to = subgraph.ways[way as usize].to;
                     self.pieces.to_come[to as usize] -= 1;
                     if self.pieces.to_come[to as usize] == 0 {
                         ready.push(to);
@@ -302,8 +301,8 @@ impl Sweep<'_, '_> {
 
     /// Whether lines from the eye may go by this way, into a cell that is wanted.
     fn leads_on(&mut self, way: u32) -> bool {
-        let to = self.query.outlook.ways[way as usize].to;
-        to != self.query.outlook.root && self.query.scratch.wanted.has(to) && self.query.way_in_view(way)
+        let to = self.query.subgraph.ways[way as usize].to;
+        to != self.query.subgraph.root && self.query.scratch.wanted.has(to) && self.query.way_in_view(way)
     }
 
     /// Keeps a cell with what its pieces meet there, and sends them on.
@@ -312,11 +311,11 @@ impl Sweep<'_, '_> {
         if at == NONE {
             return;
         }
-        let outlook = self.query.outlook;
-        self.query.seen.add_cell(outlook.cells[cell as usize]);
+        let subgraph = self.query.subgraph;
+        self.query.seen.add_cell(subgraph.cells[cell as usize]);
         let (mut ways, mut cone) = (std::mem::take(&mut self.pieces.ways), std::mem::take(&mut self.pieces.cone));
         ways.clear();
-        ways.extend(outlook.ways_of(cell).filter(|&way| self.leads_on(way)));
+        ways.extend(subgraph.ways_of(cell).filter(|&way| self.leads_on(way)));
         while at != NONE {
             let piece = self.pieces.pieces[at as usize];
             if !piece.joined {
@@ -335,17 +334,17 @@ impl Sweep<'_, '_> {
 
     fn send(&mut self, index: u32, cone: &[Side]) {
         let eye = self.query.eye();
-        let Query { outlook, view, scratch, seen, .. } = &mut *self.query;
-        let LocalWay { to, first_corner, n_corners, front, .. } = outlook.ways[index as usize];
+        let Query { subgraph, view, scratch, seen, .. } = &mut *self.query;
+        let LocalEdge { to, first_corner, n_corners, front, .. } = subgraph.ways[index as usize];
         scratch.n_steps += 1;
-        let corners = outlook.corners(first_corner, n_corners);
+        let corners = subgraph.corners(first_corner, n_corners);
         match front.facing(corners, view.eye, view.slack) {
             Facing::Behind => {}
             Facing::Before if n_corners as usize <= MOST_SIDES => {
                 scratch.cone.clear();
                 let Scratch { clipper, cone: narrowed, missing, .. } = &mut **scratch;
                 if let Some(part) = clipper.narrow_part(eye, corners, cone, narrowed)
-                    && meets(missing, narrowed, outlook, view, seen)
+                    && meets(missing, narrowed, subgraph, view, seen)
                 {
                     self.pieces.add(to, index, part, narrowed, eye.reach.radius * SAME);
                 }

@@ -4,7 +4,7 @@ use crate::common::{recipes, table};
 use crate::round_trip::compare;
 use proptest::prelude::*;
 use sightlines_packed::{PackOptions, Packed, pack};
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, PlaceBuffer};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 proptest! {
@@ -45,9 +45,10 @@ fn a_file_that_is_cut_while_open_gives_errors() {
     file.set_len(100).unwrap();
     let mut cells = Vec::new();
     assert!(packed.visible(CellId(0), &mut cells).unwrap_err().to_string().contains("section ROWS: cannot read"));
-    packed.locate(&[0.5, 0.5], &mut cells).unwrap();
-    packed.coarse(cells[0], &mut cells.clone()).unwrap();
-    assert_eq!(cells, table.locate(&[0.5, 0.5]));
+    let mut buffer = PlaceBuffer::new();
+    let at = packed.in_dimension().unwrap().cells_at([0.5, 0.5], &mut buffer).inside().unwrap();
+    packed.coarse(at[0], &mut cells).unwrap();
+    assert_eq!(at, table.in_dimension().unwrap().at([0.5, 0.5]).cells());
 }
 
 #[test]

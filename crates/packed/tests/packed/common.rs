@@ -162,8 +162,8 @@ fn planes(n: u32) -> PlaneTree {
 }
 
 /// Points on and off the grid, and some that are no points.
-pub(crate) fn points(dimension: u8) -> Vec<Vec<f64>> {
+pub(crate) fn points(dimension: u8) -> Vec<[f64; 3]> {
     let line = [-1.0, 0.0, 0.5, 1.0, 2.75, 3.0, 6.0, f64::NAN, f64::INFINITY];
-    let pairs = line.iter().flat_map(|&x| line.iter().map(move |&y| vec![x, y]));
-    pairs.map(|mut p| (p.resize(usize::from(dimension), 0.75), p).1).collect()
+    let z = if dimension == 2 { 0.0 } else { 0.75 };
+    line.iter().flat_map(|&x| line.iter().map(move |&y| [x, y, z])).collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{SMALL, table};
 use sightlines_packed::{PackOptions, Packed, PackedError, pack};
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, PlaceBuffer, Table};
 
 /// Asks everything; whatever comes must be an answer or an error.
 pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
@@ -19,7 +19,7 @@ pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
         count(packed.cell_name(cell).map(drop));
         count(packed.cell_polygon(cell, &mut Vec::new()));
         let (min, _) = packed.cell_box(cell).expect("boxes are resident");
-        count(packed.locate(&min[..usize::from(packed.dimension())], &mut cells));
+        let _ = packed.cells_at(min, &mut PlaceBuffer::new());
     }
     for object in 0..packed.n_objects().min(100) as u32 {
         count(packed.object_box(object).map(drop));

@@ -4,17 +4,16 @@ use crate::common::{points, recipes, table};
 use proptest::prelude::*;
 use sightlines_packed::{PackOptions, Packed, PackedErrorKind, pack, pack_report};
 use sightlines_pvs::format::kind_to_bytes;
-use sightlines_pvs::{Axis, CellId, Table, TableKind, TableParts};
+use sightlines_pvs::{Axis, CellId, PlaceBuffer, Table, TableKind, TableParts};
 
 /// All that a packed table answers, compared with the table; the number of comparisons.
 pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
-    let (mut cells, mut numbers, mut n) = (Vec::new(), Vec::new(), 0);
+    let (mut cells, mut numbers, mut n, mut buffer) = (Vec::new(), Vec::new(), 0, PlaceBuffer::new());
     assert_eq!((packed.n_cells(), packed.dimension()), (table.n_cells(), table.dimension()));
     assert_eq!((packed.kind(), packed.up()), (table.kind(), table.up()));
     assert_eq!((packed.info(), packed.mirrors(), packed.planes()), (table.info(), table.mirrors(), table.planes()));
     for p in points(table.dimension()) {
-        packed.locate(&p, &mut cells).unwrap();
-        assert_eq!(cells, table.locate(&p), "{p:?}");
+        assert_eq!(packed.cells_at(p, &mut buffer).inside().unwrap_or_default(), table.place_at(p).cells(), "{p:?}");
     }
     for (i, record) in (0u32..).zip(table.cells()) {
         let cell = CellId(i);
@@ -133,7 +132,6 @@ fn what_is_not_there_is_an_error_that_says_so() {
         packed.visible(CellId(8), &mut cells).unwrap_err(),
         packed.object_box(packed.n_objects() as u32).unwrap_err(),
         packed.portal(u32::MAX).unwrap_err(),
-        packed.locate(&[1.0], &mut cells).unwrap_err(),
         packed.cell_name(CellId(8)).unwrap_err(),
         packed.stab_node(u32::MAX, &mut numbers).unwrap_err(),
     ];
@@ -142,9 +140,10 @@ fn what_is_not_there_is_an_error_that_says_so() {
     assert_eq!(texts[0], "there is no cell 8, only 8");
     assert_eq!(texts[1], format!("there is no object {0}, only {0}", packed.n_objects()));
     assert_eq!(texts[2], "there is no portal 4294967295, only 10");
-    assert_eq!(texts[3], "a point of this table has 2 coordinates, not 1");
-    assert_eq!(texts[4], "there is no cell 8, only 8");
-    assert!(texts[5].starts_with("there is no node 4294967295, only "));
+    let error = packed.in_dimension::<3>().unwrap_err();
+    assert_eq!(error.to_string(), "the table has 2 dimensions, not 3");
+    assert_eq!(texts[3], "there is no cell 8, only 8");
+    assert!(texts[4].starts_with("there is no node 4294967295, only "));
     let error = Packed::open(b"\x89PVS\r\n\x1a\n".to_vec(), 0).unwrap_err();
     assert!(matches!(error.kind, PackedErrorKind::Magic));
     assert_eq!(error.to_string(), "byte 0: this is no packed visibility table");

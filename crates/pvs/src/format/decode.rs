@@ -2,7 +2,7 @@
 
 use super::container::{self, Section, array};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
-use super::reader::Reader;
+use super::reader::{Reader, read};
 use super::{
     CELL_NAMES, CELL_OBJECTS, CELLS, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS, OBJECT_POLYGONS, OBJECTS,
     PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_from_bytes, kind_from_info, n_row_words, planes, stab,
@@ -126,17 +126,6 @@ fn section_of(error: &TableError) -> SectionId {
         TableError::Locator(_) => LOCATOR,
         TableError::InfoOrder(_) | TableError::TooLong(_) => INFO,
     }
-}
-
-/// Reads a whole section.
-pub(super) fn read<'a, T>(
-    section: Section<'a>,
-    parse: impl FnOnce(&mut Reader<'a>) -> Result<T, DecodeError>,
-) -> Result<T, DecodeError> {
-    let mut reader = Reader::new(section);
-    let value = parse(&mut reader)?;
-    reader.finish()?;
-    Ok(value)
 }
 
 fn cells(r: &mut Reader<'_>) -> Result<(u8, Vec<CellRecord>), DecodeError> {

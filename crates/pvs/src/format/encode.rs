@@ -1,6 +1,7 @@
 //! Writes a table.
 
 use super::container::{self, Payload};
+use super::writer::Writer;
 use super::{
     CELL_NAMES, CELL_OBJECTS, CELLS, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS,
     PORTALS, ROWS, SEEN, STAB, SectionId, kind_section, planes, stab,
@@ -56,39 +57,6 @@ fn section(id: SectionId, fill: impl FnOnce(&mut Writer)) -> Payload {
     let mut out = Writer::default();
     fill(&mut out);
     Payload { id, bytes: out.0 }
-}
-
-/// The bytes of a section to be.
-#[derive(Default)]
-pub(super) struct Writer(pub(super) Vec<u8>);
-
-impl Writer {
-    pub(super) fn u32(&mut self, x: u32) {
-        self.0.extend(x.to_le_bytes());
-    }
-
-    /// A count; [`Table::new`] has checked that it fits.
-    pub(super) fn count(&mut self, n: usize) {
-        self.u32(u32::try_from(n).expect("a checked table counts with 32 bits"));
-    }
-
-    /// Seven bits in a byte, the lowest first; the high bit says that another byte follows.
-    pub(super) fn varint(&mut self, mut x: u64) {
-        while x >= 0x80 {
-            self.0.push(x as u8 | 0x80);
-            x >>= 7;
-        }
-        self.0.push(x as u8);
-    }
-
-    pub(super) fn floats(&mut self, xs: &[f64]) {
-        xs.iter().for_each(|x| self.0.extend(x.to_le_bytes()));
-    }
-
-    fn text(&mut self, text: &str) {
-        self.count(text.len());
-        self.0.extend_from_slice(text.as_bytes());
-    }
 }
 
 fn cells(out: &mut Writer, parts: &TableParts) {

@@ -84,6 +84,7 @@ mod kind;
 mod planes;
 mod reader;
 mod stab;
+mod writer;
 
 pub use error::{DecodeError, DecodeErrorKind, SectionId};
 pub use kind::{KIND_LEN, kind_from_bytes, kind_from_info, kind_section, kind_to_bytes};

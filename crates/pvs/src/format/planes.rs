@@ -1,10 +1,9 @@
 //! The section of the plane tree.
 
 use super::container::Section;
-use super::decode::read;
-use super::encode::Writer;
 use super::error::{DecodeError, DecodeErrorKind as Kind};
-use super::reader::Reader;
+use super::reader::{Reader, read};
+use super::writer::Writer;
 use crate::{CellId, PlaneChild, PlaneNode, PlaneTree, TableError};
 
 /// Flag of a child that is a cell; without it, a child is a node, or nothing if it is 0: the root is

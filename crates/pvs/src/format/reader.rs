@@ -105,3 +105,14 @@ impl<'a> Reader<'a> {
         }
     }
 }
+
+/// Reads a whole section.
+pub(super) fn read<'a, T>(
+    section: Section<'a>,
+    parse: impl FnOnce(&mut Reader<'a>) -> Result<T, DecodeError>,
+) -> Result<T, DecodeError> {
+    let mut reader = Reader::new(section);
+    let value = parse(&mut reader)?;
+    reader.finish()?;
+    Ok(value)
+}

@@ -1,8 +1,8 @@
 //! The section of the stab trees; the layout stands in the documentation of [`super`].
 
-use super::encode::Writer;
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::Reader;
+use super::writer::Writer;
 use crate::stab::{Bits, ends};
 use crate::{CellId, PortalRecord, StabTrees};
 

@@ -1,7 +1,7 @@
 //! One order for equal trees.
 
 use super::{Bits, StabTrees, count, ends};
-use crate::parts::PortalRecord;
+use crate::records::PortalRecord;
 
 /// A node that waits for its number.
 struct Entry {

@@ -11,7 +11,7 @@ mod error;
 
 pub use error::StabError;
 
-use crate::parts::PortalRecord;
+use crate::records::PortalRecord;
 use crate::{CellId, bits};
 
 /// Nodes and edges under construction. Numbers of nodes are given by [`StabParts::push_node`], from 0.

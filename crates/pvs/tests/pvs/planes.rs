@@ -2,7 +2,9 @@
 
 use crate::common::full::{plane_choices, plane_nodes, wedges};
 use proptest::prelude::*;
-use sightlines_pvs::{CellId, DecodeErrorKind, PlaneChild, PlaneError, PlaneNode, PlaneTree, Table, TableError};
+use sightlines_pvs::{
+    CellId, DecodeErrorKind, PlaceBuffer, PlaneChild, PlaneError, PlaneNode, PlaneTree, Table, TableError,
+};
 
 fn found(tree: &PlaneTree, p: [f64; 3]) -> Vec<CellId> {
     let (mut cells, mut pending) = (Vec::new(), vec![9, 9]);
@@ -158,26 +160,34 @@ fn impostor_plain_doubles_lose_cells() {
 fn tables_in_space_ask_the_planes() {
     let table = Table::new(wedges()).unwrap();
     let both = [CellId(0), CellId(1)];
-    assert_eq!(table.locate(&[3.0, 1.0, 1.0]), [CellId(0)]);
-    assert_eq!(table.locate(&[1.0, 3.0, 1.0]), [CellId(1)]);
-    assert_eq!(table.locate(&[1.0, 1.0, 1.0]), both);
-    assert_eq!(table.locate(&[1.0, 1.5, 1.0]), both, "within the slack");
-    assert_eq!(table.locate(&[3.0, 1.0, -0.25]), [CellId(0)], "within the slack of the floor");
-    assert_eq!(table.locate(&[3.0, 1.0, -1.0]), []);
-    assert_eq!(table.locate(&[9.0, 1.0, 1.0]), [CellId(0)], "the planes alone decide, not the boxes");
-    assert_eq!(table.locate(&[f64::NAN, 1.0, 1.0]), []);
-    assert_eq!(table.locate(&[f64::INFINITY, 1.0, 1.0]), []);
+    assert_eq!(table.in_dimension().unwrap().at([3.0, 1.0, 1.0]).cells(), [CellId(0)]);
+    assert_eq!(table.in_dimension().unwrap().at([1.0, 3.0, 1.0]).cells(), [CellId(1)]);
+    assert_eq!(table.in_dimension().unwrap().at([1.0, 1.0, 1.0]).cells(), both);
+    assert_eq!(table.in_dimension().unwrap().at([1.0, 1.5, 1.0]).cells(), both, "within the slack");
+    assert_eq!(
+        table.in_dimension().unwrap().at([3.0, 1.0, -0.25]).cells(),
+        [CellId(0)],
+        "within the slack of the floor"
+    );
+    assert_eq!(table.in_dimension().unwrap().at([3.0, 1.0, -1.0]).cells(), []);
+    assert_eq!(
+        table.in_dimension().unwrap().at([9.0, 1.0, 1.0]).cells(),
+        [CellId(0)],
+        "the planes alone decide, not the boxes"
+    );
+    assert_eq!(table.in_dimension().unwrap().at([f64::NAN, 1.0, 1.0]).cells(), []);
+    assert_eq!(table.in_dimension().unwrap().at([f64::INFINITY, 1.0, 1.0]).cells(), []);
     // Without the planes, the boxes do; a stripped table keeps the planes.
     let mut parts = wedges();
     parts.planes = None;
-    assert_eq!(Table::new(parts).unwrap().locate(&[3.0, 1.0, 1.0]), both);
-    assert_eq!(table.strip_geometry().locate(&[3.0, 1.0, 1.0]), [CellId(0)]);
+    assert_eq!(Table::new(parts).unwrap().in_dimension().unwrap().at([3.0, 1.0, 1.0]).cells(), both);
+    assert_eq!(table.strip_geometry().in_dimension().unwrap().at([3.0, 1.0, 1.0]).cells(), [CellId(0)]);
     // The scratch does not change the answer.
-    let (mut pending, mut cells) = (vec![7; 5], vec![CellId(9)]);
-    table.locate_into(&[1.0, 1.0, 1.0], &mut pending, &mut cells);
-    assert_eq!(cells, both);
-    table.locate_into(&[1.0, f64::NAN, 1.0], &mut pending, &mut cells);
-    assert_eq!(cells, []);
+    let mut buffer = PlaceBuffer::new();
+    let query = table.in_dimension().unwrap();
+    assert_eq!(query.at_with([1.0, 1.0, 1.0], &mut buffer).cells(), both);
+    assert!(query.at_with([1.0, f64::NAN, 1.0], &mut buffer).is_outside());
+    assert_eq!(query.at_with([3.0, 1.0, 1.0], &mut buffer).cells(), [CellId(0)]);
 }
 
 #[test]

@@ -21,9 +21,18 @@ fn rows_of_objects_answer_before_the_union() {
     assert_eq!(table.visible_objects(CellId(2)), [0u32; 0]);
     // Without the rows, what touches a cell that is seen is seen.
     assert_eq!(Table::new(rooms()).unwrap().visible_objects(CellId(2)), [0, 1]);
-    assert_eq!(table.visible_objects_from(&[4.0, 1.0]), [0, 1]);
-    assert_eq!(table.visible_objects_from(&[1.0, 1.0]), [0]);
-    assert_eq!(table.visible_objects_from(&[-1.0, 1.0]), [0u32; 0]);
+    assert_eq!(
+        table.in_dimension().unwrap().at([4.0, 1.0]).inside().map_or(Vec::new(), |at| at.visible_objects()),
+        [0, 1]
+    );
+    assert_eq!(
+        table.in_dimension().unwrap().at([1.0, 1.0]).inside().map_or(Vec::new(), |at| at.visible_objects()),
+        [0]
+    );
+    assert_eq!(
+        table.in_dimension().unwrap().at([-1.0, 1.0]).inside().map_or(Vec::new(), |at| at.visible_objects()),
+        [0u32; 0]
+    );
 }
 
 #[test]

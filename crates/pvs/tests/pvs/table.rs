@@ -3,15 +3,16 @@
 use crate::common::{any_parts, assert_well_formed, located, rooms};
 use proptest::prelude::*;
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, LocatorNode};
-use sightlines_pvs::{Table, TableError, TableKind, TableParts};
+use sightlines_pvs::{DimensionError, Place, PlaceBuffer, Table, TableError, TableKind, TableParts};
 
 /// The first grid point, half-way points included, at which the table and brute force differ.
 fn misplaced(table: &Table) -> Option<(Vec<f64>, Vec<CellId>, Vec<CellId>)> {
     let steps = || (-9i8..19).map(|i| f64::from(i) / 2.0);
     let zs: Vec<f64> = if table.dimension() == 2 { vec![0.0] } else { vec![-4.0, -0.5, 1.0, 2.0] };
     let points = zs.into_iter().flat_map(|z| steps().flat_map(move |y| steps().map(move |x| [x, y, z])));
-    let asked = points.map(|p| p[..usize::from(table.dimension())].to_vec());
-    asked.map(|p| (table.locate(&p), located(table.cells(), &p), p)).find(|(a, b, _)| a != b).map(|(a, b, p)| (p, a, b))
+    let n = usize::from(table.dimension());
+    let both = |p: [f64; 3]| (table.place_at(p).cells().to_vec(), located(table.cells(), &p[..n]), p[..n].to_vec());
+    points.map(both).find(|(a, b, _)| a != b).map(|(a, b, p)| (p, a, b))
 }
 
 proptest! {
@@ -28,15 +29,34 @@ proptest! {
     #[test]
     fn view_from_a_point_unites_rows(parts in any_parts(), p in [-9i8..10, -9i8..10, -9i8..10]) {
         let table = Table::new(parts).unwrap();
-        let p = &p.map(|x| f64::from(x) / 2.0)[..usize::from(table.dimension())];
-        let here = located(table.cells(), p);
+        let p = p.map(|x| f64::from(x) / 2.0);
+        let here = located(table.cells(), &p[..usize::from(table.dimension())]);
         let ids = (0..table.n_cells() as u32).map(CellId);
         let expected: Vec<CellId> = ids.filter(|&b| here.iter().any(|&a| table.sees(a, b))).collect();
-        let seen = table.visible_from(p);
-        prop_assert_eq!(seen.iter().collect::<Vec<_>>(), expected.clone());
-        prop_assert_eq!((seen.len(), seen.is_empty()), (expected.len(), here.is_empty()));
+        let mut buffer = PlaceBuffer::new();
+        let Place::Inside(at) = table.place_at(p) else {
+            prop_assert!(here.is_empty() && table.place_at_with(p, &mut buffer).is_outside());
+            return Ok(());
+        };
+        prop_assert_eq!(at.cells(), here);
+        prop_assert_eq!(at.visible_cells().collect::<Vec<_>>(), expected.clone());
+        let seen = at.visible_set();
+        prop_assert_eq!((seen.len(), seen.is_empty()), (expected.len(), false));
+        prop_assert!((0..table.n_cells() as u32 + 70).map(CellId).all(|c| at.sees(c) == expected.contains(&c) && at.sees(c) == seen.contains(c)));
         let touched = |o: &u32| expected.iter().any(|&c| table.objects_of(c).contains(o));
-        prop_assert_eq!(table.objects_in(&seen), (0..table.objects().len() as u32).filter(touched).collect::<Vec<_>>());
+        let objects: Vec<u32> = (0..table.objects().len() as u32).filter(touched).collect();
+        prop_assert_eq!(table.objects_in(&seen), objects.clone());
+        // The same with a buffer, and in the dimension of the table only.
+        let with = table.place_at_with(p, &mut buffer).inside().expect("inside as before");
+        let mut listed = vec![7; 3];
+        with.visible_objects_into(&mut listed);
+        let objects = if table.parts().objects_seen.is_none() { objects } else { at.visible_objects() };
+        prop_assert_eq!((with.cells(), listed), (at.cells(), objects));
+        let flat = table.in_dimension().map(|query| query.at([p[0], p[1]]).cells().to_vec());
+        let spatial = table.in_dimension().map(|query| query.at(p).cells().to_vec());
+        let wrong = |points| DimensionError { table: table.dimension(), points };
+        let expected = if table.dimension() == 2 { (Ok(here), Err(wrong(3))) } else { (Err(wrong(2)), Ok(here)) };
+        prop_assert_eq!((flat, spatial), expected);
     }
 
     /// Invariant: a box touches the cells that its points are located in, and only cells whose box it touches; it is not asked
@@ -52,7 +72,7 @@ proptest! {
         for i in 0..64i8 {
             let step = [i % 4, i / 4 % 4, i / 16];
             let at: [f64; 3] = std::array::from_fn(|k| half(k, p[k] + step[k].min(size[k])));
-            prop_assert!(table.locate(&at[..n]).iter().all(|cell| touched.contains(cell)), "{:?}", at);
+            prop_assert!(table.place_at(at).cells().iter().all(|cell| touched.contains(cell)), "{:?}", at);
         }
         for cell in &touched {
             let cell = &table.cells()[cell.idx()];
@@ -71,9 +91,9 @@ proptest! {
         assert_well_formed(&bare);
         prop_assert!(bare.portals().is_empty());
         prop_assert_eq!(&bare.parts().rows, &table.parts().rows);
-        let p = &p.map(|x| f64::from(x) / 2.0)[..usize::from(table.dimension())];
-        let found = bare.locate(p);
-        prop_assert!(table.locate(p).iter().all(|cell| found.contains(cell)));
+        let p = p.map(|x| f64::from(x) / 2.0);
+        let found = bare.place_at(p);
+        prop_assert!(table.place_at(p).cells().iter().all(|cell| found.cells().contains(cell)));
     }
 
     /// The impostor: a table with one visible pair removed on one side only is refused.
@@ -129,7 +149,7 @@ fn impostor_comparison_can_fail() {
     let mut cells = table.cells().to_vec();
     cells[4].polygon[2] = [0.0, 7.0];
     let p = [0.0, 7.5];
-    assert_ne!(table.locate(&p), located(&cells, &p));
+    assert_ne!(table.in_dimension().unwrap().at(p).cells().to_vec(), located(&cells, &p));
 }
 
 #[test]
@@ -141,15 +161,16 @@ fn small_house_answers() {
     assert_eq!(table.row(CellId(1)), [0b1111]);
     assert_eq!(table.visible_objects(CellId(0)), [0]);
     assert_eq!(table.visible_objects(CellId(1)), [0, 1]);
-    assert_eq!(table.locate(&[4.0, 4.0]), [CellId(0), CellId(1)]);
-    assert_eq!(table.locate(&[1.0, 6.25]), [CellId(4)], "on the long side of the closet");
-    assert_eq!(table.locate(&[1.0, 6.5]), []);
-    assert_eq!(table.strip_geometry().locate(&[1.0, 6.5]), [CellId(4)]);
-    assert_eq!(table.locate(&[f64::NAN, 1.0]), []);
-    assert_eq!(table.locate(&[f64::INFINITY, 1.0]), []);
+    assert_eq!(table.in_dimension().unwrap().at([4.0, 4.0]).cells(), [CellId(0), CellId(1)]);
+    assert_eq!(table.in_dimension().unwrap().at([1.0, 6.25]).cells(), [CellId(4)], "on the long side of the closet");
+    assert_eq!(table.in_dimension().unwrap().at([1.0, 6.5]).cells(), []);
+    assert_eq!(table.strip_geometry().in_dimension().unwrap().at([1.0, 6.5]).cells(), [CellId(4)]);
+    assert_eq!(table.in_dimension().unwrap().at([f64::NAN, 1.0]).cells(), []);
+    assert_eq!(table.in_dimension().unwrap().at([f64::INFINITY, 1.0]).cells(), []);
     assert_eq!(table.mean_visible_share(), 15.0 / 25.0);
     assert_eq!((table.info_value("method"), table.info_value("missing")), (Some("by hand"), None));
-    assert!(!table.visible_from(&[1.0, 1.0]).contains(CellId(1000)));
+    let at = table.in_dimension().unwrap().at([1.0, 1.0]).inside().unwrap();
+    assert!(!at.sees(CellId(1000)) && !at.visible_set().contains(CellId(1000)));
 }
 
 #[test]
@@ -164,15 +185,29 @@ fn empty_tables_are_tables() {
         };
         let table = Table::new(nothing).unwrap();
         assert_eq!(table.mean_visible_share(), 0.0);
-        assert!(table.visible_from(&[0.0; 3][..usize::from(dimension)]).is_empty());
+        assert!(table.place_at([0.0; 3]).is_outside());
         assert_eq!(Table::from_bytes(&table.to_bytes()).unwrap(), table);
     }
 }
 
 #[test]
-#[should_panic(expected = "a point of this table has 2 coordinates, not 3")]
 fn a_point_of_space_is_no_point_of_the_plane() {
-    Table::new(rooms()).unwrap().locate(&[0.0, 0.0, 0.0]);
+    let table = Table::new(rooms()).unwrap();
+    assert_eq!(table.in_dimension::<3>().unwrap_err().to_string(), "the table has 2 dimensions, not 3");
+    assert_eq!(table.in_dimension::<4>().unwrap_err(), DimensionError { table: 2, points: 4 });
+    assert!(table.in_dimension::<2>().unwrap().at([-1.0, 1.0]).is_outside());
+    // For code that serves both, z does not count.
+    assert_eq!(table.place_at([1.0, 1.0, f64::NAN]).cells(), [CellId(0)]);
+}
+
+#[test]
+fn clusters_without_planes_are_nowhere() {
+    let kind = TableKind::QuakePortalFile;
+    let mut parts = TableParts { kind, ..crate::common::full::wedges() };
+    assert!(!Table::new(parts.clone()).unwrap().place_at([1.0; 3]).is_outside(), "the planes know");
+    parts.planes = None;
+    let table = Table::new(parts).unwrap();
+    assert!(!table.has_places() && table.place_at([1.0; 3]).is_outside());
 }
 
 /// Makes one mistake.
@@ -250,8 +285,8 @@ fn huge_and_tiny_coordinates_are_safe() {
         };
         let table = Table::new(parts).unwrap();
         for p in [[0.0, 0.0], [size, size], [-size, 0.0]] {
-            assert_eq!(table.locate(&p), [CellId(0)]);
+            assert_eq!(table.in_dimension().unwrap().at(p).cells(), [CellId(0)]);
         }
-        assert_eq!(table.locate(&[0.0, 1.5 * size + 5e-324]), []);
+        assert_eq!(table.in_dimension().unwrap().at([0.0, 1.5 * size + 5e-324]).cells(), []);
     }
 }

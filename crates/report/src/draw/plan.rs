@@ -54,7 +54,7 @@ pub fn plan_svg(table: &Table, options: &DrawOptions) -> Result<String, DrawErro
     let (seen, eye) = match options.view {
         View::Plan => (None, None),
         View::Cell(cell) => (Some(VisibleSet::from_cell(table, cell)), None),
-        View::Eye(eye) => (Some(VisibleSet::from_point(table, &[eye.x, eye.y])), Some(eye)),
+        View::Eye(eye) => (Some(VisibleSet::from_point(table, [eye.x, eye.y, 0.0])), Some(eye)),
     };
     let annotations = Annotations { target: options.target, portals: &options.marked_portals, line: options.line, eye };
     let title = match options.view {

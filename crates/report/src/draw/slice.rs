@@ -83,7 +83,7 @@ pub(super) fn look(
             Ok((Some(VisibleSet::from_cell(table, cell)), None))
         }
         View::Eye(eye) if eye.iter().all(|x| x.is_finite()) => {
-            Ok((Some(VisibleSet::from_point(table, &eye)), Some(eye)))
+            Ok((Some(VisibleSet::from_point(table, eye)), Some(eye)))
         }
         View::Eye(_) => Err(DrawError::NotFinite),
     }

@@ -1,6 +1,6 @@
 //! What is seen in a picture, and from where.
 
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, Place, Table};
 
 /// What a cell or a viewer sees.
 #[derive(Debug)]
@@ -19,10 +19,12 @@ impl VisibleSet {
         Self::new(table, vec![cell], table.visible(cell), table.visible_objects(cell))
     }
 
-    /// What a viewer at a point with as many coordinates as the table has dimensions sees.
-    pub(super) fn from_point(table: &Table, point: &[f64]) -> Self {
-        let objects = table.visible_objects_from(point);
-        Self::new(table, table.locate(point), table.visible_from(point).iter(), objects)
+    /// What a viewer at a point sees (z does not count in a plane); nothing if the point is outside every cell.
+    pub(super) fn from_point(table: &Table, point: [f64; 3]) -> Self {
+        match table.place_at(point) {
+            Place::Inside(at) => Self::new(table, at.cells().to_vec(), at.visible_cells(), at.visible_objects()),
+            Place::Outside => Self::new(table, Vec::new(), std::iter::empty(), Vec::new()),
+        }
     }
 
     fn new(table: &Table, from: Vec<CellId>, ids: impl Iterator<Item = CellId>, objects: Vec<u32>) -> Self {

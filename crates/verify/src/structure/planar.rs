@@ -22,7 +22,9 @@ pub(super) fn check(table: &Table, plan: &Plan, findings: &mut Findings) {
             findings.add(Violation::OutOfScene { cell: id });
         }
         let point = middle(&cell.iter().map(|p| [p.x, p.y]).collect::<Vec<_>>());
-        if strictly_in_polygon(cell, Point2::from(point)) && !table.locate(&point).contains(&id) {
+        if strictly_in_polygon(cell, Point2::from(point))
+            && !table.in_dimension().unwrap().at(point).cells().contains(&id)
+        {
             findings.add(Violation::NotFound { cell: id, point: [point[0], point[1], 0.0] });
         }
         let mut overlapping = Vec::new();

@@ -16,7 +16,7 @@ pub(super) fn check(table: &Table, findings: &mut Findings) {
             findings.add(Violation::NotConvex { cell: id });
         }
         let point = middle(&[bounds.min, bounds.max]);
-        if bounds.contains(point) && !table.locate(&point).contains(&id) {
+        if bounds.contains(point) && !table.in_dimension().unwrap().at(point).cells().contains(&id) {
             findings.add(Violation::NotFound { cell: id, point });
         }
         let common = |b: &Aabb<3>| (0..3).all(|k| b.min[k] < bounds.max[k] && bounds.min[k] < b.max[k]);

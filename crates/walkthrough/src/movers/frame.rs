@@ -1,9 +1,9 @@
 //! One frame: which movers are queried, which are visible, which may sleep.
 
 use super::motion::is_box;
-use super::{Broken, BrokenPromise, Mover, MoverError, MoverId, Movers, Places, State, flat, is_within};
+use super::{Broken, BrokenPromise, CellLocator, Mover, MoverError, MoverId, Movers, State, flat, is_within};
 use crate::walkthrough::{Answer, Frame};
-use sightlines_eye_to_cell::Seen;
+use sightlines_eye_to_cell::VisibleSet;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::CellId;
 
@@ -18,7 +18,7 @@ pub(super) enum Why {
     Expired,
 }
 
-impl<P: Places> Movers<P> {
+impl<P: CellLocator> Movers<P> {
     /// The movers visible at the time `now` (in the time unit of their speeds), by ascending slot: those whose box
     /// touches a visible cell, or reaches beyond [`super::MoverOptions::solid_within`]. `place` returns the current box
     /// of a mover; it is called at most once for each mover, and not for sleeping ones. Outside every cell all movers
@@ -64,7 +64,7 @@ impl<P: Places> Movers<P> {
     }
 
     /// Collects the movers to query: those whose volume expired or is in view, and those that are awake.
-    fn find_due(&mut self, seen: &Seen) {
+    fn find_due(&mut self, seen: &VisibleSet) {
         self.round += 1;
         let round = self.round;
         self.due.clear();
@@ -95,7 +95,7 @@ impl<P: Places> Movers<P> {
     }
 
     /// Queries a mover, reports it if it is visible, and lets it sleep otherwise.
-    fn meet(&mut self, slot: u32, why: Why, seen: &Seen, place: &mut dyn FnMut(MoverId) -> Aabb<3>) {
+    fn meet(&mut self, slot: u32, why: Why, seen: &VisibleSet, place: &mut dyn FnMut(MoverId) -> Aabb<3>) {
         let bounds = self.ask(slot, place);
         if bounds.is_none_or(|bounds| self.is_seen(&bounds, |cell| seen.has_cell(cell))) {
             self.rise(slot);
@@ -121,7 +121,7 @@ impl<P: Places> Movers<P> {
 
     /// Lets a hidden mover sleep in the longest volume, from its level downwards, that touches no visible cell; wakes
     /// it if there is none, or if too many were attempted in this frame.
-    fn lay_down(&mut self, slot: u32, seen: &Seen) {
+    fn lay_down(&mut self, slot: u32, seen: &VisibleSet) {
         self.rise(slot);
         let Some(tries_left) = self.tries_left.checked_sub(1) else { return };
         self.tries_left = tries_left;

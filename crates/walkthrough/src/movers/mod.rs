@@ -18,12 +18,12 @@
 mod expiry;
 mod frame;
 mod lists;
+mod locator;
 mod motion;
-mod places;
 mod report;
 
+pub use locator::{CellBoxes, CellLocator};
 pub use motion::{Motion, MotionError};
-pub use places::{CellBoxes, Places};
 pub use report::{Broken, BrokenPromise, MoverCounters, MoverError, MoverId};
 
 use expiry::Expiries;
@@ -136,7 +136,7 @@ pub struct Movers<P> {
     counters: MoverCounters,
 }
 
-impl<P: Places> Movers<P> {
+impl<P: CellLocator> Movers<P> {
     /// No movers yet, in the cells of `places`.
     pub fn new(places: P, options: MoverOptions) -> Self {
         let n_cells = places.n_cells();

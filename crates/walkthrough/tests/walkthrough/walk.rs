@@ -1,6 +1,6 @@
 //! A viewer walks along a row of rooms: with everything at hand, with a source that is late, that fails, that is gone.
 
-use sightlines_eye_to_cell::{CellSource, Method, MirrorWay, StabStep, TableCells, View, Way};
+use sightlines_eye_to_cell::{CellSource, Method, MirrorPiece, PortalEdge, StabStep, TableCells, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
@@ -94,8 +94,8 @@ impl CellSource for Slow {
         }
         self.table.visible(cell, out).map_err(|e| match e {})
     }
-    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), String> {
-        self.table.ways(cell, show).map_err(|e| match e {})
+    fn portal_edges(&self, cell: CellId, show: &mut dyn FnMut(PortalEdge<'_>)) -> Result<(), String> {
+        self.table.portal_edges(cell, show).map_err(|e| match e {})
     }
     fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), String> {
         self.table.objects_of(cell, out).map_err(|e| match e {})
@@ -106,7 +106,7 @@ impl CellSource for Slow {
     fn object_box(&self, object: u32) -> Result<Aabb<3>, String> {
         self.table.object_box(object).map_err(|e| match e {})
     }
-    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), String> {
+    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), String> {
         self.table.mirrors(cell, show).map_err(|e| match e {})
     }
     fn stab_roots(&self, cell: CellId, out: &mut Vec<u32>) -> Result<Option<bool>, String> {
@@ -292,9 +292,9 @@ fn wanderers_stay_inside() {
     assert_eq!(walk.len(), 5000);
     let mut visited = BTreeSet::new();
     for stand in &walk {
-        let at = table.locate(&stand.eye[..2]);
-        assert!(!at.is_empty(), "{stand:?}");
-        visited.extend(at);
+        let at = table.place_at(stand.eye);
+        assert!(!at.is_outside(), "{stand:?}");
+        visited.extend(at.cells().to_vec());
         View::planar([stand.eye[0], stand.eye[1]], [stand.dir[0], stand.dir[1]], 1.0).unwrap();
     }
     assert_eq!(visited.len(), 12);

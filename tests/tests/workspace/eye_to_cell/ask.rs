@@ -1,7 +1,7 @@
 //! Asking all methods, and comparing their answers.
 
 use sightlines::eye_to_cell::{
-    Doors, EyeToCell, Image, Method, Outlook, Scratch, Seen, TableCells, View, follow_reflections,
+    Doors, Image, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines::pvs::{CellId, Table};
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,22 +20,22 @@ pub(crate) type Answers = [Answer; 5];
 /// A table with a reusable workspace for queries.
 pub(crate) struct Asker<'t> {
     cells: TableCells<&'t Table>,
-    outlooks: BTreeMap<CellId, Rc<Outlook>>,
+    subgraphs: BTreeMap<CellId, Rc<VisibleSubgraph>>,
     scratch: Scratch,
 }
 
 impl<'t> Asker<'t> {
     pub(crate) fn new(table: &'t Table) -> Self {
-        Self { cells: TableCells::new(table), outlooks: BTreeMap::new(), scratch: Scratch::new() }
+        Self { cells: TableCells::new(table), subgraphs: BTreeMap::new(), scratch: Scratch::new() }
     }
 
     /// What a method says of a viewer in the cells `roots`, as it says it: cells, objects, what is seen in mirrors.
-    pub(crate) fn ask(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> Seen {
-        let mut seen = Seen::new();
+    pub(crate) fn ask(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> VisibleSet {
+        let mut seen = VisibleSet::new();
         seen.clear(self.cells.table().n_cells(), self.cells.table().objects().len());
         for &root in roots {
-            let outlook = outlook(&self.cells, &mut self.outlooks, root);
-            method.look(&outlook, view, doors, &mut self.scratch, &mut seen);
+            let subgraph = subgraph(&self.cells, &mut self.subgraphs, root);
+            method.look(&subgraph, view, doors, &mut self.scratch, &mut seen);
         }
         seen
     }
@@ -49,18 +49,22 @@ impl<'t> Asker<'t> {
     pub(crate) fn images(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> Vec<Image> {
         let first = self.ask(roots, view, doors, method);
         let sizes = [self.cells.table().n_cells(), self.cells.table().objects().len()];
-        let Self { cells, outlooks, scratch } = self;
-        follow_reflections(&method, &first, 3, doors, scratch, sizes, |cell| Some(outlook(cells, outlooks, cell)))
+        let Self { cells, subgraphs, scratch } = self;
+        follow_reflections(method, &first, 3, doors, scratch, sizes, |cell| Some(subgraph(cells, subgraphs, cell)))
     }
 }
 
-fn outlook(cells: &TableCells<&Table>, known: &mut BTreeMap<CellId, Rc<Outlook>>, root: CellId) -> Rc<Outlook> {
-    let prepare = || Rc::new(Outlook::prepare(cells, root).unwrap_or_else(|never| match never {}));
+fn subgraph(
+    cells: &TableCells<&Table>,
+    known: &mut BTreeMap<CellId, Rc<VisibleSubgraph>>,
+    root: CellId,
+) -> Rc<VisibleSubgraph> {
+    let prepare = || Rc::new(VisibleSubgraph::prepare(cells, root).unwrap_or_else(|never| match never {}));
     known.entry(root).or_insert_with(prepare).clone()
 }
 
 /// What was seen, mirrors left out.
-pub(crate) fn answer(seen: &Seen) -> Answer {
+pub(crate) fn answer(seen: &VisibleSet) -> Answer {
     Answer { cells: seen.cells().iter().copied().collect(), objects: seen.objects().iter().copied().collect() }
 }
 

@@ -139,7 +139,7 @@ fn check(room: &Room, n_on_grid: usize, seed: u64, counts: &mut Counts) -> Resul
         })
         .collect();
     let shown = shown(room, &closed, eye, &pictures);
-    let roots = room.table.locate(&eye);
+    let roots = room.table.in_dimension().unwrap().at(eye).cells().to_vec();
     let walked = reachable(&room.table, &roots, &doors);
     let all_round = View::all_round(eye).expect("a finite eye");
     let views: Vec<&View> = std::iter::once(&all_round).chain(pictures.iter().map(|p| &p.view)).collect();
@@ -200,7 +200,8 @@ fn wrong_answers_about_a_room_are_noticed() {
     let eye = place(&room, 0, &mut Random::new(3, 3)).expect("there is room");
     let shown = &shown(&room, &[], eye, &[])[0];
     let view = View::all_round(eye).expect("a finite eye");
-    let answers = Asker::new(&room.table).all(&room.table.locate(&eye), &view, &Doors::all_open());
+    let answers =
+        Asker::new(&room.table).all(room.table.in_dimension().unwrap().at(eye).cells(), &view, &Doors::all_open());
     assert_eq!((missed(&answers, shown), &answers[4].cells), (None, &shown.cells));
     for cell in &shown.cells {
         let mut less = answers.clone();

@@ -17,7 +17,7 @@ fn nothing_behind_closed_portals_is_reached() {
             for place in 0..12 {
                 let mut random = Random::new(seed, place);
                 let Some(eye) = eye(&plan, &table, place as usize, &mut random) else { continue };
-                let roots = table.locate(&[eye.x, eye.y]);
+                let roots = table.in_dimension().unwrap().at([eye.x, eye.y]).cells().to_vec();
                 let (view, ..) = gaze(&table, eye, &mut random);
                 let (mut doors, closed) = some_doors(&table, &mut random);
                 let walked = reachable(&table, &roots, &doors);

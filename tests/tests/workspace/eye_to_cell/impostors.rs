@@ -15,7 +15,7 @@ fn wrong_answers_about_a_maze_are_noticed() {
     let plan = sightlines::scenes::maze(5, 4, 4).expect("a small maze");
     let table = bake(&plan, Subdivide::Triangulation).expect("a plan on a grid");
     let eye = Point2::new(plan.bounds().min[0] + 0.5625, plan.bounds().min[1] + 0.4375);
-    let roots = table.locate(&[eye.x, eye.y]);
+    let roots = table.in_dimension().unwrap().at([eye.x, eye.y]).cells().to_vec();
     let view = View::all_round([eye.x, eye.y, 0.0]).expect("a finite eye");
     let answers = Asker::new(&table).all(&roots, &view, &Doors::all_open());
     let fan = fan(&plan, &table, &[], eye).expect("a plan on a grid");

@@ -190,7 +190,7 @@ fn check(name: &str, hall: &Hall, plan: &Plan, places: std::ops::Range<usize>, s
         if is_off_grid {
             eye += Point2::new(random.unit(), random.unit()) / 64.0;
         }
-        let roots = hall.table.locate(&[eye.x, eye.y]);
+        let roots = hall.table.in_dimension().unwrap().at([eye.x, eye.y]).cells().to_vec();
         let (doors, closed) = match random.below(3) {
             0 => some_doors(&hall.table, &mut random),
             _ => (Doors::all_open(), Vec::new()),
@@ -267,7 +267,7 @@ fn wrong_images_are_noticed() {
             (reached.len() > 2).then_some((hall, eye))
         })
         .expect("a place with mirrors");
-    let roots = hall.table.locate(&[eye.x, eye.y]);
+    let roots = hall.table.in_dimension().unwrap().at([eye.x, eye.y]).cells().to_vec();
     let view = View::all_round([eye.x, eye.y, 0.0]).expect("a finite eye");
     let images = Asker::new(&hall.table).images(&roots, &view, &Doors::all_open(), Method::Exact);
     let words: Vec<&[u32]> = images.iter().map(|image| &image.mirrors[..]).collect();

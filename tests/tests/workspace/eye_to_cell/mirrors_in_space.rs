@@ -172,7 +172,7 @@ fn check(room: &Room, seed: u64, counts: &mut Counts) {
                     }
                 }
                 for (k, method) in Method::ALL.into_iter().enumerate() {
-                    let images = asker.images(&table.locate(&eye), view, &doors, method);
+                    let images = asker.images(table.in_dimension().unwrap().at(eye).cells(), view, &doors, method);
                     let what =
                         || format!("{method}, eye {eye:?}, view {view:?}, {:?}, {:?}", room.solids, table.mirrors());
                     assert_eq!(missed_in_mirrors(&images, &reached), None, "{}", what());

@@ -5,7 +5,7 @@ use crate::eye_to_cell::plan_families::bake;
 use proptest::prelude::*;
 use sightlines::bake::Subdivide;
 use sightlines::eye_to_cell::{
-    CellSource, Doors, EyeToCell, Method, MirrorWay, Outlook, Scratch, Seen, StabStep, View, ViewError, Way,
+    CellSource, Doors, Method, MirrorPiece, PortalEdge, Scratch, StabStep, View, ViewError, VisibleSet, VisibleSubgraph,
 };
 use sightlines::geometry::Aabb;
 use sightlines::pvs::CellId;
@@ -94,11 +94,11 @@ impl CellSource for Garbage {
         Ok(())
     }
 
-    fn ways(&self, cell: CellId, show: &mut dyn FnMut(Way<'_>)) -> Result<(), Self::Error> {
+    fn portal_edges(&self, cell: CellId, show: &mut dyn FnMut(PortalEdge<'_>)) -> Result<(), Self::Error> {
         for (portal, (a, b, corners)) in (0..).zip(&self.portals) {
             if [*a, *b].contains(&cell.0) {
                 let to = CellId(if *a == cell.0 { *b } else { *a });
-                show(Way { portal, forward: *a == cell.0, to, corners });
+                show(PortalEdge { portal, forward: *a == cell.0, to, corners });
             }
         }
         Ok(())
@@ -120,9 +120,9 @@ impl CellSource for Garbage {
         Ok(aabb(self.objects[object as usize].1))
     }
 
-    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorWay<'_>)) -> Result<(), Self::Error> {
+    fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), Self::Error> {
         for (_, face, corners) in self.mirrors.iter().filter(|(at, ..)| *at == cell.0) {
-            show(MirrorWay { face: *face, corners });
+            show(MirrorPiece { face: *face, corners });
         }
         Ok(())
     }
@@ -159,16 +159,16 @@ proptest! {
             return Ok(());
         };
         let (mut scratch, doors) = (Scratch::new(), Doors::all_open());
-        let mut seen = Seen::new();
+        let mut seen = VisibleSet::new();
         let mut pending = vec![(CellId(root), view)];
         for _ in 0..12 {
             let Some((root, view)) = pending.pop() else { break };
-            let outlook = Outlook::prepare(&source, root).unwrap_or_else(|never| match never {});
+            let subgraph = VisibleSubgraph::prepare(&source, root).unwrap_or_else(|never| match never {});
             for method in Method::ALL {
                 seen.clear(source.n_cells(), source.n_objects());
-                method.look(&outlook, &view, &doors, &mut scratch, &mut seen);
+                method.look(&subgraph, &view, &doors, &mut scratch, &mut seen);
                 prop_assert!(seen.has_cell(root), "{method}");
-                prop_assert!(seen.cells().iter().all(|cell| outlook.cells().contains(&CellId(*cell))), "{method}");
+                prop_assert!(seen.cells().iter().all(|cell| subgraph.cells().contains(&CellId(*cell))), "{method}");
             }
             pending.extend(seen.reflections().iter().map(|r| (r.cell, r.view.clone())));
         }
@@ -182,12 +182,12 @@ fn strange_sources_are_looked_at() {
     let (mut n_cells, mut n_less, mut n_mirrors) = (0, 0, 0);
     for source in &sources {
         let view = view(source, [0.5, 0.25, 0.125], [1.0, 0.5, 0.1], 1.0).expect("numbers in their ranges");
-        let outlook = Outlook::prepare(source, CellId(0)).unwrap_or_else(|never| match never {});
-        let mut seen = Seen::new();
+        let subgraph = VisibleSubgraph::prepare(source, CellId(0)).unwrap_or_else(|never| match never {});
+        let mut seen = VisibleSet::new();
         seen.clear(source.n_cells(), source.n_objects());
-        Method::Exact.look(&outlook, &view, &Doors::all_open(), &mut Scratch::new(), &mut seen);
+        Method::Exact.look(&subgraph, &view, &Doors::all_open(), &mut Scratch::new(), &mut seen);
         n_cells += seen.cells().len();
-        n_less += outlook.cells().len() - seen.cells().len();
+        n_less += subgraph.cells().len() - seen.cells().len();
         n_mirrors += seen.reflections().len();
     }
     assert!(n_cells > 400 && n_less > 200 && n_mirrors > 20, "{n_cells} {n_less} {n_mirrors}");

@@ -69,7 +69,7 @@ fn split(table: &Table, regions: &BTreeSet<u32>) -> Answer {
     let within = |object: &u32| {
         let o = &table.objects()[*object as usize];
         let corners = [[o.min[0], o.min[1]], [o.max[0], o.min[1]], [o.max[0], o.max[1]], [o.min[0], o.max[1]]];
-        corners.iter().all(|corner| !table.locate(corner).is_empty())
+        corners.iter().all(|corner| !table.in_dimension().unwrap().at(*corner).is_outside())
     };
     Answer { cells, objects: objects.iter().map(|o| o - n_cells).filter(within).collect() }
 }
@@ -122,7 +122,7 @@ fn check(plan: &Plan, table: &Table, n_eyes: usize, seed: u64) -> Result<Counts,
     for place in 0..n_eyes * N_PLACES {
         let mut random = Random::new(seed, place as u64);
         let Some(eye) = eye(plan, table, place, &mut random) else { continue };
-        let roots = table.locate(&[eye.x, eye.y]);
+        let roots = table.in_dimension().unwrap().at([eye.x, eye.y]).cells().to_vec();
         let (doors, closed) = some_doors(table, &mut random);
         let Some(fan) = (!roots.is_empty()).then(|| fan(plan, table, &closed, eye)).flatten() else { continue };
         for _ in 0..3 {
@@ -234,7 +234,11 @@ fn a_maze_is_seen_from_places_that_are_on_no_grid() {
         // tenth of a degree, the other sees as well.
         let beside = |x: f64| f64::from_bits(x.to_bits().wrapping_add_signed(random.clone().below(3) as i64 - 1));
         let at = Point2::new(beside(on_grid.x), beside(on_grid.y));
-        let roots = [table.locate(&[on_grid.x, on_grid.y]), table.locate(&[at.x, at.y])].concat();
+        let roots = [
+            table.in_dimension().unwrap().at([on_grid.x, on_grid.y]).cells().to_vec(),
+            table.in_dimension().unwrap().at([at.x, at.y]).cells().to_vec(),
+        ]
+        .concat();
         let (Some(fan), Ok(view)) = (fan(&plan, &table, &[], on_grid), View::all_round([at.x, at.y, 0.0])) else {
             continue;
         };

@@ -3,7 +3,7 @@
 use sightlines::bake::region::grid;
 use sightlines::bake::{CellsFrom, PortalMode, RegionBakeOptions, bake_regions};
 use sightlines::cells::Scene;
-use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, TableCells, View};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::ViewCells;
 use sightlines::geometry::Random;
 use sightlines::geometry::vector::{length, scale};
@@ -32,10 +32,10 @@ fn table_of(scene: &Scene, cells: ViewCells) -> Table {
 
 /// What a method has of what is seen from an eye in a cell: objects, and the number of cells.
 fn ask(table: &Table, method: Method, cell: CellId, view: &View) -> (Vec<u32>, usize) {
-    let outlook = Outlook::prepare(&TableCells::new(table), cell).expect("memory does not fail");
-    let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
+    let subgraph = VisibleSubgraph::prepare(&TableCells::new(table), cell).expect("memory does not fail");
+    let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
     seen.clear(table.n_cells(), table.objects().len());
-    method.look(&outlook, view, &Doors::all_open(), &mut scratch, &mut seen);
+    method.look(&subgraph, view, &Doors::all_open(), &mut scratch, &mut seen);
     let mut objects = seen.objects().to_vec();
     objects.sort_unstable();
     (objects, seen.cells().len())

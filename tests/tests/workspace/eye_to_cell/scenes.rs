@@ -84,7 +84,7 @@ impl Stage {
         for kind in 0..n_eyes {
             let mut random = Random::new(11, kind as u64);
             let eye = self.eye(kind, &mut random);
-            let roots = self.table.locate(&eye);
+            let roots = self.table.in_dimension().unwrap().at(eye).cells().to_vec();
             let mut all = Answer::default();
             for frame in 0..4 {
                 let aim = self.towards(eye, &roots, &mut random);

@@ -56,7 +56,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
     let table = input::table(&args.table)?;
     input::refuse_without_places(&table, &args.table, "there is nothing to draw")?;
     if let Some(eye) = &args.eye
-        && table.locate(eye.of(&table, &args.table)?).is_empty()
+        && table.place_at(eye.lifted(&table, &args.table)?).is_outside()
     {
         output::stdout(|out| std::io::Write::write_fmt(out, format_args!("the point {eye} is outside every cell\n")))?;
         return Ok(Answer::No);

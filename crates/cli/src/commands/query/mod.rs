@@ -11,8 +11,7 @@ use crate::view::lifted;
 use error::Error;
 use serde::Serialize;
 use sight::SightArgs;
-use sightlines::pvs::CellId;
-use sightlines::walkthrough::Resident;
+use sightlines::pvs::{CellId, PlaceBuffer};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::PathBuf;
@@ -47,12 +46,14 @@ fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer, Error> {
     let path = &args.table;
     cells.refuse_without_places(path)?;
     let eye = args.eye.coordinates(cells.n_dimensions(), path)?;
-    let mut at = Vec::new();
-    Resident::locate(cells, lifted(eye), &mut Vec::new(), &mut at);
+    let mut buffer = PlaceBuffer::new();
+    let place = cells.cells_at(lifted(eye), &mut buffer);
+    // Outside, the answer says so and names no cells.
+    let at = place.inside().unwrap_or_default();
     if args.sight.is_given() {
-        output::print(args.json, &sight::look(cells, path, eye, &at, &args.sight)?)?;
+        output::print(args.json, &sight::look(cells, path, eye, at, &args.sight)?)?;
     } else {
-        output::print(args.json, &rows(cells, eye, &at).map_err(|error| C::fail(path, error))?)?;
+        output::print(args.json, &rows(cells, eye, at).map_err(|error| C::fail(path, error))?)?;
     }
     Ok(if at.is_empty() { Answer::No } else { Answer::Yes })
 }

@@ -7,9 +7,9 @@ use crate::place::Point;
 use crate::tables::Cells;
 use crate::view::{LensArgs, Methods, lifted};
 use serde::Serialize;
-use sightlines::eye_to_cell::{Doors, EyeToCell, Method, Outlook, Scratch, Seen, View, follow_reflections};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections};
 use sightlines::pvs::CellId;
-use sightlines::walkthrough::Stand;
+use sightlines::walkthrough::CameraPose;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -55,7 +55,7 @@ impl SightArgs {
             return if self.lens.is_given() { Err(Error::LensWithoutDirection) } else { Ok((view, None)) };
         };
         let dir = lifted(dir.coordinates(cells.n_dimensions(), path)?);
-        let view = lens.view(Stand { eye: lifted(eye), dir });
+        let view = lens.view(CameraPose { eye: lifted(eye), dir });
         Ok((view.map_err(|source| Error::View { option: "--dir", source })?, Some(lens.fov)))
     }
 
@@ -82,7 +82,8 @@ pub(super) fn look<C: Cells>(
     let (view, fov) = args.view(cells, path, eye)?;
     let doors = args.doors(cells.n_portals(), path)?;
     let all = args.method == Some(Methods::All);
-    let viewer = Viewer { cells, at, view, doors, bounces: args.bounces.unwrap_or(0), outlooks: Outlooks::default() };
+    let viewer =
+        Viewer { cells, at, view, doors, bounces: args.bounces.unwrap_or(0), subgraphs: VisibleSubgraphs::default() };
     let methods = args.method.unwrap_or(Methods::One(Method::Exact)).list();
     let answers = methods.into_iter().map(|method| viewer.answer(method));
     let mut answers = answers.collect::<Result<Vec<_>, _>>().map_err(|error| C::fail(path, error))?;
@@ -93,8 +94,8 @@ pub(super) fn look<C: Cells>(
     Ok(Sight { place, outside, dir, fov, one, methods: answers, all: cells.counts() })
 }
 
-/// Outlooks that were prepared already.
-type Outlooks = RefCell<BTreeMap<CellId, Rc<Outlook>>>;
+/// VisibleSubgraphs that were prepared already.
+type VisibleSubgraphs = RefCell<BTreeMap<CellId, Rc<VisibleSubgraph>>>;
 
 struct Viewer<'a, C> {
     cells: &'a C,
@@ -102,23 +103,23 @@ struct Viewer<'a, C> {
     view: View,
     doors: Doors,
     bounces: usize,
-    outlooks: Outlooks,
+    subgraphs: VisibleSubgraphs,
 }
 
 impl<C: Cells> Viewer<'_, C> {
-    fn outlook(&self, cell: CellId) -> Result<Rc<Outlook>, C::Error> {
-        if let Some(outlook) = self.outlooks.borrow().get(&cell) {
-            return Ok(Rc::clone(outlook));
+    fn subgraph(&self, cell: CellId) -> Result<Rc<VisibleSubgraph>, C::Error> {
+        if let Some(subgraph) = self.subgraphs.borrow().get(&cell) {
+            return Ok(Rc::clone(subgraph));
         }
-        let outlook = Rc::new(Outlook::prepare(self.cells, cell)?);
-        self.outlooks.borrow_mut().insert(cell, Rc::clone(&outlook));
-        Ok(outlook)
+        let subgraph = Rc::new(VisibleSubgraph::prepare(self.cells, cell)?);
+        self.subgraphs.borrow_mut().insert(cell, Rc::clone(&subgraph));
+        Ok(subgraph)
     }
 
     fn answer(&self, method: Method) -> Result<Answered, C::Error> {
         let [n_cells, n_objects] = self.cells.counts();
-        let (mut scratch, mut seen) = (Scratch::new(), Seen::new());
-        let roots = self.at.iter().map(|&cell| self.outlook(cell)).collect::<Result<Vec<_>, _>>()?;
+        let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
+        let roots = self.at.iter().map(|&cell| self.subgraph(cell)).collect::<Result<Vec<_>, _>>()?;
         let mut times: Vec<Duration> = Vec::new();
         for _ in 0..=RUNS {
             let start = Instant::now();
@@ -137,9 +138,9 @@ impl<C: Cells> Viewer<'_, C> {
         }
         seen.sort();
         let mut failed = None;
-        let outlook = |cell| self.outlook(cell).map_err(|error| failed = Some(error)).ok();
+        let subgraph = |cell| self.subgraph(cell).map_err(|error| failed = Some(error)).ok();
         let counts = [n_cells, n_objects];
-        let images = follow_reflections(&method, &seen, self.bounces, &self.doors, &mut scratch, counts, outlook);
+        let images = follow_reflections(method, &seen, self.bounces, &self.doors, &mut scratch, counts, subgraph);
         if let Some(error) = failed {
             return Err(error);
         }

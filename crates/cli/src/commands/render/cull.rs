@@ -4,9 +4,9 @@ use super::Error;
 use crate::tables::{self, Cells, Opened};
 use sightlines::cells::Scene;
 use sightlines::geometry::{Aabb, Point3};
+use sightlines::pvs::{Place, PlaceBuffer};
 use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
 use sightlines::visible_surface::{Camera, Chosen, DepthFormat, Faces, Shot, VisibleSurface, ZBuffer, cull};
-use sightlines::walkthrough::Resident;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -85,15 +85,14 @@ fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point
     if let Some(unlike) = unlike(cells, scene).map_err(fail)? {
         return Err(Error::OtherScene { table: table.to_owned(), scene: path.to_owned(), unlike });
     }
-    let mut at = Vec::new();
-    Resident::locate(cells, eye, &mut Vec::new(), &mut at);
-    if at.is_empty() {
+    let mut buffer = PlaceBuffer::new();
+    let Place::Inside(at) = cells.cells_at(eye, &mut buffer) else {
         tracing::warn!("{}: the eye is outside every cell, where everything may be seen", table.display());
         return Ok(None);
-    }
+    };
     let mut seen = vec![false; scene.objects().len()];
     let mut objects = Vec::new();
-    for cell in at {
+    for &cell in at {
         cells.objects_seen(cell, &mut objects).map_err(fail)?;
         objects.iter().for_each(|&object| seen[object as usize] = true);
     }

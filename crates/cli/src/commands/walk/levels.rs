@@ -6,7 +6,8 @@ use crate::tables::Cells;
 use serde::Serialize;
 use sightlines::eye_to_cell::View;
 use sightlines::formats::levels::{INDEX_NAME, read_levels_index};
-use sightlines::walkthrough::{LevelError, LevelIndex, LevelSize, Resident};
+use sightlines::pvs::{Place, PlaceBuffer};
+use sightlines::walkthrough::{LevelError, LevelIndex, LevelSize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -45,14 +46,13 @@ pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[Vi
     let sizes = index.levels.iter().map(|level| LevelSize { bytes: level.n_bytes, n_triangles: level.n_triangles });
     let sizes: Vec<LevelSize> = sizes.collect();
     let levels = LevelIndex::new(index.cells, sizes).map_err(|error| unlike(error.into()))?;
-    let (mut pending, mut at) = (Vec::new(), Vec::new());
+    let mut buffer = PlaceBuffer::new();
     let (mut n_frames, mut n_with_level, mut sum, mut most) = (0, 0, 0, 0);
     for view in views {
-        Resident::locate(cells, view.eye(), &mut pending, &mut at);
-        if !at.is_empty() {
-            let n = levels.n_triangles_at(&at, index.n_triangles);
+        if let Place::Inside(at) = cells.cells_at(view.eye(), &mut buffer) {
+            let n = levels.n_triangles_at(at, index.n_triangles);
             n_frames += 1;
-            n_with_level += usize::from(levels.level_at(&at).is_some());
+            n_with_level += usize::from(levels.level_at(at).is_some());
             sum += n;
             most = most.max(n);
         }

@@ -54,9 +54,9 @@ pub(super) struct Measured {
     pub(super) n_outside: usize,
     /// Frames that never got their answer, because the budget is too small for what they need.
     pub(super) n_starved: usize,
-    /// The most bytes of prepared outlooks that were kept at once.
+    /// The most bytes of prepared subgraphs that were kept at once.
     pub(super) most_bytes: usize,
-    /// Outlooks that were prepared and dropped while waiting.
+    /// VisibleSubgraphs that were prepared and dropped while waiting.
     pub(super) n_prepared: u64,
     pub(super) n_dropped: u64,
 }

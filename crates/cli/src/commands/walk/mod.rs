@@ -18,7 +18,7 @@ use outcome::Outcome;
 use path::PathError;
 use sightlines::eye_to_cell::{CellSource, Method, View};
 use sightlines::report::walk_svg;
-use sightlines::walkthrough::{Stand, WalkOptions, wander};
+use sightlines::walkthrough::{CameraPose, WalkOptions, wander};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `walk`.
@@ -106,7 +106,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
     if stands.is_empty() {
         return Err(Error::NoWay(file.clone()));
     }
-    let view = |(k, stand): (usize, &Stand)| {
+    let view = |(k, stand): (usize, &CameraPose)| {
         lens.view(*stand).map_err(|error| refused(args.path.as_deref().unwrap_or(file), k, error))
     };
     let views: Vec<View> = stands.iter().enumerate().map(view).collect::<Result<_, _>>()?;

@@ -6,7 +6,6 @@ use super::measure::{Measured, MethodSums};
 use crate::output::{bytes, count};
 use crate::tables::Cells;
 use serde::Serialize;
-use sightlines::eye_to_cell::EyeToCell;
 use sightlines::report::WalkBar;
 use std::fmt;
 use std::fmt::Write;
@@ -31,7 +30,7 @@ pub(super) struct Outcome {
     /// Frames for which the budget was too small.
     n_starved: usize,
     budget: usize,
-    /// The most bytes of prepared outlooks that were kept at once.
+    /// The most bytes of prepared subgraphs that were kept at once.
     most_bytes_kept: usize,
     n_prepared: u64,
     n_dropped: u64,
@@ -218,7 +217,7 @@ impl fmt::Display for Outcome {
         let [most, budget] = [self.most_bytes_kept, self.budget].map(|n| bytes(n as u64));
         writeln!(
             f,
-            "\nkept           at most {most} of {budget}; {} outlooks made, {} dropped",
+            "\nkept           at most {most} of {budget}; {} subgraphs made, {} dropped",
             self.n_prepared, self.n_dropped
         )?;
         if let Some([resident, blocks]) = self.packed_bytes.map(|list| list.map(|n| bytes(n as u64))) {

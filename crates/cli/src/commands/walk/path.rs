@@ -5,7 +5,7 @@ use crate::error::InputError;
 use serde::Deserialize;
 use sightlines::eye_to_cell::ViewError;
 use sightlines::geometry::{CoordinateError, check_coordinate};
-use sightlines::walkthrough::Stand;
+use sightlines::walkthrough::CameraPose;
 use std::path::Path;
 
 /// Why a file is no walk. Frames count from 0.
@@ -40,19 +40,22 @@ struct FrameText {
 }
 
 /// Reads a walk for a table with so many dimensions.
-pub(super) fn read(path: &Path, dimension: u8) -> Result<Vec<Stand>, Error> {
+pub(super) fn read(path: &Path, dimension: u8) -> Result<Vec<CameraPose>, Error> {
     let bytes = std::fs::read(path).map_err(|source| InputError::Open { path: path.to_owned(), source })?;
     parse(&bytes, dimension).map_err(|source| Error::Path { path: path.to_owned(), source })
 }
 
-fn parse(bytes: &[u8], dimension: u8) -> Result<Vec<Stand>, PathError> {
+fn parse(bytes: &[u8], dimension: u8) -> Result<Vec<CameraPose>, PathError> {
     let Text { frames } = serde_json::from_slice(bytes).map_err(PathError::Text)?;
     if frames.is_empty() {
         return Err(PathError::Empty);
     }
     let stand = |(frame, value): (usize, serde_json::Value)| {
         let text: FrameText = serde_json::from_value(value).map_err(|source| PathError::Frame { frame, source })?;
-        Ok(Stand { eye: point(&text.eye, frame, "eye", dimension)?, dir: point(&text.dir, frame, "dir", dimension)? })
+        Ok(CameraPose {
+            eye: point(&text.eye, frame, "eye", dimension)?,
+            dir: point(&text.dir, frame, "dir", dimension)?,
+        })
     };
     frames.into_iter().enumerate().map(stand).collect()
 }
@@ -74,7 +77,7 @@ mod tests {
     fn walks_are_read_and_slips_told_with_their_frame() {
         let good = br#"{"frames": [{"eye": [1, 2], "dir": [0, 1]}, {"eye": [1.5, 2], "dir": [1, 1]}], "by": "hand"}"#;
         let stands = parse(good, 2).unwrap();
-        assert_eq!((stands.len(), stands[1]), (2, Stand { eye: [1.5, 2.0, 0.0], dir: [1.0, 1.0, 0.0] }));
+        assert_eq!((stands.len(), stands[1]), (2, CameraPose { eye: [1.5, 2.0, 0.0], dir: [1.0, 1.0, 0.0] }));
         for (text, told) in [
             ("", "EOF while parsing"),
             ("[]", "line 1 column "),

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Place, PortalRecord, Table, TableKind, TableParts,
 };
 use std::collections::BTreeMap;
 
@@ -192,10 +192,11 @@ pub(crate) fn assert_well_formed(table: &Table) {
         let corner = table.cells()[a.idx()].min;
         let middle = middle_of(&table.cells()[a.idx()]);
         for p in [corner, middle] {
-            let p = &p[..usize::from(table.dimension())];
-            let seen = table.visible_from(p);
-            assert!(table.locate(p).iter().all(|&c| table.visible(c).all(|b| seen.contains(b))));
+            let Place::Inside(at) = table.place_at(p) else { continue };
+            let seen = at.visible_set();
+            assert!(at.cells().iter().all(|&c| table.visible(c).all(|b| seen.contains(b))));
             table.objects_in(&seen);
+            at.visible_objects();
         }
     }
     assert!((0.0..=1.0).contains(&table.mean_visible_share()));

@@ -1,7 +1,7 @@
 //! Tables over a grid of unit cells, with rows drawn by chance, and an oracle for what touches what in whole numbers.
 
 use proptest::prelude::*;
-use sightlines_eye_to_cell::{Seen, TableCells};
+use sightlines_eye_to_cell::{TableCells, VisibleSet};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, Locator, PlaneChild, PlaneNode, PlaneTree, PortalRecord, Table, TableKind,
@@ -92,7 +92,7 @@ impl Grid {
     }
 
     /// The plain method for one box.
-    pub(crate) fn sees(&self, seen: &Seen, b: &IntBox) -> bool {
+    pub(crate) fn sees(&self, seen: &VisibleSet, b: &IntBox) -> bool {
         let beyond = (0..self.dimension()).any(|k| b.0[k] < self.lowest(k) || b.1[k] > self.highest(k));
         beyond || (0u32..).zip(&self.shapes).any(|(i, s)| seen.has_cell(CellId(i)) && s.touches(b, self.dimension()))
     }
@@ -242,11 +242,11 @@ pub(crate) fn any_grid() -> impl Strategy<Value = Grid> {
 }
 
 /// A frame that sees these cells.
-pub(crate) fn see(seen: &mut Seen, n_cells: usize, cells: impl IntoIterator<Item = u32>) {
+pub(crate) fn see(seen: &mut VisibleSet, n_cells: usize, cells: impl IntoIterator<Item = u32>) {
     seen.clear(n_cells, 0);
     seen.add_cells(cells.into_iter().map(CellId));
 }
 
-pub(crate) fn frame<'a>(seen: &'a Seen, answer: Answer) -> Frame<'a> {
+pub(crate) fn frame<'a>(seen: &'a VisibleSet, answer: Answer) -> Frame<'a> {
     Frame { seen, at: &[], answer, images: &[], ahead: &[] }
 }

@@ -2,7 +2,7 @@
 
 use crate::moving::grid::{Chance, Grid, IntBox, Kind, UNIT, any_grid, float, frame, grid, see};
 use proptest::prelude::*;
-use sightlines_eye_to_cell::{Seen, TableCells};
+use sightlines_eye_to_cell::{TableCells, VisibleSet};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, Table};
 use sightlines_walkthrough::{Answer, CellBoxes, Motion, MoverId, MoverOptions, Movers};
@@ -55,15 +55,15 @@ impl Thing {
     }
 }
 
-type Places = TableCells<Arc<Table>>;
+type CellLocator = TableCells<Arc<Table>>;
 
 /// A game with movers and its plain twin.
 struct Game {
     grid: Grid,
     chance: Chance,
-    movers: Movers<Places>,
+    movers: Movers<CellLocator>,
     things: BTreeMap<MoverId, Thing>,
-    seen: Seen,
+    seen: VisibleSet,
     /// Quarters of a time unit.
     now: i64,
     n_reported: usize,
@@ -82,7 +82,7 @@ impl Game {
             solid_within: None,
         };
         let movers = Movers::new(grid.cells(), options);
-        let (things, seen) = (BTreeMap::new(), Seen::new());
+        let (things, seen) = (BTreeMap::new(), VisibleSet::new());
         Self { grid, chance, movers, things, seen, now: 0, n_reported: 0, n_hidden: 0 }
     }
 
@@ -205,7 +205,7 @@ proptest! {
                 let n = game.grid.n_cells() as u32;
                 let cells: Vec<CellId> = (0..n).filter(|cell| (cell + turn) % 3 == 0).map(CellId).collect();
                 let told = game.movers.also(&cells, &mut place).to_vec();
-                let mut seen = Seen::new();
+                let mut seen = VisibleSet::new();
                 see(&mut seen, n as usize, cells.iter().map(|cell| cell.0));
                 let plain = things.iter().filter(|(_, thing)| game.grid.sees(&seen, &thing.at)).map(|(&id, _)| id);
                 prop_assert_eq!(told, plain.collect::<Vec<_>>());
@@ -228,7 +228,7 @@ proptest! {
             if grid.dimension() == 2 {
                 (b.0[2], b.1[2]) = (0, 0);
             }
-            let mut collect = |places: &dyn sightlines_walkthrough::Places| {
+            let mut collect = |places: &dyn sightlines_walkthrough::CellLocator| {
                 let mut found = Vec::new();
                 places.touching(&float(&b), &mut pending, &mut |cell| { found.push(cell.0); true });
                 found.sort_unstable();
@@ -242,7 +242,7 @@ proptest! {
             prop_assert_eq!(&told, &oracle);
             prop_assert!(oracle.iter().all(|cell| loose.binary_search(cell).is_ok()));
             // The first no ends it.
-            for places in [&cells as &dyn sightlines_walkthrough::Places, &boxes] {
+            for places in [&cells as &dyn sightlines_walkthrough::CellLocator, &boxes] {
                 let mut n = 0;
                 places.touching(&float(&b), &mut pending, &mut |_| { n += 1; false });
                 prop_assert!(n <= 1);
@@ -271,7 +271,7 @@ fn asked_in_frames(n_movers: usize, n_frames: usize, motion: impl Fn(usize) -> M
         movers.add(in_room(8 + k % 56), motion, 0.0).unwrap();
     }
     let seen_by = movers.add(in_room(1), Motion::speed(0.125).unwrap(), 0.0).unwrap();
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     see(&mut seen, 64, [0, 1]);
     let mut asked = Vec::new();
     for k in 0..n_frames {
@@ -309,7 +309,7 @@ fn hidden_movers_are_not_asked() {
 fn frames_without_movers_look_at_nothing() {
     let grid = row(64);
     let mut movers = Movers::new(grid.cells(), MoverOptions::default());
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     see(&mut seen, 64, 0..64);
     for k in 0..100 {
         assert!(movers.frame(f64::from(k), &frame(&seen, Answer::Full), &mut |_| unreachable!()).unwrap().is_empty());
@@ -323,7 +323,7 @@ fn volumes_shrink_when_they_come_into_view_for_nothing() {
     let mut movers = Movers::new(grid.cells(), MoverOptions { patience: 0, ..MoverOptions::default() });
     let motion = Motion::speed(1.0).unwrap().and_within(movers.bounds()).unwrap();
     let id = movers.add(in_room(20), motion, 0.0).unwrap();
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     let mut widths = Vec::new();
     let mut in_vain = Vec::new();
     // The viewer comes nearer every second second, and stops two rooms away.
@@ -352,7 +352,7 @@ fn regions_of_a_plane_say_nothing_in_space() {
     let column = Aabb { min: [3.0, 0.0, 0.0], max: [4.0, 1.0, 3.0] };
     let at = |z: f64| Aabb { min: [3.25, 0.25, z], max: [3.5, 0.5, z + 0.25] };
     let id = movers.add(at(0.0), Motion::within(column).unwrap(), 0.0).unwrap();
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     let n = space.table.n_cells();
     see(&mut seen, plane.table.n_cells(), [0]);
     for k in 0..10 {

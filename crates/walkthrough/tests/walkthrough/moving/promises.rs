@@ -2,7 +2,7 @@
 
 use crate::moving::grid::{frame, see};
 use crate::moving::movers::row;
-use sightlines_eye_to_cell::Seen;
+use sightlines_eye_to_cell::VisibleSet;
 use sightlines_geometry::Aabb;
 use sightlines_walkthrough::{Answer, Broken, BrokenPromise, Motion, MoverError, MoverId, MoverOptions, Movers};
 
@@ -17,7 +17,7 @@ fn missed(promised: f64) -> (usize, Vec<Broken>) {
     let mut movers = Movers::new(grid.cells(), MoverOptions::default());
     let motion = Motion::speed(promised).unwrap().and_within(movers.bounds()).unwrap();
     movers.add(at(30.0), motion, 0.0).unwrap();
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     see(&mut seen, 40, 0..4);
     let (mut n_missed, mut broken) = (0, Vec::new());
     for k in 0..6000 {
@@ -49,12 +49,13 @@ fn broken_promises_are_told_and_survived() {
     let mut movers = Movers::new(grid.cells(), MoverOptions::default());
     let room = Aabb { min: [5.0, 0.0, 0.0], max: [6.0, 1.0, 1.0] };
     let id = movers.add(at(5.5), Motion::within(room).unwrap(), 0.0).unwrap();
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     see(&mut seen, 8, [0]);
-    let step = |movers: &mut Movers<_>, now: f64, seen: &Seen, here: Aabb<3>| -> (Vec<MoverId>, Vec<BrokenPromise>) {
-        let told = movers.frame(now, &frame(seen, Answer::Full), &mut |_| here).unwrap().to_vec();
-        (told, movers.broken().iter().map(|b| b.promise).collect())
-    };
+    let step =
+        |movers: &mut Movers<_>, now: f64, seen: &VisibleSet, here: Aabb<3>| -> (Vec<MoverId>, Vec<BrokenPromise>) {
+            let told = movers.frame(now, &frame(seen, Answer::Full), &mut |_| here).unwrap().to_vec();
+            (told, movers.broken().iter().map(|b| b.promise).collect())
+        };
     assert_eq!(step(&mut movers, 1.0, &seen, at(5.25)), (vec![], vec![]));
     assert_eq!(movers.sleeps_in(id), Some(room));
     // It leaves the room; nobody looks.
@@ -84,7 +85,7 @@ fn nonsense_is_refused() {
     assert_eq!(movers.add(Aabb::EMPTY, Motion::ANY, 0.0), Err(MoverError::Box));
     assert!(matches!(movers.add(at(1.0), Motion::ANY, f64::NAN), Err(MoverError::Time { .. })));
     let id = movers.add(at(1.0), Motion::ANY, 3.0).unwrap();
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     see(&mut seen, 8, [1]);
     let early = movers.frame(2.0, &frame(&seen, Answer::Full), &mut |_| unreachable!()).unwrap_err();
     assert_eq!(early.to_string(), "the time 2 is not finite, or before 3");
@@ -105,7 +106,7 @@ fn what_reaches_beyond_all_cells_is_seen() {
     let grid = row(8);
     let mut movers = Movers::new(grid.cells(), MoverOptions::default());
     let id = movers.add(at(7.9), Motion::speed(0.0).unwrap(), 0.0).unwrap();
-    let mut seen = Seen::new();
+    let mut seen = VisibleSet::new();
     see(&mut seen, 8, [0]);
     let view = frame(&seen, Answer::Full);
     assert_eq!(movers.frame(0.0, &view, &mut |_| at(7.9)).unwrap(), [id]);

@@ -100,7 +100,7 @@ fn movers_follow_into_another_table() {
     let at = |x: f64| Aabb { min: [x, 0.25, 0.0], max: [x + 0.25, 0.75, 0.0] };
     // One that sleeps in place 5, and one that sleeps for a while in the place that becomes solid.
     let ids = [5.5, 3.5].map(|x| movers.add(at(x), Motion::speed(0.0).unwrap(), 0.0).unwrap());
-    let mut seen = sightlines_eye_to_cell::Seen::new();
+    let mut seen = sightlines_eye_to_cell::VisibleSet::new();
     crate::moving::grid::see(&mut seen, open.n_cells(), [0]);
     let place = |id: sightlines_walkthrough::MoverId| if id == ids[0] { at(5.5) } else { at(3.5) };
     assert_eq!(movers.frame(0.0, &crate::moving::grid::frame(&seen, Answer::Full), &mut |id| place(id)).unwrap(), []);
@@ -108,8 +108,8 @@ fn movers_follow_into_another_table() {
     movers.replace(walled.cells());
     assert_eq!((movers.n_awake(), movers.n_entries(), movers.counters().asked), (0, 1, 2));
     // The cell of place 5 has another number now.
-    let cell = walled.table.locate(&[5.5, 0.5])[0];
-    assert_ne!(open.table.locate(&[5.5, 0.5])[0], cell);
+    let cell = walled.table.in_dimension().unwrap().at([5.5, 0.5]).cells()[0];
+    assert_ne!(open.table.in_dimension().unwrap().at([5.5, 0.5]).cells()[0], cell);
     crate::moving::grid::see(&mut seen, walled.n_cells(), [cell.0]);
     assert_eq!(
         movers.frame(0.01, &crate::moving::grid::frame(&seen, Answer::Full), &mut |id| place(id)).unwrap(),

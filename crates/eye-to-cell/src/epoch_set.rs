@@ -2,14 +2,14 @@
 
 /// A set of small numbers with the order in which they came; emptying it does not touch its memory.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Marks {
+pub(crate) struct EpochSet {
     /// Who has the current epoch is in.
     epochs: Vec<u32>,
     epoch: u32,
     list: Vec<u32>,
 }
 
-impl Marks {
+impl EpochSet {
     /// Empties the set and makes room for numbers below `n`.
     pub(crate) fn clear(&mut self, n: usize) {
         if self.epoch == u32::MAX {
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn marks_are_forgotten() {
-        let mut marks = Marks::default();
+        let mut marks = EpochSet::default();
         assert!(!marks.has(0));
         marks.clear(3);
         assert!(marks.add(2) && marks.add(0) && !marks.add(2) && marks.has(2) && !marks.has(1));

@@ -1,14 +1,14 @@
 //! What was seen.
 
-use crate::marks::Marks;
+use crate::epoch_set::EpochSet;
 use crate::view::View;
 use sightlines_pvs::CellId;
 
 /// The cells and objects that a viewer sees, and the mirrors. Kept from frame to frame, it allocates nothing once it is warm.
 #[derive(Debug, Clone, Default)]
-pub struct Seen {
-    pub(crate) cells: Marks,
-    pub(crate) objects: Marks,
+pub struct VisibleSet {
+    pub(crate) cells: EpochSet,
+    pub(crate) objects: EpochSet,
     pub(crate) reflections: Vec<Reflection>,
 }
 
@@ -17,13 +17,13 @@ pub struct Seen {
 pub struct Reflection {
     /// The mirror.
     pub face: u32,
-    /// The cell in which lines go on behind the mirror: to be asked with the outlook of this cell.
+    /// The cell in which lines go on behind the mirror: to be asked with the subgraph of this cell.
     pub cell: CellId,
     /// The eye behind the mirror, and the directions from there that lead through it.
     pub view: View,
 }
 
-impl Seen {
+impl VisibleSet {
     /// Nothing seen yet.
     pub fn new() -> Self {
         Self::default()
@@ -36,12 +36,12 @@ impl Seen {
         self.reflections.clear();
     }
 
-    /// The cells, in no particular order until [`Seen::sort`].
+    /// The cells, in no particular order until [`VisibleSet::sort`].
     pub fn cells(&self) -> &[u32] {
         self.cells.list()
     }
 
-    /// The objects, in no particular order until [`Seen::sort`].
+    /// The objects, in no particular order until [`VisibleSet::sort`].
     pub fn objects(&self) -> &[u32] {
         self.objects.list()
     }
@@ -70,7 +70,7 @@ impl Seen {
     /// Adds a cell; whether it is new.
     ///
     /// # Panics
-    /// If [`Seen::clear`] made no room for it.
+    /// If [`VisibleSet::clear`] made no room for it.
     pub fn add_cell(&mut self, cell: CellId) -> bool {
         self.cells.add(cell.0)
     }
@@ -78,7 +78,7 @@ impl Seen {
     /// Adds cells.
     ///
     /// # Panics
-    /// As [`Seen::add_cell`].
+    /// As [`VisibleSet::add_cell`].
     pub fn add_cells(&mut self, cells: impl IntoIterator<Item = CellId>) {
         for cell in cells {
             self.add_cell(cell);
@@ -88,7 +88,7 @@ impl Seen {
     /// Adds objects.
     ///
     /// # Panics
-    /// As [`Seen::add_object`].
+    /// As [`VisibleSet::add_object`].
     pub fn add_objects(&mut self, objects: impl IntoIterator<Item = u32>) {
         for object in objects {
             self.add_object(object);
@@ -98,7 +98,7 @@ impl Seen {
     /// Adds an object; whether it is new.
     ///
     /// # Panics
-    /// If [`Seen::clear`] made no room for it.
+    /// If [`VisibleSet::clear`] made no room for it.
     pub fn add_object(&mut self, object: u32) -> bool {
         self.objects.add(object)
     }

@@ -7,7 +7,7 @@ use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// The positions of a table's cells, available without waiting.
-pub trait Places {
+pub trait CellLocator {
     /// 2 or 3.
     fn dimension(&self) -> u8;
 
@@ -24,7 +24,7 @@ pub trait Places {
     fn touching(&self, bounds: &Aabb<3>, pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool);
 }
 
-impl<T: Borrow<Table>> Places for TableCells<T> {
+impl<T: Borrow<Table>> CellLocator for TableCells<T> {
     fn dimension(&self) -> u8 {
         self.table().dimension()
     }
@@ -42,7 +42,7 @@ impl<T: Borrow<Table>> Places for TableCells<T> {
     }
 }
 
-impl<P: Places + ?Sized> Places for Arc<P> {
+impl<P: CellLocator + ?Sized> CellLocator for Arc<P> {
     fn dimension(&self) -> u8 {
         (**self).dimension()
     }
@@ -87,7 +87,7 @@ fn touch(a: &Aabb<3>, b: &Aabb<3>) -> bool {
     !(0..3).any(|k| a.min[k] > b.max[k] || b.min[k] > a.max[k])
 }
 
-impl Places for CellBoxes {
+impl CellLocator for CellBoxes {
     fn dimension(&self) -> u8 {
         self.dimension
     }

@@ -1,22 +1,21 @@
 //! The part of a table that is available in every frame.
 
 use sightlines_eye_to_cell::TableCells;
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, Place, PlaceBuffer, Table};
 use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// The part of a table that a frame can query without waiting: no disk, and no lock that another thread may hold for
 /// long.
-pub trait Resident {
+pub trait CoarseVisibility {
     /// Number of cells.
     fn n_cells(&self) -> usize;
 
     /// Number of objects.
     fn n_objects(&self) -> usize;
 
-    /// Collects the cells at a point (z is 0 in the plane) into `out`, which is cleared first; ascending; none outside.
-    /// `pending` is scratch space.
-    fn locate(&self, eye: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>);
+    /// The cells at a point (scene units; in a plane z does not count), ascending, in `buffer`.
+    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]>;
 
     /// Visits a superset of the cells that `cell` may see.
     fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId));
@@ -25,7 +24,7 @@ pub trait Resident {
     fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(u32)) -> bool;
 }
 
-impl<T: Borrow<Table>> Resident for TableCells<T> {
+impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
     fn n_cells(&self) -> usize {
         self.table().n_cells()
     }
@@ -34,9 +33,8 @@ impl<T: Borrow<Table>> Resident for TableCells<T> {
         self.table().objects().len()
     }
 
-    fn locate(&self, eye: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
-        let n = usize::from(self.table().dimension());
-        self.table().locate_into(&eye[..n], pending, out);
+    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+        self.table().cells_at(eye, buffer)
     }
 
     fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId)) {
@@ -49,7 +47,7 @@ impl<T: Borrow<Table>> Resident for TableCells<T> {
     }
 }
 
-impl<R: Resident + ?Sized> Resident for Arc<R> {
+impl<R: CoarseVisibility + ?Sized> CoarseVisibility for Arc<R> {
     fn n_cells(&self) -> usize {
         (**self).n_cells()
     }
@@ -58,8 +56,8 @@ impl<R: Resident + ?Sized> Resident for Arc<R> {
         (**self).n_objects()
     }
 
-    fn locate(&self, eye: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
-        (**self).locate(eye, pending, out);
+    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+        (**self).cells_at(eye, buffer)
     }
 
     fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId)) {

@@ -1,7 +1,7 @@
 //! What a viewer in one cell may need: the cells that it sees, the portals between them, the objects in them.
 
 use crate::front::Front;
-use crate::source::{CellSource, MirrorWay, Way};
+use crate::source::{CellSource, MirrorPiece, PortalEdge};
 use crate::trees::LocalTrees;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::CellId;
@@ -11,7 +11,7 @@ use sightlines_pvs::CellId;
 /// Cells, ways and objects are numbered by themselves here, in the order of the table. Never changed once it is made, so it may
 /// be shared between threads. Memory in proportion to what the cell sees.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outlook {
+pub struct VisibleSubgraph {
     pub(crate) root: u32,
     pub(crate) planar: bool,
     /// The cells that the root sees, ascending, and their boxes.
@@ -19,7 +19,7 @@ pub struct Outlook {
     pub(crate) bounds: Vec<Aabb<3>>,
     /// Where the ways out of each cell begin, and behind them their number.
     pub(crate) first_way: Vec<u32>,
-    pub(crate) ways: Vec<LocalWay>,
+    pub(crate) ways: Vec<LocalEdge>,
     pub(crate) corners: Vec<[f64; 3]>,
     /// The objects that the root sees, ascending, and their boxes.
     pub(crate) objects: Vec<u32>,
@@ -38,9 +38,9 @@ pub struct Outlook {
     pub(crate) extent: Aabb<3>,
 }
 
-/// A way from one cell of an outlook into another.
+/// A way from one cell of an subgraph into another.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LocalWay {
+pub(crate) struct LocalEdge {
     pub(crate) to: u32,
     pub(crate) portal: u32,
     pub(crate) first_corner: u32,
@@ -48,7 +48,7 @@ pub(crate) struct LocalWay {
     pub(crate) front: Front,
 }
 
-/// A piece of a mirror in a cell of an outlook.
+/// A piece of a mirror in a cell of an subgraph.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LocalMirror {
     pub(crate) face: u32,
@@ -57,7 +57,7 @@ pub(crate) struct LocalMirror {
     pub(crate) front: Front,
 }
 
-impl Outlook {
+impl VisibleSubgraph {
     /// Gathers what `root` may see. O(what it sees, times the logarithm of that).
     ///
     /// # Errors
@@ -77,7 +77,7 @@ impl Outlook {
         let mut objects = Vec::new();
         source.objects_seen(root, &mut objects)?;
         let object_bounds = objects.iter().map(|&o| source.object_box(o)).collect::<Result<Vec<_>, _>>()?;
-        let mut outlook = Self {
+        let mut subgraph = Self {
             root: cells.binary_search(&root).unwrap_or_default() as u32,
             planar: source.dimension() == 2,
             bounds,
@@ -96,20 +96,25 @@ impl Outlook {
             extent,
             cells,
         };
-        for k in 0..outlook.cells.len() {
-            outlook.gather(source, k)?;
+        for k in 0..subgraph.cells.len() {
+            subgraph.gather(source, k)?;
         }
-        outlook.find_loose_objects();
-        outlook.extent = outlook.corners.iter().fold(outlook.extent, |e, &c| e.with(c));
-        outlook.trees = LocalTrees::of(source, &outlook)?;
-        Ok(outlook)
+        subgraph.find_loose_objects();
+        subgraph.extent = subgraph.corners.iter().fold(subgraph.extent, |e, &c| e.with(c));
+        let edge_through = |cell: u32, portal: u32| {
+            let edge = subgraph.ways_of(cell).find(|&edge| subgraph.ways[edge as usize].portal == portal)?;
+            Some((edge, subgraph.ways[edge as usize].to))
+        };
+        let trees = LocalTrees::of(source, (root, subgraph.root), edge_through)?;
+        subgraph.trees = trees;
+        Ok(subgraph)
     }
 
     /// Gathers the ways, objects and mirrors of the cell in place `k`.
     fn gather<S: CellSource + ?Sized>(&mut self, source: &S, k: usize) -> Result<(), S::Error> {
         let cell = self.cells[k];
         let mut has_portal = false;
-        source.ways(cell, &mut |way: Way<'_>| {
+        source.portal_edges(cell, &mut |way: PortalEdge<'_>| {
             has_portal = true;
             let Ok(to) = self.cells.binary_search(&way.to) else { return };
             let first_corner = self.corners.len() as u32;
@@ -120,7 +125,7 @@ impl Outlook {
             }
             let front = Front::of(corners, self.planar);
             let n_corners = corners.len() as u32;
-            self.ways.push(LocalWay { to: to as u32, portal: way.portal, first_corner, n_corners, front });
+            self.ways.push(LocalEdge { to: to as u32, portal: way.portal, first_corner, n_corners, front });
         })?;
         self.first_way.push(self.ways.len() as u32);
         if !has_portal {
@@ -133,7 +138,7 @@ impl Outlook {
         self.cell_objects.extend(seen.map(|o| o as u32));
         self.first_object.push(self.cell_objects.len() as u32);
 
-        source.mirrors(cell, &mut |mirror: MirrorWay<'_>| {
+        source.mirrors(cell, &mut |mirror: MirrorPiece<'_>| {
             let first_corner = self.corners.len() as u32;
             self.corners.extend_from_slice(mirror.corners);
             let front = Front::of(mirror.corners, self.planar);
@@ -173,7 +178,7 @@ impl Outlook {
         &self.objects
     }
 
-    /// Bytes that the outlook takes, the spare room of its lists included.
+    /// Bytes that the subgraph takes, the spare room of its lists included.
     pub fn n_bytes(&self) -> usize {
         fn list<T>(v: &Vec<T>) -> usize {
             v.capacity() * size_of::<T>()
