@@ -1,73 +1,21 @@
-//! Files to read, told apart by their content.
+//! Inputs by name. Which format a file has is decided in [`sightlines::formats::input`]; here it is what a command can use, or an error.
 
-use crate::error::{InputError, SOME_WAD};
+use crate::error::InputError;
 use sightlines::bake::graph_of;
 use sightlines::cells::{CellGraph, Plan, Planar};
-use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
-use sightlines::formats::quake::prt::PrtDialect;
-use sightlines::formats::quake::{Bsp, BspFormat, Prt, read_bsp, read_prt};
+use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
+use sightlines::formats::quake::{Bsp, Prt};
 use sightlines::formats::scene::{Simplified, read_scene};
-use sightlines::formats::{ReadError, SceneFile, Wad, geojson};
+use sightlines::formats::{Input as FileInput, InputKind, ReadError, SceneFile, Source, Wad, detect_file, geojson};
 use sightlines::packed;
 use sightlines::pvs::{Table, format};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// What a file is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Wad,
-    Table,
-    /// A packed table.
-    Packed,
-    Json,
-    /// A scene in space: GLB, glTF or OBJ.
-    Scene,
-    /// The portals of a Quake map.
-    Prt,
-    /// A map of Quake or Quake II.
-    Bsp,
-}
-
-/// Tells what a file is by its first bytes; if they say nothing, by the end of its name.
-pub(crate) fn kind_of(path: &Path) -> Result<Option<Kind>, InputError> {
-    let open = |source| InputError::Open { path: path.to_owned(), source };
-    let mut start = Vec::new();
-    File::open(path).and_then(|file| file.take(64).read_to_end(&mut start)).map_err(open)?;
-    let name = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    Ok(match (kind_of_bytes(&start), name.as_deref()) {
-        // Both are JSON, and what is no glTF should not be told that it is no plan.
-        (Some(Kind::Json) | None, Some("gltf" | "glb" | "obj")) => Some(Kind::Scene),
-        (None, Some("wad")) => Some(Kind::Wad),
-        (None, Some("pvs")) => Some(Kind::Table),
-        (None, Some("pvz")) => Some(Kind::Packed),
-        (None, Some("json" | "geojson")) => Some(Kind::Json),
-        (None, Some("prt")) => Some(Kind::Prt),
-        (None, Some("bsp")) => Some(Kind::Bsp),
-        (kind, _) => kind,
-    })
-}
-
-fn kind_of_bytes(start: &[u8]) -> Option<Kind> {
-    let text = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start).trim_ascii_start();
-    if start.starts_with(b"IWAD") || start.starts_with(b"PWAD") {
-        Some(Kind::Wad)
-    } else if start.starts_with(&format::MAGIC) {
-        Some(Kind::Table)
-    } else if start.starts_with(&packed::format::MAGIC) {
-        Some(Kind::Packed)
-    } else if start.starts_with(b"glTF") {
-        Some(Kind::Scene)
-    } else if PrtDialect::ALL.iter().any(|dialect| start.starts_with(dialect.magic().as_bytes())) {
-        Some(Kind::Prt)
-    } else if BspFormat::ALL.iter().any(|format| start.starts_with(format.magic())) {
-        Some(Kind::Bsp)
-    } else if text.starts_with(b"{") {
-        Some(Kind::Json)
-    } else {
-        None
-    }
+/// What a file holds, as [`formats::input`](sightlines::formats::input) recognises it; `None` if no format does.
+pub(crate) fn kind_of(path: &Path) -> Result<Option<InputKind>, InputError> {
+    Ok(detect_file(path)?.map(|format| format.kind))
 }
 
 /// Reads a table.
@@ -90,15 +38,16 @@ pub(crate) fn table(path: &Path) -> Result<Table, InputError> {
 
 /// Refuses what tables are built from, where a table is needed.
 pub(crate) fn refuse_source(path: &Path) -> Result<(), InputError> {
-    let found = match kind_of(path)? {
-        None | Some(Kind::Table | Kind::Packed) => return Ok(()),
-        Some(Kind::Wad) => SOME_WAD,
-        Some(Kind::Json) => "JSON, such as a floor plan",
-        Some(Kind::Scene) => "a scene",
-        Some(Kind::Prt) => "a portal file",
-        Some(Kind::Bsp) => "a Quake map",
+    let found = match detect_file(path)? {
+        Some(format) if is_source(format.kind) => format.noun,
+        _ => return Ok(()),
     };
     Err(InputError::NotTable { path: path.to_owned(), found })
+}
+
+/// Whether a table can be built from such a file.
+const fn is_source(kind: InputKind) -> bool {
+    matches!(kind, InputKind::Wad | InputKind::Plan | InputKind::Scene | InputKind::Prt | InputKind::Bsp)
 }
 
 /// Whether a table is of a portal file, with its map or without: its cells are joined by convex portals, and nobody knows
@@ -142,25 +91,28 @@ const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Q
 
 /// Reads what is to be built: a map of a WAD, a GeoJSON file, a scene in space, a portal file, or a Quake map.
 pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, InputError> {
-    match (kind_of(path)?, map) {
-        (Some(Kind::Wad), map) => Ok(Input::Plan(plan_of_map(path, map)?)),
-        (Some(Kind::Json | Kind::Scene | Kind::Prt | Kind::Bsp), Some(_)) => {
-            Err(InputError::MapOfPlan(path.to_owned()))
+    let format = detect_file(path)?.filter(|format| is_source(format.kind));
+    let format = format.ok_or_else(|| InputError::Kind { path: path.to_owned(), expected: BUILDABLE })?;
+    if map.is_some() && format.kind != InputKind::Wad {
+        return Err(InputError::MapOfPlan(path.to_owned()));
+    }
+    match Source::File(path).read_as(format)? {
+        FileInput::Wad(wad) => Ok(Input::Plan(plan_of_map(path, &wad, map)?)),
+        FileInput::Plan(plan) => Ok(Input::Plan(PlanFile { plan, map: None })),
+        FileInput::Scene(file) => {
+            check_occluder(path, &file)?;
+            Ok(Input::Scene(file))
         }
-        (Some(Kind::Json), None) => Ok(Input::Plan(plan(path)?)),
-        (Some(Kind::Scene), None) => Ok(Input::Scene(occluders(path)?)),
-        (Some(Kind::Prt), None) => Ok(Input::Portals(read_prt(path)?)),
-        (Some(Kind::Bsp), None) => Ok(Input::Map(read_bsp(path)?)),
-        (Some(Kind::Table | Kind::Packed) | None, _) => {
-            Err(InputError::Kind { path: path.to_owned(), expected: BUILDABLE })
-        }
+        FileInput::Prt(prt) => Ok(Input::Portals(prt)),
+        FileInput::Bsp(bsp) => Ok(Input::Map(bsp)),
+        _ => Err(InputError::Kind { path: path.to_owned(), expected: BUILDABLE }),
     }
 }
 
 /// Refuses a file that is no scene in space.
 pub(crate) fn check_is_scene(path: &Path) -> Result<(), InputError> {
     match kind_of(path)? {
-        Some(Kind::Scene) => Ok(()),
+        Some(InputKind::Scene) => Ok(()),
         _ => Err(InputError::Kind { path: path.to_owned(), expected: "a GLB nor a glTF nor an OBJ scene" }),
     }
 }
@@ -187,37 +139,27 @@ pub(crate) fn plan(path: &Path) -> Result<PlanFile, InputError> {
 
 /// Reads a map of a WAD; its only one, if none is named.
 pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap, InputError> {
-    let wad = Wad::read(path)?;
-    let maps = list_maps(&wad);
-    let lumps = choose(path, &maps, name)?;
-    Ok(DoomMap::parse(&wad, lumps).map_err(|error| ReadError::new(path, error))?)
+    map_of(path, &Wad::read(path)?, name)
 }
 
-fn plan_of_map(path: &Path, name: Option<&str>) -> Result<PlanFile, InputError> {
-    let map = doom(path, name)?;
+fn plan_of_map(path: &Path, wad: &Wad, name: Option<&str>) -> Result<PlanFile, InputError> {
+    let map = map_of(path, wad, name)?;
     let name = map.name().to_string();
-    let bake = |error: sightlines::cells::PlanError| InputError::Plan {
-        path: path.to_owned(),
-        map: Some(name.clone()),
-        source: error,
-    };
-    Ok(PlanFile { plan: map.plan().map_err(bake)?, map: Some(name) })
+    let plan =
+        map.plan().map_err(|source| InputError::Plan { path: path.to_owned(), map: Some(name.clone()), source })?;
+    Ok(PlanFile { plan, map: Some(name) })
 }
 
-/// The map of that name, which is the last one if there are several, as in the engine; or the only one.
-fn choose<'m>(path: &Path, maps: &'m [MapLumps], name: Option<&str>) -> Result<&'m MapLumps, InputError> {
-    let path = || path.to_owned();
+/// The map that is meant, with what there is to choose from if none is.
+fn map_of(path: &Path, wad: &Wad, name: Option<&str>) -> Result<DoomMap, InputError> {
+    let maps = list_maps(wad);
     let names = || maps.iter().map(|map| map.name().to_string()).collect();
-    match (maps, name) {
-        ([], _) => Err(InputError::NoMaps(path())),
-        (_, Some(name)) => maps.iter().rfind(|map| map.name().is(name)).ok_or_else(|| InputError::NoSuchMap {
-            path: path(),
-            name: name.to_owned(),
-            names: names(),
-        }),
-        ([map], None) => Ok(map),
-        (_, None) => Err(InputError::WhichMap { path: path(), names: names() }),
-    }
+    let lumps = choose_map(&maps, name).map_err(|error| match error {
+        MapChoiceError::NoMaps => InputError::NoMaps(path.to_owned()),
+        MapChoiceError::Which { .. } => InputError::WhichMap { path: path.to_owned(), names: names() },
+        _ => InputError::NoSuchMap { path: path.to_owned(), name: name.unwrap_or_default().to_owned(), names: names() },
+    })?;
+    Ok(DoomMap::parse(wad, lumps).map_err(|error| ReadError::new(path, error))?)
 }
 
 /// Refuses the first option that was given though it is meant for something else.
@@ -230,20 +172,5 @@ pub(crate) fn refuse(
     match given.iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => Err(InputError::Option { path: path.to_owned(), option, meant, found }),
         None => Ok(()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn files_are_told_apart_by_their_content() {
-        assert_eq!(kind_of_bytes(b"PWAD\x01\0\0\0"), Some(Kind::Wad));
-        assert_eq!(kind_of_bytes(b"\x89PVS\r\n\x1a\n\x01"), Some(Kind::Table));
-        assert_eq!(kind_of_bytes(b"\xEF\xBB\xBF \n{\"type\""), Some(Kind::Json));
-        assert_eq!(kind_of_bytes(b"glTF\x02\0\0\0"), Some(Kind::Scene));
-        assert_eq!(kind_of_bytes(b"PWA"), None);
-        assert_eq!(kind_of_bytes(b""), None);
     }
 }

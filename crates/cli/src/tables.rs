@@ -1,8 +1,9 @@
 //! Tables of both kinds, plain and packed, as the commands ask them that follow a viewer.
 
 use crate::error::InputError;
-use crate::input::{self, Kind};
+use crate::input;
 use sightlines::eye_to_cell::{CellSource, TableCells};
+use sightlines::formats::InputKind;
 use sightlines::packed::{Packed, PackedError};
 use sightlines::pvs::{Axis, CellId, Table};
 use sightlines::walkthrough::{CoarseVisibility, PackedCells};
@@ -20,7 +21,7 @@ pub(crate) enum Opened {
 
 /// Opens a table. Of a packed one, at most `cache_bytes` of unpacked blocks are kept.
 pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened, InputError> {
-    if input::kind_of(path)? == Some(Kind::Packed) {
+    if input::kind_of(path)? == Some(InputKind::Packed) {
         return Ok(Opened::Packed(PackedCells::new(packed(path, cache_bytes)?)));
     }
     Ok(Opened::Plain(TableCells::new(Arc::new(input::table(path)?))))

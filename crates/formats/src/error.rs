@@ -2,6 +2,7 @@
 
 use crate::quake::{BspError, PrtError};
 use crate::{DoomError, GeoJsonError, LevelsIndexError, SceneReadError, ViewCellsError, WadError};
+use sightlines_pvs::DecodeError;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -54,6 +55,9 @@ pub enum ReadErrorKind {
     /// It is not a sound Quake map.
     #[error(transparent)]
     Bsp(#[from] BspError),
+    /// It is not a sound table.
+    #[error(transparent)]
+    Table(#[from] DecodeError),
 }
 
 impl From<SceneReadError> for ReadErrorKind {

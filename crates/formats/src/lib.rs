@@ -5,8 +5,8 @@
 //! - **Owns**: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
 //!   GeoJSON plans ([`geojson`]), scenes in space ([`scene`]) and simplified levels of them
 //!   ([`levels`]), view cells ([`view_cells`]), maps of the Quake family and their visibility
-//!   ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), and errors that name the file
-//!   and the place in it ([`ReadError`]).
+//!   ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), the list of all formats and how they are recognised
+//!   ([`input`]), and errors that name the file and the place in it ([`ReadError`]).
 //! - **Out of scope**: how a plan is cut into cells, what a sight line is, how a REJECT table is computed.
 //! - **Invariants**: no input causes a panic; memory stays within a small multiple of the input's size
 //!   (of a scene in space: with its meshes as often as it shows them, up to a limit), whatever counts
@@ -17,6 +17,7 @@ pub mod doom;
 pub mod error;
 pub mod files;
 pub mod geojson;
+pub mod input;
 pub mod levels;
 mod point;
 pub mod quake;
@@ -29,6 +30,7 @@ pub use doom::{DoomError, DoomMap, MapLumps};
 pub use error::{ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
 pub use geojson::GeoJsonError;
+pub use input::{Input, InputKind, Source, detect_file, read_input};
 pub use levels::{LevelFile, LevelsIndex, LevelsIndexError};
 pub use quake::{Bsp, Prt};
 pub use reject::RejectTable;

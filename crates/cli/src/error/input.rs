@@ -49,7 +49,7 @@ pub(crate) enum InputError {
     Plan { path: PathBuf, map: Option<String>, source: PlanError },
     /// What a table is built from, where the table is needed.
     #[error("{}: is {found}, not a table: build one first: sightlines build {}{} -o {}", path.display(), path.display(),
-            if *found == SOME_WAD { " --map NAME" } else { "" }, path.with_extension("pvs").display())]
+            if *found == "a WAD" { " --map NAME" } else { "" }, path.with_extension("pvs").display())]
     NotTable { path: PathBuf, found: &'static str },
     /// A table that does not know where its cells are.
     #[error("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())]
@@ -74,9 +74,6 @@ pub(crate) enum InputError {
 pub(crate) fn of_map(map: Option<&String>) -> String {
     map.map_or(String::new(), |name| format!("map {name}: "))
 }
-
-/// A WAD, as [`InputError::NotTable`] calls it.
-pub(crate) const SOME_WAD: &str = "a WAD";
 
 /// The name of a file, without its folder, with another ending.
 fn name_with(path: &Path, ending: &str) -> String {

@@ -3,5 +3,5 @@
 mod input;
 mod output;
 
-pub(crate) use input::{InputError, SOME_WAD, of_map};
+pub(crate) use input::{InputError, of_map};
 pub(crate) use output::{OutputError, StdoutError};

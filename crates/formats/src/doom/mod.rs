@@ -5,11 +5,13 @@
 //! whatever their format. Maps as text (UDMF) and maps of the console games are recognised and
 //! refused by name.
 
+mod choose;
 mod error;
 mod list;
 mod map;
 mod source;
 
+pub use choose::{MapChoiceError, choose_map};
 pub use error::{DoomError, DoomErrorKind};
 pub use list::{MapFormat, MapLump, MapLumps, list_maps};
 pub use map::{DoomMap, LineDef, Thing};

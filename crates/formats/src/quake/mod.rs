@@ -23,10 +23,15 @@ pub use visibility::{VisibilityError, VisibilityLump};
 
 use crate::ReadError;
 use crate::error::ReadErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The most clusters that are read: their table takes 512 MiB. Engines hold as many leafs.
 pub const MAX_CLUSTERS: u32 = 1 << 16;
+
+/// Where compilers write the portals of a map: beside it, under its name.
+pub fn portals_beside(map: impl AsRef<Path>) -> PathBuf {
+    map.as_ref().with_extension("prt")
+}
 
 /// Reads a portal file.
 ///

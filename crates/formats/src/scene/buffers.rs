@@ -2,14 +2,14 @@
 
 use super::error::{BufferErrorKind, GlbError};
 use super::json;
+use crate::input::Neighbours;
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, PathBuf};
 
 /// First bytes of a GLB.
-pub(super) const MAGIC: &[u8] = b"glTF";
+pub(crate) const MAGIC: &[u8] = b"glTF";
 
 const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
@@ -58,21 +58,25 @@ fn chunk(glb: &[u8], offset: usize) -> Option<(&[u8], &[u8])> {
 pub(super) struct Buffers<'a> {
     buffers: &'a [json::Buffer],
     binary: Option<&'a [u8]>,
-    folder: Option<&'a Path>,
+    beside: Option<&'a dyn Neighbours>,
     /// Index of the first buffer with the same URI, so that a file is read once however often it is named.
     first: Vec<usize>,
     loaded: Vec<OnceCell<Cow<'a, [u8]>>>,
 }
 
 impl<'a> Buffers<'a> {
-    pub(super) fn new(buffers: &'a [json::Buffer], binary: Option<&'a [u8]>, folder: Option<&'a Path>) -> Self {
+    pub(super) fn new(
+        buffers: &'a [json::Buffer],
+        binary: Option<&'a [u8]>,
+        beside: Option<&'a dyn Neighbours>,
+    ) -> Self {
         let mut by_uri = BTreeMap::new();
         let first = |(k, b): (usize, &'a json::Buffer)| match b.uri.as_deref() {
             Some(uri) => *by_uri.entry(uri).or_insert(k),
             None => k,
         };
         let first = buffers.iter().enumerate().map(first).collect();
-        Self { buffers, binary, folder, first, loaded: buffers.iter().map(|_| OnceCell::new()).collect() }
+        Self { buffers, binary, beside, first, loaded: buffers.iter().map(|_| OnceCell::new()).collect() }
     }
 
     /// The same, with the contents of files and data URIs that were read before.
@@ -118,21 +122,17 @@ impl<'a> Buffers<'a> {
         };
         match uri.get(..5) {
             Some(scheme) if scheme.eq_ignore_ascii_case("data:") => data_uri(&uri[5..]).map(Cow::Owned),
-            _ => load_file(self.folder, uri).map(Cow::Owned),
+            _ => load_file(self.beside, uri).map(Cow::Owned),
         }
     }
 }
 
-/// The file that a URI names in or below `folder`.
-pub(super) fn load_file(folder: Option<&Path>, uri: &str) -> Result<Vec<u8>, BufferErrorKind> {
+/// The file beside the document that a URI names, in the same folder or below.
+pub(super) fn load_file(beside: Option<&dyn Neighbours>, uri: &str) -> Result<Vec<u8>, BufferErrorKind> {
     let refused = || BufferErrorKind::Uri { uri: uri.to_owned() };
-    let path = folder.zip(relative_path(uri)).map(|(folder, path)| folder.join(path)).ok_or_else(refused)?;
-    let failed = |source| BufferErrorKind::Io { uri: uri.to_owned(), source };
-    // A device or pipe may never end.
-    if !fs::metadata(&path).map_err(failed)?.is_file() {
-        return Err(refused());
-    }
-    fs::read(&path).map_err(failed)
+    let (beside, path) = beside.zip(relative_path(uri)).ok_or_else(refused)?;
+    let found = beside.read(&path).map_err(|source| BufferErrorKind::Io { uri: uri.to_owned(), source })?;
+    found.ok_or_else(refused)
 }
 
 /// The path that a URI names, if it leads into or below the folder where one is: a scene from elsewhere

@@ -7,10 +7,11 @@ use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, Primi
 use super::json::{Document, Mesh, Node, Primitive, TRIANGLES};
 use super::transform::Transform;
 use super::{MAX_ELEMENTS, MAX_OBJECTS, MIRROR_SUFFIX, SceneFile, SceneFormat};
+use crate::input::{Folder, Neighbours};
 use crate::point::check_point;
 use std::path::Path;
 
-pub(super) use super::buffers::MAGIC;
+pub(crate) use super::buffers::MAGIC;
 
 /// Modes from here on make triangles; those before are points and lines.
 pub(super) const FIRST_OF_TRIANGLES: u32 = TRIANGLES;
@@ -49,7 +50,16 @@ const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// Khronos Group, glTF 2.0 Specification (ISO/IEC 12113:2022), and KHR_mesh_quantization.
 /// Chosen here: extensions that code geometry in another way, skins and morph weights are refused.
 pub fn parse_glb(bytes: &[u8], folder: Option<&Path>) -> Result<SceneFile, SceneReadError> {
-    parse(bytes, folder, |_| {}).map(|(file, _)| file)
+    let folder = folder.map(|folder| Folder(folder.to_owned()));
+    parse_gltf(bytes, folder.as_ref().map(|folder| folder as &dyn Neighbours))
+}
+
+/// As [`parse_glb`], with buffers wherever `beside` has them; without it, those in files are refused.
+///
+/// # Errors
+/// As [`parse_glb`].
+pub fn parse_gltf(bytes: &[u8], beside: Option<&dyn Neighbours>) -> Result<SceneFile, SceneReadError> {
+    parse(bytes, beside, |_| {}).map(|(file, _)| file)
 }
 
 /// A node with a mesh, as it is read: what an object comes from, one for each primitive of the mesh.
@@ -70,7 +80,7 @@ pub(super) type Loaded = Vec<Option<Vec<u8>>>;
 /// were read from other files.
 pub(super) fn parse(
     bytes: &[u8],
-    folder: Option<&Path>,
+    beside: Option<&dyn Neighbours>,
     watch: impl FnMut(Origin<'_>),
 ) -> Result<(SceneFile, Loaded), SceneReadError> {
     let (text, binary) = split(bytes)?;
@@ -78,7 +88,7 @@ pub(super) fn parse(
     check_understood(&document)?;
     let placed = place_nodes(&document)?;
     check_size(&document, &placed)?;
-    let buffers = Buffers::new(&document.buffers, binary, folder);
+    let buffers = Buffers::new(&document.buffers, binary, beside);
     let file = build(&document, &buffers, &placed, watch)?.finish(SceneFormat::Gltf)?;
     Ok((file, buffers.into_loaded()))
 }

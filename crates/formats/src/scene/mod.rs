@@ -31,7 +31,8 @@ pub use error::{
     AccessorErrorKind, AccessorRole, BufferErrorKind, GlbError, NodeErrorKind, NodeId, ObjErrorKind,
     PrimitiveErrorKind, SceneReadError, SceneWriteError,
 };
-pub use gltf::parse_glb;
+pub(crate) use gltf::MAGIC as GLB_MAGIC;
+pub use gltf::{parse_glb, parse_gltf};
 pub use obj::parse_obj;
 pub use rewrite::RewriteError;
 pub use source::{GltfSource, ObjectSource, parse_glb_with_source};

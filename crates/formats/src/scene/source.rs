@@ -4,13 +4,14 @@ use super::error::SceneReadError;
 use super::gltf::{Loaded, parse};
 use super::rewrite::{RewriteError, rewrite};
 use super::{SceneFile, Simplified};
-use std::path::{Path, PathBuf};
+use crate::input::{Folder, Neighbours};
+use std::path::Path;
 
 /// A glTF document with its buffers, and what the objects of its scene come from.
 #[derive(Debug)]
 pub struct GltfSource {
     pub(super) bytes: Vec<u8>,
-    pub(super) folder: Option<PathBuf>,
+    pub(super) folder: Option<Folder>,
     /// What was read of buffers outside `bytes`, by buffer.
     pub(super) loaded: Loaded,
     /// The nodes with meshes, in the order of their objects.
@@ -54,7 +55,9 @@ pub struct ObjectSource<'a> {
 /// As [`parse_glb`](super::parse_glb).
 pub fn parse_glb_with_source(bytes: Vec<u8>, folder: Option<&Path>) -> Result<(SceneFile, GltfSource), SceneReadError> {
     let (mut origins, mut objects, mut corners) = (Vec::new(), Vec::new(), Vec::<Vec<Vec<usize>>>::new());
-    let (file, loaded) = parse(&bytes, folder, |origin| {
+    let folder = folder.map(|folder| Folder(folder.to_owned()));
+    let beside = folder.as_ref().map(|folder| folder as &dyn Neighbours);
+    let (file, loaded) = parse(&bytes, beside, |origin| {
         let (node, mesh) = (origin.node, origin.mesh);
         if corners.len() <= mesh {
             corners.resize_with(mesh + 1, Vec::new);
@@ -69,7 +72,6 @@ pub fn parse_glb_with_source(bytes: Vec<u8>, folder: Option<&Path>) -> Result<(S
             origins.push(NodeOrigin { node, mesh, mirrors: origin.mirrors, first_object });
         }
     })?;
-    let folder = folder.map(Path::to_owned);
     Ok((file, GltfSource { bytes, folder, loaded, origins, corners, objects }))
 }
 

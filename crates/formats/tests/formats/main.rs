@@ -8,6 +8,7 @@ mod quake_prt;
 mod quake_real;
 mod quake_world;
 mod real;
+mod registry;
 mod rewrite;
 mod scene_mutations;
 mod scene_oracles;

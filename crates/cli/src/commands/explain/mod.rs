@@ -8,7 +8,6 @@ mod space;
 
 use crate::Answer;
 use crate::error::InputError;
-use crate::input::Kind;
 use crate::picture::{PictureKind, draw_plan, save_picture};
 use crate::place::Place;
 use crate::{input, output};
@@ -17,6 +16,7 @@ use convex::Asked;
 use error::Error;
 use sightlines::bake::{axial_graph_of, convex_graph_of};
 use sightlines::cells::{CellGraph, Convex, Planar};
+use sightlines::formats::InputKind;
 use sightlines::formats::quake::{graph_of_prt, read_prt};
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{DrawOptions, View};
@@ -67,7 +67,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
         PictureKind::of(out)?;
         output::check(&[&args.table], &[out])?;
     }
-    if input::kind_of(&args.table)? == Some(Kind::Prt) {
+    if input::kind_of(&args.table)? == Some(InputKind::Prt) {
         args.refuse_meaningless(Of::Portals, "a portal file")?;
         let graph = graph_of_prt(&read_prt(&args.table)?);
         return args.asked(&graph).answer(|_, _| None);

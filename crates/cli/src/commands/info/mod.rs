@@ -10,9 +10,10 @@ use crate::Answer;
 use crate::error::InputError;
 use crate::error::OutputError;
 use crate::facts::{Facts, StabFacts};
-use crate::input::{self, Kind};
+use crate::input;
 use crate::output::{self, bytes};
 use serde::Serialize;
+use sightlines::formats::InputKind;
 use sightlines::formats::ReadError;
 use sightlines::pvs::Table;
 use sightlines::report::Summary;
@@ -48,14 +49,14 @@ pub(crate) struct InfoArgs {
 pub(crate) fn run(args: &InfoArgs) -> Result<Answer, Error> {
     let path = &args.file;
     match input::kind_of(path)? {
-        Some(Kind::Table) => output::print(args.json, &TableInfo::new(path, &input::table(path)?))?,
-        Some(Kind::Packed) => output::print(args.json, &packed::PackedInfo::read(path)?)?,
-        Some(Kind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
-        Some(Kind::Json) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
-        Some(Kind::Scene) => output::print(args.json, &scene::SceneInfo::read(path)?)?,
-        Some(Kind::Prt) => output::print(args.json, &quake::PrtInfo::read(path)?)?,
-        Some(Kind::Bsp) => output::print(args.json, &quake::BspInfo::read(path)?)?,
-        None => {
+        Some(InputKind::Table) => output::print(args.json, &TableInfo::new(path, &input::table(path)?))?,
+        Some(InputKind::Packed) => output::print(args.json, &packed::PackedInfo::read(path)?)?,
+        Some(InputKind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
+        Some(InputKind::Plan) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
+        Some(InputKind::Scene) => output::print(args.json, &scene::SceneInfo::read(path)?)?,
+        Some(InputKind::Prt) => output::print(args.json, &quake::PrtInfo::read(path)?)?,
+        Some(InputKind::Bsp) => output::print(args.json, &quake::BspInfo::read(path)?)?,
+        _ => {
             let expected = "a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
             return Err(InputError::Kind { path: path.clone(), expected }.into());
         }

@@ -9,12 +9,13 @@ mod truth;
 
 use crate::Answer;
 use crate::error::InputError;
+use crate::input;
 use crate::input::refuse;
-use crate::input::{self, Kind};
 use crate::picture::PictureKind;
 use crate::{output, tables};
 use error::Error;
 use outcome::{Outcome, Violations};
+use sightlines::formats::InputKind;
 use sightlines::pvs::Table;
 use sightlines::verify::{VerifyOptions, verify};
 use std::path::{Path, PathBuf};
@@ -109,7 +110,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, Error> {
 
 /// Reads a table of either kind.
 fn read_table(path: &Path) -> Result<Table, InputError> {
-    if input::kind_of(path)? != Some(Kind::Packed) {
+    if input::kind_of(path)? != Some(InputKind::Packed) {
         return input::table(path);
     }
     let failed = |source| InputError::Packed { path: path.to_owned(), source };

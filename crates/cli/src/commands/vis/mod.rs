@@ -7,7 +7,7 @@ mod saved;
 
 use crate::Answer;
 use crate::error::InputError;
-use crate::input::{self, Kind};
+use crate::input;
 use crate::output;
 use crate::progress::Bar;
 use certify::certify;
@@ -16,6 +16,7 @@ use outcome::Outcome;
 use saved::Saved;
 use sightlines::bake::quake::StateKey;
 use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
+use sightlines::formats::InputKind;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{VisibilityError, graph_of_prt, prt, read_bsp};
 use sightlines::formats::{Prt, ReadError};
@@ -60,7 +61,7 @@ pub(crate) struct VisArgs {
 
 pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
     let start = Instant::now();
-    if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(Kind::Prt) {
+    if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
         return Err(Error::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
     }
     let prt_path = args.prt.clone().unwrap_or_else(|| args.map.with_extension("prt"));

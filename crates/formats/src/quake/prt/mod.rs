@@ -55,6 +55,10 @@ impl PrtDialect {
     /// All that are read.
     pub const ALL: [Self; 3] = [Self::Prt1, Self::Prt2, Self::Prt1Am];
 
+    /// What files of each begin with.
+    pub const MAGICS: [&'static [u8]; 3] =
+        [Self::ALL[0].magic().as_bytes(), Self::ALL[1].magic().as_bytes(), Self::ALL[2].magic().as_bytes()];
+
     /// The word that a file begins with.
     pub const fn magic(self) -> &'static str {
         match self {

@@ -2,10 +2,10 @@
 
 use super::document::{Object, as_object, list};
 use super::error::RewriteError;
+use crate::input::Neighbours;
 use crate::scene::buffers::load_file;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// The content of a file, and the images that are in it.
 #[derive(Debug)]
@@ -16,7 +16,10 @@ pub(super) struct OutsideImage {
 }
 
 /// The images that can be taken along: others keep their URIs.
-pub(super) fn outside(document: &mut Object, folder: Option<&Path>) -> Result<Vec<OutsideImage>, RewriteError> {
+pub(super) fn outside(
+    document: &mut Object,
+    beside: Option<&dyn Neighbours>,
+) -> Result<Vec<OutsideImage>, RewriteError> {
     let mut by_uri: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (k, image) in list(document, "images")?.iter_mut().enumerate() {
         let image = as_object(image, || format!("images[{k}]"))?;
@@ -27,7 +30,7 @@ pub(super) fn outside(document: &mut Object, folder: Option<&Path>) -> Result<Ve
     }
     let load = |(uri, images): (String, Vec<usize>)| {
         // Data URIs, and what is elsewhere, are no files below the folder.
-        let bytes = load_file(folder, &uri).ok()?;
+        let bytes = load_file(beside, &uri).ok()?;
         let mime = mime_of(&bytes)?;
         Some(OutsideImage { bytes, mime, images })
     };

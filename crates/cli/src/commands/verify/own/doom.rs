@@ -2,8 +2,9 @@
 
 use super::{About, Own, Side, hidden_pairs};
 use crate::commands::verify::Error;
-use crate::input::{self, Kind};
+use crate::input;
 use sightlines::bake::{BakeError, TableOptions, table_of};
+use sightlines::formats::InputKind;
 use sightlines::formats::{DoomMap, RejectTable};
 use sightlines::pvs::{BitMatrix, TableKind};
 use sightlines::triangulation::subdivide;
@@ -13,7 +14,7 @@ use std::path::Path;
 ///
 /// Where lines disagree about the sector of a cell, it is hidden only if it is whichever of them is meant.
 pub(super) fn read(path: &Path, scene: &Path, name: Option<&str>) -> Result<Own, Error> {
-    if input::kind_of(scene)? != Some(Kind::Wad) {
+    if input::kind_of(scene)? != Some(InputKind::Wad) {
         let (path, scene) = (path.to_owned(), scene.to_owned());
         return Err(Error::OwnScene { path, scene, needed: "a WAD with the map" });
     }

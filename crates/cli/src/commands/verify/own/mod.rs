@@ -5,9 +5,10 @@ mod quake;
 
 use super::outcome::{Told, Violations};
 use crate::commands::verify::Error;
-use crate::input::{self, Kind};
+use crate::input;
 use crate::output::{bytes, count};
 use serde::Serialize;
+use sightlines::formats::InputKind;
 use sightlines::pvs::{BitMatrix, CellId, Table};
 use sightlines::verify::{Findings, Violation};
 use std::collections::BTreeMap;
@@ -82,8 +83,8 @@ impl fmt::Display for About {
 /// [`Error`] for a map without visibility of its own, for files that cannot be read, and for those that do not go together.
 pub(super) fn read(path: &Path, scene: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Option<Own>, Error> {
     match input::kind_of(path)? {
-        Some(Kind::Bsp) => quake::read(path, scene, prt).map(Some),
-        Some(Kind::Wad) => doom::read(path, scene, map).map(Some),
+        Some(InputKind::Bsp) => quake::read(path, scene, prt).map(Some),
+        Some(InputKind::Wad) => doom::read(path, scene, map).map(Some),
         _ => Ok(None),
     }
 }

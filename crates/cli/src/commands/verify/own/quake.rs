@@ -3,8 +3,9 @@
 use super::{About, Own, Side, hidden_pairs};
 use crate::commands::verify::Error;
 use crate::error::InputError;
-use crate::input::{self, Kind};
+use crate::input;
 use sightlines::cells::{CellGraph, Convex};
+use sightlines::formats::InputKind;
 use sightlines::formats::quake::bsp::LeafRow;
 use sightlines::formats::quake::visibility::{check_portals, read_visibility};
 use sightlines::formats::quake::{Bsp, LeafClusters, graph_of_prt, read_bsp, read_prt, rle};
@@ -66,9 +67,9 @@ pub(super) fn read(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<Own,
 /// The portal file of the scene, which may be one itself.
 fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<PathBuf, Error> {
     match (input::kind_of(scene)?, prt) {
-        (Some(Kind::Prt), _) => Ok(scene.to_owned()),
-        (Some(Kind::Bsp), Some(prt)) => Ok(prt.to_owned()),
-        (Some(Kind::Bsp), None) => {
+        (Some(InputKind::Prt), _) => Ok(scene.to_owned()),
+        (Some(InputKind::Bsp), Some(prt)) => Ok(prt.to_owned()),
+        (Some(InputKind::Bsp), None) => {
             let beside = scene.with_extension("prt");
             if beside.exists() { Ok(beside) } else { Err(InputError::MapWithoutPortals(scene.to_owned()).into()) }
         }

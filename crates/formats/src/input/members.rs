@@ -1,0 +1,68 @@
+//! The members of a JSON object, looked at without reading all of it.
+
+/// The three bytes that some editors put before a text.
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
+/// Whether a text begins as a JSON object.
+pub(super) fn is_object(head: &[u8]) -> bool {
+    inside(head).is_some()
+}
+
+/// What follows the brace that opens the object.
+fn inside(head: &[u8]) -> Option<&[u8]> {
+    head.strip_prefix(BYTE_ORDER_MARK).unwrap_or(head).trim_ascii_start().strip_prefix(b"{")
+}
+
+/// Whether an object has a member of that name, as far as its text goes. Names with escapes count as others.
+pub(super) fn has_member(head: &[u8], name: &str) -> bool {
+    let Some(mut rest) = inside(head) else { return false };
+    // How deep inside the object, and whether the next text names a member.
+    let (mut depth, mut is_name) = (0_usize, true);
+    while let Some((&byte, behind)) = rest.split_first() {
+        rest = behind;
+        match byte {
+            b'"' => {
+                let Some(end) = end_of_text(rest) else { return false };
+                if depth == 0 && is_name && &rest[..end] == name.as_bytes() {
+                    return true;
+                }
+                rest = &rest[end + 1..];
+            }
+            b'{' | b'[' => depth += 1,
+            b'}' | b']' if depth == 0 => return false,
+            b'}' | b']' => depth -= 1,
+            b':' if depth == 0 => is_name = false,
+            b',' if depth == 0 => is_name = true,
+            _ => {}
+        }
+    }
+    false
+}
+
+/// Where the quote is that ends a text.
+fn end_of_text(text: &[u8]) -> Option<usize> {
+    let mut is_escaped = false;
+    text.iter().position(|&byte| {
+        let ends = byte == b'"' && !is_escaped;
+        is_escaped = byte == b'\\' && !is_escaped;
+        ends
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_of_the_object_itself_are_found() {
+        let text = br#" {"a": {"b": [1, "c\"}"]}, "d": "e", "f\n": 1, "g"  : 2"#;
+        let found = |name| has_member(text, name);
+        assert_eq!(["a", "d", "g"].map(found), [true; 3]);
+        // Members of members, texts that are values, and names with escapes are none.
+        assert_eq!(["b", "c", "e", "f\n", "f", ""].map(found), [false; 6]);
+        assert!(has_member(b"\xEF\xBB\xBF\n{\"a\":1}", "a") && !has_member(br#"{"a":1}"#, "b"));
+        for none in [&br#"["a"]"#[..], br#"{} "a":"#, br#"{"a"#, b"", b"{", br#"}{"a":1}"#, br#"{"x":"a"#] {
+            assert!(!has_member(none, "a"), "{}", String::from_utf8_lossy(none));
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Which format a file has, and what it holds, in one place.
+//!
+//! [`FORMATS`] lists what is read: name, endings, how it is recognised, reader. [`detect`] tells the format of some bytes with a
+//! name, [`detect_file`] that of a file, and [`read_input`] reads it. A new format is a module with a reader, and one line in that list.
+//!
+//! ```
+//! use sightlines_formats::input::{Input, Source, detect};
+//!
+//! let text = br#"{"type": "LineString", "coordinates": [[0, 0], [4, 0]]}"#;
+//! assert_eq!(detect("walls.json".as_ref(), text).unwrap().name, "geojson");
+//! let walls = Source::Memory { name: "walls.json".as_ref(), bytes: text, beside: None };
+//! let Some(Input::Plan(plan)) = walls.read().unwrap() else { panic!("a plan") };
+//! assert_eq!(plan.lines().len(), 1);
+//! ```
+
+mod beside;
+mod format;
+mod members;
+mod registry;
+
+pub use beside::{Folder, Neighbours};
+pub use format::{Format, InputKind, Sign};
+pub use registry::{FORMATS, detect};
+
+use crate::error::ReadErrorKind;
+use crate::quake::{Bsp, Prt};
+use crate::{LevelsIndex, ReadError, SceneFile, ViewCells, Wad};
+use sightlines_cells::Plan;
+use sightlines_pvs::Table;
+use std::borrow::Cow;
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::Path;
+
+/// As many bytes from the beginning of a file [`detect`] looks at.
+pub const HEAD: usize = 4096;
+
+/// What a file holds.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Input {
+    /// A scene in the plane.
+    Plan(Plan),
+    /// The maps of a Doom game; [`choose_map`](crate::doom::choose_map) picks one.
+    Wad(Wad),
+    /// A scene in space.
+    Scene(SceneFile),
+    /// The clusters of a Quake map, without the map.
+    Prt(Prt),
+    /// A Quake map, without its portals; those are beside it, see [`portals_beside`](crate::quake::portals_beside).
+    Bsp(Bsp),
+    /// A visibility table.
+    Table(Box<Table>),
+    /// A packed table, which `sightlines-packed` opens and reads piece by piece.
+    Packed,
+    /// Proofs of a table, which `sightlines-certificates` reads.
+    Proofs,
+    /// Boxes where viewers can be.
+    ViewCells(ViewCells),
+    /// Simplified variants of a scene.
+    Levels(LevelsIndex),
+}
+
+/// Where an input comes from.
+#[derive(Debug, Clone, Copy)]
+pub enum Source<'a> {
+    /// A file. Other files that it names are read from its folder.
+    File(&'a Path),
+    /// Bytes in memory.
+    Memory {
+        /// The name that the bytes would have as a file; only its ending matters.
+        name: &'a Path,
+        /// The bytes.
+        bytes: &'a [u8],
+        /// Reads other files that these name; without it, they are refused.
+        beside: Option<&'a dyn Neighbours>,
+    },
+}
+
+impl<'a> Source<'a> {
+    /// Reads the input in the format that it is recognised as; `None` if no format recognises it.
+    ///
+    /// # Errors
+    /// [`ReadError`] with the name and the place in the file.
+    pub fn read(&self) -> Result<Option<Input>, ReadError> {
+        let format = match *self {
+            Self::File(path) => detect_file(path)?,
+            Self::Memory { name, bytes, .. } => detect(name, bytes),
+        };
+        format.map(|format| self.read_as(format)).transpose()
+    }
+
+    /// Reads the input as `format`, whatever it is.
+    ///
+    /// # Errors
+    /// As [`Source::read`].
+    pub fn read_as(&self, format: &Format) -> Result<Input, ReadError> {
+        (format.read)(self).map_err(|kind| ReadError::new(self.name(), kind))
+    }
+
+    /// The name of the input.
+    pub fn name(&self) -> &'a Path {
+        match *self {
+            Self::File(path) | Self::Memory { name: path, .. } => path,
+        }
+    }
+
+    /// All of its bytes.
+    pub(crate) fn bytes(&self) -> Result<Cow<'a, [u8]>, ReadErrorKind> {
+        match *self {
+            Self::File(path) => Ok(Cow::Owned(fs::read(path)?)),
+            Self::Memory { bytes, .. } => Ok(Cow::Borrowed(bytes)),
+        }
+    }
+}
+
+/// The format of a file; `None` if no format recognises it. Reads at most [`HEAD`] bytes.
+///
+/// # Errors
+/// [`ReadError`] if the file cannot be opened or read.
+pub fn detect_file(path: impl AsRef<Path>) -> Result<Option<&'static Format>, ReadError> {
+    let path = path.as_ref();
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(HEAD as u64).read_to_end(&mut head));
+    read.map_err(|error| ReadError::new(path, error))?;
+    Ok(detect(path, &head))
+}
+
+/// Reads a file of any format; `None` if no format recognises it. Other files that it names are read from its folder.
+///
+/// # Errors
+/// [`ReadError`] with the file's name and the place in it.
+pub fn read_input(path: impl AsRef<Path>) -> Result<Option<Input>, ReadError> {
+    Source::File(path.as_ref()).read()
+}

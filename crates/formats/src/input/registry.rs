@@ -1,0 +1,91 @@
+//! All formats that are read, a line for each.
+
+use super::format::{Format, InputKind, Sign};
+use super::{Folder, Input, Source};
+use crate::error::ReadErrorKind;
+use crate::quake::prt::{self, PrtDialect};
+use crate::quake::{Bsp, BspFormat};
+use crate::{Wad, geojson, levels, scene, view_cells};
+use sightlines_pvs::{Table, format};
+use std::path::Path;
+
+/// The formats that are read. What lies further up is recognised first.
+#[rustfmt::skip]
+pub static FORMATS: [Format; 11] = [
+    Format { name: "wad", noun: "a WAD", extensions: &["wad"], sign: Sign::Magic(&[b"IWAD", b"PWAD"]), kind: InputKind::Wad, read: wad },
+    Format { name: "pvs", noun: "a table", extensions: &["pvs"], sign: Sign::Magic(&[&format::MAGIC]), kind: InputKind::Table, read: table },
+    Format { name: "pvz", noun: "a packed table", extensions: &["pvz"], sign: Sign::Magic(&[PACKED]), kind: InputKind::Packed, read: |_| Ok(Input::Packed) },
+    Format { name: "proofs", noun: "proofs of a table", extensions: &["cert"], sign: Sign::Magic(&[PROOFS]), kind: InputKind::Proofs, read: |_| Ok(Input::Proofs) },
+    Format { name: "gltf", noun: "a scene", extensions: &["glb", "gltf"], sign: Sign::MagicOrNamedJson(scene::GLB_MAGIC), kind: InputKind::Scene, read: gltf },
+    Format { name: "obj", noun: "a scene", extensions: &["obj"], sign: Sign::Name, kind: InputKind::Scene, read: obj },
+    Format { name: "prt", noun: "a portal file", extensions: &["prt"], sign: Sign::Magic(&PrtDialect::MAGICS), kind: InputKind::Prt, read: portals },
+    Format { name: "bsp", noun: "a Quake map", extensions: &["bsp"], sign: Sign::Magic(&BspFormat::MAGICS), kind: InputKind::Bsp, read: bsp },
+    Format { name: "levels", noun: "an index of levels", extensions: &["json"], sign: Sign::JsonMember("sightlines_levels"), kind: InputKind::Levels, read: levels },
+    Format { name: "view-cells", noun: "view cells", extensions: &["json"], sign: Sign::JsonMember("cells"), kind: InputKind::ViewCells, read: view_cells },
+    Format { name: "geojson", noun: "JSON, such as a floor plan", extensions: &["geojson", "json"], sign: Sign::Json, kind: InputKind::Plan, read: plan },
+];
+
+/// The first bytes of a packed table: `sightlines_packed::format::MAGIC`, which this crate does not use.
+const PACKED: &[u8] = b"\x89PVP\r\n\x1a\n";
+/// The first bytes of proofs: those that `sightlines_certificates` writes, which this crate does not use.
+const PROOFS: &[u8] = b"SLPROOFS";
+
+/// The format of a file that has this name and begins with these bytes; `None` if no format recognises it.
+///
+/// * `head`: all of the file, or at least its first [`HEAD`](super::HEAD) bytes.
+///
+/// The content decides. Where it is JSON, which many formats are, and where it says nothing, the ending of the name does.
+pub fn detect(name: &Path, head: &[u8]) -> Option<&'static Format> {
+    let by_content = FORMATS.iter().find(|format| format.sign.is_in(head));
+    // Formats of JSON are told apart by content, so the last of them is what a name means without any.
+    let by_name = FORMATS.iter().rfind(|format| format.is_name(name));
+    match (by_content, by_name) {
+        (Some(content), Some(named)) if content.sign.is_json() && named.sign.is_named_before_json() => Some(named),
+        (Some(content), _) => Some(content),
+        (None, named) => named,
+    }
+}
+
+fn wad(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::Wad(Wad::parse(source.bytes()?.into_owned())?))
+}
+
+fn table(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::Table(Box::new(Table::from_bytes(&source.bytes()?)?)))
+}
+
+fn gltf(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    let bytes = source.bytes()?;
+    Ok(Input::Scene(match *source {
+        Source::File(path) => scene::parse_gltf(&bytes, Some(&Folder::of(path))),
+        Source::Memory { beside, .. } => scene::parse_gltf(&bytes, beside),
+    }?))
+}
+
+fn obj(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::Scene(scene::parse_obj(&source.bytes()?)?))
+}
+
+fn portals(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::Prt(prt::parse_prt(&source.bytes()?)?))
+}
+
+fn bsp(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::Bsp(Bsp::parse(source.bytes()?.into_owned())?))
+}
+
+fn levels(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::Levels(levels::parse_levels_index(&source.bytes()?)?))
+}
+
+fn view_cells(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::ViewCells(view_cells::parse_view_cells(&source.bytes()?)?))
+}
+
+/// A plan in a file is read as it goes: a large file that is no plan costs no memory.
+fn plan(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::Plan(match *source {
+        Source::File(path) => geojson::read_plan(path).map_err(|error| error.kind)?,
+        Source::Memory { bytes, .. } => geojson::parse_plan(bytes)?,
+    }))
+}
