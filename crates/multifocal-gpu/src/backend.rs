@@ -2,37 +2,8 @@
 
 use crate::context::Gpu;
 use crate::draw::{self, Input};
-use crate::{OpenError, PlaneForms, Ticket, Values};
+use crate::{OpenError, PlaneForms, Ticket, Values, Way};
 use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend};
-
-/// How buffers are filled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Way {
-    /// By a compute shader, in integers: the canonical one.
-    #[default]
-    Compute,
-    /// By the hardware's rasteriser and depth test, which keeps the larger value; each fragment asks the same integers,
-    /// so the bits are the same.
-    Raster,
-    /// By a compute shader in 32-bit floats with margins, to see what floats cost. Knows
-    /// [`Measure::VertexHeight`] alone; what it blocks is blocked, but it misses more, and what it misses depends on the
-    /// device.
-    Float,
-}
-
-impl Way {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Compute, Self::Raster, Self::Float];
-
-    /// Name of the backend that goes this way.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Compute => "gpu",
-            Self::Raster => "gpu-raster",
-            Self::Float => "gpu-float",
-        }
-    }
-}
 
 /// A backend on a GPU. Clones share the device; each may be used from another thread.
 #[derive(Debug, Clone)]

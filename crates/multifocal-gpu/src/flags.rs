@@ -2,8 +2,8 @@
 
 use crate::Values;
 use crate::context::Gpu;
-use crate::draw::{part, whole};
 use crate::pack::put_lines;
+use crate::recording::{part, whole};
 use sightlines_multifocal::{BackendError, Footprint};
 use sightlines_shaders::Record;
 use sightlines_shaders::multifocal as records;

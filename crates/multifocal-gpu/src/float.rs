@@ -1,7 +1,7 @@
 //! A job in 32-bit floats.
 
 use crate::context::Gpu;
-use crate::draw::{Recording, whole};
+use crate::recording::{Recording, whole};
 use sightlines_multifocal::{Job, Occluder, Plane};
 use sightlines_shaders::Record;
 use sightlines_shaders::multifocal::{FLOAT_TILE, FloatOccluder, FloatScene};

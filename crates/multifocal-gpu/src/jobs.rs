@@ -1,8 +1,7 @@
 //! Jobs in flight.
 
-use crate::Values;
 use crate::context::Gpu;
-use crate::draw::Part;
+use crate::recording::{Part, Values};
 use sightlines_multifocal::{BackendError, Buffer};
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{BufferUsages, MapMode, PollType};

@@ -12,6 +12,7 @@
 mod backend;
 mod context;
 mod draw;
+mod error;
 mod flags;
 mod float;
 mod jobs;
@@ -19,12 +20,15 @@ mod open;
 mod outline;
 mod pack;
 mod pipelines;
+mod recording;
+mod way;
 
-pub use backend::{GpuBackend, Way};
+pub use backend::GpuBackend;
 pub use context::Gpu;
-pub use draw::Values;
+pub use error::OpenError;
 pub use flags::DrawRecords;
 pub use jobs::Ticket;
-pub use open::OpenError;
 pub use pack::PlaneForms;
+pub use recording::Values;
+pub use way::Way;
 pub use wgpu;

@@ -1,6 +1,7 @@
 //! Why no line passes some gates: left and right ends that no line separates.
 
-use super::network::{PlanNetwork, Point};
+use super::line::Point;
+use super::network::PlanNetwork;
 use crate::exact::turn;
 use std::cmp::Ordering;
 

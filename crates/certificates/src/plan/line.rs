@@ -1,9 +1,11 @@
 //! Lines of the plane that prove visibility.
 
-use super::network::Point;
 use crate::exact::{Dyadic, is_coordinate, turn};
 use num_bigint::BigInt;
 use std::cmp::Ordering;
+
+/// A point of the plane, in scene units.
+pub type Point = [f64; 2];
 
 /// A directed line that passes some cell and portals, and so joins the cells between them.
 #[derive(Debug, Clone, PartialEq, Eq)]

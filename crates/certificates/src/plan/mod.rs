@@ -13,9 +13,9 @@ mod make;
 mod network;
 
 pub use block::PlanBlock;
-pub use line::{LineForm, PlanLine};
+pub use line::{LineForm, PlanLine, Point};
 pub use make::{PlanGuide, PlanMaker, PlanStep};
-pub use network::{NetworkError, PlanNetwork, PlanPortal, Point};
+pub use network::{NetworkError, PlanNetwork, PlanPortal};
 
 pub(crate) use bytes::{read_pairs, write_pairs};
 

@@ -1,12 +1,9 @@
 //! The geometry that proofs of a plan speak of: convex polygons joined by segments, checked exactly.
 
-use super::line::{Line, PlanLine};
+use super::line::{Line, PlanLine, Point};
 use crate::exact::{is_coordinate, turn};
 use crate::graph::Gates;
 use std::cmp::Ordering;
-
-/// A point of the plane, in scene units.
-pub type Point = [f64; 2];
 
 /// An opening between two cells.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,72 +1,8 @@
 //! Finding the maps of a WAD: a marker, and the lumps that follow it.
 
-use super::{DoomError, DoomErrorKind};
+use super::{DoomError, DoomErrorKind, MapFormat, MapLump};
 use crate::wad::{LumpName, Wad};
-use std::fmt;
 use std::ops::Range;
-
-/// A lump of a map that is read or written here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MapLump {
-    /// Where monsters, players and things stand.
-    Things,
-    /// Lines between vertices.
-    Linedefs,
-    /// What lines show to each side.
-    Sidedefs,
-    /// Points.
-    Vertexes,
-    /// Floors and ceilings.
-    Sectors,
-    /// Which sectors cannot see each other.
-    Reject,
-}
-
-impl MapLump {
-    const ALL: [Self; 6] = [Self::Things, Self::Linedefs, Self::Sidedefs, Self::Vertexes, Self::Sectors, Self::Reject];
-
-    /// The lump's name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Things => "THINGS",
-            Self::Linedefs => "LINEDEFS",
-            Self::Sidedefs => "SIDEDEFS",
-            Self::Vertexes => "VERTEXES",
-            Self::Sectors => "SECTORS",
-            Self::Reject => "REJECT",
-        }
-    }
-}
-
-impl fmt::Display for MapLump {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// How a map is stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MapFormat {
-    /// Binary, lines of 14 bytes.
-    Doom,
-    /// Binary, lines of 16 bytes, recognized by a BEHAVIOR lump.
-    Hexen,
-    /// Text, recognized by a TEXTMAP lump.
-    Udmf,
-    /// Binary with other records, recognized by a LEAFS lump: Doom 64 and the PlayStation.
-    Console,
-}
-
-impl fmt::Display for MapFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Doom => "Doom",
-            Self::Hexen => "Hexen",
-            Self::Udmf => "UDMF",
-            Self::Console => "console",
-        })
-    }
-}
 
 /// Where the lumps of one map are in a WAD's directory.
 #[derive(Debug, Clone, PartialEq, Eq)]

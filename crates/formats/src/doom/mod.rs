@@ -8,12 +8,14 @@
 mod choose;
 mod error;
 mod list;
+mod lumps;
 mod map;
 mod source;
 
 pub use choose::{MapChoiceError, choose_map};
 pub use error::{DoomError, DoomErrorKind};
-pub use list::{MapFormat, MapLump, MapLumps, list_maps};
+pub use list::{MapLumps, list_maps};
+pub use lumps::{MapFormat, MapLump};
 pub use map::{DoomMap, LineDef, Thing};
 pub use source::{DoomMapSource, SourceLine, write_doom_map};
 

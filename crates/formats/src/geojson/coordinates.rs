@@ -1,7 +1,7 @@
 //! The coordinates of a geometry: nested lists, read flat.
 
+use super::context::Context;
 use super::error::GeoJsonErrorKind;
-use super::read::Reader;
 use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
 use sightlines_geometry::{Point2, check_coordinate};
 use std::fmt;
@@ -32,7 +32,7 @@ impl Coordinates {
 const MAX_DEPTH: u8 = 3;
 
 /// Reads the value of a member `coordinates`.
-pub(super) struct CoordinatesSeed<'r>(pub(super) &'r mut Reader);
+pub(super) struct CoordinatesSeed<'r>(pub(super) &'r mut Context);
 
 impl<'de> DeserializeSeed<'de> for CoordinatesSeed<'_> {
     type Value = Coordinates;
@@ -40,7 +40,7 @@ impl<'de> DeserializeSeed<'de> for CoordinatesSeed<'_> {
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Coordinates, D::Error> {
         let mut out = Coordinates::default();
         self.0.expect(GeoJsonErrorKind::Coordinates);
-        match (Nested { reader: self.0, out: &mut out, level: 0 }).deserialize(deserializer)? {
+        match (Nested { context: self.0, out: &mut out, level: 0 }).deserialize(deserializer)? {
             Item::Number(_) => return Err(self.0.fail(GeoJsonErrorKind::Coordinates)),
             Item::Empty => {}
             Item::List(depth) => out.depth = Some(depth),
@@ -60,7 +60,7 @@ enum Item {
 }
 
 struct Nested<'r, 'o> {
-    reader: &'r mut Reader,
+    context: &'r mut Context,
     out: &'o mut Coordinates,
     /// Lists around this value.
     level: u8,
@@ -103,12 +103,12 @@ impl<'de> Visitor<'de> for Nested<'_, '_> {
         loop {
             self.mark_place();
             let level = self.level + 1;
-            let item = Nested { reader: self.reader, out: self.out, level };
+            let item = Nested { context: self.context, out: self.out, level };
             let Some(item) = seq.next_element_seed(item)? else { break };
             match (first, item) {
                 (None | Some(Item::Number(_)), Item::Number(x)) => {
                     if let Some(slot) = position.get_mut(n_numbers) {
-                        *slot = check_coordinate(x).map_err(|error| self.reader.fail(error.into()))?;
+                        *slot = check_coordinate(x).map_err(|error| self.context.fail(error.into()))?;
                     }
                     n_numbers += 1;
                     first = Some(item);
@@ -138,11 +138,11 @@ impl<'de> Visitor<'de> for Nested<'_, '_> {
 impl Nested<'_, '_> {
     /// Notes which position comes next, for errors inside it.
     fn mark_place(&mut self) {
-        self.reader.place.part = Some(self.out.ends.len());
-        self.reader.place.position = Some(self.out.points.len() - self.out.part_start());
+        self.context.place.part = Some(self.out.ends.len());
+        self.context.place.position = Some(self.out.points.len() - self.out.part_start());
     }
 
     fn fail<E: Error>(&mut self) -> E {
-        self.reader.fail(GeoJsonErrorKind::Coordinates)
+        self.context.fail(GeoJsonErrorKind::Coordinates)
     }
 }

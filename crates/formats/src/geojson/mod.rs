@@ -14,9 +14,12 @@
 //! Other properties and members mean nothing here. The reader works as it goes and keeps nothing but the
 //! plan and one geometry, so a large file that is no plan costs no memory.
 
+mod context;
 mod coordinates;
 mod error;
+mod geometry;
 mod node;
+mod plan_builder;
 mod properties;
 mod read;
 mod write;

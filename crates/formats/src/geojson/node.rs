@@ -5,19 +5,11 @@
 
 use super::coordinates::{Coordinates, CoordinatesSeed};
 use super::error::{GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
+use super::geometry::Geometry;
+use super::plan_builder::PlanBuilder;
 use super::properties::{Properties, PropertiesSeed, Scalar, ScalarSeed};
-use super::read::Reader;
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::fmt;
-
-/// A geometry whose coordinates have the depth of its kind.
-#[derive(Debug)]
-pub(super) struct Geometry {
-    pub(super) kind: GeometryKind,
-    pub(super) coordinates: Coordinates,
-    /// Its place in a GeometryCollection.
-    pub(super) index: Option<usize>,
-}
 
 /// Which object is expected.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +23,7 @@ pub(super) enum Level {
 
 /// Reads one GeoJSON object and gives its geometries; those of features are in the plan already.
 pub(super) struct Node<'r> {
-    pub(super) reader: &'r mut Reader,
+    pub(super) builder: &'r mut PlanBuilder,
     pub(super) level: Level,
 }
 
@@ -51,7 +43,7 @@ impl<'de> DeserializeSeed<'de> for Node<'_> {
     type Value = Vec<Geometry>;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Vec<Geometry>, D::Error> {
-        self.reader.expect(GeoJsonErrorKind::NotAnObject);
+        self.builder.context.expect(GeoJsonErrorKind::NotAnObject);
         deserializer.deserialize_any(self)
     }
 }
@@ -66,7 +58,7 @@ impl<'de> Visitor<'de> for Node<'_> {
     /// A feature may have `null` for its geometry.
     fn visit_unit<E: serde::de::Error>(self) -> Result<Vec<Geometry>, E> {
         let fits = self.level == Level::Geometry(None);
-        if fits { Ok(Vec::new()) } else { Err(self.reader.fail(GeoJsonErrorKind::NotAnObject)) }
+        if fits { Ok(Vec::new()) } else { Err(self.builder.context.fail(GeoJsonErrorKind::NotAnObject)) }
     }
 
     fn visit_map<A: MapAccess<'de>>(mut self, mut map: A) -> Result<Vec<Geometry>, A::Error> {
@@ -74,7 +66,7 @@ impl<'de> Visitor<'de> for Node<'_> {
         while let Some(key) = map.next_key::<String>()? {
             self.read_member(&key, &mut members, &mut map)?;
         }
-        self.understand(members).map_err(|kind| self.reader.fail(kind))
+        self.understand(members).map_err(|kind| self.builder.context.fail(kind))
     }
 }
 
@@ -86,36 +78,36 @@ impl Node<'_> {
         map: &mut A,
     ) -> Result<(), A::Error> {
         let (top, feature) = (self.level == Level::Top, self.level == Level::Feature);
-        let reader = &mut *self.reader;
+        let builder = &mut *self.builder;
         if top && ["geometry", "coordinates", "geometries"].contains(&key) {
-            reader.place.feature = Some(0);
+            builder.context.place.feature = Some(0);
         }
         let base = if let Level::Geometry(base) = self.level { base.unwrap_or(0) } else { 0 };
         let repeated = match key {
             "type" => {
                 let Scalar::Text(kind) = map.next_value_seed(ScalarSeed)? else {
-                    return Err(reader.fail(GeoJsonErrorKind::Member { member: "type", expected: "text" }));
+                    return Err(builder.context.fail(GeoJsonErrorKind::Member { member: "type", expected: "text" }));
                 };
                 members.kind.replace(kind).map(|_| "type")
             }
             "features" if top => {
-                map.next_value_seed(FeaturesSeed(reader))?;
+                map.next_value_seed(FeaturesSeed(builder))?;
                 members.features.replace(()).map(|()| "features")
             }
             "geometry" if top || feature => {
-                let geometry = map.next_value_seed(Node { reader, level: Level::Geometry(None) })?;
+                let geometry = map.next_value_seed(Node { builder, level: Level::Geometry(None) })?;
                 members.geometry.replace(geometry).map(|_| "geometry")
             }
             "geometries" if !feature => {
-                let geometries = map.next_value_seed(GeometriesSeed { reader, base })?;
+                let geometries = map.next_value_seed(GeometriesSeed { builder, base })?;
                 members.geometries.replace(geometries).map(|_| "geometries")
             }
             "coordinates" if !feature => {
-                let coordinates = map.next_value_seed(CoordinatesSeed(reader))?;
+                let coordinates = map.next_value_seed(CoordinatesSeed(&mut builder.context))?;
                 members.coordinates.replace(coordinates).map(|_| "coordinates")
             }
             "properties" if top || feature => {
-                let properties = map.next_value_seed(PropertiesSeed(reader))?;
+                let properties = map.next_value_seed(PropertiesSeed(&mut builder.context))?;
                 members.properties.replace(properties).map(|_| "properties")
             }
             "id" if top || feature => {
@@ -127,7 +119,7 @@ impl Node<'_> {
                 None
             }
         };
-        repeated.map_or(Ok(()), |member| Err(self.reader.fail(GeoJsonErrorKind::Repeated(member))))
+        repeated.map_or(Ok(()), |member| Err(self.builder.context.fail(GeoJsonErrorKind::Repeated(member))))
     }
 
     /// Makes of the members what the object is, now that all are known.
@@ -141,17 +133,17 @@ impl Node<'_> {
                 return Err(wrong_type("\"FeatureCollection\", though there are \"features\""));
             }
             (Level::Top | Level::Feature, "Feature") => {
-                self.reader.place.feature.get_or_insert(0);
+                self.builder.context.place.feature.get_or_insert(0);
                 let geometry = members.geometry.ok_or(GeoJsonErrorKind::Missing("geometry"))?;
                 let mut about = members.properties.unwrap_or_default();
                 about.id = about.id.or(members.id);
-                self.reader.add_feature(&geometry, &about)?;
+                self.builder.add_feature(&geometry, &about)?;
             }
             (Level::Feature, _) => return Err(wrong_type("\"Feature\"")),
             (Level::Top, _) => {
-                self.reader.place.feature.get_or_insert(0);
+                self.builder.context.place.feature.get_or_insert(0);
                 let geometries = understand_geometry(&kind, members, None)?;
-                self.reader.add_feature(&geometries, &Properties::default())?;
+                self.builder.add_feature(&geometries, &Properties::default())?;
             }
             (Level::Geometry(index), _) => return understand_geometry(&kind, members, index),
         }
@@ -181,13 +173,13 @@ fn wrong_type(expected: &'static str) -> GeoJsonErrorKind {
 }
 
 /// Reads the list of a FeatureCollection into the plan.
-struct FeaturesSeed<'r>(&'r mut Reader);
+struct FeaturesSeed<'r>(&'r mut PlanBuilder);
 
 impl<'de> DeserializeSeed<'de> for FeaturesSeed<'_> {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        self.0.expect(GeoJsonErrorKind::Member { member: "features", expected: "a list" });
+        self.0.context.expect(GeoJsonErrorKind::Member { member: "features", expected: "a list" });
         deserializer.deserialize_any(self)
     }
 }
@@ -201,19 +193,19 @@ impl<'de> Visitor<'de> for FeaturesSeed<'_> {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<(), A::Error> {
         for feature in 0.. {
-            self.0.place = GeoJsonPlace { feature: Some(feature), ..GeoJsonPlace::default() };
-            if seq.next_element_seed(Node { reader: self.0, level: Level::Feature })?.is_none() {
+            self.0.context.place = GeoJsonPlace { feature: Some(feature), ..GeoJsonPlace::default() };
+            if seq.next_element_seed(Node { builder: self.0, level: Level::Feature })?.is_none() {
                 break;
             }
         }
-        self.0.place = GeoJsonPlace::default();
+        self.0.context.place = GeoJsonPlace::default();
         Ok(())
     }
 }
 
 /// Reads the list of a GeometryCollection, nested ones flattened.
 struct GeometriesSeed<'r> {
-    reader: &'r mut Reader,
+    builder: &'r mut PlanBuilder,
     /// Geometries before it, in the collection it is in.
     base: usize,
 }
@@ -222,7 +214,7 @@ impl<'de> DeserializeSeed<'de> for GeometriesSeed<'_> {
     type Value = Vec<Geometry>;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Vec<Geometry>, D::Error> {
-        self.reader.expect(GeoJsonErrorKind::Member { member: "geometries", expected: "a list" });
+        self.builder.context.expect(GeoJsonErrorKind::Member { member: "geometries", expected: "a list" });
         deserializer.deserialize_any(self)
     }
 }
@@ -238,12 +230,12 @@ impl<'de> Visitor<'de> for GeometriesSeed<'_> {
         let mut all = Vec::new();
         loop {
             let index = Some(self.base + all.len());
-            self.reader.place.geometry = index;
-            let node = Node { reader: self.reader, level: Level::Geometry(index) };
+            self.builder.context.place.geometry = index;
+            let node = Node { builder: self.builder, level: Level::Geometry(index) };
             let Some(more) = seq.next_element_seed(node)? else { break };
             all.extend(more);
         }
-        self.reader.place.geometry = None;
+        self.builder.context.place.geometry = None;
         Ok(all)
     }
 }

@@ -1,8 +1,8 @@
 //! The properties of a feature that say something about sight.
 
 use super::MAX_GROUPS;
+use super::context::Context;
 use super::error::GeoJsonErrorKind;
-use super::read::Reader;
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -135,7 +135,7 @@ pub(super) fn wrong(property: &'static str, expected: &'static str) -> GeoJsonEr
 }
 
 /// Reads the value of a member `properties`, which may be `null`.
-pub(super) struct PropertiesSeed<'r>(pub(super) &'r mut Reader);
+pub(super) struct PropertiesSeed<'r>(pub(super) &'r mut Context);
 
 impl<'de> DeserializeSeed<'de> for PropertiesSeed<'_> {
     type Value = Properties;

@@ -212,5 +212,21 @@ fn check_overlaps(lumps: &[Lump]) -> Result<(), WadError> {
     Ok(())
 }
 
+impl LumpName {
+    /// A name of up to eight ASCII characters, filled up with zeros.
+    ///
+    /// # Errors
+    /// [`WadError::Name`] for anything else, a zero character included.
+    pub fn new(name: &str) -> Result<Self, WadError> {
+        let plain = name.bytes().all(|b| b.is_ascii() && b != 0);
+        if name.is_empty() || name.len() > 8 || !plain {
+            return Err(WadError::Name { name: name.to_owned() });
+        }
+        let mut raw = [0; 8];
+        raw[..name.len()].copy_from_slice(name.as_bytes());
+        Ok(Self::from_raw(raw))
+    }
+}
+
 #[cfg(test)]
 mod tests;

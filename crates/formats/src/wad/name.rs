@@ -1,6 +1,5 @@
 //! Names of lumps.
 
-use super::WadError;
 use std::fmt;
 
 /// Eight bytes, as they stand in the directory. The name ends at the first zero; what follows it is
@@ -11,20 +10,6 @@ use std::fmt;
 pub struct LumpName([u8; 8]);
 
 impl LumpName {
-    /// A name of up to eight ASCII characters, filled up with zeros.
-    ///
-    /// # Errors
-    /// [`WadError::Name`] for anything else, a zero character included.
-    pub fn new(name: &str) -> Result<Self, WadError> {
-        let plain = name.bytes().all(|b| b.is_ascii() && b != 0);
-        if name.is_empty() || name.len() > 8 || !plain {
-            return Err(WadError::Name { name: name.to_owned() });
-        }
-        let mut raw = [0; 8];
-        raw[..name.len()].copy_from_slice(name.as_bytes());
-        Ok(Self(raw))
-    }
-
     /// The name that stands in a directory as these bytes.
     pub const fn from_raw(raw: [u8; 8]) -> Self {
         Self(raw)

@@ -12,6 +12,7 @@
 
 mod check;
 pub mod impostors;
+mod pair;
 mod random;
 mod scene;
 mod shapes;
@@ -115,7 +116,7 @@ pub fn run(
             let scene = scene::Scene::draw(family, effort.seed, round);
             report.scenes += 1;
             for measure in measures(round) {
-                let mut pair = check::Pair { backend, reference, slack: &effort.slack, report: &mut report };
+                let mut pair = pair::Pair { backend, reference, slack: &effort.slack, report: &mut report };
                 if !pair.backend.supports(measure) {
                     check::refuses(&mut pair, &scene, measure)?;
                     continue;

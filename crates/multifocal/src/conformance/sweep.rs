@@ -1,7 +1,7 @@
 //! Planes that are carried over to the next ones.
 
 use super::Violation;
-use super::check::{Pair, render};
+use super::pair::{Pair, render};
 use super::scene::Scene;
 use crate::{Buffer, Job, Plane};
 

@@ -1,6 +1,6 @@
 //! Single occluders: what they block with room to spare has to be found.
 
-use super::check::{Pair, render};
+use super::pair::{Pair, render};
 use super::scene::Scene;
 use super::{Slack, Violation};
 use crate::{Buffer, Job, Measure, Occluder, Plane};

@@ -12,6 +12,7 @@ mod flat;
 mod grow;
 mod method;
 mod patch;
+mod patch_options;
 mod polygon;
 mod probe;
 mod select;
@@ -21,7 +22,8 @@ mod vector;
 mod weld;
 
 pub use method::SheetMethod;
-pub use patch::{PatchOptions, patches};
+pub use patch::patches;
+pub use patch_options::PatchOptions;
 pub use select::{Chooser, select};
 pub use sheet::{Asker, Sheets};
 pub use weld::Mesh;

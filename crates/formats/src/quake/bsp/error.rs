@@ -1,6 +1,6 @@
 //! What can be wrong with a map, and where.
 
-use super::tree::MAX_TREE_DEPTH;
+use super::MAX_TREE_DEPTH;
 use std::fmt;
 
 /// A lump in an error message, shown as `lump 10 (leafs)`.

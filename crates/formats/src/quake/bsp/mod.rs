@@ -20,10 +20,14 @@ mod tree;
 pub use error::{BspError, BspLumpId};
 pub use faces::AmbientKind;
 pub use leaf::{BspLeaf, LeafRow};
+pub(in crate::quake) use rewrite::NewVisibility;
 pub use surfaces::{LeafFaces, WorldFaces};
-pub use tree::{BspChild, BspNode, BspTree, MAX_TREE_DEPTH};
+pub use tree::{BspChild, BspNode, BspTree};
 
 use std::ops::Range;
+
+/// How many steps a leaf may be below the root. Maps that were looked at have 22 to 127.
+pub const MAX_TREE_DEPTH: usize = 1024;
 
 /// A version of the format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

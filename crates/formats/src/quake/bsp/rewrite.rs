@@ -2,21 +2,11 @@
 
 use super::leaf::{LEAF_ROW, leaf_len};
 use super::{BSPX_ENTRY, BSPX_HEADER, Bsp, BspError, i32_at, u32_at};
-use crate::quake::VisibilityLump;
 use std::ops::Range;
 
 impl Bsp {
-    /// The file with another visibility lump, and with the places of rows and the loudness that go with it in the
-    /// leafs that can be seen. Everything else keeps its bytes: what lies behind the lump is moved by a multiple
-    /// of four, and the directories (BSPX too) follow. A lump of the same length is replaced in place.
-    ///
-    /// The lump stays where the directory has it. Where that is no place for a lump (inside another, or not at a
-    /// multiple of four), it goes behind the last of all, and the bytes of the old one stay where they are.
-    ///
-    /// # Errors
-    /// [`BspError::RowCount`] for a lump that was made for another number of leafs, [`BspError::Shared`] if leafs
-    /// would have to change under another lump, [`BspError::TooLarge`].
-    pub fn with_visibility(&self, new: &VisibilityLump) -> Result<Vec<u8>, BspError> {
+    /// As [`Self::with_visibility`] says, from the parts of a visibility lump.
+    pub(in crate::quake) fn rewritten(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, BspError> {
         let vis = self.format.visibility_lump();
         let splice = self.splice(new.bytes.len());
         let (old, pad) = (splice.old.clone(), splice.pad);
@@ -29,7 +19,7 @@ impl Bsp {
         out.extend_from_slice(&self.bytes[..old.start]);
         out.resize(out.len() + splice.lead, 0);
         let start = out.len();
-        out.extend_from_slice(&new.bytes);
+        out.extend_from_slice(new.bytes);
         out.resize(out.len() + pad, 0);
         out.extend_from_slice(&self.bytes[old.end..]);
 
@@ -106,7 +96,7 @@ impl Bsp {
     }
 
     /// The lump of leafs with new places and loudness, or with its old bytes where nothing is to change.
-    fn changed_leafs(&self, new: &VisibilityLump) -> Result<Vec<u8>, BspError> {
+    fn changed_leafs(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, BspError> {
         let index = self.format.leaf_lump();
         let mut leafs = self.lump_bytes(index).to_vec();
         let n_leafs = if self.format.has_clusters() { 0 } else { self.n_visible_leafs };
@@ -131,6 +121,13 @@ impl Bsp {
             None => Ok(leafs),
         }
     }
+}
+
+/// What a map is written again with; see [`VisibilityLump`](crate::quake::VisibilityLump).
+pub(in crate::quake) struct NewVisibility<'a> {
+    pub(in crate::quake) bytes: &'a [u8],
+    pub(in crate::quake) leaf_rows: &'a [u32],
+    pub(in crate::quake) ambient: &'a [[u8; 4]],
 }
 
 /// `old` gives way to `lead` zeros, the new lump, and `pad` zeros.

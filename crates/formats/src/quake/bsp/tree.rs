@@ -1,7 +1,7 @@
 //! The tree of planes that a map's world was cut along, down to its leafs.
 
 use super::leaf::MODELS;
-use super::{Bsp, BspError, BspFormat, i32_at, u16_at, u32_at};
+use super::{Bsp, BspError, BspFormat, MAX_TREE_DEPTH, i32_at, u16_at, u32_at};
 use sightlines_geometry::Point3;
 
 /// Index of the lump of planes, in all formats.
@@ -10,9 +10,6 @@ pub(super) const PLANES: usize = 1;
 const PLANE_LEN: usize = 20;
 /// Where a model has the root of its tree: behind 9 floats, in all formats.
 const MODEL_ROOT: usize = 36;
-
-/// How many steps a leaf may be below the root. Maps that were looked at have 22 to 127.
-pub const MAX_TREE_DEPTH: usize = 1024;
 
 /// What is on a side of a plane of a tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,6 +3,7 @@
 //! Quake has a row of leafs for each leaf; the leafs of a cluster share theirs. Quake II has a row of clusters
 //! for each cluster, and a second one for what can be heard. Rows are coded by [`rle`].
 
+use super::bsp::NewVisibility;
 use super::{Bsp, BspError, BspFormat, LeafClusters, rle};
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::{ones, or_words};
@@ -24,6 +25,23 @@ pub struct VisibilityLump {
     pub leaf_rows: Vec<u32>,
     /// For each of those leafs how loud water, sky, slime and lava are; empty for Quake II.
     pub ambient: Vec<[u8; 4]>,
+}
+
+impl Bsp {
+    /// The file with another visibility lump, and with the places of rows and the loudness that go with it in the
+    /// leafs that can be seen. Everything else keeps its bytes: what lies behind the lump is moved by a multiple
+    /// of four, and the directories (BSPX too) follow. A lump of the same length is replaced in place.
+    ///
+    /// The lump stays where the directory has it. Where that is no place for a lump (inside another, or not at a
+    /// multiple of four), it goes behind the last of all, and the bytes of the old one stay where they are.
+    ///
+    /// # Errors
+    /// [`BspError::RowCount`] for a lump that was made for another number of leafs, [`BspError::Shared`] if leafs
+    /// would have to change under another lump, [`BspError::TooLarge`].
+    pub fn with_visibility(&self, new: &VisibilityLump) -> Result<Vec<u8>, BspError> {
+        let VisibilityLump { bytes, leaf_rows, ambient } = new;
+        self.rewritten(&NewVisibility { bytes, leaf_rows, ambient })
+    }
 }
 
 /// Makes the lump for a map, and the loudness of its leafs.

@@ -23,8 +23,41 @@ use document::{Object, as_object, list};
 use serde_json::{Value, json};
 use variants::Variants;
 
+impl GltfSource {
+    /// The document as GLB, with other triangles, and all else as it was.
+    ///
+    /// * `triangles`: for each object `None` if it stays as it is, or all triangles that it shall have, as indices of its
+    ///   vertices in the scene and wound as there.
+    /// * `simplified`: what the result says of itself to readers of ours; the result is no occluder if the source is none.
+    ///
+    /// Reading the result gives the objects that have anything left, in the same order: those that stay as they are, and the
+    /// others with these triangles in this order, at vertices with the same bits. (Triangles without area are left out by
+    /// readers of ours, and names `#1`, `#2` count the primitives that are left.)
+    ///
+    /// Nodes, materials, textures, cameras, animations, extras and extensions survive. Nodes that shared a mesh and now
+    /// differ get meshes of their own, which are put behind the others. A primitive without triangles goes, a mesh without
+    /// primitives goes from its node; the node stays. Strips and fans become lists. All attributes of vertices, and their
+    /// morph targets, are copied byte by byte, without the vertices that nothing uses any more; sparse accessors of changed
+    /// primitives become dense. Accessors and buffer views that nothing uses are left out, except where an extension that
+    /// is not understood may mean them: then all of them stay, in their places. Buffers, and images in files beside the
+    /// document as far as they can be read, go into the GLB.
+    ///
+    /// Costs time and memory in proportion to the result and the source. The same arguments give the same bytes.
+    ///
+    /// # Errors
+    /// [`RewriteError`]: arguments that do not fit the scene, attributes that are not sound, and extensions that may speak
+    /// of the triangles that are to change.
+    pub fn rewrite(
+        &self,
+        triangles: &[Option<Vec<[u32; 3]>>],
+        simplified: Option<Simplified>,
+    ) -> Result<Vec<u8>, RewriteError> {
+        rewrite(self, triangles, simplified)
+    }
+}
+
 /// As [`GltfSource::rewrite`] says.
-pub(super) fn rewrite(
+fn rewrite(
     source: &GltfSource,
     triangles: &[Option<Vec<[u32; 3]>>],
     simplified: Option<Simplified>,
