@@ -1,5 +1,6 @@
 //! Stabbing lines of portal sequences, against exact oracles.
 
 mod axial;
+mod conformance;
 mod convex;
 mod stabbing;

@@ -1,0 +1,210 @@
+//! Sequences of portals, drawn along a line.
+//!
+//! A *spine*, a line in dyadic coordinates, is crossed by a portal at some of its places, in order. With the spine
+//! inside, portals are drawn around the crossings; otherwise they are moved aside, so that some sequences are open and
+//! others are not. All coordinates are exact, so the spine passes strictly.
+
+use sightlines_geometry::{Aabb, AxialDoor, Point2, Portal2, Portal3, Random, orient2d};
+use std::fmt;
+use std::sync::Arc;
+
+/// A sequence of portals between convex cells.
+#[derive(Debug, Clone)]
+pub struct Case<P, B> {
+    /// The portals, in order.
+    pub portals: Vec<P>,
+    /// Whether the spine passes all of them.
+    pub has_spine: bool,
+    /// For each portal, boxes beyond it, in the cell behind it, whose insides the spine meets.
+    pub beyond: Vec<Vec<B>>,
+}
+
+/// A source of sequences.
+pub trait Cases {
+    /// An oriented portal.
+    type Portal: Clone + fmt::Debug;
+    /// A region that holds a target.
+    type Bounds;
+
+    /// Draws a sequence, with a line through it if `has_spine`.
+    fn draw(&self, random: &mut Random, has_spine: bool) -> Case<Self::Portal, Self::Bounds>;
+
+    /// About a half of a portal: a smaller portal at the same place.
+    fn half(&self, portal: &Self::Portal) -> Self::Portal;
+}
+
+/// Doors in the plane, upright and slanted.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Planar;
+
+/// Axis-aligned doors, on planes of all three axes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Axial;
+
+/// Convex polygons with four to eight corners, on planes of all three axes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Convex;
+
+fn below(random: &mut Random, n: u64) -> u64 {
+    random.bits() % n
+}
+
+/// A multiple of 1/16 from `low` to before `low + span`.
+fn sixteenth(random: &mut Random, low: f64, span: u64) -> f64 {
+    low + below(random, 16 * span) as f64 / 16.0
+}
+
+/// Distances between the crossings of the spine, along its first axis.
+const STEP: f64 = 1.0;
+
+impl Cases for Planar {
+    type Portal = Portal2;
+    type Bounds = Aabb<2>;
+
+    fn draw(&self, random: &mut Random, has_spine: bool) -> Case<Portal2, Aabb<2>> {
+        let n = 2 + below(random, 8) as usize;
+        let slope = sixteenth(random, -1.0, 2);
+        let mut portals: Vec<Portal2> = Vec::new();
+        for i in 0..n {
+            let x = i as f64 * STEP;
+            let y = x * slope + if has_spine { 0.0 } else { sixteenth(random, -1.75, 3) };
+            let (up, down) = (sixteenth(random, 0.0625, 2), sixteenth(random, 0.0625, 2));
+            let slanted = [0, 1].map(|_| sixteenth(random, 0.0, 1) / 4.0);
+            let upright = Portal2 { left: Point2::new(x, y + up), right: Point2::new(x, y - down) };
+            // Its ends before and behind the crossing: the spine, whose slope is at most 1, still passes between them.
+            let door = Portal2 {
+                left: Point2::new(x + slanted[0], y + up + slanted[0]),
+                right: Point2::new(x - slanted[1], y - down - slanted[1]),
+            };
+            let follows = |before: &Portal2, door: &Portal2| {
+                // Each lies beyond the other's line, so there is a convex cell between them.
+                [door.left, door.right].into_iter().all(|p| orient2d(before.left, before.right, p) > 0.0)
+                    && [before.left, before.right].into_iter().all(|p| orient2d(door.left, door.right, p) < 0.0)
+            };
+            let fits = portals.last().is_none_or(|before| follows(before, &door));
+            let door = if fits { door } else { upright };
+            if portals.last().is_none_or(|before| follows(before, &door)) {
+                portals.push(door);
+            }
+        }
+        let beyond = portals.iter().map(|door| {
+            // Behind every slanted end of this door and before every one of the next.
+            let x = ((door.left.x + door.right.x) / 2.0).round() + 0.5;
+            let near = Aabb { min: [x - 0.0625, x * slope - 0.0625], max: [x + 0.0625, x * slope + 0.0625] };
+            vec![near]
+        });
+        let beyond = beyond.collect();
+        Case { portals, has_spine, beyond }
+    }
+
+    fn half(&self, portal: &Portal2) -> Portal2 {
+        Portal2 { left: portal.left, right: (portal.left + portal.right) / 2.0 }
+    }
+}
+
+/// Doors along a spine, with the boxes beyond them and, for each door, how far its sides are from the crossing at
+/// least.
+fn doors(random: &mut Random, has_spine: bool) -> (Case<AxialDoor, Aabb<3>>, Vec<f64>) {
+    let n = 2 + below(random, 8) as usize;
+    let quarter = |random: &mut Random| {
+        let size = (1 + below(random, 4)) as f64 / 4.0;
+        if below(random, 2) == 0 { size } else { -size }
+    };
+    let direction = [1.0, quarter(random), quarter(random)];
+    let at = |t: f64| direction.map(|d| t * d);
+    let axes: Vec<usize> = (0..n).map(|_| [0, 0, 0, 1, 2][below(random, 5) as usize]).collect();
+    let mut doors: Vec<AxialDoor> = Vec::new();
+    let mut margins = Vec::new();
+    for (i, &axis) in axes.iter().enumerate() {
+        let t = i as f64 * STEP;
+        let crossing = at(t);
+        let (mut min, mut max) = (crossing, crossing);
+        for k in (0..3).filter(|&k| k != axis) {
+            let aside = if has_spine { 0.0 } else { sixteenth(random, -1.0, 2) };
+            min[k] += aside - sixteenth(random, 0.0625, 1);
+            max[k] += aside + sixteenth(random, 0.0625, 1);
+            // The neighbours' planes bound the cells on both sides.
+            for (j, side) in [(i.wrapping_sub(1), -1.0), (i + 1, 1.0)] {
+                if axes.get(j) == Some(&k) {
+                    let plane = at(j as f64 * STEP)[k];
+                    if side * direction[k] > 0.0 { max[k] = max[k].min(plane) } else { min[k] = min[k].max(plane) }
+                }
+            }
+            if min[k] >= max[k] {
+                // Moved behind a neighbour's plane: around the crossing instead.
+                (min[k], max[k]) = (crossing[k] - 0.0625, crossing[k] + 0.0625);
+            }
+        }
+        let sides = (0..3).filter(|&k| k != axis).flat_map(|k| [crossing[k] - min[k], max[k] - crossing[k]]);
+        margins.push(sides.fold(f64::INFINITY, f64::min));
+        doors.push(AxialDoor { extent: Aabb { min, max }, axis: axis as u8, forward: direction[axis] > 0.0 });
+    }
+    let beyond = (0..n).map(|i| {
+        let p = at((i as f64 + 0.5) * STEP);
+        vec![Aabb { min: p.map(|x| x - 0.03125), max: p.map(|x| x + 0.03125) }]
+    });
+    (Case { portals: doors, has_spine, beyond: beyond.collect() }, margins)
+}
+
+impl Cases for Axial {
+    type Portal = AxialDoor;
+    type Bounds = Aabb<3>;
+
+    fn draw(&self, random: &mut Random, has_spine: bool) -> Case<AxialDoor, Aabb<3>> {
+        doors(random, has_spine).0
+    }
+
+    fn half(&self, portal: &AxialDoor) -> AxialDoor {
+        let mut half = *portal;
+        let k = (usize::from(portal.axis) + 1) % 3;
+        half.extent.max[k] = (portal.extent.min[k] + portal.extent.max[k]) / 2.0;
+        half
+    }
+}
+
+impl Cases for Convex {
+    type Portal = Arc<Portal3>;
+    type Bounds = Aabb<3>;
+
+    fn draw(&self, random: &mut Random, has_spine: bool) -> Case<Arc<Portal3>, Aabb<3>> {
+        let (case, margins) = doors(random, has_spine);
+        let portals = case.portals.iter().zip(margins).map(|(door, margin)| {
+            let cut = if below(random, 2) == 0 { 0.0 } else { margin.max(0.0) / 2.0 };
+            Arc::new(polygon(door, cut))
+        });
+        Case { portals: portals.collect(), has_spine, beyond: case.beyond }
+    }
+
+    fn half(&self, portal: &Arc<Portal3>) -> Arc<Portal3> {
+        let corners = portal.corners();
+        Arc::new(Portal3::around(&corners[..=corners.len() / 2]).expect("three corners of a convex polygon"))
+    }
+}
+
+/// A door as a polygon, with its corners cut off by so much along each side.
+fn polygon(door: &AxialDoor, cut: f64) -> Portal3 {
+    let axis = usize::from(door.axis);
+    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    let (min, max) = (door.extent.min, door.extent.max);
+    let cut = cut.min((max[u] - min[u]) / 4.0).min((max[v] - min[v]) / 4.0);
+    let point = |a: f64, b: f64| {
+        let mut p = min;
+        (p[u], p[v]) = (a, b);
+        p
+    };
+    // Counter-clockwise about the axis; corners that are not cut coincide.
+    let mut points = vec![
+        point(min[u] + cut, min[v]),
+        point(max[u] - cut, min[v]),
+        point(max[u], min[v] + cut),
+        point(max[u], max[v] - cut),
+        point(max[u] - cut, max[v]),
+        point(min[u] + cut, max[v]),
+        point(min[u], max[v] - cut),
+        point(min[u], min[v] + cut),
+    ];
+    if !door.forward {
+        points.reverse();
+    }
+    Portal3::around(&points).expect("the door has an area")
+}
