@@ -28,7 +28,7 @@ mod zones;
 pub use certify::{CertifyOptions, certify_plan, certify_space, plan_network, space_network};
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
-    BlockedConvex, Blocking, ByPolygons, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,
+    BlockedConvex, Blocking, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,
     ConvexSearch, ConvexState, ConvexVisibility, MOST_EXPLAINED, certify_convex, convex_network, explain_convex,
 };
 pub use explain::{BlockedSequence, Explanation, explain};
@@ -39,8 +39,8 @@ pub use space::{
     space_visibility,
 };
 pub use tree::{
-    ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of, portal_of,
-    stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,
+    ByPolygons, ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of,
+    portal_of, stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,
 };
 pub use zones::Zones;
 

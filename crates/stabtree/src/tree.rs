@@ -1,10 +1,13 @@
 //! Stab trees: every stabbable portal sequence out of a cell; of one cell, or of all cells in one graph.
 
+mod by_polygons;
 mod follow;
 mod forest;
+mod gate_graph;
 mod grow;
 mod share;
 
+pub use by_polygons::ByPolygons;
 pub use follow::{ByStabber, Follower, gate_of, portal_of};
 pub use forest::{
     StabTreesOptions, StabTreesSummary, stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,

@@ -19,6 +19,8 @@ mod options;
 mod proofs;
 mod rays;
 mod real;
+mod shapes;
+mod sight;
 mod structure;
 mod truth;
 mod walls;
@@ -26,7 +28,7 @@ mod walls;
 pub use findings::{Confirmed, Findings, Remarks, Violation};
 pub use options::VerifyOptions;
 pub use proofs::{ProofError, ProofFindings, ProofViolation, boxes_of, check_proofs, convex_of, plan_of};
-pub use rays::{Sight, Target};
+pub use sight::{Sight, Target};
 pub use truth::{Truth, VerifyError, WorldChild, WorldFace, WorldNode, WorldTree};
 pub use walls::{WallFindings, check_walls_in_space, check_walls_of_plan};
 

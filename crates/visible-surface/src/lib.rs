@@ -18,6 +18,7 @@ pub mod chosen;
 pub mod compare;
 pub mod counters;
 pub mod cull;
+mod extents;
 pub mod faces;
 pub mod fragment;
 pub mod hierarchical;
@@ -32,6 +33,7 @@ mod rows;
 pub mod schumacker;
 mod side;
 mod vector;
+mod window;
 pub mod zbuffer;
 
 pub use any_order::{AnyOrder, is_convex};

@@ -1,55 +1,9 @@
 //! Which pixels a convex piece of the picture covers: row by row, exactly.
 
-use crate::camera::{Camera, Place};
+use crate::camera::Camera;
 use crate::faces::Faces;
-use crate::fragment::Extents;
 use crate::side::Side;
-use sightlines_geometry::Point3;
-
-/// Pixels from `min` to before `max`, to the right and down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Window {
-    pub(crate) min: [u32; 2],
-    pub(crate) max: [u32; 2],
-}
-
-impl Window {
-    /// All pixels whose centres lie within bounds in pixels, [to the right, down].
-    pub(crate) fn around(camera: &Camera, bounds: [[f64; 2]; 2]) -> Self {
-        let size = camera.size();
-        let min = [0, 1].map(|k| ceil(bounds[k][0] - 0.5).min(size[k]));
-        let last = |x: f64| if x < 0.0 { 0 } else { (x as u32).saturating_add(1) };
-        let max = [0, 1].map(|k| last(bounds[k][1] - 0.5).min(size[k]));
-        Self { min, max }
-    }
-
-    /// The same of a triangle; none if it is surely outside of what the camera sees.
-    #[inline]
-    pub(crate) fn of_triangle(camera: &Camera, corners: &[Point3; 3]) -> Self {
-        if camera.depths() != [0.0, f64::INFINITY] {
-            return Extents::around(corners.map(|p| camera.place(p))).window(camera);
-        }
-        let places = corners.map(|p| camera.place(p));
-        if places.iter().all(Place::is_behind) {
-            return Self { min: [0; 2], max: [0; 2] };
-        }
-        let [a, b, c] = places.map(|p| p.pixels());
-        let of = |k: usize| [a[k][0].min(b[k][0]).min(c[k][0]), a[k][1].max(b[k][1]).max(c[k][1])];
-        Self::around(camera, [of(0), of(1)])
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        (0..2).any(|k| self.min[k] >= self.max[k])
-    }
-}
-
-/// The least whole number that is not less; 0 for negative numbers, the largest for larger ones. (The library's is a call where
-/// processors are not known to round.)
-#[inline]
-fn ceil(x: f64) -> u32 {
-    let whole = x as u32;
-    whole.saturating_add(u32::from(f64::from(whole) < x))
-}
+use crate::window::{Window, ceil};
 
 /// Calls `span(y, from, to)` for each row of `window` that has pixels with centres inside of all `sides`: those from `from` to
 /// before `to`. Returns how many times doubles could not tell.

@@ -32,7 +32,7 @@ pub(super) struct Gate {
 
 /// All gates, and the cells that they lead out of.
 #[derive(Debug, Clone)]
-pub(super) struct Gates {
+pub(crate) struct Gates {
     gates: Vec<Gate>,
     shapes: Vec<Portal3>,
     corners: Part,
@@ -45,7 +45,7 @@ pub(super) struct Gates {
 }
 
 impl Gates {
-    pub(super) fn new(graph: &CellGraph<Convex>) -> Self {
+    pub(crate) fn new(graph: &CellGraph<Convex>) -> Self {
         let coordinates = graph.portals().iter().flat_map(|p| p.shape.corners()).flatten();
         let largest = coordinates.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
         let clearance = super::cut::Cutter::new(largest).eps;
@@ -110,7 +110,7 @@ impl Gates {
         &self.gates[gate as usize]
     }
 
-    pub(super) fn shape(&self, gate: u32) -> &Portal3 {
+    pub(crate) fn shape(&self, gate: u32) -> &Portal3 {
         &self.shapes[gate as usize]
     }
 
@@ -129,7 +129,7 @@ impl Gates {
     /// Whether a line may pass gate `s` and after it gate `t`, as far as their planes tell: `t` has a corner in front
     /// of the plane of `s`, and `s` one behind the plane of `t`.
     #[inline]
-    pub(super) fn may_follow(&self, s: u32, t: u32) -> bool {
+    pub(crate) fn may_follow(&self, s: u32, t: u32) -> bool {
         let (gs, gt) = (self.get(s), self.get(t));
         let between = sub(gt.center, gs.center);
         // A line meets a gate no farther behind its plane than the gate's own corners lie, and the plane leans by

@@ -23,7 +23,6 @@ mod cell_set;
 mod certify;
 mod cut;
 mod explain;
-mod follow;
 mod gates;
 mod pairs;
 mod sampled;
@@ -34,12 +33,11 @@ pub use certify::{certify_convex, convex_network};
 pub use explain::{
     BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexGate, MOST_EXPLAINED, explain_convex,
 };
-pub use follow::ByPolygons;
 pub use state::{ConvexCounters, ConvexOptions, ConvexState, ConvexVisibility};
 
 pub(crate) use batch::Workers;
 use beams::BeamTracer;
-use gates::Gates;
+pub(crate) use gates::Gates;
 use pairs::{SequenceTracer, cells_of};
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_progress::{Cancelled, Observer, Progress};

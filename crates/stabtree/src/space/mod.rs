@@ -26,7 +26,6 @@ pub use live::{LiveSpace, SpaceUpdate};
 
 use crate::search::{SearchOptions, VisibilityBounds};
 pub(crate) use atomic_bits::AtomicBitMatrix;
-use live::PairsInDoubt;
 use opaque::opaque_rectangles;
 pub(crate) use opaque::opaque_without_solid;
 pub(crate) use pairs::halves_first;
@@ -58,6 +57,19 @@ pub struct SpaceVisibility {
     pub n_assumed: u64,
     /// What it took. With several threads the counts vary from run to run; the answer does not.
     pub counters: ShaftCounters,
+}
+
+/// The pairs about which nothing is known. All others are visible already, or hidden.
+#[derive(Debug)]
+struct PairsInDoubt {
+    /// Places by places.
+    cells: AtomicBitMatrix,
+    /// Objects by places.
+    objects: AtomicBitMatrix,
+    /// Places in doubt about some object that is not new.
+    rows: Vec<bool>,
+    /// New objects, each with the places within whose reach it is.
+    near_new: Vec<(u32, usize)>,
 }
 
 /// What all threads see. Places count the cells in the order of the tree.

@@ -1,8 +1,7 @@
 //! Pairs of groups of cells, halved until one hides from the other or they are single cells.
 
-use super::SpaceSearch;
-use super::live::PairsInDoubt;
 use super::witness_log::{FoundFor, Line, Proof, Worker};
+use super::{PairsInDoubt, SpaceSearch};
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_sightline::{FreeLine, FreeSpan, Target, Verdict};
 use std::sync::atomic::Ordering::Relaxed;

@@ -6,7 +6,7 @@
 //! the nodes take.
 
 use super::follow::Follower;
-use super::forest::Ways;
+use super::gate_graph::GateGraph;
 use sightlines_cells::CellId;
 
 /// A tree in breadth-first order: node 0 is the root, the children of a node lie side by side.
@@ -68,7 +68,7 @@ impl<N: Copy> Place<N> {
 
 /// Grows the tree of `root` up to `max_nodes` nodes, at least 1, the root among them. What does not fit any more ends
 /// in open nodes; a node is open only if some sequence goes on from it.
-pub(super) fn grow<F: Follower>(ways: &Ways<'_>, root: CellId, follower: &mut F, max_nodes: usize) -> Grown {
+pub(super) fn grow<F: Follower>(ways: &GateGraph<'_>, root: CellId, follower: &mut F, max_nodes: usize) -> Grown {
     let undecided_before = follower.n_undecided();
     let mut tree = Grown { gates: vec![u32::MAX], first_child: Vec::new(), open: Vec::new(), n_undecided: 0 };
     let mut place = Place { nodes: vec![(0, None)], path: Vec::new(), way: Vec::new() };

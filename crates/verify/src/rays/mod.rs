@@ -6,32 +6,13 @@ mod suspects;
 use crate::findings::{Findings, Violation};
 use crate::options::VerifyOptions;
 use crate::real::{MapWorld, PlanWorld, PortalWorld, Reality, SolidWorld};
+use crate::sight::{Sight, Target};
 use crate::truth::Truth;
 use rayon::prelude::*;
 use seen::{Seen, Tally};
-use sightlines_geometry::{Point3, Random};
+use sightlines_geometry::Random;
 use sightlines_pvs::{CellId, Table};
 use std::collections::BTreeMap;
-
-/// What is seen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Target {
-    /// A cell.
-    Cell(CellId),
-    /// An object.
-    Object(u32),
-}
-
-/// A segment from inside of a cell to something that is seen, in scene units; z is 0 in a plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
-    /// The cell.
-    pub from: CellId,
-    /// What is seen.
-    pub target: Target,
-    /// From a place in the cell to one in or on the target, or just behind it.
-    pub segment: [Point3; 2],
-}
 
 /// Rays that one thread shoots in a row; violations are counted after every [`BATCH`] of them.
 const CHUNK: u64 = 256;

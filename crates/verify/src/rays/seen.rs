@@ -1,7 +1,7 @@
 //! What the table shows, and what of that was confirmed.
 
-use super::Target;
 use crate::findings::{Confirmed, Findings};
+use crate::sight::Target;
 use sightlines_pvs::{BitMatrix, CellId, Table};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 

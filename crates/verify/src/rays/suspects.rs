@@ -1,8 +1,8 @@
 //! Which hidden pairs are the most suspicious: those with visible pairs next to them.
 
-use super::Target;
 use super::seen::Seen;
 use crate::real::Reality;
+use crate::sight::Target;
 use sightlines_geometry::Random;
 use sightlines_pvs::{CellId, Table};
 use std::cmp::Reverse;

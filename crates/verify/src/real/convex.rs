@@ -2,7 +2,7 @@
 
 use super::{Reality, at, dot, extreme, length, scale_of, sub};
 use crate::exact::snapped;
-use crate::rays::{Sight, Target};
+use crate::sight::{Sight, Target};
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_geometry::{Point3, Portal3, Random, orient3d};
 use sightlines_pvs::Table;
@@ -39,7 +39,7 @@ impl Gate {
         let largest = scale_of(n);
         let n = n.map(|x| x / largest);
         let normal = n.map(|x| x / length(n));
-        let middle = crate::structure::middle(shape.corners());
+        let middle = crate::shapes::middle(shape.corners());
         let size = shape.corners().iter().map(|&p| length(sub(p, middle))).fold(0.0, f64::max);
         // Inwards from an edge that goes round counter-clockwise about the direction of crossing.
         let inwards = |[a, b]: [Point3; 2]| {

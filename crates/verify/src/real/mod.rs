@@ -11,7 +11,7 @@ pub(crate) use plan::PlanWorld;
 pub(crate) use solid::SolidWorld;
 pub(crate) use world::MapWorld;
 
-use crate::rays::{Sight, Target};
+use crate::sight::{Sight, Target};
 use sightlines_geometry::{Aabb, Random};
 use sightlines_pvs::Table;
 

@@ -2,26 +2,13 @@
 
 use super::{Reality, at, clip, extreme, neighbours_of, scale_of};
 use crate::exact::{segments_apart, snapped, strictly_in_polygon};
-use crate::rays::{Sight, Target};
+use crate::shapes::outlines;
+use crate::sight::{Sight, Target};
 use sightlines_cells::{CellId, Plan};
 use sightlines_geometry::{Aabb, BoxTree, Point2, Point3, Random, Segment2, polygon_contains};
-use sightlines_pvs::{Table, TableKind};
+use sightlines_pvs::Table;
 
 mod slit;
-
-/// The cells' outlines; `None` if the table does not have them, and its boxes are not the cells.
-pub(crate) fn outlines(table: &Table) -> Option<Vec<Vec<Point2>>> {
-    let boxes_are_cells = table.kind() == TableKind::PlanKdTree;
-    let outline = |c: &sightlines_pvs::CellRecord| {
-        let corners = [[c.min[0], c.min[1]], [c.max[0], c.min[1]], [c.max[0], c.max[1]], [c.min[0], c.max[1]]];
-        match c.polygon.is_empty() {
-            false => Some(c.polygon.iter().map(|&p| Point2::from(p)).collect()),
-            true if boxes_are_cells => Some(corners.map(Point2::from).to_vec()),
-            true => None,
-        }
-    };
-    table.cells().iter().map(outline).collect()
-}
 
 /// A plan with the cells of a table.
 #[derive(Debug)]
@@ -56,7 +43,7 @@ impl PlanWorld {
         let rounded = has_rounded_crossings(plan);
         let mut gates = vec![Vec::new(); cells.len()];
         for record in table.portals() {
-            let [left, right] = crate::structure::ends(record);
+            let [left, right] = crate::shapes::ends(record);
             let [a, b] = record.cells;
             gates[a.idx()].push((b.0, left, right));
             gates[b.idx()].push((a.0, right, left));

@@ -3,7 +3,7 @@
 use super::climb::climb;
 use super::{Reality, at, clip, extreme, length, neighbours_of, scale_of, sub};
 use crate::exact::{segment_and_triangle_apart, segment_crosses_triangle, snapped};
-use crate::rays::{Sight, Target};
+use crate::sight::{Sight, Target};
 use sightlines_cells::{CellId, Scene};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
 use sightlines_pvs::Table;

@@ -3,7 +3,7 @@
 use super::convex::PortalWorld;
 use super::{Reality, at, clip, dot, extreme, length, scale_of, sub};
 use crate::exact::snapped;
-use crate::rays::{Sight, Target};
+use crate::sight::{Sight, Target};
 use crate::truth::{WorldChild, WorldTree};
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};

@@ -6,8 +6,6 @@ mod planar;
 mod spatial;
 mod world;
 
-pub(crate) use planar::ends;
-
 use crate::findings::{Findings, Violation};
 use crate::truth::Truth;
 use sightlines_pvs::Table;
@@ -47,9 +45,4 @@ fn neighbours(table: &Table, findings: &mut Findings) {
             findings.add(Violation::HiddenNeighbour { cells: [a, b], portal });
         }
     }
-}
-
-/// The middle of some points, rounded.
-pub(crate) fn middle<const D: usize>(points: &[[f64; D]]) -> [f64; D] {
-    std::array::from_fn(|k| points.iter().map(|p| p[k] / points.len() as f64).sum())
 }

@@ -1,7 +1,7 @@
 //! Objects of plans and scenes.
 
 use crate::findings::{Findings, Violation};
-use crate::real::plan::outlines;
+use crate::shapes::outlines;
 use sightlines_cells::{CellId, Plan, Scene};
 use sightlines_geometry::{Aabb, Point2, orient2d};
 use sightlines_pvs::{CellRecord, ObjectRecord, Table};

@@ -1,12 +1,11 @@
 //! Cells and portals of plans.
 
-use super::middle;
 use crate::exact::{insides_apart, strictly_in_polygon};
 use crate::findings::{Findings, Violation};
-use crate::real::plan::outlines;
+use crate::shapes::{ends, middle, outlines};
 use sightlines_cells::{CellId, Plan};
 use sightlines_geometry::{Aabb, BoxTree, Point2, is_convex_ccw, orient2d};
-use sightlines_pvs::{PortalRecord, Table};
+use sightlines_pvs::Table;
 
 pub(super) fn check(table: &Table, plan: &Plan, findings: &mut Findings) {
     let Some(cells) = outlines(table) else { return };
@@ -69,12 +68,6 @@ fn portals(table: &Table, plan: &Plan, cells: &[Vec<Point2>], findings: &mut Fin
         tree.visit(meets, |w| is_walled |= walls_in(left, right, walls[w as usize]));
         findings.remarks.portals_in_walls += u64::from(is_walled);
     }
-}
-
-/// The ends of a portal of a plan, as seen from its first cell.
-pub(crate) fn ends(record: &PortalRecord) -> [Point2; 2] {
-    let point = |i: usize| record.points.get(i).map_or(Point2::ZERO, |p| Point2::new(p[0], p[1]));
-    [point(0), point(1)]
 }
 
 /// Whether `from` to `to` runs along a side of the polygon, with the polygon to the left. Exact.

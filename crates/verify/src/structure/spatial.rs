@@ -1,7 +1,7 @@
 //! Cells and portals of scenes in space.
 
-use super::middle;
 use crate::findings::{Findings, Violation};
+use crate::shapes::middle;
 use sightlines_cells::CellId;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_pvs::{CellRecord, Table, TableKind};

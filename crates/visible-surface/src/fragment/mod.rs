@@ -21,7 +21,7 @@ use sightlines_exact::{Dyadic, vector as exact};
 use sightlines_geometry::orient3d;
 use std::sync::Arc;
 
-pub use extents::Extents;
+pub use crate::extents::Extents;
 pub use split::Relation;
 
 /// A convex part of a face. See the module.

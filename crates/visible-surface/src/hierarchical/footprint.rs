@@ -3,7 +3,7 @@
 use super::Rays;
 use crate::camera::{Camera, U};
 use crate::fragment::Extents;
-use crate::rows::Window;
+use crate::window::Window;
 use sightlines_geometry::Point3;
 
 /// Pixels that may be covered, and the greatest nearness.

@@ -11,8 +11,8 @@
 //! Where doubles are not sure the pixel stays open.
 
 use super::footprint::{nearness_above, nearness_below};
+use super::level::Level;
 use super::neighbours::Neighbours;
-use super::pyramid::Level;
 use super::sampled::Bounds;
 use crate::camera::Camera;
 use crate::chosen::Chosen;

@@ -17,12 +17,14 @@
 
 mod footprint;
 mod inner;
+mod level;
 mod neighbours;
 mod pyramid;
 mod sampled;
 
+pub use level::Level;
 pub use neighbours::Neighbours;
-pub use pyramid::{DepthPyramid, Level};
+pub use pyramid::DepthPyramid;
 
 use crate::chosen::Chosen;
 use crate::cull::object_boxes;

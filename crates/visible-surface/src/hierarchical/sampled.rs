@@ -1,7 +1,7 @@
 //! The lowest level from a picture.
 
 use super::footprint::nearness_below;
-use super::pyramid::Level;
+use super::level::Level;
 use crate::camera::Camera;
 use crate::faces::{Faces, NOTHING};
 use crate::fragment::{Extents, facing};

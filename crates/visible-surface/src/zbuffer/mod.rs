@@ -16,8 +16,9 @@ use crate::fragment::{Fragment, facing};
 use crate::image::Image;
 use crate::method::{Seen, Shot, VisibleSurface};
 use crate::nearness::{Duel, Nearness};
-use crate::rows::{Window, spans};
+use crate::rows::spans;
 use crate::side::Side;
+use crate::window::Window;
 use formats::{Double, F32, F32Reversed, Format, U24};
 
 /// What a z-buffer keeps for each pixel.

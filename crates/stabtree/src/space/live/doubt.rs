@@ -1,30 +1,17 @@
 //! Which pairs have to be decided again.
 
 use super::super::SLIVER;
-use super::super::SpaceSearch;
 use super::super::atomic_bits::AtomicBitMatrix;
 use super::super::objects::touch;
 use super::super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
 use super::super::witness_log::Worker;
+use super::super::{PairsInDoubt, SpaceSearch};
 use super::LiveSpace;
 use super::matching::Matching;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Target;
 use std::cell::Cell;
-
-/// The pairs about which nothing is known. All others are visible already, or hidden.
-#[derive(Debug)]
-pub(in super::super) struct PairsInDoubt {
-    /// Places by places.
-    pub(in super::super) cells: AtomicBitMatrix,
-    /// Objects by places.
-    pub(in super::super) objects: AtomicBitMatrix,
-    /// Places in doubt about some object that is not new.
-    pub(in super::super) rows: Vec<bool>,
-    /// New objects, each with the places within whose reach it is.
-    pub(in super::super) near_new: Vec<(u32, usize)>,
-}
 
 impl PairsInDoubt {
     pub(super) fn none(n_places: usize, n_objects: usize) -> Self {

@@ -19,12 +19,10 @@ mod change;
 mod doubt;
 mod matching;
 
-pub(super) use doubt::PairsInDoubt;
-
 use super::atomic_bits::AtomicBitMatrix;
 use super::opaque::Walls;
 use super::witness_log::{FoundFor, Line, Proof, WitnessLog, Worker};
-use super::{SpaceSearch, SpaceVisibility, on_threads, slivers};
+use super::{PairsInDoubt, SpaceSearch, SpaceVisibility, on_threads, slivers};
 use crate::search::{SearchOptions, VisibilityBounds};
 use change::Change;
 use matching::{Matching, heirs, same_boxes};

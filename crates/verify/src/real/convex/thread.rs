@@ -6,8 +6,8 @@
 
 use super::{Gate, PortalWorld};
 use crate::exact::snapped;
-use crate::rays::{Sight, Target};
 use crate::real::{Reality, at, dot, length, sub};
+use crate::sight::{Sight, Target};
 use sightlines_geometry::{Point3, Random};
 use sightlines_pvs::{CellId, Table};
 
@@ -40,7 +40,7 @@ impl PortalWorld {
         random: &mut Random,
     ) -> Option<Sight> {
         let goals: Vec<Point3> = self.gates[to as usize].iter().map(|g| g.middle).collect();
-        let goal = if goals.is_empty() { return None } else { crate::structure::middle(&goals) };
+        let goal = if goals.is_empty() { return None } else { crate::shapes::middle(&goals) };
         let mut search = Search {
             world: self,
             table,

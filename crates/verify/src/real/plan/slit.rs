@@ -6,7 +6,7 @@
 //! the one that tables are made by.
 
 use super::PlanWorld;
-use crate::rays::{Sight, Target};
+use crate::sight::{Sight, Target};
 use sightlines_geometry::{Point2, orient2d};
 use sightlines_pvs::{CellId, Table};
 

@@ -1,7 +1,7 @@
 //! Sequences of convex portals, made longer and shorter by one.
 
-use super::gates::Gates;
-use crate::tree::Follower;
+use super::follow::Follower;
+use crate::convex::Gates;
 use sightlines_cells::{CellGraph, Convex, Portal3};
 use sightlines_sightline::{ConvexSequence, Line3, StabLimits};
 use std::borrow::Borrow;
