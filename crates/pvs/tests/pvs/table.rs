@@ -38,7 +38,7 @@ proptest! {
             prop_assert!(here.is_empty() && table.place_at_with(p, &mut buffer).is_outside());
             return Ok(());
         };
-        prop_assert_eq!(at.cells(), here);
+        prop_assert_eq!(at.cells(), here.as_slice());
         prop_assert_eq!(at.visible_cells().collect::<Vec<_>>(), expected.clone());
         let seen = at.visible_set();
         prop_assert_eq!((seen.len(), seen.is_empty()), (expected.len(), false));
