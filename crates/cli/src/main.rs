@@ -85,7 +85,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
     })
 }
 
-/// Whether standard output was closed by its reader, who has read enough.
+/// Whether standard output was closed by its reader, which has read enough.
 fn is_closed_pipe(error: &(dyn Error + 'static)) -> bool {
     match error.downcast_ref::<StdoutError>() {
         Some(error) => error.0.kind() == ErrorKind::BrokenPipe,

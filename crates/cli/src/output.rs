@@ -65,8 +65,8 @@ fn is_one_file(a: &Path, b: &Path) -> bool {
 
 /// Refuses an output that cannot be written: its folder is not there or refuses new files, or a folder has its name.
 ///
-/// A file is written beside its place and renamed, so an empty one is put there and taken away. What changes until the output is written
-/// is told then.
+/// A file is written beside its place and renamed, so an empty one is put there and taken away. Changes until the
+/// output is written are reported then.
 pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
     let try_beside = || -> io::Result<()> {
         let target = match fs::metadata(path) {

@@ -12,7 +12,7 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A table that was opened, told apart by its first bytes.
+/// A table that was opened, recognized by its first bytes.
 #[derive(Debug)]
 pub(crate) enum Opened {
     Plain(TableCells<Arc<Table>>),

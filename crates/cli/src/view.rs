@@ -14,7 +14,7 @@ use std::str::FromStr;
 const FOV: f64 = 75.0;
 /// Width by height where nothing is given.
 const ASPECT: f64 = 4.0 / 3.0;
-/// The most reflections one after the other that may be asked for.
+/// The maximum number of reflections in a row.
 const MOST_BOUNCES: usize = 8;
 
 /// One of the methods, or all.

@@ -3,7 +3,7 @@
 /// A set of small numbers with the order in which they came; emptying it does not touch its memory.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct EpochSet {
-    /// Who has the current epoch is in.
+    /// Items with the current epoch are in the set.
     epochs: Vec<u32>,
     epoch: u32,
     list: Vec<u32>,

@@ -23,7 +23,7 @@ pub(crate) enum Front {
 pub(crate) enum Facing {
     /// Before the portal: lines from the eye may cross it.
     Before,
-    /// In the portal itself, or in its plane, as far as can be told: uneven portals and rounded eyes leave a doubt.
+    /// In the portal itself, or in its plane, as far as can be decided: uneven portals and rounded eyes leave a doubt.
     Level,
     /// In its plane or behind: no line from the eye crosses it in its direction.
     Behind,
@@ -51,7 +51,7 @@ impl Front {
         // Each of the cross products is off by some 8 u size², and the rest of the sum by less: 2^-48 has room for 32.
         let tilt = corners.len() as f64 * size * size / length * SMALL;
         let uneven = off + size * SMALL;
-        // Where sizes are no numbers, nothing is told.
+        // Where sizes are not numbers, nothing is known.
         let told = uneven.is_finite() && tilt.is_finite();
         let (uneven, tilt) = if told { (uneven, tilt) } else { (f64::INFINITY, 0.0) };
         Self::Plane { point, normal, uneven, tilt }
@@ -84,8 +84,8 @@ impl Front {
     /// Where `eye`, whose coordinates are off by at most `slack`, is. Exact in the plane and for portals along
     /// an axis if `slack` is 0.
     ///
-    /// An uneven portal counts as flat: who is between the planes of its triangles, but not near the portal, cannot
-    /// look through it, as who is in the plane of a flat one cannot.
+    /// An uneven portal counts as flat: an eye between the planes of its triangles, but not near the portal, cannot
+    /// look through it, like an eye in the plane of a flat one.
     #[inline]
     pub(crate) fn facing(&self, corners: &[Vector], eye: Vector, slack: f64) -> Facing {
         match *self {
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(plane.facing(&tilted, [2.0, 0.0, 5.0], 1e-9), Facing::Level);
     }
 
-    /// A thin triangle's normal cannot be told well from rounded products; exact signs can.
+    /// Rounded products give a thin triangle's normal badly; exact signs are right.
     #[test]
     fn slivers_are_faced_exactly() {
         for (w, h) in [(1e-4, 4e-5), (1e-3, 4e-6), (1e-2, 4e-7), (1.0, 4e-9)] {

@@ -4,8 +4,8 @@
 //! lets go only of what is certainly on the other side, `normal · v < -tolerance` in plain doubles. What is
 //! kept too much is within rounding of the border, and so the answers err towards visible.
 //!
-//! **The tolerance.** With u = 2^-53, R a bound on |v|₁ (sum of magnitudes) of every vector that is asked
-//! about, and w the rounded form of a true vector:
+//! **The tolerance.** With u = 2^-53, R a bound on |v|₁ (sum of magnitudes) of every tested vector, and w the rounded
+//! form of a true vector:
 //!
 //! - A side through an edge of a portal has the normal E × v (v from the eye to a corner, E along the edge). Each
 //!   of v and E carries a relative error of u in each coordinate, the products and their difference 3 u more; so
@@ -17,8 +17,9 @@
 //!   clipped polygon is never farther than 24 × 8 u R from the computed one. At such a point a normal's value
 //!   changes by at most 192 u A. The new corner lies where the value is -tolerance but for 22 u A.
 //! - Together below 256 u A. A piece that is put together from others may reach beyond a side by a quarter of the
-//!   tolerance ([`Side::nearly_keeps`]), and by the error of the corners that it is asked about, below 181 u A. The tolerance
-//!   is 1024 u A = 2^-43 A, of which these take 256 + 256 + 181, and the smallest normal number for underflow.
+//!   tolerance ([`Side::nearly_keeps`]), and by the error of the corners that it is tested with, below 181 u A. The
+//!   tolerance is 1024 u A = 2^-43 A, of which these take 256 + 256 + 181, and the smallest normal number for
+//!   underflow.
 //!
 //! If the eye itself is known only to within `slack` in each coordinate (seen in a mirror), the value changes by
 //! at most slack |E|₁ (|v|₁ + R) more, for which 4 slack |E|₁ R is added (|v|₁ is at most R).
@@ -50,7 +51,7 @@ pub(crate) struct Side {
     still: f64,
 }
 
-/// How far what is asked about is away from the eye, and how well the eye is known.
+/// How far tested points are from the eye, and how well the eye is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reach {
     /// Bound on |v|₁ of every vector from the eye.
@@ -60,7 +61,7 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Nothing is said yet.
+    /// No bound yet.
     const NOWHERE: Self = Self { radius: 0.0, slack: 0.0 };
 }
 
@@ -94,7 +95,7 @@ impl Side {
         Self { normal: side.normal.map(|x| -x), ..side }
     }
 
-    /// The same side, to be asked about vectors within `reach`.
+    /// The same side, for vectors within `reach`.
     #[inline]
     pub(crate) fn within(self, reach: Reach) -> Self {
         let moved = self.edge * reach.radius + self.still;

@@ -27,7 +27,7 @@ pub struct VisibleSubgraph {
     /// For each cell the objects that touch it, as places in `objects`.
     pub(crate) first_object: Vec<u32>,
     pub(crate) cell_objects: Vec<u32>,
-    /// Cells without any portal, but the root: no way leads there, so only their boxes can be asked about.
+    /// Cells without any portal, but the root: no portal leads there, so only their boxes can be tested.
     pub(crate) apart_cells: Vec<u32>,
     /// Objects that touch no cell that the root sees; all of them if the root has no portal.
     pub(crate) loose_objects: Vec<u32>,

@@ -169,7 +169,7 @@ impl ViewPart {
         }
     }
 
-    /// The sides, ready to be asked about vectors within reach.
+    /// The sides, for vectors within reach.
     pub(crate) fn sides(&self, reach: Reach) -> impl Iterator<Item = Side> + '_ {
         self.few[..self.n_few].iter().chain(&self.more).map(move |side| side.within(reach))
     }

@@ -1,4 +1,4 @@
-//! Rows of bits: who sees whom.
+//! Rows of bits: the visibility matrix.
 
 /// Bits in a word.
 pub(crate) const WORD: usize = u64::BITS as usize;

@@ -184,9 +184,10 @@ impl PlaneTree {
         }
     }
 
-    /// Calls `visit` with every cell that some point of the closed box from `min` to `max` (scene units) may be in, until it
-    /// says `false`; a cell comes more than once if it is on several leaves. Whoever contains a box meets at least the same
-    /// leaves, rounding included. Errs towards more cells. `pending` is scratch. O(nodes met).
+    /// Calls `visit` with every cell that some point of the closed box from `min` to `max` (scene units) may be in,
+    /// until it returns `false`; a cell is visited more than once if it is on several leaves. A box that contains
+    /// another meets at least the same leaves, rounding included. Errs towards more cells. `pending` is scratch.
+    /// O(nodes met).
     pub fn for_each_cell_of_box(
         &self,
         min: [f64; 3],

@@ -1,4 +1,4 @@
-//! The table and what it can be asked.
+//! The table and its queries.
 
 use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};

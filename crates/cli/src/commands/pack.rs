@@ -12,7 +12,7 @@ use sightlines::pvs::Table;
 use std::fmt;
 use std::path::PathBuf;
 
-/// Bytes of blocks that are kept while a table is unpacked: each is asked for many times in a row.
+/// Bytes of blocks that are kept while a table is unpacked: each is read many times in a row.
 const CACHE: usize = 64 << 20;
 
 /// Why `pack` fails; exit code 2.

@@ -89,7 +89,7 @@ fn prove_and_flip(folder: &Folder, scene: &str) {
     }
 }
 
-/// Proofs beside a table that was built again are not held against it, unless they are asked for.
+/// Proofs beside a table that was built again are not held against it, unless they are requested.
 #[test]
 fn stale_proofs_are_told_apart() {
     let folder = Folder::with_office();
@@ -123,7 +123,7 @@ fn people_are_told() {
     for line in ["proofs         p.bin, ", "hidden pairs proven\n", "walls          ", "proofs say     nothing"] {
         assert!(out.contains(line), "{line}: {out}");
     }
-    // Without proofs nothing is said about them.
+    // Without proofs the output does not mention them.
     let out = folder.run(&["verify", "t.pvs", "office.geojson"]).expect(0).out;
     assert!(!out.contains("proofs"), "{out}");
 }

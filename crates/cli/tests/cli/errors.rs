@@ -61,7 +61,7 @@ fn files_of_the_wrong_kind_are_named() {
     assert!(!folder.path("out.pvs").exists() && !folder.path("out.wad").exists());
 }
 
-/// Who has no table yet is told how to make one, by every command that needs one.
+/// Every command that needs a table explains how to make one.
 #[test]
 fn scenes_instead_of_tables_are_named_with_what_to_do() {
     let folder = Folder::with_tower();
@@ -323,7 +323,7 @@ fn odd_maps_are_taken() {
     folder.run(&["reject", "odd.wad", "-o", "out.wad"]).expect(0);
 }
 
-/// Who reads only the first line is not told of a failure.
+/// A reader of only the first line gets no error.
 #[cfg(unix)]
 #[test]
 fn closed_pipes_are_no_error() {

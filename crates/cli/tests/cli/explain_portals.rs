@@ -103,7 +103,7 @@ fn limits_and_wrong_tables_are_told() {
     assert_eq!(told, "cluster 0 and cluster 29: given up after 1 question; see --max-questions\n");
     let told = explain(&folder, "map.prt", [0, 29], &["--max-questions", "1", "--json"]).expect(0).json();
     assert_eq!((&told["answer"], &told["checked"]), (&json!("unknown"), &json!(false)));
-    // A table that was only bounded shows more than there is; and one that lies is told so.
+    // A table that was only bounded shows more than there is; and a wrong one is reported as such.
     folder.run(&["build", "map.prt", "-o", "fast.pvs", "--fast"]).expect(0);
     let [exact, fast] =
         ["map.pvs", "fast.pvs"].map(|name| Table::from_bytes(&folder.read(name)).expect("a sound table"));

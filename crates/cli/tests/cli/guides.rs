@@ -45,7 +45,7 @@ fn follow(folder: &Folder, name: &str) -> usize {
             assert_eq!(words.next(), Some("sightlines"), "{name}: {line}");
             let args: Vec<&str> = words.collect();
             let run = folder.run(&args);
-            // What is asked may be answered with no: two cells that do not see each other.
+            // The answer may be no: two cells that do not see each other.
             let may_say_no = args[0] == "explain";
             assert!(
                 run.code == 0 || may_say_no && run.code == 1,

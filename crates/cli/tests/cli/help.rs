@@ -53,7 +53,7 @@ fn options_are_grouped_and_those_of_all_commands_come_last() {
         once.sort_unstable();
         once.dedup();
         assert_eq!(once.len(), names.len(), "{command}: {names:?}");
-        // Where a command writes or prints is told in one place, behind how it does so.
+        // Options for output have one heading, after those for the method.
         assert_eq!(names.iter().rev().nth(1), Some(&"Output"), "{command}: {names:?}");
     }
     let names: Vec<String> =
@@ -69,7 +69,7 @@ fn options_are_grouped_and_those_of_all_commands_come_last() {
 fn all_commands_are_known_here() {
     let help = Folder::new().run(&["-h"]).expect(0).out;
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| line.starts_with("  "));
-    // What is said of a command may go on in the next line, farther in.
+    // The description of a command may continue in the next line, further indented.
     let first = listed.filter(|line| !line.starts_with("   "));
     let listed: Vec<&str> = first.filter_map(|line| line.split_whitespace().next()).filter(|c| *c != "help").collect();
     let known: Vec<&str> = COMMANDS.iter().filter_map(|c| c.split(' ').next()).collect();

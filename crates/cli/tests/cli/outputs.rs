@@ -1,4 +1,4 @@
-//! Outputs that cannot be written are told first.
+//! Outputs that cannot be written are reported first.
 
 use crate::common::Folder;
 use crate::common::picture::DRAWN;
@@ -14,7 +14,7 @@ fn naming(args: &[&str], output: &str) -> Vec<String> {
     with
 }
 
-/// What cannot be written is told before anything is read, and so before anything is computed; nothing is left behind.
+/// Outputs that cannot be written are reported before anything is read or computed; nothing is left behind.
 #[test]
 fn outputs_are_checked_first() {
     let folder = Folder::new();

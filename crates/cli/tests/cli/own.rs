@@ -94,7 +94,7 @@ fn every_format_is_checked() {
     }
 }
 
-/// Clusters of several leafs are named by their leafs; where these do not see the same, that is told.
+/// Clusters of several leafs are named by their leafs; where these differ in what they see, that is reported.
 #[test]
 fn clusters_of_several_leafs_are_checked() {
     let (mut n_maps, mut n_uneven) = (0, 0);
@@ -225,7 +225,7 @@ fn sectors_that_are_rejected_though_seen_are_found() {
         n_found += 1;
     }
     assert!(n_found > 2, "{n_found}");
-    // A sector that does not see itself was made by hand, and is told.
+    // A sector that does not see itself was made by hand, and is reported.
     let mut blind = table.clone();
     blind.set(1, 1, true);
     let with = sightlines::formats::doom::DoomMapSource { reject: Some(blind.into_bytes()), ..source };

@@ -64,7 +64,7 @@ fn options_that_mean_nothing_are_refused() {
     refused(&["build", "scene.glb", "--method", "multifocal", "--texels", "8192"], "bytes for each thread");
 }
 
-/// What rays were seen to hit first is never called hidden, whichever method is asked.
+/// What rays hit first is never reported hidden, by any method.
 #[test]
 fn real_scenes_hide_nothing_that_was_seen() {
     let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {

@@ -91,7 +91,7 @@ fn scenes_are_told_from_plans_by_content_and_name() {
     assert_eq!((&built["n_axial_triangles"], &built["n_other_triangles"]), (&json!(1), &json!(3)));
     let told = folder.run(&["info", "tent.obj"]).expect(0).out;
     assert!(told.starts_with("tent.obj: scene in space, OBJ in 3D, y up (assumed), unit unknown\n"), "{told}");
-    // JSON that calls itself glTF is not told that it is no plan.
+    // JSON that calls itself glTF is not reported as a broken plan.
     folder.write("empty.gltf", r#"{"asset": {"version": "2.0"}}"#);
     assert!(folder.refused(&["build", "empty.gltf", "-o", "out.pvs"]).contains("no triangles"));
 }
@@ -286,7 +286,7 @@ fn check_line(table: &Table, told: &Value) {
     }
 }
 
-/// Walls are flat, and as often in the tree as is said; unless nothing joins the cells.
+/// Walls are flat, and as often in the tree as printed; unless nothing joins the cells.
 fn check_proof(told: &Value) {
     if told["connected"] == json!(false) {
         return;
@@ -324,7 +324,7 @@ fn explain_speaks_in_space() {
     let told = folder.run(&["explain", "tower.pvs", &eye(&made, CellId(0)), "0"]).expect(0).out;
     assert_eq!(told, "both are in cell 0, and a cell sees itself\n");
     assert!(folder.run(&["explain", "tower.pvs", "1e4,0,0", "0"]).expect(1).out.contains("outside every cell"));
-    // Given up at once: what the table says is told as that. A single wall in the way takes no program.
+    // Given up at once: the answer of the table is reported as such. A single wall in the way takes no program.
     let told = folder.run(&["explain", "tower.pvs", "0", &seen, "--max-programs", "0"]).expect(0).out;
     assert!(told.contains("in 0 linear programs; see --max-programs\nthe table assumes that they see each"), "{told}");
     let at_once =

@@ -36,7 +36,7 @@ fn build_adds_stab_trees_and_info_counts_them() {
     assert!(!folder.run(&["info", "office.pvs"]).expect(0).out.contains("stab"));
 }
 
-/// Invariant: a limit cuts trees, whatever the number of threads, and it is told.
+/// Invariant: a limit cuts trees, whatever the number of threads, and it is reported.
 #[test]
 fn limits_cut_trees() {
     let folder = Folder::with_office();

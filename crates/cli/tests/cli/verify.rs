@@ -86,7 +86,7 @@ fn quake_maps_are_checked() {
         folder.run(&["build", "map.bsp", "-o", "t.pvs"]).expect(0);
         let good = verify(&folder, &["t.pvs", "map.bsp"], 0);
         assert_eq!(good["is_true"], true, "{format:?}");
-        // A table that knows no places, and the map of which it is not told.
+        // A table without positions, and the map that it does not name.
         folder.run(&["build", "map.prt", "-o", "p.pvs"]).expect(0);
         let error = folder.refused(&["verify", "p.pvs", "map.bsp"]);
         assert_eq!(
@@ -154,7 +154,7 @@ fn people_are_told_what_was_checked() {
     assert!(!folder.path("none.svg").exists());
 }
 
-/// Who asks for no rays and has no proofs is told that nothing but the structure was looked at.
+/// Without rays and proofs, the output states that only the structure was checked.
 #[test]
 fn what_was_not_checked_is_told() {
     let folder = Folder::with_office();

@@ -64,7 +64,7 @@ fn hostile_portals_are_refused_with_file_and_line() {
     folder.run(&["vis", "map.bsp", "--prt", "sound.prt", "-o", "out.bsp"]).expect(0);
 }
 
-/// Portals of another map, with as many leafs or not, are told from the map's own; both files are named.
+/// Portals of another map, with as many leafs or not, are distinguished from the map's own; both files are named.
 #[test]
 fn portals_of_another_map_are_refused() {
     let folder = Folder::new();

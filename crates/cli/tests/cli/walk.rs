@@ -117,7 +117,7 @@ fn mirrors_show_images() {
         let found = ask(&["--bounces", "2"]);
         let images = found["images"].as_array().unwrap();
         assert!(images.len() >= words && images.iter().all(|image| image["complete"] == true), "{images:?}");
-        // In the mirror he sees what is beside him.
+        // The mirror shows what is beside the eye.
         let cell = &found["cell"];
         assert!(images[0]["cells"].as_array().unwrap().contains(cell));
         let most = images.iter().map(|image| image["mirrors"].as_array().unwrap().len()).max();

@@ -175,7 +175,7 @@ impl<'q, 'a> Search<'q, 'a> {
     fn keep(&mut self, cell: u32, first_side: usize) {
         let subgraph = self.query.subgraph;
         self.query.seen.add_cell(subgraph.cells[cell as usize]);
-        // Nothing that is asked now adds sides.
+        // No query from here on adds sides.
         let sides = std::mem::take(&mut self.query.scratch.sides);
         let cone = &sides[first_side..];
         self.query.keep_objects_in(cell, cone);

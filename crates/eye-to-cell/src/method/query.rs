@@ -131,8 +131,8 @@ impl<'a> Query<'a> {
 
     /// Keeps the objects of a cell that is seen by a cone within the view.
     ///
-    /// A cone has left out those sides of the view that its last portal makes needless, and a box may reach beyond the portal; so the
-    /// view is asked as well.
+    /// A cone has left out those sides of the view that its last portal makes needless, and a box may reach beyond the
+    /// portal; so the view is tested as well.
     pub(super) fn keep_objects_in(&mut self, cell: u32, cone: &[Side]) {
         for &object in self.subgraph.objects_of(cell) {
             let id = self.subgraph.objects[object as usize];

@@ -36,7 +36,7 @@ impl Table {
         let object_polygons = sections.find(OBJECT_POLYGONS).map_or(Ok(Vec::new()), polygons_of)?;
         let names_of = |s| read(s, |r: &mut Reader<'_>| cell_names(r, cells.len()));
         let cell_names = sections.find(CELL_NAMES).map_or(Ok(Vec::new()), names_of)?;
-        // Stab trees are told by the portals of cells, so these must be there.
+        // Stab trees refer to the portals of cells, so these must be there.
         if let (Some(_), Some(error)) = (sections.find(STAB), unknown_cell(&portals, cells.len())) {
             return Err(sections.blame(error));
         }

@@ -73,8 +73,8 @@
 //! children (less 1 likewise) above the bit for another list; the number of nodes; and for each how many
 //! entries are passed over since the one before.
 //!
-//! Children, and roots, are nodes out of one cell. Of the nodes out of this cell on the levels before (for
-//! roots, on all) they are told from the last to the first, each as the number of nodes that are passed over.
+//! Children, and roots, are nodes out of one cell. Of the nodes out of this cell on the levels before (for roots, on
+//! all) they are stored from the last to the first, each as the number of skipped nodes.
 
 mod container;
 mod decode;

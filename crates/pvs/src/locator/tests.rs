@@ -172,7 +172,7 @@ fn locator_depth_is_bounded() {
     };
     assert!(Locator::from_nodes(&chain(1024)).is_ok());
     assert!(matches!(Locator::from_nodes(&chain(1025)), Err(LocatorError::TooDeep { .. })));
-    // Boxes that cannot be told apart, and boxes in a nest, do not make a deep tree either.
+    // Identical boxes, and nested boxes, do not make a deep tree either.
     let same = vec![([0.0; 3], [1.0; 3]); 1000];
     assert_eq!(Locator::build(&same, 3).n_nodes(), 1);
     let nested: Vec<Bounds> = (0..1000).map(|i| ([f64::from(-i); 3], [f64::from(i); 3])).collect();

@@ -1,10 +1,9 @@
 //! Stab trees as a table keeps them: one graph without cycles for all cells.
 //!
-//! A stab tree lists the sequences of portals out of a cell that have a sightline. Written out, one node
-//! for each sequence, the trees of a scene are larger than everything else in its table. But what can
-//! follow a portal is often the same after different beginnings, and then it is stored once: a node says
-//! which portal is crossed, and its children what may be crossed next, whoever comes here. Trees of
-//! different cells share nodes as parts of one tree do.
+//! A stab tree lists the sequences of portals out of a cell that have a sightline. Written out, one node for each
+//! sequence, the trees of a scene are larger than everything else in its table. But what can follow a portal is often
+//! the same after different beginnings, and then it is stored once: a node says which portal is crossed, and its
+//! children what may be crossed next, on every way here. Trees of different cells share nodes as parts of one tree do.
 
 mod canon;
 mod error;

@@ -20,7 +20,7 @@ fn any_stab() -> impl Strategy<Value = (Vec<PortalRecord>, usize, Vec<Choice>, V
     (network(), choices(0..30), choices(1..6)).prop_map(|((portals, n), nodes, roots)| (portals, n, nodes, roots))
 }
 
-/// Trees told apart by what they are, whoever stores them: each gets a number.
+/// Trees identified by their content, wherever they are stored: each gets a number.
 #[derive(Default)]
 struct Forest(BTreeMap<(u32, bool, BTreeSet<usize>), usize>);
 
@@ -163,7 +163,7 @@ proptest! {
         prop_assert_eq!(read.unwrap().to_bytes(), bytes);
     }
 
-    /// The impostor: trees with one flag changed are told apart.
+    /// The impostor: trees that differ in one flag are distinguished.
     #[test]
     fn impostor_trees_differ((portals, n, nodes, roots) in any_stab(), at in any::<prop::sample::Index>()) {
         let parts = stab_parts(&portals, n, &nodes, &roots);

@@ -59,8 +59,8 @@ proptest! {
         prop_assert_eq!((flat, spatial), expected);
     }
 
-    /// Invariant: a box touches the cells that its points are located in, and only cells whose box it touches; it is not asked
-    /// for more once it was told to stop.
+    /// Invariant: a box touches the cells that its points are located in, and only cells whose box it touches; the
+    /// visitor is not called again after it returned `false`.
     #[test]
     fn boxes_touch_the_cells_of_their_points(parts in any_parts(), p in [-9i8..10, -9i8..10, -4i8..5], size in [0i8..4, 0i8..4, 0i8..4]) {
         let table = Table::new(parts).unwrap();

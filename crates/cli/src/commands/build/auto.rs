@@ -1,4 +1,4 @@
-//! `--method auto`: what is asked is chosen by what the input is like, and why is said.
+//! `--method auto`: methods are chosen from properties of the input, and the reasons are printed.
 
 use super::region::RegionArgs;
 use crate::input::Input;

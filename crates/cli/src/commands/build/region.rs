@@ -19,7 +19,7 @@ use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
 use std::path::Path;
 
-/// What is asked who sees whom, for scenes in space.
+/// The method that computes visibility, for scenes in space.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct RegionArgs {
     /// Scenes in space: sightlines (through portals; axis-aligned walls occlude), multifocal (from whole cells; any
@@ -77,7 +77,7 @@ impl RegionArgs {
         chosen
     }
 
-    /// Whether anything but sightlines through a k-d tree is asked for.
+    /// Whether anything but sight lines through a k-d tree was requested.
     pub(super) fn is_given(&self) -> bool {
         self.method.is_some_and(|m| m != Method::Sightlines) || self.has_boxes()
     }
@@ -156,7 +156,7 @@ pub(super) struct Outcome {
     stated: Stated,
     /// `kd` or `boxes`.
     subdivide: &'static str,
-    /// What said who sees whom.
+    /// The method that computed the visibility.
     method: String,
     n_triangles: usize,
     #[serde(flatten)]
@@ -165,7 +165,7 @@ pub(super) struct Outcome {
     viewer: ViewerShare,
     /// Pairs of a cell and an object that it may see.
     n_objects_seen: u64,
-    /// Volumes that were asked about: cells, and parts of cells.
+    /// Volumes that the method was run for: cells, and parts of cells.
     n_volumes: u64,
     /// Questions whether a box, or a triangle, is hidden.
     n_asked: u64,

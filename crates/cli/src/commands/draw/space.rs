@@ -16,7 +16,7 @@ pub(super) enum UpAxis {
     Z,
 }
 
-/// The picture that is asked for.
+/// The requested picture.
 pub(super) fn draw(args: &DrawArgs, table: &Table) -> Result<String, Error> {
     let path = &args.table;
     let up = args.up.map_or(up_of(table), |axis| match axis {
@@ -39,7 +39,7 @@ pub(super) fn draw(args: &DrawArgs, table: &Table) -> Result<String, Error> {
     Ok(drawn.map_err(|source| PictureError::Draw { path: path.clone(), source })?)
 }
 
-/// The height of whoever looks.
+/// The height of the eye.
 fn height_of(table: &Table, view: View<[f64; 3]>, up: Up) -> Option<f64> {
     match view {
         View::Plan => None,

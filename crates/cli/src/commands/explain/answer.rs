@@ -28,7 +28,7 @@ impl fmt::Display for Outside {
     }
 }
 
-/// What is told about two cells.
+/// The explanation of two cells.
 #[derive(Debug, Serialize)]
 pub(crate) struct Told {
     from: u32,

@@ -12,7 +12,7 @@ use sightlines::stabtree::{BlockedConvex, Blocking, ConvexExplanation, ConvexGat
 use std::fmt;
 use std::path::Path;
 
-/// Where clusters come from, and what is asked of them.
+/// The source of the clusters, and the query.
 #[derive(Debug)]
 pub(super) struct Asked<'a> {
     pub(super) path: &'a Path,
@@ -48,7 +48,7 @@ impl Asked<'_> {
     }
 }
 
-/// What is told about two clusters.
+/// The explanation of two clusters.
 #[derive(Debug, Serialize)]
 struct Told {
     from: u32,

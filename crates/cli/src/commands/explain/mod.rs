@@ -113,7 +113,7 @@ impl ExplainArgs {
         }
     }
 
-    /// The cells that are asked about; none, which is said, if a point is outside every cell.
+    /// The cells of the query; none, with a message, if a point is outside every cell.
     fn pair(&self, table: &Table) -> Result<Option<(CellId, CellId)>, Error> {
         let from = self.from.cells(table, &self.table)?;
         let to = self.to.cells(table, &self.table)?;

@@ -9,7 +9,7 @@ use sightlines::sightline::{AxialWitness, BlockedProof, Branch, BranchRow, Bypas
 use sightlines::stabtree::SpaceExplanation;
 use std::fmt;
 
-/// What is told about two cells in space.
+/// The explanation of two cells in space.
 #[derive(Debug, Serialize)]
 pub(crate) struct ToldInSpace {
     from: u32,

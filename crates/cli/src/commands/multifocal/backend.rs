@@ -62,7 +62,7 @@ mod tests {
         assert_eq!(error.to_string(), "the device of lost is lost: unplugged");
         assert_eq!(fill(chain(Backend::Cpu), &job(Measure::SectionHeight)).unwrap().0, "cpu");
         assert_eq!(fill(chain(Backend::Reference), &job(Measure::SectionHeight)).unwrap().0, "cpu-reference");
-        // Who has no form of a measure leaves it to the reference.
+        // A backend without a form of a measure leaves it to the reference.
         assert_eq!(fill(chain(Backend::Cpu), &job(Measure::ClippedEuclid)).unwrap().0, "cpu-reference");
     }
 }

@@ -17,7 +17,7 @@ use std::path::Path;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-/// A query is timed so many times, and the median is told.
+/// A query is timed this many times, and the median is reported.
 const RUNS: usize = 9;
 
 /// How the viewer looks.
@@ -71,7 +71,7 @@ impl SightArgs {
     }
 }
 
-/// Answers by the methods that are asked for.
+/// Answers by the requested methods.
 pub(super) fn look<C: Cells>(
     cells: &C,
     path: &Path,

@@ -45,8 +45,8 @@ pub(super) struct Gone {
     pub(super) time: Duration,
 }
 
-/// Leaves faces out of `chosen`, by each way in turn. `seen` has, for each object of the scene, whether the table has it as seen;
-/// nothing goes by a table if it is `None`.
+/// Leaves faces out of `chosen`, by each way in turn. `seen` has, for each object of the scene, whether the table shows
+/// it; `None` skips the table.
 pub(super) fn leave_out(
     ways: &[Cull],
     faces: &Faces,
@@ -70,7 +70,7 @@ pub(super) fn leave_out(
     ways.iter().map(each).collect()
 }
 
-/// Which objects of a scene a table has as seen from a point; `None`, and a warning, if that is outside every cell, where
+/// Which objects of a scene a table shows from a point; `None`, and a warning, if that is outside every cell, where
 /// everything may be seen.
 pub(super) fn seen_by_table(table: &Path, path: &Path, scene: &Scene, eye: Point3) -> Result<Option<Vec<bool>>, Error> {
     match tables::open(table, CACHE)? {

@@ -39,7 +39,7 @@ pub(crate) enum Error {
     /// A table that nobody asks.
     #[error("--table: nothing is asked of the table: add --cull pvs")]
     NoCulling,
-    /// A table that would be asked, and is not named.
+    /// A table is needed and not named.
     #[error("--cull pvs: this needs a table of the scene: name it with --table")]
     NoTable,
     /// A table of something else.

@@ -44,7 +44,7 @@ pub(super) struct Outcome {
     seconds: f64,
 }
 
-/// What was looked at beside the structure of the table. Without any of these nothing is known of who sees whom.
+/// What was checked besides the structure of the table. Without any of these the visibility is unchecked.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Checked {
     random_rays: bool,
@@ -114,7 +114,7 @@ impl Told {
     }
 }
 
-/// All violations that are told.
+/// All reported violations.
 #[derive(Debug, Default)]
 pub(super) struct Violations {
     n: usize,

@@ -29,7 +29,7 @@ pub(super) struct ProofArgs {
 }
 
 impl ProofArgs {
-    /// Whether proofs are asked for.
+    /// Whether proofs were requested.
     pub(super) fn is_given(&self) -> bool {
         self.proofs.is_some() || self.strict
     }

@@ -176,7 +176,7 @@ mod tests {
             let mut other = with(pair, true);
             let error = tried(&graph, &other, false).unwrap_err();
             assert!(error.ends_with("are listed as visible, but no line joins them; nothing was written"), "{error}");
-            // Whoever says that it does not know is not wrong.
+            // An answer of unknown is not wrong.
             assert_eq!(tried(&graph, &other, true).unwrap().visible.n_loose, 1);
             other.undecided.push(pair);
             assert_eq!(tried(&graph, &other, false).unwrap().visible.n_loose, 1);

@@ -67,7 +67,8 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
     let prt_path = args.prt.clone().unwrap_or_else(|| args.map.with_extension("prt"));
     let out = args.output.as_ref().unwrap_or(&args.map);
     let state_path = args.state.clone().unwrap_or_else(|| out.with_extension("vis-state"));
-    // The map may be replaced. A state that cannot be written is told when it has to be: the search goes on without.
+    // The map may be replaced. A state that cannot be written is reported when it is needed: the search goes on
+    // without.
     output::check(&[&prt_path, &state_path], &[out])?;
     let bsp = read_bsp(&args.map)?;
     if args.prt.is_none() && !prt_path.exists() {

@@ -66,7 +66,7 @@ impl File {
     }
 }
 
-/// Makes the checksum of header and section table right again, if the table's place can be told.
+/// Makes the checksum of header and section table right again, if the table's position can be found.
 pub(crate) fn fix_header(bytes: &mut [u8]) {
     let end = 24 + 32 * number(bytes, 12, 4) as usize;
     if end + 4 <= bytes.len() {

@@ -1,4 +1,4 @@
-//! The visibility that a map has of its own, which engines load: checked as a table is, whoever wrote it.
+//! The visibility stored in a map, which engines load: checked like a table, whichever program wrote it.
 
 mod doom;
 mod quake;
@@ -103,7 +103,7 @@ fn hidden_pairs(hidden: &BitMatrix) -> [u64; 2] {
 }
 
 impl Own {
-    /// What was found, told of leafs or sectors, each pair once, and with a ray if there is one.
+    /// The findings in terms of leafs or sectors, each pair once, and with a ray if there is one.
     pub(super) fn violations(&self, found: &Findings) -> Violations {
         let mut of_pairs: BTreeMap<[u32; 2], Told> = BTreeMap::new();
         let mut others = Vec::new();
