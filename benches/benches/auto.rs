@@ -137,11 +137,12 @@ fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instan
         cut: SceneOptions::default(),
         portals: PortalMode::Exact,
         threads: 1,
+        file: None,
         progress: None,
     };
     let baked = bake_regions(&case.scene, &options).expect("the scene can be baked");
     let n_cells = baked.table.n_cells();
-    Found { name: name.to_owned(), n_cells, reported: baked.n_objects_seen, time: start.elapsed() }
+    Found { name: name.to_owned(), n_cells, reported: baked.report.n_objects_seen, time: start.elapsed() }
 }
 
 /// Prints the rows of a case; whether the choice is no looser than the default.

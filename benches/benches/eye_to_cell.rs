@@ -7,7 +7,7 @@
 
 use clap::Parser;
 use sightlines::bake::quake::bake_map;
-use sightlines::bake::{PrtOptions, SceneBakeOptions, StabOptions, bake_scene, with_stab_trees};
+use sightlines::bake::{PrtOptions, SceneBakeOptions, StabOptions, bake_scene, from_table, with_stab_trees};
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
@@ -97,8 +97,13 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 fn measure_with_trees(table: &Table, up: [f64; 3], n_frames: usize, args: &Args) -> Result<(), Box<dyn Error>> {
     let Some(most) = args.stab_trees else { return Ok(()) };
     let options = StabOptions { max_nodes: Some(most).filter(|&most| most > 0), ..StabOptions::default() };
-    let baked = with_stab_trees(table.clone(), &options)?;
-    println!("with stab trees of at most {} nodes, made in {:.1} s", baked.max_nodes, baked.time.as_secs_f64());
+    let graph = from_table::graph(table).ok_or("a table without portals")?;
+    let baked = with_stab_trees(table.clone(), &graph, &options)?;
+    println!(
+        "with stab trees of at most {} nodes, made in {:.1} s",
+        baked.report.max_nodes,
+        baked.report.time.as_secs_f64()
+    );
     measure(&baked.table, up, n_frames, args.fov)?;
     Ok(())
 }

@@ -5,7 +5,7 @@
 //! more than 100 MB, and how long it takes to open it and ask the first question.
 
 use clap::Parser;
-use sightlines::bake::{BakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
+use sightlines::bake::{PlanBakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::formats::Wad;
 use sightlines::formats::doom::{DoomMap, list_maps};
 use sightlines::formats::quake::read_prt;
@@ -134,7 +134,7 @@ fn tables(args: &Args) -> Result<Vec<Named>, Box<dyn Error>> {
     let data = if args.test { None } else { data_folder("SIGHTLINES_DATA") };
     let Some(data) = data else {
         let size = if args.test { 2 } else { 12 };
-        let plan = bake_plan(&scenes::doom_like(1, size)?, &BakeOptions::default())?;
+        let plan = bake_plan(&scenes::doom_like(1, size)?, &PlanBakeOptions::default())?;
         tables.push((format!("doom-like:{size}"), plan.table));
         tables.push(tower(if args.test { "tower:1:2:1:1" } else { "tower:2" })?);
         return Ok(tables);
@@ -143,7 +143,7 @@ fn tables(args: &Args) -> Result<Vec<Named>, Box<dyn Error>> {
         let wad = Wad::read(data.join("doom").join(name).with_extension("wad"))?;
         let lumps = list_maps(&wad).into_iter().next().ok_or("a WAD without maps")?;
         let plan = DoomMap::parse(&wad, &lumps)?.plan()?;
-        tables.push((name.to_owned(), bake_plan(&plan, &BakeOptions::default())?.table));
+        tables.push((name.to_owned(), bake_plan(&plan, &PlanBakeOptions::default())?.table));
     }
     for (name, tau) in [("whale_large", 0.0), ("office_a", 0.3)] {
         let path = files(&data.join("scenes").join(name), "glb").remove(0);

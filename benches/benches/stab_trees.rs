@@ -3,7 +3,7 @@
 
 use clap::Parser;
 use sightlines::bake::{
-    BakeOptions, PrtOptions, SceneBakeOptions, StabOptions, bake_plan, bake_prt, bake_scene, most_nodes,
+    GraphRef, PlanBakeOptions, PrtOptions, SceneBakeOptions, StabOptions, bake_plan, bake_prt, bake_scene, from_table,
     with_stab_trees,
 };
 use sightlines::cells::Plan;
@@ -166,7 +166,7 @@ fn load(scene: &str, threads: usize) -> Result<Table, Box<dyn Error>> {
 }
 
 fn plan_table(plan: &Plan, threads: usize) -> Result<Table, Box<dyn Error>> {
-    Ok(bake_plan(plan, &BakeOptions { threads, ..BakeOptions::default() })?.table)
+    Ok(bake_plan(plan, &PlanBakeOptions { threads, ..PlanBakeOptions::default() })?.table)
 }
 
 fn prt_table(prt: &Prt) -> Result<Table, Box<dyn Error>> {
@@ -174,17 +174,18 @@ fn prt_table(prt: &Prt) -> Result<Table, Box<dyn Error>> {
 }
 
 fn measure(scene: &str, table: &Table, nodes: usize, threads: usize) -> Result<Row, Box<dyn Error>> {
+    let graph = from_table::graph(table).ok_or("a table without portals")?;
     let max_nodes = match nodes {
-        0 => most_nodes(table).ok_or("a table without portals")?,
+        0 => GraphRef::from(&graph).most_nodes().ok_or("a table without portals")?,
         nodes => nodes,
     };
     let table_bytes = table.to_bytes().len();
     let options = StabOptions { max_nodes: Some(max_nodes), threads, progress: None };
-    let baked = with_stab_trees(table.clone(), &options)?;
+    let baked = with_stab_trees(table.clone(), &graph, &options)?;
     let trees = baked.table.stab().ok_or("the trees were not kept")?;
     let bytes = baked.table.to_bytes();
     assert!(Table::from_bytes(&bytes)? == baked.table, "{scene}: what was written is read back");
-    assert_eq!(trees.n_sequences(), u128::from(baked.trees.n_sequences), "{scene}: sharing changes no sequence");
+    assert_eq!(trees.n_sequences(), u128::from(baked.report.trees.n_sequences), "{scene}: sharing changes no sequence");
     let (found, all) = reached(scene, &baked.table, trees);
     let kind = match table.dimension() {
         2 => "plane",
@@ -198,16 +199,16 @@ fn measure(scene: &str, table: &Table, nodes: usize, threads: usize) -> Result<R
         portals: table.portals().len(),
         table_bytes,
         max_nodes,
-        sequences: baked.trees.n_sequences,
+        sequences: baked.report.trees.n_sequences,
         nodes: trees.n_nodes(),
         edges: trees.n_edges(),
         tree_bytes: bytes.len() - table_bytes,
-        cut_cells: baked.trees.n_cut_cells,
-        open: baked.trees.n_open,
-        undecided: baked.trees.n_undecided,
-        largest: baked.trees.n_largest,
+        cut_cells: baked.report.trees.n_cut_cells,
+        open: baked.report.trees.n_open,
+        undecided: baked.report.trees.n_undecided,
+        largest: baked.report.trees.n_largest,
         reached: found as f64 / all.max(1) as f64,
-        seconds: Duration::as_secs_f64(&baked.time),
+        seconds: Duration::as_secs_f64(&baked.report.time),
     })
 }
 

@@ -1,6 +1,9 @@
 //! Proofs of small tables for fuzzing: whatever is read from broken bytes is refused by the checker, or true.
 
-use sightlines::bake::{BakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, certify_table};
+use sightlines::bake::{
+    Baked, BakedPlan, BakedPrt, BakedScene, PlanBakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt,
+    bake_scene,
+};
 use sightlines::certificates::convex::ConvexProofs;
 use sightlines::certificates::plan::PlanProofs;
 use sightlines::certificates::space::BoxProofs;
@@ -18,13 +21,14 @@ fn proven() -> &'static [(Table, Vec<u8>)] {
     static PROVEN: OnceLock<Vec<(Table, Vec<u8>)>> = OnceLock::new();
     PROVEN.get_or_init(|| {
         let plans = scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1));
-        let plans = plans.filter_map(|plan| bake_plan(&plan, &BakeOptions::default()).ok().map(|baked| baked.table));
+        let plans =
+            plans.filter_map(|plan| bake_plan(&plan, &PlanBakeOptions::default()).ok().map(BakedPlan::into_any));
         let storey = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() };
         let storey = tower(storey).ok();
         let storey = storey.and_then(|scene| bake_scene(&scene, &SceneBakeOptions::default()).ok());
-        let proofs = |table: Table| {
-            let made = certify_table(&table, &CertifyOptions::default()).expect("the table has cells and portals");
-            (table, made.proofs.to_bytes())
+        let proofs = |baked: Baked| {
+            let made = baked.certify(&CertifyOptions::default()).expect("the table has cells and portals");
+            (baked.table, made.proofs.to_bytes())
         };
         let leafs = BspWorldOptions { seed: 3, leafs: 12, solid_percent: 45, tilted_percent: 60 };
         let worlds = bsp_world(leafs).into_iter().chain(corridor(7, [1, 2], 7));
@@ -33,9 +37,9 @@ fn proven() -> &'static [(Table, Vec<u8>)] {
             for portal in world.graph.portals() {
                 prt.push_portal(portal.cells.map(|cell| cell.0), portal.shape.corners()).ok()?;
             }
-            bake_prt(&prt, PrtOptions::default()).ok().map(|baked| baked.table)
+            bake_prt(&prt, PrtOptions::default()).ok().map(BakedPrt::into_any)
         });
-        plans.chain(storey.map(|baked| baked.table)).chain(maps).map(proofs).collect()
+        plans.chain(storey.map(BakedScene::into_any)).chain(maps).map(proofs).collect()
     })
 }
 

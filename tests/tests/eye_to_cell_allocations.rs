@@ -1,7 +1,9 @@
 //! Once warm, a query without mirrors allocates nothing.
 
 use allocation_counter::measure;
-use sightlines::bake::{BakeOptions, SceneBakeOptions, StabOptions, bake_plan, bake_scene, with_stab_trees};
+use sightlines::bake::{
+    PlanBakeOptions, SceneBakeOptions, StabOptions, bake_plan, bake_scene, from_table, with_stab_trees,
+};
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{TowerOptions, maze, tower};
@@ -61,7 +63,9 @@ fn allocations(table: &Table) -> (usize, u64, u64) {
 
 fn check(name: &str, table: Table) {
     let stab = StabOptions { max_nodes: Some(1_000), ..StabOptions::default() };
-    let trees = with_stab_trees(table.clone(), &stab).expect("the table has its geometry").table;
+    let trees = with_stab_trees(table.clone(), &from_table::graph(&table).expect("the table stores its graph"), &stab)
+        .expect("the table has its geometry")
+        .table;
     for table in [table, trees] {
         let (n_queries, by_queries, by_preparing) = allocations(&table);
         assert_eq!(by_queries, 0, "{name}, {n_queries} queries");
@@ -73,7 +77,7 @@ fn check(name: &str, table: Table) {
 #[test]
 fn warm_queries_allocate_nothing() {
     let plan = maze(3, 7, 7).expect("a small maze");
-    check("maze", bake_plan(&plan, &BakeOptions::default()).expect("a plan").table);
+    check("maze", bake_plan(&plan, &PlanBakeOptions::default()).expect("a plan").table);
     let options = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() };
     let scene = tower(options).expect("a small tower");
     check("tower", bake_scene(&scene, &SceneBakeOptions::default()).expect("a scene").table);

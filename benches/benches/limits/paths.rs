@@ -2,7 +2,7 @@
 
 use crate::rates::{Rates, least};
 use sightlines::bake::{
-    BakeOptions, CellsFrom, PortalMode, RegionBakeOptions, SceneBakeOptions, bake_plan, bake_regions, bake_scene,
+    CellsFrom, PlanBakeOptions, PortalMode, RegionBakeOptions, SceneBakeOptions, bake_plan, bake_regions, bake_scene,
     see_groups,
 };
 use sightlines::cells::Scene;
@@ -292,13 +292,13 @@ fn plan_table(rates: &Rates, short: bool) -> Path {
         OfficeOptions { rooms_x: 12, rooms_y: 10, ..OfficeOptions::default() }
     };
     let plan = office(options).expect("in range");
-    let options = BakeOptions { threads: 1, ..BakeOptions::default() };
+    let options = PlanBakeOptions { threads: 1, ..PlanBakeOptions::default() };
     let baked = bake_plan(&plan, &options).expect("an office can be baked");
     let seconds = least(|| drop(black_box(bake_plan(&plan, &options))));
-    let pairs = baked.summary.n_visible_pairs;
+    let pairs = baked.report.n_visible_pairs;
     Path {
         name: "the table of a plan",
-        of: format!("{} cells, {pairs} visible pairs", baked.summary.n_cells),
+        of: format!("{} cells, {pairs} visible pairs", baked.report.n_cells),
         seconds,
         bound: pairs as f64 * rates.orient2,
         counts: "an orientation for each visible pair".to_owned(),
@@ -356,11 +356,12 @@ fn given_cells(rates: &Rates, scene: &Scene, options: TowerOptions) -> Path {
         cut: SceneOptions::default(),
         portals: PortalMode::Exact,
         threads: 1,
+        file: None,
         progress: None,
     };
     let baked = bake_regions(scene, &options).expect("a tower can be baked");
     let seconds = least(|| drop(black_box(bake_regions(scene, &options))));
-    let pairs = baked.n_objects_seen + baked.n_visible_pairs;
+    let pairs = baked.report.n_objects_seen + baked.report.n_visible_pairs;
     Path {
         name: "what given rooms see",
         of: format!("{} rooms, {} objects, {pairs} visible pairs", rooms.len(), scene.objects().len()),

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let start = Instant::now();
         let anew = bake_scene(&scene, &options)?;
         let rebuilt = start.elapsed();
-        assert!(anew.table.to_bytes() == live.table().to_bytes() || anew.n_assumed > 0, "the tables are equal");
+        assert!(anew.table.to_bytes() == live.table().to_bytes() || anew.report.n_assumed > 0, "the tables are equal");
         println!(
             "{what}: {} of {} lines cut, {} cells new, {updated:.1?} instead of {rebuilt:.1?}",
             update.space.n_lines_cut, update.space.n_lines, update.space.n_cells_new

@@ -2,7 +2,7 @@
 //!
 //! Run as `cargo run --release -p sightlines-bake --example prove_a_plan -- [MAP.wad]`.
 
-use sightlines_bake::{BakeOptions, Proofs, bake_plan, certify_table, graph_of};
+use sightlines_bake::{PlanBakeOptions, Proofs, bake_plan, certify_table};
 use sightlines_cells::Plan;
 use sightlines_certificates::plan::PlanProofs;
 use sightlines_formats::{DoomMap, Wad, doom::list_maps};
@@ -21,16 +21,16 @@ fn plan() -> Result<Plan, Box<dyn Error>> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let baked = bake_plan(&plan()?, &BakeOptions::default())?;
+    let baked = bake_plan(&plan()?, &PlanBakeOptions::default())?;
     let table = &baked.table;
     let n = table.n_cells() as u64;
     println!(
         "{n} cells, {} pairs see each other, {} do not; decided in {:?}",
-        baked.summary.n_visible_pairs,
-        n * (n - 1) / 2 - baked.summary.n_visible_pairs,
-        baked.summary.see_time
+        baked.report.n_visible_pairs,
+        n * (n - 1) / 2 - baked.report.n_visible_pairs,
+        baked.report.see_time
     );
-    let certified = certify_table(table, &CertifyOptions::default())?;
+    let certified = certify_table(table, &baked.graph, &CertifyOptions::default())?;
     let bytes = certified.proofs.to_bytes();
     let Proofs::Plan(made) = &certified.proofs else { return Err("a plan has proofs of a plan".into()) };
     let n_blocks: usize = made.walks.iter().map(|walk| walk.blocks.len()).sum();
@@ -43,8 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let start = Instant::now();
     let proofs = PlanProofs::from_bytes(&bytes)?;
-    let graph = graph_of(table).ok_or("the table has its cells and portals")?;
-    let proven = proofs.check(&plan_network(&graph)?)?;
+    let proven = proofs.check(&plan_network(&baked.graph)?)?;
     println!(
         "checked in {:?}: {} pairs are visible, {} are hidden, {} are open",
         start.elapsed(),

@@ -2,7 +2,7 @@
 //!
 //! Run as `cargo run -p sightlines-bake --example tables`.
 
-use sightlines_bake::{BakeOptions, MapStatus, RejectOptions, bake_plan, reject_wad};
+use sightlines_bake::{MapStatus, PlanBakeOptions, RejectOptions, bake_plan, reject_wad};
 use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine, list_maps, write_doom_map};
 use sightlines_formats::{DoomMap, LumpName, RejectTable, Wad};
 use sightlines_pvs::{Place, Table};
@@ -12,8 +12,8 @@ use std::error::Error;
 /// From a plan to a table in bytes, and to what a viewer sees.
 fn office_table() -> Result<(), Box<dyn Error>> {
     let floor = office(OfficeOptions { seed: 5, rooms_x: 10, rooms_y: 4, ..OfficeOptions::default() })?;
-    let baked = bake_plan(&floor, &BakeOptions::default())?;
-    let did = &baked.summary;
+    let baked = bake_plan(&floor, &PlanBakeOptions::default())?;
+    let did = &baked.report;
     println!(
         "office of {} walls, cut by {}: {} cells, {} portals, {} pairs see each other",
         floor.lines().len(),

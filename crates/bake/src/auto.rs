@@ -1,7 +1,9 @@
-//! Chooses methods and buffers from measured properties of a scene in space, and no more than it needs.
+//! Choosing methods by what an input is like: for a scene, no more than it needs.
 //!
 //! Nothing here decides what is hidden; a bad choice costs time, or hides less than another one would.
 
+use crate::input::BakeInput;
+use crate::options::{BakeOptions, SceneMethod};
 use sightlines_cells::Scene;
 use sightlines_geometry::vector::{length, normal};
 use sightlines_geometry::{Aabb, Point3, Random};
@@ -216,6 +218,46 @@ impl fmt::Display for SceneChoice {
             write!(f, " and buffers of {} planes with {} texels", self.planes, self.texels)?;
         }
         Ok(())
+    }
+}
+
+/// What was chosen for an input, and why.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// The methods, in words.
+    pub method: String,
+    /// Why, a sentence each.
+    pub reasons: Vec<String>,
+    /// What a scene was measured to be like; none for other inputs.
+    pub facts: Option<SceneFacts>,
+}
+
+/// Chooses methods for an input, and returns the options that stand for the choice.
+///
+/// Only [`BakeOptions::method`] and [`BakeOptions::buffers`] differ from the options given. Plans, portal files and Quake
+/// maps always take sightlines.
+pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choice, BakeOptions<'a>) {
+    let plain = |reason: &str| {
+        let choice = Choice { method: "sightlines".to_owned(), reasons: vec![reason.to_owned()], facts: None };
+        (choice, BakeOptions { method: SceneMethod::Sightlines, ..options.clone() })
+    };
+    match input {
+        BakeInput::Scene(scene, _) => {
+            let (facts, choice) = choose(scene, options.has_given_cells());
+            let mut chosen = options.clone();
+            chosen.method = if choice.asks_a_method() { SceneMethod::Both } else { SceneMethod::Sightlines };
+            (chosen.buffers.planes, chosen.buffers.texels) = (choice.planes, choice.texels);
+            if !choice.sheets {
+                chosen.buffers.sheets = 0;
+            }
+            (Choice { method: choice.to_string(), reasons: choice.reasons, facts: Some(facts) }, chosen)
+        }
+        BakeInput::Plan(_) => {
+            plain("a plan is solved in the plane, exactly; its walls' directions and groups say how it is cut")
+        }
+        BakeInput::Portals(_) | BakeInput::Map(..) => {
+            plain("cells and portals are given, convex and in any direction: beams, then sequences")
+        }
     }
 }
 

@@ -1,6 +1,7 @@
-//! Proofs for a finished table.
+//! Proofs for a table, from its graph.
 
-use crate::{axial_graph_of, convex_graph_of, graph_of};
+use crate::baked::Baked;
+use crate::graph::{GraphRef, OtherGraph, TableGraph};
 use sightlines_certificates::convex::{ConvexNetworkError, ConvexProofs};
 use sightlines_certificates::plan::{NetworkError, PlanProofs};
 use sightlines_certificates::space::{BoxNetworkError, BoxProofs};
@@ -12,9 +13,12 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CertifyError {
-    /// The table does not have the cells and portals that it was made from.
+    /// Nothing is known of portals: the cells are boxes that were given, or the portals were stripped.
     #[error("proofs need the cells and portals that the table was made from, and it does not have them")]
     NoGraph,
+    /// The graph of another table.
+    #[error(transparent)]
+    OtherGraph(#[from] OtherGraph),
     /// Cells or portals of a plan that nothing can be proven about.
     #[error(transparent)]
     Plan(#[from] NetworkError),
@@ -58,22 +62,39 @@ pub struct Certified {
     pub time: Duration,
 }
 
-/// Finds proofs for what a table says. What it finds none for is left open, so this needs no trust: whether all pairs
-/// have a proof is for the checker to say.
+/// Finds proofs for the pairs of a table. A pair without one is left open, so this needs no trust: whether all pairs have a
+/// proof is for the checker to say.
+///
+/// * `graph`: the one that the table was made from: [`Baked::graph`], or
+///   [`from_table::graph`](fn@crate::from_table::graph) of a table from a file
 ///
 /// # Errors
-/// [`CertifyError`] for tables of regions, and those whose portals were stripped.
-pub fn certify_table(table: &Table, options: &CertifyOptions) -> Result<Certified, CertifyError> {
+/// [`CertifyError::NoGraph`] for boxes without portals; [`CertifyError::OtherGraph`] for the graph of another table;
+/// others for cells and portals that nothing can be proven about.
+pub fn certify_table<'g>(
+    table: &Table,
+    graph: impl Into<GraphRef<'g>>,
+    options: &CertifyOptions,
+) -> Result<Certified, CertifyError> {
     let start = Instant::now();
+    let graph = graph.into();
+    graph.check_size(table)?;
     let rows = &table.parts().rows;
-    let proofs = if let Some(graph) = graph_of(table) {
-        Proofs::Plan(certify_plan(&graph, rows, options)?)
-    } else if let Some(graph) = axial_graph_of(table) {
-        Proofs::Space(certify_space(&graph, rows, options)?)
-    } else if let Some(graph) = convex_graph_of(table) {
-        Proofs::Convex(certify_convex(&graph, rows, options)?)
-    } else {
-        return Err(CertifyError::NoGraph);
+    let proofs = match graph {
+        GraphRef::Planar(graph) => Proofs::Plan(certify_plan(graph, rows, options)?),
+        GraphRef::Axial(graph) => Proofs::Space(certify_space(graph, rows, options)?),
+        GraphRef::Convex(graph) => Proofs::Convex(certify_convex(graph, rows, options)?),
+        GraphRef::Boxes(_) => return Err(CertifyError::NoGraph),
     };
     Ok(Certified { proofs, time: start.elapsed() })
+}
+
+impl<R> Baked<TableGraph, R> {
+    /// Proofs for the pairs of the table ([`certify_table`]).
+    ///
+    /// # Errors
+    /// As [`certify_table`].
+    pub fn certify(&self, options: &CertifyOptions) -> Result<Certified, CertifyError> {
+        certify_table(&self.table, &self.graph, options)
+    }
 }

@@ -2,41 +2,58 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the choice of subdivision and predicate ([`bake_plan`]), and of methods from the properties of a scene
-//!   ([`auto`]), the conversion of a cell graph to a table ([`table_of`]) and back ([`graph_of`], [`axial_graph_of`]),
-//!   stab trees for a finished table ([`with_stab_trees`]), proofs for it ([`certify_table`]), the REJECT lumps of a
-//!   WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted search ([`quake`]), the table
-//!   of a changing scene ([`live`]).
+//! - **Owns**: the whole way for any input ([`bake`](fn@bake)) and the steps for each kind of it ([`bake_plan`], [`bake_scene`],
+//!   [`bake_regions`], [`bake_prt`], [`bake_map`]), all of which return the graph, the table and a report ([`Baked`]); stab
+//!   trees ([`with_stab_trees`]) and proofs ([`certify_table`]) from a graph, and the graph of a stored table ([`from_table`]);
+//!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
+//!   ([`auto`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
+//!   search ([`quake`]), the table of a changing scene ([`live`]).
 //! - **Out of scope**: paths, the command line, pictures.
 //! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
 //!   threads; every approximation on the way errs towards visible.
 
 pub mod auto;
+mod baked;
 mod certify;
+mod error;
+pub mod from_table;
+mod graph;
+mod grid;
+mod input;
 pub mod live;
 pub mod methods;
 mod mirrors;
 mod objects;
+mod options;
 mod plan;
 pub mod quake;
 pub mod region;
 pub mod reject;
+mod reports;
+mod run;
 pub mod scene;
 mod sectors;
 mod stab;
+mod subdivide;
 mod table;
 
+pub use baked::{Baked, BakedMap, BakedPlan, BakedPrt, BakedRegions, BakedScene};
 pub use certify::{Certified, CertifyError, Proofs, certify_table};
+pub use error::BakeError;
+pub use graph::{GraphRef, OtherGraph, TableGraph};
+pub use input::BakeInput;
 pub use live::{LiveScene, LiveUpdate};
-pub use plan::{BakeError, BakeOptions, BakeSummary, Baked, ParseSubdivideError, Subdivide, bake_plan};
-pub use quake::{
-    BakedMap, BakedPrt, PrtBakeError, PrtOptions, SeenClusters, VisMap, bake_map, bake_prt, convex_graph_of, vis_map,
-};
-pub use region::{BakedRegions, CellsFrom, MakeMethod, RegionBakeError, RegionBakeOptions, bake_regions};
+pub use options::{BakeOptions, ParseSceneMethodError, SceneMethod};
+pub use plan::{PlanBakeOptions, bake_plan};
+pub use quake::{PrtBakeError, PrtOptions, VisMap, bake_map, bake_prt, vis_map};
+pub use region::{CellsFrom, MakeMethod, RegionBakeOptions, bake_regions};
 pub use reject::{
     MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad,
 };
-pub use scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
+pub use reports::{ClusterVisibility, MapReport, PlanReport, RegionReport, Report, SceneReport, WorldSummary};
+pub use run::bake;
+pub use scene::{PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
-pub use stab::{BakedStab, StabBakeError, StabOptions, most_nodes, with_stab_trees};
-pub use table::{TableOptions, axial_graph_of, graph_of, table_of};
+pub use stab::{BakedStab, StabBakeError, StabOptions, StabReport, with_stab_trees};
+pub use subdivide::{ParseSubdivideError, Subdivide};
+pub use table::{TableOptions, table_of};

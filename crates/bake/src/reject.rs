@@ -19,7 +19,7 @@
 //! A table that is not symmetric, or that rejects a sector from itself, was not computed: mappers build
 //! blind or deaf monsters that way. Such a table is kept unless the caller insists.
 
-use crate::plan::BakeError;
+use crate::error::BakeError;
 use crate::sectors::see_groups;
 use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, list_maps};
 use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};

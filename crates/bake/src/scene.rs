@@ -1,27 +1,40 @@
 //! Baking a scene in space: subdivide, see, tabulate.
 
+use crate::baked::{Baked, BakedScene};
+use crate::error::BakeError;
 use crate::mirrors;
-use crate::plan::BakeError;
-use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Portal, Scene};
+use crate::reports::SceneReport;
+use crate::table::{axial_portal_record, box_record, object_record, state_file};
+use sightlines_cells::{Axial, AxialDoor, CellGraph, Portal, Scene, SceneObject};
+use sightlines_formats::SceneInfo;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
 use sightlines_progress::Observer;
-use sightlines_pvs::{
-    CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, SceneMethods, Table, TableError, TableKind,
-    TableParts,
-};
-use sightlines_sightline::ShaftCounters;
+use sightlines_pvs::{CellRecord, Locator, MirrorRecord, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Which portals the search goes through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PortalMode {
-    /// One rectangle around each opening: quick, and shows more than there is to see.
+    /// One rectangle around each opening: a looser answer.
     Bounding,
     /// The exact pieces of each opening.
     #[default]
     Exact,
+}
+
+impl PortalMode {
+    /// All modes.
+    pub const ALL: [Self; 2] = [Self::Exact, Self::Bounding];
+
+    /// Lower-case name: that of options, and of the information of a table.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Bounding => "bounding",
+        }
+    }
 }
 
 /// How to bake a scene.
@@ -33,7 +46,9 @@ pub struct SceneBakeOptions<'a> {
     pub portals: PortalMode,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Called with the number of finished cells and their total.
+    /// What the scene's file says of its axes and units, if it came from one; the table says it too.
+    pub file: Option<&'a SceneInfo>,
+    /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,
 }
 
@@ -47,36 +62,6 @@ impl std::fmt::Debug for SceneBakeOptions<'_> {
     }
 }
 
-/// The table of a scene, and how it came about.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BakedScene {
-    /// The table.
-    pub table: Table,
-    /// What was cut.
-    pub cut: SceneSummary,
-    /// Unordered pairs of different cells that see each other.
-    pub n_visible_pairs: u64,
-    /// Pairs of a cell and an object that it sees.
-    pub n_objects_seen: u64,
-    /// Time to cut the scene.
-    pub cut_time: Duration,
-    /// Time to decide who sees what.
-    pub see_time: Duration,
-    /// Parts of mirrors in cells.
-    pub n_mirror_parts: usize,
-    /// Rectangles of mirrors of which a part is in no cell on either side, and does not reflect.
-    pub n_lost_mirrors: usize,
-    /// Triangles of mirrors that are not perpendicular to an axis, and do not reflect.
-    pub n_other_mirror_triangles: usize,
-    /// Rectangles that the walls between the cells were put together to.
-    pub n_blockers: usize,
-    /// Pairs of a cell and a cell or object that count as visible because deciding about them took too
-    /// much effort, or more digits than doubles have. Varies a little with threads.
-    pub n_assumed: u64,
-    /// How it was decided who sees what. Varies from run to run with several threads.
-    pub counters: ShaftCounters,
-}
-
 /// Cuts a scene, decides which cells see which cells and objects, and makes the table.
 ///
 /// Walls are the axis-aligned faces of the scene that are not detail; nothing else hides anything. Cells
@@ -87,6 +72,15 @@ pub struct BakedScene {
 /// # Errors
 /// [`BakeError::KdTree`] for scenes without room, options out of range, and too many cells.
 pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<BakedScene, BakeError> {
+    let (graph, parts, report) = see_scene(scene, options)?;
+    Ok(Baked { table: Table::new(parts)?, graph, report })
+}
+
+/// What [`bake_scene`] makes a table of.
+pub(crate) fn see_scene(
+    scene: &Scene,
+    options: &SceneBakeOptions<'_>,
+) -> Result<(CellGraph<Axial>, TableParts, SceneReport), BakeError> {
     let start = Instant::now();
     let cut = subdivide_scene(scene, &options.cut)?;
     let cut_time = start.elapsed();
@@ -101,38 +95,32 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
     };
     let seen = space_visibility(&graph, &solid, &boxes, &nothing, &search)?;
     let see_time = start.elapsed();
-    let n_visible_pairs = (seen.cells.count_ones() - graph.n_cells() as u64) / 2;
-    let (n_objects_seen, counters) = (seen.objects.count_ones(), seen.counters);
-    let (n_blockers, n_assumed) = (seen.n_blockers, seen.n_assumed);
-    let info = info(options, &cut.summary);
     let found = mirrors::of_scene(&graph, scene);
-    let n_mirror_parts = found.parts.len();
-    let (n_lost_mirrors, n_other_mirror_triangles) = (found.n_lost, found.n_other_triangles);
-    let table = scene_table(&graph, seen, scene, &boxes, info, found.parts)?;
-    let cut = cut.summary;
-    Ok(BakedScene {
-        table,
-        cut,
-        n_visible_pairs,
-        n_objects_seen,
-        n_mirror_parts,
-        n_lost_mirrors,
-        n_other_mirror_triangles,
-        n_blockers,
-        n_assumed,
-        counters,
+    let report = SceneReport {
+        n_visible_pairs: (seen.cells.count_ones() - graph.n_cells() as u64) / 2,
+        n_objects_seen: seen.objects.count_ones(),
+        n_mirror_parts: found.parts.len(),
+        n_lost_mirrors: found.n_lost,
+        n_other_mirror_triangles: found.n_other_triangles,
+        n_blockers: seen.n_blockers,
+        n_assumed: seen.n_assumed,
+        counters: seen.counters,
         cut_time,
         see_time,
-    })
+        cut: cut.summary,
+    };
+    let mut parts = scene_parts(&graph, seen, scene, &boxes, info(options, &report.cut), found.parts);
+    state_file(&mut parts, options.file);
+    Ok((graph, parts, report))
 }
 
 /// The box around an object's triangles; empty, and so never seen, if it has none.
-pub(crate) fn drawn_box(object: &sightlines_cells::SceneObject) -> Aabb<3> {
+pub(crate) fn drawn_box(object: &SceneObject) -> Aabb<3> {
     Aabb::around(object.corners().flatten())
 }
 
 /// The polygons that are drawn for an object; more than the table can say count as the most that it can.
-fn n_triangles(object: &sightlines_cells::SceneObject) -> u32 {
+pub(crate) fn n_triangles(object: &SceneObject) -> u32 {
     u32::try_from(object.triangles.len()).unwrap_or(u32::MAX)
 }
 
@@ -156,44 +144,33 @@ pub(crate) fn merge_portals(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
 /// What found the hidden in a table of a scene that was cut along its rectangles.
 const SIGHTLINES: SceneMethods = SceneMethods { sightlines: true, from_region: false, only_in_air: false };
 
+/// What the table of a scene says of how it was made.
 pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, String)> {
-    let portals = match options.portals {
-        PortalMode::Bounding => "bounding",
-        PortalMode::Exact => "exact",
-    };
     let pair = |k: &str, v: String| (k.to_owned(), v);
     // Ascending keys.
     vec![
         pair("detail-below", cut.detail_below.to_string()),
-        pair("portals", portals.to_owned()),
+        pair("portals", options.portals.name().to_owned()),
         pair("subdivide", "kd".to_owned()),
         pair("tau", options.cut.tau.to_string()),
     ]
 }
 
-/// The table of a subdivided scene and its visibility.
-pub(crate) fn scene_table(
+/// The parts of the table of a scene that was cut, from what its cells see.
+pub(crate) fn scene_parts(
     graph: &CellGraph<Axial>,
     seen: SpaceVisibility,
     scene: &Scene,
     boxes: &[Aabb<3>],
     info: Vec<(String, String)>,
     mirrors: Vec<MirrorRecord>,
-) -> Result<Table, TableError> {
-    let cell = |id: CellId| {
-        let Aabb { min, max } = graph.cell(id).bounds;
-        CellRecord { min, max, group: None, polygon: Vec::new() }
-    };
-    let cells: Vec<CellRecord> = graph.cell_ids().map(cell).collect();
+) -> TableParts {
+    let cells: Vec<CellRecord> = graph.cells().iter().map(|cell| box_record(&cell.bounds)).collect();
     let bounds: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|c| (c.min, c.max)).collect();
-    let object = |(o, b): (&sightlines_cells::SceneObject, &Aabb<3>)| {
-        let b = if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b };
-        ObjectRecord { name: o.name.clone(), min: b.min, max: b.max }
-    };
-    Table::new(TableParts {
-        portals: graph.portals().iter().map(portal_record).collect(),
+    TableParts {
+        portals: graph.portals().iter().map(axial_portal_record).collect(),
         rows: seen.cells,
-        objects: scene.objects().iter().zip(boxes).map(object).collect(),
+        objects: scene.objects().iter().zip(boxes).map(|(o, b)| object_record(&o.name, b)).collect(),
         object_polygons: scene.objects().iter().map(n_triangles).collect(),
         cell_objects: seen.touching,
         objects_seen: Some(seen.objects),
@@ -202,25 +179,5 @@ pub(crate) fn scene_table(
         info,
         mirrors,
         ..TableParts::empty(3, TableKind::SceneKdTree { hidden_by: SIGHTLINES })
-    })
-}
-
-/// The corners counter-clockwise as seen from the first cell: the normal by the right-hand rule points
-/// towards the viewer.
-pub(crate) fn portal_record(portal: &Portal<Axial>) -> PortalRecord {
-    let AxialDoor { extent: Aabb { min, max }, axis, forward } = portal.shape;
-    let a = usize::from(axis);
-    let (b, c) = ((a + 1) % 3, (a + 2) % 3);
-    let corner = |high_b: bool, high_c: bool| {
-        let mut p = min;
-        p[b] = if high_b { max[b] } else { min[b] };
-        p[c] = if high_c { max[c] } else { min[c] };
-        p
-    };
-    // With b towards c, the right-hand rule gives the axis; who crosses forwards stands on its low side.
-    let mut points = vec![corner(false, false), corner(false, true), corner(true, true), corner(true, false)];
-    if !forward {
-        points.reverse();
     }
-    PortalRecord { cells: portal.cells, sides: portal.sides, points }
 }

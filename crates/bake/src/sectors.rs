@@ -1,6 +1,6 @@
 //! Which groups of a plan see each other: the flat model of sectors.
 
-use crate::plan::BakeError;
+use crate::error::BakeError;
 use sightlines_cells::Plan;
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::{SearchOptions, Zones, plan_visibility};

@@ -1,6 +1,7 @@
-//! Stab trees for a finished table.
+//! Stab trees for a table, from its graph.
 
-use crate::{axial_graph_of, convex_graph_of, graph_of};
+use crate::baked::Baked;
+use crate::graph::{GraphRef, OtherGraph, TableGraph};
 use sightlines_progress::{Cancelled, Observer};
 use sightlines_pvs::{BitMatrix, StabError, StabParts, StabTrees, Table, TableError};
 use sightlines_sightline::StabLimits;
@@ -12,11 +13,11 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Copy, Default)]
 pub struct StabOptions<'a> {
     /// The most nodes of the tree of one cell, before equal ones are put together; beyond, it is cut, the nearest
-    /// sequences stay, and what may go on is marked. `None`: what [`most_nodes`] says.
+    /// sequences stay, and what may go on is marked. `None`: [`GraphRef::most_nodes`].
     pub max_nodes: Option<usize>,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Called with the number of finished trees and their total.
+    /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,
 }
 
@@ -31,9 +32,12 @@ impl fmt::Debug for StabOptions<'_> {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StabBakeError {
-    /// The table does not have the cells and portals that it was made from.
+    /// Nothing is known of portals: the cells are boxes that were given, or the portals were stripped.
     #[error("stab trees need the cells and portals that the table was made from, and it does not have them")]
     NoGraph,
+    /// The graph of another table.
+    #[error(transparent)]
+    OtherGraph(#[from] OtherGraph),
     /// The observer cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -50,6 +54,13 @@ pub enum StabBakeError {
 pub struct BakedStab {
     /// The table.
     pub table: Table,
+    /// What was added.
+    pub report: StabReport,
+}
+
+/// How stab trees came about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StabReport {
     /// The most nodes that a tree was allowed.
     pub max_nodes: usize,
     /// What the trees are, before equal ones are put together.
@@ -58,68 +69,72 @@ pub struct BakedStab {
     pub time: Duration,
 }
 
-/// The graph of a table, whichever it is.
-enum Graph {
-    Planar(sightlines_cells::CellGraph<sightlines_cells::Planar>),
-    Axial(sightlines_cells::CellGraph<sightlines_cells::Axial>),
-    Convex(sightlines_cells::CellGraph<sightlines_cells::Convex>),
-}
-
-impl Graph {
-    fn of(table: &Table) -> Option<Self> {
-        // A table of a portal file is in space, too, but its cells are no boxes.
-        let convex = || convex_graph_of(table).map(Self::Convex);
-        let axial = || axial_graph_of(table).map(Self::Axial);
-        graph_of(table).map(Self::Planar).or_else(convex).or_else(axial)
-    }
-
-    /// Default maximum number of nodes of a tree.
-    fn most_nodes(&self) -> usize {
+impl GraphRef<'_> {
+    /// How many nodes the stab tree of a cell may have by default: 65,536 in the plane, 16,384 for boxes, 4,096 for convex
+    /// cells; `None` for boxes without portals.
+    ///
+    /// A sequence takes some hundred nanoseconds in the plane, ten times as long for boxes, a hundred times for polygons. Of
+    /// the scenes that were measured (the bench `stab_trees`), the limits cut no tree of a plan, up to an eighth of those of
+    /// boxes, and up to half of those of a Quake map; a lower limit saves time, but fewer bytes than sequences, as trees that
+    /// are cut are seldom equal.
+    pub const fn most_nodes(self) -> Option<usize> {
         match self {
-            Self::Planar(_) => 65_536,
-            Self::Axial(_) => 16_384,
-            Self::Convex(_) => 4_096,
+            Self::Planar(_) => Some(65_536),
+            Self::Axial(_) => Some(16_384),
+            Self::Convex(_) => Some(4_096),
+            Self::Boxes(_) => None,
         }
     }
 
     fn trees(
-        &self,
+        self,
         rows: &BitMatrix,
         options: &StabTreesOptions<'_>,
-    ) -> Result<(StabParts, StabTreesSummary), Cancelled> {
+    ) -> Result<(StabParts, StabTreesSummary), StabBakeError> {
         match self {
-            Self::Planar(graph) => stab_trees_planar(graph, rows, options),
-            Self::Axial(graph) => stab_trees_axial(graph, rows, options),
-            Self::Convex(graph) => stab_trees_convex(graph, rows, StabLimits::default(), options),
+            Self::Planar(graph) => Ok(stab_trees_planar(graph, rows, options)?),
+            Self::Axial(graph) => Ok(stab_trees_axial(graph, rows, options)?),
+            Self::Convex(graph) => Ok(stab_trees_convex(graph, rows, StabLimits::default(), options)?),
+            Self::Boxes(_) => Err(StabBakeError::NoGraph),
         }
     }
 }
 
-/// Default maximum number of nodes of a cell's tree in this table: 65,536 in the plane, 16,384 for boxes, 4,096 for
-/// convex cells. A sequence takes some hundred nanoseconds in the plane, ten times as long for boxes, a hundred times
-/// for polygons. Of the scenes that were measured (the bench `stab_trees`), the limits cut no tree of a plan, up to an
-/// eighth of those of boxes, and up to half of those of a Quake map; less than that saves time, but fewer bytes than
-/// sequences, as trees that are cut are seldom equal. `None` if the table does not have the cells and portals that it
-/// was made from.
-pub fn most_nodes(table: &Table) -> Option<usize> {
-    Graph::of(table).map(|graph| graph.most_nodes())
-}
-
 /// Adds the stab trees of all cells to a table, or replaces those that it has. Everything else stays.
 ///
-/// They are of the portals that the table stores, without mirrors. Conservative for every limit; see
-/// [`sightlines_stabtree::stab_trees`] for what that means, and for the cost.
+/// * `graph`: the one that the table was made from: [`Baked::graph`], or
+///   [`from_table::graph`](fn@crate::from_table::graph) of a table from a file
+///
+/// Conservative for every limit; see [`sightlines_stabtree::stab_trees`] for what that means, and for the cost. Mirrors
+/// are ignored.
 ///
 /// # Errors
-/// [`StabBakeError::NoGraph`] for tables whose geometry was stripped.
-pub fn with_stab_trees(table: Table, options: &StabOptions<'_>) -> Result<BakedStab, StabBakeError> {
+/// [`StabBakeError::NoGraph`] for boxes without portals, [`StabBakeError::OtherGraph`] for the graph of another table.
+pub fn with_stab_trees<'g>(
+    table: Table,
+    graph: impl Into<GraphRef<'g>>,
+    options: &StabOptions<'_>,
+) -> Result<BakedStab, StabBakeError> {
     let start = Instant::now();
-    let graph = Graph::of(&table).ok_or(StabBakeError::NoGraph)?;
-    let max_nodes = options.max_nodes.unwrap_or_else(|| graph.most_nodes());
+    let graph = graph.into();
+    let max_nodes = options.max_nodes.or(graph.most_nodes()).ok_or(StabBakeError::NoGraph)?;
+    graph.check_size(&table)?;
     let how = StabTreesOptions { max_nodes, threads: options.threads, progress: options.progress };
     let mut parts = table.into_parts();
     let (trees, summary) = graph.trees(&parts.rows, &how)?;
     let time = start.elapsed();
     parts.stab = Some(StabTrees::new(trees, &parts.portals, parts.cells.len())?);
-    Ok(BakedStab { table: Table::new(parts)?, max_nodes, trees: summary, time })
+    Ok(BakedStab { table: Table::new(parts)?, report: StabReport { max_nodes, trees: summary, time } })
+}
+
+impl<R> Baked<TableGraph, R> {
+    /// The same with stab trees in the table ([`with_stab_trees`]), and how they came about.
+    ///
+    /// # Errors
+    /// As [`with_stab_trees`].
+    pub fn with_stab_trees(self, options: &StabOptions<'_>) -> Result<(Self, StabReport), StabBakeError> {
+        let Self { graph, table, report } = self;
+        let BakedStab { table, report: stab } = with_stab_trees(table, &graph, options)?;
+        Ok((Self { graph, table, report }, stab))
+    }
 }

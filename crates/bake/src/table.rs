@@ -1,11 +1,12 @@
-//! Tables from cell graphs, and back.
+//! The parts of tables, from cell graphs.
 
 use crate::objects::cell_objects;
-use crate::scene;
-use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
-use sightlines_geometry::{Aabb, Point2, Portal2, check_coordinate};
+use sightlines_cells::{Axial, AxialDoor, CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
+use sightlines_formats::SceneInfo;
+use sightlines_formats::scene::LengthUnit;
+use sightlines_geometry::{Aabb, Point2, Portal2};
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableKind, TableParts,
+    BitMatrix, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableKind, TableParts,
 };
 
 /// What goes into a table beside cells and rows.
@@ -55,13 +56,18 @@ fn portal_record(portal: &Portal<Planar>) -> PortalRecord {
 /// # Errors
 /// [`TableError`] if the parts do not fit together, which is a defect of who made them.
 pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOptions<'_>) -> Result<Table, TableError> {
+    Table::new(planar_parts(graph, rows, options))
+}
+
+/// What [`table_of`] makes a table of.
+pub(crate) fn planar_parts(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOptions<'_>) -> TableParts {
     let cells: Vec<CellRecord> = graph.cells().iter().map(cell_record).collect();
     let bounds: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|c| (c.min, c.max)).collect();
     let record =
         |o: &PlanObject| ObjectRecord { name: o.name.clone(), min: lift(o.bounds.min), max: lift(o.bounds.max) };
     let mut info = options.info;
     info.sort();
-    Table::new(TableParts {
+    TableParts {
         portals: graph.portals().iter().map(portal_record).collect(),
         rows,
         objects: options.objects.iter().map(record).collect(),
@@ -70,59 +76,47 @@ pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOption
         cells,
         info,
         ..TableParts::empty(2, options.kind)
-    })
+    }
 }
 
-/// The planar graph that a table stores, with at most one group for each cell; `None` if the table is not planar, its geometry was stripped,
-/// or the stored cells and portals do not fit together.
-pub fn graph_of(table: &Table) -> Option<CellGraph<Planar>> {
-    let stored = table.dimension() == 2 && table.cells().iter().all(|c| !c.polygon.is_empty());
-    if !stored {
-        return None;
+/// Adds what the file of a scene says of its axes and units.
+pub(crate) fn state_file(parts: &mut TableParts, file: Option<&SceneInfo>) {
+    let Some(file) = file else { return };
+    parts.up = Some(file.up);
+    parts.info.push(("up".to_owned(), ["x", "y", "z"][file.up.idx()].to_owned()));
+    if file.unit == LengthUnit::Metre {
+        parts.info.push(("unit".to_owned(), "metre".to_owned()));
     }
-    let corner = |&[x, y]: &[f64; 2]| Point2::new(x, y);
-    let cell = |c: &CellRecord| ConvexCell2 {
-        polygon: c.polygon.iter().map(corner).collect(),
-        groups: c.group.into_iter().collect(),
-    };
-    let portal = |p: &PortalRecord| match p.points[..] {
-        [[lx, ly, _], [rx, ry, _]] => {
-            let shape = Portal2 { left: Point2::new(lx, ly), right: Point2::new(rx, ry) };
-            Some(Portal { cells: p.cells, sides: p.sides, shape })
-        }
-        _ => None,
-    };
-    let portals: Option<Vec<Portal<Planar>>> = table.portals().iter().map(portal).collect();
-    let graph = CellGraph::new(table.cells().iter().map(cell).collect(), portals?);
-    graph.check_well_formed().is_ok().then_some(graph)
+    parts.info.sort();
 }
 
-/// The graph of boxes that a table of a scene in space stores; `None` if the table is none, or the stored
-/// cells and portals do not fit together. Portals are those that the table was made with, exact pieces or
-/// the rectangles around them.
-pub fn axial_graph_of(table: &Table) -> Option<CellGraph<Axial>> {
-    // Cells that see each other are joined by portals, so without any they were stripped.
-    let joined = (0u32..).take(table.n_cells()).map(CellId).any(|cell| table.visible(cell).any(|other| other != cell));
-    let stripped = table.portals().is_empty() && joined;
-    if table.dimension() != 3 || stripped {
-        return None;
-    }
-    let cells: Vec<BoxCell> =
-        table.cells().iter().map(|c| BoxCell { bounds: Aabb { min: c.min, max: c.max } }).collect();
-    let portal = |p: &PortalRecord| {
-        let extent = Aabb::<3>::around(p.points.iter().copied());
-        let axis = u8::try_from(p.sides[0] / 2).ok().filter(|axis| *axis < 3)?;
-        let shape = AxialDoor { extent, axis, forward: p.sides[0] % 2 == 1 };
-        let portal = Portal { cells: p.cells, sides: p.sides, shape };
-        // Other points than the corners of a rectangle would not come back.
-        (scene::portal_record(&portal) == *p).then_some(portal)
+/// The record of a box.
+pub(crate) fn box_record(b: &Aabb<3>) -> CellRecord {
+    CellRecord { min: b.min, max: b.max, group: None, polygon: Vec::new() }
+}
+
+/// The record of an object by its box; one without triangles is at the origin.
+pub(crate) fn object_record(name: &str, b: &Aabb<3>) -> ObjectRecord {
+    let b = if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b };
+    ObjectRecord { name: name.to_owned(), min: b.min, max: b.max }
+}
+
+/// The corners counter-clockwise as seen from the first cell: the normal by the right-hand rule points
+/// towards the viewer.
+pub(crate) fn axial_portal_record(portal: &Portal<Axial>) -> PortalRecord {
+    let AxialDoor { extent: Aabb { min, max }, axis, forward } = portal.shape;
+    let a = usize::from(axis);
+    let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+    let corner = |high_b: bool, high_c: bool| {
+        let mut p = min;
+        p[b] = if high_b { max[b] } else { min[b] };
+        p[c] = if high_c { max[c] } else { min[c] };
+        p
     };
-    let portals: Option<Vec<Portal<Axial>>> = table.portals().iter().map(portal).collect();
-    // Portals lie within cells, which is checked below.
-    let in_range = |b: &Aabb<3>| b.min.into_iter().chain(b.max).all(|x| check_coordinate(x).is_ok());
-    if !cells.iter().all(|c| in_range(&c.bounds)) {
-        return None;
+    // With b towards c, the right-hand rule gives the axis; who crosses forwards stands on its low side.
+    let mut points = vec![corner(false, false), corner(false, true), corner(true, true), corner(true, false)];
+    if !forward {
+        points.reverse();
     }
-    let graph = CellGraph::<Axial>::new(cells, portals?);
-    graph.check_well_formed().is_ok().then_some(graph)
+    PortalRecord { cells: portal.cells, sides: portal.sides, points }
 }

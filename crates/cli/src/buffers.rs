@@ -32,10 +32,10 @@ pub(crate) struct BufferArgs {
     measure: Measure,
     /// Multifocal: planes on each side of a cell; 0 for none
     #[arg(long, value_name = "N", default_value_t = BufferOptions::default().planes, value_parser = clap::value_parser!(u32).range(0..=256))]
-    pub(crate) planes: u32,
+    planes: u32,
     /// Multifocal: texels along the longer side of a plane
     #[arg(long, value_name = "N", default_value_t = BufferOptions::default().texels, value_parser = clap::value_parser!(u32).range(1..=8192))]
-    pub(crate) texels: u32,
+    texels: u32,
     /// Multifocal: maximum number of occluders drawn on each side of a cell, the most effective first
     #[arg(long, value_name = "N", default_value_t = BufferOptions::default().occluders)]
     occluders: u32,
@@ -45,7 +45,7 @@ pub(crate) struct BufferArgs {
     /// Multifocal: maximum number of triangle sides examined to find a sheet between a cell and an object; 0 turns
     /// sheets off
     #[arg(long, value_name = "N", default_value_t = BufferOptions::default().sheets)]
-    pub(crate) sheets: u32,
+    sheets: u32,
     /// Multifocal: the backend that draws the buffers
     #[arg(long, value_name = "WHO", default_value = Backend::Cpu.name(), value_parser = one_of(&Backend::ALL, Backend::name, Backend::about))]
     backend: Backend,

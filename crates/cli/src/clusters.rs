@@ -2,7 +2,7 @@
 
 use crate::output::{count, percent, seconds};
 use serde::Serialize;
-use sightlines::bake::SeenClusters;
+use sightlines::bake::ClusterVisibility;
 use sightlines::bake::quake::named_counters;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -29,7 +29,7 @@ pub(crate) struct Clusters {
 }
 
 impl Clusters {
-    pub(crate) fn new(found: &SeenClusters) -> Self {
+    pub(crate) fn new(found: &ClusterVisibility) -> Self {
         let (n_visible_pairs, n_pairs) = (found.n_visible_pairs(), found.n_pairs());
         Self {
             n_clusters: found.n_clusters(),

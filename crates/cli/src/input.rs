@@ -1,7 +1,7 @@
 //! Inputs by name. Which format a file has is decided in [`sightlines::formats::input`]; here it is what a command can use, or an error.
 
 use crate::error::InputError;
-use sightlines::bake::graph_of;
+use sightlines::bake::from_table::planar_graph;
 use sightlines::cells::{CellGraph, Plan, Planar};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
 use sightlines::formats::quake::{Bsp, Prt};
@@ -63,7 +63,7 @@ pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static s
 
 /// The cell graph that a table holds.
 pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, InputError> {
-    graph_of(table).ok_or_else(|| InputError::Stripped(path.to_owned()))
+    planar_graph(table).ok_or_else(|| InputError::Stripped(path.to_owned()))
 }
 
 /// What is to be built.

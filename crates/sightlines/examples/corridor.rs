@@ -2,7 +2,7 @@
 //!
 //! Run as `cargo run -p sightlines --example corridor`.
 
-use sightlines::bake::{BakeOptions, bake_plan};
+use sightlines::bake::{PlanBakeOptions, bake_plan};
 use sightlines::cells::Plan;
 use sightlines::geometry::Point2;
 use sightlines::pvs::Place;
@@ -15,8 +15,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     walls.extend([([4., 2.], [4., 6.]), ([8., 2.], [8., 6.])]);
     let plan = Plan::from_walls(walls.into_iter().map(|(a, b)| (Point2::from(a), Point2::from(b))))?;
-    let baked = bake_plan(&plan, &BakeOptions::default())?;
-    println!("{} cells, {} portals", baked.summary.n_cells, baked.summary.n_portals);
+    let baked = bake_plan(&plan, &PlanBakeOptions::default())?;
+    println!("{} cells, {} portals", baked.report.n_cells, baked.report.n_portals);
     let places =
         [("left room", [2., 5.]), ("middle room", [6., 5.]), ("right room", [10., 5.]), ("corridor", [6., 1.])];
     let query = baked.table.in_dimension::<2>()?;

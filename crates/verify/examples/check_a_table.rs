@@ -1,13 +1,13 @@
 //! Checks a true table and one with a pair hidden that is seen: `cargo run -p sightlines-verify --example check_a_table`.
 
-use sightlines_bake::{BakeOptions, bake_plan};
+use sightlines_bake::{PlanBakeOptions, bake_plan};
 use sightlines_pvs::{CellId, Table};
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_verify::{Truth, VerifyOptions, verify};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let plan = office(OfficeOptions { rooms_x: 4, rooms_y: 2, ..OfficeOptions::default() })?;
-    let table = bake_plan(&plan, &BakeOptions::default())?.table;
+    let table = bake_plan(&plan, &PlanBakeOptions::default())?.table;
     let options = VerifyOptions::default();
 
     let found = verify(&table, &Truth::Plan(&plan), &options)?;

@@ -9,7 +9,7 @@ use super::plot::Panel;
 use super::row::Row;
 use super::slow_stabbers::{ByProgram, Limited};
 use super::{ChartError, Family, Settings};
-use sightlines::bake::{PortalMode, SceneBakeOptions, axial_graph_of, bake_scene};
+use sightlines::bake::{PortalMode, SceneBakeOptions, bake_scene};
 use sightlines::cells::{Axial, CellGraph, Plan, Planar, Scene};
 use sightlines::formats::Wad;
 use sightlines::formats::doom::{DoomMap, list_maps};
@@ -278,9 +278,8 @@ fn among_boxes(
     };
     let (seen, seconds, repeats) = see(graph);
     let options = SceneBakeOptions { portals: PortalMode::Bounding, ..SceneBakeOptions::default() };
-    let table = bake_scene(scene, &options).map_err(|e| failed(name)(e.into()))?.table;
-    let loose = axial_graph_of(&table).ok_or("a table without its cells");
-    let (wide, wide_seconds, wide_repeats) = see(&loose.map_err(|e| failed(name)(e.into()))?);
+    let loose = bake_scene(scene, &options).map_err(|e| failed(name)(e.into()))?.graph;
+    let (wide, wide_seconds, wide_repeats) = see(&loose);
     // Larger portals let all lines through that exact ones do, so what they hide is hidden: of pairs that the search gave up
     // they decide some.
     let mut truth = seen.cells.clone();

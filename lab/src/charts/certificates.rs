@@ -3,7 +3,9 @@
 use super::plot::{Panel, Point, Series};
 use super::row::Row;
 use super::{ChartError, Family, Settings};
-use sightlines::bake::{BakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, certify_table};
+use sightlines::bake::{
+    PlanBakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, certify_table, from_table,
+};
 use sightlines::formats::Prt;
 use sightlines::formats::quake::read_prt;
 use sightlines::pvs::Table;
@@ -48,7 +50,7 @@ impl Family for Certificates {
         for &side in rooms {
             let bake = || -> Result<Table, Failure> {
                 let plan = office(OfficeOptions { rooms_x: side, rooms_y: side, ..OfficeOptions::default() })?;
-                Ok(bake_plan(&plan, &BakeOptions { threads: 1, ..BakeOptions::default() })?.table)
+                Ok(bake_plan(&plan, &PlanBakeOptions { threads: 1, ..PlanBakeOptions::default() })?.table)
             };
             one(settings, KINDS[0], &format!("{side} x {side} rooms"), bake, &mut rows)?;
         }
@@ -122,7 +124,8 @@ fn one(
     let failed = |e: Failure| ChartError::measure(NAME, &format!("{kind} of {which}"), e);
     let (table, baking, n_baking) = settings.best_of(&bake);
     let table = table.map_err(failed)?;
-    let (found, proving, n_proving) = settings.best_of(|| certify_table(&table, &CertifyOptions::default()));
+    let graph = from_table::graph(&table).ok_or_else(|| failed("a table without portals".into()))?;
+    let (found, proving, n_proving) = settings.best_of(|| certify_table(&table, &graph, &CertifyOptions::default()));
     let proofs = found.map_err(|e| failed(e.into()))?.proofs.to_bytes();
     let (checked, checking, n_checking) = settings.best_of(|| check_proofs(&table, &proofs));
     let checked = checked.map_err(|e| failed(e.into()))?;
@@ -159,7 +162,7 @@ mod tests {
         let mut rows = Vec::new();
         let bake = || -> Result<Table, Failure> {
             let plan = office(OfficeOptions { rooms_x: 3, rooms_y: 2, ..OfficeOptions::default() })?;
-            Ok(bake_plan(&plan, &BakeOptions::default())?.table)
+            Ok(bake_plan(&plan, &PlanBakeOptions::default())?.table)
         };
         one(&settings, KINDS[0], "3 x 2 rooms", bake, &mut rows).unwrap();
         assert_eq!(rows.iter().map(|r| r.method.as_str()).collect::<Vec<_>>(), STEPS);

@@ -6,7 +6,7 @@ use super::plot::Panel;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::bake::quake::bake_map;
-use sightlines::bake::{BakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_scene};
+use sightlines::bake::{PlanBakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_scene};
 use sightlines::cells::Scene;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::quake::{read_bsp, read_prt};
@@ -89,7 +89,7 @@ fn places(settings: &Settings) -> Result<Vec<Place>, ChartError> {
     let name = format!("office {rooms} x {rooms}");
     let plan = office(OfficeOptions { rooms_x: rooms, rooms_y: rooms, ..OfficeOptions::default() });
     let plan = plan.map_err(|e| failed(&name)(e.into()))?;
-    let baked = bake_plan(&plan, &BakeOptions::default()).map_err(|e| failed(&name)(e.into()))?;
+    let baked = bake_plan(&plan, &PlanBakeOptions::default()).map_err(|e| failed(&name)(e.into()))?;
     places.push(Place { name, table: baked.table, scene: None, up: [0.0; 3] });
     let name = settings.pick("tower:1:3:2:2", "tower:4:6:4:2");
     let scene = name.parse::<SceneSpec>().and_then(|s| s.load()).map_err(|e| failed(name)(e.into()))?;

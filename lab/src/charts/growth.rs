@@ -4,7 +4,7 @@ use super::clock::{SHORT, timed};
 use super::plot::{Panel, Point, Series};
 use super::row::Row;
 use super::{ChartError, Family, Settings};
-use sightlines::bake::{BakeOptions, SceneBakeOptions, bake_plan, bake_scene};
+use sightlines::bake::{PlanBakeOptions, SceneBakeOptions, bake_plan, bake_scene};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 use sightlines_benches::chart::exponent;
@@ -178,13 +178,13 @@ fn of_tower(floors: u32) -> Result<Took, Failure> {
     let options = SceneBakeOptions { threads: 1, ..SceneBakeOptions::default() };
     let (baked, seconds) = timed(|| bake_scene(&scene, &options));
     let baked = baked?;
-    Ok((baked.table.n_cells() as u64, 2 * baked.n_visible_pairs, seconds))
+    Ok((baked.table.n_cells() as u64, 2 * baked.report.n_visible_pairs, seconds))
 }
 
 fn of_plan(rooms: u32) -> Result<Took, Failure> {
     let side = f64::from(rooms).sqrt().round() as u32;
     let plan = office(OfficeOptions { rooms_x: side, rooms_y: rooms / side, ..OfficeOptions::default() })?;
-    let (baked, seconds) = timed(|| bake_plan(&plan, &BakeOptions { threads: 1, ..BakeOptions::default() }));
+    let (baked, seconds) = timed(|| bake_plan(&plan, &PlanBakeOptions { threads: 1, ..PlanBakeOptions::default() }));
     let table = baked?.table;
     let rows = &table.parts().rows;
     Ok((table.n_cells() as u64, rows.count_ones() - rows.n_rows() as u64, seconds))

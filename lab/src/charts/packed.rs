@@ -4,7 +4,7 @@ use super::panels::{Layout, by_scene};
 use super::plot::Panel;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
-use sightlines::bake::{BakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
+use sightlines::bake::{PlanBakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::packed::{Distinct, PackOptions, Packed, pack_report};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::doom_like;
@@ -63,7 +63,10 @@ fn tables(settings: &Settings) -> Result<Vec<(String, Table)>, ChartError> {
     let size = settings.pick(4, 12);
     let name = format!("doom-like {size}");
     let plan = doom_like(1, size).map_err(|e| failed(&name)(e.into()))?;
-    tables.push((name.clone(), bake_plan(&plan, &BakeOptions::default()).map_err(|e| failed(&name)(e.into()))?.table));
+    tables.push((
+        name.clone(),
+        bake_plan(&plan, &PlanBakeOptions::default()).map_err(|e| failed(&name)(e.into()))?.table,
+    ));
     let name = settings.pick("tower:1:2:2:1", "tower:4:6:4:2");
     let scene = name.parse::<SceneSpec>().and_then(|s| s.load()).map_err(|e| failed(name)(e.into()))?;
     let baked = bake_scene(&scene, &SceneBakeOptions::default()).map_err(|e| failed(name)(e.into()))?;

@@ -4,11 +4,10 @@
 //! Each target begins with small files, breaks them at random, and checks. A failure prints the seed
 //! that replays it. Run by `cargo xtask fuzz`.
 
+use sightlines::bake::from_table::{convex_graph, planar_graph};
 use sightlines::bake::quake::{StateKey, state};
 use sightlines::bake::reject::{RejectOptions, reject_wad};
-use sightlines::bake::{
-    BakeOptions, PortalMode, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, convex_graph_of, graph_of,
-};
+use sightlines::bake::{PlanBakeOptions, PortalMode, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::cells::Scene;
 use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
 use sightlines::formats::geojson::{parse_plan, write_plan};
@@ -214,7 +213,7 @@ fn buildings() -> Vec<Vec<u8>> {
 }
 
 fn tables() -> Vec<Vec<u8>> {
-    let bake = |plan| bake_plan(&plan, &BakeOptions::default()).map(|b| b.table.to_bytes());
+    let bake = |plan| bake_plan(&plan, &PlanBakeOptions::default()).map(|b| b.table.to_bytes());
     scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1)).flat_map(bake).collect()
 }
 
@@ -323,8 +322,10 @@ fn check_view_cells(bytes: &[u8]) -> bool {
 
 fn check_bake(bytes: &[u8]) -> bool {
     let Ok(plan) = parse_plan(bytes) else { return false };
-    let Ok(baked) = bake_plan(&plan, &BakeOptions { threads: 1, ..BakeOptions::default() }) else { return false };
-    let graph = graph_of(&baked.table).expect("a baked table has its graph");
+    let Ok(baked) = bake_plan(&plan, &PlanBakeOptions { threads: 1, ..PlanBakeOptions::default() }) else {
+        return false;
+    };
+    let graph = planar_graph(&baked.table).expect("a baked table has its graph");
     graph.assert_well_formed();
     let decoded = Table::from_bytes(&baked.table.to_bytes()).expect("what was written is read");
     assert_eq!(decoded, baked.table);
@@ -356,7 +357,7 @@ fn check_building(bytes: &[u8]) -> bool {
 fn check_pvs(bytes: &[u8]) -> bool {
     let Ok(table) = Table::from_bytes(bytes) else { return false };
     assert_eq!(table.to_bytes(), bytes);
-    if let Some(graph) = graph_of(&table) {
+    if let Some(graph) = planar_graph(&table) {
         graph.assert_well_formed();
     }
     true
@@ -421,7 +422,7 @@ fn check_prt(bytes: &[u8]) -> bool {
     }
     let Ok(baked) = bake_prt(&prt, PrtOptions::default()) else { return true };
     // Portals far from flat may not come back.
-    if let Some(graph) = convex_graph_of(&baked.table) {
+    if let Some(graph) = convex_graph(&baked.table) {
         assert_eq!(graph.cells(), graph_of_prt(&prt).cells());
     }
     assert_eq!(Table::from_bytes(&baked.table.to_bytes()).expect("what was written is read"), baked.table);

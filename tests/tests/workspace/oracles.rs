@@ -2,7 +2,7 @@
 //! called visible. And tables of larger plans against random chords.
 
 use proptest::prelude::*;
-use sightlines::bake::{BakeOptions, Subdivide, bake_plan, see_groups};
+use sightlines::bake::{PlanBakeOptions, Subdivide, bake_plan, see_groups};
 use sightlines::cells::{CellId, Plan, PlanLine};
 use sightlines::geometry::Point2;
 use sightlines::pvs::{Place, Table};
@@ -32,11 +32,11 @@ fn disagreement(plan: &Plan, table: &Table) -> Option<(CellId, CellId)> {
 }
 
 fn bake(plan: &Plan, subdivide: Subdivide) -> Option<Table> {
-    let options = BakeOptions { subdivide, threads: 1, ..BakeOptions::default() };
+    let options = PlanBakeOptions { subdivide, threads: 1, ..PlanBakeOptions::default() };
     let baked = bake_plan(plan, &options).ok()?;
     // Where a crossing was rounded, cells are those of walls bent by a rounding error, and the exact
     // oracle sees through the slivers between; noding has its own tests.
-    (baked.summary.n_rounded_crossings == 0).then_some(baked.table)
+    (baked.report.n_rounded_crossings == 0).then_some(baked.table)
 }
 
 proptest! {
@@ -226,7 +226,7 @@ fn chords_of_generated_scenes_are_in_the_table() {
     let mut n_checked = 0;
     for (name, plan) in all_scenes() {
         for subdivide in [Subdivide::Auto, Subdivide::KdTree, Subdivide::Triangulation] {
-            let options = BakeOptions { subdivide, ..BakeOptions::default() };
+            let options = PlanBakeOptions { subdivide, ..PlanBakeOptions::default() };
             let Ok(baked) = bake_plan(&plan, &options) else {
                 assert!(plan.lines().len() < 3 || !plan.is_axial(), "{name} by {subdivide}");
                 continue;

@@ -1,8 +1,9 @@
 //! Tables of Quake maps that know where their cells are: of generated worlds in every format, and of real maps. What
 //! the tables say of points and faces is compared with descents that are written here, over the bytes of the map.
 
+use sightlines::bake::from_table::{axial_graph, convex_graph};
 use sightlines::bake::quake::bake_map;
-use sightlines::bake::{BakedMap, PrtOptions, axial_graph_of, convex_graph_of};
+use sightlines::bake::{BakedMap, PrtOptions};
 use sightlines::formats::quake::{Bsp, BspFormat, Prt, graph_of_prt, read_prt};
 use sightlines::geometry::Portal3;
 use sightlines::pvs::{CellId, Locator, PlaneChild, PlaneTree, Table, TableParts};
@@ -201,10 +202,10 @@ fn check_faces(
 fn check_whole(case: &Case) {
     let (table, name) = (&case.baked.table, &case.name);
     assert!(table.kind().is_quake(), "{name}");
-    assert_eq!(convex_graph_of(table).as_ref(), Some(&graph_of_prt(&case.prt)), "{name}: to the bit");
-    assert!(axial_graph_of(table).is_none(), "{name}");
+    assert_eq!(convex_graph(table).as_ref(), Some(&graph_of_prt(&case.prt)), "{name}: to the bit");
+    assert!(axial_graph(table).is_none(), "{name}");
     assert_eq!(Table::from_bytes(&table.to_bytes()).as_ref(), Ok(table), "{name}");
-    let rows = &case.baked.clusters.seen.cells;
+    let rows = &case.baked.report.clusters.seen.cells;
     assert!(
         (0..rows.n_rows()).all(|a| { table.visible(CellId(a as u32)).map(CellId::idx).eq(rows.iter_ones(a)) }),
         "{name}"
@@ -332,7 +333,7 @@ fn tables_of_real_maps_know_where_their_cells_are() {
         check_whole(&case);
         let mut counts = Counts::default();
         check(&case, &case.baked.table, 3000, &mut counts).unwrap_or_else(|e| panic!("{}: {e}", case.name));
-        eprintln!("{}: {counts:?} {:?}", case.name, case.baked.world);
+        eprintln!("{}: {counts:?} {:?}", case.name, case.baked.report.world);
         assert!(counts.open > 500 && counts.solid > 300 && counts.listed > 1000, "{}: {counts:?}", case.name);
         assert!(counts.corners > 2000 && counts.on_faces > 2000, "{}: {counts:?}", case.name);
         assert!(1000 * counts.beyond < counts.corners, "{}: {counts:?}", case.name);

@@ -1,6 +1,6 @@
 //! A scene, cut for its table only.
 
-use crate::plan::BakeError;
+use crate::error::BakeError;
 use crate::scene::{PortalMode, merge_portals};
 use sightlines_cells::{Axial, CellGraph, Scene};
 use sightlines_geometry::Aabb;

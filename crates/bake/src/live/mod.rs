@@ -11,11 +11,13 @@
 
 mod cut;
 
+use crate::error::BakeError;
 use crate::mirrors;
-use crate::plan::BakeError;
-use crate::scene::{PortalMode, SceneBakeOptions, drawn_box, info, scene_table};
+use crate::scene::{PortalMode, SceneBakeOptions, drawn_box, info, scene_parts};
+use crate::table::state_file;
 use cut::Cut;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, PortalId, Scene};
+use sightlines_formats::SceneInfo;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneCutter, SceneOptions};
 use sightlines_pvs::Table;
@@ -27,9 +29,7 @@ use std::time::{Duration, Instant};
 /// Memory beside the table: see [`LiveSpace`].
 #[derive(Debug, Clone)]
 pub struct LiveScene {
-    cutting: SceneOptions,
-    portals: PortalMode,
-    threads: usize,
+    how: How,
     scene: Scene,
     /// The boxes of its objects.
     boxes: Vec<Aabb<3>>,
@@ -39,6 +39,22 @@ pub struct LiveScene {
     closed: Vec<AxialDoor>,
     space: LiveSpace,
     table: Table,
+}
+
+/// The options that every update needs again.
+#[derive(Debug, Clone)]
+struct How {
+    cut: SceneOptions,
+    portals: PortalMode,
+    threads: usize,
+    file: Option<SceneInfo>,
+}
+
+impl How {
+    fn options(&self) -> SceneBakeOptions<'_> {
+        let Self { cut, portals, threads, ref file } = *self;
+        SceneBakeOptions { cut, portals, threads, file: file.as_ref(), progress: None }
+    }
 }
 
 /// What an update did, and how long it took.
@@ -61,15 +77,15 @@ impl LiveScene {
     /// # Errors
     /// As [`bake_scene`](crate::bake_scene).
     pub fn new(scene: Scene, options: &SceneBakeOptions<'_>) -> Result<Self, BakeError> {
-        let (portals, threads) = (options.portals, options.threads);
-        let cutting = options.cut;
+        let SceneBakeOptions { cut, portals, threads, file, progress } = *options;
+        let how = How { cut, portals, threads, file: file.cloned() };
         let mut cutter = SceneCutter::default();
-        let cut = Cut::of(&mut cutter, &scene, &cutting, portals)?;
-        let search = SearchOptions { threads, progress: options.progress, ..SearchOptions::default() };
+        let cut = Cut::of(&mut cutter, &scene, &how.cut, portals)?;
+        let search = SearchOptions { threads, progress, ..SearchOptions::default() };
         let boxes = boxes_of(&scene);
         let space = LiveSpace::new(cut.graph.clone(), &cut.solid, boxes.clone(), &search)?;
-        let table = tabulate(&scene, &boxes, &cut, &space, &cutting, portals)?;
-        Ok(Self { cutting, portals, threads, scene, boxes, cutter, cut, closed: Vec::new(), space, table })
+        let table = tabulate(&scene, &boxes, &cut, &space, &how)?;
+        Ok(Self { how, scene, boxes, cutter, cut, closed: Vec::new(), space, table })
     }
 
     /// The scene.
@@ -96,7 +112,7 @@ impl LiveScene {
     /// As [`bake_scene`](crate::bake_scene); then everything stays as it was.
     pub fn update(&mut self, scene: Scene) -> Result<LiveUpdate, BakeError> {
         let start = Instant::now();
-        let cut = Cut::of(&mut self.cutter, &scene, &self.cutting, self.portals)?;
+        let cut = Cut::of(&mut self.cutter, &scene, &self.how.cut, self.how.portals)?;
         let cut_time = start.elapsed();
         (self.boxes, self.scene, self.cut) = (boxes_of(&scene), scene, cut);
         Ok(LiveUpdate { cut_time, ..self.see()? })
@@ -144,7 +160,7 @@ impl LiveScene {
     /// Brings the answer and the table up to date with the scene that is cut and the portals that are closed.
     fn see(&mut self) -> Result<LiveUpdate, BakeError> {
         let start = Instant::now();
-        let search = SearchOptions { threads: self.threads, ..SearchOptions::default() };
+        let search = SearchOptions { threads: self.how.threads, ..SearchOptions::default() };
         let graph = if self.closed.is_empty() {
             self.cut.graph.clone()
         } else {
@@ -154,7 +170,7 @@ impl LiveScene {
         let space = self.space.update(graph, &self.cut.solid, self.boxes.clone(), &search);
         let see_time = start.elapsed();
         let start = Instant::now();
-        self.table = tabulate(&self.scene, &self.boxes, &self.cut, &self.space, &self.cutting, self.portals)?;
+        self.table = tabulate(&self.scene, &self.boxes, &self.cut, &self.space, &self.how)?;
         Ok(LiveUpdate { space, cut_time: Duration::ZERO, see_time, table_time: start.elapsed() })
     }
 }
@@ -169,16 +185,10 @@ fn boxes_of(scene: &Scene) -> Vec<Aabb<3>> {
     scene.objects().iter().map(drawn_box).collect()
 }
 
-fn tabulate(
-    scene: &Scene,
-    boxes: &[Aabb<3>],
-    cut: &Cut,
-    space: &LiveSpace,
-    cutting: &SceneOptions,
-    portals: PortalMode,
-) -> Result<Table, BakeError> {
-    let options = SceneBakeOptions { cut: *cutting, portals, ..SceneBakeOptions::default() };
-    let info = info(&options, &cut.summary);
+fn tabulate(scene: &Scene, boxes: &[Aabb<3>], cut: &Cut, space: &LiveSpace, how: &How) -> Result<Table, BakeError> {
+    let info = info(&how.options(), &cut.summary);
     let mirrors = mirrors::of_scene(&cut.graph, scene).parts;
-    Ok(scene_table(&cut.graph, space.seen().clone(), scene, boxes, info, mirrors)?)
+    let mut parts = scene_parts(&cut.graph, space.seen().clone(), scene, boxes, info, mirrors);
+    state_file(&mut parts, how.file.as_ref());
+    Ok(Table::new(parts)?)
 }

@@ -12,17 +12,18 @@ mod world;
 
 pub use error::PrtBakeError;
 pub use state::{StateError, StateKey, named_counters};
-pub use table::convex_graph_of;
-pub use world::{BakedMap, WorldSummary, bake_map};
+pub use world::bake_map;
 
+use crate::baked::{Baked, BakedPrt};
+use crate::reports::ClusterVisibility;
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::visibility::{check_portals, lump};
 use sightlines_formats::quake::{Bsp, Prt, graph_of_prt};
 use sightlines_progress::Observer;
 use sightlines_pvs::Table;
-use sightlines_stabtree::{ConvexOptions, ConvexSearch, ConvexState, ConvexVisibility};
+use sightlines_stabtree::{ConvexOptions, ConvexSearch, ConvexState};
 use std::fmt;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// How to find out which clusters see which.
 #[derive(Default)]
@@ -52,45 +53,9 @@ pub struct VisMap {
     /// The map.
     pub bytes: Vec<u8>,
     /// Which clusters see which.
-    pub clusters: SeenClusters,
-}
-
-/// A table of clusters, and how it came about.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BakedPrt {
-    /// The table. It has the cells and portals of the file, but not where the cells are ([`bake_prt`]).
-    pub table: Table,
-    /// Which clusters see which.
-    pub clusters: SeenClusters,
-}
-
-/// Which clusters see which.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SeenClusters {
-    /// The answer of the search, and what it did.
-    pub seen: ConvexVisibility,
-    /// Portals that the search went through: all of the file but those without area.
-    pub n_portals: usize,
-    /// Time of the search, of this run.
-    pub see_time: Duration,
-}
-
-impl SeenClusters {
-    /// Number of clusters.
-    pub fn n_clusters(&self) -> usize {
-        self.seen.cells.n_rows()
-    }
-
-    /// Unordered pairs of different clusters that see each other.
-    pub fn n_visible_pairs(&self) -> u64 {
-        (self.seen.cells.count_ones() - self.n_clusters() as u64) / 2
-    }
-
-    /// Unordered pairs of different clusters.
-    pub fn n_pairs(&self) -> u64 {
-        let n = self.n_clusters() as u64;
-        n * n.saturating_sub(1) / 2
-    }
+    pub clusters: ClusterVisibility,
+    /// The clusters, and the portals that the search went through.
+    pub graph: CellGraph<Convex>,
 }
 
 /// Finds out which clusters of a map see which, and writes that into the map: its visibility lump, and what
@@ -103,9 +68,10 @@ pub fn vis_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<VisMap, 
     check_portals(bsp, prt)?;
     // What only the sounds of the leafs need is looked up before the search too: it may take hours.
     bsp.leaf_sounds()?;
-    let clusters = see(&graph(prt)?, options)?;
+    let graph = graph(prt)?;
+    let clusters = see(&graph, options)?;
     let lump = lump(bsp, &prt.leaf_clusters(), &clusters.seen.cells)?;
-    Ok(VisMap { bytes: bsp.with_visibility(&lump)?, clusters })
+    Ok(VisMap { bytes: bsp.with_visibility(&lump)?, clusters, graph })
 }
 
 /// Finds out which clusters of a portal file see which, and makes a table of them: cell `k` is cluster `k`.
@@ -121,7 +87,7 @@ pub fn bake_prt(prt: &Prt, options: PrtOptions<'_>) -> Result<BakedPrt, PrtBakeE
     let fast = options.search.fast;
     let clusters = see(&graph, options)?;
     let table = Table::new(table::parts_of_clusters(prt, &graph, clusters.seen.cells.clone(), fast))?;
-    Ok(BakedPrt { table, clusters })
+    Ok(Baked { graph, table, report: clusters })
 }
 
 fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
@@ -132,7 +98,7 @@ fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
     }
 }
 
-fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<SeenClusters, PrtBakeError> {
+fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<ClusterVisibility, PrtBakeError> {
     let PrtOptions { search, from, progress, after_step } = options;
     let start = Instant::now();
     let mut running = match from {
@@ -141,5 +107,5 @@ fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<SeenCluster
     };
     let mut nobody = |_: &ConvexSearch| {};
     running.run(progress, after_step.unwrap_or(&mut nobody))?;
-    Ok(SeenClusters { seen: running.finish(), n_portals: graph.portals().len(), see_time: start.elapsed() })
+    Ok(ClusterVisibility { seen: running.finish(), n_portals: graph.portals().len(), see_time: start.elapsed() })
 }

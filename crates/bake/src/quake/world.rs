@@ -4,7 +4,9 @@ mod faces;
 mod planes;
 
 use super::table::{SOURCE_KEY, parts_of_clusters};
-use super::{PrtBakeError, PrtOptions, SeenClusters, graph, see};
+use super::{PrtBakeError, PrtOptions, graph, see};
+use crate::baked::{Baked, BakedMap};
+use crate::reports::{MapReport, WorldSummary};
 use planes::ClusterTree;
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::bsp::{BspTree, WorldFaces};
@@ -16,34 +18,6 @@ use sightlines_pvs::{CellRecord, Locator, ObjectRecord, Table, TableKind};
 /// By how much the bounds of leafs may be too small, in map units. Most formats have them as whole numbers, and some
 /// compilers cut the rest off.
 const BOUNDS_ROUNDING: f64 = 1.0;
-
-/// A table of a map, and how it came about.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BakedMap {
-    /// The table: its cells are the clusters, its objects the faces of the world.
-    pub table: Table,
-    /// Which clusters see which.
-    pub clusters: SeenClusters,
-    /// What the map added.
-    pub world: WorldSummary,
-}
-
-/// What a map adds to its portals.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct WorldSummary {
-    /// Faces of the world.
-    pub n_faces: usize,
-    /// Faces that no leaf lists; engines never draw them.
-    pub n_unlisted_faces: usize,
-    /// Pairs of a cluster and a face that a leaf of the cluster lists.
-    pub n_listed: usize,
-    /// Pairs of a cluster and a face that reaches into it, though none of its leafs lists the face.
-    pub n_reaching: usize,
-    /// Planes of the tree that divide clusters from each other or from what is solid.
-    pub n_planes: usize,
-    /// How near to a plane a viewer counts to both sides, in map units.
-    pub slack: f64,
-}
 
 /// Finds out which clusters of a map see which, and makes a table of them that knows where they are: cell `k` is
 /// cluster `k`, planes are those of the map's tree, an object is a face of the world, named by its number in the map.
@@ -84,7 +58,7 @@ pub fn bake_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<BakedMa
     let source = format!("Quake map {} with {}", bsp.format().name(), prt.dialect());
     parts.kind = TableKind::QuakeMap;
     parts.info.iter_mut().filter(|(key, _)| key == SOURCE_KEY).for_each(|(_, value)| value.clone_from(&source));
-    Ok(BakedMap { table: Table::new(parts)?, clusters, world })
+    Ok(Baked { table: Table::new(parts)?, graph, report: MapReport { clusters, world } })
 }
 
 /// The cluster of each leaf of the map; `None` for what is solid, and for leafs of doors and the like.

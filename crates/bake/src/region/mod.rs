@@ -1,37 +1,43 @@
-//! Baking a scene by what is hidden from whole volumes: view cells as volumes, objects as occludees.
+//! Baking a scene by from-region queries: view cells as volumes, objects as occludees.
 //!
-//! A from-region method ([`FromRegion`]) finds the objects and other cells that are hidden from all of a cell. Sight
-//! lines give the same answer in another way, for the cells of a k-d tree ([`bake_scene`]) or of given boxes
-//! ([`box_visibility`]); what either reports hidden is hidden, so the two can be combined. For given boxes the method
-//! runs first, and sight lines only where neither it nor a ray has decided. Rays are traced in doubles: what one seems
-//! to reach through the crack between two surfaces stays visible.
+//! A from-region method ([`FromRegion`]) finds for each cell which objects, and which other cells, are hidden from all of
+//! it. Sightlines find the same in another way, for the cells of a k-d tree ([`bake_scene`](crate::bake_scene)) or for
+//! given boxes ([`box_visibility`]). What either proves hidden is hidden, so the two can be combined. For given boxes the
+//! method comes first, and sightlines decide the pairs that neither it nor a ray has decided. Rays are traced in doubles:
+//! what one seems to reach through the crack between two surfaces is left visible.
 
 mod boxes;
+mod parts;
 mod see;
 
-pub use boxes::{GridError, grid};
+pub use crate::grid::{GridError, grid};
 
-use crate::mirrors;
-use crate::plan::BakeError;
-use crate::scene::{BakedScene, PortalMode, SceneBakeOptions, bake_scene, merge_portals, portal_record};
+use crate::baked::{Baked, BakedRegions};
+use crate::error::BakeError;
+use crate::graph::TableGraph;
+use crate::reports::RegionReport;
+use crate::scene::{PortalMode, SceneBakeOptions, merge_portals, n_triangles, see_scene};
+use crate::table::{object_record, state_file};
+use parts::Start;
 use sightlines_cells::Scene;
-use sightlines_formats::ViewCells;
+use sightlines_formats::{SceneInfo, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_kdtree::{SceneOptions, SceneSubdivision, subdivide_scene};
-use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Split, Volume, VolumeError, Witness};
-use sightlines_progress::{Cancelled, Observer};
-use sightlines_pvs::{
-    BitMatrix, CellRecord, Locator, ObjectRecord, SceneMethods, Table, TableError, TableKind, TableParts,
-};
+use sightlines_kdtree::{SceneOptions, subdivide_scene};
+use sightlines_multifocal::{Effort, FromRegion, Occludees, Split, Volume, Witness};
+use sightlines_progress::Observer;
+use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// The cells of the table.
-#[derive(Debug, Clone, PartialEq)]
+/// The cells of the table of a scene.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum CellsFrom {
     /// Those of the k-d tree, with their portals.
+    #[default]
     KdTree,
+    /// A grid of so many boxes along each axis, in the view region or else the scene's box; without portals.
+    Grid([u32; 3]),
     /// These boxes, without portals; they may overlap, and leave gaps.
     Boxes(ViewCells),
 }
@@ -39,14 +45,15 @@ pub enum CellsFrom {
 /// Makes a from-region method, for one thread.
 pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
 
-/// How to bake.
+/// How to bake a scene by from-region queries.
 #[derive(Clone, Copy)]
 pub struct RegionBakeOptions<'a> {
     /// The cells.
     pub cells: &'a CellsFrom,
-    /// What says what is hidden; none leaves it to sightlines.
+    /// The from-region method; none leaves all to sightlines. [`OcclusionMethodFactory`](crate::methods::OcclusionMethodFactory)
+    /// has those of this workspace by name.
     pub method: Option<MakeMethod<'a>>,
-    /// Whether sightlines say it as well; then without a method, they do alone.
+    /// Whether sightlines decide as well; without a method they always do.
     pub sightlines: bool,
     /// When cells are cut into smaller volumes.
     pub split: Split,
@@ -56,7 +63,9 @@ pub struct RegionBakeOptions<'a> {
     pub portals: PortalMode,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Called with the number of finished cells and their total.
+    /// What the scene's file says of its axes and units, if it came from one; the table says it too.
+    pub file: Option<&'a SceneInfo>,
+    /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,
 }
 
@@ -71,90 +80,37 @@ impl fmt::Debug for RegionBakeOptions<'_> {
     }
 }
 
-/// Why a scene was not baked.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RegionBakeError {
-    /// The scene could not be cut, or seen through by sightlines.
-    #[error(transparent)]
-    Scene(#[from] BakeError),
-    /// A cell is no volume.
-    #[error("view cell {cell}: {error}")]
-    Cell {
-        /// Which, from 0.
-        cell: usize,
-        /// What is wrong.
-        error: VolumeError,
-    },
-    /// The method failed.
-    #[error(transparent)]
-    Backend(#[from] BackendError),
-    /// The observer cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
-
-impl From<TableError> for RegionBakeError {
-    fn from(error: TableError) -> Self {
-        Self::Scene(error.into())
-    }
-}
-
-/// A table, and how it came about.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BakedRegions {
-    /// The table.
-    pub table: Table,
-    /// Pairs that count as visible because it would have taken sightlines too much effort to decide about them.
-    pub n_assumed: u64,
-    /// Name of the method, if one was asked.
-    pub method: Option<String>,
-    /// What it did.
-    pub effort: Effort,
-    /// Unordered pairs of different cells that may see each other.
-    pub n_visible_pairs: u64,
-    /// Pairs of a cell and an object that it may see.
-    pub n_objects_seen: u64,
-    /// Time for everything.
-    pub time: Duration,
-}
-
-/// What is known before a method runs.
-struct Start {
-    cells: Vec<Aabb<3>>,
-    /// Which cells may see each other: symmetric, with ones on the diagonal.
-    rows: BitMatrix,
-    objects: BitMatrix,
-}
-
 /// Decides which cells see which objects and each other, and makes the table.
 ///
 /// An eye may be anywhere in a closed cell. Objects are hidden if all of their triangles are; those whose box touches a cell
 /// are visible from it. Errs towards visible only, as far as the method does.
 ///
 /// # Errors
-/// [`RegionBakeError`]
-pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, RegionBakeError> {
+/// [`BakeError`]: for scenes that cannot be cut, cells that are no volumes, and methods that fail.
+pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
     let start = Instant::now();
     let triangles: Vec<Vec<[Point3; 3]>> = scene.objects().iter().map(|o| o.corners().collect()).collect();
     let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(t.iter().flatten().copied())).collect();
     let by_sightlines = options.sightlines || options.method.is_none();
     let mut n_assumed = 0;
-    let (mut parts, known) = match options.cells {
+    let Start { graph, mut parts, cells, rows, objects } = match options.cells {
         CellsFrom::KdTree if by_sightlines => {
-            let baked = by_portals(scene, options)?;
-            n_assumed = baked.n_assumed;
-            kd_known(baked.table.parts().clone())
+            let RegionBakeOptions { cut, portals, threads, progress, .. } = *options;
+            let options = SceneBakeOptions { cut, portals, threads, file: None, progress };
+            let (graph, parts, report) = see_scene(scene, &options)?;
+            n_assumed = report.n_assumed;
+            parts::of_seen(graph, parts)
         }
-        CellsFrom::KdTree => {
-            let cut = subdivide_scene(scene, &options.cut).map_err(BakeError::from)?;
-            kd_parts(scene, &cut, boxes.len())
+        CellsFrom::KdTree => parts::of_cut(scene, subdivide_scene(scene, &options.cut)?, boxes.len()),
+        CellsFrom::Grid(n) => {
+            let around = options.cut.view_region.unwrap_or_else(|| scene.bounds());
+            parts::of_boxes(&grid(&around, *n)?, boxes.len())
         }
-        CellsFrom::Boxes(cells) => box_parts(cells, boxes.len()),
+        CellsFrom::Boxes(cells) => parts::of_boxes(cells, boxes.len()),
     };
-    let volumes = volumes(&known.cells)?;
-    let touching = see::touching(&known.cells, &boxes);
-    let n = known.cells.len();
+    let volumes = volumes(&cells)?;
+    let touching = see::touching(&cells, &boxes);
+    let n = cells.len();
     let mut proven = PairMask { boxes: BitMatrix::identity(n), objects: BitMatrix::new(n, boxes.len()) };
     let (mut rows, mut objects, effort, method) = match options.method {
         Some(make) => {
@@ -162,18 +118,18 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
             let method = (made.name(), made.only_in_air());
             let witness = Witness::new(triangles.iter().map(|t| &t[..]));
             let occludees = Occludees::new(triangles);
-            let scene = see::Scene { occludees: &occludees, witness: &witness, volumes: &volumes };
-            let seen = see::see(&scene, make, options, known.rows, known.objects)?;
+            let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes };
+            let seen = see::see(&scene, make, options, rows, objects)?;
             proven = seen.proven;
             (seen.rows, seen.objects, seen.effort, Some(method))
         }
-        None => (known.rows, known.objects, Effort::default(), None),
+        None => (rows, objects, Effort::default(), None),
     };
-    if by_sightlines && matches!(options.cells, CellsFrom::Boxes(_)) {
+    if by_sightlines && matches!(graph, TableGraph::Boxes(_)) {
         let doubt = boxes::in_doubt(&rows, &objects, &proven, &touching);
         // Where no doubt is left the scene need not be cut.
         if doubt.boxes.count_ones() + doubt.objects.count_ones() > 0 {
-            let answer = past_walls(scene, options, &known.cells, &boxes, &doubt)?;
+            let answer = past_walls(scene, options, &cells, &boxes, &doubt)?;
             n_assumed = answer.n_assumed;
             boxes::clear_hidden([&mut rows, &mut objects], &doubt, &answer);
         }
@@ -184,9 +140,8 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     parts.cell_objects = touching;
     parts.objects_seen = Some(objects);
     if parts.objects.is_empty() {
-        parts.objects = scene.objects().iter().zip(&boxes).map(|(o, b)| record(&o.name, b)).collect();
-        parts.object_polygons =
-            scene.objects().iter().map(|o| u32::try_from(o.triangles.len()).unwrap_or(u32::MAX)).collect();
+        parts.objects = scene.objects().iter().zip(&boxes).map(|(o, b)| object_record(&o.name, b)).collect();
+        parts.object_polygons = scene.objects().iter().map(n_triangles).collect();
     }
     let (method, only_in_air) = method.map_or((None, false), |(name, only_in_air)| (Some(name), only_in_air));
     let text = method.clone().unwrap_or_default();
@@ -198,23 +153,20 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         ""
     };
     let hidden_by = SceneMethods { sightlines: by_sightlines, from_region: method.is_some(), only_in_air };
-    parts.kind = match options.cells {
-        CellsFrom::KdTree => TableKind::SceneKdTree { hidden_by },
-        CellsFrom::Boxes(_) => TableKind::SceneGivenCells { hidden_by },
+    parts.kind = match graph {
+        TableGraph::Boxes(_) => TableKind::SceneGivenCells { hidden_by },
+        _ => TableKind::SceneKdTree { hidden_by },
     };
     parts.info.push(("method".to_owned(), format!("{by}{text}")));
     parts.info.sort();
+    state_file(&mut parts, options.file);
     let table = Table::new(parts)?;
-    Ok(BakedRegions { table, n_assumed, method, effort, n_visible_pairs, n_objects_seen, time: start.elapsed() })
+    let time = start.elapsed();
+    let report = RegionReport { n_assumed, method, effort, n_visible_pairs, n_objects_seen, time };
+    Ok(Baked { graph, table, report })
 }
 
-/// The table of the k-d tree's cells.
-fn by_portals(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedScene, BakeError> {
-    let RegionBakeOptions { cut, portals, threads, progress, .. } = *options;
-    bake_scene(scene, &SceneBakeOptions { cut, portals, threads, progress })
-}
-
-/// What sightlines say of boxes that may lie anywhere, with the insides of solid things, out to the farthest box.
+/// What boxes anywhere see by sightlines, with the insides of solid things as cells, out to the farthest box.
 fn past_walls(
     scene: &Scene,
     options: &RegionBakeOptions<'_>,
@@ -231,66 +183,7 @@ fn past_walls(
     Ok(box_visibility(graph, &cut.left_out(), cells, objects, doubt, &search)?)
 }
 
-fn volumes(cells: &[Aabb<3>]) -> Result<Vec<Volume>, RegionBakeError> {
-    let volume = |(cell, b): (usize, &Aabb<3>)| Volume::new(*b).map_err(|error| RegionBakeError::Cell { cell, error });
+fn volumes(cells: &[Aabb<3>]) -> Result<Vec<Volume>, BakeError> {
+    let volume = |(cell, b): (usize, &Aabb<3>)| Volume::new(*b).map_err(|error| BakeError::Cell { cell, error });
     cells.iter().enumerate().map(volume).collect()
-}
-
-fn record(name: &str, b: &Aabb<3>) -> ObjectRecord {
-    let b = if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b };
-    ObjectRecord { name: name.to_owned(), min: b.min, max: b.max }
-}
-
-/// A matrix of ones.
-fn ones(n_rows: usize, n_cols: usize) -> BitMatrix {
-    let mut all = BitMatrix::new(n_rows, n_cols);
-    (0..n_rows).for_each(|row| (0..n_cols).for_each(|col| all.set(row, col, true)));
-    all
-}
-
-/// The cells of a k-d tree, with what sightlines leave visible.
-fn kd_known(parts: TableParts) -> (TableParts, Start) {
-    let cells = parts.cells.iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
-    let objects = parts.objects_seen.clone().expect("scenes in space say what objects are seen");
-    let rows = parts.rows.clone();
-    (parts, Start { cells, rows, objects })
-}
-
-/// The cells of a k-d tree, of which everything may see everything.
-fn kd_parts(scene: &Scene, cut: &SceneSubdivision, n_objects: usize) -> (TableParts, Start) {
-    let cells: Vec<Aabb<3>> = cut.graph.cell_ids().map(|id| cut.graph.cell(id).bounds).collect();
-    let bounds: Vec<_> = cells.iter().map(|b| (b.min, b.max)).collect();
-    let info = vec![
-        ("detail-below".to_owned(), cut.summary.detail_below.to_string()),
-        ("subdivide".to_owned(), "kd".to_owned()),
-    ];
-    let parts = TableParts {
-        cells: cells.iter().map(cell_record).collect(),
-        portals: cut.graph.portals().iter().map(portal_record).collect(),
-        locator: Locator::build(&bounds, 3),
-        mirrors: mirrors::of_scene(&cut.graph, scene).parts,
-        info,
-        ..TableParts::empty(3, TableKind::SceneKdTree { hidden_by: SceneMethods::default() })
-    };
-    let n = cells.len();
-    (parts, Start { cells, rows: ones(n, n), objects: ones(n, n_objects) })
-}
-
-fn cell_record(b: &Aabb<3>) -> CellRecord {
-    CellRecord { min: b.min, max: b.max, group: None, polygon: Vec::new() }
-}
-
-/// Boxes from elsewhere, of which everything may see everything.
-fn box_parts(boxes: &ViewCells, n_objects: usize) -> (TableParts, Start) {
-    let cells: Vec<Aabb<3>> = boxes.cells.iter().map(|b| b.bounds).collect();
-    let bounds: Vec<_> = cells.iter().map(|b| (b.min, b.max)).collect();
-    let parts = TableParts {
-        cells: cells.iter().map(cell_record).collect(),
-        cell_names: boxes.cells.iter().map(|b| b.id.clone()).collect(),
-        locator: Locator::build(&bounds, 3),
-        info: vec![("subdivide".to_owned(), "boxes".to_owned())],
-        ..TableParts::empty(3, TableKind::SceneGivenCells { hidden_by: SceneMethods::default() })
-    };
-    let n = cells.len();
-    (parts, Start { cells, rows: ones(n, n), objects: ones(n, n_objects) })
 }

@@ -1,6 +1,7 @@
-//! Visibility, cell by cell.
+//! From-region queries, cell by cell.
 
-use super::{MakeMethod, RegionBakeError, RegionBakeOptions};
+use super::{MakeMethod, RegionBakeOptions};
+use crate::error::BakeError;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Umbra, Volume, Witness, adaptive};
@@ -8,26 +9,26 @@ use sightlines_progress::Counter;
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
 
-/// Number of rays to a cell before the method runs: most visible pairs of cells are joined by many lines.
+/// Rays to a cell before its query: most pairs of cells that see each other do so along many lines.
 const RAYS_TO_A_CELL: u32 = 24;
 
-/// The input shared by the queries of all cells.
-pub(super) struct Scene<'a> {
+/// What the queries of all cells share.
+pub(super) struct Targets<'a> {
     pub(super) occludees: &'a Occludees,
     pub(super) witness: &'a Witness,
     pub(super) volumes: &'a [Volume],
 }
 
-/// What is left visible, and what of it a ray proves to be.
-pub(super) struct Seen {
+/// What is left visible, and which of it a ray proves.
+pub(super) struct RegionVisibility {
     pub(super) rows: BitMatrix,
     pub(super) objects: BitMatrix,
     pub(super) proven: PairMask,
     pub(super) effort: Effort,
 }
 
-/// What one cell is left with.
-struct Row {
+/// What one cell may see.
+struct CellRow {
     cells: Vec<bool>,
     objects: Vec<bool>,
     /// Cells that a ray reaches, and objects.
@@ -35,14 +36,14 @@ struct Row {
     effort: Effort,
 }
 
-/// Asks the method for all cells about what is still visible in `rows` and `objects`.
+/// Clears what the method proves hidden of what is still visible in `rows` and `objects`.
 pub(super) fn see(
-    scene: &Scene<'_>,
+    scene: &Targets<'_>,
     make: MakeMethod<'_>,
     options: &RegionBakeOptions<'_>,
     mut rows: BitMatrix,
     mut objects: BitMatrix,
-) -> Result<Seen, RegionBakeError> {
+) -> Result<RegionVisibility, BakeError> {
     let n = scene.volumes.len();
     let counter = Counter::new(options.progress, "cells", n);
     let one = |method: &mut Box<dyn FromRegion + Send>, cell: usize| {
@@ -51,8 +52,8 @@ pub(super) fn see(
         Ok(row)
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
-    let found: Vec<Row> =
-        pool.install(|| (0..n).into_par_iter().map_init(make, one).collect::<Result<_, RegionBakeError>>())?;
+    let found: Vec<CellRow> =
+        pool.install(|| (0..n).into_par_iter().map_init(make, one).collect::<Result<_, BakeError>>())?;
     let mut effort = Effort::default();
     let mut proven = PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, scene.occludees.len()) };
     for (a, row) in found.iter().enumerate() {
@@ -72,17 +73,17 @@ pub(super) fn see(
         }
         (0..things.len()).filter(|&o| things[o]).for_each(|o| proven.objects.set(a, o, true));
     }
-    Ok(Seen { rows, objects, proven, effort })
+    Ok(RegionVisibility { rows, objects, proven, effort })
 }
 
 fn see_from(
-    scene: &Scene<'_>,
+    scene: &Targets<'_>,
     method: &mut dyn FromRegion,
     options: &RegionBakeOptions<'_>,
     cell: usize,
     rows: &BitMatrix,
     objects: &BitMatrix,
-) -> Result<Row, BackendError> {
+) -> Result<CellRow, BackendError> {
     let volume = &scene.volumes[cell];
     let mut of_objects: Vec<bool> = (0..scene.occludees.len()).map(|o| objects.get(cell, o)).collect();
     let mut of_cells: Vec<bool> = (0..scene.volumes.len()).map(|c| rows.get(cell, c)).collect();
@@ -106,7 +107,7 @@ fn see_from(
         objects_reached,
         &mut see_cells,
     )?;
-    Ok(Row { cells: of_cells, objects: of_objects, proven, effort })
+    Ok(CellRow { cells: of_cells, objects: of_objects, proven, effort })
 }
 
 /// For each cell the objects whose boxes meet it, ascending; touching counts.

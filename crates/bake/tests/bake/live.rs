@@ -101,7 +101,7 @@ fn follow(scene: &Scene, edits: &[Edit], options: &SceneBakeOptions<'_>) -> Resu
         let before = live.table().to_bytes();
         match (bake_scene(&now, options), live.update(now.clone())) {
             (Ok(expected), Ok(update)) => {
-                prop_assert_eq!(expected.n_assumed, 0);
+                prop_assert_eq!(expected.report.n_assumed, 0);
                 let bytes = expected.table.to_bytes();
                 prop_assert!(bytes == live.table().to_bytes(), "step {}, {:?}: {:?}", step, edit, update);
                 n_changed += u64::from(before != bytes);
@@ -212,7 +212,7 @@ fn walls_a_rounding_apart_are_decided_as_in_a_rebuild() {
     let mut live = LiveScene::new(before, &options).expect("a table");
     live.update(after.clone()).expect("a table");
     let baked = bake_scene(&after, &options).expect("a table");
-    assert!(baked.n_assumed == 0 && live.table().to_bytes() == baked.table.to_bytes());
+    assert!(baked.report.n_assumed == 0 && live.table().to_bytes() == baked.table.to_bytes());
 }
 
 /// What is closed stays closed while it is walled up, whatever else is opened meanwhile.

@@ -1,5 +1,6 @@
 //! Tables of plans, maps and scenes, against oracles and full rebuilds.
 
+mod any_input;
 mod live;
 mod mirrors;
 mod plan;

@@ -1,7 +1,7 @@
 //! Mirrors of tables: rays that hit a mirror hit a part of it in the cell where they hit, and parts are nowhere else.
 
 use proptest::prelude::*;
-use sightlines_bake::{BakeOptions, SceneBakeOptions, Subdivide, bake_plan, bake_scene};
+use sightlines_bake::{PlanBakeOptions, SceneBakeOptions, Subdivide, bake_plan, bake_scene};
 use sightlines_cells::{LineId, Plan, PlanLine, Scene, SceneObject};
 use sightlines_geometry::Point2;
 use sightlines_pvs::{CellId, MirrorRecord, Table, TableParts};
@@ -118,9 +118,9 @@ proptest! {
         let plan = plan(&walls, false);
         prop_assume!(!overlaps(&plan));
         for subdivide in [Subdivide::KdTree, Subdivide::Triangulation] {
-            let baked = bake_plan(&plan, &BakeOptions { subdivide, threads: 1, ..BakeOptions::default() }).unwrap();
-            prop_assert_eq!(baked.summary.n_lost_mirrors, 0);
-            prop_assert_eq!(baked.summary.n_mirror_parts, baked.table.mirrors().len());
+            let baked = bake_plan(&plan, &PlanBakeOptions { subdivide, threads: 1, ..PlanBakeOptions::default() }).unwrap();
+            prop_assert_eq!(baked.report.n_lost_mirrors, 0);
+            prop_assert_eq!(baked.report.n_mirror_parts, baked.table.mirrors().len());
             let n = check_plan(&plan, &baked.table, seed);
             prop_assert!(n.as_ref().is_ok_and(|n| n[0] + n[1] > 50), "{subdivide}: {n:?}");
         }
@@ -132,10 +132,10 @@ proptest! {
     fn rays_hit_the_mirrors_of_slanted_plans(walls in walls(), seed in any::<u64>()) {
         let plan = plan(&walls, true);
         prop_assume!(!overlaps(&plan));
-        let options = BakeOptions { subdivide: Subdivide::Triangulation, threads: 1, ..BakeOptions::default() };
+        let options = PlanBakeOptions { subdivide: Subdivide::Triangulation, threads: 1, ..PlanBakeOptions::default() };
         let baked = bake_plan(&plan, &options).unwrap();
-        prop_assert!(baked.summary.n_lost_mirrors == 0 || baked.summary.n_rounded_crossings > 0);
-        prop_assume!(baked.summary.n_lost_mirrors == 0 && baked.summary.n_dropped_pieces == 0);
+        prop_assert!(baked.report.n_lost_mirrors == 0 || baked.report.n_rounded_crossings > 0);
+        prop_assume!(baked.report.n_lost_mirrors == 0 && baked.report.n_dropped_pieces == 0);
         let n = check_plan(&plan, &baked.table, seed);
         prop_assert!(n.as_ref().is_ok_and(|n| n[0] + n[1] > 50), "{n:?}");
     }
@@ -150,7 +150,7 @@ fn two_rooms() -> Plan {
 fn parts_are_found_on_both_sides_and_a_missing_one_is_noticed() {
     let plan = two_rooms();
     for subdivide in [Subdivide::KdTree, Subdivide::Triangulation] {
-        let table = bake_plan(&plan, &BakeOptions { subdivide, ..BakeOptions::default() }).unwrap().table;
+        let table = bake_plan(&plan, &PlanBakeOptions { subdivide, ..PlanBakeOptions::default() }).unwrap().table;
         let [n_mirrors, n_walls] = check_plan(&plan, &table, 5).unwrap();
         assert!(n_mirrors > 50 && n_walls > 50, "{n_mirrors} {n_walls}");
         // From the west the left end is in the north... of one who looks east.
@@ -167,9 +167,9 @@ fn parts_are_found_on_both_sides_and_a_missing_one_is_noticed() {
 
 #[test]
 fn mirrors_that_are_not_followed_are_counted() {
-    let options = BakeOptions { subdivide: Subdivide::KdTree, ..BakeOptions::default() };
+    let options = PlanBakeOptions { subdivide: Subdivide::KdTree, ..PlanBakeOptions::default() };
     let baked = bake_plan(&plan(&[(1, 1, 3, 2, true), (5, 1, 5, 4, true)], true), &options).unwrap();
-    assert_eq!((baked.summary.n_lost_mirrors, baked.summary.n_ignored_walls), (1, 1));
+    assert_eq!((baked.report.n_lost_mirrors, baked.report.n_ignored_walls), (1, 1));
 }
 
 /// A box as an object, with its fronts outwards.
@@ -244,8 +244,8 @@ fn rays_hit_the_mirrors_of_scenes() {
     let baked = bake_scene(&hall(), &SceneBakeOptions { threads: 1, ..SceneBakeOptions::default() }).unwrap();
     let table = &baked.table;
     assert!(check_scene(table, 1).unwrap() > 1000);
-    assert_eq!(baked.n_mirror_parts, table.mirrors().len());
-    assert_eq!((baked.n_lost_mirrors, baked.n_other_mirror_triangles), (0, 2));
+    assert_eq!(baked.report.n_mirror_parts, table.mirrors().len());
+    assert_eq!((baked.report.n_lost_mirrors, baked.report.n_other_mirror_triangles), (0, 2));
     // The twin: parts are on mirrors, in their cells, and together as large as the mirrors.
     let area = |part: &MirrorRecord| {
         let extent = |j: usize| {
@@ -274,6 +274,6 @@ fn mirrors_in_what_is_solid_are_counted() {
     objects.push(quad("walled in", [[6.5, 1.0, 5.2], [6.5, 2.0, 5.2], [6.5, 2.0, 5.8], [6.5, 1.0, 5.8]]));
     let scene = Scene::new(objects).unwrap().with_mirrors(vec![6]).unwrap();
     let baked = bake_scene(&scene, &SceneBakeOptions::default()).unwrap();
-    assert_eq!((baked.n_mirror_parts, baked.n_lost_mirrors), (0, 1));
+    assert_eq!((baked.report.n_mirror_parts, baked.report.n_lost_mirrors), (0, 1));
     assert!(baked.table.mirrors().iter().all(|part| part.cell != CellId(u32::MAX)));
 }

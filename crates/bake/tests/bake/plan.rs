@@ -1,7 +1,8 @@
 //! Tables of plans: which subdivision is used, what is in the table, and that it is the same every time.
 
 use proptest::prelude::*;
-use sightlines_bake::{BakeError, BakeOptions, Baked, Subdivide, bake_plan, graph_of, table_of};
+use sightlines_bake::from_table::planar_graph;
+use sightlines_bake::{BakeError, BakedPlan, PlanBakeOptions, Subdivide, bake_plan, table_of};
 use sightlines_cells::{CellGraph, CellId, Plan, PlanLine, PlanObject, Planar};
 use sightlines_geometry::{Aabb, Point2, Segment2, signed_area};
 use sightlines_kdtree::KdError;
@@ -19,11 +20,11 @@ fn line(ax: f64, ay: f64, bx: f64, by: f64) -> PlanLine {
     PlanLine::wall(Point2::new(ax, ay), Point2::new(bx, by))
 }
 
-fn with(subdivide: Subdivide) -> BakeOptions<'static> {
-    BakeOptions { subdivide, threads: 1, ..BakeOptions::default() }
+fn with(subdivide: Subdivide) -> PlanBakeOptions<'static> {
+    PlanBakeOptions { subdivide, threads: 1, ..PlanBakeOptions::default() }
 }
 
-fn bake(plan: &Plan, subdivide: Subdivide) -> Baked {
+fn bake(plan: &Plan, subdivide: Subdivide) -> BakedPlan {
     bake_plan(plan, &with(subdivide)).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -52,7 +53,7 @@ fn joins(table: &Table, p: [f64; 2], q: [f64; 2]) -> bool {
 fn used(plan: &Plan, subdivide: Subdivide) -> (Subdivide, String, Option<String>) {
     let baked = bake(plan, subdivide);
     let value = |key: &str| baked.table.info_value(key).map(str::to_owned);
-    (baked.summary.subdivide, value("subdivide").expect("every table says how it was cut"), value("tau"))
+    (baked.report.subdivide, value("subdivide").expect("every table says how it was cut"), value("tau"))
 }
 
 #[test]
@@ -83,7 +84,7 @@ fn groups_are_in_the_table_of_a_triangulation() {
 fn walls_that_a_kd_tree_cannot_follow_are_counted_and_do_not_block() {
     let plan = boxed(&[line(4., 0., 5., 4.)]);
     let (kd, exact) = (bake(&plan, Subdivide::KdTree), bake(&plan, Subdivide::Triangulation));
-    assert_eq!((kd.summary.n_ignored_walls, exact.summary.n_ignored_walls), (1, 0));
+    assert_eq!((kd.report.n_ignored_walls, exact.report.n_ignored_walls), (1, 0));
     assert!(joins(&kd.table, [1., 2.], [7., 2.]));
     assert!(!joins(&exact.table, [1., 2.], [7., 2.]));
 }
@@ -102,12 +103,13 @@ fn names_of_subdivisions_are_read_and_written() {
 fn summaries_agree_with_tables() {
     let floor = office(OfficeOptions { rooms_x: 5, rooms_y: 2, ..OfficeOptions::default() }).unwrap();
     for subdivide in METHODS {
-        let Baked { table, summary } = bake(&floor, subdivide);
-        assert_eq!((summary.n_cells, summary.n_portals), (table.n_cells(), table.portals().len()));
+        let BakedPlan { table, report, graph } = bake(&floor, subdivide);
+        assert_eq!((report.n_cells, report.n_portals), (table.n_cells(), table.portals().len()));
         let cells = || (0..table.n_cells() as u32).map(CellId);
         let n_seen = cells().flat_map(|a| (0..a.0).map(move |b| (a, CellId(b)))).filter(|&(a, b)| table.sees(a, b));
-        assert_eq!(summary.n_visible_pairs, n_seen.count() as u64);
-        assert!(summary.n_visible_pairs > 0 && summary.n_pushes >= summary.n_visits);
+        assert_eq!(report.n_visible_pairs, n_seen.count() as u64);
+        assert!(report.n_visible_pairs > 0 && report.n_pushes >= report.n_visits);
+        assert_eq!((graph.n_cells(), graph.portals().len()), (report.n_cells, report.n_portals));
     }
 }
 
@@ -129,7 +131,7 @@ fn bytes_are_the_same_with_any_number_of_threads_and_chords() {
     let mut all = Vec::new();
     for (name, plan) in scenes() {
         let bytes = |threads, chords| {
-            let options = BakeOptions { threads, chords, ..BakeOptions::default() };
+            let options = PlanBakeOptions { threads, chords, ..PlanBakeOptions::default() };
             bake_plan(&plan, &options).unwrap().table.to_bytes()
         };
         let one = bytes(1, 8);
@@ -155,8 +157,8 @@ fn progress_counts_every_cell_once() {
         ControlFlow::Continue(())
     };
     let plan = maze(1, 4, 4).unwrap();
-    let options = BakeOptions { threads: 2, progress: Some(&progress), ..BakeOptions::default() };
-    let n_cells = bake_plan(&plan, &options).unwrap().summary.n_cells;
+    let options = PlanBakeOptions { threads: 2, progress: Some(&progress), ..PlanBakeOptions::default() };
+    let n_cells = bake_plan(&plan, &options).unwrap().report.n_cells;
     assert_eq!((calls.load(Relaxed), largest.load(Relaxed)), (n_cells, n_cells));
 }
 
@@ -164,7 +166,7 @@ fn progress_counts_every_cell_once() {
 fn a_cancelled_bake_gives_no_table() {
     let stop = |_: Progress| ControlFlow::Break(());
     for threads in [1, 3] {
-        let options = BakeOptions { threads, progress: Some(&stop), ..BakeOptions::default() };
+        let options = PlanBakeOptions { threads, progress: Some(&stop), ..PlanBakeOptions::default() };
         assert_eq!(bake_plan(&maze(1, 4, 4).unwrap(), &options).unwrap_err(), BakeError::Cancelled(Cancelled));
     }
 }
@@ -183,7 +185,7 @@ fn cut(plan: &Plan, subdivide: Subdivide) -> Option<CellGraph<Planar>> {
 
 /// What a file of the table gives back.
 fn through_bytes(table: &Table) -> Option<CellGraph<Planar>> {
-    graph_of(&Table::from_bytes(&table.to_bytes()).expect("a table reads what it wrote"))
+    planar_graph(&Table::from_bytes(&table.to_bytes()).expect("a table reads what it wrote"))
 }
 
 proptest! {
@@ -231,7 +233,7 @@ fn tables_of_space_have_no_planar_graph() {
         cell_objects: vec![vec![]],
         ..TableParts::empty(3, TableKind::Unspecified)
     };
-    assert_eq!(graph_of(&Table::new(parts).expect("a box in space")), None);
+    assert_eq!(planar_graph(&Table::new(parts).expect("a box in space")), None);
 }
 
 /// Portals that a table accepts, as it answers nothing from them, but that join no cells.
@@ -241,7 +243,7 @@ fn tables_with_portals_in_the_wrong_place_have_no_graph() {
     let spoiled = |spoil: &dyn Fn(&mut TableParts)| {
         let mut parts = table.clone().into_parts();
         spoil(&mut parts);
-        graph_of(&Table::new(parts).expect("portals are not checked so far"))
+        planar_graph(&Table::new(parts).expect("portals are not checked so far"))
     };
     assert!(spoiled(&|_| ()).is_some());
     assert_eq!(spoiled(&|parts| parts.portals[0].points.reverse()), None, "left and right exchanged");
@@ -267,9 +269,9 @@ fn information_is_sorted_and_rows_are_checked() {
 #[test]
 fn thresholds_outside_0_to_1_are_errors() {
     let plan = boxed(&[line(4., 0., 4., 3.)]);
-    let bake_with = |tau| bake_plan(&plan, &BakeOptions { tau, ..with(Subdivide::Auto) });
+    let bake_with = |tau| bake_plan(&plan, &PlanBakeOptions { tau, ..with(Subdivide::Auto) });
     for tau in [-0.1, 1.5, f64::INFINITY, f64::NAN] {
-        let by_triangulation = bake_plan(&plan, &BakeOptions { tau, ..with(Subdivide::Triangulation) });
+        let by_triangulation = bake_plan(&plan, &PlanBakeOptions { tau, ..with(Subdivide::Triangulation) });
         assert!(matches!(by_triangulation, Err(BakeError::KdTree(KdError::Tau(_)))));
         let error = bake_with(tau).unwrap_err();
         assert!(matches!(error, BakeError::KdTree(KdError::Tau(_))), "{error:?}");
@@ -285,7 +287,7 @@ fn thresholds_outside_0_to_1_are_errors() {
 #[test]
 fn thresholds_err_towards_visible() {
     let plan = maze(5, 5, 5).unwrap();
-    let at = |tau| bake_plan(&plan, &BakeOptions { tau, ..with(Subdivide::KdTree) }).unwrap().table;
+    let at = |tau| bake_plan(&plan, &PlanBakeOptions { tau, ..with(Subdivide::KdTree) }).unwrap().table;
     let (exact, coarse) = (at(0.0), at(0.6));
     assert!(coarse.n_cells() < exact.n_cells());
     let bounds = plan.bounds();
@@ -397,7 +399,7 @@ proptest! {
         let plan = Plan::new(plan.lines().to_vec(), objects).unwrap();
         for subdivide in METHODS {
             let Ok(baked) = bake_plan(&plan, &with(subdivide)) else { continue };
-            if baked.summary.n_rounded_crossings > 0 {
+            if baked.report.n_rounded_crossings > 0 {
                 continue; // the oracle's areas would be rounded
             }
             for (id, cell) in (0u32..).map(CellId).zip(baked.table.cells()) {

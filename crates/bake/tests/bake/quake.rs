@@ -1,11 +1,10 @@
 //! Tables of portal files, maps with visibility, and searches that are stopped and taken up again.
 
 use proptest::prelude::*;
+use sightlines_bake::from_table::{axial_graph, convex_graph, planar_graph};
 use sightlines_bake::quake::state::{HASH_LEN, decode, encode, with_hash};
 use sightlines_bake::quake::{StateError, StateKey};
-use sightlines_bake::{
-    PrtBakeError, PrtOptions, axial_graph_of, bake_prt, bake_scene, convex_graph_of, graph_of, vis_map,
-};
+use sightlines_bake::{PrtBakeError, PrtOptions, bake_prt, bake_scene, vis_map};
 use sightlines_cells::{CellGraph, CellId, Convex, Portal3};
 use sightlines_formats::quake::visibility::{VisibilityError, read_visibility};
 use sightlines_formats::quake::{Bsp, Prt, graph_of_prt, prt::parse_prt};
@@ -50,7 +49,7 @@ fn grid(columns: u32, rows: u32) -> Prt {
 
 fn search(prt: &Prt, threads: usize, fast: bool) -> ConvexVisibility {
     let search = ConvexOptions { threads, fast };
-    bake_prt(prt, PrtOptions { search, ..PrtOptions::default() }).unwrap().clusters.seen
+    bake_prt(prt, PrtOptions { search, ..PrtOptions::default() }).unwrap().report.seen
 }
 
 #[test]
@@ -60,15 +59,15 @@ fn a_table_has_the_graph_of_the_portals() {
         let baked = bake_prt(&prt, PrtOptions::default()).unwrap();
         let (table, graph) = (&baked.table, graph_of_prt(&prt));
         assert_eq!((table.dimension(), table.n_cells()), (3, prt.n_clusters() as usize));
-        assert_eq!(convex_graph_of(table).as_ref(), Some(&graph), "to the bit");
+        assert_eq!(convex_graph(table).as_ref(), Some(&graph), "to the bit");
         assert_eq!(Table::from_bytes(&table.to_bytes()).as_ref(), Ok(table));
         for cell in (0..prt.n_clusters()).map(CellId) {
             let row: Vec<usize> = table.visible(cell).map(|other| other.idx()).collect();
-            assert_eq!(row, baked.clusters.seen.cells.iter_ones(cell.idx()).collect::<Vec<_>>());
+            assert_eq!(row, baked.report.seen.cells.iter_ones(cell.idx()).collect::<Vec<_>>());
         }
         assert_eq!(table.info_value("source"), Some(format!("portal file {}", prt.dialect()).as_str()));
-        let joined = baked.clusters.n_visible_pairs() > 0;
-        assert_eq!(convex_graph_of(&table.strip_geometry()).is_none(), joined);
+        let joined = baked.report.n_visible_pairs() > 0;
+        assert_eq!(convex_graph(&table.strip_geometry()).is_none(), joined);
         n_portals += graph.portals().len();
     }
     assert!(n_portals > 20);
@@ -89,7 +88,7 @@ fn slanted_portals_come_back() {
         let mut prt = Prt::new(2).unwrap();
         prt.push_portal([0, 1], &points).unwrap();
         let table = bake_prt(&prt, PrtOptions::default()).unwrap().table;
-        n_portals += usize::from(convex_graph_of(&table).unwrap() == graph_of_prt(&prt));
+        n_portals += usize::from(convex_graph(&table).unwrap() == graph_of_prt(&prt));
     }
     assert_eq!(n_portals, 64);
 }
@@ -117,7 +116,7 @@ fn portals_of_a_table_are_turned_like_those_of_other_tables() {
     let mut turned = rooms.clone().into_parts();
     turned.portals[1].points.reverse();
     assert!(!towards_first(&Table::new(turned).unwrap()), "the impostor");
-    assert!(convex_graph_of(&boxes).is_none() && axial_graph_of(&rooms).is_none() && graph_of(&rooms).is_none());
+    assert!(convex_graph(&boxes).is_none() && axial_graph(&rooms).is_none() && planar_graph(&rooms).is_none());
 }
 
 #[test]
@@ -171,7 +170,7 @@ fn a_search_can_be_stopped_anywhere() {
             let state = decode(&key, &graph, &bytes).unwrap();
             assert_eq!(&state, one.state());
             let options = PrtOptions { search: options(1 + n_stops % 3), from: Some(state), ..PrtOptions::default() };
-            assert_eq!(bake_prt(&prt, options).unwrap().clusters.seen, whole, "stopped after {n_stops}");
+            assert_eq!(bake_prt(&prt, options).unwrap().report.seen, whole, "stopped after {n_stops}");
             // Through bytes after every step.
             n_stops += 1;
             let state = decode(&key, &graph, &bytes).unwrap();

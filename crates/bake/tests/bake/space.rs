@@ -1,6 +1,7 @@
 //! The graph that the table of a scene in space stores, and explanations from it.
 
-use sightlines_bake::{PortalMode, SceneBakeOptions, axial_graph_of, bake_scene, graph_of};
+use sightlines_bake::from_table::{axial_graph, planar_graph};
+use sightlines_bake::{PortalMode, SceneBakeOptions, bake_scene};
 use sightlines_cells::{Axial, CellGraph, CellId};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
@@ -18,7 +19,7 @@ fn baked(portals: PortalMode) -> Table {
 }
 
 fn graph(table: &Table) -> CellGraph<Axial> {
-    axial_graph_of(table).expect("the table has its geometry")
+    axial_graph(table).expect("the table has its geometry")
 }
 
 /// With bounding portals there is one portal for each pair of cells that has any, the smallest rectangle around the
@@ -118,13 +119,13 @@ fn graphs_come_back_from_tables_that_have_them() {
         let graph = graph(&table);
         assert_eq!((graph.n_cells(), graph.portals().len()), (table.n_cells(), table.portals().len()));
         assert!(graph.portals().iter().zip(table.portals()).all(|(p, q)| p.cells == q.cells && p.sides == q.sides));
-        assert!(graph_of(&table).is_none() && axial_graph_of(&table.strip_geometry()).is_none());
+        assert!(planar_graph(&table).is_none() && axial_graph(&table.strip_geometry()).is_none());
     }
     let table = baked(PortalMode::Exact);
     let changed = |change: &dyn Fn(&mut PortalRecord)| {
         let mut portals = table.portals().to_vec();
         change(&mut portals[0]);
-        axial_graph_of(&with(&table, portals, BitMatrix::identity(table.n_cells())))
+        axial_graph(&with(&table, portals, BitMatrix::identity(table.n_cells())))
     };
     assert!(changed(&|_| {}).is_some());
     assert!(changed(&|p| p.sides = [6, 7]).is_none());

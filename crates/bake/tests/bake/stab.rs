@@ -1,11 +1,11 @@
 //! Stab trees in tables: lines shot through a scene pass only sequences that the trees have, or have cut.
 
 use sightlines_bake::{
-    BakeOptions, PrtOptions, SceneBakeOptions, StabBakeError, StabOptions, bake_plan, bake_prt, bake_scene, most_nodes,
-    with_stab_trees,
+    GraphRef, OtherGraph, PlanBakeOptions, PrtOptions, SceneBakeOptions, StabBakeError, StabOptions, TableGraph,
+    bake_plan, bake_prt, bake_scene, from_table, with_stab_trees,
 };
 use sightlines_formats::quake::prt::parse_prt;
-use sightlines_geometry::{Point2, Portal3, orient2d};
+use sightlines_geometry::{Aabb, Point2, Portal3, orient2d};
 use sightlines_pvs::{CellId, StabParts, StabTrees, Table};
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines_sightline::Line3;
@@ -16,16 +16,17 @@ const N_LINES: u64 = 1_000;
 /// Budgets of trees: most are cut, some are cut, none is.
 const BUDGETS: [Option<usize>; 3] = [Some(12), Some(150), None];
 
-/// A table of each kind, by name.
-fn tables() -> Vec<(&'static str, Table)> {
+/// A table of each kind with its graph, by name.
+fn tables() -> Vec<(&'static str, Table, TableGraph)> {
     let options = OfficeOptions { rooms_x: 6, rooms_y: 3, block: 3, ..OfficeOptions::default() };
     let plan = office(options).expect("options in range");
-    let plan = bake_plan(&plan, &BakeOptions::default()).expect("a sound plan").table;
+    let plan = bake_plan(&plan, &PlanBakeOptions::default()).expect("a sound plan").into_any();
     let scene = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() };
     let scene = tower(scene).expect("options in range");
-    let boxes = bake_scene(&scene, &SceneBakeOptions::default()).expect("a sound scene").table;
-    let convex = bake_prt(&parse_prt(&windows()).expect("a sound file"), PrtOptions::default()).expect("portals").table;
-    vec![("plan", plan), ("boxes", boxes), ("convex", convex)]
+    let boxes = bake_scene(&scene, &SceneBakeOptions::default()).expect("a sound scene").into_any();
+    let convex =
+        bake_prt(&parse_prt(&windows()).expect("a sound file"), PrtOptions::default()).expect("portals").into_any();
+    [("plan", plan), ("boxes", boxes), ("convex", convex)].map(|(name, b)| (name, b.table, b.graph)).into()
 }
 
 /// A portal file of four by three rooms of side 4, each with one window, and at times two, into the next along x and y.
@@ -163,14 +164,15 @@ fn options(max_nodes: Option<usize>, threads: usize) -> StabOptions<'static> {
 /// number of threads gives the same bytes.
 #[test]
 fn lines_pass_what_trees_have() {
-    for (name, table) in tables() {
+    for (name, table, graph) in tables() {
         for max_nodes in BUDGETS {
-            let baked = with_stab_trees(table.clone(), &options(max_nodes, 1)).expect("a table with portals");
+            let baked = with_stab_trees(table.clone(), &graph, &options(max_nodes, 1)).expect("a table with portals");
             let trees = baked.table.stab().expect("trees were added");
             let (passed, lost) = shoot(&table, trees);
             assert!(passed > N_LINES && lost == 0, "{name}, {max_nodes:?}: {lost} of {passed} are lost");
-            assert_eq!(trees.n_sequences(), u128::from(baked.trees.n_sequences), "{name}");
-            let again = with_stab_trees(baked.table.clone(), &options(max_nodes, 3)).expect("trees are replaced");
+            assert_eq!(trees.n_sequences(), u128::from(baked.report.trees.n_sequences), "{name}");
+            let again =
+                with_stab_trees(baked.table.clone(), &graph, &options(max_nodes, 3)).expect("trees are replaced");
             assert!(again.table.to_bytes() == baked.table.to_bytes(), "{name}, {max_nodes:?}: threads changed it");
             let mut parts = baked.table.into_parts();
             parts.stab = None;
@@ -182,9 +184,13 @@ fn lines_pass_what_trees_have() {
 /// The tightness twin: whole trees lead to what rows say, and nowhere else.
 #[test]
 fn whole_trees_lead_to_what_is_seen() {
-    for (name, table) in tables() {
-        let baked = with_stab_trees(table.clone(), &options(None, 1)).expect("a table with portals");
-        assert_eq!((baked.trees.n_cut_cells, baked.max_nodes), (0, most_nodes(&table).unwrap()), "{name}");
+    for (name, table, graph) in tables() {
+        let baked = with_stab_trees(table.clone(), &graph, &options(None, 1)).expect("a table with portals");
+        assert_eq!(
+            (baked.report.trees.n_cut_cells, Some(baked.report.max_nodes)),
+            (0, GraphRef::from(&graph).most_nodes()),
+            "{name}"
+        );
         let trees = baked.table.stab().expect("trees were added");
         let mut n_hidden = 0;
         for cell in (0..table.n_cells() as u32).map(CellId) {
@@ -208,9 +214,9 @@ fn whole_trees_lead_to_what_is_seen() {
 /// The impostors: trees that were cut and do not say so, and trees with children left out, lose lines.
 #[test]
 fn lines_find_what_is_missing() {
-    for (name, table) in tables() {
+    for (name, table, graph) in tables() {
         let rebuilt = |max_nodes, keep_open: bool, leave_out: u32| {
-            let baked = with_stab_trees(table.clone(), &options(max_nodes, 1)).expect("a table with portals");
+            let baked = with_stab_trees(table.clone(), &graph, &options(max_nodes, 1)).expect("a table with portals");
             let trees = baked.table.stab().expect("trees were added");
             let mut parts = StabParts::default();
             for node in 0..trees.n_nodes() as u32 {
@@ -229,12 +235,30 @@ fn lines_find_what_is_missing() {
     }
 }
 
+/// The graph that a table stores gives the trees of the graph that it was made from.
+#[test]
+fn stored_graphs_give_the_same_trees() {
+    for (name, table, graph) in tables() {
+        let stored = from_table::graph(&table).expect("the table stores its graph");
+        let [by_stored, by_baked] = [&stored, &graph]
+            .map(|graph| with_stab_trees(table.clone(), graph, &options(Some(150), 1)).expect("portals"));
+        assert!(by_stored.table == by_baked.table, "{name}");
+        assert_eq!((stored.n_cells(), stored.n_portals()), (graph.n_cells(), graph.n_portals()), "{name}");
+    }
+}
+
 #[test]
 fn stripped_tables_cannot_have_trees() {
-    for (name, table) in tables() {
+    for (name, table, graph) in tables() {
         let stripped = table.strip_geometry();
-        assert_eq!(most_nodes(&stripped), None, "{name}");
-        let error = with_stab_trees(stripped, &StabOptions::default()).expect_err("a table without portals");
+        assert_eq!(from_table::graph(&stripped), None, "{name}");
+        let sizes = [[graph.n_cells(), graph.n_portals()], [stripped.n_cells(), 0]];
+        let error =
+            with_stab_trees(stripped.clone(), &graph, &StabOptions::default()).expect_err("a table without portals");
+        assert_eq!(error, OtherGraph { graph: sizes[0], table: sizes[1] }.into(), "{name}");
+        let boxes = TableGraph::Boxes(table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect());
+        assert_eq!(GraphRef::from(&boxes).most_nodes(), None);
+        let error = with_stab_trees(stripped, &boxes, &StabOptions::default()).expect_err("boxes without portals");
         assert_eq!(error, StabBakeError::NoGraph, "{name}");
         assert!(error.to_string().ends_with("it does not have them"), "{error}");
     }

@@ -2,7 +2,7 @@
 
 use crate::common::Folder;
 use serde_json::Value;
-use sightlines::bake::{StabOptions, with_stab_trees};
+use sightlines::bake::{GraphRef, StabOptions, from_table, with_stab_trees};
 use sightlines::pvs::Table;
 
 fn table(folder: &Folder, name: &str) -> Table {
@@ -15,12 +15,13 @@ fn build_adds_stab_trees_and_info_counts_them() {
     let plain = table(&folder, "office.pvs");
     let built = folder.run(&["build", "office.geojson", "-o", "trees.pvs", "--stab-trees", "--json"]).expect(0).json();
     let with = table(&folder, "trees.pvs");
-    let expected = with_stab_trees(plain.clone(), &StabOptions::default()).expect("a table with portals");
+    let graph = from_table::graph(&plain).expect("a table with portals");
+    let expected = with_stab_trees(plain.clone(), &graph, &StabOptions::default()).expect("a table with portals");
     assert!(with == expected.table, "the same trees as by the library, and nothing else is new");
     let trees = with.stab().expect("trees were asked for");
     assert_eq!(built["stab"]["n_sequences"], trees.n_sequences() as u64);
     assert_eq!(built["stab"]["n_stab_nodes"], trees.n_nodes());
-    assert_eq!(built["stab"]["max_nodes"], expected.max_nodes);
+    assert_eq!(built["stab"]["max_nodes"], expected.report.max_nodes);
     assert_eq!(built["n_bytes"], folder.read("trees.pvs").len());
     let grown = folder.read("trees.pvs").len() - folder.read("office.pvs").len();
     let info = folder.run(&["info", "trees.pvs", "--json"]).expect(0).json();
@@ -61,6 +62,8 @@ fn limits_cut_trees() {
 fn help_names_the_limits() {
     let folder = Folder::with_office();
     let help = folder.run(&["build", "--help"]).expect(0).out.split_whitespace().collect::<Vec<_>>().join(" ");
-    let plan = sightlines::bake::most_nodes(&table(&folder, "office.pvs")).expect("a table with portals");
+    let plan = GraphRef::from(&from_table::graph(&table(&folder, "office.pvs")).expect("a table with portals"))
+        .most_nodes()
+        .expect("portals");
     assert!(help.contains(&format!("without N {plan} for plans, 16384 for scenes in space, 4096 for")), "{help}");
 }

@@ -3,8 +3,9 @@
 use crate::common::quake::{Map, Portals, rooms, small_maps};
 use crate::common::{Folder, Run};
 use serde_json::{Value, json};
+use sightlines::bake::from_table::convex_graph;
+use sightlines::bake::quake::StateKey;
 use sightlines::bake::quake::state::{encode, is_state};
-use sightlines::bake::quake::{StateKey, convex_graph_of};
 use sightlines::formats::quake::visibility::{VisibilityLump, read_visibility};
 use sightlines::formats::quake::{Bsp, BspFormat, graph_of_prt, prt::parse_prt};
 use sightlines::pvs::{BitMatrix, CellId, Table};
@@ -39,7 +40,7 @@ fn maps_get_what_the_table_of_their_portals_says() {
             let row: Vec<usize> = table.visible(cell).map(|other| other.idx()).collect();
             assert_eq!(row, seen.iter_ones(cell.idx()).collect::<Vec<_>>(), "{}", map.name);
         }
-        assert!(convex_graph_of(&table).is_some());
+        assert!(convex_graph(&table).is_some());
         let n_pairs = (seen.count_ones() - seen.n_rows() as u64) / 2;
         assert_eq!((&told["n_visible_pairs"], &told["n_clusters"]), (&json!(n_pairs), &json!(seen.n_rows())));
         assert_eq!(crate::common::quake::difference(&map.bsp, &folder.read("out.bsp")), None, "{}", map.name);

@@ -3,7 +3,7 @@
 use crate::common::Folder;
 use crate::common::quake::difference;
 use serde_json::json;
-use sightlines::bake::convex_graph_of;
+use sightlines::bake::from_table::convex_graph;
 use sightlines::formats::Bsp;
 use sightlines::formats::quake::visibility::{lump, read_hearing, read_visibility};
 use sightlines::formats::quake::{BspFormat, read_prt};
@@ -64,7 +64,7 @@ fn real_maps_get_their_visibility() {
         // As the table of the portals says.
         folder.run(&["build", "map.prt", "-o", "map.pvs"]).expect(0);
         let table = Table::from_bytes(&folder.read("map.pvs")).expect("a sound table");
-        assert!(convex_graph_of(&table).is_some(), "{name}: the portals come back");
+        assert!(convex_graph(&table).is_some(), "{name}: the portals come back");
         assert_eq!((table.n_cells(), &told["n_clusters"]), (seen.n_rows(), &json!(seen.n_rows())));
         for cell in 0..table.n_cells() {
             assert_eq!(table.row(CellId(cell as u32)), seen.row(cell), "{name}: cluster {cell}");

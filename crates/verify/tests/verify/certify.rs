@@ -1,12 +1,14 @@
 //! Proofs of tables, checked against the tables: every wrong pair of cells is caught.
 
 use sightlines_bake::{
-    BakeOptions, CertifyError, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene, certify_table,
+    Certified, CertifyError, PlanBakeOptions, PrtOptions, SceneBakeOptions, TableGraph, bake_plan, bake_prt,
+    bake_scene, certify_table, from_table,
 };
 use sightlines_cells::{Plan, Scene};
 use sightlines_certificates::convex::ConvexProofs;
 use sightlines_formats::quake::Prt;
 use sightlines_formats::quake::prt::parse_prt;
+use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, Table, TableParts};
 use sightlines_scenes::world::{BspWorldOptions, QuakeLikeOptions, World, bsp_world, corridor, quake_like};
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
@@ -17,7 +19,12 @@ use sightlines_verify::{
 };
 
 fn proofs_of(table: &Table) -> Vec<u8> {
-    certify_table(table, &CertifyOptions::default()).expect("the table has cells and portals").proofs.to_bytes()
+    certified(table, &CertifyOptions::default()).expect("the table has cells and portals").proofs.to_bytes()
+}
+
+fn certified(table: &Table, options: &CertifyOptions) -> Result<Certified, CertifyError> {
+    let graph = from_table::graph(table).ok_or(CertifyError::NoGraph)?;
+    certify_table(table, &graph, options)
 }
 
 fn flipped(table: &Table, a: u32, b: u32) -> Table {
@@ -55,7 +62,7 @@ fn assert_every_flip_is_caught(table: &Table) -> [u64; 2] {
 }
 
 fn baked(plan: &Plan) -> Option<Table> {
-    bake_plan(plan, &BakeOptions { threads: 1, ..BakeOptions::default() }).ok().map(|baked| baked.table)
+    bake_plan(plan, &PlanBakeOptions { threads: 1, ..PlanBakeOptions::default() }).ok().map(|baked| baked.table)
 }
 
 #[test]
@@ -100,7 +107,7 @@ fn table_of(world: &World) -> Option<Table> {
         prt.push_portal(portal.cells.map(|cell| cell.0), portal.shape.corners()).expect("a polygon");
     }
     let baked = bake_prt(&prt, PrtOptions::default()).expect("portals between cells");
-    baked.clusters.seen.undecided.is_empty().then_some(baked.table)
+    baked.report.seen.undecided.is_empty().then_some(baked.table)
 }
 
 fn level() -> Table {
@@ -142,8 +149,13 @@ fn proofs_of_something_else_are_refused() {
     assert_eq!(error(&map.strip_geometry(), &proofs_of(&map)), ProofError::NoGraph);
     assert!(matches!(error(&table, b"SLPVS"), ProofError::Read(_)));
     assert_eq!(error(&table.strip_geometry(), &proofs_of(&table)), ProofError::NoGraph);
-    let stripped = certify_table(&table.strip_geometry(), &CertifyOptions::default());
-    assert_eq!(stripped.unwrap_err(), CertifyError::NoGraph);
+    assert_eq!(from_table::graph(&table.strip_geometry()), None);
+    let boxes = TableGraph::Boxes(Vec::new());
+    let error = certify_table(&table, &boxes, &CertifyOptions::default()).unwrap_err();
+    assert!(matches!(error, CertifyError::OtherGraph(_)), "{error}");
+    let given = TableGraph::Boxes(table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect());
+    let given = certify_table(&table.strip_geometry(), &given, &CertifyOptions::default());
+    assert_eq!(given.unwrap_err(), CertifyError::NoGraph);
 }
 
 /// Without effort little is proven; that is reported, and only strict mode counts it as a violation.
@@ -152,7 +164,7 @@ fn what_is_not_proven_is_counted() {
     let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();
     for table in [baked(&plan).unwrap(), storey(), level()] {
         let options = CertifyOptions { most_steps: 0, most_steps_in_all: 0, chords: 0, ..CertifyOptions::default() };
-        let bytes = certify_table(&table, &options).unwrap().proofs.to_bytes();
+        let bytes = certified(&table, &options).unwrap().proofs.to_bytes();
         let found = check_proofs(&table, &bytes).unwrap();
         assert!(found.is_true(false) && !found.is_true(true), "{found:?}");
         assert!(found.n_unproven_hidden > 0 && found.n_violations == 0 && !found.unproven_hidden.is_empty());
@@ -176,9 +188,9 @@ fn walls_of_plans_are_those_of_the_plan() {
     // Lines on the outer border are not missed.
     assert!(n_noticed + 8 >= plan.lines().len() && n_noticed > 4, "{n_noticed} of {}", plan.lines().len());
     for plan in draw(&small_grid_plan(3..12), 24) {
-        if let Some(table) = bake_plan(&plan, &BakeOptions { threads: 1, ..BakeOptions::default() })
+        if let Some(table) = bake_plan(&plan, &PlanBakeOptions { threads: 1, ..PlanBakeOptions::default() })
             .ok()
-            .filter(|baked| baked.summary.n_rounded_crossings == 0)
+            .filter(|baked| baked.report.n_rounded_crossings == 0)
         {
             let found = check_walls_of_plan(&table.table, &plan);
             assert_eq!(found.n_bare, 0, "{found:?}");

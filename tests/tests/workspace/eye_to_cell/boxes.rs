@@ -3,7 +3,7 @@
 use crate::eye_to_cell::ask::{Answer, Asker, missed, not_nested};
 use crate::eye_to_cell::picture::{Picture, box_around, minus};
 use crate::eye_to_cell::plans::{reachable, some_doors};
-use sightlines::bake::{SceneBakeOptions, StabOptions, bake_scene, with_stab_trees};
+use sightlines::bake::{SceneBakeOptions, StabOptions, bake_scene, from_table, with_stab_trees};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::eye_to_cell::{Doors, View};
 use sightlines::geometry::{Aabb, Point3};
@@ -58,7 +58,13 @@ impl Room {
     /// The same room with stab trees of at most so many nodes.
     pub(crate) fn with_trees(&self, max_nodes: Option<usize>) -> Table {
         let options = StabOptions { max_nodes, threads: 1, ..StabOptions::default() };
-        with_stab_trees(self.table.clone(), &options).expect("the table has its geometry").table
+        with_stab_trees(
+            self.table.clone(),
+            &from_table::graph(&self.table).expect("the table stores its graph"),
+            &options,
+        )
+        .expect("the table has its geometry")
+        .table
     }
 
     pub(crate) fn cells(&self) -> Vec<Aabb<3>> {

@@ -3,7 +3,7 @@
 use crate::eye_to_cell::ask::{Answer, Asker, missed, not_nested};
 use crate::eye_to_cell::picture::{Picture, along, dot, minus};
 use crate::eye_to_cell::plans::reachable;
-use sightlines::bake::{StabOptions, with_stab_trees};
+use sightlines::bake::{StabOptions, from_table, with_stab_trees};
 use sightlines::eye_to_cell::{Doors, View};
 use sightlines::geometry::Point3;
 use sightlines::pvs::{CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts};
@@ -130,7 +130,9 @@ fn check(world: &World, n_eyes: usize, counts: &mut Counts) -> Result<(), String
         return Ok(());
     }
     let stab = StabOptions { max_nodes: Some(100), threads: 1, ..StabOptions::default() };
-    let trees = with_stab_trees(table.clone(), &stab).expect("the table has its geometry").table;
+    let trees = with_stab_trees(table.clone(), &from_table::graph(&table).expect("the table stores its graph"), &stab)
+        .expect("the table has its geometry")
+        .table;
     let mut askers = [Asker::new(&table), Asker::new(&trees)];
     for kind in 0..n_eyes {
         let mut random = Random::new(3, kind as u64);

@@ -1,6 +1,6 @@
 //! Plans with tables, eyes in them, and where they look.
 
-use sightlines::bake::{BakeOptions, StabOptions, Subdivide, bake_plan, with_stab_trees};
+use sightlines::bake::{PlanBakeOptions, StabOptions, Subdivide, bake_plan, from_table, with_stab_trees};
 use sightlines::cells::{Plan, PlanObject};
 use sightlines::eye_to_cell::View;
 use sightlines::geometry::{Aabb, Point2};
@@ -12,9 +12,9 @@ use std::f64::consts::TAU;
 /// The table of a plan; `None` if the plan has no region, or crossings had to be rounded: then cells are those of walls
 /// bent by a rounding error, which no exact answer fits.
 pub(crate) fn bake(plan: &Plan, subdivide: Subdivide) -> Option<Table> {
-    let options = BakeOptions { subdivide, threads: 1, ..BakeOptions::default() };
+    let options = PlanBakeOptions { subdivide, threads: 1, ..PlanBakeOptions::default() };
     let baked = bake_plan(plan, &options).ok()?;
-    (baked.summary.n_rounded_crossings == 0 && baked.summary.n_ignored_walls == 0).then_some(baked.table)
+    (baked.report.n_rounded_crossings == 0 && baked.report.n_ignored_walls == 0).then_some(baked.table)
 }
 
 /// The tables of a plan by both subdivisions, each also with stab trees, whole ones and ones that were cut.
@@ -26,7 +26,9 @@ pub(crate) fn tables(plan: &Plan) -> Vec<Table> {
     let with_trees = |table: Table| {
         let stab = |max_nodes| {
             let options = StabOptions { max_nodes, threads: 1, ..StabOptions::default() };
-            with_stab_trees(table.clone(), &options).expect("the table has its geometry").table
+            with_stab_trees(table.clone(), &from_table::graph(&table).expect("the table stores its graph"), &options)
+                .expect("the table has its geometry")
+                .table
         };
         [stab(None), stab(Some(6)), table]
     };

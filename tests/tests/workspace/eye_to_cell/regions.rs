@@ -25,6 +25,7 @@ fn table_of(scene: &Scene, cells: ViewCells) -> Table {
         cut: SceneOptions::default(),
         portals: PortalMode::Exact,
         threads: 1,
+        file: None,
         progress: None,
     };
     bake_regions(scene, &options).expect("a tower can be baked").table

@@ -2,7 +2,7 @@
 
 use crate::eye_to_cell::ask::{Answer, Asker, missed, not_nested};
 use crate::eye_to_cell::picture::{Picture, minus};
-use sightlines::bake::{SceneBakeOptions, StabOptions, bake_scene, with_stab_trees};
+use sightlines::bake::{SceneBakeOptions, StabOptions, bake_scene, from_table, with_stab_trees};
 use sightlines::cells::Scene;
 use sightlines::eye_to_cell::{Doors, View};
 use sightlines::formats::scene::read_scene;
@@ -145,7 +145,13 @@ fn a_small_tower_is_seen_as_rays_see_it() {
     let options = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() };
     let stage = Stage::new(&tower(options).expect("a small tower"));
     let stab = StabOptions { max_nodes: Some(500), ..StabOptions::default() };
-    let trees = with_stab_trees(stage.table.clone(), &stab).expect("the table has its geometry").table;
+    let trees = with_stab_trees(
+        stage.table.clone(),
+        &from_table::graph(&stage.table).expect("the table stores its graph"),
+        &stab,
+    )
+    .expect("the table has its geometry")
+    .table;
     let mut counts = Counts::default();
     stage.check(&[&stage.table, &trees], 40, 300, &mut counts).unwrap_or_else(|wrong| panic!("{wrong}"));
     eprintln!("{counts:?}");

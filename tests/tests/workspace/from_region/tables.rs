@@ -29,7 +29,7 @@ fn bake(scene: &Scene, cells: &CellsFrom, by: By, split: u32, threads: usize) ->
     let all = triangles(scene);
     let ends = match cells {
         CellsFrom::Boxes(boxes) => boxes.cells.iter().map(|c| c.bounds).collect(),
-        CellsFrom::KdTree => Vec::new(),
+        CellsFrom::KdTree | CellsFrom::Grid(_) => Vec::new(),
     };
     let around = around(scene, &ends);
     let make = || -> Box<dyn FromRegion + Send> { Box::new(shipped(&all, around)) };
@@ -41,6 +41,7 @@ fn bake(scene: &Scene, cells: &CellsFrom, by: By, split: u32, threads: usize) ->
         cut: SceneOptions::default(),
         portals: PortalMode::Exact,
         threads,
+        file: None,
         progress: None,
     };
     bake_regions(scene, &options).expect("the scene can be baked")
@@ -97,7 +98,7 @@ fn a_city_is_seen_as_rays_see_it_and_mostly_hidden() {
     check(&scene, &split.table, "city in parts");
     let (fewer, _) = visible(&split.table);
     assert!(fewer.iter().all(|pair| objects.contains(pair)) && fewer.len() <= objects.len());
-    assert!(split.effort.n_volumes > baked.effort.n_volumes);
+    assert!(split.report.effort.n_volumes > baked.report.effort.n_volumes);
     assert_eq!(split.table.to_bytes(), bake(&scene, &cells, By::Multifocal, 2, 3).table.to_bytes());
 }
 
@@ -152,7 +153,7 @@ fn real_cells_show_what_was_seen() {
         println!(
             "{name}: {} cells in {time:?}, {n_seen} seen, {n_hidden} of {n_unseen} unseen hidden, {} assumed",
             witnesses.len(),
-            baked.n_assumed
+            baked.report.n_assumed
         );
         assert!(n_seen > 100 && n_hidden * 100 >= least * n_unseen, "{name}: {n_hidden} of {n_unseen} hidden");
     }

@@ -1,9 +1,7 @@
-//! `--method auto`: methods are chosen from properties of the input, and the reasons are printed.
+//! What `--method auto` chose, and why.
 
-use super::region::RegionArgs;
-use crate::input::Input;
 use serde::Serialize;
-use sightlines::bake::auto::choose;
+use sightlines::bake::auto::Choice;
 use std::fmt;
 
 /// What was chosen, and why.
@@ -30,34 +28,16 @@ struct Facts {
 }
 
 impl Chosen {
-    /// Chooses for an input; the arguments that this stands for come with it.
-    pub(super) fn of(input: &Input, given: &RegionArgs) -> (Self, RegionArgs) {
-        let plain = |method: &str, reason: &str| {
-            let (method, reasons) = (method.to_owned(), vec![reason.to_owned()]);
-            (Self { method, reasons, facts: None }, given.clone())
-        };
-        match input {
-            Input::Scene(file) => {
-                let (f, choice) = choose(&file.scene, given.has_boxes());
-                let facts = Facts {
-                    n_triangles: f.n_triangles,
-                    n_objects: f.n_objects,
-                    axial_share: f.axial,
-                    loose_share: f.loose,
-                    openness: f.openness,
-                    object_size: f.object_size,
-                };
-                let region = given.chosen(&choice);
-                (Self { method: choice.to_string(), reasons: choice.reasons, facts: Some(facts) }, region)
-            }
-            Input::Plan(_) => plain(
-                "sightlines",
-                "a plan is solved in the plane, exactly; its walls' directions and groups say how it is cut",
-            ),
-            Input::Portals(_) | Input::Map(_) => {
-                plain("sightlines", "cells and portals are given, convex and in any direction: beams, then sequences")
-            }
-        }
+    pub(super) fn new(choice: Choice) -> Self {
+        let facts = choice.facts.map(|f| Facts {
+            n_triangles: f.n_triangles,
+            n_objects: f.n_objects,
+            axial_share: f.axial,
+            loose_share: f.loose,
+            openness: f.openness,
+            object_size: f.object_size,
+        });
+        Self { method: choice.method, reasons: choice.reasons, facts }
     }
 }
 

@@ -4,8 +4,7 @@ use super::Error;
 use crate::error::OutputError;
 use crate::output::{self, bytes, seconds};
 use serde::Serialize;
-use sightlines::bake::certify_table;
-use sightlines::pvs::Table;
+use sightlines::bake::Baked;
 use sightlines::stabtree::CertifyOptions;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -39,16 +38,16 @@ impl CertifyArgs {
         Some(given.clone().unwrap_or_else(|| table.with_extension("cert")))
     }
 
-    /// Finds and writes proofs of `table`, made from `path` and written to `out`, if they are wanted.
+    /// Finds and writes proofs for what was baked from `path` and written to `out`, if they are wanted.
     pub(super) fn write(
         &self,
         path: &Path,
         out: &Path,
-        table: &Table,
+        baked: &Baked,
         threads: usize,
     ) -> Result<Option<Certified>, Error> {
         let Some(file) = self.file(out) else { return Ok(None) };
-        let made = certify_table(table, &CertifyOptions { threads, ..CertifyOptions::default() });
+        let made = baked.certify(&CertifyOptions { threads, ..CertifyOptions::default() });
         let made = made.map_err(|source| Error::Certify { path: path.to_owned(), source })?;
         let content = made.proofs.to_bytes();
         output::save(&file, &content)?;

@@ -7,9 +7,7 @@ use crate::error::of_map;
 use sightlines::bake::BakeError;
 use sightlines::bake::CertifyError;
 use sightlines::bake::PrtBakeError;
-use sightlines::bake::RegionBakeError;
 use sightlines::bake::StabBakeError;
-use sightlines::bake::region::GridError;
 use sightlines::formats::ReadError;
 use std::path::PathBuf;
 
@@ -31,12 +29,6 @@ pub(crate) enum Error {
     /// A plan or a scene cannot be baked.
     #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
     Bake { path: PathBuf, map: Option<String>, source: BakeError },
-    /// A scene cannot be baked by what is hidden from its cells.
-    #[error("{}: {source}", path.display())]
-    BakeRegion { path: PathBuf, source: RegionBakeError },
-    /// There is no such grid of cells.
-    #[error("{}: {source}", path.display())]
-    Grid { path: PathBuf, source: GridError },
     /// A portal file, or the map that it is of, cannot be baked.
     #[error("{}: {source}", path.display())]
     BakePrt { path: PathBuf, source: PrtBakeError },

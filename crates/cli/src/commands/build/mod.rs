@@ -8,20 +8,24 @@ pub(crate) mod plan;
 mod portals;
 mod quake;
 mod region;
+mod source;
 pub(crate) mod space;
 mod stab;
 mod view_cells;
 
 pub(crate) use error::Error;
-pub(crate) use options::BakeArgs;
+pub(crate) use source::bake_visibly;
 
 use crate::Answer;
 use crate::input::{self, Input, refuse};
 use crate::output;
+use options::BakeArgs;
 use serde::Serialize;
-use sightlines::pvs::Table;
+use sightlines::bake::auto::choose_for;
+use sightlines::bake::{BakeOptions, Baked, Report, SceneMethod};
+use source::Source;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `build`.
 #[derive(Debug, clap::Args)]
@@ -57,108 +61,128 @@ pub(crate) struct BuildArgs {
 }
 
 pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
-    let BuildArgs { input: path, output: out, bake, .. } = args;
+    let BuildArgs { input: path, output: out, .. } = args;
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
     let input = input::read(path, args.map.as_deref())?;
-    let chosen = args.region.is_auto().then(|| auto::Chosen::of(&input, &args.region));
-    let (auto, region) = match &chosen {
-        Some((auto, region)) => (Some(auto), region),
-        None => (None, &args.region),
-    };
-    if !matches!(input, Input::Map(_)) {
-        refuse(path, &[("--prt", args.prt.is_some())], "Quake maps", "none")?;
+    args.refuse_meaningless(&input)?;
+    let source = Source::new(path, input, args.prt.as_deref(), out, &args.bake)?;
+    let mut options = args.bake.options();
+    args.region.apply(&mut options)?;
+    let mut auto = None;
+    if options.method == SceneMethod::Auto {
+        let (choice, chosen) = choose_for(&source.input(), &options);
+        (auto, options) = (Some(auto::Chosen::new(choice)), chosen);
     }
-    if !matches!(input, Input::Scene(_)) {
-        refuse(path, &region.of_space(), "scenes in space", "none")?;
-    }
-    let proofs_of = |table: &Table| args.certify.write(path, out, table, bake.threads);
-    let stab_of = |table| stab::add(path, table, args.stab_trees, bake.threads, show_progress);
-    match input {
-        Input::Plan(file) => {
-            let mut baked = plan::bake(path, &file, bake, show_progress)?;
-            let stab;
-            (baked.table, stab) = stab_of(baked.table)?;
-            output::save(out, &baked.table.to_bytes())?;
-            let (proofs, outcome) = (proofs_of(&baked.table)?, plan::Outcome::new(out, file.map, &baked));
-            output::print(args.json, &With { auto, outcome, stab, proofs })?;
-        }
-        Input::Scene(file) if region.is_given() => {
-            refuse(
-                path,
-                &[("--certify", args.certify.is_given())],
-                "scenes by sightlines alone",
-                "one by another method, or of boxes",
-            )?;
-            if region.has_boxes() {
-                refuse(
-                    path,
-                    &[("--stab-trees", args.stab_trees.is_some())],
-                    "cells with portals",
-                    "to have boxes as cells",
-                )?;
-            }
-            let mut baked = region::bake(path, &file, bake, region, show_progress)?;
-            let stab = match args.stab_trees {
-                Some(_) => {
-                    let (table, stab) = stab_of(baked.table)?;
-                    baked.table = table;
-                    stab
-                }
-                None => None,
-            };
-            output::save(out, &baked.table.to_bytes())?;
-            let outcome = region::Outcome::new(out, &file, region, &baked);
-            output::print(args.json, &With { auto, outcome, stab, proofs: None })?;
-        }
-        Input::Scene(file) => {
-            let mut baked = space::bake(path, &file, bake, show_progress)?;
-            let stab;
-            (baked.table, stab) = stab_of(baked.table)?;
-            output::save(out, &baked.table.to_bytes())?;
-            let (proofs, outcome) = (proofs_of(&baked.table)?, space::Outcome::new(out, &file, bake, &baked));
-            output::print(args.json, &With { auto, outcome, stab, proofs })?;
-        }
-        Input::Portals(prt) => {
-            let mut baked = portals::bake(path, &prt, bake, show_progress)?;
-            let stab;
-            (baked.table, stab) = stab_of(baked.table)?;
-            let bytes = baked.table.to_bytes();
-            output::save(out, &bytes)?;
-            let proofs = proofs_of(&baked.table)?;
-            let outcome = portals::Outcome::new(out, &prt, bake, &baked, bytes.len()).verbose(verbose);
-            output::print(args.json, &With { auto, outcome, stab, proofs })?;
-        }
-        Input::Map(bsp) => {
-            let portals = quake::Portals::read(path, args.prt.as_deref(), out)?;
-            let mut baked = quake::bake(path, &bsp, &portals, bake, show_progress)?;
-            let stab;
-            (baked.table, stab) = stab_of(baked.table)?;
-            let bytes = baked.table.to_bytes();
-            output::save(out, &bytes)?;
-            let proofs = proofs_of(&baked.table)?;
-            let outcome = quake::Outcome::new(out, &bsp, &portals, bake, &baked, bytes.len()).verbose(verbose);
-            output::print(args.json, &With { auto, outcome, stab, proofs })?;
-        }
-    }
+    args.refuse_for_regions(&source, &options)?;
+
+    let baked = bake_visibly(path, source.input(), &options, show_progress);
+    let baked = baked.map_err(|error| source.failed(path, error))?;
+    let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, show_progress)?;
+    let bytes = baked.table.to_bytes();
+    output::save(out, &bytes)?;
+    let proofs = args.certify.write(path, out, &baked, options.threads)?;
+    let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
+    output::print(args.json, &Built { auto, outcome, stab, proofs })?;
     Ok(Answer::Yes)
+}
+
+impl BuildArgs {
+    /// Refuses options that mean nothing for an input.
+    fn refuse_meaningless(&self, input: &Input) -> Result<(), Error> {
+        if !matches!(input, Input::Map(_)) {
+            refuse(&self.input, &[("--prt", self.prt.is_some())], "Quake maps", "none")?;
+        }
+        if !matches!(input, Input::Scene(_)) {
+            refuse(&self.input, &self.region.of_space(), "scenes in space", "none")?;
+        }
+        Ok(())
+    }
+
+    /// Refuses what tables by from-region queries cannot have.
+    fn refuse_for_regions(&self, source: &Source, options: &BakeOptions<'_>) -> Result<(), Error> {
+        if !matches!(source, Source::Scene(_)) || !options.takes_regions() {
+            return Ok(());
+        }
+        let of_certify = [("--certify", self.certify.is_given())];
+        refuse(&self.input, &of_certify, "scenes by sightlines alone", "one by another method, or of boxes")?;
+        if options.has_given_cells() {
+            let of_trees = [("--stab-trees", self.stab_trees.is_some())];
+            refuse(&self.input, &of_trees, "cells with portals", "to have boxes as cells")?;
+        }
+        Ok(())
+    }
+}
+
+/// What was built, for each kind of input.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Outcome {
+    Plan(plan::Outcome),
+    Scene(Box<space::Outcome>),
+    Regions(Box<region::Outcome>),
+    Portals(portals::Outcome),
+    Map(quake::Outcome),
+}
+
+impl Outcome {
+    fn new(
+        out: &Path,
+        source: &Source,
+        options: &BakeOptions<'_>,
+        baked: &Baked,
+        n_bytes: usize,
+        verbose: bool,
+    ) -> Self {
+        let (table, fast) = (&baked.table, options.fast);
+        match (source, &baked.report) {
+            (Source::Plan(file), Report::Plan(did)) => {
+                Self::Plan(plan::Outcome::new(out, file.map.clone(), table, did))
+            }
+            (Source::Scene(file), Report::Scene(did)) => {
+                Self::Scene(Box::new(space::Outcome::new(out, file, options.portals, table, did)))
+            }
+            (Source::Scene(file), Report::Regions(did)) => {
+                Self::Regions(Box::new(region::Outcome::new(out, file, options.has_given_cells(), table, did)))
+            }
+            (Source::Portals(prt), Report::Clusters(did)) => {
+                Self::Portals(portals::Outcome::new(out, prt, fast, did, n_bytes).verbose(verbose))
+            }
+            (Source::Map(bsp, portals), Report::Map(did)) => {
+                Self::Map(quake::Outcome::new(out, bsp, portals, fast, did, n_bytes).verbose(verbose))
+            }
+            _ => unreachable!("a bake reports on the kind of input that it was given"),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Plan(outcome) => outcome.fmt(f),
+            Self::Scene(outcome) => outcome.fmt(f),
+            Self::Regions(outcome) => outcome.fmt(f),
+            Self::Portals(outcome) => outcome.fmt(f),
+            Self::Map(outcome) => outcome.fmt(f),
+        }
+    }
 }
 
 /// What was built, and the stab trees and proofs with it.
 #[derive(Debug, Serialize)]
-struct With<'a, T> {
+struct Built {
     /// What `--method auto` chose.
     #[serde(skip_serializing_if = "Option::is_none")]
-    auto: Option<&'a auto::Chosen>,
+    auto: Option<auto::Chosen>,
     #[serde(flatten)]
-    outcome: T,
+    outcome: Outcome,
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<stab::Added>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     proofs: Option<certify::Certified>,
 }
 
-impl<T: fmt::Display> fmt::Display for With<'_, T> {
+impl fmt::Display for Built {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.auto.iter().try_for_each(|auto| write!(f, "{auto}"))?;
         write!(f, "{}", self.outcome)?;

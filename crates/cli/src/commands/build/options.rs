@@ -2,9 +2,10 @@
 
 use crate::error::InputError;
 use crate::input::refuse;
+use crate::named::one_of;
 use crate::numbers::share;
 use crate::region::Region;
-use sightlines::bake::{PortalMode, Subdivide};
+use sightlines::bake::{BakeOptions, PortalMode, Subdivide};
 use sightlines::kdtree::SceneOptions;
 use std::path::Path;
 
@@ -27,8 +28,8 @@ pub(crate) struct BakeArgs {
     detail_below: Option<f64>,
     /// Scenes in space only: look through the exact openings between cells, which is the default, or
     /// through one rectangle around each, which shows more
-    #[arg(long, help_heading = "Method", value_name = "HOW")]
-    portals: Option<Portals>,
+    #[arg(long, help_heading = "Method", value_name = "HOW", value_parser = one_of(&PortalMode::ALL, PortalMode::name, |_| ""))]
+    portals: Option<PortalMode>,
     /// Scenes in space: fail if there are more cells than this [default: 65536]
     #[arg(long, help_heading = "Cells", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_cells: Option<u32>,
@@ -43,13 +44,6 @@ pub(crate) struct BakeArgs {
     pub(super) threads: usize,
 }
 
-/// Which portals are looked through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Portals {
-    Exact,
-    Bounding,
-}
-
 fn size(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
@@ -58,30 +52,20 @@ fn size(text: &str) -> Result<f64, String> {
 }
 
 impl BakeArgs {
-    /// The threshold of a k-d tree.
-    pub(super) fn tau(&self) -> f64 {
-        self.tau.unwrap_or(0.0)
-    }
-
-    /// How to cut a scene in space.
-    pub(super) fn cut(&self) -> SceneOptions {
-        let standard = SceneOptions::default();
-        SceneOptions {
+    /// These arguments as the options of a bake; all others are the default.
+    pub(super) fn options(&self) -> BakeOptions<'static> {
+        let standard = BakeOptions::default();
+        let cut = SceneOptions {
             view_region: self.view_region.map(|region| region.0),
-            tau: self.tau(),
+            tau: self.tau.unwrap_or(standard.cut.tau),
             detail_below: self.detail_below,
-            max_cells: self.max_cells.unwrap_or(standard.max_cells),
+            max_cells: self.max_cells.unwrap_or(standard.cut.max_cells),
             keep_solid: self.keep_solid,
-            ..standard
-        }
-    }
-
-    /// Which portals of a scene in space to look through.
-    pub(super) fn portal_mode(&self) -> PortalMode {
-        match self.portals {
-            None | Some(Portals::Exact) => PortalMode::Exact,
-            Some(Portals::Bounding) => PortalMode::Bounding,
-        }
+            ..standard.cut
+        };
+        let subdivide = self.subdivide.unwrap_or_default();
+        let portals = self.portals.unwrap_or_default();
+        BakeOptions { subdivide, cut, portals, fast: self.fast, threads: self.threads, ..standard }
     }
 
     /// Options that mean something for scenes in space only.
@@ -123,6 +107,6 @@ mod tests {
     /// The help names this number.
     #[test]
     fn the_limit_of_cells_is_the_one_in_the_help() {
-        assert_eq!(BakeArgs::default().cut().max_cells, 65_536);
+        assert_eq!(BakeArgs::default().options().cut.max_cells, 65_536);
     }
 }

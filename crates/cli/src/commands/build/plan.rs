@@ -1,51 +1,30 @@
-//! From a plan to its table.
+//! What was built from a plan.
 
-use super::BakeArgs;
-use super::Error;
 use crate::facts::{Facts, times};
-use crate::input::PlanFile;
 use crate::output::{bytes, count};
-use crate::progress::Bar;
 use serde::Serialize;
-use sightlines::bake::{BakeOptions, BakeSummary, Baked, bake_plan};
+use sightlines::bake::PlanReport;
+use sightlines::pvs::Table;
 use sightlines::report::Summary;
 use std::fmt;
 use std::path::Path;
 
-/// Builds the table of a plan that came from `path`.
-pub(crate) fn bake(path: &Path, file: &PlanFile, args: &BakeArgs, show_progress: bool) -> Result<Baked, Error> {
-    args.check_for_plan(path)?;
-    let bar = Bar::new("visibility", show_progress);
-    let options = BakeOptions {
-        subdivide: args.subdivide.unwrap_or_default(),
-        tau: args.tau(),
-        threads: args.threads,
-        progress: Some(&bar),
-        ..BakeOptions::default()
-    };
-    let baked = bake_plan(&file.plan, &options);
-    drop(bar);
-    let baked = baked.map_err(|source| Error::Bake { path: path.to_owned(), map: file.map.clone(), source })?;
-    warn(path, &baked.summary);
-    Ok(baked)
-}
-
 /// Says on standard error what is only approximately so.
-fn warn(path: &Path, summary: &BakeSummary) {
+pub(super) fn warn(path: &Path, report: &PlanReport) {
     let say = |n: usize, noun: &str, what: &str| {
         if n > 0 {
             tracing::warn!("{}: {} {what}", path.display(), count(n as u64, noun));
         }
     };
-    say(summary.n_ignored_walls, "wall", "do not block sight: the k-d tree does not follow them");
-    say(summary.n_lost_mirrors, "mirror", "do not reflect everywhere: a part is on no border of a cell");
-    say(summary.n_dropped_pieces, "piece", "of walls do not block sight: rounding could have closed a gap beside them");
-    if summary.n_rounded_crossings > 0 {
-        let n = count(summary.n_rounded_crossings as u64, "crossing");
+    say(report.n_ignored_walls, "wall", "do not block sight: the k-d tree does not follow them");
+    say(report.n_lost_mirrors, "mirror", "do not reflect everywhere: a part is on no border of a cell");
+    say(report.n_dropped_pieces, "piece", "of walls do not block sight: rounding could have closed a gap beside them");
+    if report.n_rounded_crossings > 0 {
+        let n = count(report.n_rounded_crossings as u64, "crossing");
         tracing::info!("{}: {n} of lines had to be rounded, towards visible", path.display());
     }
-    if summary.n_disputed_cells > 0 {
-        let n = count(summary.n_disputed_cells as u64, "cell");
+    if report.n_disputed_cells > 0 {
+        let n = count(report.n_disputed_cells as u64, "cell");
         tracing::info!("{}: {n} where lines disagree about the group", path.display());
     }
 }
@@ -67,13 +46,12 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    pub(crate) fn new(out: &Path, map: Option<String>, baked: &Baked) -> Self {
-        let did = &baked.summary;
+    pub(crate) fn new(out: &Path, map: Option<String>, table: &Table, did: &PlanReport) -> Self {
         Self {
             out: out.display().to_string(),
             map,
             subdivide: did.subdivide.to_string(),
-            table: Summary::of(&baked.table),
+            table: Summary::of(table),
             n_ignored_walls: did.n_ignored_walls,
             n_rounded_crossings: did.n_rounded_crossings,
             n_dropped_pieces: did.n_dropped_pieces,

@@ -1,32 +1,14 @@
-//! From a portal file to the table of its clusters.
+//! What was built from a portal file.
 
-use super::BakeArgs;
-use super::Error;
 use crate::clusters::Clusters;
 use crate::output::bytes;
-use crate::progress::Bar;
 use serde::Serialize;
-use sightlines::bake::{BakedPrt, PrtOptions, bake_prt};
+use sightlines::bake::ClusterVisibility;
 use sightlines::formats::Prt;
-use sightlines::stabtree::ConvexOptions;
 use std::fmt;
 use std::path::Path;
 
-/// Builds the table of the clusters of a portal file that came from `path`.
-pub(crate) fn bake(path: &Path, prt: &Prt, args: &BakeArgs, show_progress: bool) -> Result<BakedPrt, Error> {
-    args.check_for_portals(path)?;
-    let baked = with_progress(args, show_progress, |options| bake_prt(prt, options));
-    baked.map_err(|source| Error::BakePrt { path: path.to_owned(), source })
-}
-
-/// Runs a search with the options of the command, and shows how far it is.
-pub(super) fn with_progress<T>(args: &BakeArgs, show_progress: bool, run: impl FnOnce(PrtOptions<'_>) -> T) -> T {
-    let bar = Bar::new("visibility of clusters", show_progress);
-    let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    run(PrtOptions { search, progress: Some(&bar), ..PrtOptions::default() })
-}
-
-/// Tells how it was found out which clusters of what see which, and what came out of it.
+/// Prints the method, and what it found about the clusters.
 pub(super) fn write_method(
     f: &mut fmt::Formatter<'_>,
     fast: bool,
@@ -56,12 +38,12 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    pub(crate) fn new(out: &Path, prt: &Prt, args: &BakeArgs, baked: &BakedPrt, n_bytes: usize) -> Self {
+    pub(crate) fn new(out: &Path, prt: &Prt, fast: bool, found: &ClusterVisibility, n_bytes: usize) -> Self {
         Self {
             out: out.display().to_string(),
             portal_format: prt.dialect().magic(),
-            fast: args.fast,
-            clusters: Clusters::new(&baked.clusters),
+            fast,
+            clusters: Clusters::new(found),
             n_bytes,
             verbose: false,
         }

@@ -1,14 +1,12 @@
-//! From a Quake map with its portal file to the table of its clusters, which knows where they are.
+//! What was built from a Quake map with its portal file.
 
-use super::BakeArgs;
 use super::Error;
-use super::portals::{with_progress, write_method};
+use super::portals::write_method;
 use crate::clusters::Clusters;
 use crate::error::InputError;
 use crate::output::{self, bytes, count};
 use serde::Serialize;
-use sightlines::bake::PrtBakeError;
-use sightlines::bake::quake::{BakedMap, WorldSummary, bake_map};
+use sightlines::bake::{MapReport, PrtBakeError, WorldSummary};
 use sightlines::formats::Prt;
 use sightlines::formats::quake::{Bsp, VisibilityError, read_prt};
 use std::fmt;
@@ -18,7 +16,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(crate) struct Portals {
     path: PathBuf,
-    prt: Prt,
+    pub(super) prt: Prt,
 }
 
 impl Portals {
@@ -34,25 +32,17 @@ impl Portals {
     }
 }
 
-/// Builds the table of a map that came from `path`.
-pub(crate) fn bake(
-    path: &Path,
-    bsp: &Bsp,
-    portals: &Portals,
-    args: &BakeArgs,
-    show_progress: bool,
-) -> Result<BakedMap, Error> {
-    args.check_for_portals(path)?;
-    let baked = with_progress(args, show_progress, |options| bake_map(bsp, &portals.prt, options));
-    baked.map_err(|source| match source {
-        PrtBakeError::Bsp(_) => Error::BakePrt { path: path.to_owned(), source },
+/// Names the file that an error is about: the map, its portal file, or that the two do not go together.
+pub(super) fn failed(map: &Path, portals: &Portals, source: PrtBakeError) -> Error {
+    match source {
+        PrtBakeError::Bsp(_) => Error::BakePrt { path: map.to_owned(), source },
         PrtBakeError::Visibility(
             source @ (VisibilityError::Leafs { .. }
             | VisibilityError::Clusters { .. }
             | VisibilityError::OtherMap { .. }),
-        ) => InputError::OtherMap { prt: portals.path.clone(), bsp: path.to_owned(), source: Box::new(source) }.into(),
+        ) => InputError::OtherMap { prt: portals.path.clone(), bsp: map.to_owned(), source: Box::new(source) }.into(),
         source => Error::BakePrt { path: portals.path.clone(), source },
-    })
+    }
 }
 
 /// What was built.
@@ -86,17 +76,17 @@ impl Outcome {
         out: &Path,
         bsp: &Bsp,
         portals: &Portals,
-        args: &BakeArgs,
-        baked: &BakedMap,
+        fast: bool,
+        report: &MapReport,
         n_bytes: usize,
     ) -> Self {
-        let WorldSummary { n_faces, n_unlisted_faces, n_listed, n_reaching, n_planes, slack, .. } = baked.world;
+        let WorldSummary { n_faces, n_unlisted_faces, n_listed, n_reaching, n_planes, slack, .. } = report.world;
         Self {
             out: out.display().to_string(),
             format: bsp.format().name(),
             portal_format: portals.prt.dialect().magic(),
-            fast: args.fast,
-            clusters: Clusters::new(&baked.clusters),
+            fast,
+            clusters: Clusters::new(&report.clusters),
             n_faces,
             n_unlisted_faces,
             n_listed,

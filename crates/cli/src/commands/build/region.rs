@@ -1,32 +1,27 @@
-//! From a scene in space to its table by what is hidden from whole cells.
+//! How a scene in space is baked, as arguments, and what was built by from-region queries.
 
-use super::BakeArgs;
-use super::Error;
-use super::space::informed;
 use super::view_cells::ViewCellsArgs;
-use crate::buffers::{BufferArgs, MethodFailed};
+use crate::buffers::BufferArgs;
 use crate::facts::{Facts, Stated};
+use crate::named::one_of;
 use crate::output::{bytes, count, percent, seconds};
-use crate::progress::Bar;
 use serde::Serialize;
-use sightlines::bake::auto::SceneChoice;
-use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
-use sightlines::bake::region::grid;
-use sightlines::bake::{BakedRegions, CellsFrom, RegionBakeOptions, bake_regions};
-use sightlines::formats::SceneFile;
+use sightlines::bake::{BakeOptions, CellsFrom, RegionReport, SceneMethod};
+use sightlines::formats::{ReadError, SceneFile};
 use sightlines::multifocal::Split;
+use sightlines::pvs::Table;
 use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
 use std::path::Path;
 
-/// The method that computes visibility, for scenes in space.
+/// What decides which cells and objects are visible, for scenes in space.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct RegionArgs {
     /// Scenes in space: sightlines (through portals; axis-aligned walls occlude), multifocal (from whole cells; any
     /// surfaces occlude), both (hides what either hides), or shafts and voxels (older methods, for comparison). auto,
     /// for any input, measures it, chooses the methods and prints the reasons [default: sightlines]
-    #[arg(long, value_name = "HOW")]
-    method: Option<Method>,
+    #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
+    method: Option<SceneMethod>,
     #[command(flatten)]
     cells: ViewCellsArgs,
     /// Scenes in space: use a grid of boxes as cells, in the view region or the box of the scene
@@ -39,19 +34,6 @@ pub(crate) struct RegionArgs {
     split: u32,
 }
 
-/// Who says what is hidden.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Method {
-    Auto,
-    Sightlines,
-    Multifocal,
-    Both,
-    /// View shafts: one flat occluder cuts all lines between a cell and an object
-    Shafts,
-    /// Voxels inside closed surfaces, extended to blockers
-    Voxels,
-}
-
 fn counts(text: &str) -> Result<[u32; 3], String> {
     let parts: Vec<u32> = text.split(',').map(|n| n.trim().parse().unwrap_or(0)).collect();
     match <[u32; 3]>::try_from(parts) {
@@ -61,91 +43,30 @@ fn counts(text: &str) -> Result<[u32; 3], String> {
 }
 
 impl RegionArgs {
-    /// Whether the method is to be chosen.
-    pub(super) fn is_auto(&self) -> bool {
-        self.method == Some(Method::Auto)
-    }
-
-    /// What a choice stands for. What is not asked keeps its arguments, which mean nothing then.
-    pub(super) fn chosen(&self, choice: &SceneChoice) -> Self {
-        let mut chosen = self.clone();
-        chosen.method = Some(if choice.asks_a_method() { Method::Both } else { Method::Sightlines });
-        (chosen.buffers.planes, chosen.buffers.texels) = (choice.planes, choice.texels);
-        if !choice.sheets {
-            chosen.buffers.sheets = 0;
-        }
-        chosen
-    }
-
-    /// Whether anything but sight lines through a k-d tree was requested.
-    pub(super) fn is_given(&self) -> bool {
-        self.method.is_some_and(|m| m != Method::Sightlines) || self.has_boxes()
-    }
-
-    /// Whether cells are boxes from elsewhere.
-    pub(super) fn has_boxes(&self) -> bool {
-        self.cells.is_given() || self.grid.is_some()
+    /// Puts these arguments into the options of a bake. Reads the file of view cells.
+    ///
+    /// # Errors
+    /// [`ReadError`] with the file's name and the place in it.
+    pub(super) fn apply(&self, options: &mut BakeOptions<'_>) -> Result<(), ReadError> {
+        options.method = self.method.unwrap_or_default();
+        options.cells = match (self.cells.read()?, self.grid) {
+            (Some(cells), _) => CellsFrom::Boxes(cells),
+            (None, Some(n)) => CellsFrom::Grid(n),
+            (None, None) => CellsFrom::KdTree,
+        };
+        options.buffers = self.buffers.options();
+        options.split.depth = self.split;
+        Ok(())
     }
 
     /// Options that mean something for scenes in space only.
     pub(super) fn of_space(&self) -> [(&'static str, bool); 3] {
         [
-            ("--method", self.method.is_some() && !self.is_auto()),
+            ("--method", self.method.is_some_and(|method| method != SceneMethod::Auto)),
             ("--cells", self.cells.is_given()),
             ("--grid", self.grid.is_some()),
         ]
     }
-}
-
-/// Builds the table of a scene that came from `path`.
-pub(super) fn bake(
-    path: &Path,
-    file: &SceneFile,
-    args: &BakeArgs,
-    region: &RegionArgs,
-    show_progress: bool,
-) -> Result<BakedRegions, Error> {
-    args.check_for_space(path)?;
-    let failed = |source| Error::BakeRegion { path: path.to_owned(), source };
-    let cut = args.cut();
-    let cells = match (region.cells.read()?, region.grid) {
-        (Some(cells), _) => CellsFrom::Boxes(cells),
-        (None, Some(n)) => {
-            let around = cut.view_region.unwrap_or_else(|| file.scene.bounds());
-            let cells = grid(&around, n).map_err(|source| Error::Grid { path: path.to_owned(), source })?;
-            CellsFrom::Boxes(cells)
-        }
-        (None, None) => CellsFrom::KdTree,
-    };
-    let method = region.method.unwrap_or(Method::Sightlines);
-    let method_of_cells = match method {
-        Method::Auto | Method::Sightlines => None,
-        Method::Multifocal | Method::Both => Some(OcclusionMethod::Multifocal),
-        Method::Shafts => Some(OcclusionMethod::Shafts),
-        Method::Voxels => Some(OcclusionMethod::Voxels),
-    };
-    let options = region.buffers.options();
-    let unfit = |source| MethodFailed { path: path.to_owned(), source };
-    options.check().map_err(|source| unfit(source.into()))?;
-    let prepare = |method| OcclusionMethodFactory::new(method, &file.scene, &options).map_err(unfit);
-    let factory = method_of_cells.map(prepare).transpose()?;
-    let make = || factory.as_ref().expect("only called if there is one").instance();
-    let bar = Bar::new("visibility", show_progress);
-    let options = RegionBakeOptions {
-        cells: &cells,
-        method: factory.is_some().then_some(&make),
-        sightlines: matches!(method, Method::Auto | Method::Sightlines | Method::Both),
-        split: Split { depth: region.split, ..Split::default() },
-        cut,
-        portals: args.portal_mode(),
-        threads: args.threads,
-        progress: Some(&bar),
-    };
-    let baked = bake_regions(&file.scene, &options);
-    drop(bar);
-    let baked = baked.map_err(failed)?;
-    let table = informed(baked.table, &file.info).map_err(|error| failed(error.into()))?;
-    Ok(BakedRegions { table, ..baked })
 }
 
 /// What was built.
@@ -156,7 +77,7 @@ pub(super) struct Outcome {
     stated: Stated,
     /// `kd` or `boxes`.
     subdivide: &'static str,
-    /// The method that computed the visibility.
+    /// What said who sees whom.
     method: String,
     n_triangles: usize,
     #[serde(flatten)]
@@ -165,7 +86,7 @@ pub(super) struct Outcome {
     viewer: ViewerShare,
     /// Pairs of a cell and an object that it may see.
     n_objects_seen: u64,
-    /// Volumes that the method was run for: cells, and parts of cells.
+    /// Volumes that were asked about: cells, and parts of cells.
     n_volumes: u64,
     /// Questions whether a box, or a triangle, is hidden.
     n_asked: u64,
@@ -173,21 +94,21 @@ pub(super) struct Outcome {
 }
 
 impl Outcome {
-    pub(super) fn new(out: &Path, file: &SceneFile, region: &RegionArgs, baked: &BakedRegions) -> Self {
+    pub(super) fn new(out: &Path, file: &SceneFile, given_cells: bool, table: &Table, report: &RegionReport) -> Self {
         let triangles: Vec<u64> = file.scene.objects().iter().map(|o| o.triangles.len() as u64).collect();
-        let asked = &baked.effort.asked;
+        let asked = &report.effort.asked;
         Self {
             out: out.display().to_string(),
             stated: Stated::new(&file.info),
-            subdivide: if region.has_boxes() { "boxes" } else { "kd" },
-            method: baked.table.info_value("method").unwrap_or_default().to_owned(),
+            subdivide: if given_cells { "boxes" } else { "kd" },
+            method: table.info_value("method").unwrap_or_default().to_owned(),
             n_triangles: file.info.n_triangles,
-            table: Summary::of(&baked.table),
-            viewer: ViewerShare::of(&baked.table, &triangles),
-            n_objects_seen: baked.n_objects_seen,
-            n_volumes: baked.effort.n_volumes,
+            table: Summary::of(table),
+            viewer: ViewerShare::of(table, &triangles),
+            n_objects_seen: report.n_objects_seen,
+            n_volumes: report.effort.n_volumes,
             n_asked: asked.groups + asked.boxes + asked.triangles,
-            seconds: baked.time.as_secs_f64(),
+            seconds: report.time.as_secs_f64(),
         }
     }
 }

@@ -1,56 +1,25 @@
-//! From a scene in space to its table.
+//! What was built from a scene in space, by sightlines.
 
-use super::BakeArgs;
-use super::Error;
-use crate::facts::{Facts, Stated, axis, times};
+use crate::facts::{Facts, Stated, times};
 use crate::output::{bytes, count, percent};
-use crate::progress::Bar;
 use serde::Serialize;
-use sightlines::bake::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
+use sightlines::bake::{PortalMode, SceneReport};
 use sightlines::cells::SceneObject;
 use sightlines::formats::SceneFile;
-use sightlines::formats::scene::{LengthUnit, SceneInfo};
 use sightlines::pvs::Table;
 use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
 use std::path::Path;
 
-/// Builds the table of a scene that came from `path`. The table says which way is up, and the unit.
-pub(crate) fn bake(path: &Path, file: &SceneFile, args: &BakeArgs, show_progress: bool) -> Result<BakedScene, Error> {
-    args.check_for_space(path)?;
-    let bar = Bar::new("visibility", show_progress);
-    let options =
-        SceneBakeOptions { cut: args.cut(), portals: args.portal_mode(), threads: args.threads, progress: Some(&bar) };
-    let baked = bake_scene(&file.scene, &options);
-    drop(bar);
-    let failed = |source| Error::Bake { path: path.to_owned(), map: None, source };
-    let baked = baked.map_err(failed)?;
-    warn(path, &baked);
-    let table = informed(baked.table, &file.info).map_err(|error| failed(error.into()))?;
-    Ok(BakedScene { table, ..baked })
-}
-
 /// Says on standard error which mirrors do not reflect.
-fn warn(path: &Path, baked: &BakedScene) {
+pub(super) fn warn(path: &Path, report: &SceneReport) {
     let say = |n: usize, noun: &str, what: &str| {
         if n > 0 {
             tracing::warn!("{}: {} of mirrors {what}", path.display(), count(n as u64, noun));
         }
     };
-    say(baked.n_other_mirror_triangles, "triangle", "do not reflect: they are not perpendicular to an axis");
-    say(baked.n_lost_mirrors, "rectangle", "do not reflect everywhere: a part is in no cell");
-}
-
-/// The table with what the file says about its scene.
-pub(super) fn informed(table: Table, said: &SceneInfo) -> Result<Table, sightlines::pvs::TableError> {
-    let mut parts = table.into_parts();
-    parts.up = Some(said.up);
-    parts.info.push(("up".to_owned(), axis(said.up).to_owned()));
-    if said.unit == LengthUnit::Metre {
-        parts.info.push(("unit".to_owned(), "metre".to_owned()));
-    }
-    parts.info.sort();
-    Table::new(parts)
+    say(report.n_other_mirror_triangles, "triangle", "do not reflect: they are not perpendicular to an axis");
+    say(report.n_lost_mirrors, "rectangle", "do not reflect everywhere: a part is in no cell");
 }
 
 /// What was built. Of the triangles, each is either axis-aligned or hides nothing; those that are detail are
@@ -100,14 +69,14 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    pub(crate) fn new(out: &Path, file: &SceneFile, args: &BakeArgs, baked: &BakedScene) -> Self {
-        let (cut, did) = (&baked.cut, &baked.counters);
+    pub(crate) fn new(out: &Path, file: &SceneFile, portals: PortalMode, table: &Table, report: &SceneReport) -> Self {
+        let (cut, did) = (&report.cut, &report.counters);
         let triangles: Vec<u64> = file.scene.objects().iter().map(|o| o.triangles.len() as u64).collect();
         Self {
             out: out.display().to_string(),
             stated: Stated::new(&file.info),
             subdivide: "kd",
-            portals: if args.portal_mode() == PortalMode::Bounding { "bounding" } else { "exact" },
+            portals: if portals == PortalMode::Bounding { "bounding" } else { "exact" },
             n_triangles: file.info.n_triangles,
             n_axial_triangles: cut.n_axial_triangles,
             n_other_triangles: cut.n_other_triangles,
@@ -120,15 +89,15 @@ impl Outcome {
             n_solid: cut.n_solid,
             n_hollow: cut.n_hollow,
             n_unreachable: cut.n_unreachable,
-            table: Summary::of(&baked.table),
-            viewer: ViewerShare::of(&baked.table, &triangles),
-            n_blockers: baked.n_blockers,
+            table: Summary::of(table),
+            viewer: ViewerShare::of(table, &triangles),
+            n_blockers: report.n_blockers,
             n_asked: did.n_asked,
             n_programs: did.n_programs,
             n_exact: did.n_exact,
-            n_assumed: baked.n_assumed,
-            cut_seconds: baked.cut_time.as_secs_f64(),
-            see_seconds: baked.see_time.as_secs_f64(),
+            n_assumed: report.n_assumed,
+            cut_seconds: report.cut_time.as_secs_f64(),
+            see_seconds: report.see_time.as_secs_f64(),
         }
     }
 

@@ -5,27 +5,27 @@ use crate::facts::StabFacts;
 use crate::output::{percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
-use sightlines::bake::{BakedStab, StabOptions, with_stab_trees};
+use sightlines::bake::{Baked, StabOptions, StabReport};
 use sightlines::pvs::Table;
 use std::fmt;
 use std::path::Path;
 
-/// Adds stab trees to a table made from `path`, if they are wanted; `wanted` may say how many nodes a tree may have.
+/// Adds stab trees to what was baked from `path`, if they are wanted; `wanted` may say how many nodes a tree may have.
 pub(super) fn add(
     path: &Path,
-    table: Table,
+    baked: Baked,
     wanted: Option<Option<u32>>,
     threads: usize,
     show_progress: bool,
-) -> Result<(Table, Option<Added>), Error> {
-    let Some(max_nodes) = wanted else { return Ok((table, None)) };
+) -> Result<(Baked, Option<Added>), Error> {
+    let Some(max_nodes) = wanted else { return Ok((baked, None)) };
     let bar = Bar::new("stab trees", show_progress);
     let max_nodes = max_nodes.map(|n| n as usize);
-    let baked = with_stab_trees(table, &StabOptions { max_nodes, threads, progress: Some(&bar) });
+    let with = baked.with_stab_trees(&StabOptions { max_nodes, threads, progress: Some(&bar) });
     drop(bar);
-    let baked = baked.map_err(|source| Error::Stab { path: path.to_owned(), source })?;
-    let added = Added::new(&baked);
-    Ok((baked.table, Some(added)))
+    let (baked, report) = with.map_err(|source| Error::Stab { path: path.to_owned(), source })?;
+    let added = Added::new(&baked.table, &report);
+    Ok((baked, Some(added)))
 }
 
 /// What was added.
@@ -48,17 +48,17 @@ pub(super) struct Added {
 }
 
 impl Added {
-    fn new(baked: &BakedStab) -> Self {
-        let did = &baked.trees;
+    fn new(table: &Table, report: &StabReport) -> Self {
+        let did = &report.trees;
         Self {
-            facts: StabFacts::of(&baked.table).unwrap_or_default(),
-            max_nodes: baked.max_nodes,
+            facts: StabFacts::of(table).unwrap_or_default(),
+            max_nodes: report.max_nodes,
             n_largest: did.n_largest,
             n_cut_cells: did.n_cut_cells,
             n_open: did.n_open,
             n_undecided: did.n_undecided,
-            stab_seconds: baked.time.as_secs_f64(),
-            cut_share: did.n_cut_cells as f64 / baked.table.n_cells().max(1) as f64,
+            stab_seconds: report.time.as_secs_f64(),
+            cut_share: did.n_cut_cells as f64 / table.n_cells().max(1) as f64,
         }
     }
 }

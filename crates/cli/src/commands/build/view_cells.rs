@@ -1,8 +1,7 @@
 //! View cells from a file, as an argument.
 
-use super::Error;
-use sightlines::formats::ViewCells;
 use sightlines::formats::view_cells::read_view_cells;
+use sightlines::formats::{ReadError, ViewCells};
 use std::path::PathBuf;
 
 /// Which boxes are the cells of a scene.
@@ -22,8 +21,8 @@ impl ViewCellsArgs {
     /// The view cells of the file, if one was given.
     ///
     /// # Errors
-    /// [`Error::Read`] with the file's name and the place in it.
-    pub(super) fn read(&self) -> Result<Option<ViewCells>, Error> {
-        Ok(self.cells.as_ref().map(read_view_cells).transpose()?)
+    /// [`ReadError`] with the file's name and the place in it.
+    pub(super) fn read(&self) -> Result<Option<ViewCells>, ReadError> {
+        self.cells.as_ref().map(read_view_cells).transpose()
     }
 }

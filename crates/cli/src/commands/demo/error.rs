@@ -1,12 +1,13 @@
 //! Why `demo` fails.
 
-use crate::commands::build;
 use crate::error::InputError;
 use crate::error::OutputError;
 use crate::glb::GlbError;
 use crate::picture::PictureError;
+use sightlines::bake::BakeError;
 use sightlines::formats::ReadError;
 use sightlines::scenes::SceneError;
+use std::path::PathBuf;
 
 /// Why `demo` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -26,9 +27,9 @@ pub(crate) enum Error {
     /// A scene that cannot be written as GLB.
     #[error(transparent)]
     Glb(#[from] GlbError),
-    /// A table that cannot be built.
-    #[error(transparent)]
-    Build(#[from] build::Error),
+    /// A table that cannot be baked.
+    #[error("{}: {source}", path.display())]
+    Bake { path: PathBuf, source: BakeError },
     /// A scene cannot be generated.
     #[error(transparent)]
     Generate(#[from] SceneError),

@@ -3,11 +3,12 @@
 use super::Error;
 use super::{DemoArgs, Done};
 use crate::Answer;
-use crate::commands::build::{BakeArgs, plan};
+use crate::commands::build::{bake_visibly, plan};
 use crate::input;
 use crate::output::{self, bytes, percent};
 use crate::picture::{PictureKind, draw_plan, save_picture};
 use serde::Serialize;
+use sightlines::bake::{BakeOptions, Report};
 use sightlines::formats::geojson;
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{DrawOptions, View};
@@ -23,7 +24,9 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     let (plan_path, table_path) = (folder.join("plan.geojson"), folder.join("plan.pvs"));
     output::save(&plan_path, geojson::write_plan(&office).as_bytes())?;
     // The plan is read back from the file, as `build` would do.
-    let baked = plan::bake(&plan_path, &input::plan(&plan_path)?, &BakeArgs::default(), show_progress)?;
+    let file = input::plan(&plan_path)?;
+    let baked = bake_visibly(&plan_path, (&file.plan).into(), &BakeOptions::default(), show_progress);
+    let baked = baked.map_err(|source| Error::Bake { path: plan_path, source })?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let mut files = vec!["plan.geojson".to_owned(), "plan.pvs".to_owned()];
     for (name, view) in views(&baked.table) {
@@ -35,9 +38,10 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
             files.push(file);
         }
     }
+    let Report::Plan(report) = &baked.report else { unreachable!("a plan was baked") };
     let demo = Demo {
         n_walls: office.lines().len(),
-        built: plan::Outcome::new(&table_path, None, &baked),
+        built: plan::Outcome::new(&table_path, None, &baked.table, report),
         done: Done::new(args, start, files),
     };
     output::print(args.json, &demo)?;

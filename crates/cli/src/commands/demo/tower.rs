@@ -3,11 +3,12 @@
 use super::Error;
 use super::{DemoArgs, Done};
 use crate::Answer;
-use crate::commands::build::{BakeArgs, space};
+use crate::commands::build::{bake_visibly, space};
 use crate::glb::save_glb;
 use crate::output::{self, bytes, percent};
 use crate::picture::{self, PictureError, PictureKind, save_picture};
 use serde::Serialize;
+use sightlines::bake::{BakeOptions, Report};
 use sightlines::formats::scene::read_scene;
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{IsometricOptions, SliceOptions, View, isometric_svg, slice_svg};
@@ -23,8 +24,9 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     save_glb(&scene_path, &tower(options)?)?;
     // The scene is read back from the file, as `build` would do.
     let file = read_scene(&scene_path)?;
-    let standard = BakeArgs::default();
-    let baked = space::bake(&scene_path, &file, &standard, show_progress)?;
+    let standard = BakeOptions::default();
+    let baked = bake_visibly(&scene_path, (&file).into(), &standard, show_progress);
+    let baked = baked.map_err(|source| Error::Bake { path: scene_path, source })?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let mut files = vec!["tower.glb".to_owned(), "tower.pvs".to_owned()];
     for (name, svg) in pictures(&table_path, &baked.table)? {
@@ -34,9 +36,10 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
             files.push(picture);
         }
     }
+    let Report::Scene(report) = &baked.report else { unreachable!("a scene was baked by sightlines") };
     let demo = Demo {
         n_floors: options.floors,
-        built: space::Outcome::new(&table_path, &file, &standard, &baked),
+        built: space::Outcome::new(&table_path, &file, standard.portals, &baked.table, report),
         done: Done::new(args, start, files),
     };
     output::print(args.json, &demo)?;

@@ -14,7 +14,7 @@ use crate::{input, output};
 use answer::{Outside, Told};
 use convex::Asked;
 use error::Error;
-use sightlines::bake::{axial_graph_of, convex_graph_of};
+use sightlines::bake::from_table::{axial_graph, convex_graph};
 use sightlines::cells::{CellGraph, Convex, Planar};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::{graph_of_prt, read_prt};
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
         let is_placed = table.planes().is_some();
         let found = if is_placed { "the table of a Quake map" } else { "the table of a portal file" };
         args.refuse_meaningless(Of::Portals, found)?;
-        let graph = convex_graph_of(&table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
+        let graph = convex_graph(&table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
         let listed = |a, b| Some(table.sees(a, b));
         if !is_placed {
             return args.asked(&graph).answer(listed);
@@ -147,7 +147,7 @@ enum Of {
 }
 
 fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {
-    let graph = axial_graph_of(table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
+    let graph = axial_graph(table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
     // The table does not tell what was left out beside its cells, and no answer depends on that.
     let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
     let told = ToldInSpace::new([a, b], explanation, table.sees(a, b), args.proofs);

@@ -93,7 +93,7 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
     // Before anything is written: a table that is proven wrong should not be.
     let certified = args.certify.map(|n| {
         let bar = Bar::new("proofs", show_progress);
-        certify(&prt_path, &graph_of_prt(&prt), &map.clusters.seen, n, args.fast, &bar)
+        certify(&prt_path, &map.graph, &map.clusters.seen, n, args.fast, &bar)
     });
     let certified = certified.transpose()?;
     output::save(out, &map.bytes)?;

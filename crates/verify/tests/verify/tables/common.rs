@@ -1,7 +1,7 @@
 //! Tables of every kind, with the scenes that they are of.
 
 use sightlines_bake::{
-    BakeOptions, CellsFrom, PrtOptions, RegionBakeOptions, SceneBakeOptions, Subdivide, bake_plan, bake_prt,
+    CellsFrom, PlanBakeOptions, PrtOptions, RegionBakeOptions, SceneBakeOptions, Subdivide, bake_plan, bake_prt,
     bake_regions, bake_scene,
 };
 use sightlines_cells::{CellGraph, Convex, Plan, PlanObject, Scene};
@@ -57,7 +57,7 @@ pub(crate) fn check(table: &Table, real: &Real, options: &VerifyOptions) -> Find
 }
 
 fn plan_case(name: &'static str, plan: Plan, subdivide: Subdivide) -> Case {
-    let baked = bake_plan(&plan, &BakeOptions { subdivide, ..BakeOptions::default() }).expect("a plan");
+    let baked = bake_plan(&plan, &PlanBakeOptions { subdivide, ..PlanBakeOptions::default() }).expect("a plan");
     Case { name, table: baked.table, real: Real::Plan(plan), least_caught: [1.0, 1.0] }
 }
 
@@ -116,6 +116,7 @@ fn grid_case(name: &'static str, sightlines: bool) -> Case {
         cut: Default::default(),
         portals: Default::default(),
         threads: 0,
+        file: None,
         progress: None,
     };
     let table = bake_regions(&scene, &options).expect("boxes").table;

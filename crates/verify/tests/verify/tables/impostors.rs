@@ -1,7 +1,7 @@
 //! Tables that are wrong all over.
 
 use crate::tables::common::{Real, an_office, cases, changed, check, quick, small_tower};
-use sightlines_bake::{BakeOptions, bake_plan};
+use sightlines_bake::{PlanBakeOptions, bake_plan};
 use sightlines_pvs::BitMatrix;
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_verify::{Truth, VerifyError, VerifyOptions, verify};
@@ -43,7 +43,7 @@ fn a_blind_row_of_objects_is_wrong() {
 
 #[test]
 fn a_table_of_another_scene_is_noticed() {
-    let table = bake_plan(&an_office(), &BakeOptions::default()).expect("an office").table;
+    let table = bake_plan(&an_office(), &PlanBakeOptions::default()).expect("an office").table;
     let other = OfficeOptions { seed: 77, rooms_x: 4, rooms_y: 3, ..OfficeOptions::default() };
     let other = Real::Plan(office(other).expect("an office"));
     let found = check(&table, &other, &quick());
@@ -53,7 +53,7 @@ fn a_table_of_another_scene_is_noticed() {
     let bare = |seed: u64| {
         office(OfficeOptions { seed, rooms_x: 4, rooms_y: 3, ..OfficeOptions::default() }).expect("an office")
     };
-    let table = bake_plan(&bare(1), &BakeOptions::default()).expect("an office").table;
+    let table = bake_plan(&bare(1), &PlanBakeOptions::default()).expect("an office").table;
     let strip =
         |plan: &sightlines_cells::Plan| sightlines_cells::Plan::new(plan.lines().to_vec(), Vec::new()).expect("lines");
     let table = changed(&table, |parts| {
@@ -70,7 +70,7 @@ fn a_table_of_another_scene_is_noticed() {
 fn tables_of_other_kinds_are_refused() {
     let scene = small_tower();
     let plan = an_office();
-    let table = bake_plan(&plan, &BakeOptions::default()).expect("an office").table;
+    let table = bake_plan(&plan, &PlanBakeOptions::default()).expect("an office").table;
     let error = verify(&table, &Truth::Scene(&scene), &quick()).unwrap_err();
     assert_eq!(error, VerifyError::Dimension { table: 2, scene: 3 });
     assert_eq!(error.to_string(), "the table has 2 dimensions, the scene 3");

@@ -1,0 +1,52 @@
+//! Why nothing was baked.
+
+use crate::methods::MethodError;
+use crate::quake::PrtBakeError;
+use crate::region::GridError;
+use sightlines_cells::PlanError;
+use sightlines_kdtree::KdError;
+use sightlines_multifocal::{BackendError, VolumeError};
+use sightlines_progress::Cancelled;
+use sightlines_pvs::TableError;
+use sightlines_triangulation::TriangulationError;
+
+/// Why an input could not be baked.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BakeError {
+    /// The triangulation has nothing to cut.
+    #[error(transparent)]
+    Triangulation(#[from] TriangulationError),
+    /// The k-d tree refused the plan, the scene or its options.
+    #[error(transparent)]
+    KdTree(#[from] KdError),
+    /// The lines of a map do not make a plan.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// There is no such grid of view cells.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// A view cell is no volume.
+    #[error("view cell {cell}: {error}")]
+    Cell {
+        /// Its index.
+        cell: usize,
+        /// What is wrong with it.
+        error: VolumeError,
+    },
+    /// The from-region method cannot be prepared.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// The from-region method failed.
+    #[error(transparent)]
+    Backend(#[from] BackendError),
+    /// The portals of a Quake map, or the map, cannot be baked.
+    #[error(transparent)]
+    Prt(#[from] PrtBakeError),
+    /// The observer cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The parts of the table do not fit together: a defect of this crate.
+    #[error("the table is inconsistent: {0}")]
+    Table(#[from] TableError),
+}

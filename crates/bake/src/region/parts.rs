@@ -1,0 +1,77 @@
+//! What a table begins with before any from-region query: cells, and what may be visible.
+
+use crate::graph::TableGraph;
+use crate::mirrors;
+use crate::table::{axial_portal_record, box_record};
+use sightlines_cells::{Axial, CellGraph, Scene};
+use sightlines_formats::ViewCells;
+use sightlines_geometry::Aabb;
+use sightlines_kdtree::SceneSubdivision;
+use sightlines_pvs::{BitMatrix, Locator, SceneMethods, TableKind, TableParts};
+
+/// What is known before the first query.
+pub(super) struct Start {
+    pub(super) graph: TableGraph,
+    /// The parts of the table, but for what is visible.
+    pub(super) parts: TableParts,
+    pub(super) cells: Vec<Aabb<3>>,
+    /// Which cells may see each other: symmetric, with ones on the diagonal.
+    pub(super) rows: BitMatrix,
+    /// Which objects the cells may see.
+    pub(super) objects: BitMatrix,
+}
+
+/// A matrix of ones.
+fn ones(n_rows: usize, n_cols: usize) -> BitMatrix {
+    let mut all = BitMatrix::new(n_rows, n_cols);
+    (0..n_rows).for_each(|row| (0..n_cols).for_each(|col| all.set(row, col, true)));
+    all
+}
+
+/// The cells of a k-d tree, with what sightlines leave visible.
+pub(super) fn of_seen(graph: CellGraph<Axial>, mut parts: TableParts) -> Start {
+    let cells = graph.cells().iter().map(|cell| cell.bounds).collect();
+    let objects = parts.objects_seen.take().expect("sightlines decide which objects are visible");
+    Start { cells, rows: parts.rows.clone(), objects, parts, graph: graph.into() }
+}
+
+/// The cells of a k-d tree, of which everything may see everything.
+pub(super) fn of_cut(scene: &Scene, cut: SceneSubdivision, n_objects: usize) -> Start {
+    let cells: Vec<Aabb<3>> = cut.graph.cells().iter().map(|cell| cell.bounds).collect();
+    let info = vec![
+        ("detail-below".to_owned(), cut.summary.detail_below.to_string()),
+        ("subdivide".to_owned(), "kd".to_owned()),
+    ];
+    let parts = TableParts {
+        portals: cut.graph.portals().iter().map(axial_portal_record).collect(),
+        mirrors: mirrors::of_scene(&cut.graph, scene).parts,
+        info,
+        ..parts_of(&cells, TableKind::SceneKdTree { hidden_by: SceneMethods::default() })
+    };
+    all_visible(cut.graph.into(), parts, cells, n_objects)
+}
+
+/// Given boxes, of which everything may see everything.
+pub(super) fn of_boxes(boxes: &ViewCells, n_objects: usize) -> Start {
+    let cells: Vec<Aabb<3>> = boxes.cells.iter().map(|b| b.bounds).collect();
+    let parts = TableParts {
+        cell_names: boxes.cells.iter().map(|b| b.id.clone()).collect(),
+        info: vec![("subdivide".to_owned(), "boxes".to_owned())],
+        ..parts_of(&cells, TableKind::SceneGivenCells { hidden_by: SceneMethods::default() })
+    };
+    all_visible(TableGraph::Boxes(cells.clone()), parts, cells, n_objects)
+}
+
+fn parts_of(cells: &[Aabb<3>], kind: TableKind) -> TableParts {
+    let bounds: Vec<_> = cells.iter().map(|b| (b.min, b.max)).collect();
+    TableParts {
+        cells: cells.iter().map(box_record).collect(),
+        locator: Locator::build(&bounds, 3),
+        ..TableParts::empty(3, kind)
+    }
+}
+
+fn all_visible(graph: TableGraph, parts: TableParts, cells: Vec<Aabb<3>>, n_objects: usize) -> Start {
+    let n = cells.len();
+    Start { graph, parts, cells, rows: ones(n, n), objects: ones(n, n_objects) }
+}

@@ -1,0 +1,187 @@
+//! What a bake did, for each kind of input. Times and counts of searches vary from run to run.
+
+use crate::subdivide::Subdivide;
+use sightlines_kdtree::SceneSummary;
+use sightlines_multifocal::Effort;
+use sightlines_sightline::ShaftCounters;
+use sightlines_stabtree::ConvexVisibility;
+use std::time::Duration;
+
+/// What a bake did, whatever was baked.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Report {
+    /// Of a plan.
+    Plan(PlanReport),
+    /// Of a scene, by sightlines through the portals of a k-d tree.
+    Scene(Box<SceneReport>),
+    /// Of a scene, by a from-region method or for given cells.
+    Regions(RegionReport),
+    /// Of a portal file.
+    Clusters(ClusterVisibility),
+    /// Of a Quake map with its portal file.
+    Map(MapReport),
+}
+
+impl From<PlanReport> for Report {
+    fn from(report: PlanReport) -> Self {
+        Self::Plan(report)
+    }
+}
+
+impl From<SceneReport> for Report {
+    fn from(report: SceneReport) -> Self {
+        Self::Scene(Box::new(report))
+    }
+}
+
+impl From<RegionReport> for Report {
+    fn from(report: RegionReport) -> Self {
+        Self::Regions(report)
+    }
+}
+
+impl From<ClusterVisibility> for Report {
+    fn from(report: ClusterVisibility) -> Self {
+        Self::Clusters(report)
+    }
+}
+
+impl From<MapReport> for Report {
+    fn from(report: MapReport) -> Self {
+        Self::Map(report)
+    }
+}
+
+/// What baking a plan did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PlanReport {
+    /// The subdivision that was used; never [`Subdivide::Auto`].
+    pub subdivide: Subdivide,
+    /// Cells.
+    pub n_cells: usize,
+    /// Portals.
+    pub n_portals: usize,
+    /// Unordered pairs of different cells that see each other.
+    pub n_visible_pairs: u64,
+    /// Walls that do not block because the k-d tree cannot follow them.
+    pub n_ignored_walls: usize,
+    /// Crossings whose point had to be rounded.
+    pub n_rounded_crossings: usize,
+    /// Pieces of walls that were given up, towards visible.
+    pub n_dropped_pieces: usize,
+    /// Cells in regions whose lines disagree about the group.
+    pub n_disputed_cells: usize,
+    /// Parts of mirrors on borders of cells.
+    pub n_mirror_parts: usize,
+    /// Mirrors of which a part is on no border of a cell, and does not reflect.
+    pub n_lost_mirrors: usize,
+    /// Time to cut the plan.
+    pub cut_time: Duration,
+    /// Time to decide which cells see each other.
+    pub see_time: Duration,
+    /// Portals pushed by the search.
+    pub n_pushes: u64,
+    /// Cells entered by the search.
+    pub n_visits: u64,
+}
+
+/// What baking a scene by sightlines did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneReport {
+    /// What was cut.
+    pub cut: SceneSummary,
+    /// Unordered pairs of different cells that see each other.
+    pub n_visible_pairs: u64,
+    /// Pairs of a cell and an object that it sees.
+    pub n_objects_seen: u64,
+    /// Time to cut the scene.
+    pub cut_time: Duration,
+    /// Time to decide which cells and objects each cell sees.
+    pub see_time: Duration,
+    /// Parts of mirrors in cells.
+    pub n_mirror_parts: usize,
+    /// Rectangles of mirrors of which a part is in no cell on either side, and does not reflect.
+    pub n_lost_mirrors: usize,
+    /// Triangles of mirrors that are not perpendicular to an axis, and do not reflect.
+    pub n_other_mirror_triangles: usize,
+    /// Rectangles that the walls between the cells were merged into.
+    pub n_blockers: usize,
+    /// Pairs of a cell and a cell or object that count as visible because deciding them took too much effort, or more
+    /// digits than doubles have. Varies a little with threads.
+    pub n_assumed: u64,
+    /// How pairs were decided. Varies from run to run with several threads.
+    pub counters: ShaftCounters,
+}
+
+/// What baking a scene by a from-region method, or for given cells, did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegionReport {
+    /// Pairs that count as visible because deciding them by sightlines took too much effort.
+    pub n_assumed: u64,
+    /// Name of the from-region method, if there was one.
+    pub method: Option<String>,
+    /// What the method did.
+    pub effort: Effort,
+    /// Unordered pairs of different cells that may see each other.
+    pub n_visible_pairs: u64,
+    /// Pairs of a cell and an object that it may see.
+    pub n_objects_seen: u64,
+    /// Time for everything.
+    pub time: Duration,
+}
+
+/// Which clusters of a Quake map see which.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClusterVisibility {
+    /// The answer of the search, and what it did.
+    pub seen: ConvexVisibility,
+    /// Portals that the search went through: all of the file but those without area.
+    pub n_portals: usize,
+    /// Time of the search, of this run.
+    pub see_time: Duration,
+}
+
+impl ClusterVisibility {
+    /// Number of clusters.
+    pub fn n_clusters(&self) -> usize {
+        self.seen.cells.n_rows()
+    }
+
+    /// Unordered pairs of different clusters that see each other.
+    pub fn n_visible_pairs(&self) -> u64 {
+        (self.seen.cells.count_ones() - self.n_clusters() as u64) / 2
+    }
+
+    /// Unordered pairs of different clusters.
+    pub fn n_pairs(&self) -> u64 {
+        let n = self.n_clusters() as u64;
+        n * n.saturating_sub(1) / 2
+    }
+}
+
+/// What baking a Quake map with its portal file did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapReport {
+    /// Which clusters see which.
+    pub clusters: ClusterVisibility,
+    /// What the map added.
+    pub world: WorldSummary,
+}
+
+/// What a map adds to its portals.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WorldSummary {
+    /// Faces of the world.
+    pub n_faces: usize,
+    /// Faces that no leaf lists; engines never draw them.
+    pub n_unlisted_faces: usize,
+    /// Pairs of a cluster and a face that a leaf of the cluster lists.
+    pub n_listed: usize,
+    /// Pairs of a cluster and a face that reaches into it, though none of its leafs lists the face.
+    pub n_reaching: usize,
+    /// Planes of the tree that divide clusters from each other or from what is solid.
+    pub n_planes: usize,
+    /// How near to a plane a viewer counts to both sides, in map units.
+    pub slack: f64,
+}

@@ -1,0 +1,74 @@
+//! Any input to its table, in one call.
+
+use crate::auto::choose_for;
+use crate::baked::Baked;
+use crate::error::BakeError;
+use crate::input::BakeInput;
+use crate::methods::OcclusionMethodFactory;
+use crate::options::{BakeOptions, SceneMethod};
+use crate::plan::{PlanBakeOptions, bake_plan};
+use crate::quake::{PrtOptions, bake_map, bake_prt};
+use crate::region::{RegionBakeOptions, bake_regions};
+use crate::scene::{SceneBakeOptions, bake_scene};
+use sightlines_cells::Scene;
+use sightlines_formats::SceneInfo;
+use sightlines_stabtree::ConvexOptions;
+
+/// Bakes an input: cuts it into cells where it has none, decides what they see, and makes the table.
+///
+/// Errs towards visible, and gives the same table, byte for byte, with any number of threads. The functions for one kind
+/// of input ([`bake_plan`], [`bake_scene`], [`bake_regions`], [`bake_prt`], [`bake_map`]) say what each decides, and take
+/// more: a search that is resumed, or a from-region method of one's own.
+///
+/// [`SceneMethod::Auto`] measures the input first; [`choose_for`] tells what was chosen and why.
+///
+/// # Errors
+/// [`BakeError`]
+pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> Result<Baked, BakeError> {
+    let input = input.into();
+    if options.method == SceneMethod::Auto {
+        return bake(input, &choose_for(&input, options).1);
+    }
+    let BakeOptions { threads, progress, .. } = *options;
+    let search = ConvexOptions { fast: options.fast, threads };
+    match input {
+        BakeInput::Plan(plan) => {
+            let BakeOptions { subdivide, chords, .. } = *options;
+            let options = PlanBakeOptions { subdivide, tau: options.cut.tau, chords, threads, progress };
+            Ok(bake_plan(plan, &options)?.into_any())
+        }
+        BakeInput::Scene(scene, file) => {
+            if options.takes_regions() {
+                return by_regions(scene, options, file);
+            }
+            let BakeOptions { cut, portals, .. } = *options;
+            Ok(bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress })?.into_any())
+        }
+        BakeInput::Portals(prt) => {
+            Ok(bake_prt(prt, PrtOptions { search, progress, ..PrtOptions::default() })?.into_any())
+        }
+        BakeInput::Map(bsp, prt) => {
+            Ok(bake_map(bsp, prt, PrtOptions { search, progress, ..PrtOptions::default() })?.into_any())
+        }
+    }
+}
+
+fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>) -> Result<Baked, BakeError> {
+    let BakeOptions { method, buffers, split, cut, portals, threads, progress, ref cells, .. } = *options;
+    buffers.check().map_err(crate::methods::MethodError::from)?;
+    let prepare = |method| OcclusionMethodFactory::new(method, scene, &buffers);
+    let factory = method.from_region().map(prepare).transpose()?;
+    let make = || factory.as_ref().expect("only called if there is one").instance();
+    let options = RegionBakeOptions {
+        cells,
+        method: factory.is_some().then_some(&make),
+        sightlines: method.by_sightlines(),
+        split,
+        cut,
+        portals,
+        threads,
+        file,
+        progress,
+    };
+    Ok(bake_regions(scene, &options)?.into_any())
+}

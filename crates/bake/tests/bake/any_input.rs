@@ -1,0 +1,99 @@
+//! One call for any input: the tables of the functions for one kind of input, byte for byte, with the graph beside them.
+
+use sightlines_bake::methods::{Backend, BufferOptions, OcclusionMethod};
+use sightlines_bake::{
+    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, PlanBakeOptions, PrtOptions, Report, SceneBakeOptions,
+    SceneMethod, TableGraph, bake, bake_plan, bake_prt, bake_scene, from_table,
+};
+use sightlines_formats::quake::prt::parse_prt;
+use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
+
+/// Three rooms in a row.
+const ROOMS: &[u8] = b"PRT1\n3\n2\n4 0 1 (8 0 0) (8 2 0) (8 2 2) (8 0 2)\n4 1 2 (16 0 0) (16 2 0) (16 2 2) (16 0 2)\n";
+
+/// The graph is that of the table, as a stored table gives it back.
+fn check_graph(baked: &Baked) {
+    let stored = from_table::graph(&baked.table).expect("the table stores its graph");
+    match (&baked.graph, &stored) {
+        // A table has one group for a cell, a graph all.
+        (TableGraph::Planar(kept), TableGraph::Planar(stored)) => {
+            assert_eq!(kept.portals(), stored.portals());
+            let polygons = kept.cells().iter().zip(stored.cells());
+            assert!(polygons.into_iter().all(|(a, b)| a.polygon == b.polygon));
+        }
+        (kept, stored) => assert_eq!(kept, stored),
+    }
+}
+
+#[test]
+fn one_call_bakes_what_each_function_bakes() {
+    let floor = office(OfficeOptions { rooms_x: 4, rooms_y: 2, ..OfficeOptions::default() }).unwrap();
+    let scene = tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, ..TowerOptions::default() }).unwrap();
+    let rooms = parse_prt(ROOMS).unwrap();
+    let expected = [
+        bake_plan(&floor, &PlanBakeOptions::default()).unwrap().table,
+        bake_scene(&scene, &SceneBakeOptions::default()).unwrap().table,
+        bake_prt(&rooms, PrtOptions::default()).unwrap().table,
+    ];
+    let inputs: [BakeInput<'_>; 3] = [(&floor).into(), (&scene).into(), (&rooms).into()];
+    for (input, expected) in inputs.into_iter().zip(expected) {
+        // What suits the input is chosen, and is the default for all of these.
+        for method in [SceneMethod::Sightlines, SceneMethod::Auto] {
+            let baked = bake(input, &BakeOptions { method, threads: 2, ..BakeOptions::default() }).unwrap();
+            assert_eq!(baked.table.to_bytes(), expected.to_bytes());
+            check_graph(&baked);
+        }
+    }
+}
+
+#[test]
+fn scenes_take_every_method_and_all_cells() {
+    let scene =
+        tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() }).unwrap();
+    let buffers = BufferOptions { planes: 1, texels: 16, ..BufferOptions::default() };
+    let mut n_regions = 0;
+    for method in SceneMethod::all() {
+        assert_eq!(method.to_string().parse(), Ok(method));
+        for cells in [CellsFrom::KdTree, CellsFrom::Grid([2, 1, 2])] {
+            let options = BakeOptions { method, cells, buffers, ..BakeOptions::default() };
+            if method == SceneMethod::FromRegion(OcclusionMethod::Multifocal) && !options.has_given_cells() {
+                continue; // takes long
+            }
+            let baked = bake(&scene, &options).unwrap();
+            check_graph(&baked);
+            let takes_regions = matches!(baked.report, Report::Regions(_));
+            assert_eq!(
+                takes_regions,
+                options.takes_regions() && method != SceneMethod::Auto || options.has_given_cells()
+            );
+            assert_eq!(matches!(baked.graph, TableGraph::Boxes(_)), options.has_given_cells());
+            n_regions += u32::from(takes_regions);
+        }
+    }
+    assert!(n_regions >= 8, "{n_regions}");
+    assert!("view".parse::<SceneMethod>().is_err());
+}
+
+#[test]
+fn what_cannot_be_prepared_is_refused() {
+    let scene = tower(TowerOptions { floors: 1, rooms_x: 1, rooms_y: 1, ..TowerOptions::default() }).unwrap();
+    let error = |options: BakeOptions<'_>| bake(&scene, &options).unwrap_err();
+    let cells = CellsFrom::Grid([0, 1, 1]);
+    assert!(matches!(error(BakeOptions { cells, ..BakeOptions::default() }), BakeError::Grid(_)));
+    let cells = CellsFrom::Grid([1, 1, 1]);
+    let buffers = BufferOptions { planes: 256, texels: 8192, ..BufferOptions::default() };
+    assert!(matches!(
+        error(BakeOptions { cells: cells.clone(), buffers, ..BakeOptions::default() }),
+        BakeError::Method(_)
+    ));
+    let buffers = BufferOptions { backend: Backend::Gpu, ..BufferOptions::default() };
+    let gpu = bake(&scene, &BakeOptions { method: SceneMethod::Both, cells, buffers, ..BakeOptions::default() });
+    match gpu {
+        Ok(_) => assert!(cfg!(feature = "multifocal-gpu")),
+        Err(error) => {
+            assert!(!cfg!(feature = "multifocal-gpu"));
+            let text = "the backend gpu is not part of this build: it needs the feature multifocal-gpu";
+            assert_eq!(error.to_string(), text);
+        }
+    }
+}
