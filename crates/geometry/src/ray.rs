@@ -69,14 +69,14 @@ mod tests {
     #[test]
     fn stretches_in_boxes_are_those_of_their_points() {
         let (mut random, mut counts) = (Random::new(2), [0, 0]);
-        for _ in 0..2000 {
+        for _ in 0..10_000 {
             let low = [0; 3].map(|_| random.below(8) as f64);
             let bounds = Aabb { min: low, max: low.map(|x| x + 1.0 + random.below(4) as f64) };
             let origin = [0; 3].map(|_| random.below(12) as f64 + 0.5);
             let direction = [0; 3].map(|_| random.below(5) as f64 - 2.0);
             let [first, last] = ray_box(&bounds, origin, direction.map(|x| 1.0 / x));
             for i in -64..=64 {
-                let t = f64::from(i) / 4.0 + 0.03;
+                let t = f64::from(i) / 16.0 + 0.003;
                 let inside = bounds.contains([0, 1, 2].map(|k| origin[k] + t * direction[k]));
                 assert_eq!(inside, first <= t && t <= last, "{bounds:?} {origin:?} {direction:?} {t}");
                 counts[usize::from(inside)] += 1;
