@@ -14,7 +14,7 @@ use sightlines::formats::view_cells::read_view_cells;
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
-use sightlines::multifocal::{Chosen, FromRegion, Layout, Multifocal, Split, Together};
+use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, Split, UnionMethod};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::city::{CityOptions, city, city_crossings};
 use sightlines::scenes::{TowerOptions, tower, tower_rooms};
@@ -115,7 +115,7 @@ fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instan
         let triangles = triangles();
         let occluders = if planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
         let layout = Layout { n_levels: planes, texels, ..Layout::default() };
-        (Arc::new(Chosen::new(occluders, 500)), layout, sheets.then(|| Arc::new(Sheets::new(&triangles))))
+        (Arc::new(OccluderSelection::new(occluders, 500)), layout, sheets.then(|| Arc::new(Sheets::new(&triangles))))
     });
     let bounds = case.scene.bounds();
     let make = || -> Box<dyn FromRegion + Send> {
@@ -127,7 +127,7 @@ fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instan
         methods.extend(
             sheets.iter().map(|s| -> Box<dyn FromRegion + Send> { Box::new(SheetMethod::shared(Arc::clone(s))) }),
         );
-        Box::new(Together::new(methods))
+        Box::new(UnionMethod::new(methods))
     };
     let options = RegionBakeOptions {
         cells: &case.cells,

@@ -11,7 +11,8 @@ use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
 use sightlines::multifocal::{
-    Chosen, FromRegion, Layout, Measure, Multifocal, Occludees, Split, Together, Volume, Witness, adaptive,
+    FromRegion, Layout, Measure, Multifocal, Occludees, OccluderSelection, RaySampler, Split, UnionMethod, Volume,
+    adaptive,
 };
 use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::city::{CityOptions, city, city_crossings};
@@ -119,13 +120,13 @@ fn triangles(case: &Case) -> Vec<[Point3; 3]> {
 fn buffers(case: &Case, layout: Layout) -> Multifocal<Fast> {
     let ends = case.cells.iter().flat_map(|b| [b.min, b.max]);
     let around = Aabb::around(ends.chain([case.scene.bounds().min, case.scene.bounds().max]));
-    let chosen = Arc::new(Chosen::new(patches(&triangles(case), &PatchOptions::default()), 500));
+    let chosen = Arc::new(OccluderSelection::new(patches(&triangles(case), &PatchOptions::default()), 500));
     Multifocal::new(Fast::new(), chosen, around, layout)
 }
 
 fn shipped(case: &Case) -> Box<dyn FromRegion> {
     let sheets = SheetMethod::shared(Arc::new(Sheets::new(&triangles(case))));
-    Box::new(Together::new(vec![Box::new(buffers(case, Layout::default())), Box::new(sheets)]))
+    Box::new(UnionMethod::new(vec![Box::new(buffers(case, Layout::default())), Box::new(sheets)]))
 }
 
 fn contenders(args: &Args) -> Vec<Contender> {
@@ -163,7 +164,7 @@ fn ask(case: &Case, seen: &[Vec<bool>], contender: &Contender) -> Found {
     let mut method = (contender.make)(case);
     found.make = start.elapsed();
     let objects: Vec<Vec<[Point3; 3]>> = case.scene.objects().iter().map(|o| o.corners().collect()).collect();
-    let witness = Witness::new(objects.iter().map(|o| &o[..]));
+    let witness = RaySampler::new(objects.iter().map(|o| &o[..]));
     let occludees = Occludees::new(objects);
     for (cell, seen) in case.cells.iter().zip(seen) {
         let volume = Volume::new(*cell).expect("cells are boxes");

@@ -6,7 +6,7 @@
 use clap::Parser;
 use sightlines::geometry::Aabb;
 use sightlines::multifocal::{
-    Chosen, FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, Occluder, Plane, Volume,
+    FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, Occluder, OccluderSelection, Plane, Volume,
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines::scenes::{Occlusion, OcclusionOptions, occlusion};
@@ -105,7 +105,7 @@ fn occluders(made: &Occlusion) -> Vec<Occluder> {
 
 /// Asks about all boxes of a case.
 fn ask(case: &Case, layout: Layout, found: &mut Found) {
-    let occluders = Arc::new(Chosen::new(occluders(&case.made), usize::MAX));
+    let occluders = Arc::new(OccluderSelection::new(occluders(&case.made), usize::MAX));
     let scene = case.made.occludees.iter().fold(case.made.scene.bounds(), |all, b| all.with(b.min).with(b.max));
     // The fast backend has no form of one measure.
     let mut method: Box<dyn FromRegion> = match layout.measure {

@@ -3,8 +3,8 @@
 use crate::numbers::Numbers;
 use sightlines::geometry::Point3;
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Camera, Chosen, DepthFormat, Faces, Newell, Painter, RayCaster, Schumacker, SchumackerOptions,
-    Shot, VisibleSurface, ZBuffer, compare, cull,
+    Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    SchumackerOptions, VisibleSurface, ZBuffer, compare, cull,
 };
 
 /// Triangles and an eye.
@@ -56,8 +56,8 @@ impl SmallShot {
     /// If that does not hold.
     pub fn check(&self) {
         let Self { faces, camera } = self;
-        let all = Chosen::all(faces);
-        let shot = Shot { faces, camera, chosen: &all };
+        let all = FaceMask::all(faces);
+        let shot = RenderInput { faces, camera, mask: &all };
         let caster = RayCaster::build(faces);
         let reference = caster.picture(&shot).0;
         let bsp = Bsp::build(faces, &BspOptions::default());
@@ -76,7 +76,7 @@ impl SmallShot {
         DepthFormat::ALL.iter().for_each(|&format| drop(ZBuffer::new(format).picture(&shot)));
         let mut left = all.clone();
         cull::frustum(faces, camera, &mut left);
-        let shot = Shot { chosen: &left, ..shot };
+        let shot = RenderInput { mask: &left, ..shot };
         assert_eq!(caster.picture(&shot).0, reference, "what is outside the view is not seen in {self:?}");
     }
 }

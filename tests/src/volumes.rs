@@ -5,7 +5,8 @@ use sightlines::cells::{Scene, SceneObject};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, patches};
 use sightlines::multifocal::{
-    Buffer, Chosen, FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, Plane, Together, Volume,
+    Buffer, FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, OccluderSelection, Plane, UnionMethod,
+    Volume,
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines_testkit::sampled_view;
@@ -63,10 +64,10 @@ impl SmallWorld {
         let triangles = self.triangles();
         let ends = self.targets.iter().flat_map(|b| [b.min, b.max]);
         let around = Aabb::around(ends.chain([self.scene.bounds().min, self.scene.bounds().max]));
-        let chosen = Arc::new(Chosen::new(patches(&triangles, &PatchOptions::default()), 100));
+        let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 100));
         let layout = Layout { texels: 16, n_levels: 3, ..Layout::default() };
         let buffers = Multifocal::new(Fast::new(), chosen, around, layout);
-        let mut method = Together::new(vec![Box::new(buffers), Box::new(SheetMethod::new(&triangles))]);
+        let mut method = UnionMethod::new(vec![Box::new(buffers), Box::new(SheetMethod::new(&triangles))]);
         let volume = Volume::new(self.volume).expect("a box");
         let mut umbra = method.umbra(&volume).expect("the CPU does not fail");
         let hidden: Vec<usize> = (0..self.targets.len()).filter(|&i| umbra.hides(&self.targets[i])).collect();

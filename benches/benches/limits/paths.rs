@@ -20,7 +20,9 @@ use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, doom_like, office, tower, tower_rooms};
 use sightlines::sightline::{AxialStabber, ConvexStabber, Funnel, StabLimits, Stabber, Verdict};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, SearchOptions};
-use sightlines::visible_surface::{Camera, Chosen, DepthFormat, Faces, RayCaster, Shot, VisibleSurface, ZBuffer};
+use sightlines::visible_surface::{
+    Camera, DepthFormat, FaceMask, Faces, RayCaster, RenderInput, VisibleSurface, ZBuffer,
+};
 use sightlines::walkthrough::wander;
 use sightlines_benches::{corridors, graph};
 use std::hint::black_box;
@@ -252,8 +254,8 @@ fn picture(short: bool) -> (Faces, Camera) {
 /// A picture by the exact z-buffer: each fragment's pixels are compared and some written.
 fn zbuffer(rates: &Rates, short: bool) -> Path {
     let (faces, camera) = picture(short);
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let method = ZBuffer::new(DepthFormat::Exact);
     let (_, counters) = method.picture(&shot);
     let seconds = least(|| drop(black_box(method.picture(&shot))));
@@ -270,8 +272,8 @@ fn zbuffer(rates: &Rates, short: bool) -> Path {
 /// A picture by the ray caster: each pixel's face is met, which is three orientations.
 fn raycaster(rates: &Rates, short: bool) -> Path {
     let (faces, camera) = picture(short);
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let method = RayCaster::build(&faces);
     let (_, counters) = method.picture(&shot);
     let seconds = least(|| drop(black_box(method.picture(&shot))));

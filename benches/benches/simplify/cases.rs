@@ -6,7 +6,7 @@ use sightlines::formats::scene::read_scene;
 use sightlines::formats::view_cells::read_view_cells;
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
-use sightlines::multifocal::{Chosen, FromRegion, Layout, Multifocal, Together, Volume};
+use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod, Volume};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::pvs::Table;
 use sightlines::scenes::{CityOptions, TowerOptions, city, city_crossings, tower, tower_rooms};
@@ -23,7 +23,7 @@ pub(crate) struct Case {
     pub(crate) views: Views,
     pub(crate) table: Option<Arc<Table>>,
     sheets: Arc<Sheets>,
-    chosen: Arc<Chosen>,
+    chosen: Arc<OccluderSelection>,
 }
 
 impl Case {
@@ -33,7 +33,7 @@ impl Case {
         let around = Aabb::around(ends.chain([self.scene.bounds().min, self.scene.bounds().max]));
         let buffers = Multifocal::new(Fast::new(), Arc::clone(&self.chosen), around, Layout::default());
         let sheets = SheetMethod::shared(Arc::clone(&self.sheets));
-        Box::new(Together::new(vec![Box::new(buffers), Box::new(sheets)]))
+        Box::new(UnionMethod::new(vec![Box::new(buffers), Box::new(sheets)]))
     }
 }
 
@@ -89,7 +89,7 @@ fn some(all: Vec<Aabb<3>>, n: usize) -> Vec<Aabb<3>> {
 fn of_boxes(name: &str, scene: Scene, boxes: Vec<Aabb<3>>, n: usize) -> Result<Vec<Case>, Box<dyn Error>> {
     let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|o| o.corners()).collect();
     let sheets = Arc::new(Sheets::new(&triangles));
-    let chosen = Arc::new(Chosen::new(patches(&triangles, &PatchOptions::default()), 500));
+    let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 500));
     let scene = Arc::new(scene);
     let case = |(view, b): (usize, Aabb<3>)| {
         Ok(Case {

@@ -2,8 +2,8 @@
 
 use crate::families::{Case, Family, camera};
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Chosen, Counters, DepthFormat, Faces, Image, Newell, Painter, RayCaster, Schumacker,
-    SchumackerOptions, Shot, VisibleSurface, ZBuffer, compare,
+    Bsp, BspOptions, Counters, DepthFormat, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput,
+    Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -80,8 +80,8 @@ fn timed<T>(f: impl FnOnce() -> T) -> (T, f64) {
 pub(crate) fn all(family: Family, case: &Case, size: [u32; 2], limits: &mut Limits) -> Vec<Row> {
     let faces = Faces::of_scene(&case.scene).expect("scenes are not that large");
     let camera = camera(case, size);
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let family = case.name.clone().unwrap_or_else(|| family.name().to_owned());
     let n = faces.len() as f64;
     let (caster, prepare) = timed(|| RayCaster::build(&faces));

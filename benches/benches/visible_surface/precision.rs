@@ -2,7 +2,7 @@
 
 use sightlines::scenes::surfaces::{self, DepthPairsOptions, depth_pairs};
 use sightlines::visible_surface::{
-    Camera, Chosen, DepthFormat, Faces, RayCaster, Shot, VisibleSurface, ZBuffer, compare,
+    Camera, DepthFormat, FaceMask, Faces, RayCaster, RenderInput, VisibleSurface, ZBuffer, compare,
 };
 
 /// One over these are the nearest depths; the farthest is [`FAR`].
@@ -13,7 +13,7 @@ const FAR: f64 = 8192.0;
 pub(crate) fn print(size: [u32; 2]) {
     let scene = depth_pairs(DepthPairsOptions::default()).expect("in range");
     let faces = Faces::of_scene(&scene).expect("few faces");
-    let chosen = Chosen::all(&faces);
+    let chosen = FaceMask::all(&faces);
     let caster = RayCaster::build(&faces);
     println!("\nPairs of faces 1/64 apart, from depth 1 to 3,840; farthest depth {FAR}; wrong pixels:\n");
     println!("| nearest depth | far / near | {} |", DepthFormat::ALL.map(DepthFormat::name).join(" | "));
@@ -22,7 +22,7 @@ pub(crate) fn print(size: [u32; 2]) {
         let camera = Camera::look_at(surfaces::EYE, surfaces::AT, surfaces::UP, surfaces::ANGLE, size)
             .and_then(|camera| camera.with_depths(1.0 / f64::from(near), FAR))
             .expect("generated scenes have an eye");
-        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+        let shot = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
         let reference = caster.picture(&shot).0;
         let wrong = DepthFormat::ALL.map(|format| {
             let found = compare(&shot, &reference, &ZBuffer::new(format).picture(&shot).0);

@@ -2,7 +2,9 @@
 
 use sightlines::bake::{SceneBakeOptions, bake_scene};
 use sightlines::scenes::{TowerOptions, tower, tower_rooms};
-use sightlines::visible_surface::{Bsp, BspOptions, Camera, Chosen, Faces, Shot, VisibleSurface, ZBuffer, cull};
+use sightlines::visible_surface::{
+    Bsp, BspOptions, Camera, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull,
+};
 use std::error::Error;
 use std::time::Instant;
 
@@ -19,7 +21,7 @@ pub(crate) fn print(test: bool, size: [u32; 2]) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let bsp = Bsp::build(&faces, &BspOptions::default()).front_to_back();
     let built = start.elapsed().as_secs_f64();
-    let all = Chosen::all(&faces);
+    let all = FaceMask::all(&faces);
     let (mut totals, mut n_eyes) = ([[0.0; 4]; 2], 0u32);
     for (k, room) in tower_rooms(options)?.iter().enumerate().step_by(if test { 1 } else { 5 }) {
         let b = room.bounds;
@@ -40,7 +42,7 @@ pub(crate) fn print(test: bool, size: [u32; 2]) -> Result<(), Box<dyn Error>> {
         cull::objects(&faces, &mut chosen, |object| seen.binary_search(&object).is_ok());
         let mut images = Vec::new();
         for (total, chosen) in totals.iter_mut().zip([&all, &chosen]) {
-            let shot = Shot { faces: &faces, camera: &camera, chosen };
+            let shot = RenderInput { faces: &faces, camera: &camera, mask: chosen };
             let start = Instant::now();
             let (image, counters) = bsp.picture(&shot);
             total[0] += counters.fragments as f64;

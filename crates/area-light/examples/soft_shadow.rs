@@ -7,7 +7,7 @@ use sightlines_from_region::ViewShafts;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::Volume;
 use sightlines_multifocal::mesh::{PatchOptions, patches};
-use sightlines_visible_surface::{Camera, Chosen, Faces, RayCaster, Shot, VisibleSurface};
+use sightlines_visible_surface::{Camera, FaceMask, Faces, RayCaster, RenderInput, VisibleSurface};
 use std::error::Error;
 
 /// A closed box.
@@ -24,8 +24,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let eye = [7., -13., 9.];
     // Letters are twice as high as wide.
     let camera = Camera::look_at(eye, [0., 0., 0.], [0., 0., 1.], 45., [144, 72])?;
-    let image =
-        RayCaster::build(&faces).picture(&Shot { faces: &faces, camera: &camera, chosen: &Chosen::all(&faces) }).0;
+    let image = RayCaster::build(&faces)
+        .picture(&RenderInput { faces: &faces, camera: &camera, mask: &FaceMask::all(&faces) })
+        .0;
 
     let shadows = Shadows::new(&faces);
     let mut method = ViewShafts::new(patches(&triangles, &PatchOptions::default()));

@@ -4,10 +4,10 @@ use crate::hull::{Hull, Light};
 use crate::lighting::{LightCounters, Lighting};
 use crate::rays::Blockers;
 use crate::vector::area;
-use crate::{Areas, Options, Piece, Side, State};
+use crate::{LightingAreas, Options, Piece, Side, State};
 use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate};
 use sightlines_multifocal::{BackendError, FromRegion, Umbra, Volume};
-use sightlines_visible_surface::{Chosen, Faces};
+use sightlines_visible_surface::{FaceMask, Faces};
 
 /// Number of faces in a leaf of the tree of faces to classify.
 const PER_LEAF: usize = 4;
@@ -50,7 +50,7 @@ impl<'a> Shadows<'a> {
     /// If the faces are not as many as those that were chosen from.
     pub fn classify(
         &self,
-        chosen: &Chosen,
+        chosen: &FaceMask,
         light: &Volume,
         method: &mut dyn FromRegion,
         options: &Options,
@@ -73,7 +73,7 @@ impl<'a> Shadows<'a> {
             }
         }
         let Asking { counters, pieces, .. } = asking;
-        let mut areas = Areas::default();
+        let mut areas = LightingAreas::default();
         pieces.iter().for_each(|piece| areas.add(piece, area(*self.faces.of(piece.face))));
         Ok(Lighting { light: *light, guarantee, pieces, areas, counters })
     }

@@ -26,7 +26,7 @@ mod rays;
 mod vector;
 
 pub use classify::Shadows;
-pub use lighting::{Areas, LightCounters, Lighting};
+pub use lighting::{LightCounters, Lighting, LightingAreas};
 pub use options::{Options, Side, Sides};
 pub use picture::{LightPicture, Shade, shown};
 pub use piece::{Piece, State};

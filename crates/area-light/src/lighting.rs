@@ -3,9 +3,9 @@
 use crate::{Piece, State};
 use sightlines_multifocal::{Guarantee, Volume};
 
-/// Areas of pieces by their states, in squared scene units, rounded. Sides count one by one.
+/// LightingAreas of pieces by their states, in squared scene units, rounded. Sides count one by one.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Areas {
+pub struct LightingAreas {
     /// Of what is wholly in umbra.
     pub umbra: f64,
     /// Of what is wholly lit.
@@ -16,7 +16,7 @@ pub struct Areas {
     pub mixed: f64,
 }
 
-impl Areas {
+impl LightingAreas {
     /// Of all pieces.
     pub fn total(&self) -> f64 {
         self.umbra + self.lit + self.in_doubt
@@ -59,7 +59,7 @@ pub struct Lighting {
     pub(crate) light: Volume,
     pub(crate) guarantee: Guarantee,
     pub(crate) pieces: Vec<Piece>,
-    pub(crate) areas: Areas,
+    pub(crate) areas: LightingAreas,
     pub(crate) counters: LightCounters,
 }
 
@@ -81,7 +81,7 @@ impl Lighting {
     }
 
     /// The areas of the states.
-    pub fn areas(&self) -> &Areas {
+    pub fn areas(&self) -> &LightingAreas {
         &self.areas
     }
 

@@ -4,7 +4,9 @@ use crate::{Lighting, Piece, Shadows, Side, State};
 use sightlines_geometry::Point3;
 use sightlines_geometry::vector::{cross, dot, sub};
 use sightlines_multifocal::Volume;
-use sightlines_visible_surface::{Camera, Chosen, DepthFormat, Faces, Image, NOTHING, Shot, VisibleSurface, ZBuffer};
+use sightlines_visible_surface::{
+    Camera, DepthFormat, FaceMask, Faces, Image, NOTHING, RenderInput, VisibleSurface, ZBuffer,
+};
 
 /// How a pixel is lit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,10 +59,10 @@ impl LightPicture {
 }
 
 /// The faces that a picture shows: those that are worth asking about for it.
-pub fn shown(faces: &Faces, image: &Image) -> Chosen {
+pub fn shown(faces: &Faces, image: &Image) -> FaceMask {
     let mut is_shown = vec![false; faces.len()];
     image.faces().iter().filter(|&&face| face != NOTHING).for_each(|&face| is_shown[face as usize] = true);
-    let mut chosen = Chosen::all(faces);
+    let mut chosen = FaceMask::all(faces);
     chosen.retain(|face| is_shown[face as usize]);
     chosen
 }
@@ -82,7 +84,7 @@ impl Shadows<'_> {
         let pieces: Vec<&Piece> = lighting.pieces().iter().filter(is_seen).collect();
         // Corners of pieces have been checked, so this is about their number only.
         let drawn = Faces::new(pieces.iter().map(|p| p.corners).collect()).ok().map(|of_pieces| {
-            let shot = Shot { faces: &of_pieces, camera, chosen: &Chosen::all(&of_pieces) };
+            let shot = RenderInput { faces: &of_pieces, camera, mask: &FaceMask::all(&of_pieces) };
             ZBuffer::new(DepthFormat::Exact).picture(&shot).0
         });
         self.shaded(lighting.light(), camera, image, n_rays, |i, face| {

@@ -8,7 +8,7 @@ use sightlines_cells::Scene;
 use sightlines_geometry::vector::{length, normal};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_multifocal::mesh::Mesh;
-use sightlines_multifocal::{Layout, Witness};
+use sightlines_multifocal::{Layout, RaySampler};
 use std::fmt;
 
 /// What a scene in space is like. Shares are of the area of all triangles, unless they say otherwise.
@@ -94,7 +94,7 @@ fn loose_share(triangles: &[[Point3; 3]]) -> f64 {
 
 fn openness(scene: &Scene) -> f64 {
     let triangles = triangles_of(scene);
-    let witness = Witness::new([&triangles[..]]);
+    let witness = RaySampler::new([&triangles[..]]);
     let mut random = Random::new(0);
     let bounds = scene.bounds();
     let leaves = |_: &u32| {

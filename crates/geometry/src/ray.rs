@@ -73,7 +73,8 @@ mod tests {
             let low = [0; 3].map(|_| random.below(8) as f64);
             let bounds = Aabb { min: low, max: low.map(|x| x + 1.0 + random.below(4) as f64) };
             let origin = [0; 3].map(|_| random.below(12) as f64 + 0.5);
-            let direction = [0; 3].map(|_| random.below(5) as f64 - 2.0);
+            // Towards a place in the box or near it.
+            let direction = [0, 1, 2].map(|k| (low[k] + random.below(5) as f64 - 0.5 - origin[k]) / 4.0);
             let [first, last] = ray_box(&bounds, origin, direction.map(|x| 1.0 / x));
             for i in -64..=64 {
                 let t = f64::from(i) / 16.0 + 0.003;

@@ -5,7 +5,7 @@
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend, Occluder, Plane, Volume};
 use sightlines_multifocal_cpu::Fast;
-use sightlines_multifocal_gpu::{Gpu, GpuBackend, PlaneForms, Way};
+use sightlines_multifocal_gpu::{Gpu, GpuBackend, GpuPath, PlaneForms};
 use std::error::Error;
 use std::time::Instant;
 
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Ok(())
         };
         show(&mut Fast::new())?;
-        for way in Way::ALL {
+        for way in GpuPath::ALL {
             let mut backend = GpuBackend::new(gpu.clone(), way);
             if !backend.supports(measure) {
                 continue;

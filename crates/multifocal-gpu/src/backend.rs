@@ -2,14 +2,14 @@
 
 use crate::context::Gpu;
 use crate::draw::{self, Input};
-use crate::{OpenError, PlaneForms, Ticket, Values, Way};
+use crate::{GpuPath, OpenError, PlaneForms, Ticket, Values};
 use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend};
 
 /// A backend on a GPU. Clones share the device; each may be used from another thread.
 #[derive(Debug, Clone)]
 pub struct GpuBackend {
     gpu: Gpu,
-    way: Way,
+    way: GpuPath,
 }
 
 impl GpuBackend {
@@ -17,7 +17,7 @@ impl GpuBackend {
     ///
     /// # Errors
     /// [`OpenError`]
-    pub fn open(way: Way) -> Result<Self, OpenError> {
+    pub fn open(way: GpuPath) -> Result<Self, OpenError> {
         Ok(Self::new(Gpu::open()?, way))
     }
 
@@ -25,12 +25,12 @@ impl GpuBackend {
     ///
     /// # Errors
     /// [`OpenError`]
-    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, way: Way) -> Result<Self, OpenError> {
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, way: GpuPath) -> Result<Self, OpenError> {
         Ok(Self::new(Gpu::from_device(device, queue)?, way))
     }
 
     /// A backend on a device that is open already.
-    pub const fn new(gpu: Gpu, way: Way) -> Self {
+    pub const fn new(gpu: Gpu, way: GpuPath) -> Self {
         Self { gpu, way }
     }
 
@@ -40,7 +40,7 @@ impl GpuBackend {
     }
 
     /// How it fills buffers.
-    pub const fn way(&self) -> Way {
+    pub const fn way(&self) -> GpuPath {
         self.way
     }
 
@@ -59,7 +59,7 @@ impl GpuBackend {
     /// As [`Self::submit`], for planes that are integers already.
     ///
     /// # Errors
-    /// [`BackendError`]; [`Way::Float`] has no use for integers
+    /// [`BackendError`]; [`GpuPath::Float`] has no use for integers
     pub fn submit_forms(&self, planes: &[PlaneForms]) -> Result<Ticket, BackendError> {
         let values = self.keep_forms(planes)?;
         self.gpu.fetch(self.way.name(), &values)
@@ -75,7 +75,7 @@ impl GpuBackend {
             return Err(BackendError::Unsupported { backend: self.way.name(), measure: job.measure() });
         }
         match self.way {
-            Way::Float => draw::draw(&self.gpu, self.way, &Input::Floats(job)),
+            GpuPath::Float => draw::draw(&self.gpu, self.way, &Input::Floats(job)),
             _ => self.keep_forms(&PlaneForms::of(job)),
         }
     }
@@ -83,9 +83,9 @@ impl GpuBackend {
     /// As [`Self::keep`], for planes that are integers already.
     ///
     /// # Errors
-    /// [`BackendError`]; [`Way::Float`] has no use for integers
+    /// [`BackendError`]; [`GpuPath::Float`] has no use for integers
     pub fn keep_forms(&self, planes: &[PlaneForms]) -> Result<Values, BackendError> {
-        if self.way == Way::Float {
+        if self.way == GpuPath::Float {
             return Err(BackendError::Unsupported { backend: self.way.name(), measure: Measure::default() });
         }
         draw::draw(&self.gpu, self.way, &Input::Forms(planes))
@@ -112,7 +112,7 @@ impl MultifocalBackend for GpuBackend {
 
     fn supports(&self, measure: Measure) -> bool {
         match self.way {
-            Way::Float => measure == Measure::VertexHeight,
+            GpuPath::Float => measure == Measure::VertexHeight,
             _ => measure != Measure::ClippedEuclid,
         }
     }

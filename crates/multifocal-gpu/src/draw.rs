@@ -2,8 +2,8 @@
 
 use crate::context::Gpu;
 use crate::pack::{Packed, PlaneForms};
+use crate::path::GpuPath;
 use crate::recording::{Recording, Sizes, Uploaded, Values};
-use crate::way::Way;
 use crate::{float, outline};
 use sightlines_multifocal::{BackendError, Carry, Job};
 
@@ -16,7 +16,7 @@ pub(crate) enum Input<'a, 'b> {
 }
 
 /// Records all planes of a job and submits them; the values stay on the device.
-pub(crate) fn draw(gpu: &Gpu, way: Way, input: &Input<'_, '_>) -> Result<Values, BackendError> {
+pub(crate) fn draw(gpu: &Gpu, way: GpuPath, input: &Input<'_, '_>) -> Result<Values, BackendError> {
     let name = way.name();
     let sizes = match input {
         Input::Forms(planes) => Sizes::new(planes.iter().map(|p| p.texels)),
@@ -35,7 +35,7 @@ pub(crate) fn draw(gpu: &Gpu, way: Way, input: &Input<'_, '_>) -> Result<Values,
             for bytes in [&packed.forms, &packed.edges, &packed.slopes] {
                 gpu.check_size(name, bytes.len() as u64, true)?;
             }
-            let corners = if way == Way::Raster { corners(planes, &packed) } else { Vec::new() };
+            let corners = if way == GpuPath::Raster { corners(planes, &packed) } else { Vec::new() };
             for bytes in &corners {
                 gpu.check_size(name, bytes.len() as u64, false)?;
             }
@@ -43,7 +43,7 @@ pub(crate) fn draw(gpu: &Gpu, way: Way, input: &Input<'_, '_>) -> Result<Values,
                 let carries: Vec<_> = planes.iter().map(|p| p.carry.as_ref()).collect();
                 let uploaded = Uploaded::new(gpu, &packed);
                 Recording::new(gpu, sizes).run(&carries, |recording, plane| match way {
-                    Way::Raster => recording.raster(&uploaded, &packed.planes[plane], &corners[plane], plane),
+                    GpuPath::Raster => recording.raster(&uploaded, &packed.planes[plane], &corners[plane], plane),
                     _ => recording.direct(&uploaded, plane),
                 })
             })

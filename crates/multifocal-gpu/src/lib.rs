@@ -2,11 +2,11 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the device and what runs on it ([`Gpu`]), the backend with three pipelines ([`GpuBackend`], [`Way`]), jobs in flight
+//! - **Owns**: the device and what runs on it ([`Gpu`]), the backend with three pipelines ([`GpuBackend`], [`GpuPath`]), jobs in flight
 //!   ([`Ticket`]), and results that stay on the device ([`Values`]) with what can be done there.
 //!   A backend that takes over when the device fails: [`WithFallback`](sightlines_multifocal::WithFallback).
 //! - **Out of scope**: how occluders become integers (`multifocal`), the shader sources (`shaders`), windows, files.
-//! - **Invariants**: [`Way::Compute`] and [`Way::Raster`] have the bits that the integer form says, on any device; nothing
+//! - **Invariants**: [`GpuPath::Compute`] and [`GpuPath::Raster`] have the bits that the integer form says, on any device; nothing
 //!   but [`Gpu::open`] and the blocking calls named so waits for a device; no error of a device is a panic.
 
 mod backend;
@@ -19,9 +19,9 @@ mod jobs;
 mod open;
 mod outline;
 mod pack;
+mod path;
 mod pipelines;
 mod recording;
-mod way;
 
 pub use backend::GpuBackend;
 pub use context::Gpu;
@@ -29,6 +29,6 @@ pub use error::OpenError;
 pub use flags::DrawRecords;
 pub use jobs::Ticket;
 pub use pack::PlaneForms;
+pub use path::GpuPath;
 pub use recording::Values;
-pub use way::Way;
 pub use wgpu;

@@ -3,7 +3,7 @@
 //! What is hidden from both halves of a volume is hidden from it, and much more is hidden from a half. The price is
 //! two more answers of the method; it is paid only where much is still in doubt: neither hidden nor seen by a ray.
 
-use crate::{Asked, BackendError, FromRegion, Occludees, Umbra, Volume, Witness};
+use crate::{BackendError, FromRegion, Occludees, QueryCounts, RaySampler, Umbra, Volume};
 
 /// When to cut a volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,14 +29,14 @@ pub struct Effort {
     /// Volumes that the method was run for.
     pub n_volumes: u64,
     /// Questions about boxes and triangles.
-    pub asked: Asked,
+    pub queries: QueryCounts,
 }
 
 impl std::ops::Add for Effort {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Self { n_volumes: self.n_volumes + other.n_volumes, asked: self.asked + other.asked }
+        Self { n_volumes: self.n_volumes + other.n_volumes, queries: self.queries + other.queries }
     }
 }
 
@@ -53,14 +53,14 @@ impl std::ops::Add for Effort {
 pub fn see(
     method: &mut dyn FromRegion,
     occludees: &Occludees,
-    witness: &Witness,
+    sampler: &RaySampler,
     volume: &Volume,
     split: &Split,
     visible: &mut [bool],
     also: &mut dyn FnMut(&mut dyn Umbra),
 ) -> Result<Effort, BackendError> {
     let mut seen = vec![false; occludees.len()];
-    see_and_note(method, occludees, witness, volume, split, visible, &mut seen, also)
+    see_and_note(method, occludees, sampler, volume, split, visible, &mut seen, also)
 }
 
 /// The same as [`see`](fn@see), and records in `seen` the objects that rays hit: nothing can prove those hidden, so
@@ -75,7 +75,7 @@ pub fn see(
 pub fn see_and_note(
     method: &mut dyn FromRegion,
     occludees: &Occludees,
-    witness: &Witness,
+    sampler: &RaySampler,
     volume: &Volume,
     split: &Split,
     visible: &mut [bool],
@@ -83,10 +83,10 @@ pub fn see_and_note(
     also: &mut dyn FnMut(&mut dyn Umbra),
 ) -> Result<Effort, BackendError> {
     let mut effort = Effort { n_volumes: 1, ..Effort::default() };
-    witness.see(volume, split.n_rays, visible, seen);
+    sampler.see(volume, split.n_rays, visible, seen);
     let mut umbra = method.umbra(volume)?;
     also(&mut *umbra);
-    let mut search = Search { occludees, witness, split, effort: &mut effort };
+    let mut search = Search { occludees, sampler, split, effort: &mut effort };
     search.ask(&mut *umbra, seen, visible);
     drop(umbra);
     search.see_parts(method, volume, 0, seen, visible)?;
@@ -95,7 +95,7 @@ pub fn see_and_note(
 
 struct Search<'a> {
     occludees: &'a Occludees,
-    witness: &'a Witness,
+    sampler: &'a RaySampler,
     split: &'a Split,
     effort: &'a mut Effort,
 }
@@ -105,7 +105,7 @@ impl Search<'_> {
     fn ask(&mut self, umbra: &mut dyn Umbra, seen: &[bool], visible: &mut [bool]) {
         let asked: Vec<bool> = visible.iter().zip(seen).map(|(visible, seen)| *visible && !seen).collect();
         let did = self.occludees.see(umbra, &asked, visible);
-        self.effort.asked = self.effort.asked + did;
+        self.effort.queries = self.effort.queries + did;
     }
 
     /// Tests the halves of a volume that has been tested, if it is worth it.
@@ -131,7 +131,7 @@ impl Search<'_> {
         for half in &halves {
             // What the other half sees need not be tested again.
             let mut of_half: Vec<bool> = start.iter().zip(&*visible).map(|(start, known)| *start && !known).collect();
-            self.witness.see(half, self.split.n_rays, &of_half, seen);
+            self.sampler.see(half, self.split.n_rays, &of_half, seen);
             self.effort.n_volumes += 1;
             let mut umbra = method.umbra(half)?;
             self.ask(&mut *umbra, seen, &mut of_half);

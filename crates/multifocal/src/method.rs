@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Multifocal<B> {
     backend: B,
-    occluders: Arc<Chosen>,
+    occluders: Arc<OccluderSelection>,
     scene: Aabb<3>,
     layout: Layout,
     buffers: [Vec<Buffer>; 6],
@@ -22,7 +22,7 @@ pub struct Multifocal<B> {
 impl<B: MultifocalBackend> Multifocal<B> {
     /// * `occluders`: what hides
     /// * `scene`: the box of everything that will be tested
-    pub fn new(backend: B, occluders: Arc<Chosen>, scene: Aabb<3>, layout: Layout) -> Self {
+    pub fn new(backend: B, occluders: Arc<OccluderSelection>, scene: Aabb<3>, layout: Layout) -> Self {
         Self { backend, occluders, scene, layout, buffers: Default::default(), surround: None }
     }
 }
@@ -67,13 +67,13 @@ impl Umbra for Surrounded<'_> {
 
 /// Occluders of which for each volume and side some are chosen: those that seem to hide most. Any choice is sound.
 #[derive(Debug)]
-pub struct Chosen {
+pub struct OccluderSelection {
     occluders: Vec<Occluder>,
     chooser: Chooser,
     most: usize,
 }
 
-impl Chosen {
+impl OccluderSelection {
     /// At most `most` occluders are drawn on each side of a volume.
     pub fn new(occluders: Vec<Occluder>, most: usize) -> Self {
         Self { chooser: Chooser::new(&occluders), occluders, most }

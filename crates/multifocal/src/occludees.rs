@@ -24,7 +24,7 @@ struct Object {
 
 /// How much was asked.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Asked {
+pub struct QueryCounts {
     /// Boxes of groups of objects.
     pub groups: u64,
     /// Boxes of objects and of parts of objects.
@@ -33,7 +33,7 @@ pub struct Asked {
     pub triangles: u64,
 }
 
-impl std::ops::Add for Asked {
+impl std::ops::Add for QueryCounts {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -87,52 +87,59 @@ impl Occludees {
     ///
     /// # Panics
     /// If the lists are shorter than the objects.
-    pub fn see(&self, umbra: &mut dyn Umbra, candidates: &[bool], visible: &mut [bool]) -> Asked {
-        let mut asked = Asked::default();
+    pub fn see(&self, umbra: &mut dyn Umbra, candidates: &[bool], visible: &mut [bool]) -> QueryCounts {
+        let mut counts = QueryCounts::default();
         if !self.is_empty() {
-            self.see_node(0, umbra, candidates, visible, &mut asked);
+            self.see_node(0, umbra, candidates, visible, &mut counts);
         }
-        asked
+        counts
     }
 
-    fn see_node(&self, n: u32, umbra: &mut dyn Umbra, candidates: &[bool], visible: &mut [bool], asked: &mut Asked) {
+    fn see_node(
+        &self,
+        n: u32,
+        umbra: &mut dyn Umbra,
+        candidates: &[bool],
+        visible: &mut [bool],
+        counts: &mut QueryCounts,
+    ) {
         let node = &self.tree.nodes()[n as usize];
         let order = &self.tree.order()[node.start as usize..node.end as usize];
         if order.iter().all(|&i| !candidates[i as usize]) {
             return;
         }
         if let &[i] = order {
-            visible[i as usize] = self.objects[i as usize].is_seen(umbra, asked);
+            visible[i as usize] = self.objects[i as usize].is_seen(umbra, counts);
             return;
         }
-        asked.groups += 1;
+        counts.groups += 1;
         if umbra.hides(&node.bounds) {
             order.iter().filter(|&&i| candidates[i as usize]).for_each(|&i| visible[i as usize] = false);
             return;
         }
         for child in self.tree.children(n) {
-            self.see_node(child, umbra, candidates, visible, asked);
+            self.see_node(child, umbra, candidates, visible, counts);
         }
     }
 }
 
 impl Object {
     /// Whether any triangle is not proven hidden.
-    fn is_seen(&self, umbra: &mut dyn Umbra, asked: &mut Asked) -> bool {
-        !self.triangles.is_empty() && self.is_seen_at(0, umbra, asked)
+    fn is_seen(&self, umbra: &mut dyn Umbra, counts: &mut QueryCounts) -> bool {
+        !self.triangles.is_empty() && self.is_seen_at(0, umbra, counts)
     }
 
-    fn is_seen_at(&self, n: u32, umbra: &mut dyn Umbra, asked: &mut Asked) -> bool {
+    fn is_seen_at(&self, n: u32, umbra: &mut dyn Umbra, counts: &mut QueryCounts) -> bool {
         let node = &self.tree.nodes()[n as usize];
-        asked.boxes += 1;
+        counts.boxes += 1;
         if umbra.hides(&node.bounds) {
             return false;
         }
         if !node.is_leaf() {
-            return self.tree.children(n).into_iter().any(|child| self.is_seen_at(child, umbra, asked));
+            return self.tree.children(n).into_iter().any(|child| self.is_seen_at(child, umbra, counts));
         }
         self.tree.order()[node.start as usize..node.end as usize].iter().any(|&i| {
-            asked.triangles += 1;
+            counts.triangles += 1;
             !umbra.hides_points(&self.triangles[i as usize])
         })
     }

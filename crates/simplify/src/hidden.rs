@@ -3,7 +3,7 @@
 use crate::views::{View, Views};
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_multifocal::{BackendError, FromRegion, Occludees, Split, Witness, adaptive};
+use sightlines_multifocal::{BackendError, FromRegion, Occludees, RaySampler, Split, adaptive};
 use sightlines_pvs::Table;
 use sightlines_visible_surface::Faces;
 use std::fmt;
@@ -36,7 +36,7 @@ const N_RAYS_PER_FACE: u32 = 8;
 pub(crate) struct Hider<'a> {
     faces: &'a Faces,
     table: Option<TableFaces<'a>>,
-    method: Option<(MakeMethod<'a>, Occludees, Witness)>,
+    method: Option<(MakeMethod<'a>, Occludees, RaySampler)>,
 }
 
 impl<'a> Hider<'a> {
@@ -45,7 +45,7 @@ impl<'a> Hider<'a> {
         let method = by.method.map(|make| {
             // Each face is an object of its own.
             let occludees = Occludees::new(faces.corners().iter().map(|t| vec![*t]).collect());
-            (make, occludees, Witness::new(faces.corners().iter().map(std::slice::from_ref)))
+            (make, occludees, RaySampler::new(faces.corners().iter().map(std::slice::from_ref)))
         });
         Self { faces, table: by.table.map(|table| TableFaces::new(faces, table)), method }
     }

@@ -1,20 +1,20 @@
 //! Rays through a scene, one by one, by the exact ray caster.
 
 use sightlines_geometry::Point3;
-use sightlines_visible_surface::{Camera, Chosen, Faces, NOTHING, RayCaster, Rays};
+use sightlines_visible_surface::{Camera, FaceMask, Faces, NOTHING, RayCaster, Rays};
 
 /// A scene that rays are sent through.
 #[derive(Debug)]
 pub(crate) struct Traced<'a> {
     faces: &'a Faces,
-    chosen: Chosen,
+    chosen: FaceMask,
     caster: RayCaster,
 }
 
 impl<'a> Traced<'a> {
     /// O(n log n).
     pub(crate) fn new(faces: &'a Faces) -> Self {
-        Self { faces, chosen: Chosen::all(faces), caster: RayCaster::build(faces) }
+        Self { faces, chosen: FaceMask::all(faces), caster: RayCaster::build(faces) }
     }
 
     /// Rays for one thread.

@@ -5,7 +5,7 @@
 use sightlines_formats::scene::read_scene;
 use sightlines_visible_surface::bsp::{Bsp, BspOptions, Heuristic};
 use sightlines_visible_surface::schumacker::{Schumacker, SchumackerOptions};
-use sightlines_visible_surface::{Camera, Chosen, Counters, Faces, Shot, VisibleSurface};
+use sightlines_visible_surface::{Camera, Counters, FaceMask, Faces, RenderInput, VisibleSurface};
 use std::error::Error;
 use std::time::Instant;
 
@@ -16,8 +16,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         Err(_) => Faces::of_scene(&read_scene(&of)?.scene)?,
     };
     let camera = overview(&faces)?;
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     println!("{of}: {} faces", faces.len());
     let default = BspOptions::default();
     let mut all = vec![("weighted", default), ("only faces' planes", BspOptions { axis_above: usize::MAX, ..default })];
@@ -38,23 +38,23 @@ fn main() -> Result<(), Box<dyn Error>> {
         let bsp = Bsp::build(&faces, &options);
         let built = start.elapsed();
         println!("  bsp, {name}: {:?}", bsp.stats());
-        println!("    built in {built:.1?}; {}", walk(&bsp, &shot));
-        println!("    the nearest first: {}", walk(&bsp.front_to_back(), &shot));
+        println!("    built in {built:.1?}; {}", walk(&bsp, &input));
+        println!("    the nearest first: {}", walk(&bsp.front_to_back(), &input));
     }
     let start = Instant::now();
     let clusters = Schumacker::build(&faces, &SchumackerOptions::default());
     let built = start.elapsed();
     println!("  schumacker: {:?}", clusters.stats());
-    println!("    built in {built:.1?}; {}", walk(&clusters, &shot));
+    println!("    built in {built:.1?}; {}", walk(&clusters, &input));
     Ok(())
 }
 
-fn walk(method: &dyn VisibleSurface, shot: &Shot<'_>) -> String {
+fn walk(method: &dyn VisibleSurface, input: &RenderInput<'_>) -> String {
     let start = Instant::now();
-    let _ = method.see(shot, &mut Counters::default());
+    let _ = method.see(input, &mut Counters::default());
     let walked = start.elapsed();
     let start = Instant::now();
-    let (_, counters) = method.picture(shot);
+    let (_, counters) = method.picture(input);
     let drawn = start.elapsed();
     format!(
         "walked in {walked:.1?}; picture in {drawn:.1?}, {} fragments, overdraw {:.2}",

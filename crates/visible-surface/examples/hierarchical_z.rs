@@ -7,7 +7,7 @@
 use sightlines_scenes::{CityOptions, city};
 use sightlines_visible_surface::cull::{self, object_boxes};
 use sightlines_visible_surface::hierarchical::{self, DepthPyramid, Neighbours};
-use sightlines_visible_surface::{Camera, Chosen, DepthFormat, Faces, Shot, VisibleSurface, ZBuffer};
+use sightlines_visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer};
 use std::error::Error;
 use std::time::Instant;
 
@@ -48,9 +48,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera = Camera::look_at(eye, at, upwards, 60.0, SIZE)?;
     println!("{} faces, {} objects, {SIZE:?} pixels", faces.len(), scene.objects().len());
 
-    let all = Chosen::all(&faces);
-    let draw =
-        |chosen: &Chosen| ZBuffer::new(DepthFormat::Exact).picture(&Shot { faces: &faces, camera: &camera, chosen }).0;
+    let all = FaceMask::all(&faces);
+    let draw = |chosen: &FaceMask| {
+        ZBuffer::new(DepthFormat::Exact).picture(&RenderInput { faces: &faces, camera: &camera, mask: chosen }).0
+    };
     let picture = timed("z-buffer, all faces", || draw(&all));
 
     let mut kept = all.clone();

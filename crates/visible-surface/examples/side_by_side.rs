@@ -3,8 +3,8 @@
 //! `cargo run -p sightlines-visible-surface --example side_by_side`
 
 use sightlines_visible_surface::{
-    Bsp, BspOptions, Camera, Chosen, DepthFormat, Faces, Image, NOTHING, Newell, Painter, RayCaster, Schumacker,
-    SchumackerOptions, Shot, VisibleSurface, ZBuffer, compare,
+    Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Image, NOTHING, Newell, Painter, RayCaster, RenderInput,
+    Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
 use std::error::Error;
 
@@ -29,8 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Letters are about twice as high as wide, so there are twice as many to the right.
     let pixel = 0.05;
     let camera = Camera::new([0.0; 3], [-0.9, 0.8, 1.0], [pixel / 2.0, 0., 0.], [0., -pixel, 0.], [72, 32])?;
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let tree = Bsp::build(&faces, &BspOptions::default());
     let methods: Vec<Box<dyn VisibleSurface>> = vec![
         Box::new(Painter),
@@ -41,11 +41,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         Box::new(ZBuffer::new(DepthFormat::Exact)),
     ];
     let caster = RayCaster::build(&faces);
-    let (truth, _) = caster.picture(&shot);
+    let (truth, _) = caster.picture(&input);
     println!("{}\n{}", caster.name(), text(&truth, &[]));
     for method in &methods {
-        let (image, counters) = method.picture(&shot);
-        let differs = compare(&shot, &truth, &image);
+        let (image, counters) = method.picture(&input);
+        let differs = compare(&input, &truth, &image);
         println!(
             "{}: {} wrong pixels, {} fragments, {} splits, each covered pixel written {:.2} times",
             method.name(),

@@ -3,7 +3,7 @@
 use crate::counters::Counters;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
-use crate::method::{Seen, Shot, VisibleSurface};
+use crate::method::{RenderInput, RenderOutput, VisibleSurface};
 use crate::plane::Plane;
 use sightlines_geometry::{Adaptive, Orient2d, Point2, Point3};
 use std::collections::BTreeSet;
@@ -18,17 +18,17 @@ impl VisibleSurface for AnyOrder {
         "any order"
     }
 
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        let eye = shot.camera.eye();
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        let eye = input.camera.eye();
         let mut n_tested = 0;
         let is_front = |&face: &u32| {
             n_tested += 1;
-            Plane::Face(face).side(shot.faces, eye) > 0
+            Plane::Face(face).side(input.faces, eye) > 0
         };
-        let fragments: Vec<Fragment> = shot.chosen.iter().filter(is_front).map(Fragment::whole).collect();
+        let fragments: Vec<Fragment> = input.mask.iter().filter(is_front).map(Fragment::whole).collect();
         counters.polygons += fragments.len() as u64;
         counters.tested("facing", n_tested);
-        Seen::BackToFront(fragments)
+        RenderOutput::BackToFront(fragments)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::faces::{Faces, NOTHING};
 use crate::image::Image;
-use crate::method::Shot;
+use crate::method::RenderInput;
 use crate::plane::Plane;
 use crate::raycast::covers;
 use crate::side::Side;
@@ -22,10 +22,10 @@ pub struct Comparison {
 ///
 /// # Panics
 /// If the sizes differ.
-pub fn compare(shot: &Shot<'_>, reference: &Image, image: &Image) -> Comparison {
+pub fn compare(input: &RenderInput<'_>, reference: &Image, image: &Image) -> Comparison {
     let mut out = Comparison::default();
     for [x, y] in reference.differing(image) {
-        if is_tie(shot.camera, shot.faces, [reference.at(x, y), image.at(x, y)], x, y) {
+        if is_tie(input.camera, input.faces, [reference.at(x, y), image.at(x, y)], x, y) {
             out.ties += 1;
         } else {
             out.wrong.push([x, y]);

@@ -58,20 +58,20 @@ type Meeting = Option<(Side, i32)>;
 
 /// Two faces that doubles cannot tell apart, remembered: the next pixel mostly asks about the same two.
 #[derive(Debug, Default)]
-pub(crate) struct Duel {
+pub(crate) struct DepthComparator {
     last: Option<([u32; 2], Meeting)>,
     /// For each face one that was found to lie in its plane and has no higher id, itself if there is none.
     plane_mate: Vec<u32>,
     /// How often it was asked.
-    pub(crate) asked: u64,
+    pub(crate) n_exact: u64,
 }
 
-impl Duel {
+impl DepthComparator {
     /// Whether `face` is seen before `other` at a pixel whose ray meets both: it is nearer there, or as near and has the lower id.
     #[cold]
     #[inline(never)]
-    pub(crate) fn wins(&mut self, camera: &Camera, faces: &Faces, face: u32, other: u32, x: u32, y: u32) -> bool {
-        self.asked += 1;
+    pub(crate) fn is_nearer(&mut self, camera: &Camera, faces: &Faces, face: u32, other: u32, x: u32, y: u32) -> bool {
+        self.n_exact += 1;
         let pair = [face.min(other), face.max(other)];
         if self.last.as_ref().is_none_or(|(of, _)| *of != pair) {
             let mates = pair.map(|f| self.first_mate(f, faces.len()));

@@ -2,7 +2,7 @@
 
 use crate::counters::Counters;
 use crate::fragment::Fragment;
-use crate::method::{Seen, Shot, VisibleSurface};
+use crate::method::{RenderInput, RenderOutput, VisibleSurface};
 
 /// Sorts faces by the depth of their mid-points, and paints them from the farthest to the nearest. Wrong where a
 /// mid-point does not say which of two faces is in front, and where no order of whole faces is right: it splits nothing
@@ -19,19 +19,19 @@ impl VisibleSurface for Painter {
         "painter"
     }
 
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        let mut order: Vec<(f64, u32)> = shot
-            .chosen
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        let mut order: Vec<(f64, u32)> = input
+            .mask
             .iter()
             .map(|face| {
                 // Three times the depth of the mid-point, times a number that all have in common.
-                let depth = |p| shot.camera.place(p).scaled[2];
-                (shot.faces.of(face).map(depth).iter().sum(), face)
+                let depth = |p| input.camera.place(p).scaled[2];
+                (input.faces.of(face).map(depth).iter().sum(), face)
             })
             .collect();
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
         counters.polygons += order.len() as u64;
         counters.tested("mid-point", order.len() as u64);
-        Seen::BackToFront(order.into_iter().map(|(_, face)| Fragment::whole(face)).collect())
+        RenderOutput::BackToFront(order.into_iter().map(|(_, face)| Fragment::whole(face)).collect())
     }
 }

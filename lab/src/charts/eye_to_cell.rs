@@ -13,7 +13,7 @@ use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::{OfficeOptions, office};
-use sightlines::visible_surface::{Camera, Chosen, Faces, RayCaster, Shot, VisibleSurface};
+use sightlines::visible_surface::{Camera, FaceMask, Faces, RayCaster, RenderInput, VisibleSurface};
 use sightlines::walkthrough::{CameraPose, wander};
 use sightlines_benches::spec::SceneSpec;
 use std::convert::Infallible;
@@ -262,11 +262,11 @@ fn shown(place: &Place, stands: &[CameraPose]) -> Result<Vec<Option<Vec<u32>>>, 
     let Some(scene) = &place.scene else { return Ok(Vec::new()) };
     let faces = Faces::of_scene(scene)?;
     let caster = RayCaster::build(&faces);
-    let chosen = Chosen::all(&faces);
+    let chosen = FaceMask::all(&faces);
     let one = |stand: &CameraPose| -> Option<Vec<u32>> {
         let at = [0, 1, 2].map(|k| stand.eye[k] + stand.dir[k]);
         let camera = Camera::look_at(stand.eye, at, place.up, ANGLE, [192, 144]).ok()?;
-        let image = caster.picture(&Shot { faces: &faces, camera: &camera, chosen: &chosen }).0;
+        let image = caster.picture(&RenderInput { faces: &faces, camera: &camera, mask: &chosen }).0;
         let mut objects: Vec<u32> =
             image.faces().iter().filter(|f| faces.ids().contains(f)).map(|&f| faces.object(f)).collect();
         objects.sort_unstable();

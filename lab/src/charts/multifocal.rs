@@ -11,8 +11,8 @@ use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
 use sightlines::multifocal::{
-    Chosen, FromRegion, Layout, Measure, Multifocal, MultifocalBackend, Occludees, Split, Together, Volume, Witness,
-    adaptive,
+    FromRegion, Layout, Measure, Multifocal, MultifocalBackend, Occludees, OccluderSelection, RaySampler, Split,
+    UnionMethod, Volume, adaptive,
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines::scenes::{CityOptions, TowerOptions, city, city_crossings, tower, tower_rooms};
@@ -123,7 +123,7 @@ fn triangles(case: &Case) -> Vec<[Point3; 3]> {
 fn buffers<B: MultifocalBackend + 'static>(
     case: &Case,
     backend: B,
-    chosen: Arc<Chosen>,
+    chosen: Arc<OccluderSelection>,
     layout: Layout,
 ) -> Multifocal<B> {
     let ends = case.boxes.iter().flat_map(|b| [b.min, b.max]);
@@ -131,8 +131,8 @@ fn buffers<B: MultifocalBackend + 'static>(
     Multifocal::new(backend, chosen, around, layout)
 }
 
-fn chosen(case: &Case) -> Arc<Chosen> {
-    Arc::new(Chosen::new(patches(&triangles(case), &PatchOptions::default()), 500))
+fn chosen(case: &Case) -> Arc<OccluderSelection> {
+    Arc::new(OccluderSelection::new(patches(&triangles(case), &PatchOptions::default()), 500))
 }
 
 fn contenders<'a>(settings: &Settings, case: &'a Case) -> Vec<Contender<'a>> {
@@ -169,7 +169,7 @@ fn contenders<'a>(settings: &Settings, case: &'a Case) -> Vec<Contender<'a>> {
     let shipped = || -> Result<Box<dyn FromRegion>, Failure> {
         let sheets = SheetMethod::shared(Arc::new(Sheets::new(&triangles(case))));
         let buffers = buffers(case, Fast::new(), chosen(case), Layout::default());
-        Ok(Box::new(Together::new(vec![Box::new(buffers), Box::new(sheets)])))
+        Ok(Box::new(UnionMethod::new(vec![Box::new(buffers), Box::new(sheets)])))
     };
     add("buffers and sheets (shipped)".to_owned(), 0, Box::new(shipped));
     if !settings.quick {
@@ -189,8 +189,8 @@ fn contenders<'a>(settings: &Settings, case: &'a Case) -> Vec<Contender<'a>> {
 /// Buffers by the first graphics device that is found, as compute.
 #[cfg(feature = "gpu")]
 fn on_device(case: &Case) -> Result<Box<dyn FromRegion>, Failure> {
-    use sightlines::multifocal_gpu::{GpuBackend, Way};
-    let backend = GpuBackend::open(Way::Compute).map_err(|e| NoDevice(format!("no device: {e}")))?;
+    use sightlines::multifocal_gpu::{GpuBackend, GpuPath};
+    let backend = GpuBackend::open(GpuPath::Compute).map_err(|e| NoDevice(format!("no device: {e}")))?;
     Ok(Box::new(buffers(case, backend, chosen(case), Layout::default())))
 }
 
@@ -221,7 +221,7 @@ fn all_methods(
     let seen: Vec<Vec<bool>> = case.boxes.iter().map(seen_from).collect();
     let n_seen = seen.iter().flatten().filter(|s| **s).count() as u64;
     let objects: Vec<Vec<[Point3; 3]>> = case.scene.objects().iter().map(|o| o.corners().collect()).collect();
-    let witness = Witness::new(objects.iter().map(|o| &o[..]));
+    let witness = RaySampler::new(objects.iter().map(|o| &o[..]));
     let occludees = Occludees::new(objects.clone());
     for contender in contenders {
         let row = Row {

@@ -7,7 +7,7 @@ use super::{ChartError, Family, Settings};
 use sightlines::cells::Scene;
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
-use sightlines::multifocal::{Chosen, FromRegion, Layout, Multifocal, Together, Volume};
+use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod, Volume};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::{CityOptions, TowerOptions, city, city_crossings, tower, tower_rooms};
 use sightlines::simplify::{
@@ -92,12 +92,12 @@ fn cases(settings: &Settings) -> Result<Vec<Case>, ChartError> {
 fn all_budgets(settings: &Settings, case: &Case, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let triangles: Vec<[Point3; 3]> = case.scene.objects().iter().flat_map(|o| o.corners()).collect();
     let sheets = Arc::new(Sheets::new(&triangles));
-    let chosen = Arc::new(Chosen::new(patches(&triangles, &PatchOptions::default()), 500));
+    let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 500));
     let bounds = case.scene.bounds();
     let around = Aabb::around([case.view.min, case.view.max, bounds.min, bounds.max]);
     let make = || -> Box<dyn FromRegion + Send> {
         let buffers = Multifocal::new(Fast::new(), Arc::clone(&chosen), around, Layout::default());
-        Box::new(Together::new(vec![Box::new(buffers), Box::new(SheetMethod::shared(Arc::clone(&sheets)))]))
+        Box::new(UnionMethod::new(vec![Box::new(buffers), Box::new(SheetMethod::shared(Arc::clone(&sheets)))]))
     };
     let views = Views::new([Volume::new(case.view)?])?;
     let by = HiddenBy { method: Some(&make), table: None };

@@ -9,8 +9,8 @@ use sightlines::formats::scene::read_scene;
 use sightlines::scenes::SceneError;
 use sightlines::scenes::surfaces::{self, SurfaceOptions};
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Camera, Chosen, DepthFormat, Faces, Newell, Painter, RayCaster, Schumacker, SchumackerOptions,
-    Shot, VisibleSurface, ZBuffer, compare,
+    Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
 
 const NAME: &str = "speed_visible_surface";
@@ -110,8 +110,8 @@ fn all_methods(
     rows: &mut Vec<Row>,
 ) -> Result<(), ChartError> {
     let faces = Faces::of_scene(scene).map_err(|e| failed(name, e))?;
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let shot = RenderInput { faces: &faces, camera, mask: &chosen };
     let (caster, prepare, _) = settings.best_of(|| RayCaster::build(&faces));
     let ((reference, _), seconds, repeats) = settings.best_of(|| caster.picture(&shot));
     let n_covered = reference.n_covered().max(1);

@@ -7,8 +7,8 @@ use sightlines::geometry::Point3;
 use sightlines::scenes::surfaces::{self, DepthPairsOptions, SurfaceOptions};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Camera, Chosen, DepthFormat, Faces, Image, Newell, Painter, RayCaster, Schumacker,
-    SchumackerOptions, Shot, VisibleSurface, ZBuffer, compare, cull,
+    Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    SchumackerOptions, VisibleSurface, ZBuffer, compare, cull,
 };
 use sightlines_tests::data_folder;
 
@@ -36,12 +36,12 @@ fn exact_methods(faces: &Faces) -> Vec<Box<dyn VisibleSurface>> {
 fn agree(name: &str, faces: &Faces, cameras: &[Camera], tally: &mut Tally) {
     let (methods, caster) = (exact_methods(faces), RayCaster::build(faces));
     for camera in cameras {
-        let all = Chosen::all(faces);
+        let all = FaceMask::all(faces);
         let mut in_view = all.clone();
         cull::frustum(faces, camera, &mut in_view);
-        let shot = Shot { faces, camera, chosen: &all };
+        let shot = RenderInput { faces, camera, mask: &all };
         let reference = caster.picture(&shot).0;
-        let culled = Shot { chosen: &in_view, ..shot };
+        let culled = RenderInput { mask: &in_view, ..shot };
         assert_eq!(caster.picture(&culled).0, reference, "{name}: what is outside the view is not seen");
         for method in &methods {
             let found = compare(&shot, &reference, &method.picture(&culled).0);
@@ -137,8 +137,8 @@ fn methods_agree_on_a_million_faces() {
     let b = scene.bounds();
     let at = |part: [f64; 3]| [0, 1, 2].map(|k| b.min[k] + part[k] * (b.max[k] - b.min[k]));
     let camera = Camera::look_at(at([0.3, 0.4, 0.4]), at([0.8, 0.2, 0.7]), [0.0, 1.0, 0.0], 70.0, [160, 120]).unwrap();
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let reference = RayCaster::build(&faces).picture(&shot).0;
     assert!(reference.n_covered() > 1000);
     let found = compare(&shot, &reference, &ZBuffer::default().picture(&shot).0);
@@ -147,8 +147,8 @@ fn methods_agree_on_a_million_faces() {
 
 fn wrong(scene: &Scene, method: &dyn VisibleSurface) -> usize {
     let (faces, camera) = (Faces::of_scene(scene).unwrap(), generated_eye([480, 360]));
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let reference: Image = RayCaster::build(&faces).picture(&shot).0;
     compare(&shot, &reference, &method.picture(&shot).0).wrong.len()
 }
@@ -169,8 +169,8 @@ fn depths_err_by_their_precision() {
     let scene = surfaces::depth_pairs(DepthPairsOptions::default()).unwrap();
     let faces = Faces::of_scene(&scene).unwrap();
     let camera = generated_eye([160, 120]).with_depths(1.0 / 256.0, 8192.0).unwrap();
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let reference = RayCaster::build(&faces).picture(&shot).0;
     let wrong = DepthFormat::ALL.map(|f| compare(&shot, &reference, &ZBuffer::new(f).picture(&shot).0).wrong.len());
     let [exact, double, f32, reversed, u24] = wrong;

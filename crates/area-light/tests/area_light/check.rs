@@ -81,7 +81,7 @@ fn of_light(lighting: &Lighting, random: &mut Random) -> Point3 {
     std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) * (0.001 + 0.998 * random.unit()))
 }
 
-/// Areas of the sides of faces by the corners of their pieces add up to those of the faces.
+/// LightingAreas of the sides of faces by the corners of their pieces add up to those of the faces.
 pub(crate) fn covers(triangles: &[Triangle], lighting: &Lighting) -> bool {
     let area = |[a, b, c]: [Point3; 3]| {
         let d = |p: Point3, q: Point3| [0, 1, 2].map(|k| q[k] - p[k]);

@@ -5,7 +5,7 @@ use crate::common::{Triangle, classify, cuboid, floor, method, multifocal, shaft
 use sightlines_area_light::{Lighting, Options, Sides, State};
 use sightlines_geometry::Point3;
 use sightlines_multifocal::mesh::SheetMethod;
-use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Together, Umbra, Volume};
+use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, UnionMethod, Volume};
 use sightlines_visible_surface::Faces;
 
 /// Half sides of the light, the block and the floor; heights of the light, the block's top and bottom.
@@ -123,7 +123,7 @@ fn a_point_has_no_penumbra() {
 
 /// Hides what is hidden from the middle of the volume: an impostor.
 #[derive(Debug)]
-struct MiddleOnly(Together);
+struct MiddleOnly(UnionMethod);
 
 impl FromRegion for MiddleOnly {
     fn name(&self) -> String {

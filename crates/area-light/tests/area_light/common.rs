@@ -5,9 +5,9 @@ use sightlines_cells::{Scene, SceneObject};
 use sightlines_from_region::ViewShafts;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::mesh::{PatchOptions, SheetMethod, patches};
-use sightlines_multifocal::{Chosen as ChosenOccluders, FromRegion, Layout, Multifocal, Together, Volume};
+use sightlines_multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod, Volume};
 use sightlines_multifocal_cpu::Fast;
-use sightlines_visible_surface::{Chosen, Faces};
+use sightlines_visible_surface::{FaceMask, Faces};
 use std::sync::Arc;
 
 pub(crate) type Triangle = [Point3; 3];
@@ -48,17 +48,17 @@ pub(crate) fn shafts(triangles: &[Triangle]) -> ViewShafts {
 }
 
 pub(crate) fn multifocal(triangles: &[Triangle]) -> Multifocal<Fast> {
-    let occluders = Arc::new(ChosenOccluders::new(patches(triangles, &PatchOptions::default()), 256));
+    let occluders = Arc::new(OccluderSelection::new(patches(triangles, &PatchOptions::default()), 256));
     let bounds = Aabb::around(triangles.iter().flatten().copied());
     Multifocal::new(Fast::new(), occluders, bounds, Layout::default())
 }
 
 /// Shafts and sheets.
-pub(crate) fn method(triangles: &[Triangle]) -> Together {
-    Together::about_pieces(vec![Box::new(shafts(triangles)), Box::new(SheetMethod::new(triangles))])
+pub(crate) fn method(triangles: &[Triangle]) -> UnionMethod {
+    UnionMethod::for_polygons(vec![Box::new(shafts(triangles)), Box::new(SheetMethod::new(triangles))])
 }
 
 /// All faces.
 pub(crate) fn classify(faces: &Faces, light: &Volume, method: &mut dyn FromRegion, options: &Options) -> Lighting {
-    Shadows::new(faces).classify(&Chosen::all(faces), light, method, options).expect("no device is needed")
+    Shadows::new(faces).classify(&FaceMask::all(faces), light, method, options).expect("no device is needed")
 }

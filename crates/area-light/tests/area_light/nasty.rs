@@ -5,7 +5,7 @@ use crate::common::{Triangle, classify, cuboid, floor, method, quad, volume};
 use sightlines_area_light::{Lighting, Options, Side, Sides, State};
 use sightlines_geometry::Point3;
 use sightlines_multifocal::Volume;
-use sightlines_visible_surface::{Chosen, Faces};
+use sightlines_visible_surface::{FaceMask, Faces};
 
 fn ask(triangles: &[Triangle], light: &Volume, sides: Sides, max_depth: u32) -> Lighting {
     let faces = Faces::new(triangles.to_vec()).unwrap();
@@ -173,7 +173,7 @@ fn options_end_cutting() {
     let eye = lighting(&Options { max_depth: 2, sides: Sides::Towards([9., 9., 0.]), ..Options::default() });
     assert!(eye.pieces().iter().all(|p| p.face >= 2));
     // Only what is chosen has pieces, and all blocks.
-    let mut chosen = Chosen::all(&faces);
+    let mut chosen = FaceMask::all(&faces);
     chosen.retain(|f| f < 2);
     let shadows = sightlines_area_light::Shadows::new(&faces);
     let options = Options { max_depth: 6, sides: Sides::Front, ..Options::default() };

@@ -6,7 +6,7 @@ use sightlines_geometry::{Point3, orient3d};
 use sightlines_multifocal::Volume;
 use sightlines_testkit::Random;
 use sightlines_testkit::RayScene;
-use sightlines_visible_surface::{Camera, Chosen, Faces, Image, NOTHING, RayCaster, Shot, VisibleSurface};
+use sightlines_visible_surface::{Camera, FaceMask, Faces, Image, NOTHING, RayCaster, RenderInput, VisibleSurface};
 
 const EYE: Point3 = [9.0, -11.0, 6.0];
 const SIZE: [u32; 2] = [96, 64];
@@ -25,7 +25,7 @@ fn camera() -> Camera {
 }
 
 fn image(faces: &Faces, camera: &Camera) -> Image {
-    RayCaster::build(faces).picture(&Shot { faces, camera, chosen: &Chosen::all(faces) }).0
+    RayCaster::build(faces).picture(&RenderInput { faces, camera, mask: &FaceMask::all(faces) }).0
 }
 
 /// The share of light in a pixel, by another ray tracer and other points of the light; how far it is off at most, roughly.
@@ -106,7 +106,7 @@ fn wrong_pictures_are_noticed() {
     let options = Options { max_depth: 8, sides: Sides::Towards(EYE), ..Options::default() };
     let mut none = method(&[]);
     let shadows = Shadows::new(&fewer);
-    let lighting = shadows.classify(&Chosen::all(&fewer), &light(), &mut none, &options).unwrap();
+    let lighting = shadows.classify(&FaceMask::all(&fewer), &light(), &mut none, &options).unwrap();
     let picture = shadows.picture(&lighting, &camera, &image_of_fewer, N_RAYS);
     assert_eq!(wrong(fewer.corners(), &image_of_fewer, &picture)[0], 0);
     // The floor is the same face in both scenes.
@@ -131,7 +131,7 @@ fn what_was_not_asked_about_is_traced() {
     let faces = Faces::new(triangles.clone()).unwrap();
     let (camera, shadows) = (camera(), Shadows::new(&faces));
     let image = image(&faces, &camera);
-    let mut chosen = Chosen::all(&faces);
+    let mut chosen = FaceMask::all(&faces);
     chosen.retain(|_| false);
     let lighting = shadows.classify(&chosen, &light(), &mut method(&triangles), &Options::default()).unwrap();
     assert!(lighting.pieces().is_empty());

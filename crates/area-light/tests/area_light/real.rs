@@ -5,7 +5,7 @@ use crate::common::{triangles_of, volume};
 use sightlines_area_light::{Options, Shadows, Sides, shown};
 use sightlines_geometry::Point3;
 use sightlines_multifocal::mesh::SheetMethod;
-use sightlines_visible_surface::{Camera, Chosen, DepthFormat, Faces, Shot, VisibleSurface, ZBuffer};
+use sightlines_visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer};
 use std::path::PathBuf;
 
 /// The folder of real scenes; says loudly that a test skips without it.
@@ -36,7 +36,7 @@ fn an_atrium_is_right() {
     let mut method = SheetMethod::new(&triangles);
 
     let shadows = Shadows::new(&faces);
-    let mut chosen = Chosen::all(&faces);
+    let mut chosen = FaceMask::all(&faces);
     chosen.retain(|f| f % 40 == 0);
     let start = std::time::Instant::now();
     let options = Options { max_depth: 3, sides: Sides::Both, ..Options::default() };
@@ -49,7 +49,7 @@ fn an_atrium_is_right() {
     assert!(areas.umbra > 0.2 * areas.total() && areas.in_doubt < 0.7 * areas.total());
 
     let camera = Camera::look_at(eye, [middle[0], middle[1] - 3.0, middle[2]], [0., 1., 0.], 70.0, [96, 72]).unwrap();
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &Chosen::all(&faces) };
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &FaceMask::all(&faces) };
     let image = ZBuffer::new(DepthFormat::Exact).picture(&shot).0;
     let options = Options { max_depth: 6, min_size: 0.05, sides: Sides::Towards(eye) };
     let start = std::time::Instant::now();

@@ -109,10 +109,10 @@ fn processor() -> Vec<Make> {
 
 #[cfg(feature = "multifocal-gpu")]
 fn gpu(warn: fn(&str)) -> Result<Vec<Make>, NotBuiltIn> {
-    use sightlines_multifocal_gpu::{Gpu, GpuBackend, Way};
+    use sightlines_multifocal_gpu::{Gpu, GpuBackend, GpuPath};
     let mut all = processor();
     match Gpu::open() {
-        Ok(gpu) => all.insert(0, Box::new(move || Box::new(GpuBackend::new(gpu.clone(), Way::Compute)))),
+        Ok(gpu) => all.insert(0, Box::new(move || Box::new(GpuBackend::new(gpu.clone(), GpuPath::Compute)))),
         Err(error) => warn(&format!("{error}; the CPU takes over")),
     }
     Ok(all)

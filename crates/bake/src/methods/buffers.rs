@@ -4,7 +4,7 @@ use super::{Backend, Entry, OpenBackend, Prepared, triangles};
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
-use sightlines_multifocal::{Chosen, FromRegion, Layout, Measure, Multifocal, Together};
+use sightlines_multifocal::{FromRegion, Layout, Measure, Multifocal, OccluderSelection, UnionMethod};
 use std::sync::Arc;
 
 pub(super) const ENTRY: Entry = Entry {
@@ -87,7 +87,7 @@ impl BufferOptions {
 
 /// What the instances of all threads share.
 struct Buffers {
-    chosen: Arc<Chosen>,
+    chosen: Arc<OccluderSelection>,
     sheets: Option<(Arc<Sheets>, usize)>,
     scene: Aabb<3>,
     layout: Layout,
@@ -101,7 +101,7 @@ impl Buffers {
         let patches = if options.planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
         let sheets = (options.sheets > 0).then(|| (Arc::new(Sheets::new(&triangles)), options.sheets as usize));
         Ok(Self {
-            chosen: Arc::new(Chosen::new(patches, options.occluders as usize)),
+            chosen: Arc::new(OccluderSelection::new(patches, options.occluders as usize)),
             sheets,
             scene: scene.bounds(),
             layout: options.layout(),
@@ -120,6 +120,6 @@ impl Prepared for Buffers {
         if let Some((sheets, limit)) = &self.sheets {
             methods.push(Box::new(SheetMethod::shared(Arc::clone(sheets)).with_limit(*limit)));
         }
-        Box::new(Together::new(methods))
+        Box::new(UnionMethod::new(methods))
     }
 }

@@ -23,7 +23,7 @@ use sightlines_cells::Scene;
 use sightlines_formats::{SceneInfo, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{SceneOptions, subdivide_scene};
-use sightlines_multifocal::{Effort, FromRegion, Occludees, Split, Volume, Witness};
+use sightlines_multifocal::{Effort, FromRegion, Occludees, Split, Volume, RaySampler};
 use sightlines_progress::Observer;
 use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
@@ -116,7 +116,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         Some(make) => {
             let made = make();
             let method = (made.name(), made.only_in_air());
-            let witness = Witness::new(triangles.iter().map(|t| &t[..]));
+            let witness = RaySampler::new(triangles.iter().map(|t| &t[..]));
             let occludees = Occludees::new(triangles);
             let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes };
             let seen = see::see(&scene, make, options, rows, objects)?;

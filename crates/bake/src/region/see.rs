@@ -4,7 +4,7 @@ use super::{MakeMethod, RegionBakeOptions};
 use crate::error::BakeError;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, Umbra, Volume, Witness, adaptive};
+use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, RaySampler, Umbra, Volume, adaptive};
 use sightlines_progress::Counter;
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
@@ -15,7 +15,7 @@ const RAYS_TO_A_CELL: u32 = 24;
 /// What the queries of all cells share.
 pub(super) struct Targets<'a> {
     pub(super) occludees: &'a Occludees,
-    pub(super) witness: &'a Witness,
+    pub(super) witness: &'a RaySampler,
     pub(super) volumes: &'a [Volume],
 }
 

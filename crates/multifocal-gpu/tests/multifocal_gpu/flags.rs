@@ -4,7 +4,7 @@ use crate::common::scene::{job, occluders};
 use crate::common::{Chance, gpu};
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::{Buffer, Footprint, Job, Measure};
-use sightlines_multifocal_gpu::{DrawRecords, Gpu, GpuBackend, Values, Way, wgpu};
+use sightlines_multifocal_gpu::{DrawRecords, Gpu, GpuBackend, GpuPath, Values, wgpu};
 use wgpu::BufferUsages;
 
 /// Whether a footprint is hidden, straight from its definition.
@@ -95,7 +95,7 @@ fn flags_equality_with_a_plain_loop() {
         let mut chance = Chance::new(seed);
         let occluders = occluders(&mut chance, 150);
         let job = job(&occluders, Measure::SectionHeight, [120, 100], true);
-        let way = [Way::Compute, Way::Raster][seed as usize % 2];
+        let way = [GpuPath::Compute, GpuPath::Raster][seed as usize % 2];
         let backend = GpuBackend::new(gpu.clone(), way);
         let values = backend.keep(&job).expect("it is done");
         let buffers = backend.wait(&backend.submit(&job).expect("submitted")).expect("done");
@@ -127,7 +127,7 @@ fn flags_add_up_over_planes() {
     let mut chance = Chance::new(9);
     let occluders = occluders(&mut chance, 150);
     let job = job(&occluders, Measure::SectionHeight, [120, 100], false);
-    let backend = GpuBackend::new(gpu.clone(), Way::Compute);
+    let backend = GpuBackend::new(gpu.clone(), GpuPath::Compute);
     let values = backend.keep(&job).expect("it is done");
     let buffer = &backend.wait(&backend.submit(&job).expect("submitted")).expect("done")[0];
     let [first, second] = [0; 2].map(|_| footprints(&mut chance, &job, 0, 200));
@@ -148,7 +148,7 @@ fn footprints_that_leave_the_window_hide_nothing() {
     let mut chance = Chance::new(10);
     let occluders = occluders(&mut chance, 400);
     let job = job(&occluders, Measure::VertexHeight, [16, 16], false);
-    let values = GpuBackend::new(gpu.clone(), Way::Compute).keep(&job).expect("it is done");
+    let values = GpuBackend::new(gpu.clone(), GpuPath::Compute).keep(&job).expect("it is done");
     let bounds = [[0, 0, 17, 16], [-1, 0, 4, 4], [4, 4, 4, 8], [i32::MIN, 0, i32::MAX, 16], [0, 0, 1, 1]];
     let footprints = bounds.map(|bounds| Footprint { bounds, edges: vec![[0, 0, -1]], limit: 0, inside: true });
     let frame = Frame::new(&gpu, 5, false);
@@ -237,7 +237,7 @@ fn flags_hidden_objects_are_not_drawn() {
     let mut chance = Chance::new(12);
     let occluders = occluders(&mut chance, 200);
     let job = job(&occluders, Measure::SectionHeight, [120, 100], false);
-    let values = GpuBackend::new(gpu.clone(), Way::Compute).keep(&job).expect("it is done");
+    let values = GpuBackend::new(gpu.clone(), GpuPath::Compute).keep(&job).expect("it is done");
     let footprints = footprints(&mut chance, &job, 0, 256);
     let frame = Frame::new(&gpu, 256, false);
     assert_eq!(draw_points(&frame), vec![1; 256], "before, all are drawn");

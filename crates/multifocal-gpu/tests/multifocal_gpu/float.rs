@@ -5,7 +5,7 @@ use crate::common::{Chance, gpu};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::{Job, Measure, MultifocalBackend, Occluder, Plane, Volume};
 use sightlines_multifocal_cpu::{Fast, Reference};
-use sightlines_multifocal_gpu::{GpuBackend, Way};
+use sightlines_multifocal_gpu::{GpuBackend, GpuPath};
 
 /// How many texels floats and integers block, after checking that neither exceeds the reference.
 fn compare(backend: &mut GpuBackend, job: &Job<'_>, what: &str) -> [usize; 3] {
@@ -24,7 +24,7 @@ fn compare(backend: &mut GpuBackend, job: &Job<'_>, what: &str) -> [usize; 3] {
 #[test]
 fn floats_never_exceed_the_reference_and_lose_little() {
     let Some(gpu) = gpu("floats against the reference") else { return };
-    let mut backend = GpuBackend::new(gpu, Way::Float);
+    let mut backend = GpuBackend::new(gpu, GpuPath::Float);
     let mut sum = [0; 3];
     for seed in 0..3 {
         let occluders = occluders(&mut Chance::new(seed), 60);
@@ -40,7 +40,7 @@ fn floats_never_exceed_the_reference_and_lose_little() {
 #[test]
 fn floats_never_exceed_the_reference_in_near_degenerate_scenes() {
     let Some(gpu) = gpu("floats in near-degenerate scenes") else { return };
-    let mut backend = GpuBackend::new(gpu, Way::Float);
+    let mut backend = GpuBackend::new(gpu, GpuPath::Float);
     // Edges of umbrae along lines between texels: far from the origin, and in all directions.
     let mut n_blocked = 0;
     for (axis, positive, far) in [(0, true, 0.0), (1, false, 1e5), (2, true, -3e6), (0, false, 7.0)] {
@@ -73,6 +73,6 @@ fn floats_carry_from_plane_to_plane() {
     let Some(gpu) = gpu("floats on sweeps") else { return };
     let occluders = occluders(&mut Chance::new(20), 60);
     let sweep = job(&occluders, Measure::VertexHeight, [40, 36], true);
-    let [floats, integers, _] = compare(&mut GpuBackend::new(gpu, Way::Float), &sweep, "sweep");
+    let [floats, integers, _] = compare(&mut GpuBackend::new(gpu, GpuPath::Float), &sweep, "sweep");
     assert!(floats * 100 > integers * 90 && floats > 100, "{floats} and {integers}");
 }

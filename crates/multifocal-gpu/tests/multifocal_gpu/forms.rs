@@ -2,9 +2,9 @@
 
 use crate::common::{Chance, expected, gpu, random_carry, random_forms};
 use sightlines_multifocal::{Buffer, Forms};
-use sightlines_multifocal_gpu::{GpuBackend, PlaneForms, Way};
+use sightlines_multifocal_gpu::{GpuBackend, GpuPath, PlaneForms};
 
-const WAYS: [Way; 2] = [Way::Compute, Way::Raster];
+const WAYS: [GpuPath; 2] = [GpuPath::Compute, GpuPath::Raster];
 
 /// Compares each way's buffers with `expected`; says where they differ.
 fn difference(found: &[Buffer], expected: &[Buffer]) -> Option<String> {

@@ -4,11 +4,11 @@ use crate::common::scene::{job, occluders};
 use crate::common::{Chance, expected, gpu};
 use sightlines_multifocal::{BackendError, Buffer, Measure, MultifocalBackend, WithFallback};
 use sightlines_multifocal_cpu::Fast;
-use sightlines_multifocal_gpu::{Gpu, GpuBackend, PlaneForms, Way, wgpu};
+use sightlines_multifocal_gpu::{Gpu, GpuBackend, GpuPath, PlaneForms, wgpu};
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-const WAYS: [Way; 2] = [Way::Compute, Way::Raster];
+const WAYS: [GpuPath; 2] = [GpuPath::Compute, GpuPath::Raster];
 
 #[test]
 fn jobs_equality_with_the_processor() {
@@ -88,7 +88,7 @@ fn jobs_come_from_many_threads() {
 #[test]
 fn jobs_that_nothing_blocks() {
     let Some(gpu) = gpu("empty jobs") else { return };
-    for way in Way::ALL {
+    for way in GpuPath::ALL {
         let mut found = Vec::new();
         GpuBackend::new(gpu.clone(), way)
             .render(&job(&[], Measure::VertexHeight, [17, 1], false), &mut found)
@@ -102,7 +102,7 @@ fn jobs_of_measures_without_a_form_are_refused() {
     let Some(gpu) = gpu("measures without a form") else { return };
     let occluders = occluders(&mut Chance::new(1), 3);
     let mut n_refused = 0;
-    for (way, measure) in Way::ALL.into_iter().flat_map(|way| Measure::ALL.map(|measure| (way, measure))) {
+    for (way, measure) in GpuPath::ALL.into_iter().flat_map(|way| Measure::ALL.map(|measure| (way, measure))) {
         let mut backend = GpuBackend::new(gpu.clone(), way);
         let result = backend.render(&job(&occluders, measure, [8, 8], false), &mut Vec::new());
         if backend.supports(measure) {
@@ -125,7 +125,7 @@ fn devices_that_are_lost_say_so_and_somebody_takes_over() {
     let job = job(&occluders, Measure::SectionHeight, [64, 64], true);
     let mut right = Vec::new();
     Fast::new().render(&job, &mut right).expect("the processor does it");
-    let backend = GpuBackend::new(gpu.clone(), Way::Compute);
+    let backend = GpuBackend::new(gpu.clone(), GpuPath::Compute);
     let mut both = WithFallback::new(backend.clone(), Fast::new());
     let mut found = Vec::new();
     both.render(&job, &mut found).expect("it is done");
@@ -150,7 +150,7 @@ fn devices_lost_with_jobs_in_flight_give_an_answer_to_each() {
     let gpu = Gpu::open().expect("there is one");
     let occluders = occluders(&mut Chance::new(6), 200);
     let job = job(&occluders, Measure::SectionHeight, [300, 300], false);
-    let backend = GpuBackend::new(gpu.clone(), Way::Compute);
+    let backend = GpuBackend::new(gpu.clone(), GpuPath::Compute);
     let tickets: Vec<_> = (0..4).map(|_| backend.submit(&job).expect("submitted")).collect();
     gpu.device().destroy();
     let answers: Vec<_> = tickets.iter().map(|ticket| backend.wait(ticket)).collect();
@@ -165,7 +165,7 @@ fn devices_of_hosts_are_used_and_their_loss_is_noticed() {
     }
     let host = Gpu::open().expect("there is one");
     let (device, queue) = (host.device().clone(), host.queue().clone());
-    let mut backend = GpuBackend::from_device(device.clone(), queue, Way::Raster).expect("it has what is needed");
+    let mut backend = GpuBackend::from_device(device.clone(), queue, GpuPath::Raster).expect("it has what is needed");
     let occluders = occluders(&mut Chance::new(7), 40);
     let job = job(&occluders, Measure::VertexHeight, [40, 40], true);
     let (mut found, mut right) = (Vec::new(), Vec::new());
@@ -195,7 +195,7 @@ fn jobs_too_large_for_a_device_are_refused_before_they_are_tried() {
     }
     let gpu = small_device();
     let occluders = occluders(&mut Chance::new(8), 10);
-    for way in Way::ALL {
+    for way in GpuPath::ALL {
         let mut backend = GpuBackend::new(gpu.clone(), way);
         let fits = job(&occluders, Measure::VertexHeight, [128, 128], false);
         let mut found = Vec::new();

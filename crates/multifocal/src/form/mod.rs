@@ -74,9 +74,9 @@ impl Forms {
     /// # Panics
     /// If the job has no plane `plane`.
     pub fn extend(&mut self, job: &Job<'_>, outlines: &Outlines, plane: usize) {
-        let maker = Maker::new(job.volume(), &job.planes()[plane], job.measure(), job.unit());
+        let builder = FormBuilder::new(job.volume(), &job.planes()[plane], job.measure(), job.unit());
         for of in &outlines.of_occluders {
-            maker.add(job.occluders()[of.occluder], of.n_facets, &outlines.sides[of.sides.clone()], self);
+            builder.add(job.occluders()[of.occluder], of.n_facets, &outlines.sides[of.sides.clone()], self);
         }
     }
 
@@ -138,14 +138,14 @@ impl Outlines {
 }
 
 /// What all occluders on a plane share.
-struct Maker<'a> {
+struct FormBuilder<'a> {
     window: Window<'a>,
     corners: [Point3; 8],
     measure: Measure,
     unit: f64,
 }
 
-impl<'a> Maker<'a> {
+impl<'a> FormBuilder<'a> {
     fn new(volume: &Volume, plane: &'a Plane, measure: Measure, unit: f64) -> Self {
         Self { window: Window::new(plane), corners: volume.corners(), measure, unit }
     }

@@ -1,6 +1,6 @@
 //! Values in integers: constants and affine functions below the exact ones.
 
-use super::Maker;
+use super::FormBuilder;
 use super::affine::{Around, Window};
 use super::edges::Side;
 use crate::{Measure, Occluder};
@@ -15,24 +15,24 @@ const DOWN: f64 = 1.0 - 64.0 * f64::EPSILON;
 /// A hit lies in front of the plane or on it, so a height is at least 0; of a flat occluder it is also at least that of
 /// its lowest corner.
 pub(super) fn heights(
-    maker: &Maker<'_>,
+    builder: &FormBuilder<'_>,
     occluder: &Occluder,
     facets: &[Side],
     bounds: [i32; 4],
     slopes: &mut Vec<[i32; 3]>,
 ) -> u32 {
-    let [lowest, highest] = extent(maker, occluder);
+    let [lowest, highest] = extent(builder, occluder);
     // No section of an occluder in one height is higher than its corners.
-    let level = lowest == highest || maker.measure == Measure::VertexHeight;
+    let level = lowest == highest || builder.measure == Measure::VertexHeight;
     if !level {
-        slopes.extend(section(maker, facets, bounds));
+        slopes.extend(section(builder, facets, bounds));
     }
-    encode(lowest.next_down() / maker.unit)
+    encode(lowest.next_down() / builder.unit)
 }
 
 /// The lowest and the highest corner of an occluder above the plane, rounded to nearest.
-fn extent(maker: &Maker<'_>, occluder: &Occluder) -> [f64; 2] {
-    let (plane, b) = (maker.window.plane, occluder.bounds());
+fn extent(builder: &FormBuilder<'_>, occluder: &Occluder) -> [f64; 2] {
+    let (plane, b) = (builder.window.plane, occluder.bounds());
     let (low, high) = (plane.height(b.min), plane.height(b.max));
     [low.min(high), low.max(high)]
 }
@@ -48,8 +48,8 @@ fn encode(units: f64) -> u32 {
 /// in front of it, both in the same unit. The line between meets the facet's plane at height `H a / (a + b)`, which is
 /// a concave function of `a`; so is the least for all eyes. Between the least and the largest `a` it lies above its chord,
 /// which is affine in the place. The least over the facets is bounded at the corners.
-fn section(maker: &Maker<'_>, facets: &[Side], bounds: [i32; 4]) -> Option<[i32; 3]> {
-    let window = &maker.window;
+fn section(builder: &FormBuilder<'_>, facets: &[Side], bounds: [i32; 4]) -> Option<[i32; 3]> {
+    let window = &builder.window;
     let places = Window::places(bounds).map(|place| window.point(place));
     let mut low = [f64::INFINITY; 4];
     for facet in facets {
@@ -65,7 +65,7 @@ fn section(maker: &Maker<'_>, facets: &[Side], bounds: [i32; 4]) -> Option<[i32;
                 let up = window.plane.height(*v).next_down();
                 up * behind / (behind + in_front(*v).high()) * DOWN
             };
-            maker.corners.iter().map(of).fold(f64::INFINITY, f64::min)
+            builder.corners.iter().map(of).fold(f64::INFINITY, f64::min)
         };
         let (at_least, at_most) = (height(least), height(most));
         if !(at_least.is_finite() && at_most.is_finite()) {
@@ -78,7 +78,7 @@ fn section(maker: &Maker<'_>, facets: &[Side], bounds: [i32; 4]) -> Option<[i32;
             let along = f.low() - least;
             let chord = at_least + along * rise;
             let slack = (at_least + along.abs() * rise) * (64.0 * f64::EPSILON);
-            *low = low.min((chord - slack) / maker.unit);
+            *low = low.min((chord - slack) / builder.unit);
         }
     }
     let mut slope = Window::slope(bounds, low)?;
@@ -92,20 +92,20 @@ fn section(maker: &Maker<'_>, facets: &[Side], bounds: [i32; 4]) -> Option<[i32;
 /// corners: an affine function below the distance. Directions towards the nearest corner-wise point from several places
 /// give several of them. Distances to bent occluders are bounded by heights, which are never more.
 pub(super) fn distances(
-    maker: &Maker<'_>,
+    builder: &FormBuilder<'_>,
     occluder: &Occluder,
     facets: &[Side],
     bounds: [i32; 4],
     slopes: &mut Vec<[i32; 3]>,
 ) -> u32 {
     if !occluder.is_flat() {
-        return heights(maker, occluder, facets, bounds, slopes);
+        return heights(builder, occluder, facets, bounds, slopes);
     }
-    let window = &maker.window;
+    let window = &builder.window;
     let [x0, y0, x1, y1] = bounds;
     let middle = [x0 + (x1 - x0) / 2, y0 + (y1 - y0) / 2];
     let corners = Window::places(bounds).map(|place| window.point(place));
-    let floor = encode(extent(maker, occluder)[0].next_down() / maker.unit);
+    let floor = encode(extent(builder, occluder)[0].next_down() / builder.unit);
     for from in corners.into_iter().chain([window.point(middle)]) {
         let n = direction(from, occluder);
         let low = corners.map(|p| {
@@ -118,7 +118,7 @@ pub(super) fn distances(
             let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
             let value = about - error * (64.0 * f64::EPSILON);
             let length = if value > 0.0 { length / DOWN } else { length * DOWN };
-            (value / length).next_down() / maker.unit
+            (value / length).next_down() / builder.unit
         });
         if let Some(mut slope) = Window::slope(bounds, low) {
             slope[2] += 1;

@@ -1,6 +1,6 @@
 //! Sheets as a method of their own.
 
-use super::{Asker, Sheets};
+use super::{SheetTester, Sheets};
 use crate::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_geometry::{Aabb, Point3};
 use std::sync::Arc;
@@ -49,19 +49,19 @@ impl FromRegion for SheetMethod {
     }
 
     fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError> {
-        Ok(Box::new(SheetUmbra { asker: self.sheets.asker(), volume: *volume.bounds(), limit: self.limit }))
+        Ok(Box::new(SheetUmbra { tester: self.sheets.tester(), volume: *volume.bounds(), limit: self.limit }))
     }
 }
 
 #[derive(Debug)]
 struct SheetUmbra<'a> {
-    asker: Asker<'a>,
+    tester: SheetTester<'a>,
     volume: Aabb<3>,
     limit: usize,
 }
 
 impl Umbra for SheetUmbra<'_> {
     fn hides(&mut self, target: &Aabb<3>) -> bool {
-        self.asker.hides(&self.volume, target, self.limit)
+        self.tester.hides(&self.volume, target, self.limit)
     }
 }

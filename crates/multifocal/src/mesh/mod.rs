@@ -25,5 +25,5 @@ pub use method::SheetMethod;
 pub use patch::patches;
 pub use patch_options::PatchOptions;
 pub use select::{Chooser, select};
-pub use sheet::{Asker, Sheets};
+pub use sheet::{SheetTester, Sheets};
 pub use weld::Mesh;

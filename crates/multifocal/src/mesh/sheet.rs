@@ -69,9 +69,9 @@ impl Sheets {
     }
 
     /// A reusable workspace for many tests.
-    pub fn asker(&self) -> Asker<'_> {
+    pub fn tester(&self) -> SheetTester<'_> {
         let n = self.mesh.triangles().len();
-        Asker {
+        SheetTester {
             sheets: self,
             epoch: 0,
             walked: vec![0; 2 * n],
@@ -83,9 +83,9 @@ impl Sheets {
         }
     }
 
-    /// One question; see [`Asker::hides`]. O(n) besides, so ask many of one [`Asker`].
+    /// One question; see [`SheetTester::hides`]. O(n) besides, so ask many of one [`SheetTester`].
     pub fn hides(&self, v: &Aabb<3>, e: &Aabb<3>, limit: usize) -> bool {
-        self.asker().hides(v, e, limit)
+        self.tester().hides(v, e, limit)
     }
 
     fn around(&self, edge: u32) -> &[u32] {
@@ -159,7 +159,7 @@ fn sort_around(mesh: &Mesh, edge: u32, triangles: &mut [u32]) {
 
 /// Asks a mesh about pairs of boxes, one after the other.
 #[derive(Debug)]
-pub struct Asker<'a> {
+pub struct SheetTester<'a> {
     sheets: &'a Sheets,
     /// Marks of earlier questions and walks have lower numbers.
     epoch: u32,
@@ -184,7 +184,7 @@ struct Pair<'a> {
     since: u32,
 }
 
-impl Asker<'_> {
+impl SheetTester<'_> {
     /// Whether every segment from a point of `v` to a point of `e` certainly meets the mesh before its end. Errs towards
     /// no.
     ///

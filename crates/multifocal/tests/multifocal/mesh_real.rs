@@ -140,10 +140,10 @@ fn sheets_hide_much_of_real_scenes() {
         let targets: Vec<Aabb<3>> = scene.objects().iter().map(|o| o.bounds()).collect();
         let mut hidden = Vec::new();
         for limit in [512, 4096] {
-            let mut asker = sheets.asker();
+            let mut tester = sheets.tester();
             let start = Instant::now();
             let pairs = volumes.iter().flat_map(|v| targets.iter().map(move |e| (v, e)));
-            let answers: Vec<bool> = pairs.map(|(v, e)| asker.hides(v, e, limit)).collect();
+            let answers: Vec<bool> = pairs.map(|(v, e)| tester.hides(v, e, limit)).collect();
             let seconds = start.elapsed().as_secs_f64();
             hidden = answers;
             eprintln!(

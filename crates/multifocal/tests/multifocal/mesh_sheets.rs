@@ -19,21 +19,21 @@ proptest! {
     #[test]
     fn sheets_hide_nothing_that_a_ray_reaches(soup in soup(), pairs in prop::collection::vec(boxes(), 12), seed in any::<u64>()) {
         let (sheets, rays) = (Sheets::new(&soup), scene(&soup));
-        let mut asker = sheets.asker();
+        let mut tester = sheets.tester();
         for [v, e] in &pairs {
-            if asker.hides(v, e, LIMIT) {
+            if tester.hides(v, e, LIMIT) {
                 let free = free_segment(&rays, v, e, seed, 200);
                 prop_assert!(free.is_none(), "{v:?} to {e:?}: {free:?}");
             }
         }
     }
 
-    /// Invariant: an asker that was asked before says what a fresh one says.
+    /// Invariant: an tester that was asked before says what a fresh one says.
     #[test]
     fn sheets_do_not_remember(soup in soup(), pairs in prop::collection::vec(boxes(), 6)) {
         let sheets = Sheets::new(&soup);
-        let mut asker = sheets.asker();
-        let again: Vec<bool> = pairs.iter().map(|[v, e]| asker.hides(v, e, LIMIT)).collect();
+        let mut tester = sheets.tester();
+        let again: Vec<bool> = pairs.iter().map(|[v, e]| tester.hides(v, e, LIMIT)).collect();
         let fresh: Vec<bool> = pairs.iter().map(|[v, e]| sheets.hides(v, e, LIMIT)).collect();
         prop_assert_eq!(again, fresh);
     }
@@ -45,9 +45,9 @@ fn judged(heard: impl Fn(&Soup) -> Soup) -> [usize; 4] {
     let mut counts = [0; 4];
     for (i, (soup, pairs)) in draw(&(soup(), prop::collection::vec(boxes(), 12)), 400).iter().enumerate() {
         let (sheets, rays) = (Sheets::new(&heard(soup)), scene(soup));
-        let mut asker = sheets.asker();
+        let mut tester = sheets.tester();
         for [v, e] in pairs {
-            let hidden = asker.hides(v, e, LIMIT);
+            let hidden = tester.hides(v, e, LIMIT);
             let reached = free_segment(&rays, v, e, i as u64, 300).is_some();
             let all = [true, hidden, !reached, hidden && reached];
             all.iter().zip(&mut counts).for_each(|(&yes, n)| *n += usize::from(yes));

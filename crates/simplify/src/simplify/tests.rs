@@ -11,7 +11,7 @@ use sightlines_multifocal::{FromRegion, Volume};
 use sightlines_scenes::{
     CityOptions, SurfaceOptions, TowerOptions, city, city_crossings, surfaces, tower, tower_rooms,
 };
-use sightlines_visible_surface::{Camera, Chosen, NOTHING, RayCaster, Shot, VisibleSurface};
+use sightlines_visible_surface::{Camera, FaceMask, NOTHING, RayCaster, RenderInput, VisibleSurface};
 use std::sync::Arc;
 
 fn volume(min: Point3, max: Point3) -> Volume {
@@ -69,8 +69,8 @@ fn panorama(faces: &Faces, caster: &RayCaster, eye: Point3, n: u32) -> Vec<u32> 
             let mut corner: Point3 = unit(axis, sign);
             (corner[i], corner[j]) = (-1.0, -1.0);
             let camera = Camera::new(eye, corner, unit(i, step), unit(j, step), [n, n]).unwrap();
-            let chosen = Chosen::all(faces);
-            all.extend_from_slice(caster.picture(&Shot { faces, camera: &camera, chosen: &chosen }).0.faces());
+            let chosen = FaceMask::all(faces);
+            all.extend_from_slice(caster.picture(&RenderInput { faces, camera: &camera, mask: &chosen }).0.faces());
         }
     }
     all

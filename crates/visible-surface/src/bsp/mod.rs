@@ -14,7 +14,7 @@ use crate::counters::Counters;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
 use crate::image::Image;
-use crate::method::{Canvas, Seen, Shot, VisibleSurface, drawn};
+use crate::method::{Canvas, RenderInput, RenderOutput, VisibleSurface, drawn};
 pub(crate) use choose::{Parts, Tally, WEIGHTS, cut};
 use std::ops::ControlFlow;
 pub(crate) use tree::{Child, Place, Tree, Walked};
@@ -135,15 +135,15 @@ impl Bsp {
     }
 
     /// Calls `at` for each node in the order of the eye with the fragments in its plane by ascending id; until it has enough.
-    fn walk(&self, shot: &Shot<'_>, mut at: impl FnMut(&[Fragment]) -> ControlFlow<()>) -> Walked {
-        assert_eq!(self.tree.n_faces(), shot.faces.len(), "a tree is walked with the faces of which it was made");
-        self.tree.walk(shot.faces, shot.camera.eye(), self.order, shot.chosen, |node| at(self.tree.own(node)))
+    fn walk(&self, input: &RenderInput<'_>, mut at: impl FnMut(&[Fragment]) -> ControlFlow<()>) -> Walked {
+        assert_eq!(self.tree.n_faces(), input.faces.len(), "a tree is walked with the faces of which it was made");
+        self.tree.walk(input.faces, input.camera.eye(), self.order, input.mask, |node| at(self.tree.own(node)))
     }
 
     /// The chosen faces' fragments in the order of the eye. Those in one plane come so that the lower id is seen.
-    fn ordered(&self, shot: &Shot<'_>, counters: &mut Counters) -> Vec<Fragment> {
-        let mut out = Emitted::new(shot);
-        let walked = self.walk(shot, |own| {
+    fn ordered(&self, input: &RenderInput<'_>, counters: &mut Counters) -> Vec<Fragment> {
+        let mut out = Emitted::new(input);
+        let walked = self.walk(input, |own| {
             match self.order {
                 Order::BackToFront => own.iter().rev().for_each(|f| out.push(f)),
                 Order::FrontToBack => own.iter().for_each(|f| out.push(f)),
@@ -164,24 +164,24 @@ impl VisibleSurface for Bsp {
 
     /// # Panics
     /// If the faces are not as many as those of which the tree was made.
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        let fragments = self.ordered(shot, counters);
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        let fragments = self.ordered(input, counters);
         match self.order {
-            Order::BackToFront => Seen::BackToFront(fragments),
-            Order::FrontToBack => Seen::FrontToBack(fragments),
+            Order::BackToFront => RenderOutput::BackToFront(fragments),
+            Order::FrontToBack => RenderOutput::FrontToBack(fragments),
         }
     }
 
     /// From the nearest to the farthest, the walk ends when the picture is full.
-    fn picture(&self, shot: &Shot<'_>) -> (Image, Counters) {
+    fn picture(&self, input: &RenderInput<'_>) -> (Image, Counters) {
         if self.order == Order::BackToFront {
-            return drawn(self, shot);
+            return drawn(self, input);
         }
         let mut counters = Counters::default();
-        let mut canvas = Canvas::new(shot);
-        let mut is_counted = vec![false; shot.faces.len()];
-        let walked = self.walk(shot, |own| {
-            for fragment in own.iter().filter(|f| shot.chosen.has(f.face())) {
+        let mut canvas = Canvas::new(input);
+        let mut is_counted = vec![false; input.faces.len()];
+        let walked = self.walk(input, |own| {
+            for fragment in own.iter().filter(|f| input.mask.has(f.face())) {
                 let new = !std::mem::replace(&mut is_counted[fragment.face() as usize], true);
                 counters.polygons += u64::from(new);
                 if canvas.draw(fragment, &mut counters) == 0 {
@@ -199,20 +199,20 @@ impl VisibleSurface for Bsp {
 
 /// Fragments as a walk gives them, without those of faces that are not chosen.
 pub(crate) struct Emitted<'a> {
-    shot: &'a Shot<'a>,
+    input: &'a RenderInput<'a>,
     fragments: Vec<Fragment>,
     is_counted: Vec<bool>,
     n_faces: u64,
 }
 
 impl<'a> Emitted<'a> {
-    pub(crate) fn new(shot: &'a Shot<'a>) -> Self {
-        Self { shot, fragments: Vec::new(), is_counted: vec![false; shot.faces.len()], n_faces: 0 }
+    pub(crate) fn new(input: &'a RenderInput<'a>) -> Self {
+        Self { input, fragments: Vec::new(), is_counted: vec![false; input.faces.len()], n_faces: 0 }
     }
 
     pub(crate) fn push(&mut self, fragment: &Fragment) {
         let face = fragment.face();
-        if self.shot.chosen.has(face) {
+        if self.input.mask.has(face) {
             self.n_faces += u64::from(!std::mem::replace(&mut self.is_counted[face as usize], true));
             self.fragments.push(fragment.clone());
         }

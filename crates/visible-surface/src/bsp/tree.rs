@@ -1,8 +1,8 @@
 //! Trees of planes: nodes, what lies in them, and walks in the order of an eye.
 
 use super::Order;
-use crate::chosen::Chosen;
 use crate::counters::Counters;
+use crate::face_mask::FaceMask;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
 use crate::plane::Plane;
@@ -130,7 +130,7 @@ impl Tree {
     }
 
     /// For each node whether a chosen face lies in it or below it. As Quake does it, from the faces up until a node that is marked already.
-    fn marks(&self, chosen: &Chosen) -> Vec<bool> {
+    fn marks(&self, chosen: &FaceMask) -> Vec<bool> {
         let mut marked = vec![false; self.nodes.len()];
         for face in chosen.iter() {
             let holders = self.first_holder[face as usize] as usize..self.first_holder[face as usize + 1] as usize;
@@ -152,7 +152,7 @@ impl Tree {
         faces: &Faces,
         eye: Point3,
         order: Order,
-        chosen: &Chosen,
+        chosen: &FaceMask,
         mut at: impl FnMut(u32) -> ControlFlow<()>,
     ) -> Walked {
         let mut walked = Walked::default();

@@ -4,7 +4,7 @@
 //! anything. Edge-on faces show nothing and count as turned away.
 
 use crate::camera::Camera;
-use crate::chosen::Chosen;
+use crate::face_mask::FaceMask;
 use crate::faces::Faces;
 use sightlines_geometry::{Aabb, Point3, check_coordinate, orient3d};
 
@@ -52,12 +52,12 @@ pub fn corners_of(region: &Aabb<3>) -> impl Iterator<Item = Point3> + Clone {
 }
 
 /// Takes away the faces whose front the eye does not see; how many went.
-pub fn backface(faces: &Faces, camera: &Camera, chosen: &mut Chosen) -> u64 {
+pub fn backface(faces: &Faces, camera: &Camera, chosen: &mut FaceMask) -> u64 {
     backface_region(faces, &[camera.eye()], chosen)
 }
 
 /// Takes away the faces whose front is seen from nowhere in the convex hull of `eyes`; how many went.
-pub fn backface_region(faces: &Faces, eyes: &[Point3], chosen: &mut Chosen) -> u64 {
+pub fn backface_region(faces: &Faces, eyes: &[Point3], chosen: &mut FaceMask) -> u64 {
     chosen.retain(|face| facing(faces.of(face), eyes.iter().copied()) != Facing::Back)
 }
 
@@ -111,7 +111,7 @@ mod tests {
             let faces = Faces::new(vec![face.map(real)]).unwrap();
             let [corner, across, down] = [[-1., 1., 1.], [1., 0., 0.], [0., -1., 0.]];
             let camera = Camera::new(real(eye), corner, across, down, [2, 2]).unwrap();
-            let mut chosen = Chosen::all(&faces);
+            let mut chosen = FaceMask::all(&faces);
             let n_before = chosen.len() as u64;
             let gone = backface(&faces, &camera, &mut chosen);
             prop_assert_eq!(gone, n_before - chosen.len() as u64);

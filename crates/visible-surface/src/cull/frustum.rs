@@ -6,7 +6,7 @@
 
 use super::{is_usable, object_boxes};
 use crate::camera::{Camera, TINY_ERROR, U};
-use crate::chosen::Chosen;
+use crate::face_mask::FaceMask;
 use crate::faces::Faces;
 use crate::vector::{dot, dot_size, sub};
 use sightlines_geometry::{Aabb, Point3};
@@ -200,7 +200,7 @@ fn finite(x: f64) -> f64 {
 
 /// Takes away the faces that are surely outside of the view volume, first by the boxes of objects and then one by one;
 /// how many went. No face goes that covers a pixel.
-pub fn frustum(faces: &Faces, camera: &Camera, chosen: &mut Chosen) -> u64 {
+pub fn frustum(faces: &Faces, camera: &Camera, chosen: &mut FaceMask) -> u64 {
     let volume = Frustum::of(camera);
     let cover: Vec<Cover> = object_boxes(faces, chosen).iter().map(|b| volume.of_box(b)).collect();
     chosen.retain(|face| match cover[faces.object(face) as usize] {

@@ -15,7 +15,7 @@ use super::level::Level;
 use super::neighbours::Neighbours;
 use super::sampled::Bounds;
 use crate::camera::Camera;
-use crate::chosen::Chosen;
+use crate::face_mask::FaceMask;
 use crate::faces::Faces;
 use crate::fragment::{Extents, Fragment, facing};
 use crate::side::Side;
@@ -173,7 +173,7 @@ impl Sheet<'_> {
 }
 
 /// Writes for each pixel that faces cover wholly how near they are at least; of several in front of each other the nearest.
-pub(super) fn fill(faces: &Faces, neighbours: &Neighbours, camera: &Camera, chosen: &Chosen, base: &mut Level) {
+pub(super) fn fill(faces: &Faces, neighbours: &Neighbours, camera: &Camera, chosen: &FaceMask, base: &mut Level) {
     let mut shapes: Vec<Shape> = chosen.iter().filter_map(|f| Shape::of(camera, faces, f)).collect();
     // What is near first: then less of what is behind has to be looked at.
     shapes.sort_by(|a, b| b.range[1].total_cmp(&a.range[1]).then(a.face.cmp(&b.face)));

@@ -26,8 +26,8 @@ pub use level::Level;
 pub use neighbours::Neighbours;
 pub use pyramid::DepthPyramid;
 
-use crate::chosen::Chosen;
 use crate::cull::object_boxes;
+use crate::face_mask::FaceMask;
 use crate::faces::Faces;
 
 /// What it means that something is hidden.
@@ -43,7 +43,7 @@ pub enum Rays {
 /// outside of the picture or of the depths that the camera sees goes as well, for nothing would change.
 ///
 /// The faces of the pyramid may be tested too: a face does not hide itself, and visible faces stay.
-pub fn cull(faces: &Faces, chosen: &mut Chosen, pyramid: &DepthPyramid) -> u64 {
+pub fn cull(faces: &Faces, chosen: &mut FaceMask, pyramid: &DepthPyramid) -> u64 {
     let hidden: Vec<bool> = object_boxes(faces, chosen).iter().map(|b| pyramid.hides(b)).collect();
     chosen.retain(|face| !hidden[faces.object(face) as usize] && !pyramid.hides_hull(faces.of(face)))
 }

@@ -4,8 +4,8 @@ use super::footprint::{Footprint, nearness_below};
 use super::level::Level;
 use super::{Neighbours, Rays, inner, sampled};
 use crate::camera::Camera;
-use crate::chosen::Chosen;
 use crate::cull::{corners_of, is_usable};
+use crate::face_mask::FaceMask;
 use crate::faces::Faces;
 use crate::image::Image;
 use crate::window::Window;
@@ -40,14 +40,14 @@ impl DepthPyramid {
     ///
     /// A pixel counts if a face covers it wholly, or several do that share edges. It costs more than drawing; few large
     /// faces hide nearly as much as all.
-    pub fn conservative(faces: &Faces, camera: &Camera, chosen: &Chosen) -> Self {
+    pub fn conservative(faces: &Faces, camera: &Camera, chosen: &FaceMask) -> Self {
         Self::with_neighbours(faces, &Neighbours::of(faces), camera, chosen)
     }
 
     /// The same, for callers that keep the data shared by all eyes.
     ///
     /// `neighbours`: of these very faces
-    pub fn with_neighbours(faces: &Faces, neighbours: &Neighbours, camera: &Camera, chosen: &Chosen) -> Self {
+    pub fn with_neighbours(faces: &Faces, neighbours: &Neighbours, camera: &Camera, chosen: &FaceMask) -> Self {
         let mut base = Self::base(camera);
         inner::fill(faces, neighbours, camera, chosen, &mut base);
         Self::of(camera, Rays::All, base, f64::min)

@@ -10,7 +10,7 @@
 use crate::camera::U;
 use crate::faces::NOTHING;
 use crate::fragment::{Edge, Fragment, On};
-use crate::method::Shot;
+use crate::method::RenderInput;
 use crate::plane::{Approx, LEAST, Plane};
 use crate::side::depth_value;
 use crate::vector::{cross, cross_size, dot, sub};
@@ -58,7 +58,7 @@ pub(super) struct Line {
 /// What decisions are made from.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sight<'a> {
-    pub(super) shot: &'a Shot<'a>,
+    pub(super) input: &'a RenderInput<'a>,
     /// How often doubles could not tell.
     pub(super) n_exact: &'a Cell<u64>,
 }
@@ -97,14 +97,14 @@ impl Line {
     fn edge(sight: &Sight<'_>, p: Point3, q: Point3, sign: i32) -> Self {
         let turned = p > q;
         let (p, q) = if turned { (q, p) } else { (p, q) };
-        let [u, v] = [p, q].map(|x| sub(x, sight.shot.camera.eye()));
+        let [u, v] = [p, q].map(|x| sub(x, sight.input.camera.eye()));
         Self::new(cross(u, v), cross_size(u, v), Source::Edge(p, q), turned != (sign < 0))
     }
 
     /// The side of the line in which two planes meet: if `sign` is the product of those of the planes' distances, it
     /// holds the directions in which `first` is met before `second`, where both are met.
     fn cut(sight: &Sight<'_>, first: Plane, second: Plane, sign: i32) -> Self {
-        let (faces, camera) = (sight.shot.faces, sight.shot.camera);
+        let (faces, camera) = (sight.input.faces, sight.input.camera);
         let ((n, n_size), (m, m_size)) = (first.normal(faces), second.normal(faces));
         let ((v, v_size), (w, w_size)) = (depth_value(camera, faces, &first), depth_value(camera, faces, &second));
         let normal = [0, 1, 2].map(|k| w * n[k] - v * m[k]);
@@ -115,15 +115,15 @@ impl Line {
     /// The normal without rounding, not divided by anything.
     fn exactly(&self, sight: &Sight<'_>) -> &[Dyadic; 3] {
         self.exact.get_or_init(|| {
-            let eye = sight.shot.camera.eye();
+            let eye = sight.input.camera.eye();
             let normal = match &self.source {
                 Source::Edge(p, q) => {
                     let [u, v] = [p, q].map(|p| exact::sub(&Dyadic::vector(*p), &Dyadic::vector(eye)));
                     exact::cross(&u, &v)
                 }
                 Source::Cut(first, second) => {
-                    let (n, m) = (first.exact_normal(sight.shot.faces), second.exact_normal(sight.shot.faces));
-                    let [v, w] = [first, second].map(|p| -p.exact_at(sight.shot.faces, eye));
+                    let (n, m) = (first.exact_normal(sight.input.faces), second.exact_normal(sight.input.faces));
+                    let [v, w] = [first, second].map(|p| -p.exact_at(sight.input.faces, eye));
                     exact::sub(&exact::scale(&n, &w), &exact::scale(&m, &v))
                 }
             };
@@ -145,7 +145,7 @@ impl Line {
 
     /// On which side a point lies.
     fn at(&self, sight: &Sight<'_>, p: Point3) -> i32 {
-        let eye = sight.shot.camera.eye();
+        let eye = sight.input.camera.eye();
         let turn = if self.flip { -1 } else { 1 };
         match &self.source {
             Source::Edge(a, b) if *a == p || *b == p => 0,
@@ -166,8 +166,8 @@ impl Line {
             Source::Cut(first, second) => {
                 // At points of one of the planes the function is that of the other one, times what lies between the eye
                 // and the first.
-                let [n, m] = [first, second].map(|plane| plane.side(sight.shot.faces, p));
-                let [v, w] = [first, second].map(|plane| -plane.side(sight.shot.faces, eye));
+                let [n, m] = [first, second].map(|plane| plane.side(sight.input.faces, p));
+                let [v, w] = [first, second].map(|plane| -plane.side(sight.input.faces, eye));
                 if n == 0 {
                     return -turn * v * m;
                 }
@@ -192,11 +192,11 @@ pub(super) struct Outline {
 impl Outline {
     /// Of a fragment whose plane the eye is not on; `eye` is 1 if it is in front of it, -1 if behind.
     pub(super) fn new(sight: &Sight<'_>, fragment: &Fragment, plane: Plane, eye: i32) -> Self {
-        let (faces, face) = (sight.shot.faces, fragment.face());
+        let (faces, face) = (sight.input.faces, fragment.face());
         let corners = faces.of(face);
         // The sign of the product of the three ways from the eye to the corners: of a face that is seen from behind.
         // `plane` may be turned another way than the face.
-        let turn = -Plane::Face(face).side(faces, sight.shot.camera.eye());
+        let turn = -Plane::Face(face).side(faces, sight.input.camera.eye());
         let line = |edge: &Edge| match edge.on {
             On::Face(k) => {
                 let [p, q] = [1, 2].map(|i| corners[(usize::from(k) + i) % 3]);

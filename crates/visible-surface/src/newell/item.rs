@@ -4,7 +4,7 @@ use super::cone::{Common, Outline, Sight};
 use crate::camera::Camera;
 use crate::faces::Faces;
 use crate::fragment::{Extents, Fragment, Relation};
-use crate::method::Shot;
+use crate::method::RenderInput;
 use crate::plane::Plane;
 use std::cell::{Cell, OnceCell};
 
@@ -45,8 +45,8 @@ pub(super) const NO_ITEM: u32 = u32::MAX;
 
 impl Item {
     /// Nothing if the camera sees nothing of it.
-    pub(super) fn new(shot: &Shot<'_>, fragment: Fragment) -> Option<Self> {
-        let Shot { faces, camera, .. } = *shot;
+    pub(super) fn new(input: &RenderInput<'_>, fragment: Fragment) -> Option<Self> {
+        let RenderInput { faces, camera, .. } = *input;
         let plane = Plane::of(faces, fragment.face());
         let eye = plane.side(faces, camera.eye());
         if eye == 0 {
@@ -86,7 +86,7 @@ fn seen(fragment: &Fragment, camera: &Camera, faces: &Faces) -> Option<Extents> 
 /// The tests and how often each was made.
 #[derive(Debug)]
 pub(super) struct Tests<'a> {
-    pub(super) shot: &'a Shot<'a>,
+    pub(super) input: &'a RenderInput<'a>,
     pub(super) made: [u64; 7],
     /// How often doubles could not tell.
     pub(super) n_exact: Cell<u64>,
@@ -110,7 +110,7 @@ impl Tests<'_> {
     /// Whether p may be drawn before q, whose bounds overlap: there is no direction with others around it in which both
     /// are met, and p before q, or both in one plane and p with the lower id. Exact.
     pub(super) fn may_precede(&mut self, p: &Item, q: &Item) -> bool {
-        let faces = self.shot.faces;
+        let faces = self.input.faces;
         let (id, other) = (p.fragment.face(), q.fragment.face());
         if id == other {
             return true;
@@ -126,7 +126,7 @@ impl Tests<'_> {
             return true;
         }
         self.made[5] += 1;
-        let sight = Sight { shot: self.shot, n_exact: &self.n_exact };
+        let sight = Sight { input: self.input, n_exact: &self.n_exact };
         let Some(common) = Common::of(&sight, p.outline(&sight), q.outline(&sight)) else { return true };
         if coplanar {
             return false;

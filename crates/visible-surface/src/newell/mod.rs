@@ -51,7 +51,7 @@ mod item;
 mod order;
 
 use crate::counters::Counters;
-use crate::method::{Seen, Shot, VisibleSurface};
+use crate::method::{RenderInput, RenderOutput, VisibleSurface};
 use order::Order;
 
 /// The depth sort with all its tests. See the module.
@@ -68,7 +68,7 @@ impl VisibleSurface for Newell {
         "newell"
     }
 
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        Seen::BackToFront(Order::new(shot).run(counters))
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        RenderOutput::BackToFront(Order::new(input).run(counters))
     }
 }

@@ -3,7 +3,7 @@
 use super::item::{Item, NO_ITEM, State, TESTS, Tests};
 use crate::counters::Counters;
 use crate::fragment::Fragment;
-use crate::method::Shot;
+use crate::method::RenderInput;
 use sightlines_geometry::{Aabb, BoxTree};
 use std::collections::BinaryHeap;
 
@@ -23,8 +23,8 @@ pub(super) struct Order<'a> {
 }
 
 impl<'a> Order<'a> {
-    pub(super) fn new(shot: &'a Shot<'a>) -> Self {
-        let items: Vec<Item> = shot.chosen.iter().filter_map(|f| Item::new(shot, Fragment::whole(f))).collect();
+    pub(super) fn new(input: &'a RenderInput<'a>) -> Self {
+        let items: Vec<Item> = input.mask.iter().filter_map(|f| Item::new(input, Fragment::whole(f))).collect();
         let bounds: Vec<Aabb<3>> = items
             .iter()
             .map(|item| {
@@ -34,7 +34,7 @@ impl<'a> Order<'a> {
             .collect();
         let waiting = (0..).zip(&items).map(|(k, item)| item.key(k)).collect();
         Self {
-            tests: Tests { shot, made: [0; 7], n_exact: Default::default() },
+            tests: Tests { input, made: [0; 7], n_exact: Default::default() },
             tree: BoxTree::build(&bounds, 8),
             items,
             waiting,
@@ -171,7 +171,7 @@ impl<'a> Order<'a> {
                 break;
             }
             let plane = self.item(circle[by]).plane;
-            let Some(parts) = self.item(circle[k]).fragment.split(self.tests.shot.faces, &plane).1 else { continue };
+            let Some(parts) = self.item(circle[k]).fragment.split(self.tests.input.faces, &plane).1 else { continue };
             let opens = self.opens(&parts, circle[(k + n - 1) % n], circle[(k + 1) % n]);
             if opens || found.is_none() {
                 found = Some((circle[k], parts));
@@ -189,7 +189,7 @@ impl<'a> Order<'a> {
     /// Whether no part both hides `next` and is hidden by `last`, as the whole does.
     fn opens(&mut self, parts: &[Fragment; 2], last: u32, next: u32) -> bool {
         parts.iter().all(|part| {
-            let Some(part) = Item::new(self.tests.shot, part.clone()) else { return true };
+            let Some(part) = Item::new(self.tests.input, part.clone()) else { return true };
             let [last, next] = [last, next].map(|k| &self.items[k as usize]);
             self.tests.may_precede(last, &part) || self.tests.may_precede(&part, next)
         })
@@ -206,7 +206,7 @@ impl<'a> Order<'a> {
         // What the whole has passed, its parts pass too.
         let rest = self.item_mut(item).rest.take().expect("what is in the chain has begun");
         let parts = parts.map(|fragment| {
-            let Some(mut part) = Item::new(self.tests.shot, fragment) else { return NO_ITEM };
+            let Some(mut part) = Item::new(self.tests.input, fragment) else { return NO_ITEM };
             let index = self.items.len() as u32;
             self.waiting.push(part.key(index));
             let mut rest = rest.clone();

@@ -7,13 +7,13 @@
 //! ray traversal", JCGT 2(2), 2013, for the idea.
 
 use crate::camera::{Camera, U};
-use crate::chosen::Chosen;
 use crate::counters::Counters;
+use crate::face_mask::FaceMask;
 use crate::faces::{Faces, NOTHING};
 use crate::fragment::{Fragment, facing};
 use crate::image::Image;
-use crate::method::{Seen, Shot, VisibleSurface};
-use crate::nearness::{Duel, Nearness};
+use crate::method::{RenderInput, RenderOutput, VisibleSurface};
+use crate::nearness::{DepthComparator, Nearness};
 use crate::vector::{cross, cross_size, dot, dot_size, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3};
 
@@ -41,13 +41,13 @@ impl RayCaster {
     ///
     /// # Panics
     /// If the faces are not as many as those that the tree was built of.
-    pub fn rays<'a>(&'a self, faces: &'a Faces, chosen: &'a Chosen) -> Rays<'a> {
+    pub fn rays<'a>(&'a self, faces: &'a Faces, chosen: &'a FaceMask) -> Rays<'a> {
         assert_eq!(self.n_faces, faces.len(), "a tree is asked about the faces that it was built of");
         Rays {
             caster: self,
             faces,
             chosen,
-            duel: Duel::default(),
+            comparator: DepthComparator::default(),
             camera: None,
             n_boxes: 0,
             n_faces: 0,
@@ -64,22 +64,22 @@ impl VisibleSurface for RayCaster {
 
     /// # Panics
     /// If the faces are not as many as those that the tree was built of.
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        let [width, height] = shot.camera.size();
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        let [width, height] = input.camera.size();
         let mut image = Image::new([width, height]);
-        let mut rays = self.rays(shot.faces, shot.chosen);
+        let mut rays = self.rays(input.faces, input.mask);
         for y in 0..height {
             for x in 0..width {
-                let face = rays.first(shot.camera, x, y);
+                let face = rays.first(input.camera, x, y);
                 image.span_mut(y, x, x + 1)[0] = face;
                 counters.written += u64::from(face != NOTHING);
             }
         }
-        counters.polygons = shot.chosen.len() as u64;
-        counters.exact += rays.duel.asked + rays.n_doubts;
+        counters.polygons = input.mask.len() as u64;
+        counters.exact += rays.comparator.n_exact + rays.n_doubts;
         counters.tested("boxes", rays.n_boxes);
         counters.tested("faces", rays.n_faces);
-        Seen::Picture(image)
+        RenderOutput::Picture(image)
     }
 }
 
@@ -88,8 +88,8 @@ impl VisibleSurface for RayCaster {
 pub struct Rays<'a> {
     caster: &'a RayCaster,
     faces: &'a Faces,
-    chosen: &'a Chosen,
-    duel: Duel,
+    chosen: &'a FaceMask,
+    comparator: DepthComparator,
     /// Of the last ray.
     camera: Option<Camera>,
     n_boxes: u64,
@@ -144,7 +144,7 @@ impl Rays<'_> {
     /// The face that the ray of a pixel meets first, exactly as [`RayCaster`] has it; [`NOTHING`] if there is none.
     pub fn first(&mut self, camera: &Camera, x: u32, y: u32) -> u32 {
         if self.camera.as_ref() != Some(camera) {
-            self.duel.look_from_elsewhere();
+            self.comparator.look_from_elsewhere();
             self.camera = Some(*camera);
         }
         let (faces, chosen) = (self.faces, self.chosen);
@@ -179,7 +179,7 @@ impl Rays<'_> {
                 } else if (at - nearness).abs() > plane.error + error {
                     at > nearness
                 } else {
-                    self.duel.wins(camera, faces, face, best, x, y)
+                    self.comparator.is_nearer(camera, faces, face, best, x, y)
                 };
                 if wins {
                     (best, nearness, error) = (face, at, plane.error);

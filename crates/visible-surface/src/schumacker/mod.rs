@@ -17,7 +17,7 @@ use crate::bsp::{self, BspOptions, Child, Emitted, Order, Parts, Place, Tree};
 use crate::counters::Counters;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
-use crate::method::{Seen, Shot, VisibleSurface};
+use crate::method::{RenderInput, RenderOutput, VisibleSurface};
 use crate::plane::Plane;
 use fixed::Fixed;
 use std::ops::{ControlFlow, Range};
@@ -117,21 +117,21 @@ impl Schumacker {
     }
 
     /// The chosen faces' fragments in the order of the eye.
-    fn ordered(&self, shot: &Shot<'_>, counters: &mut Counters) -> Vec<Fragment> {
-        let eye = shot.camera.eye();
+    fn ordered(&self, input: &RenderInput<'_>, counters: &mut Counters) -> Vec<Fragment> {
+        let eye = input.camera.eye();
         // Nothing for faces that were not tested yet.
-        let mut sides = vec![None; shot.faces.len()];
-        let mut out = Emitted::new(shot);
+        let mut sides = vec![None; input.faces.len()];
+        let mut out = Emitted::new(input);
         let mut n_copies = 0;
-        let walked = self.tree.walk(shot.faces, eye, self.order, shot.chosen, |node| {
+        let walked = self.tree.walk(input.faces, eye, self.order, input.mask, |node| {
             let own = self.tree.own(node);
             let copy = |copy: &Copy| {
                 let fragment = &own[copy.fragment as usize];
                 let face = fragment.face();
-                if shot.chosen.has(face) {
+                if input.mask.has(face) {
                     n_copies += 1;
                     let side =
-                        sides[face as usize].get_or_insert_with(|| Plane::of(shot.faces, face).side(shot.faces, eye));
+                        sides[face as usize].get_or_insert_with(|| Plane::of(input.faces, face).side(input.faces, eye));
                     if *side == if copy.is_front { 1 } else { -1 } {
                         out.push(fragment);
                     }
@@ -158,12 +158,12 @@ impl VisibleSurface for Schumacker {
 
     /// # Panics
     /// If the faces are not as many as those of which the clusters were made.
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        assert_eq!(self.tree.n_faces(), shot.faces.len(), "clusters are drawn with the faces of which they were made");
-        let fragments = self.ordered(shot, counters);
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        assert_eq!(self.tree.n_faces(), input.faces.len(), "clusters are drawn with the faces of which they were made");
+        let fragments = self.ordered(input, counters);
         match self.order {
-            Order::BackToFront => Seen::BackToFront(fragments),
-            Order::FrontToBack => Seen::FrontToBack(fragments),
+            Order::BackToFront => RenderOutput::BackToFront(fragments),
+            Order::FrontToBack => RenderOutput::FrontToBack(fragments),
         }
     }
 }

@@ -14,8 +14,8 @@ use crate::counters::Counters;
 use crate::faces::NOTHING;
 use crate::fragment::{Fragment, facing};
 use crate::image::Image;
-use crate::method::{Seen, Shot, VisibleSurface};
-use crate::nearness::{Duel, Nearness};
+use crate::method::{RenderInput, RenderOutput, VisibleSurface};
+use crate::nearness::{DepthComparator, Nearness};
 use crate::rows::spans;
 use crate::side::Side;
 use crate::window::Window;
@@ -78,14 +78,14 @@ impl VisibleSurface for ZBuffer {
         }
     }
 
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        let depths = shot.camera.depths();
-        Seen::Picture(match self.format {
-            DepthFormat::Exact => exact(shot, counters),
-            DepthFormat::Double => rounded(shot, counters, Double),
-            DepthFormat::F32 => rounded(shot, counters, F32::new(depths)),
-            DepthFormat::F32Reversed => rounded(shot, counters, F32Reversed::new(depths)),
-            DepthFormat::U24 => rounded(shot, counters, U24::new(depths)),
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        let depths = input.camera.depths();
+        RenderOutput::Picture(match self.format {
+            DepthFormat::Exact => exact(input, counters),
+            DepthFormat::Double => rounded(input, counters, Double),
+            DepthFormat::F32 => rounded(input, counters, F32::new(depths)),
+            DepthFormat::F32Reversed => rounded(input, counters, F32Reversed::new(depths)),
+            DepthFormat::U24 => rounded(input, counters, U24::new(depths)),
         })
     }
 }
@@ -101,13 +101,13 @@ struct Pixel {
 
 const EMPTY: Pixel = Pixel { nearness: f64::NEG_INFINITY, error: 0.0, face: NOTHING };
 
-fn exact(shot: &Shot<'_>, counters: &mut Counters) -> Image {
-    let Shot { camera, faces, .. } = *shot;
+fn exact(input: &RenderInput<'_>, counters: &mut Counters) -> Image {
+    let RenderInput { camera, faces, .. } = *input;
     let [width, height] = camera.size();
     let mut pixels = vec![EMPTY; width as usize * height as usize];
-    let mut duel = Duel::default();
+    let mut comparator = DepthComparator::default();
     let (mut n_tests, mut n_written) = (0, 0);
-    draw(shot, counters, |face, plane, y, from, to| {
+    draw(input, counters, |face, plane, y, from, to| {
         // Rounded up to a float.
         let error = if plane.error > 1e-30 { plane.error as f32 * (1.0 + 2.0 * f32::EPSILON) } else { 1e-29 };
         let own = f64::from(error);
@@ -121,7 +121,7 @@ fn exact(shot: &Shot<'_>, counters: &mut Counters) -> Image {
             } else if nearness < pixel.nearness - doubt {
                 false
             } else {
-                pixel.face == NOTHING || duel.wins(camera, faces, face, pixel.face, x, y)
+                pixel.face == NOTHING || comparator.is_nearer(camera, faces, face, pixel.face, x, y)
             };
             if wins {
                 *pixel = Pixel { nearness, error, face };
@@ -131,19 +131,19 @@ fn exact(shot: &Shot<'_>, counters: &mut Counters) -> Image {
         n_tests += u64::from(to - from);
     });
     counters.written += n_written;
-    counters.exact += duel.asked;
+    counters.exact += comparator.n_exact;
     counters.tested("depth", n_tests);
     let mut image = Image::new(camera.size());
     image.faces_mut().iter_mut().zip(&pixels).for_each(|(to, pixel)| *to = pixel.face);
     image
 }
 
-fn rounded<F: Format>(shot: &Shot<'_>, counters: &mut Counters, format: F) -> Image {
-    let [width, height] = shot.camera.size();
+fn rounded<F: Format>(input: &RenderInput<'_>, counters: &mut Counters, format: F) -> Image {
+    let [width, height] = input.camera.size();
     let mut depths = vec![F::FARTHEST; width as usize * height as usize];
-    let mut image = Image::new(shot.camera.size());
+    let mut image = Image::new(input.camera.size());
     let (mut n_tests, mut n_written) = (0, 0);
-    draw(shot, counters, |face, plane, y, from, to| {
+    draw(input, counters, |face, plane, y, from, to| {
         let row = y as usize * width as usize;
         let row = row + from as usize..row + to as usize;
         let base = plane.b * (f64::from(y) + 0.5) + plane.c;
@@ -163,8 +163,8 @@ fn rounded<F: Format>(shot: &Shot<'_>, counters: &mut Counters, format: F) -> Im
 }
 
 /// Calls `span(face, plane, y, from, to)` for each row of pixels that a chosen face covers.
-fn draw(shot: &Shot<'_>, counters: &mut Counters, mut span: impl FnMut(u32, &Nearness, u32, u32, u32)) {
-    let Shot { camera, faces, chosen } = *shot;
+fn draw(input: &RenderInput<'_>, counters: &mut Counters, mut span: impl FnMut(u32, &Nearness, u32, u32, u32)) {
+    let RenderInput { camera, faces, mask: chosen } = *input;
     let plain = camera.depths() == [0.0, f64::INFINITY];
     for face in chosen.iter() {
         counters.polygons += 1;

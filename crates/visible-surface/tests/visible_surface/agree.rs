@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use sightlines_geometry::Point3;
 use sightlines_visible_surface::{
-    Bsp, BspOptions, Camera, Chosen, Comparison, DepthFormat, Faces, Newell, Painter, RayCaster, Schumacker,
-    SchumackerOptions, Shot, VisibleSurface, ZBuffer, compare,
+    Bsp, BspOptions, Camera, Comparison, DepthFormat, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput,
+    Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
 use std::cell::Cell;
 
@@ -59,11 +59,11 @@ fn exact_methods_show_what_is_seen() {
     let (covered, on_edge, ties) = (Cell::new(0), Cell::new(0), Cell::new(0));
     let mut runner = proptest::test_runner::TestRunner::default();
     let run = runner.run(&(faces(), camera()), |(faces, camera)| {
-        let chosen = Chosen::all(&faces);
-        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+        let chosen = FaceMask::all(&faces);
+        let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
         let truth = crate::oracle::look(&faces, &camera, &chosen);
         for method in exact_methods(&faces) {
-            let (image, counters) = method.picture(&shot);
+            let (image, counters) = method.picture(&input);
             prop_assert_eq!(truth.wrong(&image), vec![], "{}", method.name());
             prop_assert_eq!(counters.covered as usize, truth.n_covered(), "{}", method.name());
         }
@@ -100,16 +100,16 @@ fn coordinates_of_any_size_are_drawn() {
         let (across, size) = if wide == 0 { (across.map(|x| x / 64.0), [400, 2]) } else { (across, [5, 7]) };
         let camera = Camera::new(eye, corner, across, down, size).expect("an eye of any size");
         let faces = Faces::new(corners).expect("accepted coordinates");
-        let chosen = Chosen::all(&faces);
-        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+        let chosen = FaceMask::all(&faces);
+        let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
         let truth = crate::oracle::look(&faces, &camera, &chosen);
         for method in exact_methods(&faces) {
-            prop_assert_eq!(truth.wrong(&method.picture(&shot).0), vec![], "{}", method.name());
+            prop_assert_eq!(truth.wrong(&method.picture(&input).0), vec![], "{}", method.name());
         }
         for format in DepthFormat::ALL {
-            ZBuffer::new(format).picture(&shot);
+            ZBuffer::new(format).picture(&input);
         }
-        Painter.picture(&shot);
+        Painter.picture(&input);
         covered.set(covered.get() + truth.n_covered());
         Ok(())
     });
@@ -123,15 +123,16 @@ fn a_wrong_pixel_is_found() {
     let far = [[-9., -9., -3.], [9., -9., -3.], [0., 9., -3.]];
     let faces = Faces::new(vec![far, far.map(|[x, y, _]| [x / 9., y / 9., -2.])]).unwrap();
     let camera = Camera::look_at([0.; 3], [0., 0., -1.], [0., 1., 0.], 90.0, [32, 32]).unwrap();
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
-    let (truth, reference) = (crate::oracle::look(&faces, &camera, &chosen), RayCaster::build(&faces).picture(&shot).0);
-    assert_eq!(compare(&shot, &reference, &reference), Comparison::default());
+    let chosen = FaceMask::all(&faces);
+    let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
+    let (truth, reference) =
+        (crate::oracle::look(&faces, &camera, &chosen), RayCaster::build(&faces).picture(&input).0);
+    assert_eq!(compare(&input, &reference, &reference), Comparison::default());
     assert_eq!((reference.at(16, 16), truth.wrong(&reference)), (1, vec![]));
     for shown in [0, sightlines_visible_surface::NOTHING] {
         let mut wrong = reference.clone();
         wrong.faces_mut()[16 * 32 + 16] = shown;
-        assert_eq!(compare(&shot, &reference, &wrong), Comparison { wrong: vec![[16, 16]], ties: 0 });
+        assert_eq!(compare(&input, &reference, &wrong), Comparison { wrong: vec![[16, 16]], ties: 0 });
         assert_eq!(truth.wrong(&wrong).len(), 1);
     }
 }

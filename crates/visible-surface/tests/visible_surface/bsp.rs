@@ -7,7 +7,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sightlines_visible_surface::bsp::{Bsp, BspOptions, Heuristic};
 use sightlines_visible_surface::{
-    Camera, Chosen, Counters, Faces, Fragment, Plane, Relation, Seen, Shot, VisibleSurface,
+    Camera, Counters, FaceMask, Faces, Fragment, Plane, Relation, RenderInput, RenderOutput, VisibleSurface,
 };
 
 const SIDE: u32 = 16;
@@ -33,9 +33,9 @@ impl VisibleSurface for Swapped {
         "swapped"
     }
 
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        match self.0.see(shot, counters) {
-            Seen::FrontToBack(fragments) => Seen::BackToFront(fragments),
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        match self.0.see(input, counters) {
+            RenderOutput::FrontToBack(fragments) => RenderOutput::BackToFront(fragments),
             other => other,
         }
     }
@@ -74,13 +74,13 @@ proptest! {
     ) {
         let faces = Faces::new(soup).unwrap();
         let bsp = Bsp::build(&faces, &options);
-        let all = Chosen::all(&faces);
+        let all = FaceMask::all(&faces);
         let mut chosen = all.clone();
         chosen.retain(|f| keep >> f & 1 == 1);
-        let sent = |chosen: &Chosen| {
+        let sent = |chosen: &FaceMask| {
             let mut counters = Counters::default();
-            match bsp.see(&Shot { faces: &faces, camera: &camera, chosen }, &mut counters) {
-                Seen::BackToFront(fragments) => (fragments, counters),
+            match bsp.see(&RenderInput { faces: &faces, camera: &camera, mask: chosen }, &mut counters) {
+                RenderOutput::BackToFront(fragments) => (fragments, counters),
                 _ => panic!("walks are from back to front"),
             }
         };
@@ -106,13 +106,13 @@ fn few_pixels_are_in_doubt_and_swapped_children_are_caught() {
     for _ in 0..200 {
         let faces = Faces::new(triangles(10).new_tree(&mut runner).unwrap().current()).unwrap();
         let camera = cameras(SIDE).new_tree(&mut runner).unwrap().current();
-        let chosen = Chosen::all(&faces);
+        let chosen = FaceMask::all(&faces);
         let truth = look(&faces, &camera, &chosen);
-        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+        let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
         let bsp = Bsp::build(&faces, &BspOptions::default());
-        assert_eq!(truth.wrong(&bsp.picture(&shot).0), []);
+        assert_eq!(truth.wrong(&bsp.picture(&input).0), []);
         let impostor = Swapped(bsp.front_to_back());
-        n_caught += u32::from(!truth.wrong(&impostor.picture(&shot).0).is_empty());
+        n_caught += u32::from(!truth.wrong(&impostor.picture(&input).0).is_empty());
         n_covered += truth.n_covered();
         n_doubt += truth.n_in_doubt();
         n_on_edge += truth.on_edge.iter().filter(|e| **e).count();
@@ -211,17 +211,17 @@ fn of_faces_in_one_plane_the_lower_id_is_seen_from_both_sides() {
     let soup: Vec<crate::soups::Triangle> =
         (0..5).map(|k| [[0., 0., 1.], [4. - f64::from(k), 0., 1.], [0., 4., 1.]]).collect();
     let faces = Faces::new(soup.into_iter().rev().collect()).unwrap();
-    let chosen = Chosen::all(&faces);
+    let chosen = FaceMask::all(&faces);
     let bsp = Bsp::build(&faces, &BspOptions::default());
     assert_eq!(bsp.stats().nodes, 1);
     for camera in [from_above(64), from_below()] {
-        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+        let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
         let truth = look(&faces, &camera, &chosen);
         assert!(truth.n_covered() > 100 && truth.n_in_doubt() == 0);
         for bsp in [bsp.clone(), bsp.clone().front_to_back()] {
-            assert_eq!(truth.wrong(&bsp.picture(&shot).0), []);
+            assert_eq!(truth.wrong(&bsp.picture(&input).0), []);
         }
-        assert!(!truth.wrong(&Swapped(bsp.clone().front_to_back()).picture(&shot).0).is_empty());
+        assert!(!truth.wrong(&Swapped(bsp.clone().front_to_back()).picture(&input).0).is_empty());
     }
 }
 
@@ -235,8 +235,8 @@ fn trees_of_nothing_draw_nothing() {
         let faces = Faces::new(soup).unwrap();
         let bsp = Bsp::build(&faces, &BspOptions::default());
         assert_eq!(bsp.stats(), sightlines_visible_surface::bsp::BspStats::default());
-        let chosen = Chosen::all(&faces);
-        let (image, counters) = bsp.picture(&Shot { faces: &faces, camera: &from_above(4), chosen: &chosen });
+        let chosen = FaceMask::all(&faces);
+        let (image, counters) = bsp.picture(&RenderInput { faces: &faces, camera: &from_above(4), mask: &chosen });
         assert_eq!((image.n_covered(), counters.polygons), (0, 0));
     }
 }
@@ -247,14 +247,14 @@ fn large_trees_are_cut_across_axes_and_show_what_rays_meet() {
     let bsp = Bsp::build(&faces, &BspOptions::default());
     let stats = bsp.stats();
     assert!(stats.faces > 200 && stats.axis_nodes > 2, "{stats:?}");
-    let chosen = Chosen::all(&faces);
+    let chosen = FaceMask::all(&faces);
     for eye in [[-5.0, -5.0, 9.0], [14.0, 15.0, 40.0], [13.0, 13.0, 2.0]] {
         let camera = Camera::look_at(eye, [16.0, 14.0, 1.0], [0.0, 1.0, 0.0], 60.0, [32, 24]).unwrap();
         let truth = look(&faces, &camera, &chosen);
-        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+        let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
         assert!(truth.n_covered() > 100);
         for bsp in [bsp.clone(), bsp.clone().front_to_back()] {
-            assert_eq!(truth.wrong(&bsp.picture(&shot).0), []);
+            assert_eq!(truth.wrong(&bsp.picture(&input).0), []);
         }
     }
 }
@@ -278,13 +278,13 @@ fn corners_beside_planes_at_both_ends_of_the_range() {
     let eye = [0.0, e - p(-190), e - p(-150)];
     let corner = [1.0, 7.0 * p(-54) - 0.5, p(-11) - 0.5];
     let camera = Camera::new(eye, corner, [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1, 1]).unwrap();
-    let chosen = Chosen::all(&faces);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let chosen = FaceMask::all(&faces);
+    let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let truth = crate::oracle::look(&faces, &camera, &chosen);
     assert_eq!((truth.faces[0], truth.n_in_doubt()), (Some(3), 0));
     let options = BspOptions { heuristic: Heuristic::FirstFace, candidates: 1, axis_above: usize::MAX };
     let tree = Bsp::build(&faces, &options);
     for method in [&tree, &tree.clone().front_to_back()] {
-        assert_eq!(truth.wrong(&method.picture(&shot).0), []);
+        assert_eq!(truth.wrong(&method.picture(&input).0), []);
     }
 }

@@ -11,7 +11,8 @@ use sightlines_scenes::{
     SurfaceOptions, coplanar, cycles, depth_pairs, interleaved, lattice, slivers, soup, split_worst, surfaces,
 };
 use sightlines_visible_surface::{
-    Camera, Chosen, Counters, DepthFormat, Faces, Fragment, Newell, Seen, Shot, VisibleSurface, ZBuffer, compare,
+    Camera, Counters, DepthFormat, FaceMask, Faces, Fragment, Newell, RenderInput, RenderOutput, VisibleSurface,
+    ZBuffer, compare,
 };
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -27,16 +28,16 @@ impl VisibleSurface for Given {
         "given"
     }
 
-    fn see(&self, _: &Shot<'_>, _: &mut Counters) -> Seen {
-        Seen::BackToFront(self.0.clone())
+    fn see(&self, _: &RenderInput<'_>, _: &mut Counters) -> RenderOutput {
+        RenderOutput::BackToFront(self.0.clone())
     }
 }
 
 fn sent(faces: &Faces, camera: &Camera) -> (Vec<Fragment>, Counters) {
-    let chosen = Chosen::all(faces);
+    let chosen = FaceMask::all(faces);
     let mut counters = Counters::default();
-    match Newell.see(&Shot { faces, camera, chosen: &chosen }, &mut counters) {
-        Seen::BackToFront(fragments) => (fragments, counters),
+    match Newell.see(&RenderInput { faces, camera, mask: &chosen }, &mut counters) {
+        RenderOutput::BackToFront(fragments) => (fragments, counters),
         _ => panic!("the depth sort is from back to front"),
     }
 }
@@ -75,11 +76,11 @@ proptest! {
     #[test]
     fn newell_pictures_are_those_of_rays(soup in triangles(12), camera in cameras(SIDE), keep in any::<u16>()) {
         let faces = Faces::new(soup).unwrap();
-        let mut chosen = Chosen::all(&faces);
+        let mut chosen = FaceMask::all(&faces);
         chosen.retain(|f| keep >> f & 1 == 1);
-        for chosen in [Chosen::all(&faces), chosen] {
+        for chosen in [FaceMask::all(&faces), chosen] {
             let truth = look(&faces, &camera, &chosen);
-            let (image, counters) = Newell.picture(&Shot { faces: &faces, camera: &camera, chosen: &chosen });
+            let (image, counters) = Newell.picture(&RenderInput { faces: &faces, camera: &camera, mask: &chosen });
             prop_assert_eq!(truth.wrong(&image), vec![], "{:?}", counters);
             prop_assert!(counters.polygons <= chosen.len() as u64);
         }
@@ -101,9 +102,9 @@ fn newell_is_right_at_any_scale() {
         let ray = |v: [f64; 3]| [0, 1, 2].map(|k| v[k] * unit[k]);
         let [corner, across, down] = [[-1.0, -1.0, 1.0], [0.25, 0.0, 0.0], [0.0, 0.25, 0.0]].map(ray);
         let camera = Camera::new(scaled([1.5, 2.5, -3.0]), corner, across, down, [8; 2]).unwrap();
-        let chosen = Chosen::all(&faces);
+        let chosen = FaceMask::all(&faces);
         let truth = look(&faces, &camera, &chosen);
-        let image = Newell.picture(&Shot { faces: &faces, camera: &camera, chosen: &chosen }).0;
+        let image = Newell.picture(&RenderInput { faces: &faces, camera: &camera, mask: &chosen }).0;
         prop_assert_eq!(truth.wrong(&image), vec![]);
         n_covered.set(n_covered.get() + truth.n_covered());
         n_mixed.set(n_mixed.get() + usize::from(!same && truth.n_covered() > 0));
@@ -127,9 +128,9 @@ fn newell_keeps_pieces_of_tiny_faces() {
     let faces = Faces::new(soup.map(|t: Triangle| t.map(|p| times(p, -127))).to_vec()).unwrap();
     let [corner, across, down] = [[-1.0, -1.0, 1.0], [0.25, 0.0, 0.0], [0.0, 0.25, 0.0]].map(|v| times(v, -95));
     let camera = Camera::new(times([1.5, 2.5, -3.0], -127), corner, across, down, [8; 2]).unwrap();
-    let chosen = Chosen::all(&faces);
+    let chosen = FaceMask::all(&faces);
     let truth = look(&faces, &camera, &chosen);
-    let (image, counters) = Newell.picture(&Shot { faces: &faces, camera: &camera, chosen: &chosen });
+    let (image, counters) = Newell.picture(&RenderInput { faces: &faces, camera: &camera, mask: &chosen });
     assert_eq!((truth.wrong(&image), truth.n_covered()), (vec![], 6));
     assert!(counters.splits > 0);
 }
@@ -163,11 +164,11 @@ fn newell_splits_circles_and_nothing_else() {
             drawn.swap(i, j);
             assert!(fault(&grid, &wrong).is_some());
             let camera = seen_whole(&grid, 32).1;
-            let chosen = Chosen::all(&faces);
-            let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+            let chosen = FaceMask::all(&faces);
+            let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
             let truth = look(&faces, &camera, &chosen);
-            assert_eq!(truth.wrong(&Given(fragments).picture(&shot).0), []);
-            n_shown += u32::from(!truth.wrong(&Given(drawn).picture(&shot).0).is_empty());
+            assert_eq!(truth.wrong(&Given(fragments).picture(&input).0), []);
+            n_shown += u32::from(!truth.wrong(&Given(drawn).picture(&input).0).is_empty());
         }
     }
     eprintln!(
@@ -200,11 +201,11 @@ fn newell_draws_generated_scenes_with_the_splits_that_they_need() {
     let mut tests: BTreeMap<&str, u64> = BTreeMap::new();
     for (name, scene) in generated() {
         let faces = Faces::of_scene(&scene).unwrap();
-        let chosen = Chosen::all(&faces);
-        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
-        let (image, counters) = Newell.picture(&shot);
-        let reference = ZBuffer::new(DepthFormat::Exact).picture(&shot).0;
-        assert_eq!(compare(&shot, &reference, &image).wrong, [[0; 2]; 0], "{name}");
+        let chosen = FaceMask::all(&faces);
+        let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
+        let (image, counters) = Newell.picture(&input);
+        let reference = ZBuffer::new(DepthFormat::Exact).picture(&input).0;
+        assert_eq!(compare(&input, &reference, &image).wrong, [[0; 2]; 0], "{name}");
         assert!(counters.covered > 1000 || name == "slivers", "{name} {}", counters.covered);
         match name {
             "soup" | "slivers" => assert!(counters.splits > 20, "{name}"),

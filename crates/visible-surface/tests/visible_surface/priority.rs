@@ -6,16 +6,16 @@ use proptest::prelude::*;
 use sightlines_geometry::Point3;
 use sightlines_scenes::{SurfaceOptions, coplanar, cycles, interleaved, lattice, surfaces};
 use sightlines_visible_surface::{
-    AnyOrder, Bsp, BspOptions, Camera, Chosen, DepthFormat, Faces, Image, Newell, Painter, RayCaster, Schumacker,
-    SchumackerOptions, Shot, VisibleSurface, ZBuffer, is_convex,
+    AnyOrder, Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput,
+    Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, is_convex,
 };
 
 fn picture(method: &dyn VisibleSurface, faces: &Faces, camera: &Camera) -> Image {
-    method.picture(&Shot { faces, camera, chosen: &Chosen::all(faces) }).0
+    method.picture(&RenderInput { faces, camera, mask: &FaceMask::all(faces) }).0
 }
 
 fn n_wrong(method: &dyn VisibleSurface, faces: &Faces, camera: &Camera) -> usize {
-    look(faces, camera, &Chosen::all(faces)).wrong(&picture(method, faces, camera)).len()
+    look(faces, camera, &FaceMask::all(faces)).wrong(&picture(method, faces, camera)).len()
 }
 
 /// A long face that leads away from the eye and a short one before its far end: by mid-points the wrong one is farther.
@@ -38,7 +38,7 @@ fn the_painter_is_wrong_where_mid_points_mislead_and_the_others_are_right() {
     }
     // Of the pair it is exactly the short one that is missing.
     let faces = Faces::of_scene(&interleaved(2).unwrap()).unwrap();
-    let truth = look(&faces, &camera, &Chosen::all(&faces));
+    let truth = look(&faces, &camera, &FaceMask::all(&faces));
     let wrong = truth.wrong(&picture(&Painter, &faces, &camera));
     assert!(wrong.iter().all(|&(_, seen, shown)| (seen, shown) == (Some(1), Some(0))));
     assert_eq!(wrong.len(), truth.faces.iter().filter(|&&f| f == Some(1)).count());
@@ -101,7 +101,7 @@ proptest! {
         object.rotate_left(by);
         let faces = Faces::new(object).unwrap();
         prop_assert!(is_convex(&faces, faces.ids()));
-        let mut front = Chosen::all(&faces);
+        let mut front = FaceMask::all(&faces);
         front.retain(|f| sightlines_visible_surface::Plane::Face(f).side(&faces, camera.eye()) > 0);
         let truth = look(&faces, &camera, &front);
         prop_assert_eq!(truth.wrong(&picture(&AnyOrder, &faces, &camera)), vec![]);

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sightlines_visible_surface::schumacker::{Schumacker, SchumackerOptions};
-use sightlines_visible_surface::{Camera, Chosen, Counters, Faces, Seen, Shot, VisibleSurface};
+use sightlines_visible_surface::{Camera, Counters, FaceMask, Faces, RenderInput, RenderOutput, VisibleSurface};
 
 const SIDE: u32 = 16;
 
@@ -19,9 +19,9 @@ impl VisibleSurface for Swapped {
         "swapped"
     }
 
-    fn see(&self, shot: &Shot<'_>, counters: &mut Counters) -> Seen {
-        match self.0.see(shot, counters) {
-            Seen::FrontToBack(fragments) => Seen::BackToFront(fragments),
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        match self.0.see(input, counters) {
+            RenderOutput::FrontToBack(fragments) => RenderOutput::BackToFront(fragments),
             other => other,
         }
     }
@@ -40,7 +40,7 @@ proptest! {
         let faces = objects(&soup, |k| k * n_objects / soup.len().max(1));
         let clusters = Schumacker::build(&faces, &SchumackerOptions { max_faces });
         let stats = clusters.stats();
-        prop_assert_eq!(stats.fragments as u64, Chosen::all(&faces).len() as u64 + stats.splits);
+        prop_assert_eq!(stats.fragments as u64, FaceMask::all(&faces).len() as u64 + stats.splits);
         crate::oracle::check(&faces, &camera, |f| keep >> f & 1 == 1, &[&clusters, &clusters.clone().front_to_back()]);
     }
 }
@@ -53,15 +53,15 @@ fn orders_within_clusters_are_put_to_use_and_swapped_ones_are_caught() {
         let soup = triangles(10).new_tree(&mut runner).unwrap().current();
         let faces = objects(&soup, |k| k / 4);
         let camera = cameras(SIDE).new_tree(&mut runner).unwrap().current();
-        let chosen = Chosen::all(&faces);
+        let chosen = FaceMask::all(&faces);
         let truth = look(&faces, &camera, &chosen);
-        let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+        let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
         let clusters = Schumacker::build(&faces, &SchumackerOptions::default());
-        assert_eq!(truth.wrong(&clusters.picture(&shot).0), []);
+        assert_eq!(truth.wrong(&clusters.picture(&input).0), []);
         let stats = clusters.stats();
         n_ordered += stats.clusters - stats.convex;
         n_cyclic += stats.cyclic;
-        n_caught += u32::from(!truth.wrong(&Swapped(clusters.front_to_back()).picture(&shot).0).is_empty());
+        n_caught += u32::from(!truth.wrong(&Swapped(clusters.front_to_back()).picture(&input).0).is_empty());
         n_covered += truth.n_covered();
         n_doubt += truth.n_in_doubt();
         n_runs += 1;
@@ -150,8 +150,8 @@ fn clusters_of_nothing_draw_nothing() {
         let faces = objects(&soup, |_| 0);
         let clusters = Schumacker::build(&faces, &SchumackerOptions::default());
         assert_eq!(clusters.stats(), Default::default());
-        let chosen = Chosen::all(&faces);
-        let (image, counters) = clusters.picture(&Shot { faces: &faces, camera: &camera, chosen: &chosen });
+        let chosen = FaceMask::all(&faces);
+        let (image, counters) = clusters.picture(&RenderInput { faces: &faces, camera: &camera, mask: &chosen });
         assert_eq!((image.n_covered(), counters.polygons), (0, 0));
     }
 }
@@ -165,13 +165,13 @@ fn many_and_large_clusters_show_what_rays_meet() {
         let clusters = Schumacker::build(&faces, &SchumackerOptions::default());
         let stats = clusters.stats();
         assert!(faces.len() > 257 && (size <= 64 || stats.too_large > 0), "{stats:?}");
-        let chosen = Chosen::all(&faces);
+        let chosen = FaceMask::all(&faces);
         for eye in [[-5.0, -5.0, 9.0], [14.0, 15.0, 40.0], [13.0, 13.0, 2.0]] {
             let camera = Camera::look_at(eye, [16.0, 14.0, 1.0], [0.0, 1.0, 0.0], 60.0, [32, 24]).unwrap();
             let truth = look(&faces, &camera, &chosen);
-            let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+            let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
             assert!(truth.n_covered() > 100);
-            assert_eq!(truth.wrong(&clusters.picture(&shot).0), [], "{stats:?}");
+            assert_eq!(truth.wrong(&clusters.picture(&input).0), [], "{stats:?}");
         }
     }
 }

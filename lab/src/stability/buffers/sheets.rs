@@ -15,7 +15,7 @@ pub(super) struct Wall {
 
 fn hides(triangles: &[[Point3; 3]], wall: &Wall) -> Answer {
     let sheets = Sheets::new(triangles);
-    let hidden = sheets.asker().hides(&wall.eyes, &wall.target, SheetMethod::DEFAULT_LIMIT);
+    let hidden = sheets.tester().hides(&wall.eyes, &wall.target, SheetMethod::DEFAULT_LIMIT);
     if hidden { Answer::Hidden } else { Answer::Seen }
 }
 

@@ -19,8 +19,8 @@ use naive::Ordered;
 use scene::{PIXELS, Setting, View};
 use sightlines::geometry::Random;
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Chosen, DepthFormat, NOTHING, Newell, Painter, RayCaster, Schumacker, SchumackerOptions, Shot,
-    VisibleSurface, ZBuffer,
+    Bsp, BspOptions, DepthFormat, FaceMask, NOTHING, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    SchumackerOptions, VisibleSurface, ZBuffer,
 };
 use std::fmt::Debug;
 
@@ -28,8 +28,8 @@ use std::fmt::Debug;
 type Draw = fn(&View) -> Vec<u32>;
 
 fn drawn(view: &View, method: &dyn VisibleSurface) -> Vec<u32> {
-    let chosen = Chosen::all(&view.faces);
-    let shot = Shot { faces: &view.faces, camera: &view.camera, chosen: &chosen };
+    let chosen = FaceMask::all(&view.faces);
+    let shot = RenderInput { faces: &view.faces, camera: &view.camera, mask: &chosen };
     method.picture(&shot).0.faces().to_vec()
 }
 

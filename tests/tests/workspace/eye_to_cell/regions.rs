@@ -9,7 +9,7 @@ use sightlines::geometry::Random;
 use sightlines::geometry::vector::{length, scale};
 use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::SheetMethod;
-use sightlines::multifocal::{FromRegion, Split, Witness};
+use sightlines::multifocal::{FromRegion, RaySampler, Split};
 use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Table, TableKind, TableParts};
 use sightlines::scenes::{TowerOptions, tower};
 
@@ -58,7 +58,7 @@ fn what_rays_meet_is_seen_from_boxes() {
     let table = table_of(&scene, cells.clone());
     assert!(table.portals().is_empty());
     let triangles: Vec<Vec<_>> = scene.objects().iter().map(|o| o.corners().collect()).collect();
-    let witness = Witness::new(triangles.iter().map(Vec::as_slice));
+    let witness = RaySampler::new(triangles.iter().map(Vec::as_slice));
     let mut random = Random::new(5);
     let (mut n_met, mut n_kept, mut n_all) = (0, 0, 0);
     for (id, cell) in (0u32..).zip(&cells.cells) {

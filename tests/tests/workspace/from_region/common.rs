@@ -2,7 +2,7 @@
 
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, patches};
-use sightlines::multifocal::{Chosen, FromRegion, Layout, Multifocal, Together, Volume};
+use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod, Volume};
 use sightlines::multifocal_cpu::Fast;
 use std::sync::Arc;
 
@@ -19,14 +19,14 @@ pub(crate) fn around(scene: &sightlines::cells::Scene, targets: &[Aabb<3>]) -> A
 
 /// Buffers with a layout, for a scene whose patches hide.
 pub(crate) fn buffers(triangles: &[[Point3; 3]], around: Aabb<3>, layout: Layout) -> Multifocal<Fast> {
-    let occluders = Arc::new(Chosen::new(patches(triangles, &PatchOptions::default()), 2000));
+    let occluders = Arc::new(OccluderSelection::new(patches(triangles, &PatchOptions::default()), 2000));
     Multifocal::new(Fast::new(), occluders, around, layout)
 }
 
 /// What is shipped: buffers, and sheets where they say nothing.
-pub(crate) fn shipped(triangles: &[[Point3; 3]], around: Aabb<3>) -> Together {
+pub(crate) fn shipped(triangles: &[[Point3; 3]], around: Aabb<3>) -> UnionMethod {
     let buffers = buffers(triangles, around, Layout::default());
-    Together::new(vec![Box::new(buffers), Box::new(SheetMethod::new(triangles))])
+    UnionMethod::new(vec![Box::new(buffers), Box::new(SheetMethod::new(triangles))])
 }
 
 /// Which targets a method calls hidden.

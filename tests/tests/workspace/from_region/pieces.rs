@@ -122,13 +122,13 @@ proptest! {
 /// Halves of volumes find what the whole does not, and nothing that the whole finds is lost.
 #[test]
 fn splitting_finds_more() {
-    use sightlines::multifocal::{Layout, Occludees, Split, Witness, adaptive};
+    use sightlines::multifocal::{Layout, Occludees, RaySampler, Split, adaptive};
     let benchmark = occlusion(OcclusionOptions { tilt: 30, ..OcclusionOptions::default() }).unwrap();
     let all = triangles(&benchmark.scene);
     let around = crate::from_region::common::around(&benchmark.scene, &benchmark.occludees);
     let of_box = |b: &Aabb<3>| vec![[b.min, b.max, [b.min[0], b.max[1], b.min[2]]]];
     let occludees = Occludees::new(benchmark.occludees.iter().map(of_box).collect());
-    let witness = Witness::new([&all[..]]);
+    let witness = RaySampler::new([&all[..]]);
     let volume = Volume::new(Occlusion::volume(0.5)).unwrap();
     let visible = |depth| {
         let mut method = crate::from_region::common::buffers(&all, around, Layout::default());

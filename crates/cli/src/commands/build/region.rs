@@ -96,7 +96,7 @@ pub(super) struct Outcome {
 impl Outcome {
     pub(super) fn new(out: &Path, file: &SceneFile, given_cells: bool, table: &Table, report: &RegionReport) -> Self {
         let triangles: Vec<u64> = file.scene.objects().iter().map(|o| o.triangles.len() as u64).collect();
-        let asked = &report.effort.asked;
+        let asked = &report.effort.queries;
         Self {
             out: out.display().to_string(),
             stated: Stated::new(&file.info),

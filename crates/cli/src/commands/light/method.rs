@@ -3,7 +3,7 @@
 use sightlines::from_region::ViewShafts;
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, patches};
-use sightlines::multifocal::{Chosen, FromRegion, Layout, Multifocal, Together};
+use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod};
 use sightlines::multifocal_cpu::Fast;
 use std::sync::Arc;
 
@@ -22,14 +22,14 @@ pub(super) enum Kind {
 }
 
 /// What any of these methods hides.
-pub(super) fn made(kinds: &[Kind], triangles: &[[Point3; 3]], scene: Aabb<3>) -> Together {
+pub(super) fn made(kinds: &[Kind], triangles: &[[Point3; 3]], scene: Aabb<3>) -> UnionMethod {
     let one = |&kind: &Kind| -> Box<dyn FromRegion + Send> {
         let occluders = || patches(triangles, &PatchOptions::default());
         match kind {
             Kind::Sheets => Box::new(SheetMethod::new(triangles)),
             Kind::Shafts => Box::new(ViewShafts::new(occluders())),
             Kind::Multifocal => {
-                let chosen = Arc::new(Chosen::new(occluders(), MOST_OCCLUDERS));
+                let chosen = Arc::new(OccluderSelection::new(occluders(), MOST_OCCLUDERS));
                 Box::new(Multifocal::new(Fast::new(), chosen, scene, Layout::default()))
             }
         }
@@ -40,5 +40,5 @@ pub(super) fn made(kinds: &[Kind], triangles: &[[Point3; 3]], scene: Aabb<3>) ->
             unlike.push(*kind)
         }
     });
-    Together::about_pieces(unlike.iter().map(one).collect())
+    UnionMethod::for_polygons(unlike.iter().map(one).collect())
 }

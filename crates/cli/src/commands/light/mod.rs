@@ -17,7 +17,7 @@ use outcome::Outcome;
 use sightlines::area_light::{Options, Shade, Shadows, Sides, shown};
 use sightlines::multifocal::{FromRegion, Volume};
 use sightlines::report::{LightPixel, light_png};
-use sightlines::visible_surface::{Chosen, DepthFormat, Faces, Shot, VisibleSurface, ZBuffer};
+use sightlines::visible_surface::{DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer, Error> {
     let faces = Faces::of_scene(&file.scene).map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
     let light = Volume::new(args.light.0)?;
     let camera = args.eye.camera(args.eye.up(Up::axis(file.info.up)))?;
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &Chosen::all(&faces) };
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &FaceMask::all(&faces) };
     let image = ZBuffer::new(DepthFormat::Exact).picture(&shot).0;
     let chosen = shown(&faces, &image);
 

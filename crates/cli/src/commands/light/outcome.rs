@@ -3,7 +3,7 @@
 use crate::output::{count, percent, seconds};
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
-use sightlines::area_light::{Areas, LightPicture};
+use sightlines::area_light::{LightPicture, LightingAreas};
 use sightlines::geometry::Aabb;
 use std::fmt;
 use std::time::Duration;
@@ -18,7 +18,7 @@ pub(super) struct Outcome {
     pub(super) light: Aabb<3>,
     pub(super) method: String,
     pub(super) n_pieces: usize,
-    pub(super) areas: Areas,
+    pub(super) areas: LightingAreas,
     pub(super) size: [u32; 2],
     /// Pixels in umbra, lit, traced.
     pub(super) pixels: [u64; 3],

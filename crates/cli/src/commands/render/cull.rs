@@ -6,7 +6,7 @@ use sightlines::cells::Scene;
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::pvs::{Place, PlaceBuffer};
 use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
-use sightlines::visible_surface::{Camera, Chosen, DepthFormat, Faces, Shot, VisibleSurface, ZBuffer, cull};
+use sightlines::visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -52,7 +52,7 @@ pub(super) fn leave_out(
     faces: &Faces,
     camera: &Camera,
     seen: Option<&[bool]>,
-    chosen: &mut Chosen,
+    chosen: &mut FaceMask,
 ) -> Vec<Gone> {
     let each = |&by: &Cull| {
         let start = Instant::now();
@@ -61,7 +61,7 @@ pub(super) fn leave_out(
             Cull::Frustum => cull::frustum(faces, camera, chosen),
             Cull::Pvs => seen.map_or(0, |seen| cull::objects(faces, chosen, |object| seen[object as usize])),
             Cull::HierarchicalZ => {
-                let (image, _) = ZBuffer::new(DepthFormat::Exact).picture(&Shot { faces, camera, chosen });
+                let (image, _) = ZBuffer::new(DepthFormat::Exact).picture(&RenderInput { faces, camera, mask: chosen });
                 hierarchical::cull(faces, chosen, &DepthPyramid::sampled(faces, camera, &image))
             }
         };

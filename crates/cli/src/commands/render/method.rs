@@ -1,8 +1,8 @@
 //! The methods as arguments, made ready and timed.
 
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Counters, DepthFormat, Faces, Image, Newell, Painter, RayCaster, Schumacker, SchumackerOptions,
-    Shot, VisibleSurface, ZBuffer,
+    Bsp, BspOptions, Counters, DepthFormat, Faces, Image, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    SchumackerOptions, VisibleSurface, ZBuffer,
 };
 use std::time::{Duration, Instant};
 
@@ -108,7 +108,7 @@ impl Ready {
     }
 
     /// Draws a picture.
-    pub(super) fn draw(&self, shot: &Shot<'_>) -> Drawn {
+    pub(super) fn draw(&self, shot: &RenderInput<'_>) -> Drawn {
         let start = Instant::now();
         let (image, counters) = self.method.picture(shot);
         Drawn { method: self.method.name(), image, counters, prepared: self.prepared, time: start.elapsed() }

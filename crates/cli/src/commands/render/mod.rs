@@ -18,7 +18,7 @@ use method::{Depth, Drawn, Kind, Readied, Ready, compared, format_of};
 use outcome::{Outcome, Row};
 use sightlines::formats::scene::read_scene;
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
-use sightlines::visible_surface::{Camera, Chosen, Comparison, DepthFormat, Faces, NOTHING, Shot, compare};
+use sightlines::visible_surface::{Camera, Comparison, DepthFormat, FaceMask, Faces, NOTHING, RenderInput, compare};
 use std::path::{Path, PathBuf};
 
 /// The most pixels of a sheet: 400 MB of colours.
@@ -83,9 +83,9 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, Erro
         Some(table) => seen_by_table(table, &args.scene, &file.scene, camera.eye())?,
         None => None,
     };
-    let mut chosen = Chosen::all(&faces);
+    let mut chosen = FaceMask::all(&faces);
     let culled = leave_out(&args.cull, &faces, &camera, seen.as_deref(), &mut chosen);
-    let shot = Shot { faces: &faces, camera: &camera, chosen: &chosen };
+    let shot = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
     let bar = Bar::new("pictures", show_progress);
     let (rows, png) = if args.compare {
         side_by_side(args, &shot, &methods, &bar)
@@ -149,16 +149,16 @@ fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)
 /// Draws by several methods, and compares with what the ray caster sees where nothing but back faces was left out.
 fn side_by_side(
     args: &RenderArgs,
-    shot: &Shot<'_>,
+    shot: &RenderInput<'_>,
     methods: &[(Kind, DepthFormat)],
     bar: &Bar,
 ) -> (Vec<Row>, Result<Vec<u8>, PngError>) {
-    let Shot { faces, camera, .. } = *shot;
+    let RenderInput { faces, camera, .. } = *shot;
     let caster = Ready::new(Kind::Raycast, DepthFormat::Exact, faces);
-    let mut whole = Chosen::all(faces);
+    let mut whole = FaceMask::all(faces);
     let facing: Vec<Cull> = args.cull.iter().copied().filter(|way| *way == Cull::Backface).collect();
     leave_out(&facing, faces, camera, None, &mut whole);
-    let reference = caster.draw(&Shot { chosen: &whole, ..*shot }).image;
+    let reference = caster.draw(&RenderInput { mask: &whole, ..*shot }).image;
     let mut all: Vec<(Vec<u32>, Comparison)> = Vec::new();
     let (mut rows, mut readied) = (Vec::new(), Readied::default());
     for (k, &(kind, depth)) in methods.iter().enumerate() {

@@ -8,7 +8,7 @@ use sightlines_cells::{CellGraph, Convex, Plan, PlanObject, Scene};
 use sightlines_formats::{Prt, ViewCell, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::mesh::{PatchOptions, patches};
-use sightlines_multifocal::{Chosen, FromRegion, Layout, Multifocal};
+use sightlines_multifocal::{FromRegion, Layout, Multifocal, OccluderSelection};
 use sightlines_multifocal_cpu::Fast;
 use sightlines_pvs::{Locator, Table, TableKind, TableParts};
 use sightlines_scenes::world::WorldChild as Child;
@@ -103,7 +103,7 @@ fn grid_case(name: &'static str, sightlines: bool) -> Case {
     };
     let cells = CellsFrom::Boxes(ViewCells { cells: (0..nx * nz).map(cell).collect() });
     let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|o| o.corners()).collect();
-    let chosen = Arc::new(Chosen::new(patches(&triangles, &PatchOptions::default()), 40));
+    let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 40));
     let layout = Layout { n_levels: 3, texels: 48, ..Layout::default() };
     let make = || -> Box<dyn FromRegion + Send> {
         Box::new(Multifocal::new(Fast::new(), Arc::clone(&chosen), bounds, layout))

@@ -2,7 +2,7 @@
 
 use crate::culling::oracle::{Chance, Eye, P, aabb, any_box, faces_of};
 use proptest::prelude::*;
-use sightlines_visible_surface::Chosen;
+use sightlines_visible_surface::FaceMask;
 use sightlines_visible_surface::hierarchical::{self, DepthPyramid, Neighbours, Rays};
 
 /// A surface of triangles over a grid, with heights: what shares edges, and folds.
@@ -64,7 +64,7 @@ proptest! {
         let eye = Eye::any(&mut chance);
         let corners = any_scene(&mut chance);
         let faces = faces_of(&corners);
-        let all = Chosen::all(&faces);
+        let all = FaceMask::all(&faces);
         let pyramid = DepthPyramid::conservative(&faces, &eye.camera(), &all);
         prop_assert_eq!(pyramid.rays(), Rays::All);
         let mut left = all.clone();
@@ -81,7 +81,7 @@ proptest! {
         let eye = Eye::any(&mut chance);
         let corners = any_scene(&mut chance);
         let faces = faces_of(&corners);
-        let mut some = Chosen::all(&faces);
+        let mut some = FaceMask::all(&faces);
         some.retain(|f| f % 7 != 6);
         let pyramid = DepthPyramid::with_neighbours(&faces, &Neighbours::of(&faces), &eye.camera(), &some);
         for k in 0..24 {
@@ -105,7 +105,7 @@ fn most_hidden_boxes_are_found() {
         let eye = Eye::ahead([0, 0, -4], [12, 10]);
         let corners = sheet(&mut chance, 4, 1);
         let faces = faces_of(&corners);
-        let all = Chosen::all(&faces);
+        let all = FaceMask::all(&faces);
         let pyramid = DepthPyramid::conservative(&faces, &eye.camera(), &all);
         // Without neighbours each face is alone.
         let single = DepthPyramid::with_neighbours(&faces, &Neighbours::default(), &eye.camera(), &all);
@@ -141,7 +141,7 @@ fn a_slit_between_centres_is_seen_through() {
     // The line between pixels 3 and 4 is x = 0; their centres at this depth are 5 to each side.
     let slit: Vec<_> = wall(-400, -1).into_iter().chain(wall(1, 400)).collect();
     let faces = faces_of(&slit);
-    let all = Chosen::all(&faces);
+    let all = FaceMask::all(&faces);
     let behind = [[-20, -10, 50], [20, 10, 60]];
     let seen = |parts| eye.sees_box(parts, &slit, |_| true, &behind);
     assert_eq!([0, 4].map(seen), [false, true]);
@@ -156,7 +156,7 @@ fn a_slit_between_centres_is_seen_through() {
     // With the slit closed, by sharing corners, it hides; with a wall that only touches, it may not.
     let closed: Vec<_> = wall(-400, 0).into_iter().chain(wall(0, 400)).collect();
     let faces = faces_of(&closed);
-    assert!(DepthPyramid::conservative(&faces, &eye.camera(), &Chosen::all(&faces)).hides(&aabb(&behind)));
+    assert!(DepthPyramid::conservative(&faces, &eye.camera(), &FaceMask::all(&faces)).hides(&aabb(&behind)));
 }
 
 /// A fold: the two faces at an edge lie on one side of it, so it is a border.
@@ -166,7 +166,7 @@ fn folds_are_borders() {
     let (p, q) = ([4, -400, 40], [4, 400, 40]);
     let fold = [[p, q, [-900, 0, 40]], [p, q, [-900, 0, 60]]];
     let faces = faces_of(&fold);
-    let pyramid = DepthPyramid::conservative(&faces, &eye.camera(), &Chosen::all(&faces));
+    let pyramid = DepthPyramid::conservative(&faces, &eye.camera(), &FaceMask::all(&faces));
     // It ends within pixel 4 of each row, behind the centre.
     let behind = [[-5, -5, 70], [8, 5, 80]];
     assert!(eye.sees_box(8, &fold, |_| true, &behind) && !eye.sees_box(0, &fold, |_| true, &behind));
@@ -175,7 +175,7 @@ fn folds_are_borders() {
     // The same edge with the two faces on its two sides is none.
     let flat = [[p, q, [-900, 0, 40]], [p, q, [900, 0, 60]]];
     let faces = faces_of(&flat);
-    assert!(DepthPyramid::conservative(&faces, &eye.camera(), &Chosen::all(&faces)).hides(&aabb(&behind)));
+    assert!(DepthPyramid::conservative(&faces, &eye.camera(), &FaceMask::all(&faces)).hides(&aabb(&behind)));
 }
 
 /// In one pixel a slanted wall is near and far: only what is behind its farthest place there is hidden.
@@ -187,7 +187,7 @@ fn the_farthest_place_in_a_pixel_counts() {
     let [a, b, c, d] = [at(-18, -500), at(300, -500), at(300, 500), at(-18, 500)];
     for wall in [vec![[a, b, c], [a, c, d]], vec![[at(-18, -9000), at(3000, 0), at(-18, 9000)]]] {
         let faces = faces_of(&wall);
-        let pyramid = DepthPyramid::conservative(&faces, &eye.camera(), &Chosen::all(&faces));
+        let pyramid = DepthPyramid::conservative(&faces, &eye.camera(), &FaceMask::all(&faces));
         // Behind the nearest place and that of the centre, before the wall where it is.
         let before = [[11, 0, 25], [12, 1, 26]];
         assert!(eye.sees_box(16, &wall, |_| true, &before));
@@ -206,7 +206,7 @@ fn what_is_before_the_nearest_depth_hides_nothing() {
     let slanted = [[[-90, -90, 10], [90, -90, 10], [0, 90, 2]].map(scaled)];
     let faces = faces_of(&slanted);
     let hides = |eye: &Eye, b: [P; 2]| {
-        let pyramid = DepthPyramid::conservative(&faces, &eye.camera(), &Chosen::all(&faces));
+        let pyramid = DepthPyramid::conservative(&faces, &eye.camera(), &FaceMask::all(&faces));
         pyramid.hides(&aabb(&b.map(scaled)))
     };
     let (upper, lower) = ([[-1, 3, 11], [1, 5, 12]], [[-1, -5, 11], [1, -4, 12]]);

@@ -2,7 +2,7 @@
 
 use crate::culling::oracle::{Chance, Eye, P, aabb, along, any_box, cross, dot, faces_of, minus, real};
 use proptest::prelude::*;
-use sightlines_visible_surface::Chosen;
+use sightlines_visible_surface::FaceMask;
 use sightlines_visible_surface::cull::{self, Cover, Frustum};
 
 /// The eight corners of a volume with a nearest and a farthest depth.
@@ -71,7 +71,7 @@ proptest! {
         let eye = Eye::any(&mut chance);
         let corners: Vec<[P; 3]> = (0..12).map(|_| [0; 3].map(|_| chance.point(6))).collect();
         let faces = faces_of(&corners);
-        let mut chosen = Chosen::all(&faces);
+        let mut chosen = FaceMask::all(&faces);
         let before = chosen.clone();
         let gone = cull::frustum(&faces, &eye.camera(), &mut chosen);
         prop_assert_eq!(gone as usize, before.len() - chosen.len());
@@ -188,7 +188,7 @@ fn nonsense_is_kept() {
 fn objects_are_kept_by_a_table() {
     let corners = [[[0, 0, 1], [1, 0, 1], [0, 1, 1]]; 6];
     let faces = faces_of(&corners);
-    let mut chosen = Chosen::all(&faces);
+    let mut chosen = FaceMask::all(&faces);
     assert_eq!(cull::objects(&faces, &mut chosen, |object| object % 3 == 0), 4);
     assert_eq!(chosen.iter().collect::<Vec<_>>(), [0, 3]);
     assert_eq!(cull::objects(&faces, &mut chosen, |_| false), 2);

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_visible_surface::cull::{self, Frustum};
 use sightlines_visible_surface::hierarchical::{self, DepthPyramid};
-use sightlines_visible_surface::{Camera, Chosen, Faces, RayCaster, Shot, VisibleSurface};
+use sightlines_visible_surface::{Camera, FaceMask, Faces, RayCaster, RenderInput, VisibleSurface};
 
 fn coordinate(chance: &mut Chance, scale: i32) -> f64 {
     match chance.below(12) {
@@ -47,8 +47,8 @@ proptest! {
         let (camera, corners) = scene(&mut chance);
         let faces = Faces::new(corners).unwrap();
         let caster = RayCaster::build(&faces);
-        let all = Chosen::all(&faces);
-        let picture = |chosen: &Chosen| caster.picture(&Shot { faces: &faces, camera: &camera, chosen }).0;
+        let all = FaceMask::all(&faces);
+        let picture = |chosen: &FaceMask| caster.picture(&RenderInput { faces: &faces, camera: &camera, mask: chosen }).0;
         let whole = picture(&all);
         let mut left = all.clone();
         cull::frustum(&faces, &camera, &mut left);
@@ -77,8 +77,8 @@ fn far_away_and_close_by() {
         let camera = Camera::look_at([0.0; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], 90.0, [40, 30]).unwrap();
         let [a, b, c, d] = [[-9., -9., 2.], [9., -9., 2.], [9., 9., 2.], [-9., 9., 2.]].map(at);
         let faces = Faces::new(vec![[a, b, c], [a, c, d]]).unwrap();
-        let all = Chosen::all(&faces);
-        let image = RayCaster::build(&faces).picture(&Shot { faces: &faces, camera: &camera, chosen: &all }).0;
+        let all = FaceMask::all(&faces);
+        let image = RayCaster::build(&faces).picture(&RenderInput { faces: &faces, camera: &camera, mask: &all }).0;
         for pyramid in
             [DepthPyramid::sampled(&faces, &camera, &image), DepthPyramid::conservative(&faces, &camera, &all)]
         {

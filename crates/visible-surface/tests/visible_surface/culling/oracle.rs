@@ -1,7 +1,7 @@
 //! Rays and triangles in whole numbers: what cannot be wrong by rounding.
 
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_visible_surface::{Camera, Chosen, Faces, Image, NOTHING};
+use sightlines_visible_surface::{Camera, FaceMask, Faces, Image, NOTHING};
 
 pub(crate) type P = [i128; 3];
 
@@ -149,7 +149,7 @@ impl Eye {
         best
     }
 
-    pub(crate) fn image(&self, faces: &[[P; 3]], chosen: &Chosen) -> Image {
+    pub(crate) fn image(&self, faces: &[[P; 3]], chosen: &FaceMask) -> Image {
         let mut image = Image::new(self.size);
         image.faces_mut().copy_from_slice(&self.picture(0, faces, |f| chosen.has(f)));
         image

@@ -3,7 +3,7 @@
 use crate::culling::oracle::{Chance, Eye, P, aabb, any_box, faces_of};
 use proptest::prelude::*;
 use sightlines_visible_surface::hierarchical::{self, DepthPyramid, Rays};
-use sightlines_visible_surface::{Chosen, Image, cull};
+use sightlines_visible_surface::{FaceMask, Image, cull};
 
 fn any_faces(chance: &mut Chance, n: usize) -> Vec<[P; 3]> {
     (0..n).map(|_| [0; 3].map(|_| chance.point(6))).collect()
@@ -17,7 +17,7 @@ proptest! {
         let eye = Eye::any(&mut chance);
         let corners = any_faces(&mut chance, 20);
         let faces = faces_of(&corners);
-        let all = Chosen::all(&faces);
+        let all = FaceMask::all(&faces);
         let mut some = all.clone();
         some.retain(|f| f % 3 != 0);
         let whole = eye.picture(0, &corners, |f| all.has(f));
@@ -37,7 +37,7 @@ proptest! {
         let eye = Eye::any(&mut chance);
         let corners = any_faces(&mut chance, 10);
         let faces = faces_of(&corners);
-        let all = Chosen::all(&faces);
+        let all = FaceMask::all(&faces);
         let pyramid = DepthPyramid::sampled(&faces, &eye.camera(), &eye.image(&corners, &all));
         for _ in 0..8 {
             let b = any_box(&mut chance, 9);
@@ -55,7 +55,7 @@ fn most_hidden_boxes_are_found() {
         let eye = Eye::ahead([0, 0, -8], [9, 7]);
         let corners = any_faces(&mut chance, 12);
         let faces = faces_of(&corners);
-        let all = Chosen::all(&faces);
+        let all = FaceMask::all(&faces);
         let pyramid = DepthPyramid::sampled(&faces, &eye.camera(), &eye.image(&corners, &all));
         for _ in 0..10 {
             let at = chance.point(4);
@@ -82,7 +82,7 @@ fn a_wall_hides_what_is_behind_it() {
         let eye = Eye::ahead([0; 3], size);
         let wall = [[[-50, -50, 10], [0, -50, 10], [0, 50, 10]], [[-50, -50, 10], [0, 50, 10], [-50, 50, 10]]];
         let faces = faces_of(&wall);
-        let pyramid = DepthPyramid::sampled(&faces, &eye.camera(), &eye.image(&wall, &Chosen::all(&faces)));
+        let pyramid = DepthPyramid::sampled(&faces, &eye.camera(), &eye.image(&wall, &FaceMask::all(&faces)));
         let hides = |min: P, max: P| pyramid.hides(&aabb(&[min, max]));
         // Around the eye.
         assert!(!hides([-1, -1, -1], [1, 1, 1]), "{size:?}");
@@ -94,7 +94,7 @@ fn a_wall_hides_what_is_behind_it() {
             assert!(!hides([-4, -2, 11], [4, 2, 30]), "{size:?}");
         }
         // It is not behind itself.
-        assert_eq!(hierarchical::cull(&faces, &mut Chosen::all(&faces), &pyramid), 0, "{size:?}");
+        assert_eq!(hierarchical::cull(&faces, &mut FaceMask::all(&faces), &pyramid), 0, "{size:?}");
         let sizes: Vec<_> = pyramid.levels().iter().map(|l| l.size()).collect();
         assert_eq!((sizes[0], sizes[sizes.len() - 1]), (size, [1, 1]));
         assert!(sizes.windows(2).all(|w| w[1] == w[0].map(|n| n.div_ceil(2))));
@@ -139,7 +139,7 @@ fn all_kinds_of_culling_together_change_no_pixel() {
         let eye = Eye::any(&mut chance);
         let corners = any_faces(&mut chance, 25);
         let faces = faces_of(&corners);
-        let mut chosen = Chosen::all(&faces);
+        let mut chosen = FaceMask::all(&faces);
         gone[0] += cull::backface(&faces, &eye.camera(), &mut chosen);
         let whole = eye.picture(0, &corners, |f| chosen.has(f));
         gone[1] += cull::frustum(&faces, &eye.camera(), &mut chosen);

@@ -5,7 +5,7 @@ use sightlines_cells::Scene;
 use sightlines_formats::scene::read_scene;
 use sightlines_scenes::{CityOptions, city};
 use sightlines_visible_surface::hierarchical::{self, DepthPyramid, Neighbours};
-use sightlines_visible_surface::{Camera, Chosen, DepthFormat, Faces, Shot, VisibleSurface, ZBuffer, cull};
+use sightlines_visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull};
 use std::path::PathBuf;
 
 /// Faces in all, in the pictures, outside, hidden from centres, hidden from all rays; of some eyes.
@@ -22,9 +22,9 @@ fn counts(scene: &Scene, n_eyes: usize) -> [u64; 5] {
     for _ in 0..n_eyes {
         let (eye, at) = (place(0.3), place(0.3));
         let camera = Camera::look_at(eye, at, [0.0, 1.0, 0.0], 60.0, [200, 150]).expect("it does not look up");
-        let all = Chosen::all(&faces);
-        let draw = |chosen: &Chosen| {
-            ZBuffer::new(DepthFormat::Exact).picture(&Shot { faces: &faces, camera: &camera, chosen }).0
+        let all = FaceMask::all(&faces);
+        let draw = |chosen: &FaceMask| {
+            ZBuffer::new(DepthFormat::Exact).picture(&RenderInput { faces: &faces, camera: &camera, mask: chosen }).0
         };
         let picture = draw(&all);
         let mut seen = picture.faces().to_vec();

@@ -4,7 +4,7 @@
 //! one depth. Positions and rays are scaled by powers of two until they are whole numbers, so nothing is rounded.
 use num_bigint::{BigInt, Sign};
 use sightlines_geometry::Point3;
-use sightlines_visible_surface::{Camera, Chosen, Faces, Image, NOTHING, Shot, VisibleSurface};
+use sightlines_visible_surface::{Camera, FaceMask, Faces, Image, NOTHING, RenderInput, VisibleSurface};
 
 /// What is seen, and where that is a matter of rules.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,13 +44,13 @@ impl Truth {
 
 /// Methods show what is seen of all faces, and of those that are kept, and draw no others.
 pub(crate) fn check(faces: &Faces, camera: &Camera, keep: impl FnMut(u32) -> bool, methods: &[&dyn VisibleSurface]) {
-    let mut kept = Chosen::all(faces);
+    let mut kept = FaceMask::all(faces);
     kept.retain(keep);
-    for chosen in [Chosen::all(faces), kept] {
+    for chosen in [FaceMask::all(faces), kept] {
         let truth = look(faces, camera, &chosen);
-        let shot = Shot { faces, camera, chosen: &chosen };
+        let input = RenderInput { faces, camera, mask: &chosen };
         for method in methods {
-            let (image, counters) = method.picture(&shot);
+            let (image, counters) = method.picture(&input);
             assert_eq!(truth.wrong(&image), [], "{} of {:?}", method.name(), faces);
             assert!(counters.polygons <= chosen.len() as u64, "{}", method.name());
         }
@@ -58,7 +58,7 @@ pub(crate) fn check(faces: &Faces, camera: &Camera, keep: impl FnMut(u32) -> boo
 }
 
 /// What is seen of some faces. Cost: pixels times faces.
-pub(crate) fn look(faces: &Faces, camera: &Camera, chosen: &Chosen) -> Truth {
+pub(crate) fn look(faces: &Faces, camera: &Camera, chosen: &FaceMask) -> Truth {
     let size = camera.size();
     let n = size[0] as usize * size[1] as usize;
     let scale = Scale::of(faces, camera);

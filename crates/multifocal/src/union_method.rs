@@ -6,12 +6,12 @@ use sightlines_geometry::{Aabb, Point3};
 /// Combines several methods: what any of them reports hidden is hidden. They run in order, so the fastest should come
 /// first.
 #[derive(Debug)]
-pub struct Together {
+pub struct UnionMethod {
     methods: Vec<Box<dyn FromRegion + Send>>,
     n_about_points: usize,
 }
 
-impl Together {
+impl UnionMethod {
     /// The methods, in the order in which they run. Without methods nothing is hidden.
     ///
     /// Single polygons are tested by the first method only: after tests of boxes, most hidden ones are known by then.
@@ -20,12 +20,12 @@ impl Together {
     }
 
     /// The same, but tests single polygons by all methods too, for callers that test nothing else.
-    pub fn about_pieces(methods: Vec<Box<dyn FromRegion + Send>>) -> Self {
+    pub fn for_polygons(methods: Vec<Box<dyn FromRegion + Send>>) -> Self {
         Self { n_about_points: methods.len(), methods }
     }
 }
 
-impl FromRegion for Together {
+impl FromRegion for UnionMethod {
     fn name(&self) -> String {
         self.methods.iter().map(|m| m.name()).collect::<Vec<_>>().join("+")
     }

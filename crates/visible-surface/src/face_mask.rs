@@ -4,11 +4,11 @@ use crate::faces::Faces;
 
 /// A set of faces. Culling takes faces away; methods draw what is left.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Chosen {
+pub struct FaceMask {
     keep: Vec<bool>,
 }
 
-impl Chosen {
+impl FaceMask {
     /// All faces that have an area.
     pub fn all(faces: &Faces) -> Self {
         Self { keep: faces.ids().map(|f| faces.has_area(f)).collect() }

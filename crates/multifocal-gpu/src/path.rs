@@ -2,7 +2,7 @@
 
 /// How buffers are filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Way {
+pub enum GpuPath {
     /// By a compute shader, in integers: the canonical one.
     #[default]
     Compute,
@@ -15,7 +15,7 @@ pub enum Way {
     Float,
 }
 
-impl Way {
+impl GpuPath {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Compute, Self::Raster, Self::Float];
 

@@ -11,7 +11,7 @@ const MOST_FOR_ONE: u32 = 64;
 
 /// Triangles of objects, to be hit by rays.
 #[derive(Debug, Clone)]
-pub struct Witness {
+pub struct RaySampler {
     triangles: Vec<[Point3; 3]>,
     object: Vec<u32>,
     /// For each object where its triangles begin, and where the last one's end.
@@ -19,7 +19,7 @@ pub struct Witness {
     tree: BoxTree<3>,
 }
 
-impl Witness {
+impl RaySampler {
     /// * `objects`: for each object its triangles
     pub fn new<'a>(objects: impl IntoIterator<Item = &'a [[Point3; 3]]>) -> Self {
         let (mut triangles, mut object, mut first) = (Vec::new(), Vec::new(), vec![0]);
