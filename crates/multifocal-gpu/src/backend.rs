@@ -9,7 +9,7 @@ use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBacken
 #[derive(Debug, Clone)]
 pub struct GpuBackend {
     gpu: Gpu,
-    way: GpuPath,
+    path: GpuPath,
 }
 
 impl GpuBackend {
@@ -17,21 +17,21 @@ impl GpuBackend {
     ///
     /// # Errors
     /// [`OpenError`]
-    pub fn open(way: GpuPath) -> Result<Self, OpenError> {
-        Ok(Self::new(Gpu::open()?, way))
+    pub fn open(path: GpuPath) -> Result<Self, OpenError> {
+        Ok(Self::new(Gpu::open()?, path))
     }
 
     /// A backend on the device and the queue of a host, see [`Gpu::from_device`].
     ///
     /// # Errors
     /// [`OpenError`]
-    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, way: GpuPath) -> Result<Self, OpenError> {
-        Ok(Self::new(Gpu::from_device(device, queue)?, way))
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, path: GpuPath) -> Result<Self, OpenError> {
+        Ok(Self::new(Gpu::from_device(device, queue)?, path))
     }
 
     /// A backend on a device that is open already.
-    pub const fn new(gpu: Gpu, way: GpuPath) -> Self {
-        Self { gpu, way }
+    pub const fn new(gpu: Gpu, path: GpuPath) -> Self {
+        Self { gpu, path }
     }
 
     /// The device.
@@ -40,8 +40,8 @@ impl GpuBackend {
     }
 
     /// How it fills buffers.
-    pub const fn way(&self) -> GpuPath {
-        self.way
+    pub const fn path(&self) -> GpuPath {
+        self.path
     }
 
     /// Gives the device a job and returns at once; any number of jobs may be in flight.
@@ -53,7 +53,7 @@ impl GpuBackend {
     /// [`BackendError`], for errors that are known at once
     pub fn submit(&self, job: &Job<'_>) -> Result<Ticket, BackendError> {
         let values = self.keep(job)?;
-        self.gpu.fetch(self.way.name(), &values)
+        self.gpu.fetch(self.path.name(), &values)
     }
 
     /// As [`Self::submit`], for planes that are integers already.
@@ -62,7 +62,7 @@ impl GpuBackend {
     /// [`BackendError`]; [`GpuPath::Float`] has no use for integers
     pub fn submit_forms(&self, planes: &[PlaneForms]) -> Result<Ticket, BackendError> {
         let values = self.keep_forms(planes)?;
-        self.gpu.fetch(self.way.name(), &values)
+        self.gpu.fetch(self.path.name(), &values)
     }
 
     /// Gives the device a job whose result stays there. Whatever is submitted to the device's queue later finds it
@@ -72,10 +72,10 @@ impl GpuBackend {
     /// [`BackendError`], for errors that are known at once
     pub fn keep(&self, job: &Job<'_>) -> Result<Values, BackendError> {
         if !self.supports(job.measure()) {
-            return Err(BackendError::Unsupported { backend: self.way.name(), measure: job.measure() });
+            return Err(BackendError::Unsupported { backend: self.path.name(), measure: job.measure() });
         }
-        match self.way {
-            GpuPath::Float => draw::draw(&self.gpu, self.way, &Input::Floats(job)),
+        match self.path {
+            GpuPath::Float => draw::draw(&self.gpu, self.path, &Input::Floats(job)),
             _ => self.keep_forms(&PlaneForms::of(job)),
         }
     }
@@ -85,10 +85,10 @@ impl GpuBackend {
     /// # Errors
     /// [`BackendError`]; [`GpuPath::Float`] has no use for integers
     pub fn keep_forms(&self, planes: &[PlaneForms]) -> Result<Values, BackendError> {
-        if self.way == GpuPath::Float {
-            return Err(BackendError::Unsupported { backend: self.way.name(), measure: Measure::default() });
+        if self.path == GpuPath::Float {
+            return Err(BackendError::Unsupported { backend: self.path.name(), measure: Measure::default() });
         }
-        draw::draw(&self.gpu, self.way, &Input::Forms(planes))
+        draw::draw(&self.gpu, self.path, &Input::Forms(planes))
     }
 
     /// The buffers of a job, one for each plane, if it is done; asked again it gives them again. Never waits.
@@ -107,11 +107,11 @@ impl GpuBackend {
 
 impl MultifocalBackend for GpuBackend {
     fn name(&self) -> &'static str {
-        self.way.name()
+        self.path.name()
     }
 
     fn supports(&self, measure: Measure) -> bool {
-        match self.way {
+        match self.path {
             GpuPath::Float => measure == Measure::VertexHeight,
             _ => measure != Measure::ClippedEuclid,
         }

@@ -16,8 +16,8 @@ pub(crate) enum Input<'a, 'b> {
 }
 
 /// Records all planes of a job and submits them; the values stay on the device.
-pub(crate) fn draw(gpu: &Gpu, way: GpuPath, input: &Input<'_, '_>) -> Result<Values, BackendError> {
-    let name = way.name();
+pub(crate) fn draw(gpu: &Gpu, path: GpuPath, input: &Input<'_, '_>) -> Result<Values, BackendError> {
+    let name = path.name();
     let sizes = match input {
         Input::Forms(planes) => Sizes::new(planes.iter().map(|p| p.texels)),
         Input::Floats(job) => Sizes::new(job.planes().iter().map(|p| p.texels())),
@@ -35,14 +35,14 @@ pub(crate) fn draw(gpu: &Gpu, way: GpuPath, input: &Input<'_, '_>) -> Result<Val
             for bytes in [&packed.forms, &packed.edges, &packed.slopes] {
                 gpu.check_size(name, bytes.len() as u64, true)?;
             }
-            let corners = if way == GpuPath::Raster { corners(planes, &packed) } else { Vec::new() };
+            let corners = if path == GpuPath::Raster { corners(planes, &packed) } else { Vec::new() };
             for bytes in &corners {
                 gpu.check_size(name, bytes.len() as u64, false)?;
             }
             gpu.guarded(name, largest, || {
                 let carries: Vec<_> = planes.iter().map(|p| p.carry.as_ref()).collect();
                 let uploaded = Uploaded::new(gpu, &packed);
-                Recording::new(gpu, sizes).run(&carries, |recording, plane| match way {
+                Recording::new(gpu, sizes).run(&carries, |recording, plane| match path {
                     GpuPath::Raster => recording.raster(&uploaded, &packed.planes[plane], &corners[plane], plane),
                     _ => recording.direct(&uploaded, plane),
                 })

@@ -1,4 +1,4 @@
-//! The techniques that buffers are filled by.
+//! The paths on a GPU that fill buffers.
 
 /// How buffers are filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -10,7 +10,7 @@ pub enum GpuPath {
     /// so the bits are the same.
     Raster,
     /// By a compute shader in 32-bit floats with margins, to see what floats cost. Knows
-    /// [`Measure::VertexHeight`] alone; what it blocks is blocked, but it misses more, and what it misses depends on the
+    /// [`VertexHeight`](sightlines_multifocal::Measure::VertexHeight) alone; what it blocks is blocked, but it misses more, and what it misses depends on the
     /// device.
     Float,
 }
@@ -19,7 +19,7 @@ impl GpuPath {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Compute, Self::Raster, Self::Float];
 
-    /// Name of the backend that goes this way.
+    /// Name of the backend of this path.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Compute => "gpu",
