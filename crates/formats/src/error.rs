@@ -1,8 +1,7 @@
 //! Errors of reading a file: its path, and what is wrong inside.
 
-use crate::quake::{BspError, PrtError};
-use crate::{DoomError, GeoJsonError, LevelsIndexError, SceneReadError, ViewCellsError, WadError};
 use sightlines_pvs::DecodeError;
+use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -31,49 +30,21 @@ pub enum ReadErrorKind {
     /// The system could not read it.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// It is not a sound WAD.
+    /// Its content is not of the format that it is read as. The error is that of the format, such as
+    /// [`WadError`](crate::WadError).
     #[error(transparent)]
-    Wad(#[from] WadError),
-    /// A map in it cannot be used.
-    #[error(transparent)]
-    Doom(#[from] DoomError),
-    /// It is not a GeoJSON plan.
-    #[error(transparent)]
-    GeoJson(Box<GeoJsonError>),
-    /// It is not a scene in space.
-    #[error(transparent)]
-    Scene(Box<SceneReadError>),
-    /// It has no view cells.
-    #[error(transparent)]
-    ViewCells(Box<ViewCellsError>),
-    /// It is no index of levels.
-    #[error(transparent)]
-    Levels(#[from] LevelsIndexError),
-    /// It is not a sound portal file of a Quake map.
-    #[error(transparent)]
-    Prt(#[from] PrtError),
-    /// It is not a sound Quake map.
-    #[error(transparent)]
-    Bsp(#[from] BspError),
-    /// It is not a sound table.
-    #[error(transparent)]
-    Table(#[from] DecodeError),
+    Content(Box<dyn Error + Send + Sync>),
 }
 
-impl From<SceneReadError> for ReadErrorKind {
-    fn from(error: SceneReadError) -> Self {
-        Self::Scene(Box::new(error))
+impl ReadErrorKind {
+    /// The error of a format.
+    pub fn content(error: impl Error + Send + Sync + 'static) -> Self {
+        Self::Content(Box::new(error))
     }
 }
 
-impl From<ViewCellsError> for ReadErrorKind {
-    fn from(error: ViewCellsError) -> Self {
-        Self::ViewCells(Box::new(error))
-    }
-}
-
-impl From<GeoJsonError> for ReadErrorKind {
-    fn from(error: GeoJsonError) -> Self {
-        Self::GeoJson(Box::new(error))
+impl From<DecodeError> for ReadErrorKind {
+    fn from(error: DecodeError) -> Self {
+        Self::content(error)
     }
 }

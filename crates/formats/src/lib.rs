@@ -13,6 +13,7 @@
 //!   the input claims; what is not understood is either passed through byte for byte
 //!   or refused, never guessed; the same value is always written as the same bytes.
 
+mod beside;
 pub mod doom;
 pub mod error;
 pub mod files;

@@ -97,3 +97,9 @@ pub enum DoomErrorKind {
     #[error(transparent)]
     Wad(#[from] WadError),
 }
+
+impl From<DoomError> for crate::ReadErrorKind {
+    fn from(error: DoomError) -> Self {
+        Self::content(error)
+    }
+}

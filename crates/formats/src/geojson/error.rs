@@ -155,3 +155,9 @@ pub enum GeoJsonErrorKind {
     #[error(transparent)]
     Plan(#[from] PlanError),
 }
+
+impl From<GeoJsonError> for crate::ReadErrorKind {
+    fn from(error: GeoJsonError) -> Self {
+        Self::content(error)
+    }
+}

@@ -13,12 +13,11 @@
 //! assert_eq!(plan.lines().len(), 1);
 //! ```
 
-mod beside;
 mod format;
 mod members;
 mod registry;
 
-pub use beside::{Folder, Neighbours};
+pub use crate::beside::{Folder, Neighbours};
 pub use format::{Format, InputKind, Sign};
 pub use registry::{FORMATS, detect};
 

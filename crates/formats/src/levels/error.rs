@@ -89,3 +89,9 @@ pub enum LevelsIndexErrorKind {
         n_levels: usize,
     },
 }
+
+impl From<LevelsIndexError> for crate::ReadErrorKind {
+    fn from(error: LevelsIndexError) -> Self {
+        Self::content(error)
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::error::{BufferErrorKind, GlbError};
 use super::json;
-use crate::input::Neighbours;
+use crate::beside::Neighbours;
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;

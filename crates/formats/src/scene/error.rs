@@ -453,3 +453,9 @@ pub enum SceneWriteError {
         len: usize,
     },
 }
+
+impl From<SceneReadError> for crate::ReadErrorKind {
+    fn from(error: SceneReadError) -> Self {
+        Self::content(error)
+    }
+}

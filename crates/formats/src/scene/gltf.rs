@@ -7,7 +7,7 @@ use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, Primi
 use super::json::{Document, Mesh, Node, Primitive, TRIANGLES};
 use super::transform::Transform;
 use super::{MAX_ELEMENTS, MAX_OBJECTS, MIRROR_SUFFIX, SceneFile, SceneFormat};
-use crate::input::{Folder, Neighbours};
+use crate::beside::{Folder, Neighbours};
 use crate::point::check_point;
 use std::path::Path;
 

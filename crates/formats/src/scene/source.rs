@@ -3,7 +3,7 @@
 use super::SceneFile;
 use super::error::SceneReadError;
 use super::gltf::{Loaded, parse};
-use crate::input::{Folder, Neighbours};
+use crate::beside::{Folder, Neighbours};
 use std::path::Path;
 
 /// A glTF document with its buffers, and what the objects of its scene come from.

@@ -96,3 +96,9 @@ pub enum ViewCellsErrorKind {
         max: f64,
     },
 }
+
+impl From<ViewCellsError> for crate::ReadErrorKind {
+    fn from(error: ViewCellsError) -> Self {
+        Self::content(error)
+    }
+}

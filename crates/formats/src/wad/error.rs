@@ -105,3 +105,9 @@ pub enum WadError {
         map: LumpName,
     },
 }
+
+impl From<WadError> for crate::ReadErrorKind {
+    fn from(error: WadError) -> Self {
+        Self::content(error)
+    }
+}

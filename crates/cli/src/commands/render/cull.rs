@@ -1,6 +1,6 @@
 //! What is left out before anything is drawn.
 
-use super::Error;
+use super::error::{Error, Unlike};
 use crate::tables::{self, Cells, Opened};
 use sightlines::cells::Scene;
 use sightlines::geometry::{Aabb, Point3};
@@ -97,19 +97,6 @@ fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point
         objects.iter().for_each(|&object| seen[object as usize] = true);
     }
     Ok(Some(seen))
-}
-
-/// What a table and a scene do not have in common.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(crate) enum Unlike {
-    #[error("the table is of a plan")]
-    Plane,
-    #[error("the table has {table} objects, the scene {scene}")]
-    Count { table: usize, scene: usize },
-    #[error("object {object} is called {table:?} in the table and {scene:?} in the scene")]
-    Name { object: u32, table: String, scene: String },
-    #[error("object {object}, {name:?}, is not where the table has it")]
-    Box { object: u32, name: String },
 }
 
 /// Why a table is not of a scene, as far as objects tell.

@@ -1,6 +1,5 @@
 //! Why `render` fails.
 
-use super::cull::Unlike;
 use crate::error::InputError;
 use crate::error::OutputError;
 use crate::eye::EyeError;
@@ -51,4 +50,17 @@ pub(crate) enum Error {
         size[0], size[1]
     )]
     Sheet { n: usize, size: [u32; 2], most: u64 },
+}
+
+/// What a table and a scene do not have in common.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum Unlike {
+    #[error("the table is of a plan")]
+    Plane,
+    #[error("the table has {table} objects, the scene {scene}")]
+    Count { table: usize, scene: usize },
+    #[error("object {object} is called {table:?} in the table and {scene:?} in the scene")]
+    Name { object: u32, table: String, scene: String },
+    #[error("object {object}, {name:?}, is not where the table has it")]
+    Box { object: u32, name: String },
 }

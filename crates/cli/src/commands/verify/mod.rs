@@ -6,6 +6,7 @@ mod outcome;
 mod own;
 mod proofs;
 mod truth;
+mod violations;
 
 use crate::Answer;
 use crate::error::InputError;
@@ -14,12 +15,13 @@ use crate::input::refuse;
 use crate::picture::PictureKind;
 use crate::{output, tables};
 use error::Error;
-use outcome::{Outcome, Violations};
+use outcome::{Outcome, With};
 use sightlines::formats::InputKind;
 use sightlines::pvs::Table;
 use sightlines::verify::{VerifyOptions, verify};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use violations::Violations;
 
 /// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
@@ -104,7 +106,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, Error> {
     let files = [args.table.as_path(), &args.scene];
     let outcome = Outcome::new(files, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
     let is_true = outcome.is_true();
-    output::print(args.json, &proofs::With { outcome, proofs })?;
+    output::print(args.json, &With { outcome, proofs })?;
     Ok(if is_true { Answer::Yes } else { Answer::No })
 }
 

@@ -2,9 +2,10 @@
 
 use super::own::About;
 use super::proofs::ProofOutcome;
+use super::violations::{ReportedViolation, Violations};
 use crate::output::{count, percent, seconds};
 use serde::Serialize;
-use sightlines::verify::{Confirmed, Findings, Remarks, VerifyOptions, Violation};
+use sightlines::verify::{Confirmed, Findings, Remarks};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -38,7 +39,7 @@ pub(super) struct Outcome {
     /// Whether there were so many that no more rays were shot.
     has_more_violations: bool,
     n_violations_by_kind: BTreeMap<&'static str, usize>,
-    violations: Vec<Told>,
+    violations: Vec<ReportedViolation>,
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<String>,
     seconds: f64,
@@ -81,81 +82,6 @@ impl From<Confirmed> for Pairs {
     }
 }
 
-/// A violation.
-#[derive(Debug, Clone, Serialize)]
-pub(super) struct Told {
-    kind: &'static str,
-    cells: Vec<u32>,
-    /// What the cells are in the map, of a map's own visibility.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    names: Vec<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    object: Option<u32>,
-    /// From where to where the ray goes, in scene units.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    segment: Option<[[f64; 3]; 2]>,
-    text: String,
-}
-
-impl Told {
-    /// A violation that needs no ray.
-    pub(super) fn of_sides(kind: &'static str, names: Vec<String>, text: String) -> Self {
-        Self { kind, cells: Vec::new(), names, object: None, segment: None, text }
-    }
-
-    /// The same in other words.
-    pub(super) fn of(self, names: Vec<String>, text: String) -> Self {
-        Self { names, text, ..self }
-    }
-
-    /// Whether a segment shows it.
-    pub(super) fn has_ray(&self) -> bool {
-        self.segment.is_some()
-    }
-}
-
-/// All reported violations.
-#[derive(Debug, Default)]
-pub(super) struct Violations {
-    n: usize,
-    /// Whether there may be more.
-    has_more: bool,
-    by_kind: BTreeMap<&'static str, usize>,
-    told: Vec<Told>,
-}
-
-impl Violations {
-    /// What was found, in other words, and perhaps less often.
-    pub(super) fn retold(found: &Findings, told: Vec<Told>) -> Self {
-        let mut by_kind = BTreeMap::new();
-        told.iter().for_each(|v| *by_kind.entry(v.kind).or_default() += 1);
-        Self { n: told.len(), has_more: has_more(found), by_kind, told }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.n == 0
-    }
-}
-
-impl From<&Findings> for Violations {
-    fn from(found: &Findings) -> Self {
-        let told = found.violations.iter().map(Told::from).collect();
-        Self { n: found.n_violations, has_more: has_more(found), by_kind: found.by_kind.clone(), told }
-    }
-}
-
-/// Whether rays found so much that no more were shot.
-fn has_more(found: &Findings) -> bool {
-    found.by_kind.values().any(|&n| n >= VerifyOptions::MOST_VIOLATIONS)
-}
-
-impl From<&Violation> for Told {
-    fn from(v: &Violation) -> Self {
-        let cells = v.cells().into_iter().map(|cell| cell.0).collect();
-        Self { kind: v.kind(), cells, names: Vec::new(), object: v.object(), segment: v.segment(), text: v.to_string() }
-    }
-}
-
 impl Outcome {
     pub(super) fn new(
         [table, scene]: [&Path; 2],
@@ -191,7 +117,7 @@ impl Outcome {
             n_violations: violations.n,
             has_more_violations: violations.has_more,
             n_violations_by_kind: violations.by_kind,
-            violations: violations.told,
+            violations: violations.reported,
             picture: None,
             seconds: time.as_secs_f64(),
         }
@@ -271,5 +197,21 @@ impl fmt::Display for Outcome {
             n if self.has_more_violations => writeln!(f, "result         at least {}", count(n as u64, "violation")),
             n => writeln!(f, "result         {}", count(n as u64, "violation")),
         }
+    }
+}
+
+/// What was found, with what the proofs say.
+#[derive(Debug, Serialize)]
+pub(super) struct With {
+    #[serde(flatten)]
+    pub(super) outcome: Outcome,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) proofs: Option<ProofOutcome>,
+}
+
+impl fmt::Display for With {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))?;
+        write!(f, "{}", self.outcome)
     }
 }

@@ -1,7 +1,6 @@
 //! Proofs that `build --certify` wrote, checked against their table.
 
 use super::Error;
-use super::outcome::Outcome;
 use crate::error::InputError;
 use crate::output::{bytes, count, seconds};
 use serde::Serialize;
@@ -184,21 +183,5 @@ impl fmt::Display for ProofOutcome {
             0 => writeln!(f, "proofs say     nothing that is not as the table says"),
             n => writeln!(f, "proofs say     {}", count(n, "violation")),
         }
-    }
-}
-
-/// What was found, with what the proofs say.
-#[derive(Debug, Serialize)]
-pub(super) struct With {
-    #[serde(flatten)]
-    pub(super) outcome: Outcome,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) proofs: Option<ProofOutcome>,
-}
-
-impl fmt::Display for With {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))?;
-        write!(f, "{}", self.outcome)
     }
 }

@@ -1,12 +1,12 @@
 //! Why `walk` fails.
 
-use super::levels::UnlikeLevels;
 use super::nesting::Found;
-use super::path::PathError;
 use crate::error::InputError;
 use crate::error::OutputError;
-use sightlines::eye_to_cell::Method;
+use sightlines::eye_to_cell::{Method, ViewError};
 use sightlines::formats::ReadError;
+use sightlines::geometry::CoordinateError;
+use sightlines::walkthrough::LevelError;
 use std::path::PathBuf;
 
 /// Why `walk` fails; exit code 2.
@@ -33,4 +33,30 @@ pub(crate) enum Error {
     /// An index of levels for another table.
     #[error("{}: {source}", path.display())]
     LevelsOf { path: PathBuf, source: UnlikeLevels },
+}
+
+/// Why levels do not go with a table.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum UnlikeLevels {
+    #[error("the levels are for another table: the index has {levels} cells, {} has {table}", path.display())]
+    Count { levels: usize, path: PathBuf, table: usize },
+    #[error(transparent)]
+    Index(#[from] LevelError),
+}
+
+/// Why a file is no walk. Frames count from 0.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum PathError {
+    #[error("{0}")]
+    Text(serde_json::Error),
+    #[error("there are no frames in the walk")]
+    Empty,
+    #[error("frame {frame}: {source}")]
+    Frame { frame: usize, source: serde_json::Error },
+    #[error("frame {frame}: {what} has {found} numbers, but the table has {dimension} dimensions")]
+    Count { frame: usize, what: &'static str, found: usize, dimension: u8 },
+    #[error("frame {frame}: {what}: {source}")]
+    Coordinate { frame: usize, what: &'static str, source: CoordinateError },
+    #[error("frame {frame}: {source}")]
+    View { frame: usize, source: ViewError },
 }

@@ -1,24 +1,15 @@
 //! What is drawn along a walk with the levels of a folder, and without.
 
-use super::Error;
+use super::error::{Error, UnlikeLevels};
 use crate::output::percent;
 use crate::tables::Cells;
 use serde::Serialize;
 use sightlines::eye_to_cell::View;
 use sightlines::formats::levels::{INDEX_NAME, read_levels_index};
 use sightlines::pvs::{Place, PlaceBuffer};
-use sightlines::walkthrough::{LevelError, LevelIndex, LevelSize};
+use sightlines::walkthrough::{LevelIndex, LevelSize};
 use std::fmt;
-use std::path::{Path, PathBuf};
-
-/// Why levels do not go with a table.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(crate) enum UnlikeLevels {
-    #[error("the levels are for another table: the index has {levels} cells, {} has {table}", path.display())]
-    Count { levels: usize, path: PathBuf, table: usize },
-    #[error(transparent)]
-    Index(#[from] LevelError),
-}
+use std::path::Path;
 
 /// Triangles that are drawn, on average over the frames with the eye in a cell.
 #[derive(Debug, Serialize)]

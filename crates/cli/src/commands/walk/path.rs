@@ -1,29 +1,11 @@
 //! Walks in files.
 
-use super::Error;
+use super::error::{Error, PathError};
 use crate::error::InputError;
 use serde::Deserialize;
-use sightlines::eye_to_cell::ViewError;
-use sightlines::geometry::{CoordinateError, check_coordinate};
+use sightlines::geometry::check_coordinate;
 use sightlines::walkthrough::CameraPose;
 use std::path::Path;
-
-/// Why a file is no walk. Frames count from 0.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum PathError {
-    #[error("{0}")]
-    Text(serde_json::Error),
-    #[error("there are no frames in the walk")]
-    Empty,
-    #[error("frame {frame}: {source}")]
-    Frame { frame: usize, source: serde_json::Error },
-    #[error("frame {frame}: {what} has {found} numbers, but the table has {dimension} dimensions")]
-    Count { frame: usize, what: &'static str, found: usize, dimension: u8 },
-    #[error("frame {frame}: {what}: {source}")]
-    Coordinate { frame: usize, what: &'static str, source: CoordinateError },
-    #[error("frame {frame}: {source}")]
-    View { frame: usize, source: ViewError },
-}
 
 /// The file.
 #[derive(Debug, Deserialize)]

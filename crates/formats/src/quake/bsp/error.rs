@@ -237,3 +237,9 @@ pub enum BspError {
         len: u64,
     },
 }
+
+impl From<BspError> for crate::ReadErrorKind {
+    fn from(error: BspError) -> Self {
+        Self::content(error)
+    }
+}

@@ -189,3 +189,9 @@ pub enum PrtErrorKind {
 pub(super) fn point_range() -> std::ops::RangeInclusive<u64> {
     *PORTAL_POINTS.start() as u64..=*PORTAL_POINTS.end() as u64
 }
+
+impl From<PrtError> for crate::ReadErrorKind {
+    fn from(error: PrtError) -> Self {
+        Self::content(error)
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::document::{Object, as_object, list};
 use super::error::RewriteError;
-use crate::input::Neighbours;
+use crate::beside::Neighbours;
 use crate::scene::buffers::load_file;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -17,7 +17,7 @@ use super::gltf::split;
 use super::json::Document;
 use super::source::GltfSource;
 use super::write::container;
-use crate::input::Neighbours;
+use crate::beside::Neighbours;
 use copies::{Copies, Original};
 use document::{Object, as_object, list};
 use serde_json::{Value, json};

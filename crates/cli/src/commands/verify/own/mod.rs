@@ -3,7 +3,7 @@
 mod doom;
 mod quake;
 
-use super::outcome::{Told, Violations};
+use super::violations::{ReportedViolation, Violations};
 use crate::commands::verify::Error;
 use crate::input;
 use crate::output::{bytes, count};
@@ -105,7 +105,7 @@ fn hidden_pairs(hidden: &BitMatrix) -> [u64; 2] {
 impl Own {
     /// The findings in terms of leafs or sectors, each pair once, and with a ray if there is one.
     pub(super) fn violations(&self, found: &Findings) -> Violations {
-        let mut of_pairs: BTreeMap<[u32; 2], Told> = BTreeMap::new();
+        let mut of_pairs: BTreeMap<[u32; 2], ReportedViolation> = BTreeMap::new();
         let mut others = Vec::new();
         for v in &found.violations {
             let cells = v.cells();
@@ -114,9 +114,9 @@ impl Own {
                 _ => None,
             };
             match sides {
-                None => others.push(Told::from(v)),
+                None => others.push(ReportedViolation::from(v)),
                 Some([a, b]) => {
-                    let told = self.told([a, b], v);
+                    let told = self.reported([a, b], v);
                     let known = of_pairs.get(&[a.min(b), a.max(b)]);
                     if known.is_none_or(|known| !known.has_ray() && told.has_ray()) {
                         of_pairs.insert([a.min(b), a.max(b)], told);
@@ -127,10 +127,13 @@ impl Own {
         for (side, s) in (0u32..).zip(&self.sides) {
             if s.has_places && self.hides(side, side) && !of_pairs.contains_key(&[side, side]) {
                 let text = format!("{} is hidden from itself", s.name);
-                of_pairs.insert([side, side], Told::of_sides("hidden-from-itself", vec![s.name.clone()], text));
+                of_pairs.insert(
+                    [side, side],
+                    ReportedViolation::of_sides("hidden-from-itself", vec![s.name.clone()], text),
+                );
             }
         }
-        Violations::retold(found, of_pairs.into_values().chain(others).collect())
+        Violations::reported(found, of_pairs.into_values().chain(others).collect())
     }
 
     fn sides_of(&self, cells: [CellId; 2]) -> Option<[u32; 2]> {
@@ -142,7 +145,7 @@ impl Own {
         self.hidden.get(viewer as usize, target as usize)
     }
 
-    fn told(&self, [a, b]: [u32; 2], v: &Violation) -> Told {
+    fn reported(&self, [a, b]: [u32; 2], v: &Violation) -> ReportedViolation {
         let [x, y] = [a, b].map(|side| self.sides[side as usize].name.as_str());
         let hidden = match (self.hides(a, b), self.hides(b, a)) {
             _ if a == b => format!("{x} is hidden from itself"),
@@ -157,7 +160,7 @@ impl Own {
             _ => "a portal joins them".to_owned(),
         };
         let names = if a == b { vec![x.to_owned()] } else { vec![x.to_owned(), y.to_owned()] };
-        Told::from(v).of(names, format!("{hidden}, but {but}"))
+        ReportedViolation::from(v).of(names, format!("{hidden}, but {but}"))
     }
 }
 
