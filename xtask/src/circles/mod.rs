@@ -40,8 +40,8 @@ impl fmt::Display for Circle {
     }
 }
 
-/// Prints the circles of every program of the workspace, and returns how many there are.
-pub(crate) fn check() -> Result<usize, Failure> {
+/// Prints the circles of every program of the workspace; it is a failure if there is one, or no program at all.
+pub(crate) fn refuse() -> Result<(), Failure> {
     let mut packages: Vec<PathBuf> = ["shaders", "tests", "benches", "lab", "xtask"].map(|p| root().join(p)).into();
     packages.extend(entries(&root().join("crates"))?);
     packages.sort();
@@ -58,7 +58,7 @@ pub(crate) fn check() -> Result<usize, Failure> {
         }
     }
     eprintln!("{n_found} circles of modules in {n_files} files");
-    Ok(n_found)
+    if n_found == 0 && n_files > 0 { Ok(()) } else { Err(Failure::Found { what: "circles of modules", n: n_found }) }
 }
 
 /// The root files of the programs and libraries of a package.

@@ -23,7 +23,7 @@ use sightlines_cells::Scene;
 use sightlines_formats::{SceneInfo, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{SceneOptions, subdivide_scene};
-use sightlines_multifocal::{Effort, FromRegion, Occludees, Split, Volume, RaySampler};
+use sightlines_multifocal::{Effort, FromRegion, Occludees, RaySampler, Split, Volume};
 use sightlines_progress::Observer;
 use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
