@@ -35,7 +35,7 @@ impl fmt::Display for Facts<'_> {
 /// Times to cut and to see.
 pub(crate) fn times(cut_seconds: f64, what: &str, see_seconds: f64) -> String {
     let [cut, see] = [cut_seconds, see_seconds].map(|s| seconds(Duration::from_secs_f64(s)));
-    format!("{cut} to cut the {what}, {see} to find out who sees whom")
+    format!("{cut} to cut the {what}, {see} to compute visibility")
 }
 
 /// What the stab trees of a table are.

@@ -43,7 +43,7 @@ impl Family for EyeToCellFamily {
     }
 
     fn about(&self) -> &'static str {
-        "What a viewer sees from where he is, in the direction he looks, on a walk from cell to cell. To the right: microseconds of one query, in \
+        "What one eye sees in its current view, on a walk from cell to cell. To the right: microseconds of one query, in \
          the median, its cell known and all in memory. Up, of panels about cells: cells that are left, over those that the exact method leaves. Of \
          panels about polygons: polygons of the objects that are left, over those of objects that a picture shows (192 x 144 pixels by ray casting), \
          which misses what is smaller than a pixel.\n\

@@ -63,7 +63,7 @@ impl Family for Growth {
 
     fn about(&self) -> &'static str {
         "Whole bakes on one thread, each in a process of its own: towers with furniture, cut into boxes; office plans, cut into polygons; \
-         generated levels of convex cells. Time is to cut, to decide who sees whom and to make the table; of the levels, whose cells are there already, only to \
+         generated levels of convex cells. Time is to cut, to compute visibility and to make the table; of the levels, whose cells are there already, only to \
          decide. Memory is the most that the process had in use, the scene, the program and its table included, so that small scenes show the program's own. Exponents are fitted by least squares of \
          logarithms, for all sizes and for the larger half of them; 1 is linear. Cells that see each other grow too: a table of n cells has n² bits."
     }

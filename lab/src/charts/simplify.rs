@@ -153,7 +153,7 @@ mod tests {
         let free = ours.iter().filter(|r| r.method.ends_with("budget 0"));
         assert_eq!(free.filter(|r| r.error == Some(0.0)).count(), 2);
         let shape = rows.iter().filter(|r| r.method.starts_with("shape")).map(|r| r.error.unwrap());
-        assert!(shape.fold(0.0, f64::max) > 0.02, "whoever knows of no eyes changes more");
+        assert!(shape.fold(0.0, f64::max) > 0.02, "a metric without eyes changes more");
         assert_eq!(SimplifyFamily.panels(&rows).len(), 2);
     }
 }

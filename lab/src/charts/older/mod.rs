@@ -2,7 +2,7 @@
 //!
 //! | | method | errs |
 //! | --- | --- | --- |
-//! | [`connected`] | what view-volume culling knows of a cell: whoever can be reached | towards visible |
+//! | [`connected`] | what frustum culling yields for a cell: every reachable cell | towards visible |
 //! | [`shadow_volumes`] | portals seen through pairs of portals | towards visible |
 //! | [`sampled`] | random rays | towards hidden: it misses what no ray happens to meet |
 //! | [`BoxTreeN`] | boxes in a quadtree or octree against one view volume, from an eye | towards visible |

@@ -33,7 +33,7 @@ fn check<O: Opening>(graph: &PortalGraph<O>, exact: &BitMatrix, n_rays: u64) -> 
     let shadows = shadow_volumes(graph, Duration::MAX).expect("there is time enough");
     prop_assert_eq!(n_only(&few, exact), 0, "rays see what is visible only");
     prop_assert_eq!(n_only(exact, &shadows), 0, "shadow volumes hide nothing that is visible");
-    prop_assert_eq!(n_only(&shadows, &all), 0, "nobody sees whom he cannot reach");
+    prop_assert_eq!(n_only(&shadows, &all), 0, "only reachable cells are visible");
     Ok([&few, exact, &shadows, &all].map(|m| m.count_ones() - m.n_rows() as u64))
 }
 

@@ -60,6 +60,6 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
         write_method(f, self.fast, format_args!("a {} file", self.portal_format), &self.clusters, self.verbose)?;
-        writeln!(f, "time           {} to find out who sees whom", self.clusters.time())
+        writeln!(f, "time           {} to compute visibility", self.clusters.time())
     }
 }

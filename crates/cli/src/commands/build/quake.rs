@@ -116,6 +116,6 @@ impl fmt::Display for Outcome {
         };
         writeln!(f, "objects        {} of the world{never}", count(self.n_faces as u64, "face"))?;
         writeln!(f, "planes         {}, known to {:.1e} units", self.n_planes, self.slack)?;
-        writeln!(f, "time           {} to find out who sees whom", self.clusters.time())
+        writeln!(f, "time           {} to compute visibility", self.clusters.time())
     }
 }

@@ -69,7 +69,7 @@ impl fmt::Display for Outcome {
         }
         let all = seconds(Duration::from_secs_f64(self.seconds));
         let run = if self.resumed { ", in this run" } else { "" };
-        writeln!(f, "time           {} to find out who sees whom, {all} in all{run}", self.clusters.time())?;
+        writeln!(f, "time           {} to compute visibility, {all} in all{run}", self.clusters.time())?;
         self.peak_bytes.map_or(Ok(()), |peak| writeln!(f, "memory         {} at most", bytes(peak)))
     }
 }
