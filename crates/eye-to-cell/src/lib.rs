@@ -12,6 +12,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod conformance;
 mod doors;
 mod epoch_set;
 mod front;

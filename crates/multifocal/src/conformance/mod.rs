@@ -11,6 +11,7 @@
 //! and so is whatever is compared with it. [`impostors`] are backends with one fault each, which the suite has to refuse.
 
 mod check;
+pub mod from_region;
 pub mod impostors;
 mod pair;
 mod random;

@@ -1,4 +1,5 @@
 //! Walks and movers, frame by frame.
 
 mod moving;
+mod sources;
 mod walk;
