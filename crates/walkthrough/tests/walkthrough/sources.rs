@@ -1,6 +1,6 @@
 //! Tables in memory and packed ones keep the contract of cell sources, and impostors are refused.
 
-use sightlines_bake::{BakeOptions, StabOptions, bake_plan, with_stab_trees};
+use sightlines_bake::{PlanBakeOptions, StabOptions, bake_plan, with_stab_trees};
 use sightlines_eye_to_cell::TableCells;
 use sightlines_eye_to_cell::conformance::impostors::{Fault, Impostor};
 use sightlines_eye_to_cell::conformance::run;
@@ -11,9 +11,9 @@ use sightlines_walkthrough::PackedCells;
 
 fn table() -> Table {
     let plan = office(OfficeOptions { furniture: true, ..OfficeOptions::default() }).expect("an office");
-    let table = bake_plan(&plan, &BakeOptions::default()).expect("a plan").table;
+    let baked = bake_plan(&plan, &PlanBakeOptions::default()).expect("a plan");
     let few = StabOptions { max_nodes: Some(64), threads: 1, progress: None };
-    with_stab_trees(table, &few).expect("a table with its geometry").table
+    with_stab_trees(baked.table, &baked.graph, &few).expect("the graph of the table").table
 }
 
 fn packed(table: &Table) -> PackedCells<Vec<u8>> {
