@@ -34,7 +34,7 @@ fn objects_seen(folder: &Folder, table: &str) -> u64 {
 }
 
 fn method(answer: &Value) -> &str {
-    answer["auto"]["method"].as_str().expect("the choice is told")
+    answer["auto"]["method"].as_str().expect("the choice is printed")
 }
 
 #[test]

@@ -28,10 +28,10 @@ fn query_tells_the_name_beside_the_number() {
                 let ask = |file: &str, json: &[&str]| {
                     folder.run(&[&["query", file, "--eye", &eye][..], more, json].concat()).expect(0)
                 };
-                let told = ask(file, &[]).out;
-                assert!(told.contains(&format!(" is in cell {cell} ({name:?})\n")), "{told}");
-                let told = ask(file, &["--json"]).json();
-                assert_eq!((&told["cells"], &told["cell_names"]), (&json!([cell]), &json!([name])));
+                let reply = ask(file, &[]).out;
+                assert!(reply.contains(&format!(" is in cell {cell} ({name:?})\n")), "{reply}");
+                let reply = ask(file, &["--json"]).json();
+                assert_eq!((&reply["cells"], &reply["cell_names"]), (&json!([cell]), &json!([name])));
                 // The twin: a table without names says nothing of them.
                 assert!(ask("office.pvs", &[]).out.contains(&format!(" is in cell {cell}\n")));
                 assert!(ask("office.pvs", &["--json"]).json().get("cell_names").is_none());
@@ -57,8 +57,8 @@ fn cells_at_a_border_are_named_one_by_one() {
     let names: Vec<&str> = ids.iter().map(|&id| table.cell_name(CellId(id as u32)).unwrap()).collect();
     assert_eq!(found["cell_names"], json!(names));
     let listed: Vec<String> = ids.iter().zip(&names).map(|(id, name)| format!("{id} ({name:?})")).collect();
-    let told = folder.run(&["query", "named.pvs", "--eye", &eye]).expect(0).out;
-    assert!(told.contains(&format!(" is on the border of cells {}\n", listed.join(" "))), "{told}");
+    let reply = folder.run(&["query", "named.pvs", "--eye", &eye]).expect(0).out;
+    assert!(reply.contains(&format!(" is on the border of cells {}\n", listed.join(" "))), "{reply}");
 }
 
 #[test]

@@ -38,9 +38,9 @@ fn build_and_flip(folder: &Folder, scene: &str, of_map: &[&str], step: usize, n_
         flip(folder, a, b);
         let args = [&["verify", "flipped.pvs", scene, "--proofs", "t.cert"], of_map, &few].concat();
         let bad = folder.run(&args).expect(1).json();
-        let told: &Value = &bad["proofs"]["violations"];
-        assert_eq!(told.as_array().map(Vec::len), Some(1), "{told}");
-        assert!(told[0].as_str().is_some_and(|text| text.starts_with(&format!("cells {a} and {b} "))), "{told}");
+        let reply: &Value = &bad["proofs"]["violations"];
+        assert_eq!(reply.as_array().map(Vec::len), Some(1), "{reply}");
+        assert!(reply[0].as_str().is_some_and(|text| text.starts_with(&format!("cells {a} and {b} "))), "{reply}");
     }
 }
 
@@ -83,9 +83,9 @@ fn prove_and_flip(folder: &Folder, scene: &str) {
     for [a, b] in (0..n).map(|a| [a, (a * 5 + 1) % n]).filter(|[a, b]| a < b) {
         flip(folder, a, b);
         let args = [&["verify", "flipped.pvs", scene, "--proofs", "t.cert"][..], &few].concat();
-        let told = &folder.run(&args).expect(1).json()["proofs"]["violations"];
-        assert_eq!(told.as_array().map(Vec::len), Some(1), "{told}");
-        assert!(told[0].as_str().is_some_and(|text| text.starts_with(&format!("cells {a} and {b} "))), "{told}");
+        let reply = &folder.run(&args).expect(1).json()["proofs"]["violations"];
+        assert_eq!(reply.as_array().map(Vec::len), Some(1), "{reply}");
+        assert!(reply[0].as_str().is_some_and(|text| text.starts_with(&format!("cells {a} and {b} "))), "{reply}");
     }
 }
 

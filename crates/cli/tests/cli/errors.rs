@@ -184,8 +184,8 @@ fn damaged_maps_are_named_with_their_place() {
         let before = folder.read("bad.wad");
         folder.refused(&["reject", "bad.wad", "-o", "bad.wad"]);
         assert_eq!(folder.read("bad.wad"), before);
-        let told = folder.run(&["info", "bad.wad"]).expect(0).out;
-        assert!(told.contains("cannot be used: ") && told.contains(place), "{told}");
+        let reply = folder.run(&["info", "bad.wad"]).expect(0).out;
+        assert!(reply.contains("cannot be used: ") && reply.contains(place), "{reply}");
     }
     assert_eq!(folder.names(), ["bad.wad", "out.pvs", "out.wad"]);
 }

@@ -37,15 +37,15 @@ fn clusters_are_explained() {
     for [a, b] in (0..15).flat_map(|a| (0..15).filter(move |&b| a != b).map(move |b| [a, b])) {
         let listed = table.sees(CellId(a), CellId(b));
         let run = explain(&folder, "map.pvs", [a, b], &["--json"]).expect(i32::from(!listed));
-        let told = run.json();
-        assert_eq!((&told["listed"], &told["checked"]), (&json!(listed), &json!(true)), "{a} {b}");
+        let reply = run.json();
+        assert_eq!((&reply["listed"], &reply["checked"]), (&json!(listed), &json!(true)), "{a} {b}");
         let of_prt = explain(&folder, "map.prt", [a, b], &["--json"]).expect(i32::from(!listed));
         assert_eq!(of_prt.out, run.out.replace(&format!("\"listed\":{listed}"), "\"listed\":null"));
         if listed {
-            assert_eq!(told["answer"], json!("visible"));
-            let line = Line3 { a: point(&told["line"][0]), b: point(&told["line"][1]) };
+            assert_eq!(reply["answer"], json!("visible"));
+            let line = Line3 { a: point(&reply["line"][0]), b: point(&reply["line"][1]) };
             let mut here = CellId(a);
-            for passed in told["portals"].as_array().expect("a list") {
+            for passed in reply["portals"].as_array().expect("a list") {
                 let portal = &graph.portals()[passed["portal"].as_u64().expect("a number") as usize];
                 let forward = portal.cells[0] == here;
                 let shape: Portal3 = if forward { portal.shape.clone() } else { portal.shape.reversed() };
@@ -62,9 +62,9 @@ fn clusters_are_explained() {
             assert_eq!(here, CellId(b));
             n_visible += 1;
         } else {
-            assert_eq!(told["answer"], json!("hidden"));
-            let blocked = told["blocked"].as_array().expect("a list");
-            assert_eq!(told["n_blocked"], json!(blocked.len()));
+            assert_eq!(reply["answer"], json!("hidden"));
+            let blocked = reply["blocked"].as_array().expect("a list");
+            assert_eq!(reply["n_blocked"], json!(blocked.len()));
             assert!(!blocked.is_empty() && blocked.iter().all(|way| !way["certificate"].is_null()));
             n_hidden += 1;
         }
@@ -75,34 +75,34 @@ fn clusters_are_explained() {
 #[test]
 fn people_are_told_too() {
     let folder = with(&rooms(4, 1));
-    let told = explain(&folder, "map.prt", [0, 1], &[]).expect(0).out;
+    let reply = explain(&folder, "map.prt", [0, 1], &[]).expect(0).out;
     let start = "cluster 0 sees cluster 1 through 1 portal\n  portal 0 into cluster 1 at (16, ";
-    assert!(told.starts_with(start) && told.contains("\nalong the line from ("), "{told}");
-    assert!(told.ends_with("\nthe independent checker accepts this\n"), "{told}");
-    let told = explain(&folder, "map.prt", [2, 2], &[]).expect(0).out;
-    assert!(told.starts_with("both are cluster 2, and a cluster sees itself\n"), "{told}");
+    assert!(reply.starts_with(start) && reply.contains("\nalong the line from ("), "{reply}");
+    assert!(reply.ends_with("\nthe independent checker accepts this\n"), "{reply}");
+    let reply = explain(&folder, "map.prt", [2, 2], &[]).expect(0).out;
+    assert!(reply.starts_with("both are cluster 2, and a cluster sees itself\n"), "{reply}");
     let hidden = (0..4).flat_map(|a| (0..4).map(move |b| [a, b])).find_map(|pair| {
         let run = explain(&folder, "map.pvs", pair, &["--proofs", "1"]);
         (run.code == 1).then_some(run.out)
     });
-    let told = hidden.expect("not all rooms see each other");
+    let reply = hidden.expect("not all rooms see each other");
     let way = "passes one of ";
-    assert!(told.contains(" does not see cluster ") && told.contains(way) && told.contains("\n  blocked: portals "));
-    assert!(told.ends_with("\nthe independent checker accepts this\n"), "{told}");
+    assert!(reply.contains(" does not see cluster ") && reply.contains(way) && reply.contains("\n  blocked: portals "));
+    assert!(reply.ends_with("\nthe independent checker accepts this\n"), "{reply}");
     // Two rooms without a way between them.
     let far = "PRT1\n3\n1\n4 0 1 (0 0 0) (0 8 0) (0 8 8) (0 0 8)\n";
     folder.write("far.prt", far);
-    let told = explain(&folder, "far.prt", [0, 2], &[]).expect(1).out;
-    assert!(told.starts_with("cluster 0 does not see cluster 2: no way through portals joins them\n"), "{told}");
+    let reply = explain(&folder, "far.prt", [0, 2], &[]).expect(1).out;
+    assert!(reply.starts_with("cluster 0 does not see cluster 2: no way through portals joins them\n"), "{reply}");
 }
 
 #[test]
 fn limits_and_wrong_tables_are_told() {
     let folder = with(&rooms(6, 5));
-    let told = explain(&folder, "map.prt", [0, 29], &["--max-questions", "1"]).expect(0).out;
-    assert_eq!(told, "cluster 0 and cluster 29: given up after 1 question; see --max-questions\n");
-    let told = explain(&folder, "map.prt", [0, 29], &["--max-questions", "1", "--json"]).expect(0).json();
-    assert_eq!((&told["answer"], &told["checked"]), (&json!("unknown"), &json!(false)));
+    let reply = explain(&folder, "map.prt", [0, 29], &["--max-questions", "1"]).expect(0).out;
+    assert_eq!(reply, "cluster 0 and cluster 29: given up after 1 question; see --max-questions\n");
+    let reply = explain(&folder, "map.prt", [0, 29], &["--max-questions", "1", "--json"]).expect(0).json();
+    assert_eq!((&reply["answer"], &reply["checked"]), (&json!("unknown"), &json!(false)));
     // A table that was only bounded shows more than there is; and a wrong one is reported as such.
     folder.run(&["build", "map.prt", "-o", "fast.pvs", "--fast"]).expect(0);
     let [exact, fast] =
@@ -110,16 +110,16 @@ fn limits_and_wrong_tables_are_told() {
     let pairs = || (0..30).flat_map(|a| (0..30).map(move |b| [a, b]));
     let sees = |table: &Table, [a, b]: [u32; 2]| table.sees(CellId(a), CellId(b));
     let loose = pairs().find(|&pair| sees(&fast, pair) && !sees(&exact, pair)).expect("the bound is loose");
-    let told = explain(&folder, "fast.pvs", loose, &[]).expect(1).out;
-    assert!(told.contains("\nthe table lists them as visible all the same\n"), "{told}");
+    let reply = explain(&folder, "fast.pvs", loose, &[]).expect(1).out;
+    assert!(reply.contains("\nthe table lists them as visible all the same\n"), "{reply}");
     let pair = pairs().find(|&[a, b]| a < b && sees(&exact, [a, b])).expect("two rooms see each other");
     let mut parts = exact.into_parts();
     for [a, b] in [pair, [pair[1], pair[0]]] {
         parts.rows.set(a as usize, b as usize, false);
     }
     folder.write("wrong.pvs", Table::new(parts).expect("a sound table").to_bytes());
-    let told = explain(&folder, "wrong.pvs", pair, &[]).expect(0).out;
-    assert!(told.contains("\nthe table says that they do not: it is wrong\n"), "{told}");
+    let reply = explain(&folder, "wrong.pvs", pair, &[]).expect(0).out;
+    assert!(reply.contains("\nthe table says that they do not: it is wrong\n"), "{reply}");
 }
 
 #[test]
@@ -162,17 +162,17 @@ fn vis_certifies() {
         assert!(run.out.contains(&line), "{}", run.out);
     }
     assert_eq!(folder.read("out.bsp"), folder.read("plain.bsp"));
-    let told = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--json", "--certify", "100000"]).expect(0).json();
-    let certified = &told["certified"];
+    let reply = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--json", "--certify", "100000"]).expect(0).json();
+    let certified = &reply["certified"];
     for kind in ["visible", "hidden"] {
         let proven = &certified[kind];
         assert!(proven["n_picked"].as_u64() > Some(20), "{certified}");
         assert_eq!(proven["n_picked"], proven["n_accepted"], "{certified}");
     }
-    assert_eq!(certified["visible"]["n_picked"], told["n_visible_pairs"]);
+    assert_eq!(certified["visible"]["n_picked"], reply["n_visible_pairs"]);
     // Of a fast search pairs are hidden after all, which is no contradiction.
-    let told = folder.run(&["vis", "map.bsp", "-o", "f.bsp", "--json", "--fast", "--certify", "999"]).expect(0).json();
-    let visible = &told["certified"]["visible"];
+    let reply = folder.run(&["vis", "map.bsp", "-o", "f.bsp", "--json", "--fast", "--certify", "999"]).expect(0).json();
+    let visible = &reply["certified"]["visible"];
     assert!(visible["n_loose"].as_u64() > Some(0) && visible["n_too_many"] == json!(0), "{visible}");
     let plain = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--json"]).expect(0).json();
     assert_eq!(plain["certified"], Value::Null);

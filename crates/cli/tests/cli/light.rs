@@ -15,8 +15,8 @@ fn light(folder: &Folder, more: &[&str]) -> Value {
     folder.run(&args).expect(0).json()
 }
 
-fn number(told: &Value, key: &str) -> f64 {
-    told[key].as_f64().unwrap_or_else(|| panic!("{key}: {told}"))
+fn number(reply: &Value, key: &str) -> f64 {
+    reply[key].as_f64().unwrap_or_else(|| panic!("{key}: {reply}"))
 }
 
 fn with_board() -> Folder {
@@ -28,11 +28,11 @@ fn with_board() -> Folder {
 #[test]
 fn more_halves_decide_more() {
     let folder = with_board();
-    let told = [2, 6, 10].map(|depth: u32| light(&folder, &["--depth", &depth.to_string()]));
-    let doubt = told.each_ref().map(|t| number(t, "pixels_in_doubt"));
+    let reply = [2, 6, 10].map(|depth: u32| light(&folder, &["--depth", &depth.to_string()]));
+    let doubt = reply.each_ref().map(|t| number(t, "pixels_in_doubt"));
     assert!(doubt[0] > doubt[1] && doubt[1] > doubt[2] && doubt[2] > 0.0, "{doubt:?}");
-    assert!(number(&told[2], "pixels_umbra") > 50.0 && number(&told[2], "pixels_lit") > 1000.0, "{}", told[2]);
-    assert!(number(&told[2], "rays") < 0.5 * number(&told[2], "rays_else"));
+    assert!(number(&reply[2], "pixels_umbra") > 50.0 && number(&reply[2], "pixels_lit") > 1000.0, "{}", reply[2]);
+    assert!(number(&reply[2], "rays") < 0.5 * number(&reply[2], "rays_else"));
     // The share of the light is the same to the eye whatever is proven: pictures of shares differ by what rays estimate.
     let grey = ["2", "10"].map(|depth| {
         light(&folder, &["--depth", depth, "--grey", "--rays", "256"]);

@@ -63,14 +63,14 @@ fn leafs_that_are_hidden_though_seen_are_found() {
                 let bad = verify(&folder, &[&["bad.bsp", scene], prt].concat(), 1);
                 assert_eq!((&bad["is_true"], &bad["n_violations"]), (&json!(false), &json!(1)), "{bad}");
                 assert_eq!(bad["own"]["n_hidden_one_way"], json!(u64::from(!both)));
-                let told = &bad["violations"][0];
+                let reply = &bad["violations"][0];
                 // Maps count leafs from 1.
                 let mut names =
-                    [told["names"][0].clone(), told["names"][1].clone()].map(|n| n.as_str().unwrap().to_owned());
+                    [reply["names"][0].clone(), reply["names"][1].clone()].map(|n| n.as_str().unwrap().to_owned());
                 names.sort();
                 assert_eq!(names, [a, b].map(|leaf| format!("leaf {}", leaf + 1)), "{bad}");
-                assert!(told["segment"][1][2].is_f64(), "{told}");
-                let text = told["text"].as_str().expect("words");
+                assert!(reply["segment"][1][2].is_f64(), "{reply}");
+                let text = reply["text"].as_str().expect("words");
                 let one_way = format!("leaf {} is hidden from leaf {}, but nothing is between (", b + 1, a + 1);
                 assert_eq!(text.contains("are hidden from each other, but nothing is between ("), both, "{text}");
                 assert_eq!(text.contains(&one_way), !both, "{text}");
@@ -112,10 +112,10 @@ fn clusters_of_several_leafs_are_checked() {
         let at = lump.start + 28 * (leaf as usize + 1) + 4;
         bytes[at..at + 4].copy_from_slice(&[0xFF; 4]);
         folder.write("uneven.bsp", bytes);
-        let told = verify(&folder, &["uneven.bsp", "map.prt"], 0);
-        assert_eq!(told["own"]["n_uneven_clusters"], 1, "{}", map.name);
-        let told = folder.run(&["verify", "uneven.bsp", "map.prt"]).expect(0).out;
-        assert!(told.contains("1 cluster with leafs that do not see the same"), "{told}");
+        let reply = verify(&folder, &["uneven.bsp", "map.prt"], 0);
+        assert_eq!(reply["own"]["n_uneven_clusters"], 1, "{}", map.name);
+        let reply = folder.run(&["verify", "uneven.bsp", "map.prt"]).expect(0).out;
+        assert!(reply.contains("1 cluster with leafs that do not see the same"), "{reply}");
         n_uneven += 1;
     }
     assert!(n_maps > 8 && n_uneven > 0, "{n_maps} maps, {n_uneven} uneven");
@@ -133,12 +133,12 @@ fn neighbours_and_the_leaf_itself_are_found_without_rays() {
     changed(&folder, "bad.bsp", |seen| seen.set(4, 4, false));
     let bad = verify(&folder, &[&["bad.bsp", "map.prt"][..], &none].concat(), 1);
     assert_eq!(bad["violations"][0]["text"], "leaf 5 is hidden from itself");
-    let told = folder.run(&["verify", "bad.bsp", "map.prt"]).expect(1).out;
+    let reply = folder.run(&["verify", "bad.bsp", "map.prt"]).expect(1).out;
     assert!(
-        told.contains("lump           visibility of the map, ") && told.contains("for 9 leafs in 9 clusters"),
-        "{told}"
+        reply.contains("lump           visibility of the map, ") && reply.contains("for 9 leafs in 9 clusters"),
+        "{reply}"
     );
-    assert!(told.contains("violation      hidden-from-itself: leaf 5 is hidden from itself\n"), "{told}");
+    assert!(reply.contains("violation      hidden-from-itself: leaf 5 is hidden from itself\n"), "{reply}");
 }
 
 #[test]
@@ -215,12 +215,12 @@ fn sectors_that_are_rejected_though_seen_are_found() {
         bad.set(b, a, both);
         let with = sightlines::formats::doom::DoomMapSource { reject: Some(bad.into_bytes()), ..source.clone() };
         folder.write("bad.wad", write_doom_map(name, &with).unwrap());
-        let told = verify(&folder, &["bad.wad", "plain.wad"], 1);
-        assert_eq!(told["n_violations"], 1, "{told}");
-        let mut names = told["violations"][0]["names"].as_array().expect("two").clone();
+        let reply = verify(&folder, &["bad.wad", "plain.wad"], 1);
+        assert_eq!(reply["n_violations"], 1, "{reply}");
+        let mut names = reply["violations"][0]["names"].as_array().expect("two").clone();
         names.sort_by_key(|name| name.as_str().map(|s| (s.len(), s.to_owned())));
-        assert_eq!(names, [a, b].map(|sector| json!(format!("sector {sector}"))), "{told}");
-        let text = told["violations"][0]["text"].as_str().expect("words");
+        assert_eq!(names, [a, b].map(|sector| json!(format!("sector {sector}"))), "{reply}");
+        let text = reply["violations"][0]["text"].as_str().expect("words");
         assert_eq!(text.contains("from each other"), both, "{text}");
         n_found += 1;
     }
@@ -230,8 +230,8 @@ fn sectors_that_are_rejected_though_seen_are_found() {
     blind.set(1, 1, true);
     let with = sightlines::formats::doom::DoomMapSource { reject: Some(blind.into_bytes()), ..source };
     folder.write("blind.wad", write_doom_map(name, &with).unwrap());
-    let told = folder.run(&["verify", "blind.wad", "blind.wad", "--draw", "ray.svg"]).expect(1).out;
-    assert!(told.contains("sector 1 is hidden from itself"), "{told}");
+    let reply = folder.run(&["verify", "blind.wad", "blind.wad", "--draw", "ray.svg"]).expect(1).out;
+    assert!(reply.contains("sector 1 is hidden from itself"), "{reply}");
 }
 
 /// Invariant: the own visibility of real maps, as `vis` and `reject` write it, is true to them.
@@ -257,9 +257,9 @@ fn real_maps_are_true_to_themselves() {
     // One pair of a map as it was published is rejected though a line passes twelve two-sided lines from the one to the other, and no
     // one-sided line.
     let wad = data.join("doom/freedoom1_E1M3.wad").display().to_string();
-    let told = verify(&folder, &[&wad, &wad, "--rays", "20000", "--pairs", "3000"], 1);
+    let reply = verify(&folder, &[&wad, &wad, "--rays", "20000", "--pairs", "3000"], 1);
     assert_eq!(
-        (&told["n_violations"], &told["violations"][0]["names"]),
+        (&reply["n_violations"], &reply["violations"][0]["names"]),
         (&json!(1), &json!(["sector 101", "sector 200"]))
     );
     folder.run(&["reject", &wad, "-o", "mended.wad", "--force"]).expect(0);

@@ -10,10 +10,10 @@ fn tables_are_packed_and_come_back() {
     for (folder, name, views) in scenes() {
         let plain = folder.read(name);
         let table = table(&folder, name);
-        let told = folder.run(&["pack", name, "-o", "small.pvz", "--json"]).expect(0).json();
+        let reply = folder.run(&["pack", name, "-o", "small.pvz", "--json"]).expect(0).json();
         let packed = folder.read("small.pvz");
-        assert_eq!((&told["n_plain_bytes"], &told["n_packed_bytes"]), (&json!(plain.len()), &json!(packed.len())));
-        assert!(packed.len() < plain.len() && told["n_merges"] == 0 && told["over_estimation"] == 1.0);
+        assert_eq!((&reply["n_plain_bytes"], &reply["n_packed_bytes"]), (&json!(plain.len()), &json!(packed.len())));
+        assert!(packed.len() < plain.len() && reply["n_merges"] == 0 && reply["over_estimation"] == 1.0);
         folder.run(&["unpack", "small.pvz", "-o", "back.pvs"]).expect(0);
         assert!(folder.read("back.pvs") == plain, "{name} comes back bit for bit");
         let info = folder.run(&["info", "small.pvz", "--json"]).expect(0).json();
@@ -33,8 +33,12 @@ fn tables_are_packed_and_come_back() {
         assert!(folder.run(&["info", "small.pvz"]).expect(0).out.contains(": packed visibility table in "));
         // Who needs the plain one says so.
         for command in [&["export", "small.pvz"][..], &["pack", "small.pvz", "-o", "twice.pvz"]] {
-            let told = folder.run(command).expect(2);
-            assert!(told.err.contains("small.pvz: the table is packed; `sightlines unpack` makes it"), "{}", told.err);
+            let reply = folder.run(command).expect(2);
+            assert!(
+                reply.err.contains("small.pvz: the table is packed; `sightlines unpack` makes it"),
+                "{}",
+                reply.err
+            );
         }
         // It answers as the table does, but for the time.
         let eye = middle(&table, table.n_cells() / 2);
@@ -60,8 +64,9 @@ fn packing_within_a_budget_shows_more() {
     let whole = folder.run(&["pack", "tower.pvs", "-o", "whole.pvz", "--json"]).expect(0).json();
     let [all, rows] = ["n_packed_bytes", "n_row_bytes"].map(|k| whole[k].as_u64().unwrap());
     let budget = (all - rows / 4).to_string();
-    let told = folder.run(&["pack", "tower.pvs", "-o", "small.pvz", "--max-bytes", &budget, "--json"]).expect(0).json();
-    assert!(told["n_packed_bytes"].as_u64().unwrap() <= all - rows / 4 && told["n_merges"].as_u64().unwrap() > 0);
+    let reply =
+        folder.run(&["pack", "tower.pvs", "-o", "small.pvz", "--max-bytes", &budget, "--json"]).expect(0).json();
+    assert!(reply["n_packed_bytes"].as_u64().unwrap() <= all - rows / 4 && reply["n_merges"].as_u64().unwrap() > 0);
     folder.run(&["unpack", "small.pvz", "-o", "more.pvs"]).expect(0);
     let [less, more] = ["tower.pvs", "more.pvs"].map(|name| table(&folder, name));
     let (mut n_pairs, mut n_more) = (0u64, 0u64);
@@ -71,7 +76,7 @@ fn packing_within_a_budget_shows_more() {
         n_pairs += less.visible(a).count() as u64;
         n_more += more.visible(a).count() as u64;
     }
-    let over = told["over_estimation"].as_f64().unwrap();
+    let over = reply["over_estimation"].as_f64().unwrap();
     assert!(n_pairs < n_more && (over - n_more as f64 / n_pairs as f64).abs() < 1e-9, "{n_pairs} {n_more} {over}");
     let error = folder.refused(&["pack", "tower.pvs", "-o", "none.pvz", "--max-bytes", "10"]);
     assert!(error.starts_with("tower.pvs: a budget of 10 bytes cannot be kept: "), "{error}");

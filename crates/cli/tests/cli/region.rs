@@ -31,8 +31,8 @@ fn names_of_given_cells_are_in_the_export_and_every_method_runs() {
     let mut counts = Vec::new();
     for method in ["sightlines", "multifocal", "both", "shafts", "voxels"] {
         let args = ["build", "scene.glb", "--method", method, "--cells", "cells.json", "-o", "t.pvs", "--json"];
-        let told = folder.run(&args).expect(0).json();
-        assert_eq!((&told["n_cells"], &told["subdivide"]), (&json!(2), &json!("boxes")), "{told}");
+        let reply = folder.run(&args).expect(0).json();
+        assert_eq!((&reply["n_cells"], &reply["subdivide"]), (&json!(2), &json!("boxes")), "{reply}");
         let export = folder.run(&["export", "t.pvs"]).expect(0).json();
         let seen = seen_by_name(&export);
         assert_eq!(seen.iter().map(|s| s.0.as_str()).collect::<Vec<_>>(), ["low", "Flur \"2\""]);

@@ -15,14 +15,14 @@ fn tables(bytes: Vec<u8>) -> Vec<Option<RejectTable>> {
 #[test]
 fn tables_are_written_and_hand_made_ones_kept() {
     let folder = Folder::with_wad();
-    let told = folder.run(&["reject", "maps.wad", "-o", "out.wad", "--json"]).expect(0).json();
-    let status = |i: usize| told["maps"][i]["status"].as_str().unwrap().to_owned();
+    let reply = folder.run(&["reject", "maps.wad", "-o", "out.wad", "--json"]).expect(0).json();
+    let status = |i: usize| reply["maps"][i]["status"].as_str().unwrap().to_owned();
     assert_eq!([status(0), status(1), status(2)], ["written", "kept", "written"]);
     let made = tables(folder.read("out.wad"));
     for i in [0, 2] {
         let table = made[i].as_ref().expect("a table");
         assert!(table.n_rejected() > 0 && !table.has_hand_made_effects());
-        assert_eq!(told["maps"][i]["n_rejected"], table.n_rejected());
+        assert_eq!(reply["maps"][i]["n_rejected"], table.n_rejected());
     }
     assert_eq!(made[1], tables(folder.read("maps.wad"))[1]);
     let forced = folder.run(&["reject", "maps.wad", "-o", "forced.wad", "--force"]).expect(0).out;
@@ -33,8 +33,8 @@ fn tables_are_written_and_hand_made_ones_kept() {
 #[test]
 fn only_the_named_maps_are_done_and_other_lumps_stay() {
     let folder = Folder::with_wad();
-    let told = folder.run(&["reject", "maps.wad", "-o", "out.wad", "--map", "map03", "--json"]).expect(0).json();
-    assert_eq!((told["maps"].as_array().unwrap().len(), &told["maps"][0]["name"]), (1, &json!("MAP03")));
+    let reply = folder.run(&["reject", "maps.wad", "-o", "out.wad", "--map", "map03", "--json"]).expect(0).json();
+    assert_eq!((reply["maps"].as_array().unwrap().len(), &reply["maps"][0]["name"]), (1, &json!("MAP03")));
     let made = tables(folder.read("out.wad"));
     assert!(made[0].is_none() && made[2].is_some());
     let [before, after] = ["maps.wad", "out.wad"].map(|name| Wad::parse(folder.read(name)).unwrap());

@@ -26,16 +26,19 @@ fn simplified(folder: &Folder, out: &str, more: &[&str]) -> Value {
 #[test]
 fn what_is_hidden_goes_and_the_rest_stays() {
     let folder = Folder::with_tower();
-    let told = simplified(&folder, "o.glb", &["--volume", VOLUME, "--report"]);
-    let n = |key: &str| told[key].as_u64().unwrap_or_else(|| panic!("{key}: {told}"));
+    let reply = simplified(&folder, "o.glb", &["--volume", VOLUME, "--report"]);
+    let n = |key: &str| reply[key].as_u64().unwrap_or_else(|| panic!("{key}: {reply}"));
     assert_eq!(n("n_before"), n("n_hidden") + n("n_left"));
-    assert!(n("n_hidden") > 0 && n("n_left") > 0, "{told}");
-    assert_eq!((&told["bound"], &told["occluder"], &told["method"]), (&json!(0.0), &json!(true), &json!("multifocal")));
+    assert!(n("n_hidden") > 0 && n("n_left") > 0, "{reply}");
     assert_eq!(
-        (&told["report"]["changed"], &told["report"]["worst"], &told["report"]["estimate"]),
+        (&reply["bound"], &reply["occluder"], &reply["method"]),
+        (&json!(0.0), &json!(true), &json!("multifocal"))
+    );
+    assert_eq!(
+        (&reply["report"]["changed"], &reply["report"]["worst"], &reply["report"]["estimate"]),
         (&json!(0.0), &json!(0.0), &json!(0.0))
     );
-    assert_eq!(told["report"]["n_rays"], json!(1_000_000));
+    assert_eq!(reply["report"]["n_rays"], json!(1_000_000));
     let [before, after] = ["tower.glb", "o.glb"].map(|name| read_scene(folder.path(name)).unwrap());
     assert_eq!(after.info.simplified.map(|s| s.occluder), Some(true));
     assert_eq!(after.info.n_triangles as u64, n("n_left"));
@@ -43,7 +46,7 @@ fn what_is_hidden_goes_and_the_rest_stays() {
     // It lies inside of the original, so it may be built from; from there nothing more is hidden.
     folder.run(&["build", "o.glb", "-o", "o.pvs", "-q"]).expect(0);
     let again = folder.run(&["simplify", "o.glb", "--volume", VOLUME, "-o", "o.glb", "--json", "-q"]).expect(0).json();
-    assert_eq!(again["n_before"], told["n_left"]);
+    assert_eq!(again["n_before"], reply["n_left"]);
 
     // The same bytes with any number of threads; nothing else is left behind.
     for (out, threads) in [("a.glb", "1"), ("b.glb", "3")] {
@@ -54,9 +57,9 @@ fn what_is_hidden_goes_and_the_rest_stays() {
 
     // More eyes see more, and less is hidden by nobody.
     let both = simplified(&folder, "c.glb", &["--volume", VOLUME, "--volume", "4,0.5,1,5,1.5,2"]);
-    assert!(both["n_left"].as_u64() >= told["n_left"].as_u64());
+    assert!(both["n_left"].as_u64() >= reply["n_left"].as_u64());
     let nobody = simplified(&folder, "c.glb", &["--volume", VOLUME, "--method", "none"]);
-    assert_eq!((&nobody["n_hidden"], &nobody["n_left"]), (&json!(0), &told["n_before"]));
+    assert_eq!((&nobody["n_hidden"], &nobody["n_left"]), (&json!(0), &reply["n_before"]));
     let text = folder.run(&["simplify", "tower.glb", "--volume", VOLUME, "-o", "c.glb", "--report"]).expect(0).out;
     for line in [
         "eyes           in a box; hidden by multifocal\n",
@@ -71,13 +74,13 @@ fn what_is_hidden_goes_and_the_rest_stays() {
 #[test]
 fn budgets_are_kept_and_moved_scenes_hide_nothing() {
     let folder = Folder::with_tower();
-    let told = simplified(&folder, "m.glb", &["--volume", VOLUME, "--budget", "0.02", "--collapse", "1", "--report"]);
-    let share = |key: &str| told[key].as_f64().unwrap();
-    assert!(share("bound") <= 0.02 && told["report"]["changed"].as_f64().unwrap() <= share("bound"), "{told}");
+    let reply = simplified(&folder, "m.glb", &["--volume", VOLUME, "--budget", "0.02", "--collapse", "1", "--report"]);
+    let share = |key: &str| reply[key].as_f64().unwrap();
+    assert!(share("bound") <= 0.02 && reply["report"]["changed"].as_f64().unwrap() <= share("bound"), "{reply}");
     let hidden = simplified(&folder, "h.glb", &["--volume", VOLUME]);
-    assert!(told["n_left"].as_u64() < hidden["n_left"].as_u64());
-    assert!(told["n_new"].as_u64() > Some(0), "{told}");
-    assert_eq!(told["occluder"], json!(false));
+    assert!(reply["n_left"].as_u64() < hidden["n_left"].as_u64());
+    assert!(reply["n_new"].as_u64() > Some(0), "{reply}");
+    assert_eq!(reply["occluder"], json!(false));
     assert_eq!(read_scene(folder.path("m.glb")).unwrap().info.simplified.map(|s| s.occluder), Some(false));
     let says = "m.glb: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the \
                 original that it was made from";
@@ -222,11 +225,11 @@ fn levels_are_written_and_walked_with() {
         "--json",
         "-q",
     ];
-    let told = folder.run(&[&args[..], &["-o", "l"]].concat()).expect(0).json();
+    let reply = folder.run(&[&args[..], &["-o", "l"]].concat()).expect(0).json();
     let index = read_levels_index(folder.path("l/index.json")).unwrap();
     let n_cells = folder.run(&["info", "tower.pvs", "--json"]).expect(0).json()["n_cells"].as_u64().unwrap();
     assert_eq!((index.cells.len() as u64, index.budget), (n_cells, 0.001));
-    assert_eq!(told["n_levels"], json!(index.levels.len()));
+    assert_eq!(reply["n_levels"], json!(index.levels.len()));
     let scene = read_scene(folder.path("tower.glb")).unwrap();
     assert_eq!(index.n_triangles as usize, scene.info.n_triangles);
     let mut files: Vec<String> = index.levels.iter().map(|level| level.file.clone()).collect();

@@ -33,7 +33,7 @@ fn build_says_what_it_built() {
     assert_eq!([&built["subdivide"], &built["portals"]], ["kd", "exact"]);
     let share = |key: &str| built["viewer"][key].as_f64().unwrap();
     assert!(["cells", "objects", "polygons"].iter().all(|key| share(key) > 0.0 && share(key) < 1.0), "{built}");
-    let told = folder.run(&["build", "tower.glb", "-o", "again.pvs"]).expect(0).out;
+    let reply = folder.run(&["build", "tower.glb", "-o", "again.pvs"]).expect(0).out;
     for line in [
         "scene          glTF in 3D, y up, in metres\n",
         "method         a k-d tree in space, exact axial stabbing of exact portals\n",
@@ -42,7 +42,7 @@ fn build_says_what_it_built() {
         "effort         ",
         "time           ",
     ] {
-        assert!(told.contains(line), "{line} in {told}");
+        assert!(reply.contains(line), "{line} in {reply}");
     }
 }
 
@@ -89,8 +89,8 @@ fn scenes_are_told_from_plans_by_content_and_name() {
         (&json!("OBJ"), &json!(true), &json!(null))
     );
     assert_eq!((&built["n_axial_triangles"], &built["n_other_triangles"]), (&json!(1), &json!(3)));
-    let told = folder.run(&["info", "tent.obj"]).expect(0).out;
-    assert!(told.starts_with("tent.obj: scene in space, OBJ in 3D, y up (assumed), unit unknown\n"), "{told}");
+    let reply = folder.run(&["info", "tent.obj"]).expect(0).out;
+    assert!(reply.starts_with("tent.obj: scene in space, OBJ in 3D, y up (assumed), unit unknown\n"), "{reply}");
     // JSON that calls itself glTF is not reported as a broken plan.
     folder.write("empty.gltf", r#"{"asset": {"version": "2.0"}}"#);
     assert!(folder.refused(&["build", "empty.gltf", "-o", "out.pvs"]).contains("no triangles"));
@@ -146,8 +146,8 @@ fn query_and_export_tell_what_the_table_says() {
             assert_eq!(json!(ids), export["cell_objects"][cell.idx()]);
         }
     }
-    let told = folder.run(&["query", "tower.pvs", "--eye", &eye(&made, CellId(0))]).expect(0).out;
-    assert!(told.contains("is in cell 0\nsees ") && told.contains("floor0/"), "{told}");
+    let reply = folder.run(&["query", "tower.pvs", "--eye", &eye(&made, CellId(0))]).expect(0).out;
+    assert!(reply.contains("is in cell 0\nsees ") && reply.contains("floor0/"), "{reply}");
     assert!(folder.run(&["query", "tower.pvs", "--eye", "1e4,0,0"]).expect(1).out.contains("outside every cell"));
     assert!(folder.refused(&["query", "tower.pvs", "--eye", "1,2"]).contains("3 dimensions"));
 }
@@ -155,16 +155,16 @@ fn query_and_export_tell_what_the_table_says() {
 #[test]
 fn info_knows_scenes_and_their_tables() {
     let folder = Folder::with_tower();
-    let told = folder.run(&["info", "tower.glb", "--json"]).expect(0).json();
+    let reply = folder.run(&["info", "tower.glb", "--json"]).expect(0).json();
     let scene = read_scene(folder.path("tower.glb")).unwrap().scene;
-    assert_eq!((&told["kind"], &told["n_triangles"]), (&json!("scene"), &json!(scene.n_triangles())));
-    assert_eq!((&told["min"], &told["max"]), (&json!(scene.bounds().min), &json!(scene.bounds().max)));
-    let told = folder.run(&["info", "tower.pvs"]).expect(0).out;
+    assert_eq!((&reply["kind"], &reply["n_triangles"]), (&json!("scene"), &json!(scene.n_triangles())));
+    assert_eq!((&reply["min"], &reply["max"]), (&json!(scene.bounds().min), &json!(scene.bounds().max)));
+    let reply = folder.run(&["info", "tower.pvs"]).expect(0).out;
     assert!(
-        told.starts_with("tower.pvs: visibility table in 3D") && told.contains("of the volume on average"),
-        "{told}"
+        reply.starts_with("tower.pvs: visibility table in 3D") && reply.contains("of the volume on average"),
+        "{reply}"
     );
-    assert!(told.contains("up             y\n") && told.contains("portals        exact\n"), "{told}");
+    assert!(reply.contains("up             y\n") && reply.contains("portals        exact\n"), "{reply}");
 }
 
 #[test]
@@ -234,17 +234,17 @@ fn explain_agrees_with_tables_in_space() {
             let run = folder.run(&["explain", name, &a.to_string(), &b.to_string(), "--json"]);
             let sees = made.sees(CellId(a), CellId(b));
             assert_eq!(run.code, i32::from(!sees), "{name}: cells {a} and {b}: {}", run.out);
-            let told = run.json();
-            assert_eq!((&told["from"], &told["to"], &told["listed"]), (&json!(a), &json!(b), &json!(sees)));
-            match told["answer"].as_str().unwrap() {
+            let reply = run.json();
+            assert_eq!((&reply["from"], &reply["to"], &reply["listed"]), (&json!(a), &json!(b), &json!(sees)));
+            match reply["answer"].as_str().unwrap() {
                 "same" => assert_eq!(a, b),
                 "visible" => {
                     n_seen += 1;
-                    check_line(&made, &told);
+                    check_line(&made, &reply);
                 }
                 "hidden" => {
                     n_hidden += 1;
-                    check_proof(&told);
+                    check_proof(&reply);
                 }
                 other => panic!("{other}"),
             }
@@ -263,11 +263,11 @@ fn point(value: &Value) -> [f64; 3] {
 
 /// The portals lead from the first cell into the last one, each point lies on its portal, and the line
 /// begins and ends inside of the two cells.
-fn check_line(table: &Table, told: &Value) {
-    let list = |key: &str| told[key].as_array().unwrap().clone();
+fn check_line(table: &Table, reply: &Value) {
+    let list = |key: &str| reply[key].as_array().unwrap().clone();
     let (portals, cells, points) = (list("portals"), list("cells"), list("points"));
-    assert!(portals.len() == cells.len() && cells.len() == points.len() && cells.last() == Some(&told["to"]));
-    let mut here = told["from"].clone();
+    assert!(portals.len() == cells.len() && cells.len() == points.len() && cells.last() == Some(&reply["to"]));
+    let mut here = reply["from"].clone();
     for ((portal, cell), at) in portals.iter().zip(cells).zip(points) {
         let portal = &table.portals()[portal.as_u64().unwrap() as usize];
         assert!(portal.cells.map(|c| json!(c.0)).contains(&here) && portal.cells.map(|c| json!(c.0)).contains(&cell));
@@ -277,28 +277,28 @@ fn check_line(table: &Table, told: &Value) {
         }
         here = cell;
     }
-    assert!(told["line"]["point"].is_array() && told["line"]["direction"].is_array());
-    if let Some(ends) = told["ends"].as_array() {
+    assert!(reply["line"]["point"].is_array() && reply["line"]["direction"].is_array());
+    if let Some(ends) = reply["ends"].as_array() {
         for (end, cell) in ends.iter().zip(["from", "to"]) {
-            let cell = &table.cells()[told[cell].as_u64().unwrap() as usize];
-            assert!((0..3).all(|k| cell.min[k] <= point(end)[k] && point(end)[k] <= cell.max[k]), "{told}");
+            let cell = &table.cells()[reply[cell].as_u64().unwrap() as usize];
+            assert!((0..3).all(|k| cell.min[k] <= point(end)[k] && point(end)[k] <= cell.max[k]), "{reply}");
         }
     }
 }
 
 /// Walls are flat, and as often in the tree as printed; unless nothing joins the cells.
-fn check_proof(told: &Value) {
-    if told["connected"] == json!(false) {
+fn check_proof(reply: &Value) {
+    if reply["connected"] == json!(false) {
         return;
     }
-    let walls = told["walls"].as_array().unwrap();
-    assert!(!walls.is_empty() && told["n_blockers"].as_u64().unwrap() >= walls.len() as u64, "{told}");
+    let walls = reply["walls"].as_array().unwrap();
+    assert!(!walls.is_empty() && reply["n_blockers"].as_u64().unwrap() >= walls.len() as u64, "{reply}");
     let flat = |w: &Value| (0..3).filter(|&k| w["min"][k] == w["max"][k]).count() == 1;
-    assert!(walls.iter().all(flat), "{told}");
+    assert!(walls.iter().all(flat), "{reply}");
     let n_nodes: u64 = walls.iter().map(|w| w["n_nodes"].as_u64().unwrap()).sum();
-    let text = told["proof"].to_string();
-    assert_eq!((&told["n_nodes"], text.matches("\"wall\":").count() as u64), (&json!(n_nodes), n_nodes));
-    assert_eq!(told["n_contradictions"], json!(text.matches("[{\"row\":").count()));
+    let text = reply["proof"].to_string();
+    assert_eq!((&reply["n_nodes"], text.matches("\"wall\":").count() as u64), (&json!(n_nodes), n_nodes));
+    assert_eq!(reply["n_contradictions"], json!(text.matches("[{\"row\":").count()));
 }
 
 #[test]
@@ -308,29 +308,32 @@ fn explain_speaks_in_space() {
     let sees = |b: &u32| made.sees(CellId(0), CellId(*b));
     let ids = 0..made.n_cells() as u32;
     let (seen, hidden) = (ids.clone().rfind(sees).unwrap().to_string(), ids.clone().rfind(|b| !sees(b)).unwrap());
-    let told = folder.run(&["explain", "tower.pvs", "0", &seen]).expect(0).out;
+    let reply = folder.run(&["explain", "tower.pvs", "0", &seen]).expect(0).out;
     assert!(
-        told.starts_with(&format!("cell 0 sees cell {seen} through ")) && told.contains("along the line from ("),
-        "{told}"
+        reply.starts_with(&format!("cell 0 sees cell {seen} through ")) && reply.contains("along the line from ("),
+        "{reply}"
     );
     let hidden = hidden.to_string();
-    let told = folder.run(&["explain", "tower.pvs", "0", &hidden]).expect(1).out;
+    let reply = folder.run(&["explain", "tower.pvs", "0", &hidden]).expect(1).out;
     assert!(
-        told.contains("every line meets one ") && told.contains("  wall x") && told.contains("the proof goes"),
-        "{told}"
+        reply.contains("every line meets one ") && reply.contains("  wall x") && reply.contains("the proof goes"),
+        "{reply}"
     );
     assert!(!folder.run(&["explain", "tower.pvs", "0", &hidden, "--proofs", "0"]).expect(1).out.contains("  wall"));
     // Points are cells too, and a cell sees itself.
-    let told = folder.run(&["explain", "tower.pvs", &eye(&made, CellId(0)), "0"]).expect(0).out;
-    assert_eq!(told, "both are in cell 0, and a cell sees itself\n");
+    let reply = folder.run(&["explain", "tower.pvs", &eye(&made, CellId(0)), "0"]).expect(0).out;
+    assert_eq!(reply, "both are in cell 0, and a cell sees itself\n");
     assert!(folder.run(&["explain", "tower.pvs", "1e4,0,0", "0"]).expect(1).out.contains("outside every cell"));
     // Given up at once: the answer of the table is reported as such. A single wall in the way takes no program.
-    let told = folder.run(&["explain", "tower.pvs", "0", &seen, "--max-programs", "0"]).expect(0).out;
-    assert!(told.contains("in 0 linear programs; see --max-programs\nthe table assumes that they see each"), "{told}");
+    let reply = folder.run(&["explain", "tower.pvs", "0", &seen, "--max-programs", "0"]).expect(0).out;
+    assert!(
+        reply.contains("in 0 linear programs; see --max-programs\nthe table assumes that they see each"),
+        "{reply}"
+    );
     let at_once =
         |b: u32| folder.run(&["explain", "tower.pvs", "0", &b.to_string(), "--max-programs", "0"]).expect(1).out;
-    let told = ids.filter(|b| !sees(b)).map(at_once).find(|told| told.contains("see --max-programs"));
-    assert!(told.is_some_and(|told| told.ends_with("the table says that they do not see each other\n")));
+    let reply = ids.filter(|b| !sees(b)).map(at_once).find(|reply| reply.contains("see --max-programs"));
+    assert!(reply.is_some_and(|reply| reply.ends_with("the table says that they do not see each other\n")));
 }
 
 #[test]
@@ -385,14 +388,14 @@ fn towers_are_generated_in_any_size() {
 #[test]
 fn the_demo_builds_a_tower() {
     let folder = Folder::new();
-    let told = folder.run(&["demo", "tower", "--out", "one"]).expect(0).out;
+    let reply = folder.run(&["demo", "tower", "--out", "one"]).expect(0).out;
     let names = crate::common::names(&folder.path("one"));
     let pictures = ["cells", "floor", "seen"].iter().flat_map(|n| ["png", "svg"].map(|k| format!("tower-{n}.{k}")));
     let pictures = pictures.filter(|name| cfg!(feature = "png") || !name.ends_with(".png"));
     let expected: Vec<String> = pictures.chain(["tower.glb", "tower.pvs"].map(str::to_owned)).collect();
     assert_eq!(names, expected);
-    assert!(names.iter().all(|name| told.contains(name.as_str())), "{told}");
-    assert!(told.contains("of the polygons; the rest is hidden"), "{told}");
+    assert!(names.iter().all(|name| reply.contains(name.as_str())), "{reply}");
+    assert!(reply.contains("of the polygons; the rest is hidden"), "{reply}");
     let json = folder.run(&["demo", "tower", "--out", "two", "--json"]).expect(0).json();
     let share = json["built"]["viewer"]["polygons"].as_f64().unwrap();
     assert!(share > 0.0 && share < 1.0, "{share}");

@@ -29,9 +29,9 @@ fn build_adds_stab_trees_and_info_counts_them() {
         (&info["stab"]["n_stab_bytes"], &info["stab"]["n_stab_edges"]),
         (&grown.into(), &trees.n_edges().into())
     );
-    let told = folder.run(&["info", "trees.pvs"]).expect(0).out;
+    let reply = folder.run(&["info", "trees.pvs"]).expect(0).out;
     let line = format!("\nstab trees     {} sequences in {} nodes", trees.n_sequences(), trees.n_nodes());
-    assert!(told.contains(&line) && told.contains(" bytes a sequence\n"), "{told}");
+    assert!(reply.contains(&line) && reply.contains(" bytes a sequence\n"), "{reply}");
     // The twin: a table without trees does not speak of them.
     assert_eq!(folder.run(&["info", "office.pvs", "--json"]).expect(0).json()["stab"], Value::Null);
     assert!(!folder.run(&["info", "office.pvs"]).expect(0).out.contains("stab"));
@@ -43,14 +43,14 @@ fn limits_cut_trees() {
     let folder = Folder::with_office();
     let build = |out: &str, more: &[&str]| {
         let args = [&["build", "office.geojson", "-o", out], more].concat();
-        let told = folder.run(&args).expect(0).out;
-        (folder.read(out), told)
+        let reply = folder.run(&args).expect(0).out;
+        (folder.read(out), reply)
     };
-    let (one, told) = build("one.pvs", &["--stab-trees=5", "--threads", "1"]);
-    assert!(told.contains("\ncut trees      ") && told.contains(" at 5 nodes each\n"), "{told}");
+    let (one, reply) = build("one.pvs", &["--stab-trees=5", "--threads", "1"]);
+    assert!(reply.contains("\ncut trees      ") && reply.contains(" at 5 nodes each\n"), "{reply}");
     assert!(one == build("two.pvs", &["--threads", "2", "--stab-trees=5"]).0, "threads change nothing");
-    let (whole, told) = build("whole.pvs", &["--stab-trees"]);
-    assert!(one != whole && !told.contains("cut trees"), "{told}");
+    let (whole, reply) = build("whole.pvs", &["--stab-trees"]);
+    assert!(one != whole && !reply.contains("cut trees"), "{reply}");
     for wrong in ["--stab-trees=0", "--stab-trees=-1", "--stab-trees=x", "--stab-trees="] {
         let run = folder.run(&["build", "office.geojson", "-o", "no.pvs", wrong]).expect(2);
         assert!(run.err.contains("--stab-trees"), "{}", run.err);

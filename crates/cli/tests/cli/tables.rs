@@ -22,11 +22,11 @@ fn build_says_what_it_built() {
     assert_eq!(built["n_portals"], table.portals().len());
     assert_eq!(built["n_bytes"], folder.read("again.pvs").len());
     assert_eq!((&built["subdivide"], &built["map"], &built["out"]), (&json!("kd"), &Value::Null, &json!("again.pvs")));
-    let told = folder.run(&["build", "office.geojson", "-o", "again.pvs"]).expect(0).out;
+    let reply = folder.run(&["build", "office.geojson", "-o", "again.pvs"]).expect(0).out;
     assert!(
-        told.starts_with("wrote again.pvs, ")
-            && told.contains("\nmethod         a k-d tree in the plane, ")
-            && told.contains(&format!("cells          {}", table.n_cells()))
+        reply.starts_with("wrote again.pvs, ")
+            && reply.contains("\nmethod         a k-d tree in the plane, ")
+            && reply.contains(&format!("cells          {}", table.n_cells()))
     );
     assert_eq!(folder.names(), ["again.pvs", "office.geojson", "office.pvs"]);
 }
@@ -89,8 +89,8 @@ fn query_tells_what_the_table_says() {
         objects_seen += objects.len();
     }
     assert!(objects_seen > 0, "an office has furniture");
-    let told = folder.run(&["query", "office.pvs", "--eye", &eye(&table.cells()[0])]).expect(0).out;
-    assert!(told.contains("is in cell 0\nsees "), "{told}");
+    let reply = folder.run(&["query", "office.pvs", "--eye", &eye(&table.cells()[0])]).expect(0).out;
+    assert!(reply.contains("is in cell 0\nsees "), "{reply}");
 }
 
 #[test]
@@ -157,19 +157,19 @@ fn explain_agrees_with_the_table() {
         let run = folder.run(&["explain", "office.pvs", "1", &b.to_string(), "--json"]);
         let sees = table.sees(CellId(1), CellId(b));
         assert_eq!(run.code, i32::from(!sees), "cells 1 and {b}: {}", run.out);
-        let told = run.json();
-        assert_eq!((&told["from"], &told["to"], &told["listed"]), (&json!(1), &json!(b), &json!(sees)));
-        match told["answer"].as_str().unwrap() {
+        let reply = run.json();
+        assert_eq!((&reply["from"], &reply["to"], &reply["listed"]), (&json!(1), &json!(b), &json!(sees)));
+        match reply["answer"].as_str().unwrap() {
             "same" => assert_eq!(b, 1),
             "visible" => {
                 n_seen += 1;
-                check_line(&table, &told);
+                check_line(&table, &reply);
             }
             "hidden" => {
                 n_hidden += 1;
-                let ways = told["blocked"].as_array().unwrap();
-                assert!(ways.len() as u64 == told["n_blocked"].as_u64().unwrap().min(3), "{told}");
-                assert!(ways.iter().all(|way| !way["lefts"].as_array().unwrap().is_empty()), "{told}");
+                let ways = reply["blocked"].as_array().unwrap();
+                assert!(ways.len() as u64 == reply["n_blocked"].as_u64().unwrap().min(3), "{reply}");
+                assert!(ways.iter().all(|way| !way["lefts"].as_array().unwrap().is_empty()), "{reply}");
             }
             other => panic!("{other}"),
         }
@@ -178,11 +178,11 @@ fn explain_agrees_with_the_table() {
 }
 
 /// The portals lead from the first cell into the last one, and each point lies on its portal.
-fn check_line(table: &Table, told: &Value) {
-    let list = |key: &str| told[key].as_array().unwrap().clone();
+fn check_line(table: &Table, reply: &Value) {
+    let list = |key: &str| reply[key].as_array().unwrap().clone();
     let (portals, cells, points) = (list("portals"), list("cells"), list("points"));
-    assert!(portals.len() == cells.len() && cells.len() == points.len() && cells.last() == Some(&told["to"]));
-    let mut here = told["from"].clone();
+    assert!(portals.len() == cells.len() && cells.len() == points.len() && cells.last() == Some(&reply["to"]));
+    let mut here = reply["from"].clone();
     for ((portal, cell), point) in portals.iter().zip(cells).zip(points) {
         let portal = &table.portals()[portal.as_u64().unwrap() as usize];
         assert!(portal.cells.map(|c| json!(c.0)).contains(&here) && portal.cells.map(|c| json!(c.0)).contains(&cell));
@@ -192,7 +192,7 @@ fn check_line(table: &Table, told: &Value) {
         }
         here = cell;
     }
-    assert!(["a", "b", "c"].iter().all(|k| told["line"][k].is_string()));
+    assert!(["a", "b", "c"].iter().all(|k| reply["line"][k].is_string()));
 }
 
 #[test]
@@ -224,8 +224,8 @@ fn cells_that_nothing_joins_are_explained() {
     let rooms = format!(r#"{{"type":"MultiPolygon","coordinates":[{},{}]}}"#, square(0), square(5));
     folder.write("rooms.geojson", rooms);
     folder.run(&["build", "rooms.geojson", "-o", "rooms.pvs", "--subdivide", "triangulation"]).expect(0);
-    let told = folder.run(&["explain", "rooms.pvs", "1,1", "6,1"]).expect(1).out;
-    assert!(told.contains("no way through portals joins them"), "{told}");
+    let reply = folder.run(&["explain", "rooms.pvs", "1,1", "6,1"]).expect(1).out;
+    assert!(reply.contains("no way through portals joins them"), "{reply}");
 }
 
 #[test]
@@ -263,15 +263,15 @@ fn info_knows_each_kind_of_file() {
     let folder = Folder::with_office();
     let table = office_table(&folder);
     let info = |file: &str| folder.run(&["info", file, "--json"]).expect(0).json();
-    let told = info("office.pvs");
-    assert_eq!((&told["kind"], &told["n_cells"]), (&json!("table"), &json!(table.n_cells())));
-    assert_eq!(told["info"]["subdivide"], "kd");
-    let told = info("office.geojson");
-    assert_eq!((&told["kind"], &told["axial"], &told["min"]), (&json!("geojson"), &json!(true), &json!([0.0, 0.0])));
+    let reply = info("office.pvs");
+    assert_eq!((&reply["kind"], &reply["n_cells"]), (&json!("table"), &json!(table.n_cells())));
+    assert_eq!(reply["info"]["subdivide"], "kd");
+    let reply = info("office.geojson");
+    assert_eq!((&reply["kind"], &reply["axial"], &reply["min"]), (&json!("geojson"), &json!(true), &json!([0.0, 0.0])));
     folder.write("maps.wad", wad(&["MAP01", "MAP02"]));
-    let told = info("maps.wad");
-    let map = |i: usize| &told["maps"][i];
-    assert_eq!((&told["kind"], told["maps"].as_array().unwrap().len()), (&json!("pwad"), 2));
+    let reply = info("maps.wad");
+    let map = |i: usize| &reply["maps"][i];
+    assert_eq!((&reply["kind"], reply["maps"].as_array().unwrap().len()), (&json!("pwad"), 2));
     assert_eq!((&map(0)["name"], &map(0)["n_sectors"]), (&json!("MAP01"), &json!(doom_map(1).n_sectors)));
     assert_eq!((&map(0)["reject"], &map(1)["reject"]), (&json!("none"), &json!("hand-made")));
     for (file, start) in
@@ -285,17 +285,17 @@ fn info_knows_each_kind_of_file() {
 #[test]
 fn the_demo_writes_what_it_names() {
     let folder = Folder::new();
-    let told = folder.run(&["demo"]).expect(0).out;
+    let reply = folder.run(&["demo"]).expect(0).out;
     let names = crate::common::names(&folder.path("sightlines-demo"));
     let all = ["plan.geojson", "plan.png", "plan.pvs", "plan.svg", "seen-little.png", "seen-little.svg"];
     let expected: Vec<_> = all.into_iter().filter(|name| cfg!(feature = "png") || !name.ends_with(".png")).collect();
     assert_eq!(names[..expected.len()], expected);
     assert_eq!(names.len(), if cfg!(feature = "png") { 10 } else { 6 });
-    assert!(names.iter().all(|name| told.contains(name.as_str())), "{told}");
+    assert!(names.iter().all(|name| reply.contains(name.as_str())), "{reply}");
     for word in ["cells", "portals", "visible pairs", "time", "of the floor on average"] {
-        assert!(told.contains(word), "{word} in {told}");
+        assert!(reply.contains(word), "{word} in {reply}");
     }
-    assert_eq!(told.contains("memory"), cfg!(target_os = "linux"));
+    assert_eq!(reply.contains("memory"), cfg!(target_os = "linux"));
     let json = folder.run(&["demo", "--out", "other", "--seed", "2", "--json"]).expect(0).json();
     assert_eq!((&json["seed"], &json["folder"]), (&json!(2), &json!("other")));
     let share = json["built"]["mean_floor_share"].as_f64().unwrap();

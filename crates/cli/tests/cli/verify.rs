@@ -115,9 +115,9 @@ fn answers_are_the_same_with_any_number_of_threads() {
     flip(&folder, "office.pvs", "wrong.pvs", 9);
     for (table, code) in [("office.pvs", 0), ("wrong.pvs", 1)] {
         let with = |threads: &str, seed: &str| {
-            let mut told = verify(&folder, &[table, "office.geojson", "--threads", threads, "--seed", seed], code);
-            told["seconds"] = Value::Null;
-            told
+            let mut reply = verify(&folder, &[table, "office.geojson", "--threads", threads, "--seed", seed], code);
+            reply["seconds"] = Value::Null;
+            reply
         };
         assert_eq!(with("1", "7"), with("3", "7"), "{table}");
         assert_ne!(with("1", "7"), with("1", "8"), "{table}: another seed, other rays");
@@ -127,25 +127,25 @@ fn answers_are_the_same_with_any_number_of_threads() {
 #[test]
 fn people_are_told_what_was_checked() {
     let folder = Folder::with_office();
-    let told = folder.run(&["verify", "office.pvs", "office.geojson", "--rays", "2000"]).expect(0).out;
+    let reply = folder.run(&["verify", "office.pvs", "office.geojson", "--rays", "2000"]).expect(0).out;
     for line in [
         "checked        office.pvs against office.geojson\n",
         "rays           2000 in random",
         "result         nothing found",
     ] {
-        assert!(told.contains(line), "{told}");
+        assert!(reply.contains(line), "{reply}");
     }
     let [a, b] = flip(&folder, "office.pvs", "wrong.pvs", 2);
     let drawn = format!("ray.{DRAWN}");
     for picture in ["ray.svg", &drawn] {
-        let told = folder.run(&["verify", "wrong.pvs", "office.geojson", "--draw", picture]).expect(1).out;
+        let reply = folder.run(&["verify", "wrong.pvs", "office.geojson", "--draw", picture]).expect(1).out;
         assert!(
-            told.contains(&format!(
+            reply.contains(&format!(
                 "hidden-cell: cells {a} and {b} are hidden from each other, but nothing is between ("
             )),
-            "{told}"
+            "{reply}"
         );
-        assert!(told.contains(&format!("picture        {picture}\n")), "{told}");
+        assert!(reply.contains(&format!("picture        {picture}\n")), "{reply}");
     }
     assert!(is_drawn(&folder.read(&drawn)));
     assert!(String::from_utf8(folder.read("ray.svg")).expect("text").contains("<svg"));
@@ -159,20 +159,21 @@ fn people_are_told_what_was_checked() {
 fn what_was_not_checked_is_told() {
     let folder = Folder::with_office();
     let none = ["verify", "office.pvs", "office.geojson", "--rays", "0", "--pairs", "0"];
-    let told = folder.run(&none).expect(0).out;
-    assert!(told.contains("rays           none\n") && told.contains("only the structure was checked"), "{told}");
-    assert!(!told.contains("nothing found"), "{told}");
+    let reply = folder.run(&none).expect(0).out;
+    assert!(reply.contains("rays           none\n") && reply.contains("only the structure was checked"), "{reply}");
+    assert!(!reply.contains("nothing found"), "{reply}");
     let checked = |args: &[&str]| {
-        let told = folder.run(&[&["verify", "--json", "office.pvs", "office.geojson"], args].concat()).expect(0).json();
-        let list = ["random_rays", "aimed_rays", "proofs"].map(|what| told["checked"][what].as_bool().expect("said"));
-        (list, told["is_true"].as_bool())
+        let reply =
+            folder.run(&[&["verify", "--json", "office.pvs", "office.geojson"], args].concat()).expect(0).json();
+        let list = ["random_rays", "aimed_rays", "proofs"].map(|what| reply["checked"][what].as_bool().expect("said"));
+        (list, reply["is_true"].as_bool())
     };
     assert_eq!(checked(&["--rays", "0", "--pairs", "0"]), ([false; 3], Some(true)));
     assert_eq!(checked(&["--rays", "100", "--pairs", "0"]).0, [true, false, false]);
     assert_eq!(checked(&["--rays", "0", "--pairs", "5"]).0, [false, true, false]);
     for some in [["--rays", "0"], ["--pairs", "0"]] {
-        let told = folder.run(&[&["verify", "office.pvs", "office.geojson"][..], &some].concat()).expect(0).out;
-        assert!(told.contains("nothing found that is not as the table says"), "{told}");
+        let reply = folder.run(&[&["verify", "office.pvs", "office.geojson"][..], &some].concat()).expect(0).out;
+        assert!(reply.contains("nothing found that is not as the table says"), "{reply}");
     }
     // Proofs are something.
     folder.run(&["build", "office.geojson", "-o", "office.pvs", "--certify"]).expect(0);
@@ -183,8 +184,8 @@ fn what_was_not_checked_is_told() {
     folder.run(&["build", "office.geojson", "-o", "office.pvs"]).expect(0);
     // A pair that is wrong and not looked at goes unnoticed, which is why it has to be said.
     flip(&folder, "office.pvs", "wrong.pvs", 3);
-    let told = folder.run(&["verify", "wrong.pvs", "office.geojson", "--rays", "0", "--pairs", "0"]).expect(0).out;
-    assert!(told.contains("only the structure was checked"), "{told}");
+    let reply = folder.run(&["verify", "wrong.pvs", "office.geojson", "--rays", "0", "--pairs", "0"]).expect(0).out;
+    assert!(reply.contains("only the structure was checked"), "{reply}");
 }
 
 #[test]
@@ -239,8 +240,8 @@ fn real_tables_are_true() {
     for scene in scenes {
         let scene = data.join(scene).display().to_string();
         folder.run(&["build", &scene, "-o", "t.pvs", "--quiet"]).expect(0);
-        let told = verify(&folder, &["t.pvs", &scene], 0);
-        assert!(told["cells"]["n_confirmed"].as_u64() > Some(100), "{scene}: {}", told["cells"]);
+        let reply = verify(&folder, &["t.pvs", &scene], 0);
+        assert!(reply["cells"]["n_confirmed"].as_u64() > Some(100), "{scene}: {}", reply["cells"]);
         flip(&folder, "t.pvs", "flipped.pvs", 4);
         assert_eq!(verify(&folder, &["flipped.pvs", &scene], 1)["is_true"], false, "{scene}");
     }

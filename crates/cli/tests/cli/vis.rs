@@ -32,7 +32,7 @@ fn maps_get_what_the_table_of_their_portals_says() {
     let mut n_maps = 0;
     for map in small_maps().into_iter().chain([rooms(5, 4)]) {
         let folder = with(&map);
-        let told = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--json"]).expect(0).json();
+        let reply = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--json"]).expect(0).json();
         folder.run(&["build", "map.prt", "-o", "map.pvs"]).expect(0);
         let table = Table::from_bytes(&folder.read("map.pvs")).expect("a sound table");
         let seen = seen(&folder, "out.bsp", &map.prt);
@@ -42,7 +42,7 @@ fn maps_get_what_the_table_of_their_portals_says() {
         }
         assert!(convex_graph(&table).is_some());
         let n_pairs = (seen.count_ones() - seen.n_rows() as u64) / 2;
-        assert_eq!((&told["n_visible_pairs"], &told["n_clusters"]), (&json!(n_pairs), &json!(seen.n_rows())));
+        assert_eq!((&reply["n_visible_pairs"], &reply["n_clusters"]), (&json!(n_pairs), &json!(seen.n_rows())));
         assert_eq!(crate::common::quake::difference(&map.bsp, &folder.read("out.bsp")), None, "{}", map.name);
         assert_eq!(folder.read("map.bsp"), map.bsp);
         assert_eq!(folder.names(), ["map.bsp", "map.prt", "map.pvs", "out.bsp"], "no state stays behind");
@@ -74,9 +74,9 @@ fn the_number_of_threads_changes_nothing() {
         let vis = |threads: &str| -> (Vec<u8>, Value) {
             let fast = if fast { &["--fast"][..] } else { &[] };
             let args = [&["vis", "map.bsp", "-o", "out.bsp", "--json", "--threads", threads][..], fast].concat();
-            let told = folder.run(&args).expect(0).json();
-            assert_eq!(told["fast"], json!(fast.len() == 1));
-            (folder.read("out.bsp"), told["counters"].clone())
+            let reply = folder.run(&args).expect(0).json();
+            assert_eq!(reply["fast"], json!(fast.len() == 1));
+            (folder.read("out.bsp"), reply["counters"].clone())
         };
         let one = vis("1");
         assert!(one == vis("2") && one == vis("8") && one == vis("0"));
@@ -90,10 +90,10 @@ fn a_map_is_replaced() {
     let map = rooms(4, 3);
     let folder = with(&map);
     folder.run(&["vis", "map.bsp", "-o", "out.bsp"]).expect(0);
-    let told = folder.run(&["vis", "map.bsp"]).expect(0).out;
-    assert!(told.starts_with("wrote map.bsp, ") && told.contains("\nclusters       12\n"), "{told}");
-    let line = |start: &str| told.lines().any(|line| line.starts_with(start));
-    assert!(["portals  ", "visible pairs  ", "undecided  ", "effort  ", "time  "].into_iter().all(line), "{told}");
+    let reply = folder.run(&["vis", "map.bsp"]).expect(0).out;
+    assert!(reply.starts_with("wrote map.bsp, ") && reply.contains("\nclusters       12\n"), "{reply}");
+    let line = |start: &str| reply.lines().any(|line| line.starts_with(start));
+    assert!(["portals  ", "visible pairs  ", "undecided  ", "effort  ", "time  "].into_iter().all(line), "{reply}");
     assert!(folder.read("map.bsp") == folder.read("out.bsp") && folder.read("map.bsp") != map.bsp);
     // Again, over another visibility: everything sees everything.
     let bsp = Bsp::parse(folder.read("map.bsp")).unwrap();
@@ -114,18 +114,18 @@ fn files_are_told_by_their_content() {
     let folder = with(&map);
     folder.write("portals", &map.prt);
     folder.write("map", &map.bsp);
-    let told = folder.run(&["info", "portals", "--json"]).expect(0).json();
-    assert_eq!((&told["kind"], &told["n_clusters"], &told["n_portals"]), (&json!("portals"), &json!(9), &json!(12)));
-    let told = folder.run(&["info", "map", "--json"]).expect(0).json();
-    assert_eq!((&told["visibility"], &told["n_seen_pairs"]), (&json!("none"), &Value::Null));
+    let reply = folder.run(&["info", "portals", "--json"]).expect(0).json();
+    assert_eq!((&reply["kind"], &reply["n_clusters"], &reply["n_portals"]), (&json!("portals"), &json!(9), &json!(12)));
+    let reply = folder.run(&["info", "map", "--json"]).expect(0).json();
+    assert_eq!((&reply["visibility"], &reply["n_seen_pairs"]), (&json!("none"), &Value::Null));
     folder.run(&["vis", "map", "--prt", "portals", "-o", "done"]).expect(0);
-    let told = folder.run(&["info", "done", "--json"]).expect(0).json();
+    let reply = folder.run(&["info", "done", "--json"]).expect(0).json();
     let n_seen = seen(&folder, "done", &map.prt).count_ones() - 9;
-    assert_eq!((&told["visibility"], &told["n_seen_pairs"]), (&json!("there"), &json!(n_seen)));
+    assert_eq!((&reply["visibility"], &reply["n_seen_pairs"]), (&json!("there"), &json!(n_seen)));
     for format in BspFormat::ALL {
         folder.write("map", small_maps().into_iter().find(|map| map.format == format).unwrap().bsp);
-        let told = folder.run(&["info", "map"]).expect(0).out;
-        assert!(told.starts_with("map: Quake") && told.contains("\nvisibility  "), "{told}");
+        let reply = folder.run(&["info", "map"]).expect(0).out;
+        assert!(reply.starts_with("map: Quake") && reply.contains("\nvisibility  "), "{reply}");
     }
     // CRLF is whitespace.
     folder.write("crlf", map.prt.replace('\n', "\r\n"));
@@ -137,12 +137,12 @@ fn files_are_told_by_their_content() {
 #[test]
 fn tables_of_portals_answer_what_they_can() {
     let folder = with(&rooms(3, 2));
-    let told = folder.run(&["build", "map.prt", "-o", "map.pvs"]).expect(0).out;
-    assert!(told.starts_with("wrote map.pvs, ") && told.contains("\nclusters       6\n"), "{told}");
-    let told = folder.run(&["info", "map.pvs"]).expect(0).out;
-    assert!(told.contains("\nsource         portal file PRT1\n") && !told.contains("volume"), "{told}");
-    let told = folder.run(&["info", "map.pvs", "--json"]).expect(0).json();
-    assert_eq!((&told["mean_floor_share"], &told["n_portals"]), (&Value::Null, &json!(7)));
+    let reply = folder.run(&["build", "map.prt", "-o", "map.pvs"]).expect(0).out;
+    assert!(reply.starts_with("wrote map.pvs, ") && reply.contains("\nclusters       6\n"), "{reply}");
+    let reply = folder.run(&["info", "map.pvs"]).expect(0).out;
+    assert!(reply.contains("\nsource         portal file PRT1\n") && !reply.contains("volume"), "{reply}");
+    let reply = folder.run(&["info", "map.pvs", "--json"]).expect(0).json();
+    assert_eq!((&reply["mean_floor_share"], &reply["n_portals"]), (&Value::Null, &json!(7)));
     assert_eq!(folder.run(&["export", "map.pvs"]).expect(0).json()["cells"].as_array().map(Vec::len), Some(6));
     for args in [&["query", "map.pvs", "--eye", "1,2,3"][..], &["draw", "map.pvs", "-o", "out.svg", "--isometric"]] {
         let error = folder.refused(args);
@@ -187,8 +187,8 @@ fn a_run_goes_on_where_another_stopped() {
     let bytes = folder.read("out.bsp");
     for n_steps in [0, 1, 2, 5, 1000] {
         folder.write("out.vis-state", state(&map, &map.prt, false, n_steps));
-        let told = vis(&folder, &["--resume", "--threads", "2"]).expect(0).json();
-        assert_eq!((&told["resumed"], &told["counters"]), (&json!(true), &whole["counters"]), "{n_steps} steps");
+        let reply = vis(&folder, &["--resume", "--threads", "2"]).expect(0).json();
+        assert_eq!((&reply["resumed"], &reply["counters"]), (&json!(true), &whole["counters"]), "{n_steps} steps");
         assert_eq!(folder.read("out.bsp"), bytes);
         assert_eq!(folder.names(), ["map.bsp", "map.prt", "out.bsp"], "the state is gone");
     }

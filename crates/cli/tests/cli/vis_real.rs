@@ -54,7 +54,7 @@ fn real_maps_get_their_visibility() {
         let folder = copied(&data, name);
         let prt = read_prt(folder.path("map.prt")).expect("sound portals");
         let leafs = prt.leaf_clusters();
-        let told = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--json", "--threads", "1"]).expect(0).json();
+        let reply = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--json", "--threads", "1"]).expect(0).json();
         let written = folder.read("out.bsp");
         assert_eq!(difference(&folder.read("map.bsp"), &written), None, "{name}");
         let after = Bsp::parse(written.clone()).expect("a sound map");
@@ -65,7 +65,7 @@ fn real_maps_get_their_visibility() {
         folder.run(&["build", "map.prt", "-o", "map.pvs"]).expect(0);
         let table = Table::from_bytes(&folder.read("map.pvs")).expect("a sound table");
         assert!(convex_graph(&table).is_some(), "{name}: the portals come back");
-        assert_eq!((table.n_cells(), &told["n_clusters"]), (seen.n_rows(), &json!(seen.n_rows())));
+        assert_eq!((table.n_cells(), &reply["n_clusters"]), (seen.n_rows(), &json!(seen.n_rows())));
         for cell in 0..table.n_cells() {
             assert_eq!(table.row(CellId(cell as u32)), seen.row(cell), "{name}: cluster {cell}");
         }
@@ -91,7 +91,7 @@ fn real_maps_get_their_visibility() {
             folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--threads", threads]).expect(0);
             assert!(folder.read("out.bsp") == written, "{name} with {threads} threads");
         }
-        eprintln!("{name}: {told}");
+        eprintln!("{name}: {reply}");
     }
 }
 
@@ -135,8 +135,8 @@ fn a_killed_run_of_a_real_map_loses_nothing() {
         assert_eq!(folder.read("map.bsp"), before, "the map is as it was");
         n_kept += usize::from(folder.path("map.vis-state").exists());
     }
-    let told = folder.run(&[&args[..], &["--json"]].concat()).expect(0).json();
-    eprintln!("states kept: {n_kept}; {told}");
+    let reply = folder.run(&[&args[..], &["--json"]].concat()).expect(0).json();
+    eprintln!("states kept: {n_kept}; {reply}");
     assert!(folder.read("map.bsp") == folder.read("whole.bsp"));
     assert!(!folder.path("map.vis-state").exists());
 }
@@ -147,9 +147,9 @@ fn real_pairs_are_proven() {
     let Some(data) = data("real_pairs_are_proven") else { return };
     let folder = copied(&data, "dm3");
     let args = ["vis", "map.bsp", "-o", "out.bsp", "--json", "--certify", "40"];
-    let told = folder.run(&args).expect(0).json();
+    let reply = folder.run(&args).expect(0).json();
     for kind in ["visible", "hidden"] {
-        let proven = &told["certified"][kind];
+        let proven = &reply["certified"][kind];
         assert_eq!(proven["n_picked"], json!(40), "{proven}");
         // Some may graze; of all that were looked at when this was written, none did.
         assert!(proven["n_accepted"].as_u64() >= Some(36), "{proven}");
@@ -161,8 +161,8 @@ fn real_pairs_are_proven() {
     for a in (3..706).step_by(140) {
         let Some(b) = known.iter_ones(a).filter(|&b| b != a).last() else { continue };
         let (a, b) = (a.to_string(), b.to_string());
-        let told = folder.run(&["explain", "map.pvs", &a, &b, "--json"]).expect(0).json();
-        assert_eq!((&told["answer"], &told["checked"]), (&json!("visible"), &json!(true)), "{a} {b}");
+        let reply = folder.run(&["explain", "map.pvs", &a, &b, "--json"]).expect(0).json();
+        assert_eq!((&reply["answer"], &reply["checked"]), (&json!("visible"), &json!(true)), "{a} {b}");
         n_shown += 1;
     }
     assert!(n_shown > 2, "{n_shown}");

@@ -28,8 +28,8 @@ fn methods_are_nested() {
             for view in &views {
                 let eye = middle(&table, cell);
                 let args = [&["query", name, "--eye", &eye, "--method", "all", "--json"][..], view].concat();
-                let told = folder.run(&args).expect(0).json();
-                let methods = told["methods"].as_array().expect("all methods");
+                let reply = folder.run(&args).expect(0).json();
+                let methods = reply["methods"].as_array().expect("all methods");
                 assert!(methods.iter().map(|m| m["method"].as_str().unwrap()).eq(METHODS));
                 let row: Vec<u64> = table.visible(CellId(cell as u32)).map(|c| u64::from(c.0)).collect();
                 assert_eq!(numbers(&methods[0]["visible"]), row);
@@ -58,11 +58,11 @@ fn a_look_is_told_in_words() {
     let folder = Folder::with_office();
     let table = table(&folder, "office.pvs");
     let eye = middle(&table, 0);
-    let told = folder.run(&["query", "office.pvs", "--eye", &eye, "--method", "all"]).expect(0).out;
-    assert_eq!(told.lines().count(), 6, "{told}");
-    assert!(METHODS.iter().zip(told.lines().skip(1)).all(|(m, line)| line.starts_with(m) && line.ends_with(" µs")));
-    let told = folder.run(&["query", "office.pvs", "--eye", &eye, "--dir", "1,0"]).expect(0).out;
-    assert!(told.contains(" is in cell 0\nby exact in ") && told.contains("\nsees "), "{told}");
+    let reply = folder.run(&["query", "office.pvs", "--eye", &eye, "--method", "all"]).expect(0).out;
+    assert_eq!(reply.lines().count(), 6, "{reply}");
+    assert!(METHODS.iter().zip(reply.lines().skip(1)).all(|(m, line)| line.starts_with(m) && line.ends_with(" µs")));
+    let reply = folder.run(&["query", "office.pvs", "--eye", &eye, "--dir", "1,0"]).expect(0).out;
+    assert!(reply.contains(" is in cell 0\nby exact in ") && reply.contains("\nsees "), "{reply}");
 }
 
 #[test]
@@ -126,9 +126,9 @@ fn mirrors_show_images() {
         if !two {
             assert_eq!(ask(&["--bounces", "2", "--dir", "0,1", "--fov", "20"])["images"], json!([]));
         }
-        let told = folder.run(&["walk", "hall.pvs", "--random", "60", "--bounces", "1", "--json"]).expect(0).json();
-        assert_eq!(told["n_starved"], 0);
-        assert!(told["methods"][4]["images"].as_f64().unwrap() > 0.0);
+        let reply = folder.run(&["walk", "hall.pvs", "--random", "60", "--bounces", "1", "--json"]).expect(0).json();
+        assert_eq!(reply["n_starved"], 0);
+        assert!(reply["methods"][4]["images"].as_f64().unwrap() > 0.0);
     }
 }
 
@@ -139,8 +139,8 @@ fn outside_sees_everything() {
         let table = table(&folder, name);
         let eye = if table.dimension() == 2 { "--eye=-1000,0" } else { "--eye=-1000,0,0" };
         let args = [&["query", name, eye][..], &views[0]].concat();
-        let told = folder.run(&args).expect(1).out;
-        assert!(told.contains("is outside every cell, and sees everything: "), "{told}");
+        let reply = folder.run(&args).expect(1).out;
+        assert!(reply.contains("is outside every cell, and sees everything: "), "{reply}");
         let found = folder.run(&[&args[..], &["--json", "--method", "all"]].concat()).expect(1).json();
         assert_eq!((&found["cell"], &found["outside"]), (&Value::Null, &json!(true)));
         for method in found["methods"].as_array().unwrap() {
@@ -172,7 +172,7 @@ fn looks_that_cannot_be_are_refused() {
         let run = folder.run(&ask(bad)).expect(2);
         assert!(run.out.is_empty() && run.err.starts_with("error: "), "{bad:?}: {}", run.err);
     }
-    for (bad, told) in [
+    for (bad, reply) in [
         (&["--dir", "0,0"][..], "--dir: the direction of view is not finite, or has no length"),
         (&["--dir", "1,0,0"], "office.pvs: the table has 2 dimensions, but the point has 3 coordinates"),
         (&["--fov", "40"], "--fov, --aspect and --up need --dir: without it the viewer looks all round"),
@@ -185,13 +185,13 @@ fn looks_that_cannot_be_are_refused() {
             "office.pvs: --aspect is for tables of scenes in space, and this is the table of a plan",
         ),
     ] {
-        assert_eq!(folder.refused(&ask(bad)), told);
+        assert_eq!(folder.refused(&ask(bad)), reply);
     }
 }
 
 /// The numbers of a walk's methods.
-fn kept(told: &Value, what: &str) -> Vec<f64> {
-    told["methods"].as_array().unwrap().iter().map(|m| m[what]["mean"].as_f64().unwrap()).collect()
+fn kept(reply: &Value, what: &str) -> Vec<f64> {
+    reply["methods"].as_array().unwrap().iter().map(|m| m[what]["mean"].as_f64().unwrap()).collect()
 }
 
 #[test]
@@ -199,31 +199,31 @@ fn walks_are_measured() {
     for (folder, name, _) in scenes() {
         let table = table(&folder, name);
         let args = ["walk", name, "--random", "400", "--seed", "7", "--json"];
-        let told = folder.run(&[&args[..], &["-o", "walk.svg", "--csv", "walk.csv"]].concat()).expect(0).json();
-        assert_eq!((&told["n_frames"], &told["n_full"], &told["n_starved"]), (&json!(400), &json!(400), &json!(0)));
+        let reply = folder.run(&[&args[..], &["-o", "walk.svg", "--csv", "walk.csv"]].concat()).expect(0).json();
+        assert_eq!((&reply["n_frames"], &reply["n_full"], &reply["n_starved"]), (&json!(400), &json!(400), &json!(0)));
         let (svg, csv) = (folder.read("walk.svg"), folder.read("walk.csv"));
         assert!(svg.ends_with(b"</svg>\n") && csv.iter().filter(|c| **c == b'\n').count() == 6);
         for what in ["cells", "objects", "polygons"] {
-            let kept = kept(&told, what);
+            let kept = kept(&reply, what);
             assert!(kept.is_sorted_by(|a, b| a >= b) && kept[4] < kept[0] && kept[4] > 0.0, "{what}: {kept:?}");
         }
         let polygons: u64 = (0..table.objects().len() as u32).map(|o| u64::from(table.polygons_of(o))).sum();
-        assert_eq!(told["n_polygons"], polygons);
+        assert_eq!(reply["n_polygons"], polygons);
         // The same walk again leaves the same to draw, by one method as by all, from a packed table as from a plain one.
         folder.run(&["pack", name, "-o", "small.pvz"]).expect(0);
         let args = ["walk", "small.pvz", "--random", "400", "--seed", "7", "--json", "--method", "incident-portals"];
         let again = folder.run(&args).expect(0).json();
         assert_eq!(again["methods"].as_array().unwrap().len(), 2);
-        assert_eq!(kept(&again, "cells"), [kept(&told, "cells")[0], kept(&told, "cells")[3]]);
-        assert_eq!(kept(&again, "polygons"), [kept(&told, "polygons")[0], kept(&told, "polygons")[3]]);
-        assert!(again["packed_bytes"][0].as_u64().unwrap() > 0 && told["packed_bytes"].is_null());
+        assert_eq!(kept(&again, "cells"), [kept(&reply, "cells")[0], kept(&reply, "cells")[3]]);
+        assert_eq!(kept(&again, "polygons"), [kept(&reply, "polygons")[0], kept(&reply, "polygons")[3]]);
+        assert!(again["packed_bytes"][0].as_u64().unwrap() > 0 && reply["packed_bytes"].is_null());
         // The impostor: another walk is another.
         let other = folder.run(&["walk", name, "--random", "400", "--seed", "8", "--json"]).expect(0).json();
-        assert_ne!(kept(&other, "cells"), kept(&told, "cells"));
+        assert_ne!(kept(&other, "cells"), kept(&reply, "cells"));
     }
     let folder = Folder::with_tower();
-    let told = folder.run(&["walk", "tower.pvs", "--random", "50", "--budget", "1"]).expect(0).out;
-    assert!(METHODS.iter().all(|m| told.contains(&format!("\n{m}"))) && told.contains("subgraphs made"), "{told}");
+    let reply = folder.run(&["walk", "tower.pvs", "--random", "50", "--budget", "1"]).expect(0).out;
+    assert!(METHODS.iter().all(|m| reply.contains(&format!("\n{m}"))) && reply.contains("subgraphs made"), "{reply}");
 }
 
 #[test]
@@ -235,12 +235,12 @@ fn walks_are_read_from_files() {
         .chain([r#"{"eye": [-999, 0], "dir": [0, 1]}"#.to_owned()])
         .collect();
     folder.write("way.json", format!(r#"{{"frames": [{}]}}"#, frames.join(",")));
-    let told = folder.run(&["walk", "office.pvs", "--path", "way.json", "--fov", "360", "--json"]).expect(0).json();
-    assert_eq!((&told["n_full"], &told["n_outside"]), (&json!(table.n_cells()), &json!(1)));
+    let reply = folder.run(&["walk", "office.pvs", "--path", "way.json", "--fov", "360", "--json"]).expect(0).json();
+    assert_eq!((&reply["n_full"], &reply["n_outside"]), (&json!(table.n_cells()), &json!(1)));
     // One frame in each cell, all round: on average what the table has on average.
-    let share = told["methods"][0]["cells"]["share_of_all"].as_f64().unwrap();
+    let share = reply["methods"][0]["cells"]["share_of_all"].as_f64().unwrap();
     assert!((share - table.mean_visible_share()).abs() < 1e-9, "{share}");
-    assert!(told["step"].is_null());
+    assert!(reply["step"].is_null());
     for (text, place) in [
         (r#"{"frames": [{"eye": [1, 1], "dir": [1, 0]}, {"eye": [1, 1], "dir": [0, 0]}]}"#, "frame 1: the direction"),
         (r#"{"frames": [{"eye": [1, 1, 1], "dir": [1, 0]}]}"#, "frame 0: eye has 3 numbers"),
