@@ -4,8 +4,9 @@
 //!
 //! - **Owns**: the checks of a table ([`verify`]) against the real geometry ([`Truth`]), and their results
 //!   ([`Findings`]) as [`Violation`]s with the segment that shows them; the comparison of a table with its proofs
-//!   ([`check_proofs`]), and of its walls with the scene ([`check_walls_of_plan`], [`check_walls_in_space`]).
-//! - **Out of scope**: how tables are made (no code is shared with cutting, searching or baking), files, pictures.
+//!   ([`check_proofs`]), and of its walls with the scene ([`check_walls_of_plan`], [`check_walls_in_space`]); the visibility that a
+//!   map has of its own, as a table to check ([`OwnVisibility`]).
+//! - **Out of scope**: how tables are made (no code is shared with cutting, searching or baking), pictures.
 //! - **Invariants**: a violation that names a segment is proven, by exact signs or by margins that are wider than
 //!   the uncertainty of the scene; so a correct table has none. The same table, scene and options give the same findings, with any
 //!   number of threads. Rays that find nothing prove nothing.
@@ -15,7 +16,9 @@
 
 pub mod exact;
 mod findings;
+mod map;
 mod options;
+mod own;
 mod proofs;
 mod rays;
 mod real;
@@ -27,6 +30,7 @@ mod walls;
 
 pub use findings::{Confirmed, Findings, Remarks, Violation};
 pub use options::VerifyOptions;
+pub use own::{LumpKind, OwnError, OwnSummary, OwnViolation, OwnVisibility};
 pub use proofs::{ProofError, ProofFindings, ProofViolation, boxes_of, check_proofs, convex_of, plan_of};
 pub use sight::{Sight, Target};
 pub use truth::{Truth, VerifyError, WorldChild, WorldFace, WorldNode, WorldTree};

@@ -101,8 +101,8 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, Error> {
         Some(out) => drawing::draw(&args.table, table, &findings, out)?,
         None => None,
     };
-    let violations = own.as_ref().map_or_else(|| Violations::from(&findings), |own| own.violations(&findings));
-    let about = own.as_ref().map(|own| own.about.clone());
+    let violations = own.as_ref().map_or_else(|| Violations::from(&findings), |own| Violations::of_own(&findings, own));
+    let about = own.as_ref().map(|own| own::About::from(&own.about));
     let files = [args.table.as_path(), &args.scene];
     let outcome = Outcome::new(files, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
     let is_true = outcome.is_true();

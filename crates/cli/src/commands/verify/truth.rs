@@ -6,11 +6,10 @@ use crate::input::refuse;
 use crate::input::{self, Input};
 use sightlines::bake::PrtBakeError;
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
-use sightlines::formats::Prt;
-use sightlines::formats::quake::bsp::{BspChild, BspError};
+use sightlines::formats::quake::bsp::BspError;
 use sightlines::formats::quake::visibility::check_portals;
-use sightlines::formats::quake::{Bsp, graph_of_prt, read_prt};
-use sightlines::verify::{Truth, WorldChild, WorldFace, WorldNode, WorldTree};
+use sightlines::formats::quake::{graph_of_prt, read_prt};
+use sightlines::verify::{Truth, WorldTree};
 use std::path::Path;
 
 /// A scene that was read.
@@ -46,7 +45,7 @@ impl Real {
                 check_portals(&bsp, &portals).map_err(other_map)?;
                 let broken =
                     |error: BspError| Error::BakePrt { path: path.to_owned(), source: PrtBakeError::Bsp(error) };
-                Self::Map(graph_of_prt(&portals), world(&bsp, &portals).map_err(broken)?)
+                Self::Map(graph_of_prt(&portals), WorldTree::of_map(&bsp, &portals).map_err(broken)?)
             }
         })
     }
@@ -73,39 +72,4 @@ impl Real {
             Self::Map(graph, tree) => Truth::World(graph, tree),
         }
     }
-}
-
-/// The tree of a map, with the cluster of each leaf, and its faces.
-fn world(bsp: &Bsp, prt: &Prt) -> Result<WorldTree, BspError> {
-    let (tree, faces, lists) = (bsp.world_tree()?, bsp.world_faces()?, bsp.leaf_faces()?);
-    let of_leaf = prt.leaf_clusters();
-    // Portal files count leafs from 0, maps from 1, and their leaf 0 is what is solid.
-    let cluster = |leaf: u32| match (bsp.format().has_clusters(), leaf.checked_sub(1)) {
-        (true, _) => bsp.leafs().get(leaf as usize).and_then(|leaf| leaf.cluster()).map(u32::from),
-        (false, Some(leaf)) => of_leaf.cluster_of_leaf().get(leaf as usize).copied(),
-        (false, None) => None,
-    };
-    let child = |child: BspChild| match child {
-        BspChild::Node(node) => WorldChild::Node(node),
-        BspChild::Leaf(leaf) => cluster(leaf).map_or(WorldChild::Solid, WorldChild::Cluster),
-    };
-    let nodes = tree
-        .nodes()
-        .iter()
-        .map(|n| WorldNode { normal: n.normal, distance: n.distance, children: n.children.map(child) })
-        .collect();
-    let first = faces.range().start;
-    let face =
-        |k: usize| WorldFace { name: format!("face {}", first as usize + k), corners: faces.corners(k).to_vec() };
-    let mut listed = vec![Vec::new(); prt.n_clusters() as usize];
-    for leaf in 0..lists.n_leafs() {
-        if let Some(list) = cluster(leaf as u32 + 1).and_then(|cluster| listed.get_mut(cluster as usize)) {
-            list.extend(lists.of(leaf).iter().filter(|face| faces.range().contains(face)).map(|face| face - first));
-        }
-    }
-    listed.iter_mut().for_each(|list: &mut Vec<u32>| {
-        list.sort_unstable();
-        list.dedup();
-    });
-    Ok(WorldTree { nodes, faces: (0..faces.n_faces()).map(face).collect(), listed })
 }

@@ -1,7 +1,7 @@
 //! The violations that are reported.
 
 use serde::Serialize;
-use sightlines::verify::{Findings, VerifyOptions, Violation};
+use sightlines::verify::{Findings, OwnViolation, OwnVisibility, VerifyOptions, Violation};
 use std::collections::BTreeMap;
 
 /// A violation.
@@ -20,23 +20,6 @@ pub(super) struct ReportedViolation {
     pub(super) text: String,
 }
 
-impl ReportedViolation {
-    /// A violation that needs no ray.
-    pub(super) fn of_sides(kind: &'static str, names: Vec<String>, text: String) -> Self {
-        Self { kind, cells: Vec::new(), names, object: None, segment: None, text }
-    }
-
-    /// The same in other words.
-    pub(super) fn of(self, names: Vec<String>, text: String) -> Self {
-        Self { names, text, ..self }
-    }
-
-    /// Whether a segment shows it.
-    pub(super) fn has_ray(&self) -> bool {
-        self.segment.is_some()
-    }
-}
-
 /// All reported violations.
 #[derive(Debug, Default)]
 pub(super) struct Violations {
@@ -48,8 +31,9 @@ pub(super) struct Violations {
 }
 
 impl Violations {
-    /// What was found, in other words, and perhaps less often.
-    pub(super) fn reported(found: &Findings, reported: Vec<ReportedViolation>) -> Self {
+    /// What was found of a map's own visibility, in terms of the map.
+    pub(super) fn of_own(found: &Findings, own: &OwnVisibility) -> Self {
+        let reported: Vec<_> = own.violations(found).into_iter().map(ReportedViolation::from).collect();
         let mut by_kind = BTreeMap::new();
         reported.iter().for_each(|v| *by_kind.entry(v.kind).or_default() += 1);
         Self { n: reported.len(), has_more: has_more(found), by_kind, reported }
@@ -76,5 +60,15 @@ impl From<&Violation> for ReportedViolation {
     fn from(v: &Violation) -> Self {
         let cells = v.cells().into_iter().map(|cell| cell.0).collect();
         Self { kind: v.kind(), cells, names: Vec::new(), object: v.object(), segment: v.segment(), text: v.to_string() }
+    }
+}
+
+impl From<OwnViolation> for ReportedViolation {
+    fn from(own: OwnViolation) -> Self {
+        let OwnViolation { kind, sides: names, violation, text } = own;
+        match violation {
+            Some(v) => Self { names, text, ..Self::from(&v) },
+            None => Self { kind, cells: Vec::new(), names, object: None, segment: None, text },
+        }
     }
 }

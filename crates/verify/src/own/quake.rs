@@ -1,83 +1,60 @@
 //! The visibility lump of a Quake map.
 
-use super::{About, Own, Side, hidden_pairs};
-use crate::commands::verify::Error;
-use crate::error::InputError;
-use crate::input;
-use sightlines::cells::{CellGraph, Convex};
-use sightlines::formats::InputKind;
-use sightlines::formats::quake::bsp::LeafRow;
-use sightlines::formats::quake::visibility::{check_portals, read_visibility};
-use sightlines::formats::quake::{Bsp, LeafClusters, graph_of_prt, read_bsp, read_prt, rle};
-use sightlines::geometry::Aabb;
-use sightlines::pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
-use std::path::{Path, PathBuf};
+use super::{LumpKind, OwnError, OwnSummary, OwnVisibility, Side, hidden_pairs};
+use sightlines_cells::{CellGraph, Convex};
+use sightlines_formats::quake::bsp::LeafRow;
+use sightlines_formats::quake::visibility::{check_portals, read_visibility};
+use sightlines_formats::quake::{Bsp, LeafClusters, Prt, graph_of_prt, rle};
+use sightlines_geometry::Aabb;
+use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 
-/// Reads the lump of a map; of which cluster each leaf is, is in the portal file of the scene.
-pub(super) fn read(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<Own, Error> {
-    let bsp = read_bsp(path)?;
-    let named = portals_of(path, scene, prt)?;
-    let portals = read_prt(&named)?;
-    let other_map =
-        |source| InputError::OtherMap { prt: named.clone(), bsp: path.to_owned(), source: Box::new(source) };
-    check_portals(&bsp, &portals).map_err(other_map)?;
-    let leafs = portals.leaf_clusters();
-    let seen = read_visibility(&bsp, &leafs)
-        .map_err(|source| Error::OwnVisibility { path: path.to_owned(), source: Box::new(source) })?
-        .ok_or_else(|| Error::NoOwn {
-            path: path.to_owned(),
-            map: None,
-            what: "visibility lump",
-            command: "sightlines vis",
-        })?;
-    let graph = graph_of_prt(&portals);
-    let in_clusters = leafs_of(&bsp, &leafs);
-    let n = in_clusters.len();
-    // A cluster without leafs has no row, and nobody in it.
-    let is_real: Vec<bool> = in_clusters.iter().map(|leafs| !leafs.is_empty()).collect();
-    let (mut rows, mut hidden) = (BitMatrix::identity(n), BitMatrix::new(n, n));
-    for a in 0..n {
-        for b in 0..n {
-            let is_seen = |from: usize, to: usize| !is_real[from] || !is_real[to] || seen.get(from, to);
-            hidden.set(a, b, !is_seen(a, b));
-            rows.set(a, b, a == b || (is_seen(a, b) && is_seen(b, a)));
+impl OwnVisibility {
+    /// What the visibility lump of a map says, for the clusters of its portal file.
+    ///
+    /// Clusters see each other unless the map hides one from the other, one way or both. A cluster without leafs has no row in the
+    /// lump, and nobody in it: it counts as visible from everywhere. Costs O(clusters² + size of the map).
+    ///
+    /// # Errors
+    /// [`OwnError::OtherMap`] if the portals are not those of the map, [`OwnError::Missing`] without a lump,
+    /// [`OwnError::Visibility`] for a damaged one.
+    pub fn of_bsp(bsp: &Bsp, portals: &Prt) -> Result<Self, OwnError> {
+        check_portals(bsp, portals).map_err(|source| OwnError::OtherMap(Box::new(source)))?;
+        let leafs = portals.leaf_clusters();
+        let seen = read_visibility(bsp, &leafs).map_err(|source| OwnError::Visibility(Box::new(source)))?;
+        let seen = seen.ok_or(OwnError::Missing(LumpKind::Visibility))?;
+        let graph = graph_of_prt(portals);
+        let in_clusters = leafs_of(bsp, &leafs);
+        let n = in_clusters.len();
+        // A cluster without leafs has no row, and nobody in it.
+        let is_real: Vec<bool> = in_clusters.iter().map(|leafs| !leafs.is_empty()).collect();
+        let (mut rows, mut hidden) = (BitMatrix::identity(n), BitMatrix::new(n, n));
+        for a in 0..n {
+            for b in 0..n {
+                let is_seen = |from: usize, to: usize| !is_real[from] || !is_real[to] || seen.get(from, to);
+                hidden.set(a, b, !is_seen(a, b));
+                rows.set(a, b, a == b || (is_seen(a, b) && is_seen(b, a)));
+            }
         }
-    }
-    let [n_hidden_pairs, n_hidden_one_way] = hidden_pairs(&hidden);
-    let side =
-        |(cluster, leafs): (usize, &Vec<usize>)| Side { name: name(cluster, leafs), has_places: !leafs.is_empty() };
-    Ok(Own {
-        table: table(&bsp, &graph, &in_clusters, rows).expect("boxes around points, and rows that were made symmetric"),
-        about: About {
-            lump: "visibility",
-            n_bytes: bsp.visibility().len(),
-            n_leafs: Some(bsp.n_visible_leafs()),
-            sides: "cluster",
-            n_sides: n,
-            n_hidden_pairs,
-            n_hidden_one_way,
-            n_uneven_clusters: (0..leafs.n_clusters()).filter(|&c| is_uneven(&bsp, &leafs, c)).count(),
-        },
-        side_of: (0..n as u32).map(Some).collect(),
-        sides: in_clusters.iter().enumerate().map(side).collect(),
-        hidden,
-    })
-}
-
-/// The portal file of the scene, which may be one itself.
-fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<PathBuf, Error> {
-    match (input::kind_of(scene)?, prt) {
-        (Some(InputKind::Prt), _) => Ok(scene.to_owned()),
-        (Some(InputKind::Bsp), Some(prt)) => Ok(prt.to_owned()),
-        (Some(InputKind::Bsp), None) => {
-            let beside = scene.with_extension("prt");
-            if beside.exists() { Ok(beside) } else { Err(InputError::MapWithoutPortals(scene.to_owned()).into()) }
-        }
-        _ => Err(Error::OwnScene {
-            path: path.to_owned(),
-            scene: scene.to_owned(),
-            needed: "a Quake map or its portal file",
-        }),
+        let [n_hidden_pairs, n_hidden_one_way] = hidden_pairs(&hidden);
+        let side =
+            |(cluster, leafs): (usize, &Vec<usize>)| Side { name: name(cluster, leafs), has_places: !leafs.is_empty() };
+        Ok(Self {
+            table: table(bsp, &graph, &in_clusters, rows)
+                .expect("boxes around points, and rows that were made symmetric"),
+            about: OwnSummary {
+                lump: LumpKind::Visibility,
+                n_bytes: bsp.visibility().len(),
+                n_leafs: Some(bsp.n_visible_leafs()),
+                sides: "cluster",
+                n_sides: n,
+                n_hidden_pairs,
+                n_hidden_one_way,
+                n_uneven_clusters: (0..leafs.n_clusters()).filter(|&c| is_uneven(bsp, &leafs, c)).count(),
+            },
+            side_of: (0..n as u32).map(Some).collect(),
+            sides: in_clusters.iter().enumerate().map(side).collect(),
+            hidden,
+        })
     }
 }
 

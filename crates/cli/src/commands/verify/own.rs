@@ -1,0 +1,145 @@
+//! The visibility that a map has of its own, which engines load: read, and summed up.
+
+use super::Error;
+use crate::error::InputError;
+use crate::input;
+use crate::output::{bytes, count};
+use serde::Serialize;
+use sightlines::bake::BakeError;
+use sightlines::formats::InputKind;
+use sightlines::formats::quake::{portals_beside, read_bsp, read_prt};
+use sightlines::triangulation::subdivide;
+use sightlines::verify::{OwnError, OwnSummary, OwnVisibility};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// What was looked at.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct About {
+    /// The name of the lump.
+    lump: &'static str,
+    n_bytes: usize,
+    /// Leafs of a Quake map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    n_leafs: Option<usize>,
+    /// What is hidden from each other: clusters of leafs, or sectors.
+    sides: &'static str,
+    n_sides: usize,
+    /// Unordered pairs of sides.
+    n_hidden_pairs: u64,
+    /// Of these, pairs of which only one is hidden from the other.
+    n_hidden_one_way: u64,
+    /// Clusters whose leafs have different rows; what one of them sees counts for all.
+    n_uneven_clusters: usize,
+}
+
+impl From<&OwnSummary> for About {
+    fn from(summary: &OwnSummary) -> Self {
+        let OwnSummary { lump, n_bytes, n_leafs, sides, n_sides, .. } = *summary;
+        Self {
+            lump: lump.name(),
+            n_bytes,
+            n_leafs,
+            sides,
+            n_sides,
+            n_hidden_pairs: summary.n_hidden_pairs,
+            n_hidden_one_way: summary.n_hidden_one_way,
+            n_uneven_clusters: summary.n_uneven_clusters,
+        }
+    }
+}
+
+impl fmt::Display for About {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sides = count(self.n_sides as u64, self.sides);
+        let sides = self.n_leafs.map_or(sides.clone(), |n| format!("{} in {sides}", count(n as u64, "leaf")));
+        writeln!(f, "lump           {} of the map, {}, for {sides}", self.lump, bytes(self.n_bytes as u64))?;
+        writeln!(f, "               {} hidden", count(self.n_hidden_pairs, "pair"))?;
+        if self.n_hidden_one_way > 0 {
+            writeln!(f, "remark         {} hidden one way only", count(self.n_hidden_one_way, "pair"))?;
+        }
+        if self.n_uneven_clusters > 0 {
+            let n = count(self.n_uneven_clusters as u64, "cluster");
+            writeln!(
+                f,
+                "remark         {n} with leafs that do not see the same: what one of them sees counts for all"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// The own visibility of a map, if `path` is one; `scene` is what it will be checked against.
+///
+/// # Errors
+/// [`Error`] for a map without visibility of its own, for files that cannot be read, and for those that do not go together.
+pub(super) fn read(
+    path: &Path,
+    scene: &Path,
+    map: Option<&str>,
+    prt: Option<&Path>,
+) -> Result<Option<OwnVisibility>, Error> {
+    match input::kind_of(path)? {
+        Some(InputKind::Bsp) => of_bsp(path, scene, prt).map(Some),
+        Some(InputKind::Wad) => of_wad(path, scene, map).map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// Reads the lump of a Quake map; of which cluster each leaf is, is in the portal file of the scene.
+fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility, Error> {
+    let bsp = read_bsp(path)?;
+    let named = portals_of(path, scene, prt)?;
+    let portals = read_prt(&named)?;
+    OwnVisibility::of_bsp(&bsp, &portals).map_err(|error| match error {
+        OwnError::OtherMap(source) => InputError::OtherMap { prt: named.clone(), bsp: path.to_owned(), source }.into(),
+        error => refused(path, None, error),
+    })
+}
+
+/// Reads the lump of a Doom map, for the cells that the lines of the scene make.
+fn of_wad(path: &Path, scene: &Path, name: Option<&str>) -> Result<OwnVisibility, Error> {
+    if input::kind_of(scene)? != Some(InputKind::Wad) {
+        let (path, scene) = (path.to_owned(), scene.to_owned());
+        return Err(Error::OwnScene { path, scene, needed: "a WAD with the map" });
+    }
+    let [map, real] = [input::doom(path, name)?, input::doom(scene, name)?];
+    if map.n_sectors() != real.n_sectors() {
+        let n_sectors = [map.n_sectors(), real.n_sectors()];
+        return Err(Error::OwnSectors { path: path.to_owned(), scene: scene.to_owned(), n_sectors });
+    }
+    let failed = |source: BakeError| Error::Bake { path: scene.to_owned(), map: Some(real.name().to_string()), source };
+    // A map without a lump is refused before it is cut.
+    OwnVisibility::check_reject(&map).map_err(|error| refused(path, Some(map.name().to_string()), error))?;
+    let plan = real.plan().map_err(|error| failed(error.into()))?;
+    let (graph, _) = subdivide(&plan).map_err(|error| failed(error.into()))?;
+    OwnVisibility::of_reject(&map, &graph).map_err(|error| refused(path, Some(map.name().to_string()), error))
+}
+
+/// Names the file and the map.
+fn refused(path: &Path, map: Option<String>, error: OwnError) -> Error {
+    let path = path.to_owned();
+    match (error, map) {
+        (OwnError::Visibility(source) | OwnError::OtherMap(source), _) => Error::OwnVisibility { path, source },
+        (OwnError::Length(source), Some(map)) => Error::OwnLength { path, map, source },
+        (_, map @ Some(_)) => Error::NoOwn { path, map, what: "REJECT lump", command: "sightlines reject" },
+        (_, None) => Error::NoOwn { path, map: None, what: "visibility lump", command: "sightlines vis" },
+    }
+}
+
+/// The portal file of the scene, which may be one itself.
+fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<PathBuf, Error> {
+    match (input::kind_of(scene)?, prt) {
+        (Some(InputKind::Prt), _) => Ok(scene.to_owned()),
+        (Some(InputKind::Bsp), Some(prt)) => Ok(prt.to_owned()),
+        (Some(InputKind::Bsp), None) => {
+            let beside = portals_beside(scene);
+            if beside.exists() { Ok(beside) } else { Err(InputError::MapWithoutPortals(scene.to_owned()).into()) }
+        }
+        _ => Err(Error::OwnScene {
+            path: path.to_owned(),
+            scene: scene.to_owned(),
+            needed: "a Quake map or its portal file",
+        }),
+    }
+}
