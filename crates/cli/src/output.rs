@@ -9,11 +9,23 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Prints a result: as one line of JSON if `json`, otherwise as it is displayed.
+/// The version of what commands print with `--json`, the same for all. It grows when a field goes, gets another name, or means
+/// something else; new fields do not change it. `docs/json.md` has the fields.
+pub(crate) const JSON_VERSION: u32 = 1;
+
+/// A result with the version of its form.
+#[derive(Serialize)]
+struct Versioned<'a, T> {
+    version: u32,
+    #[serde(flatten)]
+    result: &'a T,
+}
+
+/// Prints a result: as one line of JSON if `json`, with its version, otherwise as it is displayed.
 pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Result<(), OutputError> {
     stdout(|out| {
         if json {
-            serde_json::to_writer(&mut *out, result)?;
+            serde_json::to_writer(&mut *out, &Versioned { version: JSON_VERSION, result })?;
             writeln!(out)
         } else {
             write!(out, "{result}")

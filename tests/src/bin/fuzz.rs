@@ -11,6 +11,7 @@ use sightlines::bake::{PlanBakeOptions, PortalMode, PrtOptions, SceneBakeOptions
 use sightlines::cells::Scene;
 use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
 use sightlines::formats::geojson::{parse_plan, write_plan};
+use sightlines::formats::input::{FORMATS, Source, detect};
 use sightlines::formats::levels::{LevelFile, LevelsIndex, parse_levels_index, write_levels_index};
 use sightlines::formats::quake::{graph_of_prt, prt::parse_prt};
 use sightlines::formats::scene::{SceneFile, parse_glb, parse_glb_with_source, parse_obj, write_glb};
@@ -461,6 +462,19 @@ fn check_anything(bytes: &[u8]) -> bool {
         | check_glb(bytes)
         | check_obj(bytes)
         | check_view_cells(bytes)
+        | check_registry(bytes)
+}
+
+/// Whether any format of the registry reads the bytes; whatever it is taken for, what is recognised has to be among the formats.
+fn check_registry(bytes: &[u8]) -> bool {
+    let mut is_read = false;
+    for format in &FORMATS {
+        let name = format!("some.{}", format.extensions[0]);
+        let source = Source::Memory { name: name.as_ref(), bytes, beside: None };
+        assert!(detect(name.as_ref(), bytes).is_some(), "{name} has an ending that is known");
+        is_read |= source.read_as(format).is_ok() | source.read().is_ok();
+    }
+    is_read
 }
 
 struct Settings {

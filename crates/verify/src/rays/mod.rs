@@ -5,7 +5,7 @@ mod suspects;
 
 use crate::findings::{Findings, Violation};
 use crate::options::VerifyOptions;
-use crate::real::{MapWorld, PlanWorld, PortalWorld, Reality, SolidWorld};
+use crate::real::{MapWorld, PlanWorld, PortalWorld, RayOracle, SolidWorld};
 use crate::sight::{Sight, Target};
 use crate::truth::Truth;
 use rayon::prelude::*;
@@ -39,7 +39,7 @@ pub(crate) fn check(table: &Table, truth: &Truth<'_>, options: &VerifyOptions, f
     }
 }
 
-fn shoot_all<R: Reality>(world: &R, table: &Table, options: &VerifyOptions, findings: &mut Findings) {
+fn shoot_all<R: RayOracle>(world: &R, table: &Table, options: &VerifyOptions, findings: &mut Findings) {
     let seen = Seen::of(table);
     let tally = Tally::new(table);
     let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
@@ -101,7 +101,7 @@ fn key(s: &Sight) -> (CellId, Target) {
 }
 
 /// Shoots some rays; returns what they see that is hidden, and how many were shot.
-fn shoot_chunk<R: Reality>(
+fn shoot_chunk<R: RayOracle>(
     world: &R,
     seen: &Seen,
     tally: &Tally,

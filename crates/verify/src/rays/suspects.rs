@@ -1,7 +1,7 @@
 //! Which hidden pairs are the most suspicious: those with visible pairs next to them.
 
 use super::seen::Seen;
-use crate::real::Reality;
+use crate::real::RayOracle;
 use crate::sight::Target;
 use sightlines_geometry::Random;
 use sightlines_pvs::{CellId, Table};
@@ -35,7 +35,7 @@ impl Suspect {
 /// there are so many of both kinds.
 ///
 /// The share of the neighbours of the one that the other sees, and the other way round, summed.
-pub(super) fn most<R: Reality>(world: &R, table: &Table, seen: &Seen, n: u64) -> Vec<Suspect> {
+pub(super) fn most<R: RayOracle>(world: &R, table: &Table, seen: &Seen, n: u64) -> Vec<Suspect> {
     let n_cells = table.n_cells();
     let n_objects = if table.parts().objects_seen.is_some() { table.objects().len() } else { 0 };
     let n_most = usize::try_from(n).unwrap_or(usize::MAX);

@@ -1,6 +1,6 @@
 //! Portals alone: a line sees on through portals, in their order along it.
 
-use super::{Reality, at, dot, extreme, length, scale_of, sub};
+use super::{RayOracle, at, dot, extreme, length, scale_of, sub};
 use crate::exact::snapped;
 use crate::sight::{Sight, Target};
 use sightlines_cells::{CellGraph, CellId, Convex};
@@ -144,7 +144,7 @@ fn of_portal(shape: &Portal3, random: &mut Random) -> Point3 {
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * u + (c[i] - a[i]) * v)
 }
 
-impl Reality for PortalWorld {
+impl RayOracle for PortalWorld {
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
         let [p, q] = self.line(from, random)?;
         let d = sub(q, p);

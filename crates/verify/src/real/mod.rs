@@ -1,4 +1,4 @@
-//! What is really there, ready for rays. Vectors and rays are written out here on purpose, as this checks what others compute. Doubles propose segments; what [`Reality::proves`] says alone counts.
+//! What is really there, ready for rays. Vectors and rays are written out here on purpose, as this checks what others compute. Doubles propose segments; what [`RayOracle::proves`] says alone counts.
 
 mod climb;
 mod convex;
@@ -16,7 +16,7 @@ use sightlines_geometry::{Aabb, Random};
 use sightlines_pvs::Table;
 
 /// A scene with the cells of a table in it.
-pub(crate) trait Reality: Sync {
+pub(crate) trait RayOracle: Sync {
     /// A ray in a random direction from a random place inside of a cell; `visit` gets what may be visible along it, as
     /// proposals. `None` if no place was found.
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()>;

@@ -1,6 +1,6 @@
 //! Plans: opaque lines stop sight.
 
-use super::{Reality, at, clip, extreme, neighbours_of, scale_of};
+use super::{RayOracle, at, clip, extreme, neighbours_of, scale_of};
 use crate::exact::{segments_apart, snapped, strictly_in_polygon};
 use crate::shapes::outlines;
 use crate::sight::{Sight, Target};
@@ -194,7 +194,7 @@ fn has_rounded_crossings(plan: &Plan) -> bool {
     })
 }
 
-impl Reality for PlanWorld {
+impl RayOracle for PlanWorld {
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
         let p = self.place(from, random)?;
         if !self.objects.is_empty() && random.below(8) == 0 {

@@ -1,7 +1,7 @@
 //! Scenes in space: every triangle stops sight.
 
 use super::climb::climb;
-use super::{Reality, at, clip, extreme, length, neighbours_of, scale_of, sub};
+use super::{RayOracle, at, clip, extreme, length, neighbours_of, scale_of, sub};
 use crate::exact::{segment_and_triangle_apart, segment_crosses_triangle, snapped};
 use crate::sight::{Sight, Target};
 use sightlines_cells::{CellId, Scene};
@@ -222,7 +222,7 @@ fn meet(p: Point3, d: Point3, [a, b, c]: &[Point3; 3]) -> Option<f64> {
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0).then_some(t)
 }
 
-impl Reality for SolidWorld {
+impl RayOracle for SolidWorld {
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
         let p = self.place(from, random)?;
         let d = random.direction();

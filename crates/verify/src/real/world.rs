@@ -1,7 +1,7 @@
 //! Quake maps: the tree of planes says what is solid and which cluster is where.
 
 use super::convex::PortalWorld;
-use super::{Reality, at, clip, dot, extreme, length, scale_of, sub};
+use super::{RayOracle, at, clip, dot, extreme, length, scale_of, sub};
 use crate::exact::snapped;
 use crate::sight::{Sight, Target};
 use crate::truth::{WorldChild, WorldTree};
@@ -225,7 +225,7 @@ impl<'a> MapWorld<'a> {
     }
 }
 
-impl Reality for MapWorld<'_> {
+impl RayOracle for MapWorld<'_> {
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
         if random.below(2) == 0 {
             return self.portals.shoot(from, random, visit);

@@ -26,6 +26,10 @@ pub(crate) enum Error {
     /// A from-region method cannot be prepared.
     #[error(transparent)]
     Method(#[from] MethodFailed),
+    /// A table that would be called JSON, and is none.
+    #[error("{}: `build` writes a table, which is not JSON: name it {}, and then: sightlines export {} -o {}", out.display(),
+            out.with_extension("pvs").display(), out.with_extension("pvs").display(), out.display())]
+    Json { out: PathBuf },
     /// A plan or a scene cannot be baked.
     #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
     Bake { path: PathBuf, map: Option<String>, source: BakeError },

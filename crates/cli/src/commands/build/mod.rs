@@ -62,6 +62,9 @@ pub(crate) struct BuildArgs {
 
 pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
     let BuildArgs { input: path, output: out, .. } = args;
+    if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+        return Err(Error::Json { out: out.clone() });
+    }
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
     let input = input::read(path, args.map.as_deref())?;

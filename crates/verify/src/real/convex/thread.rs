@@ -6,7 +6,7 @@
 
 use super::{Gate, PortalWorld};
 use crate::exact::snapped;
-use crate::real::{Reality, at, dot, length, sub};
+use crate::real::{RayOracle, at, dot, length, sub};
 use crate::sight::{Sight, Target};
 use sightlines_geometry::{Point3, Random};
 use sightlines_pvs::{CellId, Table};

@@ -83,7 +83,7 @@ impl Search<'_> {
         SHARES.into_iter().flat_map(|s| SHARES.map(|t| (s, t))).find_map(|(s, t)| {
             let target = Target::Cell(CellId(self.to));
             let sight = PlanWorld::sight(self.from, target, point([p0, p1], s), point([q0, q1], t));
-            super::Reality::proves(self.world, &sight).then_some(sight)
+            super::RayOracle::proves(self.world, &sight).then_some(sight)
         })
     }
 }
