@@ -1,8 +1,9 @@
 //! The answer of `explain` for clusters of a portal file, for people and for programs.
 
 use super::Error;
+use super::report::{ExplanationReport, Reason};
 use crate::Answer;
-use crate::output::{self, count};
+use crate::output::count;
 use crate::place::Place;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -35,37 +36,22 @@ impl Asked<'_> {
         };
         let (from, to) = (cluster(self.places[0])?, cluster(self.places[1])?);
         let explanation = explain_convex(self.graph, from, to, self.limit);
-        let told = Told {
+        let report = ExplanationReport {
             from: from.0,
             to: to.0,
             listed: listed(from, to),
-            checked: explanation.check(self.graph, from, to),
+            checked: Some(explanation.check(self.graph, from, to)),
             reason: reason(self.graph, &explanation),
             n_shown: self.n_shown,
         };
-        output::print(self.json, &told)?;
-        Ok(if told.is_visible() { Answer::Yes } else { Answer::No })
+        Ok(report.print(self.json)?)
     }
 }
 
-/// The explanation of two clusters.
-#[derive(Debug, Serialize)]
-struct Told {
-    from: u32,
-    to: u32,
-    /// What the table says of the two, if there is one.
-    listed: Option<bool>,
-    /// Whether the independent checker accepts the answer as proven.
-    checked: bool,
-    #[serde(flatten)]
-    reason: Reason,
-    #[serde(skip)]
-    n_shown: usize,
-}
-
+/// What was found about two clusters.
 #[derive(Debug, Serialize)]
 #[serde(tag = "answer", rename_all = "lowercase")]
-enum Reason {
+enum ConvexReason {
     /// They are one cluster.
     Same,
     Visible {
@@ -111,26 +97,26 @@ fn passed(graph: &CellGraph<Convex>, gate: ConvexGate, line: Option<&Line3>) -> 
     Passed { portal: gate.portal.0, cell: gate.cells(graph)[1].0, at }
 }
 
-fn reason(graph: &CellGraph<Convex>, explanation: &ConvexExplanation) -> Reason {
+fn reason(graph: &CellGraph<Convex>, explanation: &ConvexExplanation) -> ConvexReason {
     match explanation {
-        ConvexExplanation::Same => Reason::Same,
-        ConvexExplanation::Visible { gates, line } => Reason::Visible {
+        ConvexExplanation::Same => ConvexReason::Same,
+        ConvexExplanation::Visible { gates, line } => ConvexReason::Visible {
             portals: gates.iter().map(|&gate| passed(graph, gate, Some(line))).collect(),
             line: [line.a, line.b],
         },
-        ConvexExplanation::Hidden { start, blocked } => Reason::Hidden {
+        ConvexExplanation::Hidden { start, blocked } => ConvexReason::Hidden {
             start: start.0,
             n_blocked: blocked.len(),
-            blocked: blocked.iter().map(|b| told(graph, b)).collect(),
+            blocked: blocked.iter().map(|b| blocked_way(graph, b)).collect(),
         },
-        ConvexExplanation::TooMany { limit } => Reason::Unknown { max_questions: *limit },
+        ConvexExplanation::TooMany { limit } => ConvexReason::Unknown { max_questions: *limit },
         ConvexExplanation::Undecided { gates } => {
-            Reason::Undecided { portals: gates.iter().map(|&gate| passed(graph, gate, None)).collect() }
+            ConvexReason::Undecided { portals: gates.iter().map(|&gate| passed(graph, gate, None)).collect() }
         }
     }
 }
 
-fn told(graph: &CellGraph<Convex>, blocked: &BlockedConvex) -> Blocked {
+fn blocked_way(graph: &CellGraph<Convex>, blocked: &BlockedConvex) -> Blocked {
     let certificate = match &blocked.reason {
         Blocking::Behind => None,
         Blocking::Certificate(certificate) => Some(&**certificate),
@@ -165,17 +151,6 @@ fn node(node: &ConvexNode) -> Value {
     }
 }
 
-impl Told {
-    /// Whether they see each other; what the table says if that is not known, and yes without one.
-    fn is_visible(&self) -> bool {
-        match self.reason {
-            Reason::Same | Reason::Visible { .. } => true,
-            Reason::Hidden { .. } => false,
-            Reason::Unknown { .. } | Reason::Undecided { .. } => self.listed.unwrap_or(true),
-        }
-    }
-}
-
 fn place([x, y, z]: [f64; 3]) -> String {
     format!("({x}, {y}, {z})")
 }
@@ -184,12 +159,19 @@ fn list(portals: &[Passed]) -> String {
     portals.iter().map(|p| p.portal.to_string()).collect::<Vec<_>>().join(" ")
 }
 
-impl fmt::Display for Told {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { from, to, .. } = self;
-        match &self.reason {
-            Reason::Same => writeln!(f, "both are cluster {from}, and a cluster sees itself")?,
-            Reason::Visible { portals, line } => {
+impl Reason for ConvexReason {
+    fn verdict(&self) -> Option<bool> {
+        match self {
+            Self::Same | Self::Visible { .. } => Some(true),
+            Self::Hidden { .. } => Some(false),
+            Self::Unknown { .. } | Self::Undecided { .. } => None,
+        }
+    }
+
+    fn write(&self, f: &mut fmt::Formatter<'_>, [from, to]: [u32; 2], n_shown: usize) -> fmt::Result {
+        match self {
+            Self::Same => writeln!(f, "both are cluster {from}, and a cluster sees itself")?,
+            Self::Visible { portals, line } => {
                 writeln!(f, "cluster {from} sees cluster {to} through {}", count(portals.len() as u64, "portal"))?;
                 for Passed { portal, cell, at } in portals {
                     let at = at.map_or(String::new(), |at| format!(" at {}", place(at)));
@@ -197,44 +179,32 @@ impl fmt::Display for Told {
                 }
                 writeln!(f, "along the line from {} to {}", place(line[0]), place(line[1]))?;
             }
-            Reason::Hidden { blocked, .. } if blocked.is_empty() => {
+            Self::Hidden { blocked, .. } if blocked.is_empty() => {
                 writeln!(f, "cluster {from} does not see cluster {to}: no way through portals joins them")?;
             }
-            Reason::Hidden { start, n_blocked, blocked } => {
+            Self::Hidden { start, n_blocked, blocked } => {
                 let n = count(*n_blocked as u64, "sequence");
                 writeln!(
                     f,
                     "cluster {from} does not see cluster {to}: every way from cluster {start} passes one of {n} of \
                      portals that no line passes"
                 )?;
-                for way in blocked.iter().take(self.n_shown) {
+                for way in blocked.iter().take(n_shown) {
                     writeln!(f, "  blocked: portals {}: {}", list(&way.portals), way.words)?;
                 }
-                if blocked.len() > self.n_shown && self.n_shown > 0 {
-                    writeln!(f, "  and {} more", blocked.len() - self.n_shown)?;
+                if blocked.len() > n_shown && n_shown > 0 {
+                    writeln!(f, "  and {} more", blocked.len() - n_shown)?;
                 }
             }
-            Reason::Unknown { max_questions } => {
+            Self::Unknown { max_questions } => {
                 let n = count(*max_questions, "question");
                 writeln!(f, "cluster {from} and cluster {to}: given up after {n}; see --max-questions")?;
             }
-            Reason::Undecided { portals } => {
+            Self::Undecided { portals } => {
                 let ways = list(portals);
                 writeln!(f, "cluster {from} and cluster {to}: undecided whether a line passes portals {ways}")?;
             }
         }
-        match (&self.reason, self.listed) {
-            (Reason::Unknown { .. } | Reason::Undecided { .. }, Some(listed)) => {
-                writeln!(f, "the table says that they {} each other", if listed { "see" } else { "do not see" })?;
-            }
-            (Reason::Hidden { .. }, Some(true)) => writeln!(f, "the table lists them as visible all the same")?,
-            (Reason::Visible { .. }, Some(false)) => writeln!(f, "the table says that they do not: it is wrong")?,
-            _ => {}
-        }
-        match (&self.reason, self.checked) {
-            (Reason::Unknown { .. } | Reason::Undecided { .. }, _) => Ok(()),
-            (_, true) => writeln!(f, "the independent checker accepts this"),
-            (_, false) => writeln!(f, "the independent checker does not accept this"),
-        }
+        Ok(())
     }
 }

@@ -1,9 +1,10 @@
 //! `explain`: the line of sight between two cells, or why there is none.
 
-mod answer;
 mod convex;
 mod error;
 mod line;
+mod plan;
+mod report;
 mod space;
 
 use crate::Answer;
@@ -11,17 +12,18 @@ use crate::error::InputError;
 use crate::picture::{PictureKind, draw_plan, save_picture};
 use crate::place::Place;
 use crate::{input, output};
-use answer::{Outside, Told};
 use convex::Asked;
 use error::Error;
+use plan::PlanReason;
+use report::{ExplanationReport, Outside};
 use sightlines::bake::from_table::{axial_graph, convex_graph};
 use sightlines::cells::{CellGraph, Convex, Planar};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::{graph_of_prt, read_prt};
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{CellId, Table, TableKind};
 use sightlines::report::{DrawOptions, View};
 use sightlines::stabtree::{Explanation, MOST_EXPLAINED, explain, explain_space};
-use space::ToldInSpace;
+use space::SpaceReason;
 use std::path::PathBuf;
 
 /// Cells entered on the way in a plan before the search is given up.
@@ -73,27 +75,13 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
         return args.asked(&graph).answer(|_, _| None);
     }
     let table = input::table(&args.table)?;
-    if input::is_of_portals(&table) {
-        let is_placed = table.planes().is_some();
-        let found = if is_placed { "the table of a Quake map" } else { "the table of a portal file" };
-        args.refuse_meaningless(Of::Portals, found)?;
-        let graph = convex_graph(&table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
-        let listed = |a, b| Some(table.sees(a, b));
-        if !is_placed {
-            return args.asked(&graph).answer(listed);
-        }
-        let Some((a, b)) = args.pair(&table)? else { return Ok(Answer::No) };
-        let [from, to] = [a, b].map(|cell| Place::Cell(cell.0));
-        return Asked { places: [&from, &to], ..args.asked(&graph) }.answer(listed);
+    let (of, found) = Of::table(&table);
+    args.refuse_meaningless(of, found)?;
+    match of {
+        Of::Plan => args.pair(&table)?.map_or(Ok(Answer::No), |pair| in_plan(args, &table, pair)),
+        Of::Space => args.pair(&table)?.map_or(Ok(Answer::No), |pair| in_space(args, &table, pair)),
+        Of::Portals => in_clusters(args, &table),
     }
-    let is_plan = table.dimension() == 2;
-    if is_plan {
-        args.refuse_meaningless(Of::Plan, "the table of a plan")?;
-    } else {
-        args.refuse_meaningless(Of::Space, "the table of a scene in space")?;
-    }
-    let Some(pair) = args.pair(&table)? else { return Ok(Answer::No) };
-    if is_plan { in_plan(args, &table, pair) } else { in_space(args, &table, pair) }
 }
 
 impl ExplainArgs {
@@ -126,6 +114,12 @@ impl ExplainArgs {
         Ok(Some(choose(table, &from, &to)))
     }
 
+    /// The report on two cells of a table.
+    fn report<R>(&self, table: &Table, [a, b]: [CellId; 2], reason: R) -> ExplanationReport<R> {
+        let listed = Some(table.sees(a, b));
+        ExplanationReport { from: a.0, to: b.0, listed, checked: None, reason, n_shown: self.proofs }
+    }
+
     fn asked<'a>(&'a self, graph: &'a CellGraph<Convex>) -> Asked<'a> {
         Asked {
             path: &self.table,
@@ -138,7 +132,7 @@ impl ExplainArgs {
     }
 }
 
-/// What a file is of.
+/// What a file is of, which decides the engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Of {
     Plan,
@@ -146,25 +140,48 @@ enum Of {
     Portals,
 }
 
+impl Of {
+    /// By the kind of a table; by its dimension if that is not stated. With the words that errors have for it.
+    fn table(table: &Table) -> (Self, &'static str) {
+        match table.kind() {
+            TableKind::QuakeMap => (Self::Portals, "the table of a Quake map"),
+            TableKind::QuakePortalFile => (Self::Portals, "the table of a portal file"),
+            TableKind::PlanKdTree | TableKind::PlanTriangulation => (Self::Plan, "the table of a plan"),
+            TableKind::SceneKdTree { .. } | TableKind::SceneGivenCells { .. } => {
+                (Self::Space, "the table of a scene in space")
+            }
+            _ if table.dimension() == 2 => (Self::Plan, "the table of a plan"),
+            _ => (Self::Space, "the table of a scene in space"),
+        }
+    }
+}
+
+fn in_clusters(args: &ExplainArgs, table: &Table) -> Result<Answer, Error> {
+    let graph = convex_graph(table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
+    let listed = |a, b| Some(table.sees(a, b));
+    if table.planes().is_none() {
+        return args.asked(&graph).answer(listed);
+    }
+    let Some((a, b)) = args.pair(table)? else { return Ok(Answer::No) };
+    let [from, to] = [a, b].map(|cell| Place::Cell(cell.0));
+    Asked { places: [&from, &to], ..args.asked(&graph) }.answer(listed)
+}
+
 fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {
     let graph = axial_graph(table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
     // The table does not tell what was left out beside its cells, and no answer depends on that.
     let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
-    let told = ToldInSpace::new([a, b], explanation, table.sees(a, b), args.proofs);
-    output::print(args.json, &told)?;
-    Ok(if told.is_visible() { Answer::Yes } else { Answer::No })
+    Ok(args.report(table, [a, b], SpaceReason::new(explanation)).print(args.json)?)
 }
 
 fn in_plan(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {
     let graph = input::graph(table, &args.table)?;
     let explanation = explain(&graph, a, b, args.proofs, args.max_visits.unwrap_or(MAX_VISITS));
-    let told = Told::new(&graph, [a, b], &explanation, table.sees(a, b));
     if let Some(out) = &args.draw {
         let svg = draw_plan(&args.table, table, &options(&graph, [a, b], &explanation))?;
         save_picture(&svg, out)?;
     }
-    output::print(args.json, &told)?;
-    Ok(if told.is_visible() { Answer::Yes } else { Answer::No })
+    Ok(args.report(table, [a, b], PlanReason::new(&graph, a, &explanation)).print(args.json)?)
 }
 
 /// One cell of each place, which see each other if any do: a point on a border is in several cells.

@@ -1,31 +1,18 @@
 //! The answer of `explain` in space, for people and for programs.
 
+use super::report::Reason;
 use crate::output::count;
 use serde::Serialize;
 use serde_json::{Value, json};
-use sightlines::cells::CellId;
 use sightlines::geometry::{Aabb, AxialDoor};
 use sightlines::sightline::{AxialWitness, BlockedProof, Branch, BranchRow, Bypass, Contradiction, ProofSize};
 use sightlines::stabtree::SpaceExplanation;
 use std::fmt;
 
-/// The explanation of two cells in space.
-#[derive(Debug, Serialize)]
-pub(crate) struct ToldInSpace {
-    from: u32,
-    to: u32,
-    /// What the table says of the two.
-    listed: bool,
-    #[serde(flatten)]
-    reason: Reason,
-    /// How many walls are shown to people; programs get them all.
-    #[serde(skip)]
-    n_shown: usize,
-}
-
+/// What was found about two cells in space.
 #[derive(Debug, Serialize)]
 #[serde(tag = "answer", rename_all = "lowercase")]
-enum Reason {
+pub(super) enum SpaceReason {
     /// They are one cell.
     Same,
     Visible {
@@ -50,14 +37,14 @@ enum Reason {
 
 /// A point of a line and its direction, exactly, as fractions.
 #[derive(Debug, Serialize)]
-struct Line {
+pub(super) struct Line {
     point: [String; 3],
     direction: [String; 3],
 }
 
 /// What stops all lines.
 #[derive(Debug, Serialize)]
-struct Walls {
+pub(super) struct Walls {
     /// Rectangles that all walls between cells were put together to.
     n_blockers: usize,
     /// Rectangles gone past in the proof, each as often as that happens.
@@ -72,18 +59,18 @@ struct Walls {
 
 /// A rectangle in the way.
 #[derive(Debug, Serialize)]
-struct Wall {
+pub(super) struct Wall {
     min: [f64; 3],
     max: [f64; 3],
     /// How often it is gone past in the proof.
     n_nodes: usize,
 }
 
-impl ToldInSpace {
-    pub(crate) fn new([from, to]: [CellId; 2], explanation: SpaceExplanation, listed: bool, n_shown: usize) -> Self {
-        let reason = match explanation {
-            SpaceExplanation::Same => Reason::Same,
-            SpaceExplanation::Visible { portals, cells, doors, witness, ends } => Reason::Visible {
+impl SpaceReason {
+    pub(super) fn new(explanation: SpaceExplanation) -> Self {
+        match explanation {
+            SpaceExplanation::Same => Self::Same,
+            SpaceExplanation::Visible { portals, cells, doors, witness, ends } => Self::Visible {
                 portals: portals.iter().map(|p| p.0).collect(),
                 cells: cells.iter().map(|c| c.0).collect(),
                 points: crossings(&witness, &doors),
@@ -94,20 +81,10 @@ impl ToldInSpace {
                 }),
             },
             SpaceExplanation::Hidden { proof, walls, n_blockers } => {
-                Reason::Hidden { connected: true, walls: Some(Box::new(Walls::new(&proof, &walls, n_blockers))) }
+                Self::Hidden { connected: true, walls: Some(Box::new(Walls::new(&proof, &walls, n_blockers))) }
             }
-            SpaceExplanation::NotConnected => Reason::Hidden { connected: false, walls: None },
-            SpaceExplanation::Undecided { budget } => Reason::Unknown { max_programs: budget },
-        };
-        Self { from: from.0, to: to.0, listed, reason, n_shown }
-    }
-
-    /// Whether there is a line; what the table says if the search was given up.
-    pub(crate) fn is_visible(&self) -> bool {
-        match self.reason {
-            Reason::Same | Reason::Visible { .. } => true,
-            Reason::Hidden { .. } => false,
-            Reason::Unknown { .. } => self.listed,
+            SpaceExplanation::NotConnected => Self::Hidden { connected: false, walls: None },
+            SpaceExplanation::Undecided { budget } => Self::Unknown { max_programs: budget },
         }
     }
 }
@@ -169,12 +146,21 @@ fn rows(terms: &Contradiction) -> Value {
     terms.iter().map(row).collect()
 }
 
-impl fmt::Display for ToldInSpace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { from, to, .. } = self;
-        match &self.reason {
-            Reason::Same => writeln!(f, "both are in cell {from}, and a cell sees itself")?,
-            Reason::Visible { portals, cells, points, ends, line } => {
+impl Reason for SpaceReason {
+    const UNDECIDED_BUT_LISTED: &'static str = "the table assumes that they see each other";
+
+    fn verdict(&self) -> Option<bool> {
+        match self {
+            Self::Same | Self::Visible { .. } => Some(true),
+            Self::Hidden { .. } => Some(false),
+            Self::Unknown { .. } => None,
+        }
+    }
+
+    fn write(&self, f: &mut fmt::Formatter<'_>, [from, to]: [u32; 2], n_shown: usize) -> fmt::Result {
+        match self {
+            Self::Same => writeln!(f, "both are in cell {from}, and a cell sees itself")?,
+            Self::Visible { portals, cells, points, ends, line } => {
                 writeln!(f, "cell {from} sees cell {to} through {}", count(portals.len() as u64, "portal"))?;
                 for ((portal, cell), at) in portals.iter().zip(cells).zip(points) {
                     let at = at.map_or(String::new(), |at| format!(" at {}", place(at)));
@@ -188,11 +174,11 @@ impl fmt::Display for ToldInSpace {
                     }
                 }
             }
-            Reason::Hidden { walls: Some(walls), .. } => self.hidden(f, walls)?,
-            Reason::Hidden { walls: None, .. } => {
+            Self::Hidden { walls: Some(walls), .. } => hidden(f, [from, to], n_shown, walls)?,
+            Self::Hidden { walls: None, .. } => {
                 writeln!(f, "cell {from} does not see cell {to}: no way through portals joins them")?;
             }
-            Reason::Unknown { max_programs } => {
+            Self::Unknown { max_programs } => {
                 writeln!(
                     f,
                     "cell {from} and cell {to}: no line was found, and no proof that there is none, with the digits of \
@@ -201,42 +187,33 @@ impl fmt::Display for ToldInSpace {
                 )?;
             }
         }
-        match (&self.reason, self.listed) {
-            (Reason::Unknown { .. }, true) => writeln!(f, "the table assumes that they see each other"),
-            (Reason::Unknown { .. }, false) => writeln!(f, "the table says that they do not see each other"),
-            (Reason::Hidden { .. }, true) => writeln!(f, "the table lists them as visible all the same"),
-            (Reason::Visible { .. }, false) => writeln!(f, "the table says that they do not: it is wrong"),
-            _ => Ok(()),
-        }
+        Ok(())
     }
 }
 
-impl ToldInSpace {
-    fn hidden(&self, f: &mut fmt::Formatter<'_>, told: &Walls) -> fmt::Result {
-        let Self { from, to, n_shown, .. } = self;
-        let n_walls = told.walls.len();
-        let walls = if n_walls == 1 { "one wall".to_owned() } else { format!("one of {n_walls} walls") };
-        writeln!(f, "cell {from} does not see cell {to}: every line meets {walls} (of {})", told.n_blockers)?;
-        let mut order: Vec<usize> = (0..n_walls).collect();
-        order.sort_by_key(|&i| std::cmp::Reverse(told.walls[i].n_nodes));
-        for &i in order.iter().take(*n_shown) {
-            let Wall { min, max, n_nodes } = &told.walls[i];
-            let extent = |k: usize| {
-                let name = ["x", "y", "z"][k];
-                if min[k] == max[k] {
-                    format!("{name} = {}", min[k])
-                } else {
-                    format!("{name} from {} to {}", min[k], max[k])
-                }
-            };
-            writeln!(f, "  wall {}, in {}", [0, 1, 2].map(extent).join(", "), count(*n_nodes as u64, "step"))?;
-        }
-        if n_walls > *n_shown && *n_shown > 0 {
-            writeln!(f, "  and {} more", n_walls - n_shown)?;
-        }
-        let (steps, ends) = (count(told.n_nodes as u64, "step"), count(told.n_contradictions as u64, "contradiction"));
-        writeln!(f, "the proof goes past walls in {steps}, {} deep, and ends in {ends}", told.depth)
+fn hidden(f: &mut fmt::Formatter<'_>, [from, to]: [u32; 2], n_shown: usize, found: &Walls) -> fmt::Result {
+    let n_walls = found.walls.len();
+    let walls = if n_walls == 1 { "one wall".to_owned() } else { format!("one of {n_walls} walls") };
+    writeln!(f, "cell {from} does not see cell {to}: every line meets {walls} (of {})", found.n_blockers)?;
+    let mut order: Vec<usize> = (0..n_walls).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(found.walls[i].n_nodes));
+    for &i in order.iter().take(n_shown) {
+        let Wall { min, max, n_nodes } = &found.walls[i];
+        let extent = |k: usize| {
+            let name = ["x", "y", "z"][k];
+            if min[k] == max[k] {
+                format!("{name} = {}", min[k])
+            } else {
+                format!("{name} from {} to {}", min[k], max[k])
+            }
+        };
+        writeln!(f, "  wall {}, in {}", [0, 1, 2].map(extent).join(", "), count(*n_nodes as u64, "step"))?;
     }
+    if n_walls > n_shown && n_shown > 0 {
+        writeln!(f, "  and {} more", n_walls - n_shown)?;
+    }
+    let (steps, ends) = (count(found.n_nodes as u64, "step"), count(found.n_contradictions as u64, "contradiction"));
+    writeln!(f, "the proof goes past walls in {steps}, {} deep, and ends in {ends}", found.depth)
 }
 
 fn place([x, y, z]: [f64; 3]) -> String {

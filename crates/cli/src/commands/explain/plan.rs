@@ -1,7 +1,7 @@
-//! The answer of `explain`, for people and for programs.
+//! The reason of `explain` in plans, for people and for programs.
 
+use super::report::Reason;
 use crate::output::count;
-use crate::place::Place;
 use serde::Serialize;
 use sightlines::cells::{CellGraph, CellId, Planar, PortalId};
 use sightlines::geometry::{Point2, Portal2};
@@ -9,39 +9,10 @@ use sightlines::sightline::{End, PlanarCertificate, PlanarWitness};
 use sightlines::stabtree::{BlockedSequence, Explanation};
 use std::fmt;
 
-/// A place that is in no cell.
-#[derive(Debug, Serialize)]
-pub(crate) struct Outside {
-    answer: &'static str,
-    place: String,
-}
-
-impl Outside {
-    pub(crate) fn new(place: &Place) -> Self {
-        Self { answer: "outside", place: place.to_string() }
-    }
-}
-
-impl fmt::Display for Outside {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "the {} is outside every cell", self.place)
-    }
-}
-
-/// The explanation of two cells.
-#[derive(Debug, Serialize)]
-pub(crate) struct Told {
-    from: u32,
-    to: u32,
-    /// What the table says of the two.
-    listed: bool,
-    #[serde(flatten)]
-    reason: Reason,
-}
-
+/// What was found about two cells of a plan.
 #[derive(Debug, Serialize)]
 #[serde(tag = "answer", rename_all = "lowercase")]
-enum Reason {
+pub(super) enum PlanReason {
     /// They are one cell.
     Same,
     Visible {
@@ -65,7 +36,7 @@ enum Reason {
 
 /// The exact coefficients of the line `a x + b y + c = 0`, as fractions.
 #[derive(Debug, Serialize)]
-struct Line {
+pub(super) struct Line {
     a: String,
     b: String,
     c: String,
@@ -73,7 +44,7 @@ struct Line {
 
 /// A sequence of portals that no line passes, and the ends that no line separates.
 #[derive(Debug, Serialize)]
-struct Way {
+pub(super) struct Way {
     portals: Vec<u32>,
     lefts: Vec<Corner>,
     rights: Vec<Corner>,
@@ -81,37 +52,22 @@ struct Way {
 
 /// An end of a portal.
 #[derive(Debug, Serialize)]
-struct Corner {
+pub(super) struct Corner {
     portal: u32,
     point: [f64; 2],
 }
 
-impl Told {
-    pub(crate) fn new(
-        graph: &CellGraph<Planar>,
-        [from, to]: [CellId; 2],
-        explanation: &Explanation,
-        listed: bool,
-    ) -> Self {
-        let reason = match explanation {
-            Explanation::Same => Reason::Same,
+impl PlanReason {
+    pub(super) fn new(graph: &CellGraph<Planar>, from: CellId, explanation: &Explanation) -> Self {
+        match explanation {
+            Explanation::Same => Self::Same,
             Explanation::Visible { portals, doors, witness } => visible(graph, from, portals, doors, witness),
-            Explanation::Hidden { n_blocked, blocked, connected } => Reason::Hidden {
+            Explanation::Hidden { n_blocked, blocked, connected } => Self::Hidden {
                 connected: *connected,
                 n_blocked: *n_blocked,
                 blocked: blocked.iter().map(|way| blocked_way(graph, from, way)).collect(),
             },
-            Explanation::TooMany { limit } => Reason::Unknown { max_visits: *limit },
-        };
-        Self { from: from.0, to: to.0, listed, reason }
-    }
-
-    /// Whether there is a line; what the table says if the search was given up.
-    pub(crate) fn is_visible(&self) -> bool {
-        match self.reason {
-            Reason::Same | Reason::Visible { .. } => true,
-            Reason::Hidden { .. } => false,
-            Reason::Unknown { .. } => self.listed,
+            Explanation::TooMany { limit } => Self::Unknown { max_visits: *limit },
         }
     }
 }
@@ -138,9 +94,9 @@ fn visible(
     portals: &[PortalId],
     doors: &[Portal2],
     witness: &PlanarWitness,
-) -> Reason {
+) -> PlanReason {
     let [a, b, c] = witness.coefficients().map(ToString::to_string);
-    Reason::Visible {
+    PlanReason::Visible {
         portals: portals.iter().map(|p| p.0).collect(),
         cells: walk(graph, from, portals).iter().map(|(cell, _)| cell.0).collect(),
         points: doors.iter().map(|&door| pair(witness.crossing(door))).collect(),
@@ -162,12 +118,19 @@ fn blocked_way(graph: &CellGraph<Planar>, from: CellId, way: &BlockedSequence) -
     }
 }
 
-impl fmt::Display for Told {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { from, to, .. } = self;
-        match &self.reason {
-            Reason::Same => writeln!(f, "both are in cell {from}, and a cell sees itself")?,
-            Reason::Visible { portals, cells, points, line } => {
+impl Reason for PlanReason {
+    fn verdict(&self) -> Option<bool> {
+        match self {
+            Self::Same | Self::Visible { .. } => Some(true),
+            Self::Hidden { .. } => Some(false),
+            Self::Unknown { .. } => None,
+        }
+    }
+
+    fn write(&self, f: &mut fmt::Formatter<'_>, [from, to]: [u32; 2], _: usize) -> fmt::Result {
+        match self {
+            Self::Same => writeln!(f, "both are in cell {from}, and a cell sees itself")?,
+            Self::Visible { portals, cells, points, line } => {
                 writeln!(f, "cell {from} sees cell {to} through {}", count(portals.len() as u64, "portal"))?;
                 for ((portal, cell), [x, y]) in portals.iter().zip(cells).zip(points) {
                     writeln!(f, "  portal {portal} into cell {cell} at ({x}, {y})")?;
@@ -176,21 +139,15 @@ impl fmt::Display for Told {
                 writeln!(f, "along the line a x + b y + c = 0 with")?;
                 writeln!(f, "  a = {a}\n  b = {b}\n  c = {c}")?;
             }
-            Reason::Hidden { connected: false, .. } => {
+            Self::Hidden { connected: false, .. } => {
                 writeln!(f, "cell {from} does not see cell {to}: no way through portals joins them")?;
             }
-            Reason::Hidden { n_blocked, blocked, .. } => hidden(f, [*from, *to], *n_blocked, blocked)?,
-            Reason::Unknown { max_visits } => {
+            Self::Hidden { n_blocked, blocked, .. } => hidden(f, [from, to], *n_blocked, blocked)?,
+            Self::Unknown { max_visits } => {
                 writeln!(f, "cell {from} and cell {to}: given up after {max_visits} cells; see --max-visits")?;
             }
         }
-        match (&self.reason, self.listed) {
-            (Reason::Unknown { .. }, listed) => {
-                writeln!(f, "the table says that they {} each other", if listed { "see" } else { "do not see" })
-            }
-            (Reason::Hidden { .. }, true) => writeln!(f, "the table lists them as visible all the same"),
-            _ => Ok(()),
-        }
+        Ok(())
     }
 }
 
