@@ -26,9 +26,9 @@ impl Gpu {
             let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             encoder.copy_buffer_to_buffer(&values.buffer, 0, &staging, 0, size);
             self.queue().submit([encoder.finish()]);
-            let told = Arc::clone(&state);
+            let result_of_map = Arc::clone(&state);
             staging.map_async(MapMode::Read, .., move |result| {
-                *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(result.is_ok());
+                *result_of_map.lock().unwrap_or_else(PoisonError::into_inner) = Some(result.is_ok());
             });
             staging
         })?;

@@ -132,7 +132,7 @@ impl Side {
     }
 }
 
-/// Sorts triangles by their angle around an edge, upwards for who looks against the edge. Any order would do; the right one
+/// Sorts triangles by their angle around an edge, upwards as seen against the direction of the edge. Any order would do; the right one
 /// makes walks follow what is seen.
 fn sort_around(mesh: &Mesh, edge: u32, triangles: &mut [u32]) {
     let [a, b] = mesh.edges()[edge as usize].map(|v| mesh.vertices()[v as usize]);

@@ -42,7 +42,7 @@ impl RayCaster {
     /// # Panics
     /// If the faces are not as many as those that the tree was built of.
     pub fn rays<'a>(&'a self, faces: &'a Faces, chosen: &'a FaceMask) -> Rays<'a> {
-        assert_eq!(self.n_faces, faces.len(), "a tree is asked about the faces that it was built of");
+        assert_eq!(self.n_faces, faces.len(), "a tree serves the faces that it was built of");
         Rays {
             caster: self,
             faces,

@@ -41,7 +41,7 @@ impl DepthFormat {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Exact, Self::Double, Self::F32, Self::F32Reversed, Self::U24];
 
-    /// What it is called.
+    /// Lower-case name for options and charts.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -49,6 +49,17 @@ impl DepthFormat {
             Self::F32 => "f32",
             Self::F32Reversed => "f32-reversed",
             Self::U24 => "u24",
+        }
+    }
+
+    /// A line for help texts: what is stored.
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Exact => "Doubles, with an exact decision where they are too close",
+            Self::Double => "Doubles",
+            Self::F32 => "Floats from 0 at the nearest depth (1/64 if that is 0) to 1 at the farthest",
+            Self::F32Reversed => "Reversed floats, from 1 at the nearest depth to 0 at the farthest",
+            Self::U24 => "24-bit integers, 0 at the nearest depth",
         }
     }
 }

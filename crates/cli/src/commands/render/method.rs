@@ -25,33 +25,6 @@ pub(super) enum Kind {
     Raycast,
 }
 
-/// What a z-buffer keeps, as an argument. The last three reach from the least depth that is seen to the greatest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Depth {
-    /// Doubles, with an exact decision where they are too close
-    Exact,
-    /// Doubles
-    Double,
-    /// Floats from 0 at --near (at 1/64 if that is 0) to 1 at --far
-    F32,
-    /// Reversed floats, from 1 at --near to 0 at --far
-    F32Reversed,
-    /// 24-bit integers, 0 at --near
-    U24,
-}
-
-impl Depth {
-    const fn format(self) -> DepthFormat {
-        match self {
-            Self::Exact => DepthFormat::Exact,
-            Self::Double => DepthFormat::Double,
-            Self::F32 => DepthFormat::F32,
-            Self::F32Reversed => DepthFormat::F32Reversed,
-            Self::U24 => DepthFormat::U24,
-        }
-    }
-}
-
 /// A method that is ready to draw.
 #[derive(Debug)]
 pub(super) struct Ready {
@@ -138,22 +111,17 @@ impl Readied {
 
 /// The methods that are compared, each with what a z-buffer keeps: those of `kinds` and the ray caster, or all if there are
 /// none; z-buffers of all formats unless one is named.
-pub(super) fn compared(kinds: &[Kind], depth: Option<Depth>) -> Vec<(Kind, DepthFormat)> {
+pub(super) fn compared(kinds: &[Kind], depth: Option<DepthFormat>) -> Vec<(Kind, DepthFormat)> {
     let kinds = if kinds.is_empty() { <Kind as clap::ValueEnum>::value_variants() } else { kinds };
     let mut all = Vec::new();
     for &kind in kinds {
         match (kind, depth) {
             (Kind::Zbuffer, None) => all.extend(DepthFormat::ALL.map(|format| (kind, format))),
-            _ => all.push((kind, format_of(depth))),
+            _ => all.push((kind, depth.unwrap_or_default())),
         }
     }
     if !kinds.contains(&Kind::Raycast) {
         all.push((Kind::Raycast, DepthFormat::Exact));
     }
     all
-}
-
-/// The format that is meant.
-pub(super) fn format_of(depth: Option<Depth>) -> DepthFormat {
-    depth.map_or(DepthFormat::Exact, Depth::format)
 }

@@ -8,13 +8,14 @@ mod outcome;
 use crate::Answer;
 use crate::eye::EyeArgs;
 use crate::input;
+use crate::named::one_of;
 use crate::output;
 use crate::picture::{self, PictureError};
 use crate::progress::Bar;
 use crate::view::Up;
 use cull::{Cull, leave_out, seen_by_table};
 use error::Error;
-use method::{Depth, Drawn, Kind, Readied, Ready, compared, format_of};
+use method::{Drawn, Kind, Readied, Ready, compared};
 use outcome::{Outcome, Row};
 use sightlines::formats::scene::read_scene;
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
@@ -49,8 +50,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, help_heading = "Method")]
     compare: bool,
     /// Depth format of the z-buffer [default: exact; all with --compare]
-    #[arg(long, help_heading = "Method", value_name = "FORMAT", value_enum)]
-    depth: Option<Depth>,
+    #[arg(long, help_heading = "Method", value_name = "FORMAT", value_parser = one_of(&DepthFormat::ALL, DepthFormat::name, DepthFormat::about))]
+    depth: Option<DepthFormat>,
     /// What to cull before drawing, in this order; separated by commas
     #[arg(long, help_heading = "Method", value_name = "WAY[,WAY...]", value_enum, value_delimiter = ',')]
     cull: Vec<Cull>,
@@ -136,7 +137,7 @@ fn check(args: &RenderArgs) -> Result<(), Error> {
 /// The methods that are drawn. With `--compare` the ray caster is one of them, and their sheet is not too large.
 fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)>, Error> {
     if !args.compare {
-        return Ok(args.method.iter().map(|&kind| (kind, format_of(args.depth))).collect());
+        return Ok(args.method.iter().map(|&kind| (kind, args.depth.unwrap_or_default())).collect());
     }
     let methods = compared(&args.method, args.depth);
     let (n, size) = (methods.len(), camera.size());
