@@ -9,10 +9,11 @@
 
 use super::proof::{Grid, Proof};
 use super::rows::{Octant, Row, is_forward};
-use super::witness::{AxialWitness, fraction};
+use super::witness::AxialWitness;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
+use sightlines_exact::rational;
 
 /// Coefficients of five unknowns, and the sum of weights.
 const N: usize = 6;
@@ -118,6 +119,6 @@ fn witness(grid: &Grid, octant: Octant, y: &[BigRational; N]) -> AxialWitness {
     let offsets = [BigRational::zero(), y[3].clone(), y[4].clone()];
     let signed = |i: usize, x: BigRational| if is_forward(octant, i) { x } else { -x };
     let direction = [0, 1, 2].map(|i| signed(i, y[i].recip()));
-    let point = [0, 1, 2].map(|i| fraction(low[i]) + &offsets[i] * &direction[i] * &step);
+    let point = [0, 1, 2].map(|i| rational(low[i]) + &offsets[i] * &direction[i] * &step);
     AxialWitness::new(point, direction)
 }

@@ -4,6 +4,7 @@ use super::rows::Line;
 use crate::stabber::Witness;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
+use sightlines_exact::rational;
 use sightlines_geometry::AxialDoor;
 
 /// A directed line in space with rational coordinates.
@@ -16,18 +17,13 @@ pub struct AxialWitness {
     direction: [BigRational; 3],
 }
 
-/// A finite double as a fraction.
-pub(super) fn fraction(x: f64) -> BigRational {
-    BigRational::from_float(x).expect("coordinates are finite")
-}
-
 impl AxialWitness {
     pub(super) fn new(point: [BigRational; 3], direction: [BigRational; 3]) -> Self {
         Self { point, direction }
     }
 
     pub(super) fn through(line: &Line) -> Self {
-        let (point, to) = (line.from.map(fraction), line.to.map(fraction));
+        let (point, to) = (line.from.map(rational), line.to.map(rational));
         let direction = [0, 1, 2].map(|i| &to[i] - &point[i]);
         Self { point, direction }
     }
@@ -46,7 +42,7 @@ impl AxialWitness {
     fn time(&self, door: &AxialDoor) -> Option<BigRational> {
         let axis = usize::from(door.axis);
         let speed = self.direction.get(axis).filter(|d| !d.is_zero())?;
-        Some((fraction(door.at()) - &self.point[axis]) / speed)
+        Some((rational(door.at()) - &self.point[axis]) / speed)
     }
 
     fn at(&self, time: &BigRational) -> [BigRational; 3] {
@@ -58,7 +54,7 @@ impl AxialWitness {
         let Some(time) = self.time(door) else { return false };
         let axis = usize::from(door.axis);
         let place = self.at(&time);
-        let inside = |b: usize| fraction(door.extent.min[b]) < place[b] && place[b] < fraction(door.extent.max[b]);
+        let inside = |b: usize| rational(door.extent.min[b]) < place[b] && place[b] < rational(door.extent.max[b]);
         self.direction[axis].is_positive() == door.forward && (0..3).filter(|&b| b != axis).all(inside)
     }
 

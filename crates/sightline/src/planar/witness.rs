@@ -3,6 +3,7 @@
 use crate::stabber::Witness;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
+use sightlines_exact::rational;
 use sightlines_geometry::{Point2, Portal2, check_coordinate, orient2d};
 use std::cmp::Ordering;
 
@@ -17,15 +18,10 @@ pub struct PlanarWitness {
     c: BigRational,
 }
 
-/// A finite double as a fraction.
-fn fraction(x: f64) -> BigRational {
-    BigRational::from_float(x).expect("coordinates are finite")
-}
-
 impl PlanarWitness {
     /// The directed line from `p` to `q`, which differ.
     pub fn through(p: Point2, q: Point2) -> Self {
-        let [px, py, qx, qy] = [p.x, p.y, q.x, q.y].map(fraction);
+        let [px, py, qx, qy] = [p.x, p.y, q.x, q.y].map(rational);
         let a = &py - &qy;
         let b = &qx - &px;
         let c = -(&a * &px) - &b * &py;
@@ -40,7 +36,7 @@ impl PlanarWitness {
 
     /// The perpendicular bisector of a door, crossing it forwards.
     pub(crate) fn across(door: Portal2) -> Self {
-        let [lx, ly, rx, ry] = [door.left.x, door.left.y, door.right.x, door.right.y].map(fraction);
+        let [lx, ly, rx, ry] = [door.left.x, door.left.y, door.right.x, door.right.y].map(rational);
         let a = &lx - &rx;
         let b = &ly - &ry;
         let c = -(&a * (lx + rx) + &b * (ly + ry)) / BigRational::from_integer(2.into());
@@ -49,7 +45,7 @@ impl PlanarWitness {
 
     /// On which side of the line `p` lies: `Greater` is left. Exact.
     pub fn side(&self, p: Point2) -> Ordering {
-        let value = &self.a * fraction(p.x) + &self.b * fraction(p.y) + &self.c;
+        let value = &self.a * rational(p.x) + &self.b * rational(p.y) + &self.c;
         if value.is_positive() {
             Ordering::Greater
         } else if value.is_zero() {
@@ -71,11 +67,11 @@ impl PlanarWitness {
 
     /// Where the line crosses the carrier of a portal that it passes, rounded.
     pub fn crossing(&self, portal: Portal2) -> Point2 {
-        let at = |p: Point2| &self.a * fraction(p.x) + &self.b * fraction(p.y) + &self.c;
+        let at = |p: Point2| &self.a * rational(p.x) + &self.b * rational(p.y) + &self.c;
         let (l, r) = (at(portal.left), at(portal.right));
         let span = &l - &r;
         let t = if span.is_zero() { BigRational::zero() } else { l / span };
-        let mix = |p: f64, q: f64| fraction(p) + &t * (fraction(q) - fraction(p));
+        let mix = |p: f64, q: f64| rational(p) + &t * (rational(q) - rational(p));
         let round = |x: BigRational| check_coordinate(x.to_f64().unwrap_or(0.0)).unwrap_or(0.0);
         Point2::new(round(mix(portal.left.x, portal.right.x)), round(mix(portal.left.y, portal.right.y)))
     }

@@ -197,9 +197,9 @@ fn assert_world_is_proven(name: &str, graph: &CellGraph<Convex>) -> [u64; 3] {
     for a in 0..graph.n_cells() as u32 {
         for b in a + 1..graph.n_cells() as u32 {
             let sees = seen.cells.get(a as usize, b as usize);
-            let told = (proven.visible.has(a, b), proven.hidden.has(a, b));
-            let is_open = told == (false, false) && seen.undecided.contains(&[a, b]);
-            assert!(told == (sees, !sees) || is_open, "{name}: cells {a} and {b}: {sees} {told:?}");
+            let found = (proven.visible.has(a, b), proven.hidden.has(a, b));
+            let is_open = found == (false, false) && seen.undecided.contains(&[a, b]);
+            assert!(found == (sees, !sees) || is_open, "{name}: cells {a} and {b}: {sees} {found:?}");
         }
     }
     [proven.visible.len(), proven.hidden.len(), proven.n_open()]

@@ -235,8 +235,8 @@ fn limits_are_told() {
         let full = explain_convex(graph, a, b, MOST_EXPLAINED);
         for limit in [0, 3, 80] {
             match explain_convex(graph, a, b, limit) {
-                ConvexExplanation::TooMany { limit: told } => {
-                    assert_eq!(told, limit);
+                ConvexExplanation::TooMany { limit: reported } => {
+                    assert_eq!(reported, limit);
                     n_given_up += 1;
                 }
                 // Less to ask is no other answer.

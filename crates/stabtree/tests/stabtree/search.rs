@@ -137,8 +137,8 @@ proptest! {
         let adaptive = visible_zones(&network, &Funnel::new(Adaptive), &nothing, &options).expect("nobody cancels");
         prop_assert_eq!(&adaptive.zones, &all);
         // The truth is a valid superset of itself, and of nothing less.
-        let told = VisibilityBounds { possible: Some((all.clone(), BitMatrix::new(graph.n_cells(), 0))), ..nothing };
-        prop_assert_eq!(&visible_zones(&network, &Funnel::new(Adaptive), &told, &options).expect("nobody cancels").zones, &all);
+        let bounds = VisibilityBounds { possible: Some((all.clone(), BitMatrix::new(graph.n_cells(), 0))), ..nothing };
+        prop_assert_eq!(&visible_zones(&network, &Funnel::new(Adaptive), &bounds, &options).expect("nobody cancels").zones, &all);
     }
 
     /// Invariant: an explanation says what the table says, and proves it.
