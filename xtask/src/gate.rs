@@ -76,7 +76,7 @@ fn demo() -> Result<(), Failure> {
 /// The tests of the program as it is installed by default: without the features that the step of all tests turns on, and
 /// without those on real maps, which know no difference.
 fn default_program() -> Result<(), Failure> {
-    step::run(cargo().args(["test", "--release", "-p", "sightlines-cli", "--test", "cli", "--", "--skip", "vis_real"]))
+    step::run(cargo().args(["test", "--release", "-p", "sightlines-cli", "--test", "cli", "--", "--skip", "real"]))
 }
 
 /// Everything, up to the first failure; the tests last, so that their summary is the last line.

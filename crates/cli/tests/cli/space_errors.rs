@@ -2,6 +2,7 @@
 //! 2, and nothing written.
 
 use crate::common::Folder;
+use crate::common::picture::DRAWN;
 use serde_json::{Value, json};
 
 /// A GLB of these chunks, put together without the code that reads it.
@@ -131,7 +132,7 @@ fn sizes_and_flat_scenes() {
     for size in ["1e60", "1e-41"] {
         folder.write("far.obj", format!("o wall\nv 0 0 0\nv {size} 0 0\nv 0 {size} {size}\nf 1 2 3\n"));
         folder.run(&["build", "far.obj", "-o", "far.pvs"]).expect(0);
-        folder.run(&["draw", "far.pvs", "-o", "far.png", "--isometric"]).expect(0);
+        folder.run(&["draw", "far.pvs", "-o", &format!("far.{DRAWN}"), "--isometric"]).expect(0);
         folder.run(&["draw", "far.pvs", "-o", "far.svg", "--cell", "0"]).expect(0);
     }
     folder.write("floor.obj", "o floor\nv 0 0 0\nv 4 0 0\nv 0 0 4\nf 1 2 3\n");
