@@ -10,7 +10,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 /// The version of what commands print with `--json`, the same for all. It grows when a field goes, gets another name, or means
-/// something else; new fields do not change it. `docs/json.md` has the fields.
+/// something else; new fields do not change it. The report types of the commands have the fields.
 pub(crate) const JSON_VERSION: u32 = 1;
 
 /// A result with the version of its form.

@@ -63,7 +63,8 @@ pub const MINOR: u16 = 2;
 pub const MAX_UNPACKED_BLOCK: u32 = 1 << 24;
 /// Bytes that an unpacked block of records is written with, about: the unit that is read from a file at once.
 pub const BLOCK_BYTES: usize = 16 << 10;
-/// Bytes that an unpacked block of rows of bits is written with, at most. Rows are read one by one, but pack better together.
+/// Bytes that an unpacked block of rows of bits is written with, at most, but a block has at least 16 rows. Rows are
+/// read one by one, but pack better together.
 pub const ROW_BLOCK_BYTES: usize = 64 << 10;
 /// Bytes that rows of bits may take in [`crate::Packed::to_table`]: a small file can describe a large table.
 pub const MAX_TABLE: u64 = 1 << 32;

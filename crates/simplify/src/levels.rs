@@ -241,7 +241,7 @@ impl Groups {
     }
 
     fn group(&self, id: usize) -> &Group {
-        self.all[id].as_ref().expect("only groups that are there are asked about")
+        self.all[id].as_ref().expect("only existing groups are looked up")
     }
 
     /// What merging costs: triangles of the union, less those of both.

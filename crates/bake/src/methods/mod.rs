@@ -2,6 +2,7 @@
 //!
 //! A new method is a module here with an `Entry`, one variant of [`OcclusionMethod`] and one line in its table. A new
 //! backend of multifocal buffers is one variant of [`Backend`] and one line in the table of the module `backend`.
+//! Either is also named in `ALL`.
 
 mod backend;
 mod buffers;

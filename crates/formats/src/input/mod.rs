@@ -1,7 +1,8 @@
 //! Which format a file has, and what it holds, in one place.
 //!
 //! [`FORMATS`] lists what is read: name, endings, how it is recognised, reader. [`detect`] tells the format of some bytes with a
-//! name, [`detect_file`] that of a file, and [`read_input`] reads it. A new format is a module with a reader, and one line in that list.
+//! name, [`detect_file`] that of a file, and [`read_input`] reads it. A new format is a module with a reader, one line
+//! in that list, and a sample in its test.
 //!
 //! ```
 //! use sightlines_formats::input::{Input, Source, detect};

@@ -37,7 +37,7 @@ const PROOFS: &[u8] = b"SLPROOFS";
 /// The content decides. Where it is JSON, which many formats are, and where it says nothing, the ending of the name does.
 pub fn detect(name: &Path, head: &[u8]) -> Option<&'static Format> {
     let by_content = FORMATS.iter().find(|format| format.sign.is_in(head));
-    // Formats of JSON are told apart by content, so the last of them is what a name means without any.
+    // Formats of JSON are distinguished by content, so the last of them is what a name means without any.
     let by_name = FORMATS.iter().rfind(|format| format.is_name(name));
     match (by_content, by_name) {
         (Some(content), Some(named)) if content.sign.is_json() && named.sign.is_named_before_json() => Some(named),

@@ -29,7 +29,7 @@ const SIDE: i64 = 32;
 /// Pairs of parallel faces with the same gap, each pair in a tile of its own, each about half as far again or a third
 /// as the one before. The faces are sloped: a quarter deeper on one side than on the other. Each is two triangles, an
 /// object `back_0`, `front_0`, `back_1` and so on. The one in front has the higher ids, so that depths that cannot be
-/// told apart show the wrong one.
+/// distinguished show the wrong one.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`]

@@ -319,8 +319,8 @@ fn storage(levels: Vec<f64>, cases: usize) -> Sweep {
     ];
     let texts = [
         "plane-storage",
-        "Corridors about 1000 metres from the origin, given in doubles. The shipped funnel is asked about these; the \
-         others get coordinates of which storage has kept the leading bits: 11 is half precision, 24 single, 53 double. \
+        "Corridors about 1000 metres from the origin, given in doubles. The shipped funnel gets these; the others get \
+         coordinates of which storage has kept the leading bits: 11 is half precision, 24 single, 53 double. \
          However exact the arithmetic is, it decides about other doors.",
         "significant bits kept",
     ];

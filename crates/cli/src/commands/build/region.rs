@@ -77,7 +77,7 @@ pub(super) struct Outcome {
     stated: Stated,
     /// `kd` or `boxes`.
     subdivide: &'static str,
-    /// What said who sees whom.
+    /// The methods that decided visibility.
     method: String,
     n_triangles: usize,
     #[serde(flatten)]
@@ -86,7 +86,7 @@ pub(super) struct Outcome {
     viewer: ViewerShare,
     /// Pairs of a cell and an object that it may see.
     n_objects_seen: u64,
-    /// Volumes that were asked about: cells, and parts of cells.
+    /// Volumes that were queried: cells, and parts of cells.
     n_volumes: u64,
     /// Questions whether a box, or a triangle, is hidden.
     n_asked: u64,

@@ -27,7 +27,7 @@ pub struct RegionScene {
     pub volume: Aabb<3>,
     /// What hides.
     pub boxes: Vec<Aabb<3>>,
-    /// The box around all that may be asked about.
+    /// The box around everything that may be queried.
     pub bounds: Aabb<3>,
 }
 
