@@ -27,7 +27,7 @@ fn show<'i>(what: &str, input: impl Into<BakeInput<'i>>, options: &BakeOptions<'
     Ok(baked)
 }
 
-/// A portal file of three rooms in a row, joined by windows that no line passes together.
+/// A portal file of three rooms in a row, with a window between neighbours.
 const ROOMS: &[u8] = b"PRT1\n3\n2\n4 0 1 (8 0 0) (8 2 0) (8 2 2) (8 0 2)\n4 1 2 (16 6 6) (16 8 6) (16 8 8) (16 6 8)\n";
 
 fn main() -> Result<(), Box<dyn Error>> {
