@@ -327,7 +327,7 @@ fn impostor_a_dependency_that_is_not_listed_is_caught() {
     assert_eq!(add("cli", "sightlines-pvs"), ["cli may not use pvs"]);
     assert_eq!(add("pvs", "rayon"), ["pvs may not use rayon"]);
     assert_eq!(add("cells", "sightlines-testkit"), ["cells uses testkit, which is no crate of a row"]);
-    assert_eq!(add("tests", "good_lp"), [r#"tests uses good_lp, which is kept to {"lab", "sightline"}"#]);
+    assert_eq!(add("tests", "good_lp"), [r#"tests uses good_lp, which is kept to {"lab", "testkit"}"#]);
     assert_eq!(add("kdtree", "spade").len(), 2, "not listed, and kept to another crate");
 }
 
