@@ -9,6 +9,7 @@ mod explain_portals;
 mod far;
 mod guides;
 mod help;
+mod json;
 mod light;
 mod maps;
 mod multifocal;
