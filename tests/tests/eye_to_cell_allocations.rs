@@ -1,11 +1,11 @@
-//! Once warm, a query without mirrors allocates nothing.
+//! Once warm, a query without mirrors allocates nothing, and neither does the query of a point in a table.
 
 use allocation_counter::measure;
 use sightlines::bake::{
     PlanBakeOptions, SceneBakeOptions, StabOptions, bake_plan, bake_scene, from_table, with_stab_trees,
 };
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{CellId, Place, PlaceBuffer, Table};
 use sightlines::scenes::{TowerOptions, maze, tower};
 
 /// Views into all directions, from the middle of each cell and from a corner of it.
@@ -71,6 +71,52 @@ fn check(name: &str, table: Table) {
         assert_eq!(by_queries, 0, "{name}, {n_queries} queries");
         // The impostor: what does allocate is counted.
         assert!(n_queries > 100 && by_preparing > 100, "{name}: {n_queries} {by_preparing}");
+    }
+}
+
+/// Asks a table at the middle of each cell and outside, twice; the allocations of the second round with a buffer, and of the form that
+/// has none.
+fn point_allocations(table: &Table) -> [u64; 2] {
+    let (mut buffer, mut objects) = (PlaceBuffer::new(), Vec::new());
+    let middle = |cell: &sightlines::pvs::CellRecord| std::array::from_fn(|k| 0.5 * (cell.min[k] + cell.max[k]));
+    let mut points: Vec<[f64; 3]> = table.cells().iter().map(middle).collect();
+    points.push([f64::MAX, 0.0, 0.0]);
+    let (mut with, mut without) = (0, 0);
+    for round in 0..2 {
+        let mut n_outside = 0;
+        for &point in &points {
+            let mut n_cells = 0;
+            let counted = measure(|| match table.place_at_with(point, &mut buffer) {
+                Place::Inside(here) => {
+                    n_cells = here.visible_cells().count();
+                    here.visible_objects_into(&mut objects);
+                }
+                Place::Outside => n_outside += 1,
+            });
+            let allocating = measure(|| assert_eq!(table.place_at(point).is_outside(), n_cells == 0));
+            if round == 1 {
+                with += counted.count_total;
+                without += allocating.count_total;
+            }
+        }
+        assert!(n_outside >= 1 && n_outside < points.len());
+    }
+    [with, without]
+}
+
+#[test]
+fn warm_queries_of_points_allocate_nothing() {
+    let plan = maze(3, 7, 7).expect("a small maze");
+    let options = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() };
+    let scene = tower(options).expect("a small tower");
+    let tables = [
+        bake_plan(&plan, &PlanBakeOptions::default()).expect("a plan").table,
+        bake_scene(&scene, &SceneBakeOptions::default()).expect("a scene").table,
+    ];
+    for table in tables {
+        let [with, without] = point_allocations(&table);
+        // The impostor: the form without a buffer allocates, and that is counted.
+        assert!(with == 0 && without > 10, "{with} {without}");
     }
 }
 
