@@ -13,7 +13,7 @@ use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
 use sightlines::packed::{PackOptions, Packed, Source, pack};
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::walkthrough::{Answer, CameraPose, PackedCells, WalkOptions, Walkthrough, wander};
 use sightlines_tests::data_folder;
@@ -186,7 +186,7 @@ fn measure(table: &Table, up: [f64; 3], n_frames: usize, fov: f64) -> Result<Vec
 fn report(table: &Table, measured: &mut [Measured]) {
     println!("| method | cells | objects | polygons | median, us | p99, us | first time: median | p99 |");
     println!("| --- | --: | --: | --: | --: | --: | --: | --: |");
-    let all_polygons: u64 = (0..table.objects().len() as u32).map(|o| u64::from(table.polygons_of(o))).sum();
+    let all_polygons: u64 = (0..table.objects().len() as u32).map(|o| u64::from(table.polygons_of(ObjectId(o)))).sum();
     for m in &mut *measured {
         let n = m.times.len().max(1);
         let share = |kept: f64, all: f64| 100.0 * kept / (n as f64 * all.max(1.0));

@@ -236,7 +236,7 @@ fn says(live: &LiveScene, seen: &SpaceVisibility) -> bool {
     let cells = (0..live.table().n_cells() as u32).map(CellId);
     cells.into_iter().all(|cell| {
         live.table().visible(cell).map(|c| c.idx()).eq(seen.cells.iter_ones(cell.idx()))
-            && live.table().visible_objects(cell).iter().map(|o| *o as usize).eq(seen.objects.iter_ones(cell.idx()))
+            && live.table().visible_objects(cell).iter().map(|o| o.idx()).eq(seen.objects.iter_ones(cell.idx()))
     })
 }
 

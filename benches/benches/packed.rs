@@ -12,7 +12,7 @@ use sightlines::formats::quake::read_prt;
 use sightlines::formats::scene::read_scene;
 use sightlines::kdtree::SceneOptions;
 use sightlines::pvs::{
-    BitMatrix, CellId, CellRecord, Locator, PlaceBuffer, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectId, PlaceBuffer, PortalRecord, Table, TableKind, TableParts,
 };
 use sightlines::scenes;
 use sightlines_benches::codings::{CodedRows, RowCoding, unpack_runs, zero_runs};
@@ -239,7 +239,7 @@ fn seen(table: &Table, less: &Table) -> [f64; 2] {
     for cell in (0..table.n_cells() as u32).map(CellId) {
         assert!(less.row(cell).iter().zip(table.row(cell)).all(|(a, b)| a & !b == 0), "cell {cell} sees less");
         let objects = table.visible_objects(cell);
-        let hidden = |o: &u32| objects.binary_search(o).is_err();
+        let hidden = |o: &ObjectId| objects.binary_search(o).is_err();
         assert!(!less.visible_objects(cell).iter().any(hidden), "cell {cell} sees fewer objects");
         sums[0] += table.visible(cell).count();
         sums[1] += objects.len();

@@ -6,7 +6,7 @@
 use clap::Parser;
 use sightlines::bake::PortalMode;
 use sightlines::cells::Scene;
-use sightlines::pvs::Table;
+use sightlines::pvs::{ObjectId, Table};
 use sightlines_benches::child::{self, Job, Limits, Measured, Outcome, portals_name, portals_of};
 use sightlines_benches::recorded::{Hidden, compare};
 use sightlines_benches::spec::SceneSpec;
@@ -297,7 +297,7 @@ fn impostor(scene: &Scene, tables: &[Table], options: &RayOptions) {
     let seen = parts.objects_seen.as_mut().expect("tables of scenes say which objects are seen");
     for (cell, own) in parts.cell_objects.iter().enumerate() {
         // What touches a cell cannot be taken out.
-        (0..parts.objects.len()).filter(|o| !own.contains(&(*o as u32))).for_each(|o| seen.set(cell, o, false));
+        (0..parts.objects.len()).filter(|o| !own.contains(&ObjectId(*o as u32))).for_each(|o| seen.set(cell, o, false));
     }
     let spoilt = Table::new(parts).unwrap_or_else(|e| panic!("{e}"));
     let verdicts = judge(scene, &[spoilt], options);

@@ -229,7 +229,7 @@ fn reached(scene: &str, table: &Table, trees: &StabTrees) -> (u64, u64) {
             is_cut |= trees.is_open(node);
             waiting.extend_from_slice(trees.children(node));
             let (portal, forward) = trees.gate(node);
-            let to = table.portals()[portal as usize].cells[usize::from(forward)];
+            let to = table.portals()[portal.idx()].cells[usize::from(forward)];
             assert!(table.sees(cell, to), "{scene}: the tree of cell {cell} leads to cell {to}, which it does not see");
             n += u64::from(std::mem::replace(&mut met_cell[to.idx()], cell.0) != cell.0);
         }

@@ -191,11 +191,11 @@ fn shares(scene: &Scene, table: &Table, floors: u32) -> [f64; 3] {
                 .expect("it is of space")
                 .at(eye)
                 .inside()
-                .map_or(Vec::new(), |at| at.visible_objects()),
+                .map_or(Vec::new(), |at| at.visible_objects().iter().map(|o| o.0).collect()),
         );
         (sum, worst, n) = (sum + share, worst.max(share), n + 1);
     }
-    [mean_share(table, &triangles, |c| table.visible_objects(c)), sum / n.max(1) as f64, worst]
+    [mean_share(table, &triangles, |c| table.visible_objects(c).into_iter().map(|o| o.0)), sum / n.max(1) as f64, worst]
 }
 
 fn write(rows: &[Row]) -> String {

@@ -11,7 +11,7 @@ use sightlines::cells::{CellId, Scene};
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, VisibleSet, VisibleSubgraph};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
-use sightlines::pvs::Table;
+use sightlines::pvs::{ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines_benches::child::portals_of;
 use sightlines_benches::path::{CameraPose, walk};
@@ -202,7 +202,7 @@ impl<'a> Show<'a> {
                     method.look(subgraph, &view, &Doors::all_open(), &mut self.scratch, &mut self.seen);
                 }
                 self.seen.sort();
-                picture.draw(self.scene, &self.first, self.seen.objects().iter().copied(), boxes, &camera)
+                picture.draw(self.scene, &self.first, self.seen.objects().iter().map(|o| o.0), boxes, &camera)
             } else if way % 2 == 0 {
                 picture.draw(self.scene, &self.first, 0..n, boxes, &camera)
             } else {
@@ -212,7 +212,7 @@ impl<'a> Show<'a> {
                     .expect("it is of space")
                     .at(pose.eye)
                     .inside()
-                    .map_or(Vec::new(), |at| at.visible_objects());
+                    .map_or(Vec::new(), |at| at.visible_objects().iter().map(|o| o.0).collect::<Vec<_>>());
                 picture.draw(self.scene, &self.first, objects, boxes, &camera)
             };
             let time = start.elapsed();
@@ -278,7 +278,7 @@ fn check(scene: &Scene, table: &Table, poses: &[CameraPose], frames: &[[Frame; N
     let mut parts = table.clone().into_parts();
     let seen = parts.objects_seen.as_mut().expect("tables of scenes say which objects are seen");
     for (cell, own) in parts.cell_objects.iter().enumerate() {
-        (0..parts.objects.len()).filter(|o| !own.contains(&(*o as u32))).for_each(|o| seen.set(cell, o, false));
+        (0..parts.objects.len()).filter(|o| !own.contains(&ObjectId(*o as u32))).for_each(|o| seen.set(cell, o, false));
     }
     let spoilt = Table::new(parts).unwrap_or_else(|e| panic!("{e}"));
     let mut show = Show::new(scene, &spoilt, [96, 72]);

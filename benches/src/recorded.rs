@@ -31,7 +31,7 @@ pub fn compare(table: &Table, witness: &[CellWitness]) -> Hidden {
         for (cell, record) in (0u32..).map(CellId).zip(table.cells()) {
             if (0..3).all(|k| record.min[k] < place.max[k] && place.min[k] < record.max[k]) {
                 n_cells += 1;
-                table.visible_objects(cell).into_iter().for_each(|o| shown[o as usize] = true);
+                table.visible_objects(cell).into_iter().for_each(|o| shown[o.idx()] = true);
             }
         }
         found.n_seen += place.objects.len() as u64;
@@ -57,7 +57,7 @@ mod tests {
         let table = bake_scene(&tower(options).unwrap(), &SceneBakeOptions::default()).unwrap().table;
         let n_objects = table.objects().len() as u32;
         let cell = &table.cells()[0];
-        let seen = table.visible_objects(CellId(0));
+        let seen: Vec<u32> = table.visible_objects(CellId(0)).into_iter().map(|o| o.0).collect();
         let place =
             |id: &str, objects: Vec<u32>, max: [f64; 3]| CellWitness { id: id.into(), min: cell.min, max, objects };
         let all = [place("in", seen.clone(), cell.max), place("flat", vec![0], cell.min)];

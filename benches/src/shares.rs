@@ -29,6 +29,7 @@ pub fn mean_share<I: IntoIterator<Item = u32>>(table: &Table, triangles: &[u64],
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sightlines::pvs::ObjectId;
     use sightlines::pvs::{BitMatrix, CellRecord, Locator, ObjectRecord, TableKind, TableParts};
 
     #[test]
@@ -46,12 +47,12 @@ mod tests {
             cells,
             rows: BitMatrix::identity(2),
             objects: vec![object(0.5), object(0.5)],
-            cell_objects: vec![vec![0, 1], vec![]],
+            cell_objects: vec![vec![ObjectId(0), ObjectId(1)], vec![]],
             ..TableParts::empty(3, TableKind::Unspecified)
         });
         let table = table.unwrap();
         assert_eq!(share_of(&[3, 1], [1]), 0.25);
-        assert_eq!(mean_share(&table, &[3, 1], |cell| table.visible_objects(cell)), 0.25);
+        assert_eq!(mean_share(&table, &[3, 1], |cell| table.visible_objects(cell).into_iter().map(|o| o.0)), 0.25);
         assert_eq!(mean_share(&table, &[3, 1], |_| [1]), 0.25);
         assert_eq!(share_of(&[], []), 0.0);
     }

@@ -10,7 +10,7 @@ use crate::targets::Targets;
 use sightlines::cells::{Point3, Scene};
 use sightlines::geometry::Aabb;
 use sightlines::geometry::vector::sub;
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines_testkit::{CellIndex, Random, RayScene};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -166,7 +166,7 @@ fn bits_of(table: &Table) -> [SharedBits; 2] {
     let bits =
         [SharedBits::new(table.n_cells(), table.objects().len()), SharedBits::new(table.n_cells(), table.n_cells())];
     for cell in cells_of(table) {
-        table.visible_objects(cell).into_iter().for_each(|o| bits[0].set(cell.0, o));
+        table.visible_objects(cell).into_iter().for_each(|o| bits[0].set(cell.0, o.0));
         table.visible(cell).for_each(|other| bits[1].set(cell.0, other.0));
     }
     bits
@@ -322,7 +322,9 @@ impl<'a> Judge<'a> {
             let [objects, cells] = &self.partitions[partition].witnessed;
             let seen: u64 = cells_of(table).map(|c| table.visible(c).count() as u64).sum();
             let lacks = |pair: Pair| match pair {
-                Pair::Object(cell, object) => table.visible_objects(CellId(cell)).binary_search(&object).is_err(),
+                Pair::Object(cell, object) => {
+                    table.visible_objects(CellId(cell)).binary_search(&ObjectId(object)).is_err()
+                }
                 Pair::Cells(a, b) => !table.sees(CellId(a), CellId(b)),
             };
             let dark: Vec<CellId> = cells_of(table).filter(|c| self.partitions[partition].is_dark(c.0)).collect();
@@ -335,7 +337,7 @@ impl<'a> Judge<'a> {
                 n_objects_witnessed: objects.count_ones(),
                 n_cells_reported: (seen - table.n_cells() as u64) / 2,
                 n_cells_witnessed: cells.count_ones(),
-                reported_share: mean_share(table, &triangles, |c| table.visible_objects(c)),
+                reported_share: mean_share(table, &triangles, |c| table.visible_objects(c).into_iter().map(|o| o.0)),
                 witnessed_share: mean_share(table, &triangles, |c| objects.ones(c.0)),
                 missing: own.map(|(_, m)| *m).collect(),
             }
@@ -390,7 +392,7 @@ mod tests {
         let mut parts = tables[1].clone().into_parts();
         let seen = parts.objects_seen.as_mut().unwrap();
         // A cell sees what touches it, so objects that touch few cells are what can be taken out.
-        let apart = |cell: usize, object: usize| !parts.cell_objects[cell].contains(&(object as u32));
+        let apart = |cell: usize, object: usize| !parts.cell_objects[cell].contains(&ObjectId(object as u32));
         for cell in 0..parts.cells.len() {
             for object in (0..parts.objects.len()).filter(|&o| apart(cell, o)) {
                 seen.set(cell, object, false);

@@ -5,7 +5,7 @@ use sightlines::bake::{
     PlanBakeOptions, SceneBakeOptions, StabOptions, bake_plan, bake_scene, from_table, with_stab_trees,
 };
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
-use sightlines::pvs::{CellId, Place, PlaceBuffer, Table};
+use sightlines::pvs::{CellId, Place, PlaceBuffer, PortalId, Table};
 use sightlines::scenes::{TowerOptions, maze, tower};
 
 /// Views into all directions, from the middle of each cell and from a corner of it.
@@ -36,7 +36,7 @@ fn allocations(table: &Table) -> (usize, u64, u64) {
     let cells = TableCells::new(table);
     let frames = frames(table);
     let (mut seen, mut scratch, mut doors) = (VisibleSet::new(), Scratch::new(), Doors::all_open());
-    doors.close(2);
+    doors.close(PortalId(2));
     let prepare = |root| VisibleSubgraph::prepare(&cells, root).unwrap_or_else(|never| match never {});
     let (mut n_queries, mut by_queries, mut by_preparing) = (0, 0, 0);
     for round in 0..=WARM_UP {

@@ -37,7 +37,7 @@ pub(crate) fn print(test: bool, size: [u32; 2]) -> Result<(), Box<dyn Error>> {
             .expect("it is of space")
             .at(eye)
             .inside()
-            .map_or(Vec::new(), |at| at.visible_objects());
+            .map_or(Vec::new(), |at| at.visible_objects().iter().map(|o| o.0).collect());
         let mut chosen = all.clone();
         cull::objects(&faces, &mut chosen, |object| seen.binary_search(&object).is_ok());
         let mut images = Vec::new();

@@ -37,7 +37,7 @@ fn office_table() -> Result<(), Box<dyn Error>> {
     let objects = here.visible_objects();
     println!("  with {} of {} objects", objects.len(), table.objects().len());
     for &object in objects.iter().take(3) {
-        println!("  such as {}", table.objects()[object as usize].name);
+        println!("  such as {}", table.objects()[object.idx()].name);
     }
     Ok(())
 }

@@ -6,7 +6,7 @@
 use sightlines_cells::{Axial, CellGraph, CellId, LineId, Plan, PlanLine, Planar, Scene};
 use sightlines_geometry::{Aabb, Point2, orient2d};
 use sightlines_kdtree::{AxialFace, SceneOptions, scene_faces};
-use sightlines_pvs::MirrorRecord;
+use sightlines_pvs::{MirrorId, MirrorRecord};
 
 /// The parts of mirrors, and what has none.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,7 +37,7 @@ pub(crate) fn of_plan(graph: &CellGraph<Planar>, plan: &Plan) -> MirrorParts {
                 covered.push(interval(line, from, to));
                 // Cells go round counter-clockwise: who looks out over a side has its end on the left.
                 let points = [to, from].map(|p| [p.x, p.y, 0.0]).to_vec();
-                out.parts.push(MirrorRecord { cell, face, points });
+                out.parts.push(MirrorRecord { cell, mirror: MirrorId(face), points });
             }
         }
     }
@@ -145,5 +145,5 @@ fn record(cell: CellId, face: u32, axis: usize, rect: &Aabb<3>, from_above: bool
     if !from_above {
         points.reverse();
     }
-    MirrorRecord { cell, face, points }
+    MirrorRecord { cell, mirror: MirrorId(face), points }
 }

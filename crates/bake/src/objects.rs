@@ -2,6 +2,12 @@
 
 use sightlines_cells::{ConvexCell2, PlanObject};
 use sightlines_geometry::{Aabb, Point2, orient2d};
+use sightlines_pvs::ObjectId;
+
+/// Lists of indices as lists of ids.
+pub(crate) fn object_lists(lists: Vec<Vec<u32>>) -> Vec<Vec<ObjectId>> {
+    lists.into_iter().map(|list| list.into_iter().map(ObjectId).collect()).collect()
+}
 
 /// For each cell the objects that meet it, ascending; touching counts. Exact.
 pub(crate) fn cell_objects(cells: &[ConvexCell2], objects: &[PlanObject]) -> Vec<Vec<u32>> {

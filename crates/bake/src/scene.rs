@@ -3,6 +3,7 @@
 use crate::baked::{Baked, BakedScene};
 use crate::error::BakeError;
 use crate::mirrors;
+use crate::objects::object_lists;
 use crate::reports::SceneReport;
 use crate::table::{axial_portal_record, box_record, object_record, state_file};
 use sightlines_cells::{Axial, AxialDoor, CellGraph, Portal, Scene, SceneObject};
@@ -172,7 +173,7 @@ pub(crate) fn scene_parts(
         rows: seen.cells,
         objects: scene.objects().iter().zip(boxes).map(|(o, b)| object_record(&o.name, b)).collect(),
         object_polygons: scene.objects().iter().map(n_triangles).collect(),
-        cell_objects: seen.touching,
+        cell_objects: object_lists(seen.touching),
         objects_seen: Some(seen.objects),
         locator: Locator::build(&bounds, 3),
         cells,

@@ -1,6 +1,6 @@
 //! The parts of tables, from cell graphs.
 
-use crate::objects::cell_objects;
+use crate::objects::{cell_objects, object_lists};
 use sightlines_cells::{Axial, AxialDoor, CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
 use sightlines_formats::SceneInfo;
 use sightlines_formats::scene::LengthUnit;
@@ -71,7 +71,7 @@ pub(crate) fn planar_parts(graph: &CellGraph<Planar>, rows: BitMatrix, options: 
         portals: graph.portals().iter().map(portal_record).collect(),
         rows,
         objects: options.objects.iter().map(record).collect(),
-        cell_objects: cell_objects(graph.cells(), options.objects),
+        cell_objects: object_lists(cell_objects(graph.cells(), options.objects)),
         locator: Locator::build(&bounds, 2),
         cells,
         info,

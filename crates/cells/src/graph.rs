@@ -1,6 +1,7 @@
 //! Cells, portals and exits, generic over the kind of cell.
 
 use sightlines_pvs::CellId;
+pub use sightlines_pvs::PortalId;
 use std::fmt::Debug;
 
 /// A kind of cells and portals: planar, axial boxes, convex polyhedra.
@@ -9,17 +10,6 @@ pub trait Space: Debug + Clone + Send + Sync + 'static {
     type Cell: Debug + Clone + PartialEq + Send + Sync;
     /// Shape of a portal, as seen when crossing from the first of its two cells into the second.
     type Portal: Debug + Clone + PartialEq + Send + Sync;
-}
-
-/// Index of a portal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct PortalId(pub u32);
-
-impl PortalId {
-    /// The id as an index.
-    pub const fn idx(self) -> usize {
-        self.0 as usize
-    }
 }
 
 /// An opening between two cells.

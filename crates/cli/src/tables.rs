@@ -5,7 +5,7 @@ use crate::input;
 use sightlines::eye_to_cell::{CellSource, TableCells};
 use sightlines::formats::InputKind;
 use sightlines::packed::{Packed, PackedError};
-use sightlines::pvs::{Axis, CellId, Table};
+use sightlines::pvs::{Axis, CellId, ObjectId, Table};
 use sightlines::walkthrough::{CoarseVisibility, PackedCells};
 use std::convert::Infallible;
 use std::fs::File;
@@ -46,12 +46,12 @@ pub(crate) trait Cells: CellSource<Error: Send + 'static> + CoarseVisibility + C
 
     fn n_portals(&self) -> usize;
 
-    fn object_name(&self, object: u32) -> Result<String, Self::Error>;
+    fn object_name(&self, object: ObjectId) -> Result<String, Self::Error>;
 
     /// `None` if the cells of the table have no names.
     fn cell_name(&self, cell: CellId) -> Result<Option<String>, Self::Error>;
 
-    fn polygons_of(&self, object: u32) -> Result<u32, Self::Error>;
+    fn polygons_of(&self, object: ObjectId) -> Result<u32, Self::Error>;
 
     /// Bytes that stay in memory, and bytes of blocks that are kept now; `None` for a table that is in memory as a whole.
     fn bytes_in_memory(&self) -> Option<(usize, usize)>;
@@ -92,15 +92,15 @@ impl Cells for TableCells<Arc<Table>> {
         self.table().portals().len()
     }
 
-    fn object_name(&self, object: u32) -> Result<String, Infallible> {
-        Ok(self.table().objects()[object as usize].name.clone())
+    fn object_name(&self, object: ObjectId) -> Result<String, Infallible> {
+        Ok(self.table().objects()[object.idx()].name.clone())
     }
 
     fn cell_name(&self, cell: CellId) -> Result<Option<String>, Infallible> {
         Ok(self.table().cell_name(cell).map(str::to_owned))
     }
 
-    fn polygons_of(&self, object: u32) -> Result<u32, Infallible> {
+    fn polygons_of(&self, object: ObjectId) -> Result<u32, Infallible> {
         Ok(self.table().polygons_of(object))
     }
 
@@ -126,7 +126,7 @@ impl Cells for PackedCells<File> {
         self.packed().n_portals()
     }
 
-    fn object_name(&self, object: u32) -> Result<String, PackedError> {
+    fn object_name(&self, object: ObjectId) -> Result<String, PackedError> {
         self.packed().object_name(object)
     }
 
@@ -134,7 +134,7 @@ impl Cells for PackedCells<File> {
         self.packed().cell_name(cell)
     }
 
-    fn polygons_of(&self, object: u32) -> Result<u32, PackedError> {
+    fn polygons_of(&self, object: ObjectId) -> Result<u32, PackedError> {
         self.packed().object_polygons(object)
     }
 

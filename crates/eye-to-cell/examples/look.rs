@@ -13,7 +13,8 @@ use sightlines_eye_to_cell::{
     Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, MirrorRecord, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, MirrorId, MirrorRecord, PortalId, PortalRecord, Table, TableKind,
+    TableParts,
 };
 
 fn room(i: u32) -> CellRecord {
@@ -43,7 +44,11 @@ fn house() -> TableParts {
         rows,
         cell_objects: vec![vec![]; 4],
         // Who looks west has the south at the left hand.
-        mirrors: vec![MirrorRecord { cell: CellId(0), face: 7, points: vec![[0.0, 0.0, 0.0], [0.0, 4.0, 0.0]] }],
+        mirrors: vec![MirrorRecord {
+            cell: CellId(0),
+            mirror: MirrorId(7),
+            points: vec![[0.0, 0.0, 0.0], [0.0, 4.0, 0.0]],
+        }],
         ..TableParts::empty(2, TableKind::Unspecified)
     }
 }
@@ -60,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("at {eye:?}, towards {degrees} degrees:");
         for shut in [false, true] {
             if shut {
-                doors.close(1);
+                doors.close(PortalId(1));
             } else {
                 doors.open_all();
             }

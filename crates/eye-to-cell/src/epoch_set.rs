@@ -1,15 +1,46 @@
 //! Sets that are emptied at once.
 
-/// A set of small numbers with the order in which they came; emptying it does not touch its memory.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct EpochSet {
-    /// Items with the current epoch are in the set.
-    epochs: Vec<u32>,
-    epoch: u32,
-    list: Vec<u32>,
+use sightlines_pvs::{CellId, ObjectId};
+
+/// What counts from 0 without large gaps.
+pub(crate) trait Dense: Copy + Ord {
+    fn idx(self) -> usize;
 }
 
-impl EpochSet {
+impl Dense for u32 {
+    fn idx(self) -> usize {
+        self as usize
+    }
+}
+
+impl Dense for CellId {
+    fn idx(self) -> usize {
+        Self::idx(self)
+    }
+}
+
+impl Dense for ObjectId {
+    fn idx(self) -> usize {
+        Self::idx(self)
+    }
+}
+
+/// A set of small numbers with the order in which they came; emptying it does not touch its memory.
+#[derive(Debug, Clone)]
+pub(crate) struct EpochSet<T = u32> {
+    /// Who has the current epoch is in.
+    epochs: Vec<u32>,
+    epoch: u32,
+    list: Vec<T>,
+}
+
+impl<T> Default for EpochSet<T> {
+    fn default() -> Self {
+        Self { epochs: Vec::new(), epoch: 0, list: Vec::new() }
+    }
+}
+
+impl<T: Dense> EpochSet<T> {
     /// Empties the set and makes room for numbers below `n`.
     pub(crate) fn clear(&mut self, n: usize) {
         if self.epoch == u32::MAX {
@@ -25,10 +56,10 @@ impl EpochSet {
 
     /// Adds a number; whether it is new.
     #[inline]
-    pub(crate) fn add(&mut self, i: u32) -> bool {
-        let new = self.epochs[i as usize] != self.epoch;
+    pub(crate) fn add(&mut self, i: T) -> bool {
+        let new = self.epochs[i.idx()] != self.epoch;
         if new {
-            self.epochs[i as usize] = self.epoch;
+            self.epochs[i.idx()] = self.epoch;
             self.list.push(i);
         }
         new
@@ -36,12 +67,12 @@ impl EpochSet {
 
     /// Whether a number is in; one that there is no room for is not.
     #[inline]
-    pub(crate) fn has(&self, i: u32) -> bool {
-        self.epochs.get(i as usize).is_some_and(|&e| e == self.epoch && self.epoch > 0)
+    pub(crate) fn has(&self, i: T) -> bool {
+        self.epochs.get(i.idx()).is_some_and(|&e| e == self.epoch && self.epoch > 0)
     }
 
     /// What came, in order.
-    pub(crate) fn list(&self) -> &[u32] {
+    pub(crate) fn list(&self) -> &[T] {
         &self.list
     }
 
@@ -89,7 +120,7 @@ mod tests {
 
     #[test]
     fn marks_are_forgotten() {
-        let mut marks = EpochSet::default();
+        let mut marks = EpochSet::<u32>::default();
         assert!(!marks.has(0));
         marks.clear(3);
         assert!(marks.add(2) && marks.add(0) && !marks.add(2) && marks.has(2) && !marks.has(1));

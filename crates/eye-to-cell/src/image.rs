@@ -9,7 +9,7 @@ use crate::doors::Doors;
 use crate::method::{Method, Scratch};
 use crate::subgraph::VisibleSubgraph;
 use crate::visible_set::{Reflection, VisibleSet};
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, MirrorId, ObjectId};
 use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,12 +20,12 @@ const MOST_VIEWS: usize = 1024;
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Image {
     /// The mirrors, in the order in which a line from the eye meets them.
-    pub mirrors: Vec<u32>,
+    pub mirrors: Vec<MirrorId>,
     /// The cells, ascending.
     pub cells: Vec<CellId>,
     /// The objects, ascending.
-    pub objects: Vec<u32>,
-    /// Whether that is all. If not, an subgraph was missing or there were too many views: anything may be seen by way of
+    pub objects: Vec<ObjectId>,
+    /// Whether that is all. If not, a subgraph was missing or there were too many views: anything may be seen by way of
     /// these mirrors, and of any others after them, which are not listed then.
     pub complete: bool,
 }
@@ -43,9 +43,9 @@ pub fn follow_reflections<O: Borrow<VisibleSubgraph>>(
     [n_cells, n_objects]: [usize; 2],
     mut subgraph: impl FnMut(CellId) -> Option<O>,
 ) -> Vec<Image> {
-    let mut images: BTreeMap<Vec<u32>, (BTreeSet<u32>, BTreeSet<u32>, bool)> = BTreeMap::new();
-    let step = |mirrors: &[u32], next: &Reflection| ([mirrors, &[next.face]].concat(), next.clone());
-    let mut pending: Vec<(Vec<u32>, Reflection)> = match bounces {
+    let mut images: BTreeMap<Vec<MirrorId>, (BTreeSet<CellId>, BTreeSet<ObjectId>, bool)> = BTreeMap::new();
+    let step = |mirrors: &[MirrorId], next: &Reflection| ([mirrors, &[next.mirror]].concat(), next.clone());
+    let mut pending: Vec<(Vec<MirrorId>, Reflection)> = match bounces {
         0 => Vec::new(),
         _ => first.reflections.iter().map(|r| step(&[], r)).collect(),
     };
@@ -68,11 +68,12 @@ pub fn follow_reflections<O: Borrow<VisibleSubgraph>>(
             pending.extend(seen.reflections.iter().map(|r| step(&mirrors, r)));
         }
     }
-    let image = |(mirrors, (cells, objects, complete)): (Vec<u32>, (BTreeSet<u32>, BTreeSet<u32>, bool))| Image {
-        mirrors,
-        cells: cells.into_iter().map(CellId).collect(),
-        objects: objects.into_iter().collect(),
-        complete,
-    };
+    let image =
+        |(mirrors, (cells, objects, complete)): (Vec<MirrorId>, (BTreeSet<CellId>, BTreeSet<ObjectId>, bool))| Image {
+            mirrors,
+            cells: cells.into_iter().collect(),
+            objects: objects.into_iter().collect(),
+            complete,
+        };
     images.into_iter().map(image).collect()
 }

@@ -1,13 +1,13 @@
 //! Where cells, portals and rows come from.
 
 use sightlines_geometry::Aabb;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, MirrorId, ObjectId, PortalId};
 
 /// A way out of a cell.
 #[derive(Debug, Clone, Copy)]
 pub struct PortalEdge<'a> {
     /// The portal, as the table counts them.
-    pub portal: u32,
+    pub portal: PortalId,
     /// Whether it is crossed from its first cell into its second.
     pub forward: bool,
     /// The cell entered.
@@ -21,7 +21,7 @@ pub struct PortalEdge<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct MirrorPiece<'a> {
     /// The mirror; pieces in several cells may have the same.
-    pub face: u32,
+    pub mirror: MirrorId,
     /// Its corners as seen from the cell: in a plane left end, right end; in space counter-clockwise.
     pub corners: &'a [[f64; 3]],
 }
@@ -62,19 +62,19 @@ pub trait CellSource {
     ///
     /// # Errors
     /// As [`CellSource::cell_box`].
-    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Self::Error>;
+    fn objects_of(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), Self::Error>;
 
     /// Puts the objects that `cell` may see into `out`, which is cleared; ascending.
     ///
     /// # Errors
     /// As [`CellSource::cell_box`].
-    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Self::Error>;
+    fn objects_seen(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), Self::Error>;
 
     /// The box around an object, in scene units.
     ///
     /// # Errors
     /// As [`CellSource::cell_box`].
-    fn object_box(&self, object: u32) -> Result<Aabb<3>, Self::Error>;
+    fn object_box(&self, object: ObjectId) -> Result<Aabb<3>, Self::Error>;
 
     /// Shows the pieces of mirrors in a cell.
     ///
@@ -100,7 +100,7 @@ pub trait CellSource {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StabStep {
     /// The portal that is crossed.
-    pub portal: u32,
+    pub portal: PortalId,
     /// Whether the tree was cut here: any way may follow.
     pub open: bool,
 }

@@ -4,7 +4,7 @@ use crate::front::Front;
 use crate::source::{CellSource, MirrorPiece, PortalEdge};
 use crate::trees::LocalTrees;
 use sightlines_geometry::Aabb;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, MirrorId, ObjectId, PortalId};
 
 /// All that a cell may see, gathered from a table: everything that the eye-to-cell methods ask, and nothing else.
 ///
@@ -22,7 +22,7 @@ pub struct VisibleSubgraph {
     pub(crate) ways: Vec<LocalEdge>,
     pub(crate) corners: Vec<[f64; 3]>,
     /// The objects that the root sees, ascending, and their boxes.
-    pub(crate) objects: Vec<u32>,
+    pub(crate) objects: Vec<ObjectId>,
     pub(crate) object_bounds: Vec<Aabb<3>>,
     /// For each cell the objects that touch it, as places in `objects`.
     pub(crate) first_object: Vec<u32>,
@@ -42,7 +42,7 @@ pub struct VisibleSubgraph {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LocalEdge {
     pub(crate) to: u32,
-    pub(crate) portal: u32,
+    pub(crate) portal: PortalId,
     pub(crate) first_corner: u32,
     pub(crate) n_corners: u32,
     pub(crate) front: Front,
@@ -51,7 +51,7 @@ pub(crate) struct LocalEdge {
 /// A piece of a mirror in a cell of an subgraph.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LocalMirror {
-    pub(crate) face: u32,
+    pub(crate) mirror: MirrorId,
     pub(crate) first_corner: u32,
     pub(crate) n_corners: u32,
     pub(crate) front: Front,
@@ -101,7 +101,7 @@ impl VisibleSubgraph {
         }
         subgraph.find_loose_objects();
         subgraph.extent = subgraph.corners.iter().fold(subgraph.extent, |e, &c| e.with(c));
-        let edge_through = |cell: u32, portal: u32| {
+        let edge_through = |cell: u32, portal: PortalId| {
             let edge = subgraph.ways_of(cell).find(|&edge| subgraph.ways[edge as usize].portal == portal)?;
             Some((edge, subgraph.ways[edge as usize].to))
         };
@@ -143,7 +143,7 @@ impl VisibleSubgraph {
             self.corners.extend_from_slice(mirror.corners);
             let front = Front::of(mirror.corners, self.planar);
             let n_corners = mirror.corners.len() as u32;
-            self.mirrors.push(LocalMirror { face: mirror.face, first_corner, n_corners, front });
+            self.mirrors.push(LocalMirror { mirror: mirror.mirror, first_corner, n_corners, front });
         })?;
         self.first_mirror.push(self.mirrors.len() as u32);
         Ok(())
@@ -174,7 +174,7 @@ impl VisibleSubgraph {
     }
 
     /// The objects that it may see, ascending.
-    pub fn objects(&self) -> &[u32] {
+    pub fn objects(&self) -> &[ObjectId] {
         &self.objects
     }
 

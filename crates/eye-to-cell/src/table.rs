@@ -2,7 +2,7 @@
 
 use crate::source::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, ObjectId, PortalId, Table};
 use std::borrow::Borrow;
 use std::convert::Infallible;
 
@@ -79,35 +79,35 @@ impl<T: Borrow<Table>> CellSource for TableCells<T> {
 
     fn portal_edges(&self, cell: CellId, show: &mut dyn FnMut(PortalEdge<'_>)) -> Result<(), Infallible> {
         for way in &self.ways[self.first_way[cell.idx()] as usize..self.first_way[cell.idx() + 1] as usize] {
-            let (portal, second) = (way / 2, way % 2);
-            let record = &self.table().portals()[portal as usize];
+            let (portal, second) = (PortalId(way / 2), way % 2);
+            let record = &self.table().portals()[portal.idx()];
             let to = record.cells[1 - second as usize];
             show(PortalEdge { portal, forward: second == 0, to, corners: &record.points });
         }
         Ok(())
     }
 
-    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Infallible> {
+    fn objects_of(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), Infallible> {
         out.clear();
         out.extend_from_slice(self.table().objects_of(cell));
         Ok(())
     }
 
-    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Infallible> {
+    fn objects_seen(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), Infallible> {
         out.clear();
         out.extend(self.table().visible_objects(cell));
         Ok(())
     }
 
-    fn object_box(&self, object: u32) -> Result<Aabb<3>, Infallible> {
-        let object = &self.table().objects()[object as usize];
+    fn object_box(&self, object: ObjectId) -> Result<Aabb<3>, Infallible> {
+        let object = &self.table().objects()[object.idx()];
         Ok(Aabb { min: object.min, max: object.max })
     }
 
     fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), Infallible> {
         for &i in &self.mirrors[self.first_mirror[cell.idx()] as usize..self.first_mirror[cell.idx() + 1] as usize] {
             let mirror = &self.table().parts().mirrors[i as usize];
-            show(MirrorPiece { face: mirror.face, corners: &mirror.points });
+            show(MirrorPiece { mirror: mirror.mirror, corners: &mirror.points });
         }
         Ok(())
     }
@@ -122,7 +122,9 @@ impl<T: Borrow<Table>> CellSource for TableCells<T> {
 
     fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabStep, Infallible> {
         children.clear();
-        let Some(trees) = &self.table().parts().stab else { return Ok(StabStep { portal: u32::MAX, open: true }) };
+        let Some(trees) = &self.table().parts().stab else {
+            return Ok(StabStep { portal: PortalId(u32::MAX), open: true });
+        };
         children.extend_from_slice(trees.children(node));
         Ok(StabStep { portal: trees.gate(node).0, open: trees.is_open(node) })
     }

@@ -1,7 +1,7 @@
 //! The stab tree of one cell, in the numbers of its subgraph.
 
 use crate::source::CellSource;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, PortalId};
 use std::collections::BTreeMap;
 
 /// No node of a stab tree.
@@ -25,7 +25,7 @@ impl LocalTrees {
     pub(crate) fn of<S: CellSource + ?Sized>(
         source: &S,
         (root_id, root): (CellId, u32),
-        edge_through: impl Fn(u32, u32) -> Option<(u32, u32)>,
+        edge_through: impl Fn(u32, PortalId) -> Option<(u32, u32)>,
     ) -> Result<Option<Self>, S::Error> {
         let mut list = Vec::new();
         let Some(open) = source.stab_roots(root_id, &mut list)? else { return Ok(None) };

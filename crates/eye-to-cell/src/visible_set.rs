@@ -2,13 +2,13 @@
 
 use crate::epoch_set::EpochSet;
 use crate::view::View;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, MirrorId, ObjectId};
 
 /// The cells and objects that a viewer sees, and the mirrors. Kept from frame to frame, it allocates nothing once it is warm.
 #[derive(Debug, Clone, Default)]
 pub struct VisibleSet {
-    pub(crate) cells: EpochSet,
-    pub(crate) objects: EpochSet,
+    pub(crate) cells: EpochSet<CellId>,
+    pub(crate) objects: EpochSet<ObjectId>,
     pub(crate) reflections: Vec<Reflection>,
 }
 
@@ -16,7 +16,7 @@ pub struct VisibleSet {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reflection {
     /// The mirror.
-    pub face: u32,
+    pub mirror: MirrorId,
     /// The cell in which lines go on behind the mirror: to be asked with the subgraph of this cell.
     pub cell: CellId,
     /// The eye behind the mirror, and the directions from there that lead through it.
@@ -37,22 +37,22 @@ impl VisibleSet {
     }
 
     /// The cells, in no particular order until [`VisibleSet::sort`].
-    pub fn cells(&self) -> &[u32] {
+    pub fn cells(&self) -> &[CellId] {
         self.cells.list()
     }
 
     /// The objects, in no particular order until [`VisibleSet::sort`].
-    pub fn objects(&self) -> &[u32] {
+    pub fn objects(&self) -> &[ObjectId] {
         self.objects.list()
     }
 
     /// Whether a cell is among them. O(1).
     pub fn has_cell(&self, cell: CellId) -> bool {
-        self.cells.has(cell.0)
+        self.cells.has(cell)
     }
 
     /// Whether an object is among them. O(1).
-    pub fn has_object(&self, object: u32) -> bool {
+    pub fn has_object(&self, object: ObjectId) -> bool {
         self.objects.has(object)
     }
 
@@ -72,7 +72,7 @@ impl VisibleSet {
     /// # Panics
     /// If [`VisibleSet::clear`] made no room for it.
     pub fn add_cell(&mut self, cell: CellId) -> bool {
-        self.cells.add(cell.0)
+        self.cells.add(cell)
     }
 
     /// Adds cells.
@@ -89,7 +89,7 @@ impl VisibleSet {
     ///
     /// # Panics
     /// As [`VisibleSet::add_object`].
-    pub fn add_objects(&mut self, objects: impl IntoIterator<Item = u32>) {
+    pub fn add_objects(&mut self, objects: impl IntoIterator<Item = ObjectId>) {
         for object in objects {
             self.add_object(object);
         }
@@ -99,7 +99,7 @@ impl VisibleSet {
     ///
     /// # Panics
     /// If [`VisibleSet::clear`] made no room for it.
-    pub fn add_object(&mut self, object: u32) -> bool {
+    pub fn add_object(&mut self, object: ObjectId) -> bool {
         self.objects.add(object)
     }
 }

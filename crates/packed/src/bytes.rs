@@ -30,10 +30,10 @@ impl Writer {
     }
 
     /// An ascending list: its length, then its differences less one.
-    pub(crate) fn ascending(&mut self, list: &[u32]) {
+    pub(crate) fn ascending(&mut self, list: impl ExactSizeIterator<Item = u32>) {
         self.varint(list.len() as u64);
         let mut next = 0;
-        for &x in list {
+        for x in list {
             self.varint(u64::from(x) - next);
             next = u64::from(x) + 1;
         }
@@ -202,7 +202,7 @@ mod tests {
             let list: Vec<u32> = list.into_iter().collect();
             let mut out = Writer::default();
             out.varint(x >> shift);
-            out.ascending(&list);
+            out.ascending(list.iter().copied());
             out.text("ä");
             let mut r = Reader::new(&out.0, PLACE);
             prop_assert_eq!(r.varint().unwrap(), x >> shift);

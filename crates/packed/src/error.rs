@@ -1,6 +1,6 @@
 //! Why bytes are no packed table, and why a table cannot be packed.
 
-use sightlines_pvs::{CellId, SectionId, TableError};
+use sightlines_pvs::{CellId, ObjectId, PortalId, SectionId, TableError};
 use std::{fmt, io};
 
 /// Why a question to a packed table has no answer, and where that shows.
@@ -150,7 +150,7 @@ pub enum PackedErrorKind {
     #[error("there is no object {object}, only {n_objects}")]
     NoObject {
         /// The object.
-        object: u32,
+        object: ObjectId,
         /// Number of objects.
         n_objects: u32,
     },
@@ -158,7 +158,7 @@ pub enum PackedErrorKind {
     #[error("there is no portal {portal}, only {n_portals}")]
     NoPortal {
         /// The portal.
-        portal: u32,
+        portal: PortalId,
         /// Number of portals.
         n_portals: u32,
     },

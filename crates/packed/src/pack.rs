@@ -8,7 +8,7 @@ use crate::merge::{Sight, after, merge_order, merged};
 use crate::store::Store;
 use crate::write;
 use sightlines_pvs::format::kind_section;
-use sightlines_pvs::{BitMatrix, SectionId, Table};
+use sightlines_pvs::{BitMatrix, ObjectId, SectionId, Table};
 
 /// Wishes about a packed table.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -95,9 +95,9 @@ impl Whole {
         // Columns are equal where rows are; where only the rows of objects differ, they are not merged here.
         let (mut n_members, mut weights) = (vec![0u64; n], vec![0u64; n]);
         let object_weights: Vec<u64> =
-            (0..parts.objects.len()).map(|o| u64::from(table.polygons_of(o as u32)).max(1)).collect();
+            (0..parts.objects.len() as u32).map(|o| u64::from(table.polygons_of(ObjectId(o))).max(1)).collect();
         for (i, &class) in classes.of.iter().enumerate() {
-            let polygons = parts.cell_objects[i].iter().map(|&o| object_weights[o as usize]).sum::<u64>();
+            let polygons = parts.cell_objects[i].iter().map(|&o| object_weights[o.idx()]).sum::<u64>();
             n_members[class as usize] += 1;
             weights[class as usize] = weights[class as usize].saturating_add(polygons.max(1));
         }

@@ -10,7 +10,7 @@ use crate::locate::PointLocation;
 use crate::source::Source;
 use sightlines_pvs::bits::ones;
 use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
-use sightlines_pvs::{Axis, CellId, MirrorRecord, SectionId, TableKind};
+use sightlines_pvs::{Axis, CellId, MirrorId, MirrorRecord, SectionId, TableKind};
 use std::sync::Arc;
 
 /// A packed table that is read piece by piece, and keeps to a budget of memory.
@@ -433,10 +433,10 @@ fn mirrors(resident: &ResidentPart, head: &Head) -> Result<Vec<MirrorRecord>, Pa
     let n = r.count(3)?;
     let mut mirrors = Vec::new();
     for _ in 0..n {
-        let (cell, face) = (CellId(r.below(u64::from(head.n_cells))?), r.below(1 << 32)?);
+        let (cell, mirror) = (CellId(r.below(u64::from(head.n_cells))?), MirrorId(r.below(1 << 32)?));
         let n_points = r.count(8 * d)?;
         let points = (0..n_points).map(|_| r.point(d)).collect::<Result<_, _>>()?;
-        mirrors.push(MirrorRecord { cell, face, points });
+        mirrors.push(MirrorRecord { cell, mirror, points });
     }
     r.finish()?;
     Ok(mirrors)

@@ -5,17 +5,19 @@ use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, POLYGONS_KNOWN};
 use crate::packed::Packed;
 use crate::source::Source;
-use sightlines_pvs::{CellId, DimensionError, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalRecord};
+use sightlines_pvs::{
+    CellId, DimensionError, ObjectId, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalId, PortalRecord,
+};
 
 /// What [`Packed::exits`] calls: portal, whether it is crossed from its first cell into its second, the cell it
 /// leads to, its corners.
-pub type ExitVisitor<'a> = dyn FnMut(u32, bool, CellId, &[[f64; 3]]) + 'a;
+pub type ExitVisitor<'a> = dyn FnMut(PortalId, bool, CellId, &[[f64; 3]]) + 'a;
 
 /// A node of stab trees, without its children.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StabNode {
     /// The portal that is crossed.
-    pub portal: u32,
+    pub portal: PortalId,
     /// Whether from its first cell into its second.
     pub forward: bool,
     /// Whether the tree was cut here: any sequence may follow.
@@ -98,18 +100,18 @@ impl<S: Source> Packed<S> {
     ///
     /// # Errors
     /// If there is no such cell, or a block cannot be read.
-    pub fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
+    pub fn objects_seen(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), PackedError> {
         if let Some(seen) = &self.seen {
-            return self.items(seen, cell, out, |object| object);
+            return self.items(seen, cell, out, ObjectId);
         }
         out.clear();
         let mut cells = Vec::new();
         self.visible(cell, &mut cells)?;
         let mut set = vec![0u64; if cells.is_empty() { 0 } else { self.n_objects().div_ceil(64) }];
         for cell in cells {
-            self.for_each_object(cell, |object| set[object as usize / 64] |= 1 << (object % 64))?;
+            self.for_each_object(cell, |object| set[object.idx() / 64] |= 1 << (object.0 % 64))?;
         }
-        out.extend(sightlines_pvs::bits::ones(&set).map(|object| object as u32));
+        out.extend(sightlines_pvs::bits::ones(&set).map(|object| ObjectId(object as u32)));
         Ok(())
     }
 
@@ -117,17 +119,17 @@ impl<S: Source> Packed<S> {
     ///
     /// # Errors
     /// If there is no such cell, or its block cannot be read.
-    pub fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
+    pub fn objects_of(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), PackedError> {
         out.clear();
         self.check_cell(cell)?;
         self.for_each_object(cell, |object| out.push(object))
     }
 
-    fn for_each_object(&self, cell: CellId, visit: impl FnMut(u32)) -> Result<(), PackedError> {
+    fn for_each_object(&self, cell: CellId, mut visit: impl FnMut(ObjectId)) -> Result<(), PackedError> {
         self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
             r.varint()?;
             self.for_each_exit(&mut r, |_, _, _| Ok(()))?;
-            r.ascending(u64::from(self.head.n_objects), visit)
+            r.ascending(u64::from(self.head.n_objects), |object| visit(ObjectId(object)))
         })
     }
 
@@ -170,14 +172,14 @@ impl<S: Source> Packed<S> {
     fn for_each_exit(
         &self,
         r: &mut Reader<'_>,
-        mut visit: impl FnMut(u32, bool, CellId) -> Result<(), PackedError>,
+        mut visit: impl FnMut(PortalId, bool, CellId) -> Result<(), PackedError>,
     ) -> Result<(), PackedError> {
         for _ in 0..r.count(2)? {
             let (gate, to) = (r.varint()?, r.below(u64::from(self.head.n_cells))?);
             if gate / 2 >= u64::from(self.head.n_portals) {
                 return Err(r.fail(Kind::Value { value: gate }));
             }
-            visit((gate / 2) as u32, gate % 2 == 0, CellId(to))?;
+            visit(PortalId((gate / 2) as u32), gate % 2 == 0, CellId(to))?;
         }
         Ok(())
     }
@@ -205,9 +207,9 @@ impl<S: Source> Packed<S> {
     ///
     /// # Errors
     /// If there is no such portal, or its block cannot be read.
-    pub fn portal(&self, portal: u32) -> Result<PortalRecord, PackedError> {
+    pub fn portal(&self, portal: PortalId) -> Result<PortalRecord, PackedError> {
         let n_portals = self.head.n_portals;
-        if portal >= n_portals {
+        if portal.0 >= n_portals {
             return Err(PackedError::asked(Kind::NoPortal { portal, n_portals }));
         }
         let mut points = Vec::new();
@@ -216,9 +218,9 @@ impl<S: Source> Packed<S> {
     }
 
     /// Puts the corners into `points`; the cells and sides of the portal.
-    fn read_portal(&self, portal: u32, points: &mut Vec<[f64; 3]>) -> Result<[u32; 4], PackedError> {
+    fn read_portal(&self, portal: PortalId, points: &mut Vec<[f64; 3]>) -> Result<[u32; 4], PackedError> {
         let d = usize::from(self.head.dimension);
-        self.with_record((format::PORTALS, self.portals), portal, |mut r| {
+        self.with_record((format::PORTALS, self.portals), portal.0, |mut r| {
             let mut ids = [0; 4];
             for (k, id) in ids.iter_mut().enumerate() {
                 *id = r.below(if k < 2 { u64::from(self.head.n_cells) } else { 1 << 32 })?;
@@ -234,21 +236,21 @@ impl<S: Source> Packed<S> {
 
     fn with_object<T>(
         &self,
-        object: u32,
+        object: ObjectId,
         visit: impl FnOnce(&mut Reader<'_>) -> Result<T, PackedError>,
     ) -> Result<T, PackedError> {
         let n_objects = self.head.n_objects;
-        if object >= n_objects {
+        if object.0 >= n_objects {
             return Err(PackedError::asked(Kind::NoObject { object, n_objects }));
         }
-        self.with_record((format::OBJECTS, self.objects), object, |mut r| visit(&mut r))
+        self.with_record((format::OBJECTS, self.objects), object.0, |mut r| visit(&mut r))
     }
 
     /// The box around an object, in scene units; z is 0 in a plane.
     ///
     /// # Errors
     /// If there is no such object, or its block cannot be read.
-    pub fn object_box(&self, object: u32) -> Result<([f64; 3], [f64; 3]), PackedError> {
+    pub fn object_box(&self, object: ObjectId) -> Result<([f64; 3], [f64; 3]), PackedError> {
         let d = usize::from(self.head.dimension);
         self.with_object(object, |r| Ok((r.point(d)?, r.point(d)?)))
     }
@@ -257,7 +259,7 @@ impl<S: Source> Packed<S> {
     ///
     /// # Errors
     /// As [`Packed::object_box`].
-    pub fn object_name(&self, object: u32) -> Result<String, PackedError> {
+    pub fn object_name(&self, object: ObjectId) -> Result<String, PackedError> {
         Ok(self.object(object)?.0.name)
     }
 
@@ -265,12 +267,12 @@ impl<S: Source> Packed<S> {
     ///
     /// # Errors
     /// As [`Packed::object_box`].
-    pub fn object_polygons(&self, object: u32) -> Result<u32, PackedError> {
+    pub fn object_polygons(&self, object: ObjectId) -> Result<u32, PackedError> {
         let polygons = self.object(object)?.1;
         Ok(if self.head.flags & POLYGONS_KNOWN == 0 { 1 } else { polygons })
     }
 
-    pub(crate) fn object(&self, object: u32) -> Result<(ObjectRecord, u32), PackedError> {
+    pub(crate) fn object(&self, object: ObjectId) -> Result<(ObjectRecord, u32), PackedError> {
         let d = usize::from(self.head.dimension);
         self.with_object(object, |r| {
             let (min, max, polygons) = (r.point(d)?, r.point(d)?, r.below(1 << 32)?);
@@ -330,7 +332,7 @@ impl<S: Source> Packed<S> {
             }
             r.finish()?;
             children.reverse();
-            Ok(StabNode { portal: (gate / 2) as u32, forward: gate % 2 == 0, open: n % 2 == 1 })
+            Ok(StabNode { portal: PortalId((gate / 2) as u32), forward: gate % 2 == 0, open: n % 2 == 1 })
         })
     }
 }

@@ -5,7 +5,8 @@ use crate::format::{self, MAX_TABLE, POLYGONS_KNOWN};
 use crate::packed::Packed;
 use crate::source::Source;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, SectionId, StabParts, StabTrees, Table, TableError, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectId, PortalId, SectionId, StabParts, StabTrees, Table, TableError,
+    TableParts,
 };
 
 impl<S: Source> Packed<S> {
@@ -45,11 +46,11 @@ impl<S: Source> Packed<S> {
             parts.cell_names.extend(self.cell_name(cell)?);
         }
         for portal in 0..self.head.n_portals {
-            parts.portals.push(self.portal(portal)?);
+            parts.portals.push(self.portal(PortalId(portal))?);
         }
         let known = self.head.flags & POLYGONS_KNOWN != 0;
         for object in 0..self.head.n_objects {
-            let (record, polygons) = self.object(object)?;
+            let (record, polygons) = self.object(ObjectId(object))?;
             parts.objects.push(record);
             parts.object_polygons.extend(known.then_some(polygons));
         }
@@ -78,8 +79,8 @@ impl<S: Source> Packed<S> {
                 return Err(PackedError::new(Some(format::COARSE), 0, Kind::Coarse { page: p as u32 }));
             }
         }
-        let mut exits: Vec<Vec<(u32, bool, CellId)>> = vec![Vec::new(); table.n_cells()];
-        for (portal, record) in (0u32..).zip(table.portals()) {
+        let mut exits: Vec<Vec<(PortalId, bool, CellId)>> = vec![Vec::new(); table.n_cells()];
+        for (portal, record) in (0u32..).map(PortalId).zip(table.portals()) {
             let [a, b] = record.cells;
             exits[a.idx()].push((portal, true, b));
             exits[b.idx()].push((portal, false, a));

@@ -88,7 +88,7 @@ pub(crate) fn mirrors(parts: &TableParts) -> Vec<u8> {
     out.varint(parts.mirrors.len() as u64);
     for mirror in &parts.mirrors {
         out.varint(u64::from(mirror.cell.0));
-        out.varint(u64::from(mirror.face));
+        out.varint(u64::from(mirror.mirror.0));
         out.varint(mirror.points.len() as u64);
         mirror.points.iter().for_each(|p| out.floats(&p[..d]));
     }
@@ -161,11 +161,11 @@ pub(crate) fn cells(parts: &TableParts) -> Vec<Vec<u8>> {
             out.varint(gate);
             out.varint(to);
         }
-        out.ascending(&parts.cell_objects[i]);
+        out.ascending(parts.cell_objects[i].iter().map(|object| object.0));
         if let Some(stab) = &parts.stab {
             let cell = sightlines_pvs::CellId(i as u32);
             out.varint(u64::from(stab.is_root_open(cell)));
-            out.ascending(stab.roots(cell));
+            out.ascending(stab.roots(cell).iter().copied());
         }
         out.0
     };
@@ -210,7 +210,7 @@ pub(crate) fn nodes(stab: &StabTrees) -> Vec<Vec<u8>> {
     let record = |node: u32| {
         let mut out = Writer::default();
         let ((portal, forward), children) = (stab.gate(node), stab.children(node));
-        out.varint(2 * u64::from(portal) + u64::from(!forward));
+        out.varint(2 * u64::from(portal.0) + u64::from(!forward));
         out.varint(2 * children.len() as u64 + u64::from(stab.is_open(node)));
         let mut above = node;
         for &child in children.iter().rev() {

@@ -9,7 +9,7 @@
 //! ```
 
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Place, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, Place, PortalRecord, Table, TableKind, TableParts,
 };
 
 fn room(i: u32) -> CellRecord {
@@ -39,7 +39,7 @@ fn house() -> TableParts {
         portals: vec![door(0, 0.0), door(1, 3.0), door(2, 0.0)],
         rows,
         objects: vec![ObjectRecord { name: "lamp".to_owned(), min: [14.0, 1.0, 0.0], max: [15.0, 2.0, 0.0] }],
-        cell_objects: vec![vec![], vec![], vec![], vec![0]],
+        cell_objects: vec![vec![], vec![], vec![], vec![ObjectId(0)]],
         info: vec![("source".to_owned(), "by hand".to_owned())],
         ..TableParts::empty(2, TableKind::Unspecified)
     }
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Place::Outside => println!("at {eye:?}: outside every room, so everything is drawn"),
             Place::Inside(here) => {
                 let rooms: Vec<u32> = here.visible_cells().map(|cell| cell.0).collect();
-                let names = here.visible_objects().into_iter().map(|o| table.objects()[o as usize].name.as_str());
+                let names = here.visible_objects().into_iter().map(|o| table.objects()[o.idx()].name.as_str());
                 println!("at {eye:?}: in {:?}, sees rooms {rooms:?}, {:?}", here.cells(), names.collect::<Vec<_>>());
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
-use crate::{BitMatrix, CellId, LocatorError, PlaneError, StabError, TableKind, side};
+use crate::{BitMatrix, CellId, LocatorError, ObjectId, PlaneError, StabError, TableKind, side};
 
 /// A kind of thing with coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -162,7 +162,7 @@ pub enum TableError {
         /// The cell.
         cell: CellId,
         /// The object.
-        object: u32,
+        object: ObjectId,
     },
     /// Rows of objects that are not one row for each cell and one column for each object.
     #[error("{n_rows} rows of {n_cols} objects do not fit {n_cells} cells and {n_objects} objects")]
@@ -185,7 +185,7 @@ pub enum TableError {
         /// The cell.
         cell: CellId,
         /// The object.
-        object: u32,
+        object: ObjectId,
     },
     /// Numbers of polygons, but not one for each object.
     #[error("{n} numbers of polygons do not fit {n_objects} objects")]
@@ -372,7 +372,7 @@ impl TableParts {
             return Err(TableError::SeenTail(CellId(row as u32)));
         }
         for (cell, list) in (0u32..).map(CellId).zip(&self.cell_objects) {
-            if let Some(&object) = list.iter().find(|&&o| !seen.get(cell.idx(), o as usize)) {
+            if let Some(&object) = list.iter().find(|&&o| !seen.get(cell.idx(), o.idx())) {
                 return Err(TableError::Unseen { cell, object });
             }
         }
@@ -396,7 +396,7 @@ impl TableParts {
                 return Err(TableError::ObjectOrder(cell));
             }
             // The list ascends, so its last entry is its largest.
-            if let Some(&object) = list.last().filter(|o| **o as usize >= self.objects.len()) {
+            if let Some(&object) = list.last().filter(|o| o.idx() >= self.objects.len()) {
                 return Err(TableError::UnknownObject { cell, object });
             }
         }

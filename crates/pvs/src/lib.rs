@@ -29,7 +29,7 @@ mod table;
 pub use bits::BitMatrix;
 pub use check::{Item, TableError};
 pub use format::{DecodeError, DecodeErrorKind, SectionId};
-pub use id::CellId;
+pub use id::{CellId, MirrorId, ObjectId, PortalId};
 pub use kind::{Axis, SceneMethods, TableKind};
 pub use locator::{Locator, LocatorError, LocatorNode};
 pub use parts::TableParts;

@@ -1,7 +1,7 @@
 //! What a table is made of.
 
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
-use crate::{Axis, BitMatrix, Locator, PlaneTree, StabTrees, TableKind};
+use crate::{Axis, BitMatrix, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
 
 /// The parts of a [`crate::Table`], not yet checked.
 ///
@@ -23,7 +23,7 @@ pub struct TableParts {
     /// The objects; their index is their id.
     pub objects: Vec<ObjectRecord>,
     /// For each cell, the objects that touch it, ascending.
-    pub cell_objects: Vec<Vec<u32>>,
+    pub cell_objects: Vec<Vec<ObjectId>>,
     /// Bit `o` of row `i`: cell `i` may see object `o`. Cells by objects; each cell sees the objects that
     /// touch it. `None`: a cell sees the objects that touch any cell that it sees.
     pub objects_seen: Option<BitMatrix>,

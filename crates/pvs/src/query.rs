@@ -1,7 +1,7 @@
 //! What is visible from a point.
 
 use crate::bits::WORD;
-use crate::{BitMatrix, CellId, CellSet, Table};
+use crate::{BitMatrix, CellId, CellSet, ObjectId, Table};
 use std::borrow::Cow;
 
 /// Where a point is, and what follows from that.
@@ -187,7 +187,7 @@ impl Inside<'_> {
     }
 
     /// The objects that may be seen from the point, ascending. Allocates the list; see [`Inside::visible_objects_into`].
-    pub fn visible_objects(&self) -> Vec<u32> {
+    pub fn visible_objects(&self) -> Vec<ObjectId> {
         let mut objects = Vec::new();
         self.visible_objects_into(&mut objects);
         objects
@@ -195,10 +195,10 @@ impl Inside<'_> {
 
     /// Puts the objects that may be seen from the point into `out`, which is cleared first; ascending. Allocates nothing but what
     /// `out` lacks. O(words of a row), without own rows of objects O(n log n) for the n objects listed in the visible cells.
-    pub fn visible_objects_into(&self, out: &mut Vec<u32>) {
+    pub fn visible_objects_into(&self, out: &mut Vec<ObjectId>) {
         out.clear();
         match &self.table.parts().objects_seen {
-            Some(seen) => out.extend(self.union_of(seen).map(|o| o as u32)),
+            Some(seen) => out.extend(self.union_of(seen).map(|o| ObjectId(o as u32))),
             None => {
                 self.visible_cells().for_each(|cell| out.extend_from_slice(self.table.objects_of(cell)));
                 out.sort_unstable();

@@ -1,6 +1,6 @@
 //! Cells, portals, objects and mirrors as a table stores them.
 
-use crate::CellId;
+use crate::{CellId, MirrorId};
 
 /// A convex cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +45,7 @@ pub struct MirrorRecord {
     /// The closed cell that the part lies in or on; it reflects what comes from there.
     pub cell: CellId,
     /// The mirror, of which there may be parts in several cells; not checked.
-    pub face: u32,
+    pub mirror: MirrorId,
     /// Its corners in scene units. In a plane (z is 0) two: the left end, then the right end, as seen
     /// looking from the cell towards the mirror. In space at least three, counter-clockwise as seen so.
     pub points: Vec<[f64; 3]>,

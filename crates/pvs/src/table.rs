@@ -2,7 +2,7 @@
 
 use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
-use crate::{Axis, CellId, CellSet, Locator, PlaneTree, StabTrees, TableError, TableKind, bits, side};
+use crate::{Axis, CellId, CellSet, Locator, ObjectId, PlaneTree, StabTrees, TableError, TableKind, bits, side};
 
 /// Which cells of a scene can be seen from which: checked, and never changed.
 ///
@@ -96,10 +96,10 @@ impl Table {
     ///
     /// # Panics
     /// If the table has no such object.
-    pub fn polygons_of(&self, object: u32) -> u32 {
+    pub fn polygons_of(&self, object: ObjectId) -> u32 {
         let n_objects = self.parts.objects.len();
-        assert!((object as usize) < n_objects, "object {object} of {n_objects}");
-        self.parts.object_polygons.get(object as usize).copied().unwrap_or(1)
+        assert!(object.idx() < n_objects, "object {object} of {n_objects}");
+        self.parts.object_polygons.get(object.idx()).copied().unwrap_or(1)
     }
 
     /// What users call a cell; `None` if the cells of the table have no names. O(1).
@@ -174,7 +174,7 @@ impl Table {
     ///
     /// # Panics
     /// If the table has no such cell.
-    pub fn objects_of(&self, cell: CellId) -> &[u32] {
+    pub fn objects_of(&self, cell: CellId) -> &[ObjectId] {
         &self.parts.cell_objects[cell.idx()]
     }
 
@@ -182,9 +182,9 @@ impl Table {
     ///
     /// # Panics
     /// If the table has no such cell.
-    pub fn visible_objects(&self, cell: CellId) -> Vec<u32> {
+    pub fn visible_objects(&self, cell: CellId) -> Vec<ObjectId> {
         match &self.parts.objects_seen {
-            Some(seen) => seen.iter_ones(cell.idx()).map(|o| o as u32).collect(),
+            Some(seen) => seen.iter_ones(cell.idx()).map(|o| ObjectId(o as u32)).collect(),
             None => self.objects_in_row(self.row(cell)),
         }
     }
@@ -193,12 +193,13 @@ impl Table {
     ///
     /// # Panics
     /// If the set is from a table with more cells.
-    pub fn objects_in(&self, cells: &CellSet) -> Vec<u32> {
+    pub fn objects_in(&self, cells: &CellSet) -> Vec<ObjectId> {
         self.objects_in_row(cells.words())
     }
 
-    fn objects_in_row(&self, row: &[u64]) -> Vec<u32> {
-        let mut objects: Vec<u32> = bits::ones(row).flat_map(|i| self.parts.cell_objects[i].iter().copied()).collect();
+    fn objects_in_row(&self, row: &[u64]) -> Vec<ObjectId> {
+        let mut objects: Vec<ObjectId> =
+            bits::ones(row).flat_map(|i| self.parts.cell_objects[i].iter().copied()).collect();
         objects.sort_unstable();
         objects.dedup();
         objects

@@ -138,5 +138,6 @@ fn objects<S: Serializer>(table: &Table, out: S) -> Result<S::Ok, S::Error> {
 }
 
 fn cell_objects<S: Serializer>(table: &Table, out: S) -> Result<S::Ok, S::Error> {
-    out.collect_seq((0u32..).take(table.n_cells()).map(|cell| table.visible_objects(CellId(cell))))
+    let objects = |cell| table.visible_objects(CellId(cell)).into_iter().map(|object| object.0).collect::<Vec<u32>>();
+    out.collect_seq((0u32..).take(table.n_cells()).map(objects))
 }

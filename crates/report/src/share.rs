@@ -32,7 +32,7 @@ impl ViewerShare {
         for (cell, size) in (0u32..).map(CellId).zip(sizes).filter(|_| all > 0.0) {
             let weight = size / all;
             let objects = table.visible_objects(cell);
-            let seen: u64 = objects.iter().filter_map(|&o| polygons.get(o as usize)).sum();
+            let seen: u64 = objects.iter().filter_map(|&o| polygons.get(o.idx())).sum();
             let n_cells: u64 = table.row(cell).iter().map(|word| u64::from(word.count_ones())).sum();
             mean.cells += weight * share(n_cells, table.n_cells() as u64);
             mean.objects += weight * share(objects.len() as u64, table.objects().len() as u64);

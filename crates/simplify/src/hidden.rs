@@ -116,7 +116,7 @@ impl<'a> TableFaces<'a> {
     fn hide(&self, view: &View, faces: &Faces, visible: &mut [bool]) {
         let Some(cell) = view.cell else { return };
         let mut objects = vec![false; self.table.objects().len()];
-        self.table.visible_objects(cell).into_iter().for_each(|o| objects[o as usize] = true);
+        self.table.visible_objects(cell).into_iter().for_each(|o| objects[o.idx()] = true);
         let mut seen = vec![false; self.table.n_cells()];
         self.table.visible(cell).for_each(|c| seen[c.idx()] = true);
         for (face, visible) in faces.ids().zip(visible) {

@@ -1,7 +1,7 @@
 //! A viewer walks along a corridor of ten rooms; one of the doors is closed in between.
 
 use sightlines_eye_to_cell::{Method, TableCells, View};
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalId, PortalRecord, Table, TableKind, TableParts};
 use sightlines_walkthrough::{WalkOptions, Walkthrough};
 use std::error::Error;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut walk = Walkthrough::new(cells.clone(), cells, WalkOptions::default());
     for k in 0..20 {
         if k == 10 {
-            walk.close(7);
+            walk.close(PortalId(7));
         }
         let view = View::planar([0.25 + 0.5 * f64::from(k), 0.5], [1.0, 0.0], 0.3)?;
         walk.frame(&view, Method::Exact);

@@ -1,7 +1,7 @@
 //! The part of a table that is available in every frame.
 
 use sightlines_eye_to_cell::TableCells;
-use sightlines_pvs::{CellId, Place, PlaceBuffer, Table};
+use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer, Table};
 use std::borrow::Borrow;
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub trait CoarseVisibility {
     fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId));
 
     /// Visits a superset of the objects that `cell` may see; `false` if it is unknown.
-    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(u32)) -> bool;
+    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(ObjectId)) -> bool;
 }
 
 impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
@@ -41,7 +41,7 @@ impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
         self.table().visible(cell).for_each(show);
     }
 
-    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(u32)) -> bool {
+    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(ObjectId)) -> bool {
         self.table().visible_objects(cell).into_iter().for_each(show);
         true
     }
@@ -64,7 +64,7 @@ impl<R: CoarseVisibility + ?Sized> CoarseVisibility for Arc<R> {
         (**self).coarse(cell, show);
     }
 
-    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(u32)) -> bool {
+    fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(ObjectId)) -> bool {
         (**self).coarse_objects(cell, show)
     }
 }

@@ -4,7 +4,7 @@ use crate::coarse::CoarseVisibility;
 use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{Packed, PackedError, Source};
-use sightlines_pvs::{CellId, Place, PlaceBuffer};
+use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer};
 use std::sync::Arc;
 
 /// A packed table, shared by the frames and the thread that reads ahead.
@@ -60,21 +60,21 @@ impl<S: Source> CellSource for PackedCells<S> {
         self.0.exits(cell, &mut |portal, forward, to, corners| show(PortalEdge { portal, forward, to, corners }))
     }
 
-    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
+    fn objects_of(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), PackedError> {
         self.0.objects_of(cell, out)
     }
 
-    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), PackedError> {
+    fn objects_seen(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), PackedError> {
         self.0.objects_seen(cell, out)
     }
 
-    fn object_box(&self, object: u32) -> Result<Aabb<3>, PackedError> {
+    fn object_box(&self, object: ObjectId) -> Result<Aabb<3>, PackedError> {
         self.0.object_box(object).map(bounds)
     }
 
     fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), PackedError> {
         for mirror in self.0.mirrors().iter().filter(|mirror| mirror.cell == cell) {
-            show(MirrorPiece { face: mirror.face, corners: &mirror.points });
+            show(MirrorPiece { mirror: mirror.mirror, corners: &mirror.points });
         }
         Ok(())
     }
@@ -111,7 +111,7 @@ impl<S: Source> CoarseVisibility for PackedCells<S> {
         }
     }
 
-    fn coarse_objects(&self, _cell: CellId, _show: &mut dyn FnMut(u32)) -> bool {
+    fn coarse_objects(&self, _cell: CellId, _show: &mut dyn FnMut(ObjectId)) -> bool {
         false
     }
 }

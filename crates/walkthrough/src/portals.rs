@@ -1,7 +1,7 @@
 //! Which portals of two tables are the same.
 
 use sightlines_eye_to_cell::CellSource;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, PortalId};
 use std::collections::BTreeMap;
 
 /// The corners of a portal, starting with the least one and in the lesser direction, so that they are equal from both
@@ -15,25 +15,25 @@ type Corners = Vec<[u64; 3]>;
 ///
 /// # Errors
 /// The first of a source.
-pub fn same_portals<A, B>(old: &A, new: &B) -> Result<Vec<Option<u32>>, A::Error>
+pub fn same_portals<A, B>(old: &A, new: &B) -> Result<Vec<Option<PortalId>>, A::Error>
 where
     A: CellSource + ?Sized,
     B: CellSource<Error = A::Error> + ?Sized,
 {
     let (before, after) = (by_corners(old)?, by_corners(new)?);
-    let n = before.values().flatten().map(|&portal| portal as usize + 1).max().unwrap_or(0);
+    let n = before.values().flatten().map(|&portal| portal.idx() + 1).max().unwrap_or(0);
     let mut same = vec![None; n];
     for (corners, portals) in &before {
         if let ([portal], Some([other])) = (&portals[..], after.get(corners).map(|list| &list[..])) {
-            same[*portal as usize] = Some(*other);
+            same[portal.idx()] = Some(*other);
         }
     }
     Ok(same)
 }
 
 /// The portals of each outline, ascending.
-fn by_corners<S: CellSource + ?Sized>(source: &S) -> Result<BTreeMap<Corners, Vec<u32>>, S::Error> {
-    let mut all: BTreeMap<Corners, Vec<u32>> = BTreeMap::new();
+fn by_corners<S: CellSource + ?Sized>(source: &S) -> Result<BTreeMap<Corners, Vec<PortalId>>, S::Error> {
+    let mut all: BTreeMap<Corners, Vec<PortalId>> = BTreeMap::new();
     for cell in (0..source.n_cells() as u32).map(CellId) {
         source.portal_edges(cell, &mut |way| {
             // Each portal is an exit of both its cells; one is enough.
@@ -101,8 +101,8 @@ mod tests {
     fn portals_are_found_again() {
         let old = row(&[(0, 0.0, false), (1, 0.25, false), (2, 0.5, false)]);
         let new = row(&[(2, 0.5, true), (1, 0.3, false), (0, -0.0, false)]);
-        assert_eq!(same_portals(&old, &new).unwrap(), [Some(2), None, Some(0)]);
-        assert_eq!(same_portals(&old, &old).unwrap(), [Some(0), Some(1), Some(2)]);
+        assert_eq!(same_portals(&old, &new).unwrap(), [Some(PortalId(2)), None, Some(PortalId(0))]);
+        assert_eq!(same_portals(&old, &old).unwrap(), [Some(PortalId(0)), Some(PortalId(1)), Some(PortalId(2))]);
         let twice = row(&[(0, 0.0, false), (0, 0.0, false)]);
         assert_eq!(same_portals(&twice, &old).unwrap(), [None, None]);
         assert_eq!(same_portals(&old, &twice).unwrap(), [None, None, None]);

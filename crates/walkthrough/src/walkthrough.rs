@@ -6,7 +6,7 @@ use crate::prefetch::{Prefetcher, Prepare};
 use sightlines_eye_to_cell::{
     CellSource, Doors, Image, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
-use sightlines_pvs::{CellId, Place, PlaceBuffer};
+use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer, PortalId};
 use std::fmt;
 
 /// Parameters of a [`Walkthrough`].
@@ -193,7 +193,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         }
         if answer == Answer::Outside {
             self.seen.add_cells((0..n_cells as u32).map(CellId));
-            self.seen.add_objects(0..n_objects as u32);
+            self.seen.add_objects((0..n_objects as u32).map(ObjectId));
         } else if self.options.bounces > 0 {
             let (subgraphs, mirrored) = (&mut self.subgraphs, &mut self.mirrored);
             let subgraph = |cell| {
@@ -259,13 +259,13 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
     }
 
     /// Closes a portal. Returns whether it was open.
-    pub fn close(&mut self, portal: u32) -> bool {
+    pub fn close(&mut self, portal: PortalId) -> bool {
         let changed = self.doors.close(portal);
         self.note_doors(changed)
     }
 
     /// Opens a portal. Returns whether it was closed.
-    pub fn open(&mut self, portal: u32) -> bool {
+    pub fn open(&mut self, portal: PortalId) -> bool {
         let changed = self.doors.open(portal);
         self.note_doors(changed)
     }
@@ -286,7 +286,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
     /// the numbers; [`crate::same_portals`] compares corners. O(closed portals), and a new thread.
     ///
     /// Movers follow by [`crate::Movers::replace`], simplified levels by [`crate::Levels::forget`].
-    pub fn replace(&mut self, resident: R, source: S, keep: impl Fn(u32) -> Option<u32>) {
+    pub fn replace(&mut self, resident: R, source: S, keep: impl Fn(PortalId) -> Option<PortalId>) {
         let mut doors = Doors::all_open();
         self.doors.closed().filter_map(keep).for_each(|portal| {
             doors.close(portal);
@@ -349,7 +349,7 @@ fn coarse(resident: &impl CoarseVisibility, cell: CellId, seen: &mut VisibleSet)
         seen.add_object(object);
     });
     if !told {
-        seen.add_objects(0..resident.n_objects() as u32);
+        seen.add_objects((0..resident.n_objects() as u32).map(ObjectId));
     }
 }
 

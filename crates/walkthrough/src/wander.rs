@@ -2,7 +2,7 @@
 
 use sightlines_eye_to_cell::CellSource;
 use sightlines_geometry::Random;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, PortalId};
 
 /// Where the viewer of a frame is, and looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,7 +93,7 @@ fn go(
 /// A portal out of a cell.
 #[derive(Debug, Clone, Copy)]
 struct Door {
-    portal: u32,
+    portal: PortalId,
     to: CellId,
     /// Its middle.
     at: [f64; 3],

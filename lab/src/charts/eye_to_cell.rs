@@ -11,7 +11,7 @@ use sightlines::cells::Scene;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::{OfficeOptions, office};
 use sightlines::visible_surface::{Camera, FaceMask, Faces, RayCaster, RenderInput, VisibleSurface};
 use sightlines::walkthrough::{CameraPose, wander};
@@ -150,7 +150,7 @@ fn one_place(settings: &Settings, place: &Place, rows: &mut Vec<Row>) -> Result<
     let diagonal = (0..3).map(|k| (around.max[k] - around.min[k]).powi(2)).sum::<f64>().sqrt();
     let stands = wander(&cells, settings.pick(200, 4000), diagonal / 400.0, 1)?;
     let shown = shown(place, &stands)?;
-    let polygons = |o: &u32| u64::from(table.polygons_of(*o));
+    let polygons = |o: &u32| u64::from(table.polygons_of(ObjectId(*o)));
     let needed: u64 = shown.iter().flatten().flatten().map(polygons).sum();
     let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
     let mut exact_cells: Vec<Vec<u32>> = Vec::new();
@@ -172,12 +172,12 @@ fn one_place(settings: &Settings, place: &Place, rows: &mut Vec<Row>) -> Result<
             found.times.push(time.fold(f64::INFINITY, f64::min));
             found.cells += seen.cells().len() as u64;
             if method == Method::Exact {
-                exact_cells.push(seen.cells().to_vec());
+                exact_cells.push(seen.cells().iter().map(|c| c.0).collect());
             }
             found.missed_cells += exact_cells[k].iter().filter(|&&c| !seen.has_cell(CellId(c))).count() as u64;
             if let Some(Some(shown)) = shown.get(k) {
-                found.polygons += seen.objects().iter().map(polygons).sum::<u64>();
-                found.missed += shown.iter().filter(|o| !seen.has_object(**o)).count() as u64;
+                found.polygons += seen.objects().iter().map(|o| &o.0).map(polygons).sum::<u64>();
+                found.missed += shown.iter().filter(|o| !seen.has_object(ObjectId(**o))).count() as u64;
             }
         }
         all.push((method.name().to_owned(), found));
@@ -203,7 +203,7 @@ fn one_place(settings: &Settings, place: &Place, rows: &mut Vec<Row>) -> Result<
             found.cells += left.len() as u64;
             found.missed_cells += exact_cells[k].iter().filter(|c| left.binary_search(c).is_err()).count() as u64;
             if let Some(Some(shown)) = shown.get(k) {
-                found.polygons += left.iter().map(|o| u64::from(table.polygons_of(*o))).sum::<u64>();
+                found.polygons += left.iter().map(|o| u64::from(table.polygons_of(ObjectId(*o)))).sum::<u64>();
                 found.missed += shown.iter().filter(|o| left.binary_search(o).is_err()).count() as u64;
             }
         }

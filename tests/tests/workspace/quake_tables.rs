@@ -6,7 +6,7 @@ use sightlines::bake::quake::bake_map;
 use sightlines::bake::{BakedMap, PrtOptions};
 use sightlines::formats::quake::{Bsp, BspFormat, Prt, graph_of_prt, read_prt};
 use sightlines::geometry::Portal3;
-use sightlines::pvs::{CellId, Locator, PlaneChild, PlaneTree, Table, TableParts};
+use sightlines::pvs::{CellId, Locator, ObjectId, PlaneChild, PlaneTree, Table, TableParts};
 use sightlines::scenes::world::{BspWorldOptions, QuakeLikeOptions, World, bsp_world, quake_like};
 use sightlines::stabtree::ConvexOptions;
 use sightlines_testkit::mutate::SplitMix;
@@ -161,10 +161,10 @@ fn check_faces(
     counts: &mut Counts,
 ) -> Result<(), String> {
     let (first, n_faces) = raw.world_faces();
-    if table.objects().len() != n_faces || (0..n_faces as u32).any(|k| table.polygons_of(k) != 1) {
+    if table.objects().len() != n_faces || (0..n_faces as u32).any(|k| table.polygons_of(ObjectId(k)) != 1) {
         return Err(format!("{} objects of one polygon for {n_faces} faces", table.objects().len()));
     }
-    let lists = |cluster: u32, k: usize| table.objects_of(CellId(cluster)).binary_search(&(k as u32)).is_ok();
+    let lists = |cluster: u32, k: usize| table.objects_of(CellId(cluster)).binary_search(&ObjectId(k as u32)).is_ok();
     for (leaf, cluster) in clusters.iter().enumerate().filter_map(|(leaf, c)| Some((leaf, (*c)?))) {
         for face in raw.marks(leaf).into_iter().filter(|f| (first..first + n_faces).contains(f)) {
             if !lists(cluster, face - first) {

@@ -4,7 +4,7 @@ use sightlines::bake::{BakedScene, PortalMode, SceneBakeOptions, bake_scene};
 use sightlines::cells::Scene;
 use sightlines::formats::scene::read_scene;
 use sightlines::geometry::Aabb;
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines_testkit::rays::RayScene;
 use sightlines_tests::data_folder;
@@ -21,7 +21,7 @@ fn shown(table: &Table, eye: &Aabb<3>) -> Vec<bool> {
     for (cell, record) in (0u32..).map(CellId).zip(table.cells()) {
         if (0..3).all(|k| record.min[k] < eye.max[k] && eye.min[k] < record.max[k]) {
             for object in table.visible_objects(cell) {
-                shown[object as usize] = true;
+                shown[object.idx()] = true;
             }
         }
     }
@@ -46,7 +46,7 @@ fn rays_in_a_small_tower_are_in_the_table() {
         let bounds = Aabb { min: record.min, max: record.max };
         for object in rays.witness_objects(bounds, u64::from(cell.0), RAYS) {
             assert!(
-                visible.binary_search(&object).is_ok(),
+                visible.binary_search(&ObjectId(object)).is_ok(),
                 "cell {cell} sees {}",
                 table.objects()[object as usize].name
             );

@@ -6,6 +6,7 @@ mod planes;
 use super::table::{SOURCE_KEY, parts_of_clusters};
 use super::{PrtBakeError, PrtOptions, graph, see};
 use crate::baked::{Baked, BakedMap};
+use crate::objects::object_lists;
 use crate::reports::{MapReport, WorldSummary};
 use planes::ClusterTree;
 use sightlines_cells::{CellGraph, Convex};
@@ -53,7 +54,7 @@ pub fn bake_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<BakedMa
         n_planes: planes.n_nodes(),
         slack: planes.slack(),
     };
-    parts.cell_objects = lists.of_clusters;
+    parts.cell_objects = object_lists(lists.of_clusters);
     parts.planes = planes.into_planes();
     let source = format!("Quake map {} with {}", bsp.format().name(), prt.dialect());
     parts.kind = TableKind::QuakeMap;

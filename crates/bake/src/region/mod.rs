@@ -15,6 +15,7 @@ pub use crate::grid::{GridError, grid};
 use crate::baked::{Baked, BakedRegions};
 use crate::error::BakeError;
 use crate::graph::TableGraph;
+use crate::objects::object_lists;
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, merge_portals, n_triangles, see_scene};
 use crate::table::{object_record, state_file};
@@ -137,7 +138,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     see::add(&mut objects, &touching);
     let (n_visible_pairs, n_objects_seen) = ((rows.count_ones() - n as u64) / 2, objects.count_ones());
     parts.rows = rows;
-    parts.cell_objects = touching;
+    parts.cell_objects = object_lists(touching);
     parts.objects_seen = Some(objects);
     if parts.objects.is_empty() {
         parts.objects = scene.objects().iter().zip(&boxes).map(|(o, b)| object_record(&o.name, b)).collect();

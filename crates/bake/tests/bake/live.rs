@@ -174,7 +174,7 @@ fn portals_close_and_open() {
         for cell in graph.cell_ids() {
             assert!(live.table().visible(cell).map(|c| c.idx()).eq(seen.cells.iter_ones(cell.idx())));
             let objects = live.table().visible_objects(cell);
-            assert!(objects.iter().map(|o| *o as usize).eq(seen.objects.iter_ones(cell.idx())));
+            assert!(objects.iter().map(|o| o.idx()).eq(seen.objects.iter_ones(cell.idx())));
         }
         assert_eq!(live.table().portals().len(), cut.graph.portals().len());
         assert!(closed.iter().all(|id| live.closed_portals().contains(id)));

@@ -63,7 +63,7 @@ fn check_plan(plan: &Plan, table: &Table, seed: u64) -> Result<[usize; 2], Strin
         match found {
             Some(part) if !wanted => return Err(format!("{eye} {towards}: {part:?} where there is wall {id:?}")),
             None if wanted => return Err(format!("{eye} {towards}: nothing of mirror {id:?} in {cells:?}")),
-            Some(part) if LineId(part.face) != id => return Err(format!("{part:?} instead of {id:?}")),
+            Some(part) if LineId(part.mirror.0) != id => return Err(format!("{part:?} instead of {id:?}")),
             _ => n_met[usize::from(!wanted)] += 1,
         }
     }
@@ -154,7 +154,7 @@ fn parts_are_found_on_both_sides_and_a_missing_one_is_noticed() {
         let [n_mirrors, n_walls] = check_plan(&plan, &table, 5).unwrap();
         assert!(n_mirrors > 50 && n_walls > 50, "{n_mirrors} {n_walls}");
         // From the west the left end is in the north... of one who looks east.
-        let wall: Vec<&MirrorRecord> = table.mirrors().iter().filter(|part| part.face == 4).collect();
+        let wall: Vec<&MirrorRecord> = table.mirrors().iter().filter(|part| part.mirror.0 == 4).collect();
         let looks_east = |part: &&MirrorRecord| part.points[0][1] > part.points[1][1];
         assert!(wall.iter().any(looks_east) && wall.iter().any(|part| !looks_east(part)));
         assert_eq!(Table::from_bytes(&table.to_bytes()).as_ref(), Ok(&table));

@@ -7,7 +7,7 @@ use sightlines_cells::{CellGraph, CellId, Plan, PlanLine, PlanObject, Planar};
 use sightlines_geometry::{Aabb, Point2, Segment2, signed_area};
 use sightlines_kdtree::KdError;
 use sightlines_progress::{Cancelled, Progress};
-use sightlines_pvs::{BitMatrix, CellRecord, Locator, Table, TableKind, TableParts};
+use sightlines_pvs::{BitMatrix, CellRecord, Locator, ObjectId, Table, TableKind, TableParts};
 use sightlines_scenes::{OfficeOptions, doom_like, maze, office, turned_pillared_hall};
 use sightlines_testkit::{axial_plan, small_grid_plan};
 use sightlines_triangulation::TriangulationError;
@@ -347,7 +347,7 @@ fn objects_land_in_the_cells_that_they_touch() {
         let table = bake(&plan, subdivide).table;
         let names = |at: [f64; 2]| {
             let seen = table.in_dimension().unwrap().at(at).inside().expect("inside").visible_objects();
-            seen.iter().map(|&o| table.objects()[o as usize].name.as_str()).collect::<Vec<_>>()
+            seen.iter().map(|&o| table.objects()[o.idx()].name.as_str()).collect::<Vec<_>>()
         };
         assert_eq!(names([1., 1.]), ["west", "across", "on the wall"], "{subdivide}");
         assert_eq!(names([7., 1.]), ["east", "across", "on the wall"], "{subdivide}");
@@ -405,7 +405,7 @@ proptest! {
             for (id, cell) in (0u32..).map(CellId).zip(baked.table.cells()) {
                 let polygon: Vec<Point2> = cell.polygon.iter().map(|&c| Point2::from(c)).collect();
                 let touching = (0u32..).zip(&boxes).filter(|(_, b)| touches(&polygon, b)).map(|(i, _)| i);
-                prop_assert_eq!(baked.table.objects_of(id), touching.collect::<Vec<u32>>(), "{:?}", polygon);
+                prop_assert_eq!(baked.table.objects_of(id), touching.map(ObjectId).collect::<Vec<_>>(), "{:?}", polygon);
             }
         }
     }

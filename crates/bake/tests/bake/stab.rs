@@ -6,7 +6,7 @@ use sightlines_bake::{
 };
 use sightlines_formats::quake::prt::parse_prt;
 use sightlines_geometry::{Aabb, Point2, Portal3, orient2d};
-use sightlines_pvs::{CellId, StabParts, StabTrees, Table};
+use sightlines_pvs::{CellId, PortalId, StabParts, StabTrees, Table};
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines_sightline::Line3;
 use sightlines_testkit::Random;
@@ -125,7 +125,7 @@ impl Gates {
 fn covers(trees: &StabTrees, from: CellId, sequence: &[u32]) -> bool {
     let (mut nodes, mut open) = (trees.roots(from), trees.is_root_open(from));
     for &gate in sequence {
-        let is_gate = |&&node: &&u32| trees.gate(node) == (gate / 2, gate % 2 == 0);
+        let is_gate = |&&node: &&u32| trees.gate(node) == (PortalId(gate / 2), gate % 2 == 0);
         match nodes.iter().find(is_gate) {
             Some(&node) => (nodes, open) = (trees.children(node), trees.is_open(node)),
             None => return open,
@@ -199,7 +199,7 @@ fn whole_trees_lead_to_what_is_seen() {
             let mut waiting = trees.roots(cell).to_vec();
             while let Some(node) = waiting.pop() {
                 let (portal, forward) = trees.gate(node);
-                met[table.portals()[portal as usize].cells[usize::from(forward)].idx()] = true;
+                met[table.portals()[portal.idx()].cells[usize::from(forward)].idx()] = true;
                 waiting.extend_from_slice(trees.children(node));
             }
             for other in (0..table.n_cells() as u32).map(CellId) {

@@ -5,7 +5,7 @@ use crate::common::Folder;
 use crate::common::looks::table;
 use crate::common::picture::Picture;
 use serde_json::Value;
-use sightlines::pvs::Table;
+use sightlines::pvs::{ObjectId, Table};
 use sightlines::report::{MARK, NOWHERE, face_colour};
 use std::collections::BTreeSet;
 
@@ -173,7 +173,7 @@ fn a_table_that_hides_too_much_is_noticed() {
     let seen = parts.objects_seen.as_mut().expect("a table of a scene has objects");
     for (cell, touching) in parts.cell_objects.iter().enumerate() {
         for object in 0..parts.objects.len() {
-            seen.set(cell, object, touching.contains(&(object as u32)));
+            seen.set(cell, object, touching.contains(&ObjectId(object as u32)));
         }
     }
     folder.write("blind.pvs", Table::new(parts).expect("a sound table, though a wrong one").to_bytes());

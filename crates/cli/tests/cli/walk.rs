@@ -3,7 +3,7 @@
 use crate::common::Folder;
 use crate::common::looks::{middle, scenes, table};
 use serde_json::{Value, json};
-use sightlines::pvs::CellId;
+use sightlines::pvs::{CellId, ObjectId};
 
 const METHODS: [&str; 5] = ["cell-to-cell", "disjoint-cell", "connected-component", "incident-portals", "exact"];
 
@@ -207,7 +207,7 @@ fn walks_are_measured() {
             let kept = kept(&reply, what);
             assert!(kept.is_sorted_by(|a, b| a >= b) && kept[4] < kept[0] && kept[4] > 0.0, "{what}: {kept:?}");
         }
-        let polygons: u64 = (0..table.objects().len() as u32).map(|o| u64::from(table.polygons_of(o))).sum();
+        let polygons: u64 = (0..table.objects().len() as u32).map(|o| u64::from(table.polygons_of(ObjectId(o)))).sum();
         assert_eq!(reply["n_polygons"], polygons);
         // The same walk again leaves the same to draw, by one method as by all, from a packed table as from a plain one.
         folder.run(&["pack", name, "-o", "small.pvz"]).expect(0);

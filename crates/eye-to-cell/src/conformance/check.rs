@@ -3,7 +3,7 @@
 use super::{Clause, Report, Violation};
 use crate::{CellSource, MirrorPiece, PortalEdge};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, MirrorId, ObjectId, PortalId};
 
 /// Nodes of stab trees that are followed.
 const MOST_NODES: usize = 100_000;
@@ -11,7 +11,7 @@ const MOST_NODES: usize = 100_000;
 /// A portal of a cell.
 #[derive(Debug, Clone, PartialEq)]
 struct Edge {
-    portal: u32,
+    portal: PortalId,
     forward: bool,
     to: CellId,
     corners: Vec<[f64; 3]>,
@@ -23,9 +23,9 @@ struct Cell {
     bounds: Aabb<3>,
     visible: Vec<CellId>,
     edges: Vec<Edge>,
-    touching: Vec<u32>,
-    seen: Vec<u32>,
-    mirrors: Vec<(u32, Vec<[f64; 3]>)>,
+    touching: Vec<ObjectId>,
+    seen: Vec<ObjectId>,
+    mirrors: Vec<(MirrorId, Vec<[f64; 3]>)>,
     roots: Vec<u32>,
     is_root_open: Option<bool>,
 }
@@ -53,7 +53,7 @@ impl Cell {
     fn of<S: CellSource>(source: &S, cell: CellId) -> Result<Self, S::Error> {
         // Whatever is in a buffer has to go.
         let (mut visible, mut touching, mut seen, mut roots) =
-            (vec![CellId(u32::MAX); 3], vec![u32::MAX; 3], vec![u32::MAX; 3], vec![u32::MAX; 3]);
+            (vec![CellId(u32::MAX); 3], vec![ObjectId(u32::MAX); 3], vec![ObjectId(u32::MAX); 3], vec![u32::MAX; 3]);
         source.visible(cell, &mut visible)?;
         source.objects_of(cell, &mut touching)?;
         source.objects_seen(cell, &mut seen)?;
@@ -62,7 +62,7 @@ impl Cell {
         source.portal_edges(cell, &mut |PortalEdge { portal, forward, to, corners }| {
             edges.push(Edge { portal, forward, to, corners: corners.to_vec() });
         })?;
-        source.mirrors(cell, &mut |MirrorPiece { face, corners }| mirrors.push((face, corners.to_vec())))?;
+        source.mirrors(cell, &mut |MirrorPiece { mirror, corners }| mirrors.push((mirror, corners.to_vec())))?;
         Ok(Self { bounds: source.cell_box(cell)?, visible, edges, touching, seen, mirrors, roots, is_root_open })
     }
 }
@@ -87,7 +87,7 @@ impl Answers {
         let ids = || (0..source.n_cells() as u32).map(CellId);
         let cells: Vec<Cell> =
             ids().map(|cell| Cell::of(source, cell)).collect::<Result<_, _>>().map_err(unreadable)?;
-        let objects = (0..source.n_objects() as u32).map(|object| source.object_box(object));
+        let objects = (0..source.n_objects() as u32).map(|object| source.object_box(ObjectId(object)));
         let objects: Vec<Aabb<3>> = objects.collect::<Result<_, _>>().map_err(unreadable)?;
         let answers = Self { n_corners, cells, objects };
         for (cell, first) in ids().zip(&answers.cells) {
@@ -109,14 +109,14 @@ impl Answers {
 
     fn check_cell(&self, id: CellId, cell: &Cell) -> Result<(), Violation> {
         let check = |clause, holds: bool, what| if holds { Ok(()) } else { Err(wrong(clause, id, what)) };
-        let portals: Vec<(u32, bool)> = cell.edges.iter().map(|edge| (edge.portal, !edge.forward)).collect();
+        let portals: Vec<(PortalId, bool)> = cell.edges.iter().map(|edge| (edge.portal, !edge.forward)).collect();
         check(Clause::Ordered, ascends(&cell.visible), "visible cells do not ascend")?;
         check(Clause::Ordered, cell.visible.contains(&id), "it does not see itself")?;
         check(Clause::Ordered, ascends(&cell.touching) && ascends(&cell.seen), "objects do not ascend")?;
         check(Clause::Ordered, ascends(&portals), "portals do not ascend")?;
         check(Clause::Ordered, ascends(&cell.roots), "roots of stab trees do not ascend")?;
         let has_cell = |cell: &CellId| cell.idx() < self.cells.len();
-        let has_object = |object: &u32| (*object as usize) < self.objects.len();
+        let has_object = |object: &ObjectId| object.idx() < self.objects.len();
         check(Clause::Ranges, cell.visible.iter().all(has_cell), "it sees a cell that does not exist")?;
         check(Clause::Ranges, cell.edges.iter().all(|e| has_cell(&e.to)), "a portal leads nowhere")?;
         check(

@@ -3,7 +3,7 @@
 use super::Clause;
 use crate::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, ObjectId, PortalId};
 use std::cell::Cell;
 
 /// What an [`Impostor`] does wrong.
@@ -133,11 +133,11 @@ impl<S: CellSource> CellSource for Impostor<S> {
         })
     }
 
-    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), S::Error> {
+    fn objects_of(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), S::Error> {
         self.source.objects_of(cell, out)
     }
 
-    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), S::Error> {
+    fn objects_seen(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), S::Error> {
         self.source.objects_seen(cell, out)?;
         self.n_asked.set(self.n_asked.get() + 1);
         match self.fault {
@@ -149,7 +149,7 @@ impl<S: CellSource> CellSource for Impostor<S> {
         Ok(())
     }
 
-    fn object_box(&self, object: u32) -> Result<Aabb<3>, S::Error> {
+    fn object_box(&self, object: ObjectId) -> Result<Aabb<3>, S::Error> {
         self.source.object_box(object)
     }
 
@@ -164,6 +164,6 @@ impl<S: CellSource> CellSource for Impostor<S> {
 
     fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabStep, S::Error> {
         let step = self.source.stab_node(node, children)?;
-        Ok(if self.fault == Fault::WrongTrees { StabStep { portal: 0, ..step } } else { step })
+        Ok(if self.fault == Fault::WrongTrees { StabStep { portal: PortalId(0), ..step } } else { step })
     }
 }

@@ -7,6 +7,7 @@ use super::reach;
 use super::sweep::sweep;
 use crate::front::Facing;
 use crate::trees::NO_NODE;
+use sightlines_pvs::PortalId;
 
 /// Portals that are looked at sequence by sequence, before the method turns to putting pieces together.
 ///
@@ -23,7 +24,7 @@ const MOST_STEPS_WITHOUT_ORDER: u64 = 1 << 16;
 pub(crate) struct Frame {
     cell: u32,
     /// The portal that was crossed into it; none has this number at the root.
-    entry: u32,
+    entry: PortalId,
     /// The node of the stab tree, or none: then any way may follow.
     node: u32,
     /// What is to be tried next, and where that ends: children of the node, or ways of the cell.
@@ -78,7 +79,7 @@ impl<'q, 'a> Search<'q, 'a> {
     fn run(&mut self, limit: u64) -> bool {
         self.enter(
             self.query.subgraph.root,
-            u32::MAX,
+            PortalId(u32::MAX),
             self.query.subgraph.trees.as_ref().map_or(NO_NODE, |t| t.root()),
             0,
         );
@@ -159,7 +160,7 @@ impl<'q, 'a> Search<'q, 'a> {
     }
 
     /// Enters a cell with the cone of the sides from `first_side` on, and keeps what that meets there.
-    fn enter(&mut self, cell: u32, entry: u32, node: u32, first_side: u32) {
+    fn enter(&mut self, cell: u32, entry: PortalId, node: u32, first_side: u32) {
         let subgraph = self.query.subgraph;
         let ways = subgraph.ways_of(cell);
         let (by_ways, range) = match &subgraph.trees {

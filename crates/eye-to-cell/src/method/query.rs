@@ -189,7 +189,7 @@ pub(super) fn reflection(
     mirror: &LocalMirror,
     cone: &[Side],
 ) -> Reflection {
-    Reflection { face: mirror.face, cell: subgraph.cells[cell as usize], view: view.mirrored(&mirror.front, cone) }
+    Reflection { mirror: mirror.mirror, cell: subgraph.cells[cell as usize], view: view.mirrored(&mirror.front, cone) }
 }
 
 /// Notes what the eye sees in the mirrors of a cell, within the cone by which it sees the cell.

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use sightlines_pvs::{
-    Axis, BitMatrix, CellId, CellRecord, Locator, MirrorRecord, ObjectRecord, PlaneChild, PlaneNode, PlaneTree,
-    PortalRecord, SceneMethods, StabParts, StabTrees, Table, TableKind, TableParts,
+    Axis, BitMatrix, CellId, CellRecord, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord, PlaneChild,
+    PlaneNode, PlaneTree, PortalId, PortalRecord, SceneMethods, StabParts, StabTrees, Table, TableKind, TableParts,
 };
 
 /// What a table is made from: dimension, columns, rows, seed (cells have names if it is odd), and which optional
@@ -52,14 +52,14 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
     let n_objects = if has(2) { dice.below(90) } else { 0 };
     let object = |o: u32| ObjectRecord { name: format!("ö{o}"), min: [0.5, -0.25, 0.0], max: [0.5, f64::from(o), z] };
     out.objects = (0..n_objects).map(object).collect();
-    out.cell_objects = (0..n).map(|_| (0..n_objects).filter(|_| dice.below(4) == 0).collect()).collect();
+    out.cell_objects = (0..n).map(|_| (0..n_objects).filter(|_| dice.below(4) == 0).map(ObjectId).collect()).collect();
     if has(3) {
         out.object_polygons = (0..n_objects).map(|_| dice.below(1000)).collect();
     }
     if has(4) {
         let mut seen = BitMatrix::new(n, n_objects as usize);
         for (i, list) in out.cell_objects.iter().enumerate() {
-            list.iter().for_each(|&o| seen.set(i, o as usize, true));
+            list.iter().for_each(|&o| seen.set(i, o.idx(), true));
             (0..n_objects / 2).filter(|o| o % 3 == i as u32 % 2).for_each(|o| seen.set(i, o as usize, true));
         }
         out.objects_seen = Some(seen);
@@ -67,7 +67,7 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
     if has(5) && n > 0 {
         let mirror = |k: u32| {
             let points = (0..dimension).map(|i| [f64::from(i), f64::from(k), z]).collect();
-            MirrorRecord { cell: CellId(k % n as u32), face: k / 2, points }
+            MirrorRecord { cell: CellId(k % n as u32), mirror: MirrorId(k / 2), points }
         };
         out.mirrors = (0..dice.below(5)).map(mirror).collect();
     }
@@ -135,11 +135,11 @@ fn stab(table: &TableParts) -> StabTrees {
     };
     let n = 2 * table.portals.len() as u32;
     for gate in 0..n {
-        parts.push_node(gates(gate).0, gates(gate).1, &[], gate % 7 == 0);
+        parts.push_node(PortalId(gates(gate).0), gates(gate).1, &[], gate % 7 == 0);
     }
     for gate in 0..n {
         let next: Vec<u32> = (0..n).filter(|&next| next / 2 != gate / 2 && ends(next).0 == ends(gate).1).collect();
-        parts.push_node(gates(gate).0, gates(gate).1, &next, gate % 5 == 0);
+        parts.push_node(PortalId(gates(gate).0), gates(gate).1, &next, gate % 5 == 0);
     }
     for cell in (0..table.cells.len() as u32).map(CellId) {
         let roots: Vec<u32> = (0..n).filter(|&gate| ends(gate).0 == cell).map(|gate| n + gate).collect();

@@ -2,11 +2,11 @@
 
 use crate::common::{SMALL, table};
 use sightlines_packed::{PackOptions, Packed, PackedError, pack};
-use sightlines_pvs::{CellId, PlaceBuffer, Table};
+use sightlines_pvs::{CellId, ObjectId, PlaceBuffer, Table};
 
 /// Asks everything; whatever comes must be an answer or an error.
 pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
-    let (mut cells, mut numbers, mut n_errors) = (Vec::new(), Vec::new(), 0);
+    let (mut cells, mut numbers, mut nodes, mut n_errors) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let mut count = |result: Result<(), PackedError>| n_errors += usize::from(result.is_err());
     for cell in (0..packed.n_cells().min(100) as u32).map(CellId) {
         count(packed.visible(cell, &mut cells));
@@ -14,7 +14,7 @@ pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
         count(packed.objects_of(cell, &mut numbers));
         count(packed.objects_seen(cell, &mut numbers));
         count(packed.exits(cell, &mut |_, _, _, _| {}));
-        count(packed.stab_roots(cell, &mut numbers).map(drop));
+        count(packed.stab_roots(cell, &mut nodes).map(drop));
         count(packed.group(cell).map(drop));
         count(packed.cell_name(cell).map(drop));
         count(packed.cell_polygon(cell, &mut Vec::new()));
@@ -22,11 +22,11 @@ pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
         let _ = packed.cells_at(min, &mut PlaceBuffer::new());
     }
     for object in 0..packed.n_objects().min(100) as u32 {
-        count(packed.object_box(object).map(drop));
-        count(packed.object_name(object).map(drop));
+        count(packed.object_box(ObjectId(object)).map(drop));
+        count(packed.object_name(ObjectId(object)).map(drop));
     }
     for node in 0..packed.n_stab_nodes().unwrap_or(0).min(100) {
-        count(packed.stab_node(node, &mut numbers).map(drop));
+        count(packed.stab_node(node, &mut nodes).map(drop));
     }
     n_errors
 }

@@ -4,11 +4,12 @@ use crate::common::{points, recipes, table};
 use proptest::prelude::*;
 use sightlines_packed::{PackOptions, Packed, PackedErrorKind, pack, pack_report};
 use sightlines_pvs::format::kind_to_bytes;
-use sightlines_pvs::{Axis, CellId, PlaceBuffer, Table, TableKind, TableParts};
+use sightlines_pvs::{Axis, CellId, ObjectId, PlaceBuffer, PortalId, Table, TableKind, TableParts};
 
 /// All that a packed table answers, compared with the table; the number of comparisons.
 pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
     let (mut cells, mut numbers, mut n, mut buffer) = (Vec::new(), Vec::new(), 0, PlaceBuffer::new());
+    let mut nodes = Vec::new();
     assert_eq!((packed.n_cells(), packed.dimension()), (table.n_cells(), table.dimension()));
     assert_eq!((packed.kind(), packed.up()), (table.kind(), table.up()));
     assert_eq!((packed.info(), packed.mirrors(), packed.planes()), (table.info(), table.mirrors(), table.planes()));
@@ -39,16 +40,17 @@ pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
         let leads = |(k, portal): (usize, &sightlines_pvs::PortalRecord)| {
             let forward = portal.cells[0] == cell;
             let to = portal.cells[usize::from(forward)];
-            portal.cells.contains(&cell).then(|| (k as u32, forward, to, portal.points.clone()))
+            portal.cells.contains(&cell).then(|| (PortalId(k as u32), forward, to, portal.points.clone()))
         };
         assert_eq!(exits, table.portals().iter().enumerate().filter_map(leads).collect::<Vec<_>>());
+        let mut numbers = Vec::new();
         let open = packed.stab_roots(cell, &mut numbers).unwrap();
         match table.stab() {
             Some(stab) => assert_eq!((open, &numbers[..]), (stab.is_root_open(cell), stab.roots(cell))),
             None => assert!(open && numbers.is_empty()),
         }
     }
-    for (o, object) in (0u32..).zip(table.objects()) {
+    for (o, object) in (0u32..).map(ObjectId).zip(table.objects()) {
         assert_eq!(packed.object_box(o).unwrap(), (object.min, object.max));
         assert_eq!(
             (packed.object_name(o).unwrap(), packed.object_polygons(o).unwrap()),
@@ -56,9 +58,9 @@ pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
         );
     }
     for node in 0..packed.n_stab_nodes().unwrap_or(0) {
-        let (stab, found) = (table.stab().unwrap(), packed.stab_node(node, &mut numbers).unwrap());
+        let (stab, found) = (table.stab().unwrap(), packed.stab_node(node, &mut nodes).unwrap());
         assert_eq!(((found.portal, found.forward), found.open), (stab.gate(node), stab.is_open(node)));
-        assert_eq!(numbers, stab.children(node));
+        assert_eq!(nodes, stab.children(node));
         n += 1;
     }
     n
@@ -130,8 +132,8 @@ fn what_is_not_there_is_an_error_that_says_so() {
     let (mut cells, mut numbers) = (vec![CellId(1)], vec![1]);
     let errors = [
         packed.visible(CellId(8), &mut cells).unwrap_err(),
-        packed.object_box(packed.n_objects() as u32).unwrap_err(),
-        packed.portal(u32::MAX).unwrap_err(),
+        packed.object_box(ObjectId(packed.n_objects() as u32)).unwrap_err(),
+        packed.portal(PortalId(u32::MAX)).unwrap_err(),
         packed.cell_name(CellId(8)).unwrap_err(),
         packed.stab_node(u32::MAX, &mut numbers).unwrap_err(),
     ];

@@ -9,7 +9,10 @@ use super::{
 };
 use crate::locator::Node;
 use crate::{Axis, TableKind};
-use crate::{BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, MirrorRecord, ObjectRecord, PortalRecord};
+use crate::{
+    BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, MirrorId, MirrorRecord, ObjectId, ObjectRecord,
+    PortalRecord,
+};
 use crate::{Table, TableError, TableParts};
 
 impl Table {
@@ -183,10 +186,10 @@ fn mirrors(r: &mut Reader<'_>, d: usize) -> Result<Vec<MirrorRecord>, DecodeErro
     let n = r.count(12)?;
     let mut mirrors = Vec::with_capacity(n);
     for _ in 0..n {
-        let (cell, face) = (CellId(r.u32()?), r.u32()?);
+        let (cell, mirror) = (CellId(r.u32()?), MirrorId(r.u32()?));
         let n_points = r.count(8 * d)?;
         let points = (0..n_points).map(|_| r.point(d)).collect::<Result<_, _>>()?;
-        mirrors.push(MirrorRecord { cell, face, points });
+        mirrors.push(MirrorRecord { cell, mirror, points });
     }
     Ok(mirrors)
 }
@@ -261,8 +264,9 @@ fn objects(r: &mut Reader<'_>, d: usize) -> Result<Vec<ObjectRecord>, DecodeErro
     Ok(objects)
 }
 
-fn cell_objects(r: &mut Reader<'_>, n: usize) -> Result<Vec<Vec<u32>>, DecodeError> {
-    lengths(r, n, 4)?.into_iter().map(|n| r.u32s(u64::from(n))).collect()
+fn cell_objects(r: &mut Reader<'_>, n: usize) -> Result<Vec<Vec<ObjectId>>, DecodeError> {
+    let ids = |list: Vec<u32>| list.into_iter().map(ObjectId).collect();
+    lengths(r, n, 4)?.into_iter().map(|n| r.u32s(u64::from(n)).map(ids)).collect()
 }
 
 fn cell_names(r: &mut Reader<'_>, n: usize) -> Result<Vec<String>, DecodeError> {

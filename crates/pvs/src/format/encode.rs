@@ -7,7 +7,7 @@ use super::{
     PORTALS, ROWS, SEEN, STAB, SectionId, kind_section, planes, stab,
 };
 use crate::locator::Node;
-use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectRecord, PortalRecord, Table, TableParts};
+use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectId, ObjectRecord, PortalRecord, Table, TableParts};
 
 impl Table {
     /// The table as the bytes of a `.pvs` file, the same on every machine. O(size).
@@ -87,9 +87,9 @@ fn portals(out: &mut Writer, portals: &[PortalRecord], d: usize) {
 
 fn mirrors(out: &mut Writer, mirrors: &[MirrorRecord], d: usize) {
     out.count(mirrors.len());
-    for MirrorRecord { cell, face, points } in mirrors {
+    for MirrorRecord { cell, mirror, points } in mirrors {
         out.u32(cell.0);
-        out.u32(*face);
+        out.u32(mirror.0);
         out.count(points.len());
         points.iter().for_each(|p| out.floats(&p[..d]));
     }
@@ -139,9 +139,9 @@ fn objects(out: &mut Writer, objects: &[ObjectRecord], d: usize) {
     }
 }
 
-fn cell_objects(out: &mut Writer, lists: &[Vec<u32>]) {
+fn cell_objects(out: &mut Writer, lists: &[Vec<ObjectId>]) {
     lists.iter().for_each(|list| out.count(list.len()));
-    lists.iter().flatten().for_each(|&object| out.u32(object));
+    lists.iter().flatten().for_each(|object| out.u32(object.0));
 }
 
 fn info(out: &mut Writer, info: &[(String, String)]) {

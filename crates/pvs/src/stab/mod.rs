@@ -11,7 +11,7 @@ mod error;
 pub use error::StabError;
 
 use crate::records::PortalRecord;
-use crate::{CellId, bits};
+use crate::{CellId, PortalId, bits};
 
 /// Nodes and edges under construction. Numbers of nodes are given by [`StabParts::push_node`], from 0.
 ///
@@ -40,10 +40,10 @@ impl StabParts {
     ///
     /// # Panics
     /// If there are more nodes or children than 32 bits count.
-    pub fn push_node(&mut self, portal: u32, forward: bool, children: &[u32], open: bool) -> u32 {
+    pub fn push_node(&mut self, portal: PortalId, forward: bool, children: &[u32], open: bool) -> u32 {
         let node = count(self.gates.len());
-        assert!(portal <= u32::MAX / 2, "portal {portal} is more than 31 bits can count");
-        self.gates.push(2 * portal + u32::from(!forward));
+        assert!(portal.0 <= u32::MAX / 2, "portal {portal} is more than 31 bits can count");
+        self.gates.push(2 * portal.0 + u32::from(!forward));
         push_list(&mut self.first_child, &mut self.children, children);
         self.open.push(open);
         node
@@ -125,9 +125,9 @@ impl StabTrees {
     /// # Panics
     /// If there is no such node.
     #[inline]
-    pub fn gate(&self, node: u32) -> (u32, bool) {
+    pub fn gate(&self, node: u32) -> (PortalId, bool) {
         let gate = self.gates[node as usize];
-        (gate / 2, gate.is_multiple_of(2))
+        (PortalId(gate / 2), gate.is_multiple_of(2))
     }
 
     /// What may be crossed after a node, ascending; each number is below `node`.

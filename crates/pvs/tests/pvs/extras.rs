@@ -5,7 +5,9 @@ use crate::common::file::{File, Part, assert_damage_is_noticed};
 use crate::common::full::{any_full_parts, named_villa, villa, wedges};
 use crate::common::rooms;
 use proptest::prelude::*;
-use sightlines_pvs::{CellId, DecodeErrorKind as Kind, Item, MirrorRecord, Table, TableError, TableKind, TableParts};
+use sightlines_pvs::{
+    CellId, DecodeErrorKind as Kind, Item, MirrorId, MirrorRecord, ObjectId, Table, TableError, TableKind, TableParts,
+};
 
 proptest! {
     #[test]
@@ -176,9 +178,9 @@ fn golden_v1_2_and_v1_3_are_read_and_written() {
 #[test]
 fn extras_answer() {
     let [villa, wedges, named] = full();
-    assert_eq!((villa.polygons_of(0), villa.polygons_of(1)), (12, 0));
-    assert_eq!(Table::new(rooms()).unwrap().polygons_of(1), 1, "not known");
-    assert_eq!((villa.mirrors().len(), villa.mirrors()[1].face), (2, u32::MAX));
+    assert_eq!((villa.polygons_of(ObjectId(0)), villa.polygons_of(ObjectId(1))), (12, 0));
+    assert_eq!(Table::new(rooms()).unwrap().polygons_of(ObjectId(1)), 1, "not known");
+    assert_eq!((villa.mirrors().len(), villa.mirrors()[1].mirror), (2, MirrorId(u32::MAX)));
     assert_eq!(wedges.mirrors()[0].points.len(), 3);
     assert!(villa.planes().is_none() && wedges.planes().is_some_and(|planes| planes.slack() == 0.5));
     let names: Vec<&str> = (0..5).map(|i| named.cell_name(CellId(i)).unwrap()).collect();
@@ -217,7 +219,7 @@ fn an_unknown_cell_is_not_one_without_a_name() {
 #[test]
 #[should_panic(expected = "object 2 of 2")]
 fn an_unknown_object_has_no_polygons() {
-    Table::new(rooms()).unwrap().polygons_of(2);
+    Table::new(rooms()).unwrap().polygons_of(ObjectId(2));
 }
 
 /// Each defect alone is refused, with its place and in words.
@@ -304,7 +306,7 @@ fn forged_extras_are_refused() {
 fn mirrors_have_any_number_of_corners_in_space() {
     let mut parts = wedges();
     let ring = (0..200).map(|i| [f64::from(i), 0.0, 0.0]).collect();
-    parts.mirrors = vec![MirrorRecord { cell: CellId(0), face: 3, points: ring }];
+    parts.mirrors = vec![MirrorRecord { cell: CellId(0), mirror: MirrorId(3), points: ring }];
     let table = Table::new(parts).unwrap();
     assert_eq!(Table::from_bytes(&table.to_bytes()), Ok(table));
 }

@@ -1,7 +1,7 @@
 //! Rows of objects: finer than "whatever touches a cell that is seen".
 
 use crate::common::rooms;
-use sightlines_pvs::{BitMatrix, CellId, Table, TableError, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, ObjectId, Table, TableError, TableParts};
 
 /// The rooms, where the first sees the lamp only and the second both objects.
 fn parts() -> TableParts {
@@ -17,21 +17,21 @@ fn parts() -> TableParts {
 #[test]
 fn rows_of_objects_answer_before_the_union() {
     let table = Table::new(parts()).unwrap();
-    assert_eq!(table.visible_objects(CellId(1)), [0, 1]);
-    assert_eq!(table.visible_objects(CellId(2)), [0u32; 0]);
+    assert_eq!(table.visible_objects(CellId(1)), [ObjectId(0), ObjectId(1)]);
+    assert_eq!(table.visible_objects(CellId(2)), []);
     // Without the rows, what touches a cell that is seen is seen.
-    assert_eq!(Table::new(rooms()).unwrap().visible_objects(CellId(2)), [0, 1]);
+    assert_eq!(Table::new(rooms()).unwrap().visible_objects(CellId(2)), [ObjectId(0), ObjectId(1)]);
     assert_eq!(
         table.in_dimension().unwrap().at([4.0, 1.0]).inside().map_or(Vec::new(), |at| at.visible_objects()),
-        [0, 1]
+        [ObjectId(0), ObjectId(1)]
     );
     assert_eq!(
         table.in_dimension().unwrap().at([1.0, 1.0]).inside().map_or(Vec::new(), |at| at.visible_objects()),
-        [0]
+        [ObjectId(0)]
     );
     assert_eq!(
         table.in_dimension().unwrap().at([-1.0, 1.0]).inside().map_or(Vec::new(), |at| at.visible_objects()),
-        [0u32; 0]
+        []
     );
 }
 
@@ -72,7 +72,7 @@ fn impostor_rows_of_objects_are_refused() {
         Table::new(parts).unwrap_err()
     };
     let unseen = broken(&|p| p.objects_seen.as_mut().unwrap().set(0, 0, false));
-    assert_eq!(unseen, TableError::Unseen { cell: CellId(0), object: 0 });
+    assert_eq!(unseen, TableError::Unseen { cell: CellId(0), object: ObjectId(0) });
     assert_eq!(unseen.to_string(), "cell 0 does not see object 0, which touches it");
     let shape = broken(&|p| p.objects_seen = Some(BitMatrix::new(5, 3)));
     assert!(matches!(shape, TableError::SeenShape { n_cols: 3, n_objects: 2, .. }));

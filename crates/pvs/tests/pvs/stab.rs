@@ -4,7 +4,7 @@ use crate::common::file::File;
 use crate::common::full::{Choice, choices, stab_parts, villa};
 use crate::common::rooms;
 use proptest::prelude::*;
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord};
+use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalId, PortalRecord};
 use sightlines_pvs::{StabError, StabParts, StabTrees, Table, TableError, TableKind, TableParts};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,7 +52,7 @@ impl Forest {
         for node in 0..stab.n_nodes() as u32 {
             let (portal, forward) = stab.gate(node);
             let children = stab.children(node).iter().map(|&c| nodes[c as usize]).collect();
-            nodes.push(self.tree(2 * portal + u32::from(!forward), stab.is_open(node), children));
+            nodes.push(self.tree(2 * portal.0 + u32::from(!forward), stab.is_open(node), children));
         }
         let cells = (0..stab.n_cells() as u32).map(CellId);
         let roots = |cell| stab.roots(cell).iter().map(|&r| nodes[r as usize]).collect();
@@ -88,7 +88,7 @@ fn doubled(parts: &StabParts) -> StabParts {
     for (i, &gate) in parts.gates.iter().enumerate() {
         for _ in 0..2 {
             let children = list(&parts.first_child, &parts.children, i);
-            out.push_node(gate / 2, gate.is_multiple_of(2), &children, parts.open[i]);
+            out.push_node(PortalId(gate / 2), gate.is_multiple_of(2), &children, parts.open[i]);
         }
     }
     for cell in 0..parts.root_open.len() {
@@ -207,7 +207,7 @@ fn trees_of_the_villa_share_nodes() {
     let stab = table.stab().unwrap();
     assert_eq!((stab.n_cells(), stab.n_nodes(), stab.n_edges(), stab.n_sequences()), (5, 8, 4, 10));
     assert!(stab.is_root_open(CellId(4)) && stab.roots(CellId(4)).is_empty());
-    let mut doors: BTreeMap<(u32, bool), usize> = BTreeMap::new();
+    let mut doors: BTreeMap<(PortalId, bool), usize> = BTreeMap::new();
     (0..8).for_each(|node| *doors.entry(stab.gate(node)).or_default() += 1);
     assert_eq!(doors.values().copied().collect::<Vec<_>>(), [1, 1, 2, 2, 1, 1]);
     assert_eq!((0..8).filter(|&node| stab.is_open(node)).count(), 1);
@@ -244,7 +244,7 @@ fn headers_are_masks_or_lists() {
     for (n, expected) in [(16, 1 + 1 + 3 + 1 + 1 + 16 + 1), (17, 1 + 1 + 1 + 1 + 17 + 1 + 1 + 17 + 1)] {
         let portals = vec![portal_between(0, 1); n];
         let mut parts = StabParts::default();
-        let roots: Vec<u32> = (0..n as u32).map(|portal| parts.push_node(portal, true, &[], false)).collect();
+        let roots: Vec<u32> = (0..n as u32).map(|portal| parts.push_node(PortalId(portal), true, &[], false)).collect();
         parts.push_cell(&roots, false);
         parts.push_cell(&[], false);
         let table = table_with(portals.clone(), 2, opened(&parts, &portals, 2));
@@ -280,7 +280,7 @@ fn trees_on_a_grid_are_small() {
         for _ in 0..8 {
             let step = |from: usize| ways.into_iter().filter_map(|way| gates[from][way]).collect::<Vec<_>>();
             let longer = (0..side * side).map(|from| {
-                let cross = |gate: (u32, bool)| parts.push_node(gate.0, gate.1, &nodes[into(gate)], false);
+                let cross = |gate: (u32, bool)| parts.push_node(PortalId(gate.0), gate.1, &nodes[into(gate)], false);
                 step(from).into_iter().map(cross).collect()
             });
             nodes = longer.collect();
@@ -306,7 +306,7 @@ fn numbers_of_sequences_saturate() {
     let mut parts = StabParts::default();
     let mut last: Vec<u32> = Vec::new();
     for step in 0..200 {
-        last = (0..2).map(|portal| parts.push_node(portal, step % 2 == 1, &last, false)).collect();
+        last = (0..2).map(|portal| parts.push_node(PortalId(portal), step % 2 == 1, &last, false)).collect();
     }
     parts.push_cell(&last, false);
     parts.push_cell(&[], false);
@@ -323,8 +323,8 @@ fn defects_of_stab_trees_are_refused() {
     let portals = rooms().portals;
     let good = || {
         let mut parts = StabParts::default();
-        let end = parts.push_node(1, true, &[], false);
-        let root = parts.push_node(0, true, &[end], false);
+        let end = parts.push_node(PortalId(1), true, &[], false);
+        let root = parts.push_node(PortalId(0), true, &[end], false);
         [&[root][..], &[end], &[], &[], &[]].into_iter().for_each(|roots| parts.push_cell(roots, false));
         parts
     };

@@ -1,6 +1,6 @@
 //! What is seen in a picture, and from where.
 
-use sightlines_pvs::{CellId, Place, Table};
+use sightlines_pvs::{CellId, ObjectId, Place, Table};
 
 /// What a cell or a viewer sees.
 #[derive(Debug)]
@@ -10,7 +10,7 @@ pub(super) struct VisibleSet {
     /// For each cell of the table whether it is seen.
     cells: Vec<bool>,
     /// The objects that are seen, ascending.
-    objects: Vec<u32>,
+    objects: Vec<ObjectId>,
 }
 
 impl VisibleSet {
@@ -27,7 +27,7 @@ impl VisibleSet {
         }
     }
 
-    fn new(table: &Table, from: Vec<CellId>, ids: impl Iterator<Item = CellId>, objects: Vec<u32>) -> Self {
+    fn new(table: &Table, from: Vec<CellId>, ids: impl Iterator<Item = CellId>, objects: Vec<ObjectId>) -> Self {
         let mut cells = vec![false; table.n_cells()];
         ids.for_each(|id| cells[id.idx()] = true);
         Self { from, cells, objects }
@@ -40,7 +40,7 @@ impl VisibleSet {
 
     /// Whether an object is seen.
     pub(super) fn sees_object(&self, object: u32) -> bool {
-        self.objects.binary_search(&object).is_ok()
+        self.objects.binary_search(&ObjectId(object)).is_ok()
     }
 
     /// Whether it is looked from this cell.

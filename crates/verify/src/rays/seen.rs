@@ -17,7 +17,7 @@ impl Seen {
         let mut objects = BitMatrix::new(table.n_cells(), table.objects().len());
         for cell in 0..table.n_cells() {
             for object in table.visible_objects(CellId(cell as u32)) {
-                objects.set(cell, object as usize, true);
+                objects.set(cell, object.idx(), true);
             }
         }
         Self { cells: table.parts().rows.clone(), objects }

@@ -67,7 +67,7 @@ pub(super) fn most<R: RayOracle>(world: &R, table: &Table, seen: &Seen, n: u64) 
     if n_objects > 0 {
         let mut touched: Vec<Vec<u32>> = vec![Vec::new(); n_objects];
         for cell in 0..n_cells as u32 {
-            table.objects_of(CellId(cell)).iter().for_each(|&o| touched[o as usize].push(cell));
+            table.objects_of(CellId(cell)).iter().for_each(|&o| touched[o.idx()].push(cell));
         }
         for a in 0..n_cells as u32 {
             let sees = |c: u32| table.sees(CellId(a), CellId(c));

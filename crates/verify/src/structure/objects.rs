@@ -4,7 +4,7 @@ use crate::findings::{Findings, Violation};
 use crate::shapes::outlines;
 use sightlines_cells::{CellId, Plan, Scene};
 use sightlines_geometry::{Aabb, Point2, orient2d};
-use sightlines_pvs::{CellRecord, ObjectRecord, Table};
+use sightlines_pvs::{CellRecord, ObjectId, ObjectRecord, Table};
 
 /// Compares names, boxes and lists with those of a plan.
 pub(super) fn of_plan(table: &Table, plan: &Plan, findings: &mut Findings) {
@@ -37,7 +37,7 @@ pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
     }
     for (object, o) in (0u32..).zip(scene.objects()) {
         let n = u32::try_from(o.triangles.len()).unwrap_or(u32::MAX);
-        if !table.parts().object_polygons.is_empty() && table.polygons_of(object) != n {
+        if !table.parts().object_polygons.is_empty() && table.polygons_of(ObjectId(object)) != n {
             findings.add(Violation::ObjectBox { object });
         }
     }
@@ -84,7 +84,7 @@ fn lists_of(table: &Table, cell: CellId, touches: impl Fn(usize, &ObjectRecord) 
     let listed = table.objects_of(cell);
     for (k, o) in table.objects().iter().enumerate() {
         let object = k as u32;
-        match (touches(k, o), listed.binary_search(&object).is_ok()) {
+        match (touches(k, o), listed.binary_search(&ObjectId(object)).is_ok()) {
             (true, false) => findings.add(Violation::UnlistedObject { cell, object }),
             (false, true) => findings.remarks.listed_apart += 1,
             _ => {}

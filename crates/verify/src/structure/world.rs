@@ -5,7 +5,7 @@ use crate::findings::{Findings, Violation};
 use crate::truth::WorldTree;
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::Table;
+use sightlines_pvs::{ObjectId, Table};
 
 /// Compares cells and portals with those of a portal file.
 pub(super) fn portals(table: &Table, graph: &CellGraph<Convex>, findings: &mut Findings) {
@@ -38,7 +38,7 @@ pub(super) fn faces(table: &Table, world: &WorldTree, findings: &mut Findings) {
     }
     for (cell, listed) in (0u32..).map(CellId).zip(&world.listed) {
         let of_cell = table.objects_of(cell);
-        for &object in listed.iter().filter(|face| of_cell.binary_search(face).is_err()) {
+        for &object in listed.iter().filter(|face| of_cell.binary_search(&ObjectId(**face)).is_err()) {
             findings.add(Violation::UnlistedObject { cell, object });
         }
     }

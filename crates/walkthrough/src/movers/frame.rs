@@ -90,7 +90,7 @@ impl<P: CellLocator> Movers<P> {
         if lists.occupied().len() <= seen.cells().len() {
             lists.occupied().iter().filter(|&&cell| seen.has_cell(CellId(cell))).for_each(|&cell| look(cell));
         } else {
-            seen.cells().iter().for_each(|&cell| look(cell));
+            seen.cells().iter().for_each(|&cell| look(cell.0));
         }
     }
 

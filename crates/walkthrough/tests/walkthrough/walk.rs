@@ -3,7 +3,8 @@
 use sightlines_eye_to_cell::{CellSource, Method, MirrorPiece, PortalEdge, StabStep, TableCells, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, MirrorRecord, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord, PortalId, PortalRecord,
+    Table, TableKind, TableParts,
 };
 use sightlines_walkthrough::{Answer, Prefetcher, Prepare, WalkOptions, Walkthrough};
 use std::collections::BTreeSet;
@@ -35,7 +36,7 @@ fn rooms(n: u32) -> Arc<Table> {
         rows,
         portals: (0..n - 1).map(door).collect(),
         objects: cells.iter().map(object).collect(),
-        cell_objects: (0..n).map(|i| vec![i]).collect(),
+        cell_objects: (0..n).map(|i| vec![ObjectId(i)]).collect(),
         locator: Locator::build(&bounds, 2),
         cells,
         ..TableParts::empty(2, TableKind::Unspecified)
@@ -97,13 +98,13 @@ impl CellSource for Slow {
     fn portal_edges(&self, cell: CellId, show: &mut dyn FnMut(PortalEdge<'_>)) -> Result<(), String> {
         self.table.portal_edges(cell, show).map_err(|e| match e {})
     }
-    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), String> {
+    fn objects_of(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), String> {
         self.table.objects_of(cell, out).map_err(|e| match e {})
     }
-    fn objects_seen(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), String> {
+    fn objects_seen(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), String> {
         self.table.objects_seen(cell, out).map_err(|e| match e {})
     }
-    fn object_box(&self, object: u32) -> Result<Aabb<3>, String> {
+    fn object_box(&self, object: ObjectId) -> Result<Aabb<3>, String> {
         self.table.object_box(object).map_err(|e| match e {})
     }
     fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), String> {
@@ -133,7 +134,10 @@ fn until_full(walk: &mut Walk, view: &View, method: Method) -> (BTreeSet<u32>, B
     loop {
         let frame = walk.frame(view, method);
         if frame.answer == Answer::Full {
-            return (frame.seen.cells().iter().copied().collect(), frame.seen.objects().iter().copied().collect());
+            return (
+                frame.seen.cells().iter().map(|c| c.0).collect(),
+                frame.seen.objects().iter().map(|o| o.0).collect(),
+            );
         }
         std::thread::yield_now();
     }
@@ -155,7 +159,7 @@ fn frames_do_not_wait_for_a_source_that_never_comes() {
         let frame = walk.frame(&view, Method::Exact);
         assert_eq!(frame.answer, Answer::Late);
         assert!(cells.iter().all(|&c| frame.seen.has_cell(CellId(c))), "late, and less");
-        assert!(objects.iter().all(|&o| frame.seen.has_object(o)));
+        assert!(objects.iter().all(|&o| frame.seen.has_object(ObjectId(o))));
         n += 1;
     }
     assert_eq!((n, walk.counters().late), (1000, 1000));
@@ -201,10 +205,10 @@ fn frames_are_repeated_and_doors_are_heard() {
     walk.frame(&view, Method::Exact);
     assert_eq!(walk.counters().repeated, before + 1);
     // The door between rooms 1 and 2.
-    assert!(walk.close(1) && !walk.close(1));
+    assert!(walk.close(PortalId(1)) && !walk.close(PortalId(1)));
     assert_eq!(until_full(&mut walk, &view, Method::Exact).0, BTreeSet::from([0, 1]));
     assert_eq!(until_full(&mut walk, &view, Method::CellToCell).0, open, "the table knows no doors");
-    assert!(walk.open(1));
+    assert!(walk.open(PortalId(1)));
     assert_eq!(until_full(&mut walk, &view, Method::Exact).0, open);
 }
 
@@ -309,7 +313,7 @@ fn hall_of_mirrors() -> Arc<Table> {
     let mut parts = Arc::unwrap_or_clone(rooms(2)).into_parts();
     let mirror = |cell: u32, face: u32, left: [f64; 2], right: [f64; 2]| MirrorRecord {
         cell: CellId(cell),
-        face,
+        mirror: MirrorId(face),
         points: vec![[left[0], left[1], 0.0], [right[0], right[1], 0.0]],
     };
     // Left end first, as who stands in the room sees them.
@@ -329,7 +333,7 @@ fn mirrors_in_mirrors_come_in_time() {
     until_full(&mut walk, &view, Method::Exact);
     let frame = walk.frame(&view, Method::Exact);
     let words: Vec<_> = frame.images.iter().map(|image| (image.mirrors.clone(), image.complete)).collect();
-    assert_eq!(words, [(vec![7], true), (vec![7, 8], true)]);
+    assert_eq!(words, [(vec![MirrorId(7)], true), (vec![MirrorId(7), MirrorId(8)], true)]);
     assert_eq!(frame.images[0].cells, [CellId(0), CellId(1)]);
 }
 

@@ -65,7 +65,7 @@ fn subgraph(
 
 /// What was seen, mirrors left out.
 pub(crate) fn answer(seen: &VisibleSet) -> Answer {
-    Answer { cells: seen.cells().iter().copied().collect(), objects: seen.objects().iter().copied().collect() }
+    Answer { cells: seen.cells().iter().map(|c| c.0).collect(), objects: seen.objects().iter().map(|o| o.0).collect() }
 }
 
 /// What is wrong with the nesting of the answers, if anything is.
@@ -93,11 +93,18 @@ pub(crate) type Shown = BTreeMap<Vec<u32>, BTreeSet<u32>>;
 /// The first mirrors and cell that rays reach and the images do not show. Where the images of a row of mirrors are not
 /// complete, anything may be seen in it and in all rows that begin with it.
 pub(crate) fn missed_in_mirrors(images: &[Image], reached: &Shown) -> Option<String> {
-    let image = |mirrors: &[u32]| images.iter().find(|image| image.mirrors == mirrors);
+    let image = |mirrors: &[u32]| {
+        images.iter().find(|image| image.mirrors.iter().map(|mirror| mirror.0).eq(mirrors.iter().copied()))
+    };
     reached.iter().filter(|(mirrors, _)| !mirrors.is_empty()).find_map(|(mirrors, cells)| {
         let open = (1..=mirrors.len()).any(|n| image(&mirrors[..n]).is_some_and(|image| !image.complete));
         let shown = |cell: &u32| image(mirrors).is_some_and(|image| image.cells.contains(&CellId(*cell)));
         let missed = cells.iter().find(|cell| !open && !shown(cell));
         missed.map(|cell| format!("mirrors {mirrors:?} do not show cell {cell}"))
     })
+}
+
+/// The numbers of the mirrors of an image, in the order in which a line from the eye meets them.
+pub(crate) fn word_of(image: &Image) -> Vec<u32> {
+    image.mirrors.iter().map(|mirror| mirror.0).collect()
 }

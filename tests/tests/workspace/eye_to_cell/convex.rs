@@ -6,7 +6,9 @@ use crate::eye_to_cell::plans::reachable;
 use sightlines::bake::{StabOptions, from_table, with_stab_trees};
 use sightlines::eye_to_cell::{Doors, View};
 use sightlines::geometry::Point3;
-use sightlines::pvs::{CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts};
+use sightlines::pvs::{
+    CellId, CellRecord, Locator, ObjectId, ObjectRecord, PortalId, PortalRecord, Table, TableKind, TableParts,
+};
 use sightlines::scenes::world::{
     BspWorldOptions, QuakeLikeOptions, World, WorldLeaf, bsp_world, quake_like, world_families,
 };
@@ -35,7 +37,7 @@ fn table(world: &World) -> Table {
         portals: world.graph.portals().iter().map(portal).collect(),
         rows: search.finish().cells,
         objects: cells.iter().map(object).collect(),
-        cell_objects: (0..cells.len() as u32).map(|id| vec![id]).collect(),
+        cell_objects: (0..cells.len() as u32).map(|id| vec![ObjectId(id)]).collect(),
         locator: Locator::build(&bounds, 3),
         cells,
         // As tables of portal files, so that stab trees know what they are.
@@ -148,10 +150,13 @@ fn check(world: &World, n_eyes: usize, counts: &mut Counts) -> Result<(), String
         let roots = stage.locate(eye);
         let mut doors = Doors::all_open();
         if kind % 4 == 3 {
-            (0..4).for_each(|_| _ = doors.close(random.below(table.portals().len()) as u32));
+            (0..4).for_each(|_| _ = doors.close(PortalId(random.below(table.portals().len()) as u32)));
         }
-        let closed: Vec<&PortalRecord> =
-            (0..).zip(table.portals()).filter(|(id, _)| !doors.is_open(*id)).map(|(_, portal)| portal).collect();
+        let closed: Vec<&PortalRecord> = (0..)
+            .zip(table.portals())
+            .filter(|(id, _)| !doors.is_open(PortalId(*id)))
+            .map(|(_, portal)| portal)
+            .collect();
         let towards = |random: &mut Random| {
             let portal = &table.portals()[random.below(table.portals().len())];
             let aim = match random.below(3) {

@@ -1,12 +1,12 @@
 //! Mirrors in plans, against a ray that is reflected.
 
-use crate::eye_to_cell::ask::{Asker, Shown, missed_in_mirrors};
+use crate::eye_to_cell::ask::{Asker, Shown, missed_in_mirrors, word_of};
 use crate::eye_to_cell::plan_families::{N_PLACES, eye, families, gaze, tables};
 use crate::eye_to_cell::plans::some_doors;
 use sightlines::cells::Plan;
 use sightlines::eye_to_cell::{Doors, Method, View};
 use sightlines::geometry::{Point2, orient2d};
-use sightlines::pvs::{CellId, MirrorRecord, Table};
+use sightlines::pvs::{CellId, MirrorId, MirrorRecord, Table};
 use sightlines_testkit::Random;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -73,7 +73,7 @@ impl Hall {
             mirrors.push(Mirror { face, ends });
             // The cell is on the left of the side, so who looks out of it has its end at the left hand.
             let points = [ends[1], ends[0]].map(|p| [p.x, p.y, 0.0]).to_vec();
-            records.push(MirrorRecord { cell: CellId(cell), face, points });
+            records.push(MirrorRecord { cell: CellId(cell), mirror: MirrorId(face), points });
         }
         let mut parts = table.clone().into_parts();
         parts.mirrors = records;
@@ -213,11 +213,12 @@ fn check(name: &str, hall: &Hall, plan: &Plan, places: std::ops::Range<usize>, s
                 counts.n_incomplete += images.iter().filter(|image| !image.complete).count();
             }
             if fov == TAU && is_off_grid && images[4].iter().all(|image| image.complete) {
-                let words: Vec<&[u32]> = images[4].iter().map(|image| &image.mirrors[..]).collect();
+                let words: Vec<Vec<u32>> = images[4].iter().map(word_of).collect();
+                let words: Vec<&[u32]> = words.iter().map(Vec::as_slice).collect();
                 let reached = hall.all_reached(&closed, eye, &words);
                 assert_eq!(missed_in_mirrors(&images[4], &reached), None, "{name}: eye {eye:?}, {:?}", hall.mirrors);
                 for image in &images[4] {
-                    let by_rays = reached.get(&image.mirrors).cloned().unwrap_or_default();
+                    let by_rays = reached.get(&word_of(image)).cloned().unwrap_or_default();
                     let shown: BTreeSet<u32> = image.cells.iter().map(|c| c.0).collect();
                     counts.n_exact += shown.len();
                     counts.n_confirmed += shown.intersection(&by_rays).count();
@@ -270,16 +271,17 @@ fn wrong_images_are_noticed() {
     let roots = hall.table.in_dimension().unwrap().at([eye.x, eye.y]).cells().to_vec();
     let view = View::all_round([eye.x, eye.y, 0.0]).expect("a finite eye");
     let images = Asker::new(&hall.table).images(&roots, &view, &Doors::all_open(), Method::Exact);
-    let words: Vec<&[u32]> = images.iter().map(|image| &image.mirrors[..]).collect();
+    let words: Vec<Vec<u32>> = images.iter().map(word_of).collect();
+    let words: Vec<&[u32]> = words.iter().map(Vec::as_slice).collect();
     let reached = hall.all_reached(&[], eye, &words);
     assert_eq!(missed_in_mirrors(&images, &reached), None);
     let mut n = 0;
     for (word, cells) in reached.iter().filter(|(word, cells)| !word.is_empty() && !cells.is_empty()) {
-        let without: Vec<_> = images.iter().filter(|image| image.mirrors != *word).cloned().collect();
+        let without: Vec<_> = images.iter().filter(|image| word_of(image) != *word).cloned().collect();
         assert!(missed_in_mirrors(&without, &reached).is_some());
         for &cell in cells {
             let mut less = images.clone();
-            less.iter_mut().filter(|i| i.mirrors == *word).for_each(|i| i.cells.retain(|c| c.0 != cell));
+            less.iter_mut().filter(|i| word_of(i) == *word).for_each(|i| i.cells.retain(|c| c.0 != cell));
             assert!(missed_in_mirrors(&less, &reached).is_some());
             n += 1;
         }

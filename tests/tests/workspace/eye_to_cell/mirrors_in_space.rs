@@ -1,12 +1,12 @@
 //! Mirrors on boxes and on the walls of a room, against a ray that is reflected.
 
-use crate::eye_to_cell::ask::{Asker, Shown, missed_in_mirrors};
+use crate::eye_to_cell::ask::{Asker, Shown, missed_in_mirrors, word_of};
 use crate::eye_to_cell::boxes::{Room, SIDE, place};
 use crate::eye_to_cell::picture::{Picture, along, box_around, minus};
 use crate::eye_to_cell::plans::some_doors;
 use sightlines::eye_to_cell::{Doors, Method, View};
 use sightlines::geometry::{Aabb, Point3};
-use sightlines::pvs::{CellId, MirrorRecord, Table};
+use sightlines::pvs::{CellId, MirrorId, MirrorRecord, Table};
 use sightlines_testkit::Random;
 use sightlines_testkit::{directions_among_boxes, first_box, range_in_box};
 
@@ -56,7 +56,11 @@ fn with_mirrors(room: &Room, table: &Table, n: usize, random: &mut Random) -> (T
     let (mut mirrors, mut records) = (Vec::new(), Vec::new());
     for face in 0..n as u32 {
         let (cell, rectangle, axis, upwards) = sides.swap_remove(random.below(sides.len()));
-        records.push(MirrorRecord { cell: CellId(cell), face, points: corners(&rectangle, axis, upwards) });
+        records.push(MirrorRecord {
+            cell: CellId(cell),
+            mirror: MirrorId(face),
+            points: corners(&rectangle, axis, upwards),
+        });
         mirrors.push(Mirror { face, rectangle, axis, upwards });
     }
     let mut parts = table.clone().into_parts();
@@ -180,17 +184,17 @@ fn check(room: &Room, seed: u64, counts: &mut Counts) {
                     counts.n_incomplete += images.iter().filter(|image| !image.complete).count();
                     if whole && method == Method::Exact {
                         for image in &images {
-                            let by_rays = reached.get(&image.mirrors);
+                            let by_rays = reached.get(&word_of(image));
                             let confirmed = |cell: &&CellId| by_rays.is_some_and(|cells| cells.contains(&cell.0));
                             counts.n_exact += image.cells.len();
                             counts.n_confirmed += image.cells.iter().filter(confirmed).count();
                             if n_on_grid == 0 && image.mirrors.len() < 3 && table.stab().is_none() {
                                 let mut known = Shown::new();
-                                for d in directions(&hindrances, &cells, &mirrors, eye, &image.mirrors) {
+                                for d in directions(&hindrances, &cells, &mirrors, eye, &word_of(image)) {
                                     trace(&hindrances, &cells, &mirrors, eye, d, &mut known);
                                 }
                                 let known: Vec<CellId> =
-                                    known.remove(&image.mirrors).into_iter().flatten().map(CellId).collect();
+                                    known.remove(&word_of(image)).into_iter().flatten().map(CellId).collect();
                                 let surplus = image.cells.iter().filter(|cell| !known.contains(cell)).count();
                                 assert_eq!(image.cells.len() - surplus, known.len(), "{:?}: {}", image.mirrors, what());
                                 counts.n_known += known.len();

@@ -8,7 +8,7 @@ use sightlines::eye_to_cell::{
     CellSource, Doors, Method, MirrorPiece, PortalEdge, Scratch, StabStep, View, ViewError, VisibleSet, VisibleSubgraph,
 };
 use sightlines::geometry::Aabb;
-use sightlines::pvs::CellId;
+use sightlines::pvs::{CellId, MirrorId, ObjectId, PortalId};
 
 /// What hand-made sources and viewers are made of.
 const NUMBERS: [f64; 14] = [
@@ -98,31 +98,31 @@ impl CellSource for Garbage {
         for (portal, (a, b, corners)) in (0..).zip(&self.portals) {
             if [*a, *b].contains(&cell.0) {
                 let to = CellId(if *a == cell.0 { *b } else { *a });
-                show(PortalEdge { portal, forward: *a == cell.0, to, corners });
+                show(PortalEdge { portal: PortalId(portal), forward: *a == cell.0, to, corners });
             }
         }
         Ok(())
     }
 
-    fn objects_of(&self, cell: CellId, out: &mut Vec<u32>) -> Result<(), Self::Error> {
+    fn objects_of(&self, cell: CellId, out: &mut Vec<ObjectId>) -> Result<(), Self::Error> {
         out.clear();
-        out.extend((0..).zip(&self.objects).filter(|(_, (at, _))| *at == cell.0).map(|(id, _)| id));
+        out.extend((0..).zip(&self.objects).filter(|(_, (at, _))| *at == cell.0).map(|(id, _)| ObjectId(id)));
         Ok(())
     }
 
-    fn objects_seen(&self, _: CellId, out: &mut Vec<u32>) -> Result<(), Self::Error> {
+    fn objects_seen(&self, _: CellId, out: &mut Vec<ObjectId>) -> Result<(), Self::Error> {
         out.clear();
-        out.extend(0..self.objects.len() as u32);
+        out.extend((0..self.objects.len() as u32).map(ObjectId));
         Ok(())
     }
 
-    fn object_box(&self, object: u32) -> Result<Aabb<3>, Self::Error> {
-        Ok(aabb(self.objects[object as usize].1))
+    fn object_box(&self, object: ObjectId) -> Result<Aabb<3>, Self::Error> {
+        Ok(aabb(self.objects[object.idx()].1))
     }
 
     fn mirrors(&self, cell: CellId, show: &mut dyn FnMut(MirrorPiece<'_>)) -> Result<(), Self::Error> {
         for (_, face, corners) in self.mirrors.iter().filter(|(at, ..)| *at == cell.0) {
-            show(MirrorPiece { face: *face, corners });
+            show(MirrorPiece { mirror: MirrorId(*face), corners });
         }
         Ok(())
     }
@@ -133,7 +133,7 @@ impl CellSource for Garbage {
 
     fn stab_node(&self, _: u32, children: &mut Vec<u32>) -> Result<StabStep, Self::Error> {
         children.clear();
-        Ok(StabStep { portal: 0, open: true })
+        Ok(StabStep { portal: PortalId(0), open: true })
     }
 }
 
@@ -168,7 +168,7 @@ proptest! {
                 seen.clear(source.n_cells(), source.n_objects());
                 method.look(&subgraph, &view, &doors, &mut scratch, &mut seen);
                 prop_assert!(seen.has_cell(root), "{method}");
-                prop_assert!(seen.cells().iter().all(|cell| subgraph.cells().contains(&CellId(*cell))), "{method}");
+                prop_assert!(seen.cells().iter().all(|cell| subgraph.cells().contains(cell)), "{method}");
             }
             pending.extend(seen.reflections().iter().map(|r| (r.cell, r.view.clone())));
         }
@@ -215,7 +215,10 @@ fn eyes_that_are_elsewhere_get_an_answer() {
         }
     }
     let mut doors = Doors::all_open();
-    assert!(doors.close(1 << 20) && !doors.is_open(1 << 20), "a portal that the table does not have");
+    assert!(
+        doors.close(PortalId(1 << 20)) && !doors.is_open(PortalId(1 << 20)),
+        "a portal that the table does not have"
+    );
     let view = View::all_round([1.5, 1.5, 0.0]).expect("a finite eye");
     let open = asker.all(&[CellId(0)], &view, &Doors::all_open());
     assert_eq!(asker.all(&[CellId(0)], &view, &doors), open);

@@ -7,7 +7,7 @@ use sightlines::bake::Subdivide;
 use sightlines::cells::{CellId, Plan};
 use sightlines::eye_to_cell::{Doors, View};
 use sightlines::geometry::Point2;
-use sightlines::pvs::Table;
+use sightlines::pvs::{PortalId, Table};
 use sightlines_testkit::Random;
 use sightlines_testkit::{EyeFan, axial_plan, draw, eye_fan, small_grid_plan};
 use std::collections::BTreeSet;
@@ -111,7 +111,7 @@ pub(crate) fn some_doors(table: &Table, random: &mut Random) -> (Doors, Vec<u32>
         _ => {}
     }
     let mut doors = Doors::all_open();
-    closed.iter().for_each(|&portal| assert!(doors.close(portal)));
+    closed.iter().for_each(|&portal| assert!(doors.close(PortalId(portal))));
     (doors, closed)
 }
 
@@ -256,7 +256,7 @@ pub(crate) fn reachable(table: &Table, roots: &[CellId], doors: &Doors) -> BTree
     let mut reached: BTreeSet<u32> = roots.iter().map(|c| c.0).collect();
     loop {
         let before = reached.len();
-        for (_, portal) in (0..).zip(table.portals()).filter(|(id, _)| doors.is_open(*id)) {
+        for (_, portal) in (0..).zip(table.portals()).filter(|(id, _)| doors.is_open(PortalId(*id))) {
             let [a, b] = portal.cells.map(|c| c.0);
             if reached.contains(&a) || reached.contains(&b) {
                 reached.extend([a, b]);

@@ -10,7 +10,7 @@ use sightlines::geometry::vector::{length, scale};
 use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::SheetMethod;
 use sightlines::multifocal::{FromRegion, RaySampler, Split};
-use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Table, TableKind, TableParts};
+use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, Table, TableKind, TableParts};
 use sightlines::scenes::{TowerOptions, tower};
 
 fn table_of(scene: &Scene, cells: ViewCells) -> Table {
@@ -37,7 +37,7 @@ fn ask(table: &Table, method: Method, cell: CellId, view: &View) -> (Vec<u32>, u
     let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
     seen.clear(table.n_cells(), table.objects().len());
     method.look(&subgraph, view, &Doors::all_open(), &mut scratch, &mut seen);
-    let mut objects = seen.objects().to_vec();
+    let mut objects: Vec<u32> = seen.objects().iter().map(|o| o.0).collect();
     objects.sort_unstable();
     (objects, seen.cells().len())
 }
@@ -102,7 +102,7 @@ fn objects_in_gaps_are_seen() {
     }
     // A wall in front of the eye, which touches only the box that is aside of the view.
     parts.objects = vec![ObjectRecord { name: "wall".to_owned(), min: [4.0, 0.0, -8.0], max: [4.5, 1.0, 6.5] }];
-    parts.cell_objects = vec![vec![], vec![0], vec![]];
+    parts.cell_objects = vec![vec![], vec![ObjectId(0)], vec![]];
     parts.object_polygons = vec![];
     parts.locator = Locator::build(&parts.cell_bounds(), 3);
     let table = Table::new(parts).expect("a table");

@@ -10,7 +10,7 @@ use sightlines::formats::view_cells::ViewCell;
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::{FromRegion, Split};
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::city::{CityOptions, city, city_crossings};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines_testkit::RayScene;
@@ -53,7 +53,7 @@ type Pairs = Vec<(u32, u32)>;
 /// Pairs of a cell and an object, and of cells, that the table calls visible.
 fn visible(table: &Table) -> (Pairs, Pairs) {
     let ids = 0..table.n_cells() as u32;
-    let objects = ids.clone().flat_map(|c| table.visible_objects(CellId(c)).into_iter().map(move |o| (c, o)));
+    let objects = ids.clone().flat_map(|c| table.visible_objects(CellId(c)).into_iter().map(move |o| (c, o.0)));
     let cells =
         ids.clone().flat_map(|a| ids.clone().map(move |b| (a, b))).filter(|&(a, b)| table.sees(CellId(a), CellId(b)));
     (objects.collect(), cells.collect())
@@ -67,7 +67,7 @@ fn check(scene: &Scene, table: &Table, what: &str) -> usize {
     for (id, cell) in (0..).zip(&cells) {
         let listed = table.visible_objects(CellId(id));
         for object in rays.witness_objects(*cell, 7, 2000) {
-            assert!(listed.binary_search(&object).is_ok(), "{what}: cell {id} sees object {object}");
+            assert!(listed.binary_search(&ObjectId(object)).is_ok(), "{what}: cell {id} sees object {object}");
             n += 1;
         }
     }
@@ -144,7 +144,11 @@ fn real_cells_show_what_was_seen() {
             let listed = baked.table.visible_objects(CellId(id));
             let eye = Aabb { min: witness.min, max: witness.max };
             for object in rays.witness_objects(eye, u64::from(id), 1000).iter().chain(&witness.objects) {
-                assert!(listed.binary_search(object).is_ok(), "{name}: {} sees object {object}", witness.id);
+                assert!(
+                    listed.binary_search(&ObjectId(*object)).is_ok(),
+                    "{name}: {} sees object {object}",
+                    witness.id
+                );
             }
             n_seen += witness.objects.len();
             n_hidden += scene.objects().len() - listed.len();

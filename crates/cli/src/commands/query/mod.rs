@@ -11,7 +11,7 @@ use crate::view::lifted;
 use error::Error;
 use serde::Serialize;
 use sight::SightArgs;
-use sightlines::pvs::{CellId, PlaceBuffer};
+use sightlines::pvs::{CellId, ObjectId, PlaceBuffer};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::PathBuf;
@@ -77,8 +77,8 @@ fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found, C::Err
 }
 
 /// Objects with their names.
-fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = u32>) -> Result<Vec<Object>, C::Error> {
-    objects.into_iter().map(|id| Ok(Object { id, name: cells.object_name(id)? })).collect()
+fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = ObjectId>) -> Result<Vec<Object>, C::Error> {
+    objects.into_iter().map(|id| Ok(Object { id: id.0, name: cells.object_name(id)? })).collect()
 }
 
 /// Where the viewer is.

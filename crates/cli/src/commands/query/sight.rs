@@ -8,7 +8,7 @@ use crate::tables::Cells;
 use crate::view::{LensArgs, Methods, lifted};
 use serde::Serialize;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections};
-use sightlines::pvs::CellId;
+use sightlines::pvs::{CellId, ObjectId, PortalId};
 use sightlines::walkthrough::CameraPose;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -65,7 +65,7 @@ impl SightArgs {
             if portal as usize >= n_portals {
                 return Err(Error::NoSuchPortal { path: path.to_owned(), portal, n_portals });
             }
-            doors.close(portal);
+            doors.close(PortalId(portal));
         }
         Ok(doors)
     }
@@ -134,7 +134,7 @@ impl<C: Cells> Viewer<'_, C> {
         times.sort_unstable();
         if roots.is_empty() {
             seen.add_cells((0..n_cells as u32).map(CellId));
-            seen.add_objects(0..n_objects as u32);
+            seen.add_objects((0..n_objects as u32).map(ObjectId));
         }
         seen.sort();
         let mut failed = None;
@@ -145,14 +145,14 @@ impl<C: Cells> Viewer<'_, C> {
             return Err(error);
         }
         let images = images.into_iter().map(|image| ImageSeen {
-            mirrors: image.mirrors,
+            mirrors: image.mirrors.iter().map(|mirror| mirror.0).collect(),
             cells: image.cells.iter().map(|cell| cell.0).collect(),
-            objects: image.objects,
+            objects: image.objects.iter().map(|object| object.0).collect(),
             complete: image.complete,
         });
         Ok(Answered {
             method: method.name(),
-            visible: seen.cells().to_vec(),
+            visible: seen.cells().iter().map(|cell| cell.0).collect(),
             objects: named(self.cells, seen.objects().iter().copied())?,
             images: images.collect(),
             microseconds: times[RUNS / 2].as_secs_f64() * 1e6,

@@ -4,7 +4,7 @@ use super::error::{Error, Unlike};
 use crate::tables::{self, Cells, Opened};
 use sightlines::cells::Scene;
 use sightlines::geometry::{Aabb, Point3};
-use sightlines::pvs::{Place, PlaceBuffer};
+use sightlines::pvs::{ObjectId, Place, PlaceBuffer};
 use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
 use sightlines::visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull};
 use std::path::Path;
@@ -94,7 +94,7 @@ fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point
     let mut objects = Vec::new();
     for &cell in at {
         cells.objects_seen(cell, &mut objects).map_err(fail)?;
-        objects.iter().for_each(|&object| seen[object as usize] = true);
+        objects.iter().for_each(|&object| seen[object.idx()] = true);
     }
     Ok(Some(seen))
 }
@@ -109,12 +109,12 @@ fn unlike<C: Cells>(cells: &C, scene: &Scene) -> Result<Option<Unlike>, C::Error
         return Ok(Some(Unlike::Count { table: n, scene: scene.objects().len() }));
     }
     for (id, object) in (0..).zip(scene.objects()) {
-        let name = cells.object_name(id)?;
+        let name = cells.object_name(ObjectId(id))?;
         if name != object.name {
             return Ok(Some(Unlike::Name { object: id, table: name, scene: object.name.clone() }));
         }
         let bounds = Aabb::around(object.corners().flatten());
-        let known = cells.object_box(id)?;
+        let known = cells.object_box(ObjectId(id))?;
         if (0..3).any(|k| bounds.min[k] < known.min[k] || bounds.max[k] > known.max[k]) {
             return Ok(Some(Unlike::Box { object: id, name }));
         }

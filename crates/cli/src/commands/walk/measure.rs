@@ -4,6 +4,7 @@ use super::Error;
 use super::nesting::Sets;
 use crate::tables::Cells;
 use sightlines::eye_to_cell::{Method, View};
+use sightlines::pvs::ObjectId;
 use sightlines::walkthrough::{Answer, WalkOptions, Walkthrough};
 use std::path::Path;
 use std::thread;
@@ -159,7 +160,8 @@ impl<C: Cells> Walk<'_, C> {
             if frame.answer == Answer::Late && left > 0 {
                 continue;
             }
-            let polygons = |objects: &[u32]| objects.iter().map(|&o| u64::from(self.polygons[o as usize])).sum::<u64>();
+            let polygons =
+                |objects: &[ObjectId]| objects.iter().map(|o| u64::from(self.polygons[o.idx()])).sum::<u64>();
             let shot = Shot {
                 answer: frame.answer,
                 cells: frame.seen.cells().len() as u64,

@@ -115,7 +115,10 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
         methods => methods.list(),
     };
     let n_objects = CellSource::n_objects(cells) as u32;
-    let polygons = (0..n_objects).map(|o| cells.polygons_of(o)).collect::<Result<Vec<_>, _>>().map_err(fail)?;
+    let polygons = (0..n_objects)
+        .map(|o| cells.polygons_of(sightlines::pvs::ObjectId(o)))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(fail)?;
     let options = WalkOptions { budget: args.budget, bounces: args.bounces, ..WalkOptions::default() };
     let bar = Bar::new("frames", show_progress);
     let walk = Walk { cells, file, views: &views, polygons: &polygons, options, fps: args.fps };

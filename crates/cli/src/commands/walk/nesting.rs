@@ -44,8 +44,8 @@ struct Set {
     objects: Vec<u32>,
 }
 
-fn sorted(list: &[u32]) -> Vec<u32> {
-    let mut list = list.to_vec();
+fn sorted(list: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut list: Vec<u32> = list.collect();
     list.sort_unstable();
     list
 }
@@ -57,11 +57,15 @@ fn first_missing(inner: &[u32], outer: &[u32]) -> Option<u32> {
 impl Sets {
     /// Of a frame.
     pub(super) fn of(frame: &Frame<'_>) -> Self {
-        let direct = Set { mirrors: vec![], cells: sorted(frame.seen.cells()), objects: sorted(frame.seen.objects()) };
+        let direct = Set {
+            mirrors: vec![],
+            cells: sorted(frame.seen.cells().iter().map(|c| c.0)),
+            objects: sorted(frame.seen.objects().iter().map(|o| o.0)),
+        };
         let image = |image: &sightlines::eye_to_cell::Image| Set {
-            mirrors: image.mirrors.clone(),
+            mirrors: image.mirrors.iter().map(|mirror| mirror.0).collect(),
             cells: image.cells.iter().map(|cell| cell.0).collect(),
-            objects: image.objects.clone(),
+            objects: image.objects.iter().map(|object| object.0).collect(),
         };
         Self(std::iter::once(direct).chain(frame.images.iter().map(image)).collect())
     }

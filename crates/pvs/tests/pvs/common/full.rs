@@ -3,8 +3,8 @@
 use super::{any_parts, rooms};
 use proptest::prelude::*;
 use sightlines_pvs::{
-    Axis, BitMatrix, CellId, CellRecord, Locator, MirrorRecord, PlaneChild, PlaneNode, PlaneTree, PortalRecord,
-    SceneMethods, StabParts, StabTrees, TableKind, TableParts,
+    Axis, BitMatrix, CellId, CellRecord, Locator, MirrorId, MirrorRecord, PlaneChild, PlaneNode, PlaneTree, PortalId,
+    PortalRecord, SceneMethods, StabParts, StabTrees, TableKind, TableParts,
 };
 
 /// The rooms with a mirror at the western wall, numbers of polygons, and their stab trees by hand: the door
@@ -13,13 +13,13 @@ pub(crate) fn villa() -> TableParts {
     let parts = rooms();
     let mut stab = StabParts::default();
     // Eastwards: the last door, the middle one before it, and so on; westwards likewise.
-    let last = stab.push_node(2, true, &[], false);
-    let middle = stab.push_node(1, true, &[last], false);
-    let end = stab.push_node(1, true, &[], false);
-    let first = stab.push_node(0, true, &[end], false);
-    let back = [stab.push_node(0, false, &[], false), stab.push_node(1, false, &[], true)];
-    let home = stab.push_node(1, false, &[back[0]], false);
-    let from_last = stab.push_node(2, false, &[back[1]], false);
+    let last = stab.push_node(PortalId(2), true, &[], false);
+    let middle = stab.push_node(PortalId(1), true, &[last], false);
+    let end = stab.push_node(PortalId(1), true, &[], false);
+    let first = stab.push_node(PortalId(0), true, &[end], false);
+    let back = [stab.push_node(PortalId(0), false, &[], false), stab.push_node(PortalId(1), false, &[], true)];
+    let home = stab.push_node(PortalId(1), false, &[back[0]], false);
+    let from_last = stab.push_node(PortalId(2), false, &[back[1]], false);
     for (roots, open) in
         [(&[first][..], false), (&[back[0], middle], false), (&[last, home], false), (&[from_last], false), (&[], true)]
     {
@@ -27,8 +27,12 @@ pub(crate) fn villa() -> TableParts {
     }
     TableParts {
         mirrors: vec![
-            MirrorRecord { cell: CellId(0), face: 7, points: vec![[0.0, 1.0, 0.0], [0.0, 3.0, 0.0]] },
-            MirrorRecord { cell: CellId(3), face: u32::MAX, points: vec![[14.0, 4.0, 0.0], [15.0, 4.0, 0.0]] },
+            MirrorRecord { cell: CellId(0), mirror: MirrorId(7), points: vec![[0.0, 1.0, 0.0], [0.0, 3.0, 0.0]] },
+            MirrorRecord {
+                cell: CellId(3),
+                mirror: MirrorId(u32::MAX),
+                points: vec![[14.0, 4.0, 0.0], [15.0, 4.0, 0.0]],
+            },
         ],
         object_polygons: vec![12, 0],
         stab: Some(StabTrees::new(stab, &parts.portals, parts.cells.len()).expect("trees of the rooms")),
@@ -78,14 +82,14 @@ pub(crate) fn wedges() -> TableParts {
         },
     ];
     let mut stab = StabParts::default();
-    let across = [stab.push_node(0, true, &[], true), stab.push_node(0, false, &[], true)];
+    let across = [stab.push_node(PortalId(0), true, &[], true), stab.push_node(PortalId(0), false, &[], true)];
     across.iter().for_each(|&root| stab.push_cell(&[root], false));
     TableParts {
         rows,
         cell_objects: vec![vec![], vec![]],
         mirrors: vec![MirrorRecord {
             cell: CellId(1),
-            face: 0,
+            mirror: MirrorId(0),
             points: vec![[0.0, 1.0, 0.0], [0.0, 3.0, 0.0], [1.0, 3.0, 0.0]],
         }],
         locator: Locator::build(&[(cell.min, cell.max), (cell.min, cell.max)], 3),
@@ -117,7 +121,7 @@ pub(crate) fn stab_parts(portals: &[PortalRecord], n_cells: usize, nodes: &[Choi
     for &(gate, mask, open) in nodes.iter().filter(|_| !portals.is_empty()) {
         let gate = gate % (2 * portals.len() as u32);
         let [from, into] = ends(portals, gate);
-        let node = parts.push_node(gate / 2, gate.is_multiple_of(2), &some(&leaving[into.idx()], mask), open);
+        let node = parts.push_node(PortalId(gate / 2), gate.is_multiple_of(2), &some(&leaving[into.idx()], mask), open);
         leaving[from.idx()].push(node);
     }
     for (cell, &(_, mask, open)) in roots.iter().cycle().take(n_cells).enumerate() {
@@ -177,7 +181,7 @@ pub(crate) fn any_full_parts() -> impl Strategy<Value = TableParts> {
             let record = |(cell, face, [x, y, z]): (u32, u32, [i8; 3])| {
                 let at = |x: i8| [f64::from(x), f64::from(y), if flat { 0.0 } else { f64::from(z) }];
                 let points = [x, y, z, 0].map(at)[..if flat { 2 } else { 4 }].to_vec();
-                MirrorRecord { cell: CellId(cell % n_cells as u32), face, points }
+                MirrorRecord { cell: CellId(cell % n_cells as u32), mirror: MirrorId(face), points }
             };
             parts.mirrors = mirrors.into_iter().map(record).collect();
         }

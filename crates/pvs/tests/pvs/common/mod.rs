@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, Place, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, Place, PortalRecord, Table, TableKind, TableParts,
 };
 use std::collections::BTreeMap;
 
@@ -43,7 +43,7 @@ pub(crate) fn rooms() -> TableParts {
             ObjectRecord { name: "lamp".to_owned(), min: [3.5, 1.0, 0.0], max: [4.5, 2.0, 0.0] },
             ObjectRecord { name: "Wächter".to_owned(), min: [15.0, 1.0, 0.0], max: [15.0, 1.0, 0.0] },
         ],
-        cell_objects: vec![vec![0], vec![0], vec![], vec![1], vec![]],
+        cell_objects: vec![vec![ObjectId(0)], vec![ObjectId(0)], vec![], vec![ObjectId(1)], vec![]],
         locator: Locator::from_nodes(&tree).expect("a tree"),
         info: vec![pair("method", "by hand"), pair("source", "")],
         ..TableParts::empty(2, TableKind::Unspecified)
@@ -164,7 +164,7 @@ fn assemble(
     }
     let object = |name| ObjectRecord { name, min: [-1.0, -0.5, 0.0], max: [0.1, 2.0, 0.0] };
     let objects: Vec<ObjectRecord> = names.into_iter().map(object).collect();
-    let touched = |bits: &u8| (0..objects.len() as u32).filter(|o| bits >> o & 1 == 1).collect();
+    let touched = |bits: &u8| (0..objects.len() as u32).filter(|o| bits >> o & 1 == 1).map(ObjectId).collect();
     let bounds: Vec<_> = cells.iter().map(|cell| (cell.min, cell.max)).collect();
     TableParts {
         locator: Locator::build(&bounds, dimension),

@@ -11,7 +11,7 @@
 pub(crate) mod tower;
 
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
 };
 
 fn cell(min: [f64; 2], max: [f64; 2], group: Option<u32>) -> CellRecord {
@@ -43,7 +43,7 @@ pub(crate) fn rooms(leak: bool) -> Table {
         cells,
         portals: vec![door],
         objects: vec![desk, safe],
-        cell_objects: vec![vec![0], vec![], vec![1]],
+        cell_objects: vec![vec![ObjectId(0)], vec![], vec![ObjectId(1)]],
         ..TableParts::empty(2, TableKind::Unspecified)
     })
     .expect("a sound table")

@@ -10,7 +10,7 @@
 //! ```
 
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, PortalRecord, Table, TableKind, TableParts,
 };
 
 fn cell(min: [f64; 3], max: [f64; 3]) -> CellRecord {
@@ -42,7 +42,7 @@ pub(crate) fn house() -> Table {
         cells,
         portals: vec![door],
         objects: vec![object("lamp", [1.0, 2.5, 0.2]), object("cat", [5.0, 3.0, 1.0])],
-        cell_objects: vec![vec![0], vec![], vec![1]],
+        cell_objects: vec![vec![ObjectId(0)], vec![], vec![ObjectId(1)]],
         ..TableParts::empty(3, TableKind::Unspecified)
     })
     .expect("a sound table")

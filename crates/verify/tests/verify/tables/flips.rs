@@ -59,7 +59,7 @@ fn visible_objects(table: &Table) -> Vec<(CellId, u32)> {
             .visible_objects(cell)
             .into_iter()
             .filter(|o| touching.binary_search(o).is_err())
-            .map(move |o| (cell, o))
+            .map(move |o| (cell, o.0))
             .collect::<Vec<_>>()
     };
     (0..table.n_cells() as u32).flat_map(of).collect()

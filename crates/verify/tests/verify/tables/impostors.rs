@@ -34,7 +34,7 @@ fn a_blind_row_of_objects_is_wrong() {
         let blind = changed(&case.table, |parts| {
             let touching = parts.cell_objects[cell].clone();
             let seen = parts.objects_seen.as_mut().expect("asked before");
-            (0..seen.n_cols()).for_each(|o| seen.set(cell, o, touching.contains(&(o as u32))));
+            (0..seen.n_cols()).for_each(|o| seen.set(cell, o, touching.contains(&sightlines_pvs::ObjectId(o as u32))));
         });
         let found = check(&blind, &case.real, &quick());
         assert!(found.by_kind.get("hidden-object").is_some_and(|&n| n > 3), "{}: {:?}", case.name, found.by_kind);

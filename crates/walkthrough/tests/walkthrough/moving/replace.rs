@@ -3,7 +3,7 @@
 use crate::moving::grid::{Grid, Kind, grid};
 use sightlines_eye_to_cell::{Method, TableCells, View};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, PortalId, Table};
 use sightlines_walkthrough::{Answer, Motion, MoverOptions, Movers, WalkOptions, Walkthrough, same_portals};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ fn until_full(walk: &mut Walk, view: &View) -> BTreeSet<u32> {
     loop {
         let frame = walk.frame(view, Method::Exact);
         if frame.answer == Answer::Full {
-            return frame.seen.cells().iter().copied().collect();
+            return frame.seen.cells().iter().map(|cell| cell.0).collect();
         }
         std::thread::yield_now();
     }
@@ -63,19 +63,19 @@ fn walks_go_on_in_another_table() {
     let view = View::planar([0.5, 0.5], [1.0, 0.0], 0.5).unwrap();
     let old = TableCells::new(rooms(8, &[], false));
     let mut walk: Walk = Walkthrough::new(old.clone(), old.clone(), WalkOptions::default());
-    walk.close(5);
-    walk.close(2);
+    walk.close(PortalId(5));
+    walk.close(PortalId(2));
     assert_eq!(until_full(&mut walk, &view), (0..3).collect());
-    walk.open(2);
+    walk.open(PortalId(2));
     assert_eq!(until_full(&mut walk, &view), (0..6).collect());
 
     // The door between rooms 1 and 2 is walled up; the others have other numbers. What was closed stays closed.
     let new = TableCells::new(rooms(8, &[1], true));
     let same = same_portals(&old, &new).unwrap();
-    assert_eq!(same, [Some(5), None, Some(4), Some(3), Some(2), Some(1), Some(0)]);
+    assert_eq!(same, [Some(5), None, Some(4), Some(3), Some(2), Some(1), Some(0)].map(|portal| portal.map(PortalId)));
     let frames = walk.counters().frames;
-    walk.replace(new.clone(), new.clone(), |portal| same[portal as usize]);
-    assert_eq!(walk.doors().closed().collect::<Vec<_>>(), [1]);
+    walk.replace(new.clone(), new.clone(), |portal| same[portal.idx()]);
+    assert_eq!(walk.doors().closed().collect::<Vec<_>>(), [PortalId(1)]);
     assert_eq!(walk.kept(), (0, 0));
     assert_eq!(until_full(&mut walk, &view), (0..2).collect());
     let behind = View::planar([2.5, 0.5], [1.0, 0.0], 0.5).unwrap();
