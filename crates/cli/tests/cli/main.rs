@@ -19,6 +19,8 @@ mod pack;
 mod region;
 mod reject;
 mod render;
+
+mod same_bytes;
 mod simplify;
 mod space;
 mod space_errors;
