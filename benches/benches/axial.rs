@@ -7,6 +7,7 @@ use sightlines::cells::{Axial, CellGraph, CellId, Exit};
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::sightline::{AxialCounters, AxialStabber, Stabber};
+use sightlines_benches::program::Common;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -20,17 +21,11 @@ const PER_CELL: u64 = 4_000;
 /// Axial pushes: nanoseconds while the parent's witness holds, and what decided.
 #[derive(Debug, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Floors of the tower.
     #[arg(long, default_value_t = 4)]
     floors: u32,
-    /// Checks the answers on a small tower.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// What a walk over sequences measured.
@@ -44,10 +39,10 @@ struct Times {
 
 fn main() {
     let args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"sightline/axial/push".contains(f.as_str())) {
+    if !args.common.is_wanted("sightline/axial/push") {
         return;
     }
-    let options = if args.test {
+    let options = if args.common.test {
         TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() }
     } else {
         TowerOptions { floors: args.floors, ..TowerOptions::default() }
@@ -65,7 +60,7 @@ fn main() {
             deeper(&graph, cell, exit, &mut stabber, &mut times, &mut reached, limit);
         }
     }
-    if args.test {
+    if args.common.test {
         check(&scene, &reached);
     }
     report(&mut times, stabber.counters());

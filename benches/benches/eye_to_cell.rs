@@ -16,6 +16,7 @@ use sightlines::packed::{PackOptions, Packed, Source, pack};
 use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::walkthrough::{Answer, CameraPose, PackedCells, WalkOptions, Walkthrough, wander};
+use sightlines_benches::program::{Common, exit};
 use sightlines_tests::data_folder;
 use std::convert::Infallible;
 use std::error::Error;
@@ -27,8 +28,8 @@ use std::time::{Duration, Instant};
 /// Eye-to-cell queries.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Floors of the tower; 10 have 274,000 triangles.
     #[arg(long, default_value_t = 10)]
     floors: u32,
@@ -44,32 +45,20 @@ struct Args {
     /// Measures again with stab trees of at most so many nodes a cell; 0 for what `build --stab-trees` takes.
     #[arg(long, value_name = "N")]
     stab_trees: Option<usize>,
-    /// Checks the answers in a small tower.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"eye_to_cell".contains(f.as_str())) {
+    if !args.common.is_wanted("eye_to_cell") {
         return ExitCode::SUCCESS;
     }
-    match run(&args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::from(2)
-        }
-    }
+    exit(run(&args))
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut options = TowerOptions { floors: args.floors, ..TowerOptions::default() };
     let mut n_frames = args.frames;
-    if args.test {
+    if args.common.test {
         options = TowerOptions { floors: 2, rooms_x: 2, rooms_y: 2, ..options };
         n_frames = 300;
     }
@@ -84,7 +73,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .map
         .clone()
         .or_else(|| Some(data_folder("SIGHTLINES_DATA")?.join("quake/e1m1.bsp")))
-        .filter(|_| !args.test);
+        .filter(|_| !args.common.test);
     if let Some(path) = map {
         println!("{}", path.display());
         let table = table_of_map(&path)?;

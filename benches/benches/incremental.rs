@@ -11,6 +11,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::stabtree::{SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
 use sightlines_benches::chart::{Panel, Series, svg};
+use sightlines_benches::program::{Common, exit, read_file};
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -24,8 +25,8 @@ const STEP: f64 = 0.25;
 /// Doors and walls of towers: updates against rebuilds.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Floors of the towers.
     #[arg(long, value_delimiter = ',', default_values_t = [4, 16])]
     floors: Vec<u32>,
@@ -50,12 +51,6 @@ struct Args {
     /// Measures nothing, and writes what follows from this file.
     #[arg(long, value_name = "CSV")]
     draw: Option<PathBuf>,
-    /// Checks the answers on small towers.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// Kinds of edits, in the order of the file.
@@ -85,30 +80,21 @@ const LEAST: usize = 6;
 
 fn main() -> ExitCode {
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"bake/incremental".contains(f.as_str())) {
+    if !args.common.is_wanted("bake/incremental") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         (args.floors, args.threads, args.edits, args.rounds) = (vec![1, 2], vec![1, 2], 2, 1);
     }
-    match run(&args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::from(2)
-        }
-    }
+    exit(run(&args))
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let rows = match &args.draw {
-        Some(file) => {
-            let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
-            read(&text).map_err(|e| format!("{}: {e}", file.display()))?
-        }
+        Some(file) => read_file(file, read)?,
         None => measure(args)?,
     };
-    if args.test {
+    if args.common.test {
         check(&rows)?;
     }
     let write_to = |path: &Option<PathBuf>, text: String| match path {
@@ -130,7 +116,7 @@ struct Edit {
 fn measure(args: &Args) -> Result<Vec<Row>, Box<dyn Error>> {
     let mut rows = Vec::new();
     for &floors in &args.floors {
-        let small = if args.test { (2, 1, 1) } else { (6, 4, 2) };
+        let small = if args.common.test { (2, 1, 1) } else { (6, 4, 2) };
         let (rooms_x, rooms_y, furniture) = small;
         let scene = tower(TowerOptions { floors, rooms_x, rooms_y, furniture, ..TowerOptions::default() })?;
         let edits = edits(&scene, floors / 2, args.edits)?;

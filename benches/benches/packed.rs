@@ -16,6 +16,7 @@ use sightlines::pvs::{
 };
 use sightlines::scenes;
 use sightlines_benches::codings::{CodedRows, RowCoding, unpack_runs, zero_runs};
+use sightlines_benches::program::{Common, exit};
 use sightlines_benches::spec::SceneSpec;
 use sightlines_packed::{Distinct, PackError, PackOptions, Packed, pack_report};
 use sightlines_testkit::mutate::SplitMix;
@@ -32,8 +33,8 @@ const BUDGETS: [u64; 3] = [75, 50, 25];
 /// Codings of tables: bytes, time, over-estimation.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Tables to measure too.
     #[arg(long = "table")]
     tables: Vec<PathBuf>,
@@ -52,12 +53,6 @@ struct Args {
     /// Writes tables as Markdown.
     #[arg(long)]
     md: Option<PathBuf>,
-    /// Checks the answers on small tables.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// What was measured of a coding of a table.
@@ -79,19 +74,13 @@ struct Row {
 
 fn main() -> ExitCode {
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"packed".contains(f.as_str())) {
+    if !args.common.is_wanted("packed") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         (args.large, args.rows) = (2000, 50);
     }
-    match run(&args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::from(2)
-        }
-    }
+    exit(run(&args))
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -131,12 +120,12 @@ fn tables(args: &Args) -> Result<Vec<Named>, Box<dyn Error>> {
     let tower = |name: &str| -> Result<Named, Box<dyn Error>> {
         Ok((name.to_owned(), scene(&name.parse::<SceneSpec>()?.load()?, 0.0)?))
     };
-    let data = if args.test { None } else { data_folder("SIGHTLINES_DATA") };
+    let data = if args.common.test { None } else { data_folder("SIGHTLINES_DATA") };
     let Some(data) = data else {
-        let size = if args.test { 2 } else { 12 };
+        let size = if args.common.test { 2 } else { 12 };
         let plan = bake_plan(&scenes::doom_like(1, size)?, &PlanBakeOptions::default())?;
         tables.push((format!("doom-like:{size}"), plan.table));
-        tables.push(tower(if args.test { "tower:1:2:1:1" } else { "tower:2" })?);
+        tables.push(tower(if args.common.test { "tower:1:2:1:1" } else { "tower:2" })?);
         return Ok(tables);
     };
     for name in ["freedm_MAP05", "freedoom1_E1M6"] {
@@ -262,7 +251,7 @@ fn budgets(args: &Args, name: &str, table: &Table, rows: &mut Vec<Row>) -> Resul
             Err(PackError::Budget { smallest, .. }) => (smallest - (exact.bytes - exact.row_bytes), None),
             Err(error) => return Err(error.into()),
         };
-        assert!(!args.test || more.is_none_or(|more| more[0] > before[0] && bytes < exact.row_bytes));
+        assert!(!args.common.test || more.is_none_or(|more| more[0] > before[0] && bytes < exact.row_bytes));
         rows.push(Row {
             table: name.to_owned(),
             cells: n,

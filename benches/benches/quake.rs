@@ -6,6 +6,7 @@
 
 use clap::Parser;
 use sightlines::pvs::BitMatrix;
+use sightlines_benches::program::Common;
 use sightlines_benches::quake::MapSpec;
 use sightlines_benches::quake::chart::svg;
 use sightlines_benches::quake::job::{self, Answer, METHODS, Measured, Method, cpu_seconds};
@@ -22,8 +23,8 @@ const SHORT: f64 = 10.0;
 /// Time against over-estimation of methods on Quake maps.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// A map of $SIGHTLINES_DATA/quake by name, a portal file, or world:SEED:ROOMS_X:ROOMS_Y:FLOORS; may be given more
     /// than once. Without it: all maps there, or generated worlds if the variable is not set.
     #[arg(long = "map")]
@@ -55,21 +56,15 @@ struct Args {
     /// Writes the chart.
     #[arg(long)]
     svg: Option<PathBuf>,
-    /// Checks the answers on a small world.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 fn main() -> ExitCode {
     job::serve();
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"stabtree/quake".contains(f.as_str())) {
+    if !args.common.is_wanted("stabtree/quake") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         (args.maps, args.methods, args.repeats) = (vec!["world:1:2:2:2".to_owned()], METHODS.to_vec(), 1);
     }
     match run(&args) {
@@ -106,7 +101,7 @@ fn run(args: &Args) -> Result<usize, Box<dyn Error>> {
     }
     write(args, &rows)?;
     println!("{}", markdown(&rows));
-    if args.test {
+    if args.common.test {
         check(&rows);
     }
     Ok(n_wrong)

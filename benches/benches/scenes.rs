@@ -8,6 +8,7 @@ use sightlines::bake::PortalMode;
 use sightlines::cells::Scene;
 use sightlines::pvs::{ObjectId, Table};
 use sightlines_benches::child::{self, Job, Limits, Measured, Outcome, portals_name, portals_of};
+use sightlines_benches::program::Common;
 use sightlines_benches::recorded::{Hidden, compare};
 use sightlines_benches::spec::SceneSpec;
 use sightlines_benches::witness::{Missing, Pair, RayOptions, Verdict, judge};
@@ -23,8 +24,8 @@ const SHOWN: usize = 10;
 /// Over-estimation and soundness of tables of scenes.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// A GLB or OBJ file, or tower:FLOORS, or tower:FLOORS:ROOMS_X:ROOMS_Y:FURNITURE; may be given more than
     /// once. Without it: all of $SIGHTLINES_DATA/scenes, and towers.
     #[arg(long = "scene")]
@@ -62,12 +63,6 @@ struct Args {
     /// Leaves out the comparison with what the data folder says was seen.
     #[arg(long)]
     no_recorded: bool,
-    /// Checks the answers on a small tower.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// A line of the table.
@@ -91,10 +86,10 @@ struct Report {
 fn main() -> ExitCode {
     child::serve();
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"bake/scenes".contains(f.as_str())) {
+    if !args.common.is_wanted("bake/scenes") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         args.scenes = vec!["tower:1:2:1:1".parse().unwrap_or_else(|e| panic!("{e}"))];
         (args.rays, args.taus) = (args.rays.min(20_000), vec![0.0, 0.3]);
     }
@@ -110,7 +105,7 @@ fn main() -> ExitCode {
 fn conclude(args: &Args, report: &Report) -> ExitCode {
     println!("{}", markdown(&report.rows));
     print!("{}", report.recorded);
-    if args.test {
+    if args.common.test {
         let done = report.rows.iter().filter(|r| r.verdict.as_ref().is_some_and(|v| v.n_objects_witnessed > 100));
         assert_eq!(done.count(), args.taus.len() * args.portals.len(), "every bake has a verdict");
     }
@@ -188,7 +183,7 @@ fn one_scene(
         recorded(args, spec, folder, table, report)?;
     }
     let options = RayOptions { n_rays: args.rays, seed: args.seed, threads: args.threads };
-    if args.test {
+    if args.common.test {
         impostor(&scene, &tables, &options);
     }
     if !tables.is_empty() {

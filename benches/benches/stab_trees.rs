@@ -14,6 +14,7 @@ use sightlines::formats::quake::{Prt, read_prt};
 use sightlines::pvs::{CellId, StabTrees, Table};
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, office};
+use sightlines_benches::program::{Common, exit};
 use sightlines_benches::spec::SceneSpec;
 use sightlines_tests::data_folder;
 use sightlines_tests::world_files::prt_of_world;
@@ -29,8 +30,8 @@ const PLAIN: u64 = 12;
 /// Stab trees: sequences and bytes.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// What to measure: office, a file (WAD, GeoJSON, GLB, glTF, OBJ, PRT), tower:16, level:2:2:1 (rooms along x and y, floors); may
     /// be given more than once. Without it: a choice of each, from $SIGHTLINES_DATA where it is set.
     #[arg(long = "scene", value_name = "SCENE")]
@@ -47,12 +48,6 @@ struct Args {
     /// Writes the table for people.
     #[arg(long)]
     md: Option<PathBuf>,
-    /// Checks the answers on small scenes.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// What was measured of a scene with a budget.
@@ -82,20 +77,14 @@ struct Row {
 
 fn main() -> ExitCode {
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"pvs/stab_trees".contains(f.as_str())) {
+    if !args.common.is_wanted("pvs/stab_trees") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         args.scenes = ["office", "tower:1:2:1:0", "level:2:1:1"].map(str::to_owned).to_vec();
         args.nodes = vec![40, 2_000];
     }
-    match run(&args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::from(2)
-        }
-    }
+    exit(run(&args))
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -109,7 +98,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             rows.push(row);
         }
     }
-    if args.test {
+    if args.common.test {
         check(&rows);
     }
     for (path, text) in [(&args.csv, csv(&rows)), (&args.md, markdown(&rows))] {

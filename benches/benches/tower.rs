@@ -10,6 +10,7 @@ use sightlines::pvs::Table;
 use sightlines::scenes::TowerOptions;
 use sightlines_benches::chart::{Panel, Series, exponent, svg};
 use sightlines_benches::child::{self, Job, Limits, Outcome, portals_of};
+use sightlines_benches::program::{Common, exit, read_file};
 use sightlines_benches::shares::{mean_share, share_of, triangles_of};
 use sightlines_benches::spec::SceneSpec;
 use sightlines_testkit::Random;
@@ -27,8 +28,8 @@ const N_EYES: u64 = 2_000;
 /// Towers: time, memory and shares against floors.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Floors of the towers.
     #[arg(long, value_delimiter = ',', default_values_t = [1, 2, 4, 8])]
     floors: Vec<u32>,
@@ -59,12 +60,6 @@ struct Args {
     /// The chart to write.
     #[arg(long)]
     svg: Option<PathBuf>,
-    /// Checks the answers on small towers.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// The columns of the file, in which [`Row`] keeps its numbers.
@@ -99,30 +94,21 @@ type Row = [f64; COLUMNS.len()];
 fn main() -> ExitCode {
     child::serve();
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"bake/tower".contains(f.as_str())) {
+    if !args.common.is_wanted("bake/tower") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         (args.floors, args.plan) = (vec![1, 2], vec![2, 1, 1]);
     }
-    match run(&args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::from(2)
-        }
-    }
+    exit(run(&args))
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let rows = match &args.draw {
-        Some(file) => {
-            let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
-            read(&text).map_err(|e| format!("{}: {e}", file.display()))?
-        }
+        Some(file) => read_file(file, read)?,
         None => measure(args)?,
     };
-    if args.test {
+    if args.common.test {
         check(&rows)?;
     }
     if let Some(path) = &args.svg {

@@ -15,6 +15,7 @@ use sightlines::pvs::{ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines_benches::child::portals_of;
 use sightlines_benches::path::{CameraPose, walk};
+use sightlines_benches::program::Common;
 use sightlines_benches::raster::{Camera, Drawn, Picture};
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -40,8 +41,8 @@ const METHODS: [Method; 4] = [Method::DisjointCell, Method::ConnectedComponent, 
 /// A walkthrough with and without the table.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Floors of the tower.
     #[arg(long, default_value_t = 16)]
     floors: u32,
@@ -64,12 +65,6 @@ struct Args {
     /// Writes the times of each frame.
     #[arg(long)]
     csv: Option<PathBuf>,
-    /// Checks the answers in a small tower.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// One way of drawing one frame.
@@ -83,7 +78,7 @@ struct Frame {
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"bake/walkthrough".contains(f.as_str())) {
+    if !args.common.is_wanted("bake/walkthrough") {
         return ExitCode::SUCCESS;
     }
     match run(&args) {
@@ -103,7 +98,7 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> Result<usize, Box<dyn Error>> {
     let mut options = TowerOptions { floors: args.floors, ..TowerOptions::default() };
     let (mut n_frames, mut size) = (args.frames, args.size.clone());
-    if args.test {
+    if args.common.test {
         options = TowerOptions { floors: 2, rooms_x: 2, rooms_y: 2, ..options };
         (n_frames, size) = (40, vec![96, 72]);
     }
@@ -122,7 +117,7 @@ fn run(args: &Args) -> Result<usize, Box<dyn Error>> {
         std::fs::write(path, csv(&frames)).map_err(|e| format!("{}: {e}", path.display()))?;
     }
     report(&scene, &frames, [width, height]);
-    if args.test {
+    if args.common.test {
         check(&scene, &table, &poses, &frames);
     }
     Ok(frames.iter().flatten().map(|f| f.n_wrong).sum())

@@ -6,6 +6,7 @@ pub mod chart;
 pub mod child;
 pub mod codings;
 pub mod path;
+pub mod program;
 pub mod quake;
 pub mod raster;
 pub mod recorded;

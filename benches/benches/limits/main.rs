@@ -11,26 +11,21 @@ mod rates;
 use clap::Parser;
 use paths::Path;
 use rates::Rates;
+use sightlines_benches::program::Common;
 
 /// Hot paths beside their lower bounds.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
-    /// Small inputs, for a check.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
+    #[command(flatten)]
+    common: Common,
 }
 
 fn main() {
     let args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"limits".contains(f.as_str())) {
+    if !args.common.is_wanted("limits") {
         return;
     }
-    let rates = Rates::measure(args.test);
+    let rates = Rates::measure(args.common.test);
     println!(
         "one thread reads {:.1} GB/s from memory and {:.1} GB/s from its cache; an orientation takes {:.2} ns in the plane, {:.2} ns in space, \
          in plain doubles\n",
@@ -41,7 +36,7 @@ fn main() {
     );
     println!("| path | of | time | bound | time / bound | what the bound counts |");
     println!("| --- | --- | ---: | ---: | ---: | --- |");
-    for path in paths::all(args.test) {
+    for path in paths::all(args.common.test) {
         let Path { name, of, seconds, bound, counts } = path(&rates);
         assert!(seconds > 0.0 && bound > 0.0, "{name} takes time");
         println!("| {name} | {of} | {} | {} | {:.1} | {counts} |", time(seconds), time(bound), seconds / bound);

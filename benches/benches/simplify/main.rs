@@ -13,6 +13,7 @@ use clap::Parser;
 use measured::Row;
 use sightlines::simplify::{HiddenBy, Prepared, SimplifyOptions};
 use sightlines_benches::chart::{Panel, Series, svg};
+use sightlines_benches::program::Common;
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,8 +22,8 @@ use std::time::Instant;
 /// Simplification for a volume of viewpoints.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Scenes, of: tower, city, and names of real scenes with the file of their cells.
     #[arg(long, value_delimiter = ',', default_values_t = ["tower", "city", "sponza:cells_walk"].map(str::to_owned))]
     scenes: Vec<String>,
@@ -50,20 +51,14 @@ struct Args {
     /// The chart to write.
     #[arg(long)]
     svg: Option<PathBuf>,
-    /// Checks the answers on a small city.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 fn main() -> ExitCode {
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"simplify".contains(f.as_str())) {
+    if !args.common.is_wanted("simplify") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         (args.scenes, args.views, args.eyes, args.rays) = (vec!["small".to_owned()], 1, 4, 2000);
         args.budgets = vec![0.0, 1e-2];
     }
@@ -83,7 +78,7 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         Some(file) => measured::read(&std::fs::read_to_string(file)?)?,
         None => measure(args)?,
     };
-    if args.test {
+    if args.common.test {
         check(&rows)?;
     }
     if let Some(path) = &args.svg {

@@ -4,6 +4,7 @@ use crate::cases::Case;
 use sightlines::simplify::{
     MeasureOptions, Prepared, Simplified, SimplifyOptions, estimate, geometric, measure, measure_aimed,
 };
+use sightlines_benches::program::read_rows;
 use std::error::Error;
 use std::time::Instant;
 
@@ -148,11 +149,7 @@ pub(crate) fn write(rows: &[Row]) -> String {
 }
 
 pub(crate) fn read(text: &str) -> Result<Vec<Row>, String> {
-    let mut lines = text.lines().zip(1..);
-    if lines.next().is_none_or(|(head, _)| head != HEAD) {
-        return Err("line 1: not what this bench writes".to_owned());
-    }
-    lines.map(|(line, number)| parse(line).ok_or_else(|| format!("line {number}: not a row of this bench"))).collect()
+    read_rows(text, HEAD, parse)
 }
 
 fn parse(line: &str) -> Option<Row> {

@@ -13,6 +13,7 @@ use clap::Parser;
 use families::Family;
 use measured::{Limits, Row};
 use sightlines_benches::chart::{Panel, Series, svg};
+use sightlines_benches::program::{Common, exit};
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -20,8 +21,8 @@ use std::process::ExitCode;
 /// Visible surfaces for one viewpoint.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Families of scenes, of: soup, cycles, lattice, split_worst, coplanar, slivers, interleaved, real.
     #[arg(long, value_delimiter = ',', default_values_t = Family::ALL.map(|f| f.name().to_owned()))]
     families: Vec<String>,
@@ -46,30 +47,18 @@ struct Args {
     /// The chart to write.
     #[arg(long)]
     svg: Option<PathBuf>,
-    /// Checks the answers on small scenes.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 fn main() -> ExitCode {
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|f| !"visible_surface".contains(f.as_str())) {
+    if !args.common.is_wanted("visible_surface") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         (args.sizes, args.picture) = (vec![30, 100], vec![96, 64]);
         args.families.retain(|f| f != Family::Real.name());
     }
-    match run(&args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::from(2)
-        }
-    }
+    exit(run(&args))
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -77,7 +66,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         Some(file) => measured::read(&std::fs::read_to_string(file)?)?,
         None => measure(args)?,
     };
-    if args.test {
+    if args.common.test {
         check(&rows)?;
     }
     if let Some(path) = &args.svg {
@@ -90,7 +79,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         measured::print(&rows);
         if !args.only_families {
             precision::print(size(args)?);
-            table::print(args.test, size(args)?)?;
+            table::print(args.common.test, size(args)?)?;
         }
     }
     Ok(())

@@ -5,6 +5,7 @@ use sightlines::visible_surface::{
     Bsp, BspOptions, Counters, DepthFormat, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput,
     Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
+use sightlines_benches::program::read_rows;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -141,11 +142,7 @@ pub(crate) fn write(rows: &[Row]) -> String {
 }
 
 pub(crate) fn read(text: &str) -> Result<Vec<Row>, String> {
-    let mut lines = text.lines().zip(1..);
-    if lines.next().is_none_or(|(head, _)| head != HEAD) {
-        return Err("line 1: not what this bench writes".to_owned());
-    }
-    lines.map(|(line, number)| parse(line).ok_or_else(|| format!("line {number}: not a row of this bench"))).collect()
+    read_rows(text, HEAD, parse)
 }
 
 fn parse(line: &str) -> Option<Row> {
