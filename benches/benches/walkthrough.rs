@@ -192,8 +192,8 @@ impl<'a> Show<'a> {
             let start = Instant::now();
             let drawn = if let Some(method) = way.checked_sub(4).map(|k| METHODS[k]) {
                 self.seen.clear(self.table.n_cells(), n as usize);
-                for cell in self.table.in_dimension().expect("it is of space").at(pose.eye).cells().iter().copied() {
-                    let subgraph = &self.subgraphs[&cell];
+                for cell in self.table.in_dimension().expect("it is of space").at(pose.eye).cells() {
+                    let subgraph = &self.subgraphs[cell];
                     method.look(subgraph, &view, &Doors::all_open(), &mut self.scratch, &mut self.seen);
                 }
                 self.seen.sort();

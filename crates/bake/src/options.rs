@@ -53,7 +53,7 @@ impl SceneMethod {
     }
 
     /// The from-region method, if there is one.
-    pub(crate) const fn from_region(self) -> Option<OcclusionMethod> {
+    pub(crate) const fn region_method(self) -> Option<OcclusionMethod> {
         match self {
             Self::Auto | Self::Sightlines => None,
             Self::Both => Some(OcclusionMethod::Multifocal),
@@ -156,6 +156,6 @@ impl BakeOptions<'_> {
 
     /// Whether a scene takes from-region queries: for any method but sightlines alone, and for given cells.
     pub fn takes_regions(&self) -> bool {
-        self.method.from_region().is_some() || self.has_given_cells()
+        self.method.region_method().is_some() || self.has_given_cells()
     }
 }

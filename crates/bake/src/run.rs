@@ -57,7 +57,7 @@ fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>
     let BakeOptions { method, buffers, split, cut, portals, threads, progress, ref cells, .. } = *options;
     buffers.check().map_err(crate::methods::MethodError::from)?;
     let prepare = |method| OcclusionMethodFactory::new(method, scene, &buffers);
-    let factory = method.from_region().map(prepare).transpose()?;
+    let factory = method.region_method().map(prepare).transpose()?;
     let make = || factory.as_ref().expect("only called if there is one").instance();
     let options = RegionBakeOptions {
         cells,

@@ -62,10 +62,10 @@ proptest! {
         let grid = Grid::of([0.0625]).expect("finite");
         let corners = [a, b, c].map(|p| grid.vector(p.map(|x| x.0)));
         let normal = vector::normal(&corners);
-        for k in 0..3 {
+        for (k, component) in normal.iter().enumerate() {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             let at = |p: [(f64, i128); 3], k: usize| p[k].1 - a[k].1;
-            prop_assert_eq!(&normal[k], &BigInt::from(at(b, i) * at(c, j) - at(b, j) * at(c, i)));
+            prop_assert_eq!(component, &BigInt::from(at(b, i) * at(c, j) - at(b, j) * at(c, i)));
         }
         // A point of the plane: the normal does not see it.
         prop_assert_eq!(vector::dot(&normal, &vector::sub(&corners[1], &corners[0])), BigInt::ZERO);

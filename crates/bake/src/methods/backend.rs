@@ -23,12 +23,15 @@ type Boxed = Box<dyn MultifocalBackend>;
 /// Makes a backend for one thread.
 type Make = Box<dyn Fn() -> Boxed + Send + Sync>;
 
+/// Opens a backend; warnings go to the function.
+type Open = fn(fn(&str)) -> Result<Vec<Make>, NotBuiltIn>;
+
 /// What the table of backends knows of one.
 struct Entry {
     name: &'static str,
     about: &'static str,
     /// The backends to try, in order; the last one takes every job.
-    open: fn(warn: fn(&str)) -> Result<Vec<Make>, NotBuiltIn>,
+    open: Open,
 }
 
 impl Backend {

@@ -30,11 +30,14 @@ pub enum OcclusionMethod {
     Voxels,
 }
 
+/// Prepares a method for a scene.
+type Prepare = fn(&Scene, &BufferOptions) -> Result<Box<dyn Prepared>, MethodError>;
+
 /// What the table of methods knows of one.
 struct Entry {
     name: &'static str,
     about: &'static str,
-    prepare: fn(&Scene, &BufferOptions) -> Result<Box<dyn Prepared>, MethodError>,
+    prepare: Prepare,
 }
 
 /// What the instances of a method share.

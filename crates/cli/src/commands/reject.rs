@@ -24,7 +24,7 @@ pub(crate) enum Error {
     Output(#[from] OutputError),
     /// The REJECT lumps of a WAD cannot be built.
     #[error("{}: {source}", path.display())]
-    Reject { path: PathBuf, source: RejectError },
+    Reject { path: PathBuf, source: Box<RejectError> },
 }
 
 /// Arguments of `reject`.
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Erro
         RejectOptions { maps: args.map.clone(), force: args.force, threads: args.threads, progress: Some(&bar) };
     let outcome = reject_wad(&wad, &options);
     drop(bar);
-    let outcome = outcome.map_err(|source| Error::Reject { path: args.input.clone(), source })?;
+    let outcome = outcome.map_err(|source| Error::Reject { path: args.input.clone(), source: Box::new(source) })?;
     output::save(&args.output, &outcome.bytes)?;
     let maps = outcome.maps.iter().map(Map::from).collect();
     output::print(args.json, &Outcome { out: args.output.display().to_string(), maps })?;

@@ -159,7 +159,7 @@ impl<S: CellSource> CellSource for Impostor<S> {
 
     fn stab_roots(&self, cell: CellId, out: &mut Vec<u32>) -> Result<Option<bool>, S::Error> {
         let open = self.source.stab_roots(cell, out)?;
-        Ok(open.filter(|_| self.fault != Fault::HalfTrees || cell.0 % 2 == 0))
+        Ok(open.filter(|_| self.fault != Fault::HalfTrees || cell.0.is_multiple_of(2)))
     }
 
     fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabStep, S::Error> {

@@ -55,12 +55,15 @@ fn numbers_that_are_not_known_are_refused_or_from_a_later_version() {
     assert_eq!(Table::from_bytes(&file.write()).expect_err("too long").kind, DecodeErrorKind::Surplus { left: 1 });
 }
 
+/// A dimension, the texts of an old table, and the kind that they mean.
+type OldTable = (u8, &'static [(&'static str, &'static str)], TableKind);
+
 /// What programs before version 1.4 of the format left in the texts of each kind of table.
 #[test]
 fn older_files_are_understood() {
     let by = |sightlines, from_region| SceneMethods { sightlines, from_region, only_in_air: false };
     let in_air = SceneMethods { sightlines: false, from_region: true, only_in_air: true };
-    let cases: [(u8, &[(&str, &str)], TableKind); 15] = [
+    let cases: [OldTable; 15] = [
         (2, &[("subdivide", "kd"), ("tau", "0")], TableKind::PlanKdTree),
         (2, &[("subdivide", "triangulation")], TableKind::PlanTriangulation),
         (3, &[("subdivide", "kd"), ("tau", "0")], TableKind::SceneKdTree { hidden_by: by(true, false) }),

@@ -32,7 +32,7 @@ pub(crate) enum Error {
     Json { out: PathBuf },
     /// A plan or a scene cannot be baked.
     #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
-    Bake { path: PathBuf, map: Option<String>, source: BakeError },
+    Bake { path: PathBuf, map: Option<String>, source: Box<BakeError> },
     /// A portal file, or the map that it is of, cannot be baked.
     #[error("{}: {source}", path.display())]
     BakePrt { path: PathBuf, source: PrtBakeError },

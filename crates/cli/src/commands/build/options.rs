@@ -61,7 +61,6 @@ impl BakeArgs {
             detail_below: self.detail_below,
             max_cells: self.max_cells.unwrap_or(standard.cut.max_cells),
             keep_solid: self.keep_solid,
-            ..standard.cut
         };
         let subdivide = self.subdivide.unwrap_or_default();
         let portals = self.portals.unwrap_or_default();

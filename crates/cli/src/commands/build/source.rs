@@ -60,8 +60,8 @@ impl Source {
             (Self::Map(_, portals), BakeError::Prt(source)) => quake::failed(&path, portals, source),
             (_, BakeError::Prt(source)) => Error::BakePrt { path, source },
             (_, BakeError::Method(source)) => MethodFailed { path, source }.into(),
-            (Self::Plan(file), source) => Error::Bake { path, map: file.map.clone(), source },
-            (_, source) => Error::Bake { path, map: None, source },
+            (Self::Plan(file), source) => Error::Bake { path, map: file.map.clone(), source: Box::new(source) },
+            (_, source) => Error::Bake { path, map: None, source: Box::new(source) },
         }
     }
 }

@@ -29,7 +29,7 @@ pub(crate) enum Error {
     Glb(#[from] GlbError),
     /// A table that cannot be baked.
     #[error("{}: {source}", path.display())]
-    Bake { path: PathBuf, source: BakeError },
+    Bake { path: PathBuf, source: Box<BakeError> },
     /// A scene cannot be generated.
     #[error(transparent)]
     Generate(#[from] SceneError),

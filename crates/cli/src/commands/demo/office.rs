@@ -26,7 +26,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     // The plan is read back from the file, as `build` would do.
     let file = input::plan(&plan_path)?;
     let baked = bake_visibly(&plan_path, (&file.plan).into(), &BakeOptions::default(), show_progress);
-    let baked = baked.map_err(|source| Error::Bake { path: plan_path, source })?;
+    let baked = baked.map_err(|source| Error::Bake { path: plan_path, source: Box::new(source) })?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let mut files = vec!["plan.geojson".to_owned(), "plan.pvs".to_owned()];
     for (name, view) in views(&baked.table) {

@@ -26,7 +26,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     let file = read_scene(&scene_path)?;
     let standard = BakeOptions::default();
     let baked = bake_visibly(&scene_path, (&file).into(), &standard, show_progress);
-    let baked = baked.map_err(|source| Error::Bake { path: scene_path, source })?;
+    let baked = baked.map_err(|source| Error::Bake { path: scene_path, source: Box::new(source) })?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let mut files = vec!["tower.glb".to_owned(), "tower.pvs".to_owned()];
     for (name, svg) in pictures(&table_path, &baked.table)? {

@@ -108,7 +108,11 @@ fn of_wad(path: &Path, scene: &Path, name: Option<&str>) -> Result<OwnVisibility
         let n_sectors = [map.n_sectors(), real.n_sectors()];
         return Err(Error::OwnSectors { path: path.to_owned(), scene: scene.to_owned(), n_sectors });
     }
-    let failed = |source: BakeError| Error::Bake { path: scene.to_owned(), map: Some(real.name().to_string()), source };
+    let failed = |source: BakeError| Error::Bake {
+        path: scene.to_owned(),
+        map: Some(real.name().to_string()),
+        source: Box::new(source),
+    };
     // A map without a lump is refused before it is cut.
     OwnVisibility::check_reject(&map).map_err(|error| refused(path, Some(map.name().to_string()), error))?;
     let plan = real.plan().map_err(|error| failed(error.into()))?;
