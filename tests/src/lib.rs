@@ -13,6 +13,10 @@ pub mod world_files;
 #[doc = include_str!("../../docs/guides/rust-engine.md")]
 struct GuideDoctests;
 
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct ReadmeDoctests;
+
 pub use scenes::{CellWitness, scene_folders, scene_witness};
 
 use std::path::{Path, PathBuf};

@@ -50,7 +50,7 @@ pub fn unit(a: Point3) -> Option<Point3> {
 }
 
 /// The vector of length 1 in the direction of `a`, without overflow or underflow; `None` if all components are 0 or one is not
-/// finite. Rounded differently from [`unit`], and slower.
+/// finite. Rounded differently from [`unit()`], and slower.
 pub fn unit_of_any_size(a: Point3) -> Option<Point3> {
     let largest = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     // `max` passes over NaN.

@@ -3,7 +3,7 @@
 //!
 //! The scene is cut with what the last one leaves of its faces ([`SceneCutter`]); [`LiveSpace`] updates the visibility
 //! where walls differ. The table is the one that [`bake_scene`](crate::bake_scene) makes of the new scene, byte for
-//! byte, unless pairs are given up ([`BakedScene::n_assumed`](crate::BakedScene::n_assumed)): an update may know from
+//! byte, unless pairs are given up ([`SceneReport::n_assumed`](crate::SceneReport::n_assumed)): an update may know from
 //! an easier earlier search that these are hidden.
 //!
 //! Doors of the run-time are portals by id. A portal that is closed is a wall, for the rows of the table only: its

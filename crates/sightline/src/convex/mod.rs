@@ -58,7 +58,7 @@
 //!   with the largest bound is next; what is relaxed away shrinks like the square of the box.
 //!
 //! Doubles only propose. What is visible has passed exact predicates, what is hidden a rigorous check;
-//! everything else is [`Verdict::Undecided`](crate::Verdict::Undecided), which a caller has to take for visible.
+//! everything else is [`Verdict::Undecided`], which a caller has to take for visible.
 //!
 //! # Source
 //! Plücker's coordinates for lines past lines: Teller, "Computing the antipenumbra of an area light source",

@@ -114,7 +114,7 @@ impl Shared {
 /// * `follower`: cloned for each thread.
 ///
 /// Returns the graph with each node once, children and roots ascending; each way from a root of a cell is a sequence of
-/// gates, see [`gate_of`].
+/// gates, see `gate_of`.
 ///
 /// Conservative for every limit: a sequence that an open set of lines passes is in the graph, or begins with one
 /// that ends in an open node (or at an open root). Exact beyond that if the follower is: every sequence in the graph is
