@@ -17,7 +17,8 @@ use sightlines_geometry::Aabb;
 /// Rays in a batch, after which the targets that were seen are left out.
 const BATCH: u64 = 256;
 
-/// A segment that nothing blocks, nor its four parallels one [`RayScene::shift`] beside it.
+/// A segment that nothing blocks, nor its four parallels one [`RayScene::shift`] beside it, nor itself with its ends as far inside of their
+/// boxes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClearSegment {
     /// In the volume.

@@ -64,7 +64,9 @@ impl<'a> Chain<'a> {
                 let [eye, point] = segment;
                 self.n_rays += 1;
                 match self.first_hit(segment) {
-                    None if is_clear(self.rays, eye, point) => return Some(ClearSegment { eye, point }),
+                    None if is_clear(self.rays, eye, point) && self.is_clear_within(segment) => {
+                        return Some(ClearSegment { eye, point });
+                    }
                     // It grazes something that it passes.
                     None => segment = self.ends_at_random(segment),
                     Some(hit) => segment = self.turned(segment, &hit),
@@ -72,6 +74,19 @@ impl<'a> Chain<'a> {
             }
         }
         None
+    }
+
+    /// Whether the segment is still clear with its ends moved into their boxes. An eye on a wall at the border of the volume may look away
+    /// from it on the one side while all eyes beside it, in the volume, are behind the wall.
+    fn is_clear_within(&self, segment: [Point3; 2]) -> bool {
+        let inwards = |i: usize| {
+            let (b, p) = (&self.ends[i], segment[i]);
+            [0, 1, 2].map(|k| {
+                let by = self.rays.shift().min((b.max[k] - b.min[k]) / 2.0);
+                p[k].clamp(b.min[k] + by, (b.max[k] - by).max(b.min[k] + by))
+            })
+        };
+        !self.rays.is_blocked(inwards(0), inwards(1))
     }
 
     fn first_hit(&self, [eye, point]: [Point3; 2]) -> Option<Hit> {

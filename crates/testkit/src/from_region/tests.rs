@@ -75,6 +75,22 @@ fn what_a_wall_covers_is_not_seen_and_what_is_beside_it_is() {
     assert_eq!((nothing.unseen().count(), nothing.n_rays), (0, 1));
 }
 
+/// Eyes in a closed room, up to its walls, see nothing outside, though those on an edge of the room could look along its outside.
+#[test]
+fn eyes_on_the_walls_around_them_see_nothing_behind_them() {
+    let corner = |i: usize| [0, 1, 2].map(|k| f64::from((i >> k & 1) as u8));
+    let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let room = SceneObject { name: "room".to_owned(), vertices: (0..8).map(corner).collect(), triangles };
+    let scene = Scene::new(vec![room]).unwrap();
+    let volume = Aabb { min: [0.0, 0.0, 0.0], max: [0.5, 0.5, 1.0] };
+    let targets = [Aabb { min: [3.0, -1.0, 4.0], max: [3.5, -1.0, 4.0] }, Aabb { min: [0.7; 3], max: [0.8; 3] }];
+    for seed in 0..20 {
+        let found = sampled_view(&scene, &volume, &targets, 20_000, seed);
+        assert_eq!(found.unseen().collect::<Vec<_>>(), [0], "{found:?}");
+    }
+}
+
 /// Slits a hundredth wide, crossed: one uniform ray in more than 10,000 passes.
 #[test]
 fn slits_are_found() {
