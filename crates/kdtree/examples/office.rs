@@ -1,4 +1,4 @@
-//! Cuts a small office floor at several thresholds, then asks where somebody stands.
+//! Cuts a small office floor at several thresholds, then locates a point.
 
 use sightlines_cells::{Plan, PlanError};
 use sightlines_geometry::Point2;

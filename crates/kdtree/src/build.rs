@@ -1,4 +1,4 @@
-//! The subdivision itself: cells are divided until no plane is left that is worth it.
+//! The subdivision itself: cells are divided until no plane is worth a cut.
 
 use crate::error::KdError;
 use crate::face::AxialFace;
@@ -15,9 +15,9 @@ use sightlines_pvs::CellId;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Obscuration threshold, from 0 to 1: a plane divides a cell only if its faces cover at least
-    /// this share of the cell's cross-section. Faces on planes that divide nothing are detail: they
-    /// do not hide, so a larger threshold shows more. As a rule it also gives fewer cells, though not at
-    /// every step: a plane that drops out may leave a worse one to begin with.
+    /// this share of the cell's cross-section. Faces on planes that divide nothing are detail: they do not hide, so a
+    /// larger threshold shows more. It usually gives fewer cells too, but not at every step: without one plane, a worse
+    /// one may be chosen first.
     ///
     /// 0 follows every face and is exact; it is the default. A plane that is covered completely
     /// divides at any threshold; that is decided exactly. Other shares are compared in rounded
@@ -57,8 +57,7 @@ pub fn bounds_of<const D: usize>(faces: &[AxialFace<D>]) -> Aabb<D> {
 /// [`KdError::TooManyCells`].
 ///
 /// # Source
-/// Teller and Séquin, SIGGRAPH 1991. Chosen here: coplanar faces are united before they are counted;
-/// the order of ties.
+/// Teller and Séquin, SIGGRAPH 1991. Our own: coplanar faces are united before they are counted; the order of ties.
 pub fn subdivide<const D: usize>(
     faces: &[AxialFace<D>],
     bounds: Aabb<D>,
@@ -120,7 +119,7 @@ fn checked_bounds<const D: usize>(bounds: Aabb<D>) -> Result<Aabb<D>, KdError> {
 /// A cell that waits to be divided.
 struct Pending<const D: usize> {
     cell: RankBox<D>,
-    /// What is inside, in the order that [`choose`] asks for.
+    /// What is inside, in the order that [`choose`] requires.
     pieces: Vec<Piece<D>>,
     /// The node whose high child this is; the low child of a node follows it.
     high_of: Option<u32>,
@@ -134,7 +133,7 @@ struct Builder<'a, const D: usize> {
 }
 
 impl<const D: usize> Builder<'_, D> {
-    /// Depth-first, low before high. The stack is our own: a tree may be as deep as there are planes.
+    /// Depth-first, low before high. The stack is explicit: a tree may be as deep as there are planes.
     fn run(mut self, pieces: Vec<Piece<D>>) -> Result<Skeleton<D>, KdError> {
         let mut stack = vec![Pending { cell: self.ranks.whole(), pieces, high_of: None }];
         while let Some(Pending { cell, pieces, high_of }) = stack.pop() {
@@ -161,7 +160,7 @@ impl<const D: usize> Builder<'_, D> {
         Ok(())
     }
 
-    /// Writes an inner node; returns the high, then the low half, so that low is taken up first.
+    /// Writes an inner node; returns the high, then the low half, so that low is processed first.
     fn divide(&mut self, cell: RankBox<D>, pieces: Vec<Piece<D>>, axis: usize, rank: u32) -> [Pending<D>; 2] {
         let node = self.skeleton.nodes.len() as u32;
         let (sides, walls) = cut(pieces, axis, rank);
@@ -192,7 +191,7 @@ fn cut<const D: usize>(mut pieces: Vec<Piece<D>>, axis: usize, rank: u32) -> ([V
         piece.extent.lo[axis] = piece.extent.lo[axis].max(rank);
         above
     });
-    // The stack keeps these until their turn comes: a list must not hold room for pieces long gone.
+    // The list may stay on the stack for long, so spare capacity is released.
     if pieces.capacity() > 2 * pieces.len() {
         pieces.shrink_to_fit();
     }

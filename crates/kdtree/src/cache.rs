@@ -1,4 +1,4 @@
-//! What is kept of a scene for the next one, which may have most of its objects.
+//! What is cached of a scene for the next one, which may share most of its objects.
 
 use crate::coplanar::FlatRect;
 use crate::mesh::{FlatTriangle, Mesh, TriangleKind, kind_of};
@@ -7,7 +7,7 @@ use sightlines_geometry::Aabb;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-/// The triangles of an object, sorted. What follows from them alone is found once.
+/// The classified triangles of an object. What depends on them alone is computed once.
 #[derive(Debug)]
 pub(crate) struct Shape {
     vertices: Vec<Point3>,
@@ -20,7 +20,7 @@ pub(crate) struct Shape {
     pub(crate) n_empty: usize,
     /// All other triangles.
     pub(crate) n_other: usize,
-    /// Its pieces, once somebody has asked for them.
+    /// Its pieces, computed on first use.
     pub(crate) mesh: OnceLock<Arc<Mesh>>,
 }
 
@@ -64,7 +64,7 @@ pub(crate) struct PlaneFaces {
 /// Planes by axis and the place on it, see [`total_order`].
 pub(crate) type Planes = BTreeMap<(usize, u64), PlaneFaces>;
 
-/// What is kept of a scene. Nothing that is found with it is other than without.
+/// What is cached of a scene. Results are the same with and without it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FaceCache {
     shapes: Vec<Arc<Shape>>,
@@ -74,8 +74,8 @@ pub(crate) struct FaceCache {
 }
 
 impl FaceCache {
-    /// The shapes of a scene's objects, which are kept now: those of the last one where objects are the same, wherever
-    /// they stand in it.
+    /// The shapes of a scene's objects, which become the cached ones. An object that equals one of the last scene, at
+    /// any index, reuses its shape.
     pub(crate) fn shapes_of(&mut self, scene: &Scene) -> Vec<Arc<Shape>> {
         let before = std::mem::take(&mut self.shapes);
         let mut by_key = None;

@@ -1,11 +1,11 @@
 //! Rectangles inside the union of coplanar triangles.
 //!
-//! Each triangle is turned counter-clockwise. Around a point, the edges of all triangles together wind as
-//! often as there are triangles over it. Two edges that run back and forth between the same two corners
+//! Each triangle is turned counter-clockwise. The edges of all triangles together wind around a point as often as
+//! triangles cover it. Two edges that run back and forth between the same two corners
 //! cancel, so what is left is the outline of the mesh, with the same winding. Slab by slab between its
 //! corners, the winding is bounded from below: an edge that adds to it counts where it has been passed
 //! all across the slab, one that takes away counts wherever it may have been passed. Where the bound is
-//! positive the triangles cover everything, and there are the rectangles.
+//! positive, the triangles cover everything, and the rectangles lie there.
 //!
 //! Every coordinate of a rectangle is one of an end of an axis-parallel edge of the outline; the exact predicate
 //! decides whether a slanted edge has been passed. So no rectangle sticks out, not by one unit in the last place, and
@@ -50,8 +50,8 @@ struct Edge {
     step: i32,
 }
 
-/// The outlines of all meshes, mesh by mesh. Meshes are triangles that hang
-/// together by their corners: one far away must not cut another into slabs.
+/// The outlines of all meshes, mesh by mesh. A mesh consists of triangles connected by their corners; each is treated
+/// alone, so that a distant mesh does not cut another into slabs.
 fn outlines(triangles: &[[Point2; 3]]) -> Vec<Edge> {
     let turned: Vec<[Point2; 3]> = triangles.iter().filter_map(|t| counter_clockwise(*t)).collect();
     let (corners, ids) = welded(&turned);
@@ -129,7 +129,7 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Stops everywhere where a call of [`Self::covered_up_to`] is to end.
+    /// Stops at every level where a call of [`Self::covered_up_to`] ends.
     fn new(outline: &'a [Edge], stops: &[f64]) -> Self {
         let mut edges: Vec<&Edge> = outline.iter().filter(|e| e.a.x < e.b.x).collect();
         edges.sort_by(|e, f| e.a.x.total_cmp(&f.a.x));
@@ -138,7 +138,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Where the winding is positive all along from `from` to `to`: ascending disjoint spans of levels.
-    /// Each call goes on where the last one ended.
+    /// Each call continues where the last one ended.
     fn covered_up_to(&mut self, to: f64, from: f64, levels: &[f64]) -> Vec<[usize; 2]> {
         let mut along: Option<Vec<[usize; 2]>> = None;
         while let Some(&[left, right]) = self.cuts.get(self.next..self.next + 2).filter(|slab| slab[0] < to) {
@@ -207,11 +207,11 @@ impl Edge {
     }
 }
 
-/// Prolongs by a slab the open rectangles whose span is among `spans`, ends the others, opens the rest.
+/// Extends by a slab the open rectangles whose span is among `spans`, ends the others, opens the rest.
 fn prolonged(open: Vec<FlatRect>, slab: [f64; 2], spans: &[[f64; 2]], done: &mut Vec<FlatRect>) -> Vec<FlatRect> {
     let (mut next, mut old) = (Vec::with_capacity(spans.len()), open.into_iter().peekable());
     for &v in spans {
-        // Both lists ascend; spans of one slab do not overlap, so the lower end tells them apart.
+        // Both lists ascend; spans of one slab do not overlap, so the lower end identifies them.
         while let Some(ended) = old.next_if(|r| r.v[0] < v[0]) {
             done.push(ended);
         }
@@ -298,7 +298,7 @@ mod tests {
 
     #[test]
     fn edges_that_cross_cover_no_more_than_both() {
-        // Two triangles on each other, hanging together by no corner: what one alone covers.
+        // Two triangles that overlap and share no corner: what each covers alone.
         let a = [p(0., 0.), p(6., 0.), p(0., 6.)];
         let b = [p(6., 5.), p(6., -1.), p(0., 5.)];
         assert_eq!(inner_rectangles(&[a, b]), []);

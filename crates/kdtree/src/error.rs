@@ -38,7 +38,7 @@ pub enum FaceError {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KdError {
-    /// A face is not one.
+    /// A face is invalid.
     #[error("face {face}: {kind}")]
     Face {
         /// Index of the face.
@@ -62,7 +62,7 @@ pub enum KdError {
     /// The threshold is not a number from 0 to 1.
     #[error("obscuration threshold {0} is not a number from 0 to 1")]
     Tau(f64),
-    /// The size of detail is not a number from 0 on.
+    /// The size of detail is not a number of at least 0.
     #[error("size of detail {0} is not a number from 0 on")]
     DetailBelow(f64),
     /// The view region has a lower corner above its upper one.
@@ -71,7 +71,7 @@ pub enum KdError {
     /// More faces than can be counted.
     #[error("{0} faces are more than a tree can hold")]
     TooManyFaces(usize),
-    /// The subdivision was given up; [`Options::max_cells`](crate::Options::max_cells) says when.
+    /// The subdivision has more cells than [`Options::max_cells`](crate::Options::max_cells).
     #[error("the scene falls into more than {limit} cells; raise the limit, the threshold tau, or the size of detail")]
     TooManyCells {
         /// The limit.

@@ -81,8 +81,8 @@ pub enum FaceClass {
 
 /// How `face` lies against the closed box `cell`. Exact: only compares coordinates. O(D).
 ///
-/// Looks at one face only. That several coplanar faces divide a cell together is seen by
-/// [`subdivide`](crate::subdivide), which unites them first.
+/// Looks at one face only. [`subdivide`](crate::subdivide) unites coplanar faces first, so it also recognises faces
+/// that divide a cell together.
 pub fn classify<const D: usize>(face: &AxialFace<D>, cell: &Aabb<D>) -> FaceClass {
     let a = face.axis;
     if !shares_measure(face, cell) {

@@ -11,17 +11,18 @@ use crate::tree::AxialTree;
 use sightlines_cells::{Point3, Scene};
 use sightlines_geometry::{Aabb, Point2, orient2d};
 
-/// For each given room, whether it is hollow: closed on all sides, also where the tree ends; nothing inside of its
-/// cells; and no triangle turns its front to them. Errs towards "no".
+/// For each given room, whether it is hollow: closed on all sides, including the ends of the tree; nothing is inside
+/// its cells; and no triangle faces them. Errs towards "no".
 pub(crate) fn hollow_rooms(
     scene: &Scene,
     survey: &Survey,
     faces: &[AxialFace<3>],
     tree: &AxialTree<3>,
     rooms: &Rooms,
-    asked: Vec<bool>,
+    candidates: Vec<bool>,
 ) -> Vec<bool> {
-    let mut hollow = Hollow { n_left: asked.iter().filter(|asked| **asked).count(), rooms: asked };
+    let mut hollow =
+        Hollow { n_left: candidates.iter().filter(|is_candidate| **is_candidate).count(), rooms: candidates };
     let ends = Ends::of(tree.bounds(), faces);
     let is_open = |cells: &[u32]| !cells.iter().all(|&c| ends.close(&tree.cells()[c as usize].bounds));
     for (room, cells) in rooms.cells.iter().enumerate() {

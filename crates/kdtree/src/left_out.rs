@@ -1,4 +1,4 @@
-//! Cells that no viewer can be in or look into: the insides of walls, and rooms without a way to them.
+//! Cells that no viewer can be in or look into: the insides of walls, and unreachable rooms.
 //!
 //! A room is left out as a whole or not at all, so no cell that stays loses a portal, and nothing that is
 //! seen from it changes.
@@ -32,8 +32,8 @@ pub(crate) fn left_out(
 ) -> Vec<Option<LeftOut>> {
     let rooms = Rooms::of(tree);
     let solid = solid_rooms(scene, survey, tree, &rooms);
-    let asked = solid.iter().map(|solid| !solid).collect();
-    let hollow = hollow_rooms(scene, survey, &found.faces, tree, &rooms, asked);
+    let candidates = solid.iter().map(|solid| !solid).collect();
+    let hollow = hollow_rooms(scene, survey, &found.faces, tree, &rooms, candidates);
     let in_region = |c: u32| view_region.is_none_or(|region| meet(&tree.cells()[c as usize].bounds, &region));
     let reachable = rooms.any(in_region);
     let why = |room: usize| match (solid[room], hollow[room], reachable[room]) {

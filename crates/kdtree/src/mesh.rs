@@ -1,4 +1,4 @@
-//! The pieces of an object: triangles that hang together by their corners.
+//! The pieces of an object: triangles connected by their corners.
 
 use crate::union_find::UnionFind;
 use sightlines_cells::{Point3, SceneObject};
@@ -13,7 +13,7 @@ pub(crate) struct Mesh {
     pub(crate) pieces: Vec<MeshPiece>,
 }
 
-/// Triangles that hang together by their corners.
+/// Triangles connected by their corners.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MeshPiece {
     /// Smallest box around it.
@@ -105,13 +105,13 @@ pub(crate) struct FlatTriangle {
     pub(crate) axis: usize,
     /// Where on it the triangle lies.
     pub(crate) at: f64,
-    /// Whether its front looks towards larger coordinates of the axis.
+    /// Whether its front faces larger coordinates of the axis.
     pub(crate) up: bool,
     /// Its corners, along the other axes ascending.
     pub(crate) corners: [Point2; 3],
 }
 
-/// What a triangle is to a k-d tree.
+/// How a k-d tree treats a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum TriangleKind {
     /// Perpendicular to an axis: all three corners have the same coordinate on it, to the last bit.
@@ -127,7 +127,7 @@ pub(crate) const fn others(axis: usize) -> [usize; 2] {
     [(axis == 0) as usize, 2 - (axis == 2) as usize]
 }
 
-/// Sorts a triangle. Exact.
+/// Classifies a triangle. Exact.
 pub(crate) fn kind_of(corners: &[Point3; 3]) -> TriangleKind {
     let [a, b, c] = corners;
     let Some(axis) = (0..3).find(|&k| a[k] == b[k] && b[k] == c[k]) else { return TriangleKind::Other };

@@ -27,8 +27,8 @@ pub struct PlanSubdivision {
     pub left_over: Vec<LineId>,
 }
 
-/// Sorts the lines of a plan: opaque and axis-parallel, opaque otherwise; lines that are not opaque
-/// are dropped. O(n).
+/// Separates the lines of a plan: opaque and axis-parallel, or opaque otherwise. Lines that are not opaque are dropped.
+/// O(n).
 pub fn plan_faces(plan: &Plan) -> PlanFaces {
     let mut out = PlanFaces::default();
     for (id, line) in (0u32..).map(LineId).zip(plan.lines()).filter(|(_, line)| line.opaque) {
@@ -49,14 +49,14 @@ fn axial_face(line: &PlanLine) -> Option<AxialFace<2>> {
 
 /// Cuts the box around all lines of `plan` along its opaque axis-parallel lines.
 ///
-/// Outside of [`Plan::bounds`] there are no cells, so a viewer there has no answer; between viewers
-/// inside, nothing is lost, as the box is convex. Errs towards "visible": lines that are not
-/// axis-parallel hide nothing, they are listed in [`PlanSubdivision::left_over`].
+/// Outside of [`Plan::bounds`] there are no cells, so a viewer there has no answer; between viewers inside, nothing is
+/// lost, as the box is convex. Errs towards "visible": lines that are not axis-parallel hide nothing; they are listed
+/// in [`PlanSubdivision::left_over`].
 ///
 /// Cost: see [`subdivide`].
 ///
 /// # Errors
-/// [`KdError::Empty`] and [`KdError::Flat`] for plans around which there is no room, [`KdError::Tau`],
+/// [`KdError::Empty`] and [`KdError::Flat`] for plans without lines or without extent along an axis, [`KdError::Tau`],
 /// [`KdError::TooManyCells`].
 pub fn subdivide_plan(plan: &Plan, options: &Options) -> Result<PlanSubdivision, KdError> {
     let PlanFaces { faces, left_over } = plan_faces(plan);
@@ -80,7 +80,7 @@ fn rectangle(cell: &AxialCell<2>) -> ConvexCell2 {
 
 fn planar_portal(portal: &AxialPortal<2>) -> Portal<Planar> {
     let (min, max) = (Point2::from_array(portal.min), Point2::from_array(portal.max));
-    // Who walks towards +x has +y on the left; who walks towards +y has -x there.
+    // Towards +x, the left is +y; towards +y, it is -x.
     let shape = if portal.axis == 0 { Portal2 { left: max, right: min } } else { Portal2 { left: min, right: max } };
     let low_side = 2 * portal.axis as u32;
     Portal { cells: portal.cells, sides: [low_side + 1, low_side], shape }

@@ -1,8 +1,8 @@
 //! Openings between cells: what faces leave of the walls that two cells share.
 //!
-//! Two cells are separated by the plane of exactly one node, the lowest above both. So each node looks
-//! after its own plane: it keeps what faces leave open of its cross-section, and hands that down to
-//! pairs of subtrees, one below and one above, until both are cells.
+//! Two cells are separated by the plane of exactly one node, the lowest above both. So each node handles its own plane:
+//! the part of its cross-section that faces leave open is passed down to pairs of subtrees, one below and one above,
+//! until both are cells.
 
 use crate::face::across;
 use crate::ranks::{RankBox, Ranks};

@@ -1,7 +1,7 @@
 //! Coordinates as ranks: the `i`-th smallest coordinate of an axis becomes the integer `i`.
 //!
-//! Ranks keep order and equality, which is all that cutting asks of coordinates, and turn "does this
-//! union cover that rectangle" into a count of integer squares: exact, without any rounding.
+//! Ranks keep order and equality, which is all that cutting needs, and turn "does this union cover that rectangle" into
+//! a count of integer squares: exact, without any rounding.
 
 use crate::face::{AxialFace, FaceClass, across, classify};
 use sightlines_geometry::Aabb;

@@ -88,7 +88,7 @@ fn slabs(rects: &[Rect], section: impl Fn(Vec<[u32; 2]>) -> Vec<[u32; 2]>) -> Ve
     done
 }
 
-/// Prolongs by a slab the open rectangles whose span is among `spans`, ends the others, opens the rest.
+/// Extends by a slab the open rectangles whose span is among `spans`, ends the others, opens the rest.
 fn continued(open: Vec<Rect>, slab: [u32; 2], spans: &[[u32; 2]], done: &mut Vec<Rect>) -> Vec<Rect> {
     let (kept, ended): (Vec<Rect>, Vec<Rect>) = open.into_iter().partition(|r| spans.binary_search(&r.v).is_ok());
     done.extend(ended);

@@ -21,7 +21,7 @@ impl Rooms {
         }
         let (mut of_cell, mut cells) = (Vec::new(), Vec::<Vec<u32>>::new());
         for cell in 0..tree.cells().len() as u32 {
-            // The least cell of a room represents it, so its number is known before the others need it.
+            // The least cell of a room represents it, so its number exists before the other cells look it up.
             let root = union.root(cell);
             let room = if root == cell { cells.len() as u32 } else { of_cell[root as usize] };
             if root == cell {

@@ -11,7 +11,7 @@ use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, Portal, Scene};
 use sightlines_geometry::{Aabb, check_coordinate};
 use sightlines_pvs::CellId;
 
-/// What became of a scene.
+/// Statistics of the subdivision of a scene.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SceneSummary {
     /// Triangles of all objects with an area that are perpendicular to an axis.
@@ -20,7 +20,7 @@ pub struct SceneSummary {
     pub n_empty_triangles: usize,
     /// All other triangles; they hide nothing.
     pub n_other_triangles: usize,
-    /// Below which size things were detail, in scene units.
+    /// Size below which things were detail, in scene units.
     pub detail_below: f64,
     /// How many objects were detail.
     pub n_detail_objects: usize,
@@ -50,7 +50,7 @@ pub struct SceneSubdivision {
     pub tree: AxialTree<3>,
     /// Cells and portals. Ids count the cells of the tree that are not left out, in the same order.
     pub graph: CellGraph<Axial>,
-    /// What became of the scene.
+    /// Statistics.
     pub summary: SceneSummary,
     /// For each object whether it was detail.
     pub detail: Vec<bool>,
@@ -63,9 +63,9 @@ pub struct SceneSubdivision {
 /// towards "visible" only.
 ///
 /// # What is left out
-/// Cells inside of solid things would be rows of a table that nobody asks for. Cells that portals join
-/// are left out together, and only if no portal leads to them from others; so nothing changes for the
-/// cells that stay. They are left out
+/// Cells inside solid things would be rows of a table that are never queried. Cells joined by portals are left out
+/// together, and only if no portal leads to them from others, so nothing changes for the cells that stay. They are left
+/// out
 /// * as *solid* if each of them is, all through, inside of a closed piece of an object (one that winds
 ///   around it counter-clockwise as seen from outside, less what hollows of the same object take away).
 ///   A closed piece that other things lie in is a house and no wall, and does not count;
@@ -73,20 +73,20 @@ pub struct SceneSubdivision {
 ///   triangles: the space between the two sheets of a wall;
 /// * as *unreachable* if a view region was given and none of them meets it.
 ///
-/// A closed room that shows the front of any triangle stays. If nothing at all would stay, all does.
+/// A closed room that shows the front of any triangle stays. If no cell would stay, all do.
 ///
 /// Cost: as [`scene_faces`](crate::scene_faces) and [`subdivide`]; to leave out cells, O(log n) for each
 /// pair of a triangle and a cell that it lies against, as a rule.
 ///
 /// # Errors
-/// [`KdError::Empty`] and [`KdError::Flat`] for scenes around which there is no room; [`KdError::Bounds`]
-/// and [`KdError::ViewRegion`] for a view region that is no box; [`KdError::Tau`],
+/// [`KdError::Empty`] and [`KdError::Flat`] for scenes without faces or without extent along an axis;
+/// [`KdError::Bounds`] and [`KdError::ViewRegion`] for a view region that is no box; [`KdError::Tau`],
 /// [`KdError::DetailBelow`], [`KdError::TooManyCells`].
 pub fn subdivide_scene(scene: &Scene, options: &SceneOptions) -> Result<SceneSubdivision, KdError> {
     SceneCutter::default().cut(scene, options)
 }
 
-/// Cuts scenes one after the other. What the next one has in common with the last is not looked at again.
+/// Cuts scenes one after the other. What a scene shares with the last one is not processed again.
 ///
 /// Memory: about that of the last scene.
 #[derive(Debug, Clone, Default)]
@@ -97,8 +97,8 @@ pub struct SceneCutter {
 impl SceneCutter {
     /// Cuts a scene as [`subdivide_scene`] does, with the same result.
     ///
-    /// Cost: as there, but for finding the faces: O(vertices) for objects that the last scene had too, and what planes
-    /// take on which something differs.
+    /// Cost: as there, except for finding the faces: O(vertices) for objects that the last scene had too, and the cost
+    /// of planes on which something differs.
     ///
     /// # Errors
     /// As [`subdivide_scene`].
@@ -133,7 +133,7 @@ impl SceneSubdivision {
             out.iter().map(|o| if o.is_none() { next.next().map(CellId) } else { None }).collect();
         let boxes = tree.cells().iter().zip(&cells).filter(|(_, id)| id.is_some());
         let boxes = boxes.map(|(cell, _)| BoxCell { bounds: cell.bounds }).collect();
-        // Of a portal, both cells are left out or none.
+        // The graph leaves out both cells of a portal or neither.
         let inner = |p: &AxialPortal<3>| match p.cells.map(|c| cells[c.idx()]) {
             [Some(a), Some(b)] => Some(portal(p, [a, b])),
             _ => None,
@@ -149,7 +149,7 @@ impl SceneSubdivision {
         all.filter(|(_, id)| id.is_none()).map(|(cell, _)| cell.bounds).collect()
     }
 
-    /// The cell of the graph that a cell of the tree is; none if it is left out.
+    /// The cell of the graph that equals a cell of the tree; none if it is left out.
     ///
     /// # Panics
     /// If the tree has no such cell.
@@ -157,9 +157,8 @@ impl SceneSubdivision {
         self.cells[leaf.idx()]
     }
 
-    /// The one cell of the graph that `p`, in scene units, is counted to; none outside the tree's bounds,
-    /// for NaN, and inside of what is left out. On the border between the two it is a cell that is not
-    /// left out.
+    /// The one cell of the graph that `p`, in scene units, is assigned to; none outside the tree's bounds, for NaN, and
+    /// inside of what is left out. On the border between the two it is a cell that is not left out.
     pub fn locate(&self, p: [f64; 3]) -> Option<CellId> {
         let inside = self.tree.locate(p)?;
         self.cell_of(inside).or_else(|| self.locate_all(p).first().copied())

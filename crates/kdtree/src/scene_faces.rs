@@ -1,4 +1,4 @@
-//! From triangles to faces: what of a scene hides, and what is only drawn.
+//! From triangles to faces: which parts of a scene hide, and which are only drawn.
 
 use crate::cache::{FaceCache, PlaneFaces, Shape, total_order};
 use crate::coplanar::{FlatRect, inner_rectangles};
@@ -27,17 +27,16 @@ pub struct SceneFaces {
     pub n_small_regions: usize,
     /// For each object whether it is detail.
     pub detail: Vec<bool>,
-    /// Below which size things are detail, in scene units.
+    /// Size below which things are detail, in scene units.
     pub detail_below: f64,
 }
 
 /// Finds the faces of a scene: the rectangles inside of the union of its axis-parallel triangles.
 ///
 /// A triangle counts if all its corners have the same coordinate on an axis, to the last bit. The
-/// triangles of a plane are united, whichever way they look: all are opaque from both sides. Where the
-/// union has slanted borders, rectangles inside of it are taken that end at coordinates of its corners;
-/// where all borders are axis-parallel, the rectangles are all of it. So faces never hide more than
-/// triangles do, by exact predicates.
+/// triangles of a plane are united, whichever way they face: all are opaque from both sides. Where the union has
+/// slanted borders, rectangles inside it are taken that end at coordinates of its corners; where all borders are
+/// axis-parallel, the rectangles are the whole union. So, by exact predicates, faces never hide more than triangles do.
 ///
 /// Left out as detail are, with [`SceneOptions::detail_below`] as the size:
 /// * objects whose box is smaller in every direction;
@@ -111,7 +110,7 @@ pub(crate) struct Survey {
 }
 
 impl Survey {
-    /// Sorts a scene; what is kept of the last one is used for objects that are the same, and replaced.
+    /// Classifies a scene. Equal objects of the last scene are taken from the cache, which is then replaced.
     pub(crate) fn of(scene: &Scene, options: &SceneOptions, cache: &mut FaceCache) -> Self {
         let shapes = cache.shapes_of(scene);
         let boxes: Vec<Aabb<3>> = shapes.iter().map(|shape| shape.bounds).collect();
@@ -131,7 +130,7 @@ impl Survey {
         around_all(self.shapes.iter().map(|shape| &shape.bounds))
     }
 
-    /// Whether a piece of an object that is not detail is.
+    /// Whether a piece is detail although its object is not.
     pub(crate) fn is_small_thing(&self, object: usize, piece: u32) -> bool {
         let p = &self.meshes[object].pieces[piece as usize];
         p.closed && largest_side(&p.bounds) < self.detail_below

@@ -6,8 +6,8 @@ use sightlines_geometry::Aabb;
 /// How to cut a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneOptions {
-    /// Where a viewer can be, in scene units; the scene's box if none is given. What is cut is the box
-    /// around it and the scene. Rooms that no way leads to from a given region are left out.
+    /// Where a viewer can be, in scene units; the scene's box if none is given. The box around it and the scene is cut.
+    /// Rooms that cannot be reached from a given region are left out.
     pub view_region: Option<Aabb<3>>,
     /// Obscuration threshold, see [`Options::tau`].
     pub tau: f64,

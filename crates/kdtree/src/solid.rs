@@ -1,9 +1,9 @@
-//! Rooms inside of solid things.
+//! Rooms inside solid things.
 //!
-//! A closed piece of an object winds around each point off it a whole number of times: once around what
-//! it encloses, if its triangles look outwards; less than no times if they look inwards. A cell that none
-//! of its triangles is inside of is as a whole inside or outside. The number is found on a ray: it grows
-//! where the ray leaves through a triangle's front, and sinks where it enters.
+//! A closed piece of an object winds an integer number of times around each point off it: once around what it encloses
+//! if its triangles face outwards, a negative number of times if they face inwards. A cell that contains no part of its
+//! triangles is wholly inside or wholly outside. The number is found along a ray: it grows where the ray leaves through
+//! a triangle's front and falls where it enters.
 
 use crate::mesh::FlatTriangle;
 use crate::rooms::Rooms;
@@ -36,7 +36,7 @@ struct Sheet {
 /// How often shells wind around a point, for those that do.
 type Windings = Vec<(u32, i32)>;
 
-/// For each room whether each of its cells is inside of solid matter; see
+/// For each room, whether each of its cells is inside solid matter; see
 /// [`subdivide_scene`](crate::subdivide_scene). Errs towards "no".
 pub(crate) fn solid_rooms(scene: &Scene, survey: &Survey, tree: &AxialTree<3>, rooms: &Rooms) -> Vec<bool> {
     let mut shells = Shells::of(survey);
@@ -44,10 +44,10 @@ pub(crate) fn solid_rooms(scene: &Scene, survey: &Survey, tree: &AxialTree<3>, r
     let around = shells.around(tree, &first);
     let maybe: Vec<bool> = around.iter().map(|w| shells.is_matter(w)).collect();
     // Most rooms end here: their first cell is outside.
-    let asked: Vec<u32> =
+    let maybe_solid: Vec<u32> =
         (0..tree.cells().len() as u32).filter(|&c| maybe[rooms.of_cell[c as usize] as usize]).collect();
     let mut windings: Vec<Windings> = vec![Vec::new(); tree.cells().len()];
-    for (&cell, w) in asked.iter().zip(shells.around(tree, &asked)) {
+    for (&cell, w) in maybe_solid.iter().zip(shells.around(tree, &maybe_solid)) {
         windings[cell as usize] = w;
     }
     shells.forget_divided(scene, survey, tree, &mut windings);
@@ -106,8 +106,8 @@ impl Shells {
         }
     }
 
-    /// How often shells wind around the middle of each of `cells`. Nothing for a cell without a middle
-    /// that is inside of it, one unit in the last place thin.
+    /// How often shells wind around the middle of each of `cells`. Nothing for a cell so thin, one unit in the last
+    /// place, that no double is strictly inside.
     fn around(&self, tree: &AxialTree<3>, cells: &[u32]) -> Vec<Windings> {
         cells
             .iter()
@@ -131,8 +131,8 @@ impl Shells {
         sums(around.into_iter())
     }
 
-    /// Whether a point with these windings is inside of an object: of its shells, more than that hollows
-    /// take away. Shells that contain other things do not count.
+    /// Whether a point with these windings is inside an object: its shells add more than its hollows subtract. Shells
+    /// that contain other things do not count.
     fn is_matter(&self, windings: &Windings) -> bool {
         let counted = windings.iter().filter(|w| !self.shells[w.0 as usize].contains);
         sums(counted.map(|&(shell, n)| (self.shells[shell as usize].object as u32, n))).iter().any(|&(_, n)| n > 0)
@@ -148,7 +148,7 @@ impl Shells {
         });
     }
 
-    /// Finds the shells that other things lie in, whole. Hollows are no things.
+    /// Marks the shells that contain other things as a whole. Hollows do not count as things.
     fn find_containers(&mut self, survey: &Survey, tree: &AxialTree<3>, windings: &[Windings]) {
         for (object, mesh) in survey.meshes.iter().enumerate() {
             if survey.detail[object] {
@@ -160,8 +160,8 @@ impl Shells {
         }
     }
 
-    /// Marks the shells that a thing with this box lies in: those around all cells that it meets. A copy
-    /// in the same place is not in it.
+    /// Marks the shells that contain a thing with this box: those around all cells that it meets. A copy of the thing
+    /// in the same place does not contain it.
     fn mark_around(&mut self, own: Option<u32>, thing: &Aabb<3>, tree: &AxialTree<3>, windings: &[Windings]) {
         let mut around: Option<Vec<u32>> = None;
         visit_cells(tree, thing, [Meets::Inside; 3], |cell| {
@@ -190,9 +190,8 @@ impl Sheet {
         Self { shell, at: flat.at, corners: flat.corners, u: span(|p| p.x), v: span(|p| p.y) }
     }
 
-    /// How often the triangle's outline winds around a point, seen along the ray: once if the ray leaves
-    /// through its front, minus once if it enters. A point on an edge is counted to the triangle on one
-    /// side of it, always the same.
+    /// How often the triangle's outline winds around a point, seen along the ray: once if the ray leaves through its
+    /// front, minus once if it enters. A point on an edge always belongs to the triangle on the same side of that edge.
     fn winding(&self, p: Point3) -> i32 {
         if p[1] < self.u[0] || p[1] > self.u[1] || p[2] < self.v[0] || p[2] > self.v[1] {
             return 0;
@@ -208,7 +207,7 @@ impl Sheet {
     }
 }
 
-/// Adds up what belongs to the same number; zeros vanish.
+/// Adds up the values of each key; keys with the sum zero vanish.
 fn sums(parts: impl Iterator<Item = (u32, i32)>) -> Windings {
     let mut parts: Windings = parts.filter(|p| p.1 != 0).collect();
     parts.sort_unstable();

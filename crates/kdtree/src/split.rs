@@ -2,21 +2,21 @@
 //!
 //! 1. Among the planes that faces cover all across the cell: the axis that has most of them (then the
 //!    longer side of the cell, then the lower axis), and of that axis the lower median.
-//! 2. Else among the planes of which faces cover at least the share `tau`: the one that cleaves fewest
+//! 2. Otherwise among the planes of which faces cover at least the share `tau`: the one that cleaves fewest
 //!    pieces (then the one nearest to the lower median of its axis, then the lower axis, then the lower
 //!    coordinate).
-//! 3. Else none: the cell is a leaf.
+//! 3. Otherwise none: the cell is a leaf.
 //!
 //! Rule 1 is decided exactly. Only choices between two right answers, the length of sides and the
 //! distance to a median, are made on rounded numbers; they are the same on every machine.
-//! Counted are the pieces inside the cell: to cleave one that lies on the cell's border costs nothing,
-//! as it divides no cell any more.
+//! Only pieces inside the cell count: cleaving one on the cell's border costs nothing, because it no longer divides any
+//! cell.
 
 use crate::ranks::{Piece, RankBox, Ranks};
 use crate::region::{Rect, covers};
 
-/// By how much a rounded share counts for more: the sum of n positive products loses at most a share of
-/// about n * 2^-53 to rounding, so with up to 2^22 pieces a share equal to the threshold always splits.
+/// Factor by which a rounded share is increased: the sum of n positive products loses at most a share of about n *
+/// 2^-53 to rounding, so with up to 2^22 pieces a share equal to the threshold always splits.
 const TIES_SPLIT: f64 = 1.0 + 1.0 / (1u64 << 30) as f64;
 
 /// A plane inside a cell.
@@ -57,7 +57,7 @@ fn candidates<const D: usize>(ranks: &Ranks<D>, cell: &RankBox<D>, pieces: &[Pie
     out
 }
 
-/// Whether a plane's pieces cover at least the share `tau` of the cell's cross-section; ties say yes.
+/// Whether a plane's pieces cover at least the share `tau` of the cell's cross-section; a tie counts as covered.
 fn obscured_enough<const D: usize>(ranks: &Ranks<D>, cell: &RankBox<D>, group: &[Piece<D>], tau: f64) -> bool {
     let axis = usize::from(group[0].axis);
     let covered: f64 = group.iter().map(|p| ranks.measure_across(&p.extent, axis)).sum();

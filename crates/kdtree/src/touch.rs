@@ -27,8 +27,8 @@ impl Meets {
     }
 }
 
-/// Calls `visit` for every cell that the closed box `extent` meets as `meets` says, axis by axis, in
-/// ascending order, until it returns false. Exact: only compares coordinates.
+/// Calls `visit` for every cell that the closed box `extent` meets, as `meets` specifies for each axis, in ascending
+/// order, until it returns false. Exact: only compares coordinates.
 pub(crate) fn visit_cells<const D: usize>(
     tree: &AxialTree<D>,
     extent: &Aabb<D>,

@@ -81,11 +81,10 @@ impl<const D: usize> AxialTree<D> {
         self.n_detail
     }
 
-    /// The one cell that `p`, in scene units, is counted to; none outside the bounds or for NaN.
+    /// The one cell that `p`, in scene units, is assigned to; none outside the bounds or for NaN.
     ///
-    /// On a splitting plane the cell above it is taken: `x < at` goes low, all else high. A viewer on
-    /// a border also sees from the other side; [`Self::locate_all`] is the conservative question.
-    /// O(depth).
+    /// On a splitting plane the cell above it is taken: `x < at` goes low, all else high. A viewer on a border also
+    /// sees from the other side; [`Self::locate_all`] is the conservative query. O(depth).
     pub fn locate(&self, p: [f64; D]) -> Option<CellId> {
         if !self.bounds.contains(p) {
             return None;

@@ -42,7 +42,7 @@ fn explain(doors: &[Portal2]) -> Result<(), SightlineError> {
     }
     match stab(doors) {
         LpAnswer::Open { margin } => println!("  the linear program agrees, with a margin of {margin:.3}"),
-        answer => println!("  the linear program says: {answer:?}"),
+        answer => println!("  the linear program: {answer:?}"),
     }
     Ok(())
 }
@@ -56,7 +56,7 @@ fn main() -> Result<(), SightlineError> {
     doors.push(door(9.0, 0.0, 2.0));
     explain(&doors)?;
 
-    // A search asks the same of a funnel, door by door, and takes doors back on its way.
+    // A search drives a funnel door by door in the same way, and undoes doors when it backtracks.
     let mut funnel = Funnel::new(Adaptive);
     funnel.start(doors[0]);
     let passed = doors[1..].iter().take_while(|&&portal| funnel.push(portal).is_some()).count();

@@ -19,8 +19,8 @@ pub trait Proof<Portal> {
 
 /// Decides, portal by portal, whether lines pass through a growing sequence.
 ///
-/// A search drives it depth first: `start`, then `push` and `undo` in stack order. It is the border between the
-/// search, which knows cells, and the geometry, which knows lines. Implemented for doors in the plane
+/// A search drives it depth first: `start`, then `push` and `undo` in stack order. It separates the search, which
+/// handles cells, from the geometry, which handles lines. Implemented for doors in the plane
 /// ([`Funnel`](crate::Funnel)), axis-aligned doors ([`AxialStabber`](crate::AxialStabber)) and convex polygons
 /// ([`ConvexSequence`](crate::ConvexSequence)); [`conformance`](crate::conformance) tests other implementations.
 ///
@@ -39,7 +39,7 @@ pub trait Stabber: Clone + Send {
     type Portal: Clone;
     /// A region that holds a target.
     type Bounds;
-    /// What takes a push back.
+    /// The record that undoes a push.
     type Undo: Copy;
     /// Evidence of a passable sequence.
     type Line: Witness<Self::Portal>;
@@ -48,13 +48,13 @@ pub trait Stabber: Clone + Send {
     /// Why a sequence was not decided; [`Infallible`] for exact methods.
     type Doubt;
 
-    /// Forgets everything and begins with the lines through one portal.
+    /// Resets to the lines through one portal.
     fn start(&mut self, portal: Self::Portal);
 
     /// Adds a portal; `None` and no change if no line passes.
     fn push(&mut self, portal: Self::Portal) -> Option<Self::Undo>;
 
-    /// Takes back the latest push that was not taken back yet.
+    /// Undoes the latest push that is not undone yet.
     fn undo(&mut self, undo: Self::Undo);
 
     /// Whether a line through the sequence may meet something inside `bounds` beyond its last portal.

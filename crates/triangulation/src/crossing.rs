@@ -39,9 +39,9 @@ pub(crate) fn cuts_at_crossing(l: &Piece, m: &Piece, ends: &PointGrid) -> Crossi
     Crossing { at: p, cuts, rounded: true }
 }
 
-/// An end point of either line that is within 4 `reach` of the other line's carrier. What is computed in doubles has an
-/// error of a few units in the last place, so the test uses 8 `reach`: more end points than necessary are taken, which
-/// is allowed for any.
+/// An end point of either line that is within 4 `reach` of the other line's carrier. The distance is computed in
+/// doubles, with an error of a few units in the last place, so the test uses 8 `reach`: it may accept more end points
+/// than necessary, which is always allowed.
 fn near_end(l: &Piece, m: &Piece, reach: f64) -> Option<Point2> {
     let near = |end: Point2, line: &Piece| {
         let d = line.b - line.a;
@@ -116,7 +116,7 @@ fn by_integers(&[ax, ay, bx, by, cx, cy, dx, dy]: &[i128; 8]) -> (f64, f64) {
     // Not zero: the lines cross properly.
     let denominator = ux * vy - uy * vx;
     let numerator = (cx - ax) * vy - (cy - ay) * vx;
-    // Whole part and rest have one sign, so nothing cancels in their sum.
+    // Whole part and remainder have the same sign, so nothing cancels in their sum.
     let at = |from: i128, along: i128| {
         let n = from * denominator + numerator * along;
         (n / denominator) as f64 + (n % denominator) as f64 / denominator as f64

@@ -1,6 +1,7 @@
 //! Buckets on a square grid, to find segments and points that may be near each other.
 //!
-//! Buckets only narrow a search down: what is near shares a bucket, and the caller tests exactly what shares one.
+//! Buckets only narrow a search: things near each other share a bucket, and the caller tests those that share one
+//! exactly.
 
 use sightlines_geometry::{Aabb, Point2, Segment2};
 
@@ -8,7 +9,7 @@ use sightlines_geometry::{Aabb, Point2, Segment2};
 #[derive(Debug, Clone)]
 struct Frame {
     min: Point2,
-    /// Buckets in one unit of length, along each axis.
+    /// Buckets per unit of length, along each axis.
     scale: Point2,
     n: usize,
 }
@@ -32,7 +33,7 @@ impl Frame {
         Self { min, scale: Point2::new(scale(0), scale(1)), n }
     }
 
-    /// The column or row of a coordinate. It grows with the coordinate, because each operation does.
+    /// The column or row of a coordinate. Monotonic in the coordinate, because each operation is.
     fn column(&self, x: f64) -> usize {
         (((x - self.min.x) * self.scale.x) as usize).min(self.n - 1)
     }
@@ -190,7 +191,7 @@ mod tests {
         }
     }
 
-    /// The impostor: a grid of many buckets does tell things apart.
+    /// The impostor: a grid of many buckets does separate things that are far apart.
     #[test]
     fn far_segments_do_not_share_a_bucket() {
         let segments: Vec<Segment2> = (0..100)

@@ -13,8 +13,8 @@
 //!
 //! # On which side it errs
 //! All end points are input points and all predicates are exact, so plans whose lines meet only in
-//! common end points or touch with an end point are cut exactly. A proper crossing needs a new point;
-//! [`noding`] says how it is rounded and why no open set of sightlines is lost by that.
+//! common end points or touch with an end point are cut exactly. A proper crossing needs a new point; [`noding`]
+//! explains how it is rounded and why no open set of sight lines is lost.
 
 mod crossing;
 mod grid;
@@ -43,7 +43,7 @@ pub enum TriangulationError {
         /// The limit.
         limit: usize,
     },
-    /// The triangulation refused a vertex.
+    /// The triangulation rejected a vertex.
     #[error("vertex ({x}, {y}) cannot be triangulated")]
     Vertex {
         /// Its coordinate.
@@ -53,7 +53,7 @@ pub enum TriangulationError {
     },
 }
 
-/// What the subdivision did, beside the cells.
+/// Statistics of a subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Summary {
     /// Triangles before merging.
@@ -108,7 +108,7 @@ pub fn subdivide(plan: &Plan) -> Result<(CellGraph<Planar>, Summary), Triangulat
 fn corners_around(plan: &Plan) -> Vec<Point2> {
     let bounds = plan.bounds();
     let size = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
-    // The triangulation takes coordinates up to twice what a plan may have.
+    // The triangulation accepts coordinates up to twice the limit of a plan.
     let limit = 2.0 * sightlines_geometry::coordinate::MAX_MAGNITUDE;
     let [x, y] = [0, 1].map(|k| [(bounds.min[k] - size).max(-limit), (bounds.max[k] + size).min(limit)]);
     x.into_iter().flat_map(|x| y.map(|y| Point2::new(x, y))).collect()

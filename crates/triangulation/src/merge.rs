@@ -1,15 +1,15 @@
 //! Merging triangles into convex cells, and the graph of what remains.
 //!
-//! An edge between two cells goes if the cell without it is convex and nothing is lost: the edge blocks
-//! nothing, and both sides have the same groups. Longest edges first, then by index: the rule of Hertel
-//! and Mehlhorn with a fixed order.
+//! An edge between two cells is removed if the merged cell is convex and no information is lost: the edge blocks
+//! nothing, and both sides have the same groups. Edges are tried longest first, then by index: the rule of Hertel and
+//! Mehlhorn in a fixed order.
 
 use crate::mesh::{Mesh, OUTSIDE};
 use crate::regions::Regions;
 use sightlines_cells::{CellGraph, CellId, ConvexCell2, Planar, graph::Portal};
 use sightlines_geometry::{Point2, Portal2, along, orient2d};
 
-/// Cells as rings of edges, while edges are taken out.
+/// Cells as rings of edges, while edges are removed.
 struct Rings<'a> {
     mesh: &'a Mesh,
     next: Vec<u32>,
@@ -29,7 +29,7 @@ impl<'a> Rings<'a> {
         self.mesh.vertices[self.mesh.edges[edge as usize].from as usize]
     }
 
-    /// Whether the cell stays convex at both ends of `edge` if it goes.
+    /// Whether the cell stays convex at both ends of `edge` if the edge is removed.
     fn convex_without(&self, edge: u32, twin: u32) -> bool {
         let corner = |before: u32, after: u32| {
             let (from, at, to) = (self.start(before), self.start(after), self.start(self.next[after as usize]));
@@ -69,8 +69,7 @@ fn open(mesh: &Mesh, edge: u32) -> bool {
     e.twin != OUTSIDE && e.line.is_none_or(|l| !l.opaque)
 }
 
-/// Merges triangles and builds the graph. With `seen_only`, cells that no group can be seen from are
-/// left out.
+/// Merges triangles and builds the graph. With `seen_only`, cells from which no group can be seen are left out.
 pub(crate) fn convex_cells(mesh: &Mesh, regions: &Regions, seen_only: bool) -> CellGraph<Planar> {
     let mut rings = Rings::new(mesh);
     let groups_of = |edge: u32| &regions.groups[regions.of_triangle[edge as usize / 3] as usize];
@@ -184,7 +183,7 @@ fn portals(rings: &Rings<'_>, ordered: &[Vec<u32>], cell_of: &[u32], side_of: &[
                 continue;
             }
             let twin = mesh.edges[first as usize].twin;
-            // The cell is on the left of the run: who leaves it has the run's start on the right.
+            // The cell is on the left of the run, so a line that leaves it has the run's start on its right.
             let shape = Portal2 { left: rings.start(rings.next[last as usize]), right: rings.start(first) };
             let sides = [side_of[first as usize], side_of[twin as usize]];
             portals.push(Portal { cells: [CellId(cell), CellId(to)], sides, shape });

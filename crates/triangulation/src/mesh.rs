@@ -54,7 +54,7 @@ impl Mesh {
     }
 }
 
-/// A vertex that knows its index.
+/// A vertex with its index.
 #[derive(Debug, Clone, Copy)]
 struct Vertex {
     position: spade::Point2<f64>,
@@ -68,7 +68,7 @@ impl HasPosition for Vertex {
     }
 }
 
-/// What the pieces between two vertices say together, along the edge from the lower index to the higher.
+/// The combined properties of the pieces between two vertices, along the edge from the lower index to the higher.
 #[derive(Debug, Clone, Default)]
 struct EdgeAttributes {
     opaque: bool,
@@ -135,8 +135,8 @@ fn constrained<'a>(
     }
     let edges = lines.map(|&(a, b)| [a as usize, b as usize]).collect();
     let first = vertices.first().copied().unwrap_or_default();
-    // Noding leaves no conflict; a constraint that conflicted all the same would be left out, which
-    // removes a wall: towards visible.
+    // Noding leaves no conflict. A constraint that conflicts nevertheless is dropped; that removes a wall, which errs
+    // towards visible.
     Cdt::try_bulk_load_cdt(all, edges, |_| {}).map_err(|_| TriangulationError::Vertex { x: first.x, y: first.y })
 }
 

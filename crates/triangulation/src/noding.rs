@@ -4,7 +4,7 @@
 //! line is cut there; no new point is made. Where two lines cross properly in a point X, a point P is
 //! needed that both can be cut at. Distances below are in terms of `reach`, 2^-49 max(|x|, |y|) at P.
 //!
-//! * Where the crossing of axis-parallel lines, or luck, makes X a pair of doubles, P is X.
+//! * If X is a pair of doubles, as for axis-parallel lines, P is X.
 //! * Otherwise P is one of the doubles around X, at most `reach` away, and preferably one on a line that
 //!   blocks.
 //!
@@ -29,15 +29,15 @@
 //! chosen so that none lies between a wall and its bent pieces; where no choice avoids it, the piece that
 //! sweeps over it no longer blocks.
 //!
-//! The pieces are then taken for lines and cut again until nothing crosses. The argument holds for each
-//! round, with the walls of the round before for the true ones, so it holds for all.
+//! The pieces are then treated as lines and cut again until nothing crosses. The argument holds for each round, with
+//! the walls of the previous round as the true ones, and therefore for all rounds.
 //!
 //! Regions narrower than `reach` may vanish where a rounded crossing is next to an end or to another
 //! crossing, and with them a side that names a group. So the lines that meet there name all their groups
 //! on both sides ([`Noded::extra`]).
 //!
-//! What remains is the ordinary limit of a rounded model: a viewer who stands within `reach` of a bent
-//! wall may be counted to the cell on the other side of it.
+//! What remains is the ordinary limit of a rounded model: a viewer within `reach` of a bent wall may be located in the
+//! cell on its other side.
 
 use crate::TriangulationError;
 use crate::crossing::cuts_at_crossing;
@@ -53,9 +53,9 @@ use sightlines_geometry::{Point2, Segment2};
 pub struct Noded {
     /// Pieces of the plan's lines. Pieces may repeat.
     pub pieces: Vec<Piece>,
-    /// For each line, groups that both its sides name beside their own; ascending.
+    /// For each line, groups that both of its sides name in addition to their own; ascending.
     pub extra: Vec<Vec<u32>>,
-    /// Groups that count as present everywhere, because the piece that named them had to go.
+    /// Groups that count as present everywhere, because the piece that named them was removed.
     pub everywhere: Vec<u32>,
     /// Crossings whose point had to be rounded off a line.
     pub n_rounded_crossings: usize,
@@ -63,11 +63,11 @@ pub struct Noded {
     pub n_dropped_pieces: usize,
 }
 
-/// How often pieces of pieces are cut before those that still cross are given up. Crossings of bent
-/// pieces need two lines within a rounding error of each other, so a second round is rare already.
+/// Number of rounds of cutting, after which pieces that still cross are removed. Bent pieces cross only if two lines
+/// are within a rounding error of each other, so even a second round is rare.
 const MAX_ROUNDS: usize = 8;
 
-/// Most places where lines meet that are cut; each makes up to four pieces.
+/// Largest number of places where lines meet; each makes up to four pieces.
 pub const MAX_MEETINGS: usize = 1 << 19;
 
 /// Cuts all lines of `plan` where they meet. Cost: O(n sqrt(n)) for n lines of any length, plus the
@@ -192,7 +192,7 @@ fn cut(plan: &Plan, noded: &mut Noded, meetings: &[Meeting]) {
     }
 }
 
-/// Lets lines name all their groups on both sides where rounding may swallow a region: where a rounded
+/// Makes lines name all their groups on both sides where rounding may swallow a region: where a rounded
 /// crossing is next to another one on the same line, or next to an end of one of its lines.
 fn blur_crowds(plan: &Plan, extra: &mut [Vec<u32>], lines: &[Piece], own: usize, crossings: &mut [(Point2, usize)]) {
     crossings.sort_by(|(p, i), (q, j)| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(j)));
@@ -211,7 +211,7 @@ fn blur_crowds(plan: &Plan, extra: &mut [Vec<u32>], lines: &[Piece], own: usize,
     }
 }
 
-/// Lets lines name all their groups on both sides.
+/// Makes lines name all their groups on both sides.
 fn blur(plan: &Plan, extra: &mut [Vec<u32>], lines: &[u32]) {
     let side = |l: &u32| [plan.lines()[*l as usize].left, plan.lines()[*l as usize].right];
     let names: Vec<u32> = lines.iter().flat_map(side).flatten().collect();
@@ -255,7 +255,7 @@ fn pieces(line: &Piece, mut cuts: Vec<Cut>) -> Vec<Piece> {
     pieces
 }
 
-/// Takes out pieces until none cross or overlap any more. Their groups count as present everywhere.
+/// Removes pieces until none cross or overlap. Their groups count as present everywhere.
 fn give_up_crossings(plan: &Plan, noded: &mut Noded) -> Result<(), TriangulationError> {
     loop {
         let meetings = find_meetings(&noded.pieces)?;

@@ -12,7 +12,7 @@ pub(crate) struct Regions {
     pub(crate) groups: Vec<Vec<u32>>,
 }
 
-/// Floods triangles across edges that are no lines, and collects what the lines around say.
+/// Flood-fills triangles across edges that are not lines, and collects the groups that the surrounding lines name.
 pub(crate) fn label(mesh: &Mesh, everywhere: &[u32]) -> Regions {
     let mut of_triangle = vec![u32::MAX; mesh.n_triangles()];
     let mut n_regions = 0u32;

@@ -84,8 +84,8 @@ fn covered(mut intervals: Vec<(f64, f64)>) -> f64 {
     sum
 }
 
-/// Every side of every cell is wall, portal or hull, and never two of them. Walls may overlap; other
-/// cells say what is hull: what no other cell touches.
+/// Every side of every cell is wall, portal or hull, and never two of them. Walls may overlap; a part of a side is hull
+/// if no other cell touches it.
 fn check_sides(graph: &CellGraph<Planar>, walls: &[Wall]) {
     for id in graph.cell_ids() {
         let polygon = &graph.cell(id).polygon;

@@ -62,8 +62,8 @@ fn apply(objects: &mut Vec<SceneObject>, options: &mut SceneOptions, edit: &Edit
     }
 }
 
-/// Invariant: whatever was cut before, a scene is cut as if it were the first. The impostor, who keeps the result of the
-/// scene before, is found out.
+/// Invariant: whatever was cut before, a scene is cut as if it were the first. The impostor, which keeps the result of
+/// the previous scene, is detected.
 #[test]
 fn what_is_kept_changes_nothing() {
     let (n_cut, n_changed) = (Cell::new(0u32), Cell::new(0u32));

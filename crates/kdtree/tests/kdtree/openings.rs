@@ -29,8 +29,8 @@ fn check_borders<const D: usize>(tree: &AxialTree<D>) {
     assert!(order.is_sorted(), "portals are ordered by cells and place");
 }
 
-/// No two pieces of an opening are a rectangle together along the first axis across: pieces depend on
-/// the opening alone, not on what was cut elsewhere on its plane.
+/// No two pieces of an opening together form a rectangle along the first axis across: pieces depend on the opening
+/// alone, not on what was cut elsewhere on its plane.
 fn check_joined<const D: usize>(tree: &AxialTree<D>) {
     for (p, q) in tree.portals().iter().flat_map(|p| tree.portals().iter().map(move |q| (p, q))) {
         let along = (0..D).find(|&k| k != p.axis).expect("there is an axis across");
@@ -95,7 +95,7 @@ fn portals_that_ignore_faces_are_found_out() {
     let tree = cut(&walls, 4, 0.0);
     let impostor = all_shared_walls(&tree);
     assert_eq!(impostor.len(), 1);
-    assert!(check_connectivity(&walls, 4, tree.cells(), &impostor).is_err(), "flood fill knows the wall");
+    assert!(check_connectivity(&walls, 4, tree.cells(), &impostor).is_err(), "flood fill stops at the wall");
     assert!(check_openings(&walls, 4, tree.cells(), &impostor).is_err());
     assert!(check_connectivity(&walls, 4, tree.cells(), tree.portals()).is_ok());
 }

@@ -85,7 +85,7 @@ fn portals(out: &SceneSubdivision) -> impl Iterator<Item = [CellId; 2]> + '_ {
 }
 
 proptest! {
-    /// Invariant: the insides of boxes are left out, the rest stays and hangs together as flood fill says.
+    /// Invariant: the insides of boxes are left out; the rest stays and is connected as flood fill finds.
     #[test]
     fn left_out_is_matter(boxes in prop::collection::vec(cube(SIDE), 1..6)) {
         let out = cut(boxes_as_objects(&boxes), false);

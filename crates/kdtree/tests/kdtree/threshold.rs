@@ -76,8 +76,8 @@ fn a_larger_threshold_gives_fewer_cells_in_an_office() {
 
 #[test]
 fn a_larger_threshold_may_also_give_more_cells() {
-    // The threshold takes away the plane that would have cleaved least, and a worse one is used first:
-    // the sweep is no monotone function of the threshold, only its ends are ordered.
+    // The threshold drops the plane that would have cleaved least, and a worse one is used first: the number of cells
+    // is not monotonic in the threshold; only its ends are ordered.
     let walls = [
         AxialFace::new(1, [1.0, 4.0], [6.0, 4.0]),
         AxialFace::new(0, [5.0, 0.0], [5.0, 4.0]),

@@ -17,19 +17,19 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 use sightlines_geometry::AxialDoor;
 
-/// One of the four conditions that a door makes.
+/// One of the four conditions that a door imposes on a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AxialRow {
     /// Index of the door in the sequence.
     pub door: usize,
     /// The axis, not the door's own, whose extent is entered or left.
     pub axis: u8,
-    /// Whether it is about entering that extent before the door's plane is reached; else about leaving
-    /// it after.
+    /// Whether the condition is that this extent is entered before the door's plane is reached; otherwise, that it is
+    /// left after.
     pub entering: bool,
 }
 
-/// Rows that exclude each other for some signs of a direction.
+/// Rows that contradict each other for some signs of the direction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OctantProof {
     /// For each axis, whether lines go towards larger coordinates on it; `None` if the proof does not
@@ -56,7 +56,7 @@ pub enum AxialCertificate {
 }
 
 impl AxialCertificate {
-    /// The doors it speaks of, ascending. No sequence that contains them is passable.
+    /// The doors that the proof names, ascending. No sequence that contains them is passable.
     pub fn doors(&self) -> Vec<usize> {
         let mut doors: Vec<usize> = match self {
             Self::Opposed(pair) => pair.to_vec(),
@@ -70,8 +70,7 @@ impl AxialCertificate {
         doors
     }
 
-    /// Whether it proves that no open set of lines passes `doors`. Exact; shares no code with what
-    /// found it.
+    /// Whether it proves that no open set of lines passes `doors`. Exact; shares no code with the solver.
     pub fn holds(&self, doors: &[AxialDoor]) -> bool {
         match self {
             Self::Opposed(pair) => match pair.map(|i| doors.get(i)) {
@@ -101,7 +100,7 @@ impl OctantProof {
         self.signs.iter().zip(signs).all(|(mine, sign)| mine.is_none_or(|m| m == sign))
     }
 
-    /// Adds the rows up, for a direction with these signs.
+    /// Adds up the rows for a direction with these signs.
     fn terms_exclude(&self, doors: &[AxialDoor], signs: [bool; 3]) -> bool {
         let mut slownesses: [BigRational; 3] = Default::default();
         let mut offsets: [BigInt; 3] = Default::default();

@@ -1,9 +1,9 @@
-//! The linear program of one octant in fractions: it always decides, and is slow.
+//! The linear program of one octant in exact fractions: slow, but it always decides.
 //!
-//! Asks for weights of at least zero, adding up to 1, with which the rows (and the signs of the
-//! slownesses) add up to zero. The first phase of the simplex method minimises what is missing. If
-//! nothing is, the weights are a proof; else the multipliers at the optimum are a line that obeys
-//! every row. Bland's rule ends it; columns that doubles found heavy come first, which makes it short.
+//! Seeks non-negative weights that add up to 1 and with which the rows (and the signs of the slownesses) add up to
+//! zero. The first phase of the simplex method minimises the residual. If the residual vanishes, the weights are a
+//! proof; otherwise the multipliers at the optimum are a line that obeys every row. Bland's rule guarantees
+//! termination; columns that the program in doubles found heavy are tried first, which keeps it short.
 //!
 //! Source: Bland, Math. Oper. Res. 2, 1977; the alternative is Gordan's, Math. Ann. 6, 1873.
 
@@ -28,7 +28,7 @@ pub(super) enum Exact {
 }
 
 struct Tableau {
-    /// Columns in the basis; `None` is what is missing of one equation.
+    /// Columns in the basis; `None` stands for the residual of an equation.
     basis: [Option<usize>; N],
     inverse: [[BigRational; N]; N],
     weights: [BigRational; N],

@@ -6,18 +6,18 @@
 //! offsets. A door is passed if and only if its plane is reached after the door's extents along the
 //! other axes are entered and before they are left: four linear rows. So, though lines in space are not
 //! a linear space, each of at most eight octants of directions is a linear program with three slownesses
-//! and three offsets, of which a common factor and the origin of time mean nothing.
+//! and three offsets, determined up to a common factor and the origin of time.
 //!
-//! * A push first tries the line of the sequence before, exactly: a row about two axes is an orientation
-//!   in their plane.
-//! * Else a small linear program in doubles, on the sequence moved and scaled to the unit box, finds a
-//!   line, which is checked exactly, or weights, which become integers that add the rows up to a
+//! * A push first tests the line of the previous sequence, exactly: a row about two axes is an orientation in their
+//!   plane.
+//! * If that line does not pass, a small linear program in doubles, on the sequence moved and scaled to the unit box,
+//!   finds a line, which is checked exactly, or weights, which are turned into integers with which the rows add up to a
 //!   contradiction.
 //! * If rounding spoiled both, the same program in fractions decides.
 //! * As long as all doors face one axis, the directions along the two others do not depend on each
 //!   other, and two planar [funnels](crate::planar::funnel) decide.
 //!
-//! An octant without lines is left out from there on; others are looked at when it is their turn.
+//! An octant without lines is skipped from then on; the other octants are examined only when needed.
 //!
 //! # Ties
 //! Doors are open. Rows are strict, so a sequence that only grazing lines pass is blocked.
@@ -109,7 +109,7 @@ fn check(i: usize, door: &AxialDoor) -> Result<(), SightlineError> {
     Ok(())
 }
 
-/// Names the rows of a proof. It holds for all directions along an axis that no row speaks of.
+/// Names the rows of a proof. It holds for both directions along an axis that no row involves.
 fn octant_proof(doors: &[AxialDoor], octant: Octant, rows: &[Row], proof: &proof::Proof) -> OctantProof {
     let terms = proof.terms();
     let used = |axis: usize| terms.iter().any(|&(k, _)| rows[k].early == axis || rows[k].late == axis);

@@ -23,7 +23,7 @@ pub(super) const FINE: &[f64] = &[(1u64 << 40) as f64];
 pub(super) const SMALL_FIRST: &[f64] =
     &[1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0, 64.0, 256.0, 65536.0, (1u64 << 40) as f64];
 
-/// Decides, and says whether that took fractions. `scales` are tried in turn for the weights of a proof.
+/// Decides; also returns whether fractions were needed. `scales` are tried in turn for the weights of a proof.
 pub(super) fn decide(rows: &[Row], octant: Octant, scales: &[f64], scratch: &mut Vec<Row>) -> (Decision, bool) {
     match decide_in_doubles(rows, octant, scales, scratch) {
         Ok(decision) => (decision, false),
@@ -58,9 +58,9 @@ pub(super) fn decide_in_doubles(
 
 /// Solves the program again without the slowness of one axis, if the weights do not need it.
 ///
-/// Lines are blocked then by what happens along two axes, and at one coordinate of the third at most: a
-/// floor, say. The program with all slownesses has an optimum of exactly zero, where those of the two axes
-/// vanish, and its weights have no slack; this one has.
+/// In that case lines are blocked by rows about two axes and at most one coordinate of the third, such as a floor. The
+/// program with all slownesses then has an optimum of exactly zero, where the slownesses of the two axes vanish and the
+/// weights have no slack; this program has slack.
 pub(super) fn two_axes(
     rows: &[Row],
     octant: Octant,
@@ -101,7 +101,7 @@ mod tests {
     }
 
     proptest! {
-        /// Invariant: each way of deciding is right on its own, whatever another one would have said first.
+        /// Invariant: each way of deciding is correct on its own, whichever of them would have come first.
         #[test]
         fn each_stage_is_right(doors in prop_oneof![axial_corridor(), any_axial_doors()]) {
             let Some((octant, rows)) = one_octant(&doors) else { return Ok(()) };
@@ -130,7 +130,7 @@ mod tests {
         }
     }
 
-    /// Every stage but fractions has its cases on small grids: lines, cycles, weights computed anew.
+    /// Every stage except fractions occurs on small grids: lines, cycles, recomputed weights.
     #[test]
     fn each_stage_is_needed() {
         let (mut lines, mut cycles, mut eliminations) = (0, 0, 0);

@@ -1,12 +1,11 @@
 //! From weights in doubles to integers that prove that no line passes.
 //!
-//! Weights prove it if they are not negative, not all zero, and the weighted rows add up to no offsets
-//! and to slownesses with coefficients of at least zero: a line would make the left side negative and
-//! the right side not. Offsets cancel if and only if the rows, as arrows from the early axis to the
-//! late one, make up cycles through two or three axes. So weights are written as a sum of cycles, each
-//! cycle's weight is rounded to an integer, offsets cancel exactly, and only three inequalities are left
-//! to check. They have slack if the program's margin is clearly negative; if it is not, the weights are
-//! computed anew, as the integers that make the sum vanish exactly.
+//! Weights are a proof if they are non-negative and not all zero, and in the weighted sum of rows the offsets cancel
+//! and the slownesses have coefficients of at least zero: for a line that passes, each row is negative, but this sum is
+//! not. Offsets cancel if and only if the rows, as arrows from the early axis to the late one, form cycles through two
+//! or three axes. So weights are written as a sum of cycles and each cycle's weight is rounded to an integer; offsets
+//! then cancel exactly, and only three inequalities are left to check. They have slack if the program's margin is
+//! clearly negative; otherwise the weights are recomputed as the integers with which the sum vanishes exactly.
 
 use super::rows::{Octant, Row, sign};
 use num_bigint::BigInt;
@@ -44,7 +43,7 @@ impl Proof {
     }
 }
 
-/// Most rows that weights are taken of.
+/// Largest number of rows with weights that is handled.
 const MAX_SUPPORT: usize = 8;
 
 /// A cycle of up to three rows, by their places in the support, and its weight.
@@ -91,8 +90,8 @@ fn cycles(rows: &[Row], support: &[(usize, f64)], found: &mut [Cycle; MAX_SUPPOR
     n_found
 }
 
-/// Rounds the cycles of `support` to integers, the largest to `scale` (at most 2^40), and checks the
-/// proof exactly; `None` proves nothing.
+/// Rounds the cycles of `support` to integers, the largest to `scale` (at most 2^40), and checks the proof exactly;
+/// `None` if the result proves nothing.
 pub(super) fn by_cycles(rows: &[Row], octant: Octant, support: &[(usize, f64)], scale: f64) -> Option<Proof> {
     let mut terms = [(0, 0.0); MAX_SUPPORT];
     let n_terms = weigh(rows, octant, support, scale, &mut terms)?;
@@ -134,10 +133,10 @@ fn weigh(
 
 /// Whether the coefficient of a slowness in the weighted sum is at least zero.
 ///
-/// As offsets cancel, coordinates may be counted from any origin; from one of the coordinates, they are
-/// small. A difference and its product with a weight err by 2^-53 of themselves each, and five sums of
-/// the total of sizes each, in all below 8 * 2^-53 to first order; 16 * 2^-53 covers the rest and the
-/// rounding of the total itself. What that leaves open is added up exactly.
+/// As offsets cancel, coordinates may be measured from any origin; measured from one of themselves, they are small. A
+/// difference and its product with a weight err by 2^-53 of themselves each, and five sums by 2^-53 of the total of
+/// magnitudes each, in all below 8 * 2^-53 to first order; 16 * 2^-53 covers the rest and the rounding of the total
+/// itself. Sums within that bound are added up exactly.
 fn is_slow(rows: &[Row], octant: Octant, terms: &[(usize, f64)], axis: usize) -> bool {
     let mut origin = None;
     let (mut sum, mut sizes) = (0.0, 0.0);
@@ -244,8 +243,8 @@ impl Grid {
     }
 }
 
-/// Computes the weights of the rows and slownesses that have any, as integers that add up to exactly
-/// zero; `None` if they are not determined by that, or not all of one sign.
+/// Recomputes the non-zero weights of rows and slownesses as integers with which the sum is exactly zero; `None` if
+/// that does not determine them, or if they are not all of one sign.
 pub(super) fn by_elimination(
     rows: &[Row],
     octant: Octant,
@@ -259,7 +258,7 @@ pub(super) fn by_elimination(
         column[axis] = -BigInt::one();
         columns.push(column);
     }
-    // Elimination multiplies three coordinates and more, so this is worth a try for short ones only.
+    // Elimination multiplies three or more coordinates, so it is tried for short ones only.
     let small = |column: &[BigInt; 5]| {
         let [a, b, c, d, e] = column.each_ref().map(BigInt::to_i128);
         Some([a?, b?, c?, d?, e?])

@@ -26,7 +26,7 @@ pub(super) fn common_direction(octants: Octants, axis: usize) -> Option<bool> {
     }
 }
 
-/// The octants that differ from those of a set on no axis but this.
+/// The octants of a set, and those that differ from one of them on this axis only.
 pub(super) fn both_directions(octants: Octants, axis: usize) -> Octants {
     let step = 1 << axis;
     octants | (octants & FORWARD[axis]) >> step | (octants & !FORWARD[axis]) << step
@@ -57,7 +57,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// Its coordinate on `axis` and the sign with which it counts there, if it speaks of that axis.
+    /// The coordinate on `axis` and its sign in the row, if the row involves that axis.
     pub(super) fn term(&self, axis: usize) -> Option<(f64, f64)> {
         if self.early == axis { Some((1.0, self.from)) } else { (self.late == axis).then_some((-1.0, self.to)) }
     }

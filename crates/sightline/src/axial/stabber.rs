@@ -1,4 +1,4 @@
-//! The incremental form: doors are pushed and taken back, and what decided is counted.
+//! The incremental form: doors are pushed and undone, and each push counts the method that decided it.
 
 use super::octant::{Decision, FINE, decide};
 use super::rows::{
@@ -12,13 +12,13 @@ use crate::stabber::Stabber;
 use sightlines_geometry::{Aabb, Adaptive, AxialDoor, Point2, Portal2};
 use std::convert::Infallible;
 
-/// How often each way of deciding decided a push.
+/// How many pushes each method decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct AxialCounters {
     /// Two planar funnels, as all doors faced one axis; or two doors were crossed in opposite directions.
     pub n_planar: u64,
-    /// The line of the sequence before passed the new door too.
+    /// The line of the previous sequence passed the new door too.
     pub n_witness: u64,
     /// The linear program in doubles found a line or a proof, which exact arithmetic confirmed.
     pub n_float: u64,
@@ -26,10 +26,10 @@ pub struct AxialCounters {
     pub n_exact: u64,
 }
 
-/// What is known of the doors up to one.
+/// The state of the sequence up to one door.
 #[derive(Debug, Clone, Copy)]
 struct Level {
-    /// Signs of directions that are not known to be blocked.
+    /// Octants that are not proven blocked.
     octants: Octants,
     /// Whether all doors so far face one axis, each beyond the one before.
     planar: bool,
@@ -56,7 +56,7 @@ impl Default for AxialStabber {
     }
 }
 
-/// How to take back one door: the number of doors before it.
+/// How to undo one push: the number of doors before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AxialUndo(u32);
 
@@ -91,7 +91,7 @@ impl AxialStabber {
         self.counters
     }
 
-    /// The doors pushed and not taken back.
+    /// The doors of the current sequence.
     pub fn doors(&self) -> &[AxialDoor] {
         &self.doors
     }
@@ -140,7 +140,7 @@ impl AxialStabber {
             let (decision, fractions) = decide(&self.rows, octant, FINE, &mut self.scratch);
             exact |= fractions;
             let Decision::Blocked(proof) = decision else { return (Some((decision, left)), exact) };
-            // A proof that does not speak of an axis holds for both directions along it.
+            // A proof without rows about an axis holds for both directions along it.
             left &= !(0..3).filter(|&axis| !proof.speaks_of(&self.rows, axis)).fold(1 << octant, both_directions);
         }
         (None, exact)
@@ -164,7 +164,7 @@ impl AxialStabber {
         Some(true)
     }
 
-    /// Adds a door where funnels do not do; true if a line passes.
+    /// Adds a door where funnels do not apply; true if a line passes.
     #[inline(never)]
     fn push_solved(&mut self, door: AxialDoor, octants: Octants) -> bool {
         self.doors.push(door);

@@ -9,8 +9,7 @@ use sightlines_geometry::AxialDoor;
 
 /// A directed line in space with rational coordinates.
 ///
-/// It is checked by crossing each door's plane ([`AxialWitness::passes`]), which shares no code with
-/// what found it.
+/// It is checked by crossing each door's plane ([`AxialWitness::passes`]), which shares no code with the solver.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AxialWitness {
     point: [BigRational; 3],
@@ -73,7 +72,7 @@ impl AxialWitness {
         doors.iter().all(|door| line.passes(door)).then_some([line.from, line.to])
     }
 
-    /// The line in doubles, whatever it passes then.
+    /// The line rounded to doubles, without a check of what it passes.
     pub(super) fn line(&self, doors: &[AxialDoor]) -> Option<Line> {
         let times = doors.iter().map(|door| self.time(door)).collect::<Option<Vec<_>>>()?;
         let first = times.iter().min()?.clone();

@@ -49,7 +49,7 @@ fn below(random: &mut Random, n: u64) -> u64 {
     random.bits() % n
 }
 
-/// A multiple of 1/16 from `low` to before `low + span`.
+/// A multiple of 1/16 that is at least `low` and below `low + span`.
 fn sixteenth(random: &mut Random, low: f64, span: u64) -> f64 {
     low + below(random, 16 * span) as f64 / 16.0
 }
@@ -181,7 +181,7 @@ impl Cases for Convex {
     }
 }
 
-/// A door as a polygon, with its corners cut off by so much along each side.
+/// A door as a polygon, with its corners cut off by these lengths along the sides.
 fn polygon(door: &AxialDoor, cut: f64) -> Portal3 {
     let axis = usize::from(door.axis);
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];

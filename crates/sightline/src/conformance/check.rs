@@ -3,7 +3,7 @@
 use super::{Case, Cases, Effort, Report, Violation};
 use crate::{Proof, Stabber, Verdict, Witness};
 
-/// What is known of a sequence, by evidence that was evaluated.
+/// The truth about a sequence, from evidence that was evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Truth {
     Open,
@@ -51,8 +51,8 @@ where
             let tried: Vec<S::Portal> = passed.iter().chain([portal]).cloned().collect();
             let n = tried.len();
             let truth = self.truth(&tried);
-            // Something else first, and taken back; then the portal twice, with an undo between if it is open; and by
-            // another stabber that was given only the sequence.
+            // Something else is pushed first and undone; then the portal twice, with an undo between if it is open; and
+            // once by another stabber that was given only the sequence.
             let half = walked.push(self.cases.half(portal));
             half.into_iter().for_each(|undo| walked.undo(undo));
             let once = walked.push(portal.clone());
@@ -88,7 +88,7 @@ where
         Ok(())
     }
 
-    /// Whether a new stabber passes a portal after some others; `None` if it does not come so far.
+    /// Whether a new stabber passes a portal after some others; `None` if one of the others blocks.
     fn pushed(&self, before: &[S::Portal], portal: &S::Portal) -> Option<bool> {
         Some(self.walked(before)?.push(portal.clone()).is_some())
     }
@@ -104,7 +104,7 @@ where
         Some(stabber)
     }
 
-    /// Answers differ: because of what was undone, or without that.
+    /// Answers differ: because of an undo, or even without one.
     fn why_other(&self, round: u32, before: &[S::Portal], portal: &S::Portal) -> Violation {
         let portals = before.len() + 1;
         let answers: Vec<Option<bool>> = (0..8).map(|_| self.pushed(before, portal)).collect();
@@ -192,7 +192,7 @@ where
         Ok(())
     }
 
-    /// What was compared, if it is enough.
+    /// The counts of comparisons, if they suffice.
     pub(super) fn finish(self) -> Result<Report, Violation> {
         let report = self.report;
         let counts = [

@@ -12,9 +12,9 @@ pub enum Fault {
     GivesUp,
     /// Blocks nothing.
     NeverBlocks,
-    /// Does not take pushes back.
+    /// Does not undo pushes.
     ForgetsUndo,
-    /// Begins anew with a portal that it blocks.
+    /// Restarts with a portal that it blocks.
     LosesItself,
     /// Blocks one push of seven, whichever it is.
     Random,
@@ -28,7 +28,7 @@ pub enum Fault {
     OldLine,
     /// Gives no lines.
     NoLine,
-    /// Decides about all portals but the last.
+    /// Decides without the last portal.
     DecidesTooEarly,
 }
 
@@ -78,7 +78,7 @@ pub struct Impostor<S: Stabber> {
 pub struct ImpostorUndo<U>(Option<U>);
 
 impl<S: Stabber> Impostor<S> {
-    /// A faultless stabber, but for this fault.
+    /// A faultless stabber except for this fault.
     pub fn new(stabber: S, fault: Fault) -> Self {
         Self { stabber, fault, first: None, n_portals: 0, n_pushes: Arc::default() }
     }

@@ -112,8 +112,8 @@ where
     run(stabber, &ConvexSequence::new(StabLimits::default()), &Convex, effort)
 }
 
-/// Checks that clones of `stabber` keep the contract, on sequences of `cases` whose truth `reference` knows. The same
-/// effort draws the same sequences on every machine.
+/// Checks that clones of `stabber` keep the contract, on sequences of `cases` that `reference` decides. The same effort
+/// draws the same sequences on every machine.
 ///
 /// # Errors
 /// The first [`Violation`] that was found; one of them is that there was nothing to compare.

@@ -26,7 +26,7 @@ pub enum Clause {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// A line passes, and `push` says that none does.
+    /// A line passes, and `push` returns `None`.
     #[error("not conservative: sequence {round}: a line passes the first {portals} portals, and the last is blocked")]
     Hides {
         /// The sequence.

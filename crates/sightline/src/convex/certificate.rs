@@ -1,8 +1,8 @@
 //! Proof that no line passes a sequence of convex polygons, and its checker.
 //!
-//! The checker computes in integers only and shares no code with what finds proofs. Every double is an integer times a
-//! power of two, so after two scalings, one for places and one for coordinates of boxes, there is nothing left to
-//! round. The [module above](super) explains why the proof is valid.
+//! The checker computes in integers only and shares no code with the solver. Every double is an integer times a power
+//! of two, so after two scalings, one for places and one for coordinates of boxes, there is nothing left to round. The
+//! [module above](super) explains why the proof is valid.
 
 use crate::stabber::Proof;
 use num_bigint::BigInt;
@@ -63,7 +63,7 @@ pub enum ConvexCertificate {
 pub struct PlaneProof {
     /// Portal and index of an edge that lies on the plane.
     pub edge: (usize, usize),
-    /// Portal and index of a corner that does, and fixes it.
+    /// Portal and index of a corner that lies on the plane and, with the edge, determines it.
     pub corner: (usize, usize),
     /// The three portals, ascending.
     pub stops: [usize; 3],
@@ -84,7 +84,7 @@ pub struct BoxProof {
 type Whole = [BigInt; 3];
 
 impl ConvexCertificate {
-    /// Portals that it speaks of, ascending: no sequence that contains them in this order is passable.
+    /// Portals that the proof names, ascending: no sequence that contains them in this order is passable.
     pub fn named(&self) -> Vec<usize> {
         let mut named: Vec<usize> = match self {
             Self::Boxes(proof) => proof.portals.into_iter().chain(proof.terms().map(|t| t.portal)).collect(),
@@ -101,7 +101,7 @@ impl ConvexCertificate {
         proof.nodes.iter().filter(|node| matches!(node, ConvexNode::Leaf(_))).count()
     }
 
-    /// Whether it proves that no line passes `portals` in order. Exact; `false` for whatever is damaged.
+    /// Whether it proves that no line passes `portals` in order. Exact; `false` for damaged proofs.
     /// Cost: 64 sums for each leaf, in integers of some hundred bits.
     pub fn holds(&self, portals: &[&Portal3]) -> bool {
         match self {
@@ -243,7 +243,7 @@ impl Scales {
         portals: &[&Portal3],
     ) -> bool {
         // The line from q to r has the edge from e to f inside if (f - e) · (q × r) + (e × f) · (r - q) is
-        // positive. What multiplies the line is added up.
+        // The factors of the line are added up.
         let (mut along, mut moment) = (Whole::default(), Whole::default());
         for term in terms {
             let Some(portal) = portals.get(term.portal) else { return false };

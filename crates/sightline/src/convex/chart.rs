@@ -1,19 +1,19 @@
-//! Where a line meets two portals of a sequence: the parameters of all lines in question.
+//! Lines, parametrised by where they meet two portals of a sequence.
 
 use super::certificate::Block;
 use super::vector::{along, cross, dot, scale, size, sub, unit};
 use sightlines_geometry::{Point3, Portal3};
 
-/// What a frame of unit vectors, made and used in doubles, may be wrong by, relative to lengths. Each
-/// coefficient of the frame is right up to 2^-50, and so its inverse is its transpose up to 2^-47; a
-/// difference of points and three products add 2^-50. This is four times their sum.
+/// Error bound of a frame of unit vectors that is computed and used in doubles, relative to lengths. Each coefficient
+/// of the frame is accurate to 2^-50, and so its inverse is its transpose to 2^-47; a difference of points and three
+/// products add 2^-50. This is four times their sum.
 const SKEW: f64 = f64::EPSILON * 512.0;
 
-/// What the corner of a block may be wrong by, relative to the magnitudes added up in it: three
-/// additions and the rounding of each product.
+/// Error bound of a block's corner, relative to the magnitudes added up in it: three additions and the rounding of each
+/// product.
 const PLACE: f64 = f64::EPSILON * 8.0;
 
-/// A box around a portal: as long and wide as the portal, and as thick as rounding asks for.
+/// A box around a portal: as long and wide as the portal, and as thick as rounding requires.
 #[derive(Debug, Clone, Copy)]
 struct Plate {
     block: Block,
@@ -30,7 +30,8 @@ impl Plate {
         let longest = portal.edges().map(|[p, q]| sub(q, p)).max_by(|p, q| dot(*p, *p).total_cmp(&dot(*q, *q)))?;
         let first = unit(longest)?;
         let across = cross(unit(portal.normal())?, first);
-        // Of a sliver the normal may be all rounding. The frame is accurate if it is not along the edge.
+        // The normal of a sliver may consist of rounding errors. The frame is accurate if the normal is not along the
+        // edge.
         let second = unit(across).filter(|_| dot(across, across) > 0.25)?;
         let third = unit(cross(first, second))?;
         let frame = [first, second, third];
@@ -78,15 +79,15 @@ pub(super) struct Chart {
     pub(super) unit: f64,
     /// The distance of their centres.
     pub(super) distance: f64,
-    /// Whether the second box lies wholly beyond the first. Else no box of lines can be refuted that
-    /// has lines of no direction among them.
+    /// Whether the second box lies wholly beyond the first. If not, no box of lines can be refuted that contains two
+    /// equal points.
     pub(super) apart: bool,
 }
 
 impl Chart {
-    /// The two portals between which lines are most alike: their extents multiplied, over what is between
-    /// them, is the least. Of boxes that touch or overlap, the last resort, the farthest. `None` if
-    /// there are not two portals or one has no size. O(n²), with little to do for most pairs.
+    /// The two portals between which lines differ least: the product of their extents, divided by the gap between them,
+    /// is least. Boxes that touch or overlap are the last resort; of those, the farthest apart. `None` if there are not
+    /// two portals or one has no extent. O(n²), with little work for most pairs.
     pub(super) fn best(portals: &[&Portal3]) -> Option<Self> {
         let plates: Vec<Plate> = portals.iter().map(|p| Plate::around(p)).collect::<Option<_>>()?;
         let reach = |p: &Plate| p.extent[0] + p.extent[1];

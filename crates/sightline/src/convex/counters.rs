@@ -1,6 +1,6 @@
-//! How questions were decided.
+//! How queries were decided.
 
-/// What a [`ConvexStabber`](super::ConvexStabber) did since it was made. Deterministic.
+/// Work counts of a [`ConvexStabber`](super::ConvexStabber) since it was created. Deterministic.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ConvexCounters {
@@ -10,7 +10,7 @@ pub struct ConvexCounters {
     pub n_programs: u64,
     /// Their pivots.
     pub n_pivots: u64,
-    /// Boxes of lines looked at, the first of each sequence included.
+    /// Boxes of lines examined, the first of each sequence included.
     pub n_boxes: u64,
     /// Visible by the line given as a hint.
     pub n_by_hint: u64,
@@ -65,7 +65,7 @@ impl std::ops::Add for ConvexCounters {
 impl std::ops::Sub for ConvexCounters {
     type Output = Self;
 
-    /// What was done since `other`.
+    /// The difference from `other`, an earlier count.
     fn sub(mut self, mut other: Self) -> Self {
         self.all().into_iter().zip(other.all()).for_each(|(x, y)| *x -= *y);
         self

@@ -15,8 +15,8 @@ pub struct Line3 {
 }
 
 impl Line3 {
-    /// The line through two points, with magnitudes that predicates cannot bear rounded to zero. `None`
-    /// if the points are one or are not finite.
+    /// The line through two points, with magnitudes that predicates do not accept rounded to zero. `None` if the points
+    /// coincide or are not finite.
     pub fn through(a: Point3, b: Point3) -> Option<Self> {
         let round = |x: f64| check_coordinate(if x.abs() < MIN_MAGNITUDE { 0.0 } else { x }).ok();
         let point = |p: Point3| Some([round(p[0])?, round(p[1])?, round(p[2])?]);
@@ -24,8 +24,8 @@ impl Line3 {
         (line.a != line.b).then_some(line)
     }
 
-    /// Whether it has every edge of the polygon strictly on its inner side, which is to pass it in its
-    /// direction. Exact for coordinates that [`check_coordinate`] accepts; O(corners).
+    /// Whether it has every edge of the polygon strictly on its inner side, that is, passes it in its direction. Exact
+    /// for coordinates that [`check_coordinate`] accepts; O(corners).
     pub fn passes(&self, portal: &Portal3) -> bool {
         portal.edges().all(|[from, to]| orient3d(self.a, self.b, from, to) > 0.0)
     }

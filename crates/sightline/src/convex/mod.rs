@@ -39,11 +39,11 @@
 //! something negative at all corners of the box, and so for all of its lines; for a line that passes it
 //! would be positive. As the sum is zero wherever `q = r`, such a box holds no two equal points.
 //!
-//! Or a plane with an earlier portal on one side, a later one on the other and a still later one on the
-//! first side, corners on the plane allowed. A line that passes in order has points of their hulls one after
-//! the other, so the plane's linear form, which along the line goes steadily, is zero on all of it: the
-//! line lies on the plane. Seen along the line the plane is then a line through o, and the first portal's
-//! corners are all on one side of it, which contradicts what was said of open half-planes.
+//! Or a plane with an earlier portal on one side, a later one on the other and a still later one on the first side,
+//! corners on the plane allowed. A line that passes in order has points of their hulls one after the other. The plane's
+//! linear form is affine along the line, so it is zero on all of it: the line lies on the plane. Seen along the line
+//! the plane is then a line through o, and the first portal's corners are all on one side of it, although every open
+//! half-plane at o contains one.
 //!
 //! # Method
 //! * A hint is tried, exactly.
@@ -52,13 +52,13 @@
 //! * Relaxed: the products us, ut, vs, vt as unknowns of their own, within the hull of the sixteen corners.
 //!   Its dual is the best weighted sum of a leaf; if its bound is negative, the weights are checked in
 //!   doubles with a bound on their error, and make the leaf.
-//! * Else the relaxed line is a new start for turns. Then a plane is looked for, exactly: maps are on grids,
-//!   and most of what no margin separates is stopped by a plane.
-//! * Else the box is cut across the product that is relaxed most, near the relaxed line, and the part
-//!   with the largest bound is next; what is relaxed away shrinks like the square of the box.
+//! * Otherwise the relaxed line is a new start for turns. Then a plane is sought, exactly: maps are on grids, and most
+//!   of what no margin separates is stopped by a plane.
+//! * Otherwise the box is cut across the product that is relaxed most, near the relaxed line, and the part with the
+//!   largest bound is next; the error of the relaxation shrinks like the square of the box.
 //!
-//! Doubles only propose. What is visible has passed exact predicates, what is hidden a rigorous check;
-//! everything else is [`Verdict::Undecided`], which a caller has to take for visible.
+//! Doubles only propose. What is visible has passed exact predicates, what is hidden a rigorous check; everything else
+//! is [`Verdict::Undecided`], which a caller has to treat as visible.
 //!
 //! # Source
 //! Plücker's coordinates for lines past lines: Teller, "Computing the antipenumbra of an area light source",
@@ -88,11 +88,11 @@ pub use solver::{ConvexStabber, StabLimits};
 use crate::{LimitReached, Verdict};
 use sightlines_geometry::Portal3;
 
-/// The answer for one sequence of convex polygons. A [`Verdict::Hidden`] says that no line passes in order; what is
-/// [`Verdict::Undecided`] was not decided within the limits and has to count as visible.
+/// The answer for one sequence of convex polygons. [`Verdict::Hidden`] means that no line passes in order.
+/// [`Verdict::Undecided`] means that the limits were reached; it has to count as visible.
 pub type ConvexVerdict = Verdict<Line3, ConvexCertificate, LimitReached>;
 
-/// Decides about one sequence, with the default limits: see [`ConvexStabber::stab`].
+/// Decides one sequence with the default limits: see [`ConvexStabber::stab`].
 pub fn stab(portals: &[&Portal3]) -> ConvexVerdict {
     ConvexStabber::new(StabLimits::default()).stab(portals, None)
 }

@@ -1,18 +1,18 @@
 //! Sequences that a plane stops: the earliest portal on one side, a later one on the other, and the
 //! last one on the first side again.
 //!
-//! Much of what is hidden in maps on a grid is hidden by so little that a grazing line passes, and then no
-//! sum of rows is negative everywhere. A plane needs no margin. As its position does not matter within
-//! limits, it can be moved until it holds an edge of one portal and a corner of another.
+//! Much of what is hidden in maps on a grid is hidden so narrowly that a grazing line passes, and then no sum of rows
+//! is negative everywhere. A plane needs no margin. Its position is free within limits, so it can be moved until it
+//! holds an edge of one portal and a corner of another.
 
 use super::certificate::PlaneProof;
 use super::vector::{cross, dot, size, sub};
 use sightlines_geometry::{Point3, Portal3, orient3d};
 
-/// Relative size of a distance that may be rounding: whether it is, is decided exactly.
+/// Relative size below which a distance may be rounding; such a distance is decided exactly.
 const ROUNDING: f64 = 1e-9;
 
-/// A plane that stops all lines through `portals`, of which those in `among` (ascending) are looked at.
+/// A plane that stops all lines through `portals`; only those in `among` (ascending) are considered.
 /// Cost: grows with the cube of their number.
 pub(super) fn stopping(portals: &[&Portal3], among: &[usize]) -> Option<PlaneProof> {
     for &held in among {
@@ -59,8 +59,8 @@ fn tangents(e: Point3, f: Point3, corners: &[Point3]) -> [Option<usize>; 2] {
 /// The first three portals on alternating sides of a plane, if there are three. Exact.
 fn stops(portals: &[&Portal3], among: &[usize], e: Point3, f: Point3, c: Point3) -> Option<[usize; 3]> {
     let (along, to) = (sub(f, e), sub(c, e));
-    // A determinant of rounded differences is right up to less than 20 * 2^-53 of the product of their
-    // sizes; above a multiple of that its sign is exact.
+    // A determinant of rounded differences is accurate to less than 20 * 2^-53 of the product of their sizes; above a
+    // multiple of that its sign is exact.
     let (normal, rounding) = (cross(along, to), ROUNDING * size(along) * size(to));
     // For both sides that the first one can be on: how many have been found, and which.
     let mut found = [(0, [0; 3]); 2];

@@ -36,8 +36,8 @@ pub(super) fn range(c: &[f64; 9]) -> [f64; 2] {
     c[1..].iter().fold([c[0]; 2], |[low, high], x| [low + x.min(0.0), high + x.max(0.0)])
 }
 
-/// The edges that some line of the chart has on its outer side: none of the others can matter, for
-/// which a relative `1e-9` of their size is left for rounding.
+/// The edges that some line of the chart has on its outer side; the others cannot matter. A relative `1e-9` of their
+/// size is left for rounding.
 pub(super) fn edges(portals: &[&Portal3], chart: &Chart, into: &mut Vec<Edge>) {
     into.clear();
     let middle = |i: usize| {

@@ -1,4 +1,4 @@
-//! The incremental form: convex portals are pushed and taken back.
+//! The incremental form: convex portals are pushed and undone.
 
 use super::{ConvexCertificate, ConvexCounters, ConvexStabber, ConvexVerdict, Line3, StabLimits};
 use crate::stabber::Stabber;
@@ -19,7 +19,7 @@ pub struct ConvexSequence<P> {
     n_undecided: u64,
 }
 
-/// How to take back one portal: the number of portals before it.
+/// How to undo one push: the number of portals before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConvexUndo(u32);
 
@@ -29,7 +29,7 @@ impl<P: Borrow<Portal3> + Clone> ConvexSequence<P> {
         Self { stabber: ConvexStabber::new(limits), portals: Vec::new(), lines: Vec::new(), n_undecided: 0 }
     }
 
-    /// The portals pushed and not taken back.
+    /// The portals of the current sequence.
     pub fn portals(&self) -> &[P] {
         &self.portals
     }
@@ -39,12 +39,12 @@ impl<P: Borrow<Portal3> + Clone> ConvexSequence<P> {
         self.n_undecided
     }
 
-    /// What the solver did since this was made.
+    /// Work counts of the solver since this was created.
     pub const fn counters(&self) -> ConvexCounters {
         self.stabber.counters()
     }
 
-    /// Adds a portal of which a push after the same sequence gave this line, or none: costs nothing.
+    /// Adds a portal for which an earlier push after the same sequence found this line, or none. Costs nothing.
     pub fn push_known(&mut self, portal: P, line: Option<Line3>) -> ConvexUndo {
         let undo = ConvexUndo(self.portals.len() as u32);
         self.portals.push(portal);
@@ -52,7 +52,7 @@ impl<P: Borrow<Portal3> + Clone> ConvexSequence<P> {
         undo
     }
 
-    /// Adds a portal, also the first; `None` and no change if no line passes.
+    /// Adds a portal, even the first; `None` and no change if no line passes.
     pub fn extend(&mut self, portal: P) -> Option<ConvexUndo> {
         let hint = self.lines.last().copied().flatten();
         let shapes: Vec<&Portal3> = self.portals.iter().chain([&portal]).map(Borrow::borrow).collect();
@@ -67,7 +67,7 @@ impl<P: Borrow<Portal3> + Clone> ConvexSequence<P> {
         Some(self.push_known(portal, line))
     }
 
-    /// Takes back the last portal, also the first; `None` if there is none.
+    /// Removes the last portal, even the first; `None` if there is none.
     pub fn pop(&mut self) -> Option<P> {
         self.lines.pop();
         self.portals.pop()
@@ -96,7 +96,7 @@ impl<P: Borrow<Portal3> + Clone + Send> Stabber for ConvexSequence<P> {
         }
     }
 
-    /// Costs a linear program or some, unless the line of the sequence before passes the portal too.
+    /// Costs a few linear programs, unless the line of the previous sequence passes the portal too.
     fn push(&mut self, portal: P) -> Option<ConvexUndo> {
         self.extend(portal)
     }
@@ -137,7 +137,7 @@ fn reaches_front(portal: &Portal3, bounds: &Aabb<3>) -> bool {
         let corner = [0, 1, 2].map(|k| if i >> k & 1 == 1 { bounds.max[k] } else { bounds.min[k] });
         orient3d(a, b, c, corner)
     });
-    // If the three corners are on one straight line, all sides are 0 and nothing is known.
+    // If the three corners are on one straight line, all sides are 0, which decides nothing.
     let (mut above, mut below) = (false, false);
     sides.for_each(|side| (above, below) = (above || side > 0.0, below || side < 0.0));
     above || !below

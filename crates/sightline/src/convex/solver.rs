@@ -15,17 +15,16 @@ use super::witness::alternate;
 use crate::{LimitReached, Verdict};
 use sightlines_geometry::Portal3;
 
-/// A bound on the margin, in units of the chart, below which a box is refuted without looking for the
-/// least bound.
+/// A bound on the margin, in units of the chart, below which a box is refuted without seeking the least bound.
 const CLEARLY_HIDDEN: f64 = -1e-6;
 /// A bound on the margin below which cutting is given up: what is left is within the rounding of checks.
 const WITHIN_ROUNDING: f64 = 1e-11;
-/// Portals of a sequence among which planes are looked for.
+/// Largest number of portals of a sequence among which planes are sought.
 const MOST_SUSPECTS: usize = 12;
-/// Places on the way to the other side, within which a box is cut.
+/// The range of places, from 0 to 1 across a box, at which it is cut.
 const CUT: [f64; 2] = [0.2, 0.8];
 
-/// How much effort a question may take.
+/// Limits on the effort of one query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StabLimits {
     /// Boxes of lines after which it is given up; each takes one program of nine unknowns.
@@ -94,7 +93,7 @@ pub struct ConvexStabber {
 }
 
 impl ConvexStabber {
-    /// A solver with limits for each question.
+    /// A solver with limits for each query.
     pub fn new(limits: StabLimits) -> Self {
         Self {
             limits,
@@ -107,7 +106,7 @@ impl ConvexStabber {
         }
     }
 
-    /// What was done since it was made.
+    /// Work counts since this was created.
     pub const fn counters(&self) -> ConvexCounters {
         self.counters
     }
@@ -259,8 +258,8 @@ impl ConvexStabber {
         }
     }
 
-    /// The portals of which the last relaxed program says that they are in the way, with those of the chart;
-    /// all if they are few. Ascending.
+    /// The portals with weights in the last relaxed program, and those of the chart; all portals if they are few.
+    /// Ascending.
     fn suspects(&self, chart: &Chart, n_portals: usize) -> Vec<usize> {
         if n_portals <= MOST_SUSPECTS {
             return (0..n_portals).collect();

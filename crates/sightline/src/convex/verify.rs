@@ -1,5 +1,4 @@
-//! Whether a weighted sum of rows is negative for a whole box of lines: in doubles, with a bound on what
-//! they may be wrong by.
+//! Whether a weighted sum of rows is negative for a whole box of lines: in doubles, with a bound on their error.
 //!
 //! # The bound
 //! A term is `λ det(d, Q, R)` with an edge `d = f - e` and `Q = q - e`, `R = r - e` for the corners `q`, `r`
@@ -14,7 +13,7 @@
 //!   three additions. So are the `r`. That changes a determinant by at most
 //!   `|d| (D_q |R| + D_r |Q| + D_q D_r)`.
 //!
-//! All is doubled at the end, for the rounding of the bound itself.
+//! The total is doubled to cover the rounding of the bound itself.
 
 use super::certificate::{Block, ConvexTerm};
 use super::chart::Chart;
@@ -22,7 +21,7 @@ use super::rows::Edge;
 use super::vector::{along, cross, dot, size, sub};
 use sightlines_geometry::Point3;
 
-/// Corners of the middle of a block's part, and how far true ones are from them.
+/// Corners of the middle of a block's part, and a bound on their distance from the true ones.
 fn corners(block: &Block, low: &[f64], high: &[f64]) -> ([Point3; 4], f64) {
     let base = along(block.corner, block.edges[2], 0.5);
     let place = |x: f64, y: f64| along(along(base, block.edges[0], x), block.edges[1], y);
@@ -31,8 +30,8 @@ fn corners(block: &Block, low: &[f64], high: &[f64]) -> ([Point3; 4], f64) {
     ([place(low[0], low[1]), place(low[0], high[1]), place(high[0], low[1]), place(high[0], high[1])], off)
 }
 
-/// Whether the sum is negative for every line with coordinates from `low` to `high`. Rigorous, and `false`
-/// where doubles cannot tell.
+/// Whether the sum is negative for every line with coordinates from `low` to `high`. Rigorous; `false` where doubles
+/// cannot decide.
 pub(super) fn refutes<'a>(
     chart: &Chart,
     [low, high]: [&[f64; 4]; 2],

@@ -1,10 +1,10 @@
-//! A line by turns: with its first point given, the best second one is a linear program; then the other
-//! way round.
+//! A line found by turns: with its first point given, the best second point is a linear program, and the other way
+//! round.
 
 use super::rows::Edge;
 use super::simplex::Program;
 
-/// A gain of the margin of less than this, relative to its size, is no progress.
+/// Gain of the margin, relative to its size, below which there is no progress.
 const PROGRESS: f64 = 0.02;
 
 /// The line so far.
@@ -16,8 +16,8 @@ pub(super) struct Turn {
     pub(super) margin: f64,
 }
 
-/// Moves the points in turn, at most `rounds` times, until `accept` takes a line with a positive margin
-/// or there is no progress. Returns whether it was taken, and counts programs and pivots.
+/// Moves the points in turn, at most `rounds` times, until `accept` accepts a line with a positive margin or there is
+/// no progress. Returns whether one was accepted, and counts programs and pivots.
 pub(super) fn alternate(
     edges: &[Edge],
     start: [f64; 2],

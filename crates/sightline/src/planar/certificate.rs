@@ -35,7 +35,7 @@ pub struct PlanarCertificate {
 }
 
 impl PlanarCertificate {
-    /// The doors it speaks of, ascending. No sequence that contains them is passable.
+    /// The doors that the proof names, ascending. No sequence that contains them is passable.
     pub fn portals(&self) -> Vec<usize> {
         let mut portals: Vec<usize> = self.lefts.iter().chain(&self.rights).map(|e| e.portal).collect();
         portals.sort_unstable();
@@ -43,7 +43,7 @@ impl PlanarCertificate {
         portals
     }
 
-    /// Whether it proves what it claims about `portals`. Exact; shares no code with what found it.
+    /// Whether it proves what it claims about `portals`. Exact; shares no code with the solver.
     pub fn holds(&self, portals: &[Portal2]) -> bool {
         let points = |ends: &[End], left: bool| -> Option<Vec<Point2>> {
             ends.iter().map(|e| if e.left == left { e.of(portals) } else { None }).collect()

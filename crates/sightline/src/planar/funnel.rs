@@ -7,8 +7,8 @@
 //! edges of two convex chains between, one of left ends and one of right ends, both ordered from near
 //! to far. Doors come from a chain of convex cells, so a new end point lies beyond all others. Over all
 //! passing lines its distance to the line is then smallest at one of the two extreme lines and largest
-//! at the other: one orientation test tells whether any line passes, the other whether the point
-//! matters, and what it cuts off is a run at the end of one chain and at the front of the other.
+//! at the other: one orientation test decides whether any line passes, the other whether the point matters. It removes
+//! a run at the end of one chain and at the front of the other.
 //!
 //! # Ties
 //! Doors are open. A new left end that lies exactly on the most clockwise line closes the funnel only
@@ -62,7 +62,7 @@ impl Chain {
     }
 }
 
-/// How to take back one end point.
+/// How to undo one end point.
 #[derive(Debug, Clone, Copy)]
 struct EndUndo {
     back: u32,
@@ -70,7 +70,7 @@ struct EndUndo {
     slot: Point2,
 }
 
-/// How to take back one door: what changed on the left and on the right, if anything.
+/// How to undo one push: what changed on the left and on the right, if anything.
 #[derive(Debug, Clone, Copy)]
 pub struct FunnelUndo {
     left: Option<EndUndo>,
@@ -135,7 +135,7 @@ impl<O: Orient2d> Funnel<O> {
         Self { orient, left: Chain::new(), right: Chain::new() }
     }
 
-    /// Forgets everything and begins with the lines through one door, which has two different ends.
+    /// Resets to the lines through one door, which has two different ends.
     #[inline]
     pub fn start(&mut self, portal: Portal2) {
         self.left.start(portal.left);
@@ -160,7 +160,7 @@ impl<O: Orient2d> Funnel<O> {
         }
     }
 
-    /// Takes back the latest push that was not taken back yet. O(1).
+    /// Undoes the latest push that is not undone yet. O(1).
     #[inline]
     pub fn undo(&mut self, undo: FunnelUndo) {
         if let Some(right) = undo.right {
@@ -243,7 +243,7 @@ impl<O: Orient2d> Stabber for Funnel<O> {
         Some(self.witness())
     }
 
-    /// Exact for any coordinates that predicates can bear, whatever `O` is. O(n) for a line, O(n²) for a certificate.
+    /// Exact for any coordinates that predicates accept, whatever `O` is. O(n) for a line, O(n²) for a certificate.
     fn decide(&mut self, portals: &[Portal2]) -> PlanarVerdict {
         decide(portals).expect("there is a portal")
     }

@@ -53,8 +53,8 @@ fn decide(portals: &[Portal2]) -> Option<PlanarVerdict> {
             return Some(Verdict::Visible(witness));
         }
     }
-    // The funnel trusts the order of portals. Sequences that no chain of cells made may break it, so "blocked" is
-    // returned only with a certificate.
+    // The funnel relies on the order of portals. A sequence that comes from no chain of cells may violate it, so
+    // "blocked" is returned only with a certificate.
     let separating = || PlanarWitness::separating(portals).expect("hulls that do not meet are separated by a line");
     Some(PlanarCertificate::find(portals).map_or_else(|| Verdict::Visible(separating()), Verdict::Hidden))
 }

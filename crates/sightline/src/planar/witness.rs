@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 /// A directed line `a x + b y + c = 0` with rational coefficients; points on its left have a positive
 /// value.
 ///
-/// It is checked by evaluating it ([`PlanarWitness::passes`]), which shares no code with what found it.
+/// It is checked by evaluating it ([`PlanarWitness::passes`]), which shares no code with the solver.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlanarWitness {
     a: BigRational,
@@ -85,9 +85,8 @@ impl PlanarWitness {
         (p != q && portals.iter().all(passes)).then_some([p, q])
     }
 
-    /// A line strictly between all left and all right ends, by trying every pair; `None` if there is
-    /// none. For sequences that no chain of cells made, where the order of portals means nothing.
-    /// O(n³).
+    /// A line strictly between all left and all right ends, found by trying every pair; `None` if there is none. For
+    /// sequences that come from no chain of cells, where the order of portals is meaningless. O(n³).
     pub(crate) fn separating(portals: &[Portal2]) -> Option<Self> {
         let allowed = |p: Point2, q: Point2| {
             portals.iter().all(|d| orient2d(p, q, d.left) >= 0.0 && orient2d(p, q, d.right) <= 0.0)

@@ -1,7 +1,6 @@
 //! Scenes on small grids, and oracles that look at every unit square or cube of them.
 //!
-//! The oracles know nothing of trees. They return what is wrong as text, so that impostors can be
-//! shown to fail.
+//! The oracles do not use trees. They return what is wrong as text, so that impostors can be shown to fail.
 
 use proptest::prelude::*;
 use sightlines_geometry::Aabb;
@@ -67,7 +66,7 @@ pub(crate) fn on_face<const D: usize>(faces: &[AxialFace<D>], axis: usize, p: [f
     faces.iter().any(|f| f.axis == axis && Aabb { min: f.min, max: f.max }.contains(p))
 }
 
-/// Which of `n` things hang together, as the least index of each one's component.
+/// Which of `n` things are connected, as the least index of each one's component.
 pub(crate) fn components(n: usize, links: impl Iterator<Item = (usize, usize)>) -> Vec<usize> {
     let mut label: Vec<usize> = (0..n).collect();
     for (a, b) in links {

@@ -68,7 +68,7 @@ pub(crate) fn cube(n: i32) -> impl Strategy<Value = Aabb<3>> {
     })
 }
 
-/// Cuts a rectangle into smaller ones, then into triangles, as the digits of `seed` say.
+/// Cuts a rectangle into smaller ones, then into triangles, as the digits of `seed` prescribe.
 pub(crate) fn triangulated(axis: usize, min: Point3, max: Point3, seed: u64) -> Vec<[Point3; 3]> {
     let (k, rest) = ([(axis + 1) % 3, (axis + 2) % 3][(seed % 2) as usize], seed / 2);
     let cut = min[k] + 1.0 + (rest % 3) as f64;

@@ -17,8 +17,8 @@ pub struct Blockers {
 }
 
 impl Blockers {
-    /// Puts rectangles in order: boxes that are flat along one axis, with accepted coordinates. Boxes of
-    /// another kind are left out: they block nothing that this can use.
+    /// Indexes rectangles: boxes that are flat along one axis, with accepted coordinates. Other boxes are dropped,
+    /// which errs towards visible.
     ///
     /// O(n log² n).
     pub fn new(rectangles: impl IntoIterator<Item = Aabb<3>>) -> Self {
@@ -49,7 +49,7 @@ impl Blockers {
     /// A rectangle.
     ///
     /// # Panics
-    /// If there is no such one.
+    /// If there is no such rectangle.
     pub fn rectangle(&self, index: u32) -> &Aabb<3> {
         &self.rectangles[index as usize]
     }

@@ -1,4 +1,4 @@
-//! Proof that nothing leads from one box to another past opaque rectangles.
+//! Proof that no line leads from one box to another past opaque rectangles.
 //!
 //! For each vector of signs of a direction, lines that pass both boxes obey six rows for each box: an
 //! extent along one axis is entered before the extent along another is left. A line that is not blocked
@@ -8,9 +8,9 @@
 //! each way past them; on its leaves, positive multiples of rows that hold on that branch add up to
 //! something that is negative for no line (see [`AxialCertificate`](crate::AxialCertificate)).
 //!
-//! Ways are dealt with one after the other, and a later branch may use that an earlier way was not taken:
-//! an open set of lines has an open part that strictly takes it, which was dealt with, or strictly does
-//! not. Lines that graze are not enough for an open set.
+//! Ways are handled one after another, and a later branch may assume that an earlier way is not taken: an open set of
+//! lines has an open subset that strictly takes it, which the earlier branch covers, or one that strictly does not.
+//! Grazing lines alone are no open set.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -50,36 +50,36 @@ pub enum BranchRow {
     },
     /// A condition of the way that the branch takes past a rectangle.
     Taken {
-        /// How many rectangles were gone past before that one.
+        /// Number of rectangles on the path before that one.
         depth: usize,
         /// Which of the way's conditions; [`Bypass::Beside`] has one, the others have two, for the two
         /// axes that follow the rectangle's own in cyclic order.
         row: u8,
     },
-    /// A way past a rectangle, beside an edge of it, was dealt with and is not taken.
+    /// A way beside an edge of a rectangle was handled by an earlier branch and is not taken.
     NotTaken {
-        /// How many rectangles were gone past before that one.
+        /// Number of rectangles on the path before that one.
         depth: usize,
         /// The way.
         way: Bypass,
     },
 }
 
-/// Rows and positive multipliers with which they exclude each other.
+/// Rows with positive multipliers that contradict each other.
 pub type Contradiction = Vec<(BranchRow, BigInt)>;
 
 /// Why no open set of lines is left on a branch.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Branch {
-    /// Its rows exclude each other.
+    /// Its rows contradict each other.
     Empty(Contradiction),
     /// A rectangle is in the way, and no way leads past it.
     Past {
         /// The rectangle, by index.
         rectangle: u32,
-        /// Ways past it in the order in which they are dealt with, and why each leads nowhere.
+        /// Ways past it in the order in which they are handled, each with the proof that no line takes it.
         ways: Vec<(Bypass, Branch)>,
-        /// Why nothing is left once those ways were dealt with; `None` if they are all there are.
+        /// Why no line is left after those ways; `None` if there are no others.
         rest: Option<Contradiction>,
     },
 }
@@ -96,19 +96,19 @@ pub struct BlockedProof {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ProofSize {
-    /// Rectangles gone past, each as often as that happens.
+    /// Rectangles passed, counted once for each node of the tree.
     pub n_nodes: usize,
     /// Contradictions.
     pub n_leaves: usize,
-    /// Most rectangles gone past one after the other.
+    /// Largest number of rectangles passed on one path.
     pub depth: usize,
-    /// Most rows of a contradiction.
+    /// Largest number of rows in a contradiction.
     pub most_rows: usize,
 }
 
 impl BlockedProof {
-    /// Whether it proves that no open set of lines leads from inside of `from` to `to` without meeting one
-    /// of `rectangles` in between. Exact; shares no code with what found it.
+    /// Whether it proves that no open set of lines leads from inside of `from` to `to` without meeting one of
+    /// `rectangles` in between. Exact; shares no code with the solver.
     ///
     /// * `rectangles`: those that the proof names by index; boxes that are flat along one axis.
     pub fn holds(&self, from: &Aabb<3>, to: &Aabb<3>, target: Target, rectangles: &[Aabb<3>]) -> bool {
@@ -133,7 +133,7 @@ impl BlockedProof {
         found
     }
 
-    /// How large it is.
+    /// The size of the proof.
     pub fn size(&self) -> ProofSize {
         let mut size = ProofSize::default();
         self.visit(&mut |branch, depth| {
@@ -153,7 +153,7 @@ impl BlockedProof {
         size
     }
 
-    /// The same proof about those of `rectangles` that it names, and these; `None` if one is missing.
+    /// The same proof with only those of `rectangles` that it names, and these; `None` if one is missing.
     pub fn narrowed(mut self, rectangles: &[Aabb<3>]) -> Option<(Self, Vec<Aabb<3>>)> {
         let named = self.rectangles();
         let kept: Option<Vec<Aabb<3>>> = named.iter().map(|&i| rectangles.get(i as usize).copied()).collect();
@@ -184,10 +184,10 @@ impl Branch {
     }
 }
 
-/// A coordinate on an axis, for the time at which it is reached.
+/// A coordinate on an axis, which stands for the time at which it is reached.
 type Place = (usize, f64);
 
-/// A place that is reached before another.
+/// Two places, of which the first is reached before the second.
 type Claim = [Place; 2];
 
 /// A rectangle gone past.
@@ -228,7 +228,7 @@ impl<'a> Lines<'a> {
         axis == other && if self.forward[axis] { x < y } else { x > y }
     }
 
-    /// Whether no line that is inside the first box gets into the second later on.
+    /// Whether no line passes the inside of the first box and later that of the second.
     fn lead_away(&self) -> bool {
         (0..3).any(|axis| !self.is_before(self.enters(self.from, axis), self.leaves(self.to, axis)))
     }
@@ -260,7 +260,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// What a row says, if it is one of this branch.
+    /// The comparison that a row stands for, if it holds on this branch.
     fn claim(&self, row: BranchRow) -> Option<Claim> {
         match row {
             BranchRow::End { second, early, late } => {
@@ -279,7 +279,7 @@ impl<'a> Lines<'a> {
                 if !passage.dealt_with.contains(&way) {
                     return None;
                 }
-                // Not to obey several conditions is not to obey one of them, whichever.
+                // The negation of several conditions is a disjunction, which is no row.
                 match self.conditions(passage.rectangle, passage.axis, way)?[..] {
                     [[early, late]] => Some([late, early]),
                     _ => None,

@@ -55,12 +55,12 @@ impl Ends<'_> {
         })
     }
 
-    /// Whether a row may hold for some line between the boxes: certain if it says no.
+    /// Whether a row may hold for some line between the boxes; `false` is certain.
     ///
-    /// A row about two axes says on which side of a point the line passes in their plane. A line crosses
-    /// the diagonals of both boxes that run from side to side of it, the first before the second if the
-    /// boxes lie one after the other; the orientation of two points and a third is linear in each, so it
-    /// is largest for two ends of the diagonals.
+    /// A row about two axes fixes the side of a point on which the line passes in their plane. A line crosses the
+    /// diagonals of both boxes that run from side to side of it, the first before the second if the boxes lie one after
+    /// the other. The orientation of two points and a third is linear in each, so it is largest at two ends of the
+    /// diagonals.
     pub(super) fn may_hold(&self, row: &Row) -> bool {
         let (i, j) = (row.early, row.late);
         let apart = |k: usize| self.from.max[k] <= self.to.min[k] || self.to.max[k] <= self.from.min[k];

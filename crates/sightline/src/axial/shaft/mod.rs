@@ -1,4 +1,4 @@
-//! Lines from one box to another, past opaque rectangles: is there one, and which?
+//! Lines from one box to another past opaque rectangles: whether there is one, and which.
 //!
 //! # Method
 //! Lazy subtraction. In each octant of directions the lines between two boxes are those that obey a few
@@ -6,8 +6,8 @@
 //! nothing, it is the answer. If it meets a rectangle, all lines through that rectangle are blocked, and
 //! the others pass it beside one of its four edges, which is one more row each; or they cross its plane
 //! before they leave the first box or after they enter the second, which is two. So the lines fall into
-//! at most six smaller sets, each a linear program again, and most of them are empty. What decides is
-//! what stands between the boxes, not into how many cells the space between them is cut.
+//! at most six smaller sets, each a linear program again, and most of them are empty. The effort depends on what stands
+//! between the boxes, not on the number of cells that the space between them is cut into.
 //!
 //! Doubles choose the line and the rectangle. That a set is empty is proven by integer weights, as for
 //! doors; that a line is free is checked exactly; so no answer depends on rounding.
@@ -56,7 +56,7 @@ pub enum Target {
 /// [`Verdict::Hidden`] see [`Shaft::certify`].
 pub type ShaftVerdict = Verdict<FreeLine, (), LimitReached>;
 
-/// How questions were decided.
+/// How queries were decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ShaftCounters {
@@ -66,7 +66,7 @@ pub struct ShaftCounters {
     pub n_programs: u64,
     /// Linear programs whose margin was within rounding, so that integers had to decide.
     pub n_exact: u64,
-    /// Questions that were given up.
+    /// Queries that were given up.
     pub n_undecided: u64,
 }
 
@@ -86,7 +86,7 @@ impl std::ops::Add for ShaftCounters {
 impl std::ops::Sub for ShaftCounters {
     type Output = Self;
 
-    /// What was done since `other`.
+    /// The difference from `other`, an earlier count.
     fn sub(self, other: Self) -> Self {
         Self {
             n_asked: self.n_asked - other.n_asked,
@@ -97,17 +97,17 @@ impl std::ops::Sub for ShaftCounters {
     }
 }
 
-/// Rectangles gone past one after the other at which a branch is given up.
+/// Number of rectangles passed on one branch at which the branch is given up.
 const DEEPEST: usize = 64;
 
 /// Number of rectangles on a line that are compared, the largest ones.
 const COMPARED: usize = 6;
 
-/// A margin of at least this, in the unit box of a program, is not rounding. What depends on it is only
-/// which check comes first.
+/// A margin of at least this, in the unit box of a program, counts as more than rounding. Only the order of checks
+/// depends on it.
 const CLEAR_MARGIN: f64 = 1e-9;
 
-/// Decides about boxes among the same rectangles. Holds scratch memory; use one for each thread.
+/// Decides visibility between boxes among fixed rectangles. Holds scratch memory; use one for each thread.
 #[derive(Debug, Clone)]
 pub struct Shaft<'a> {
     blockers: &'a Blockers,
@@ -143,7 +143,7 @@ impl<'a> Shaft<'a> {
         }
     }
 
-    /// What was done since it was made.
+    /// Counts since this was created.
     pub const fn counters(&self) -> ShaftCounters {
         self.counters
     }
@@ -286,7 +286,7 @@ impl<'a> Shaft<'a> {
         let Some(mut ray) = Ray::new(frame.starts_and_paces(&y)) else { return Part::Undecided };
         let mut blocker = self.ahead(ends, &ray);
         if blocker.is_none() && y[5] <= CLEAR_MARGIN {
-            // Nothing is left to go past, so it has to be known whether there are lines at all.
+            // No rectangle is left to pass, so it remains to decide whether there are lines at all.
             self.counters.n_exact += 1;
             ray = match decide_in_doubles(&self.rows, ends.octant, FINE, &mut self.scratch) {
                 Ok(Decision::Blocked(_)) => return Part::Blocked,
@@ -367,9 +367,9 @@ impl<'a> Shaft<'a> {
         if given_up { Part::Undecided } else { Part::Blocked }
     }
 
-    /// Whether the rows lead from the late end of one of them around to its early end by themselves: each
-    /// says that one coordinate is reached before another, and on one axis coordinates are reached in
-    /// their order. Exact: nothing is computed.
+    /// Whether the rows alone lead from the late end of one of them back to its early end: each row states that one
+    /// coordinate is reached before another, and on one axis coordinates are reached in their order. Exact: nothing is
+    /// computed.
     fn contradicts(&self, row: &Row, octant: Octant) -> bool {
         // The first coordinate on each axis that is known to be reached after the row's late end.
         let mut after = [f64::INFINITY; 3];

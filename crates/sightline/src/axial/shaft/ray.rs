@@ -59,7 +59,7 @@ impl Ray {
         enter.max(from) <= leave.min(to)
     }
 
-    /// Whether it may meet the closed box between two times: certain if it says no.
+    /// Whether it may meet the closed box between two times; `false` is certain.
     #[inline(always)]
     pub(super) fn may_meet(&self, b: &Aabb<3>, [from, to]: [f64; 2]) -> bool {
         let [enter, leave] = self.span(b);

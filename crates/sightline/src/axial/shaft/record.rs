@@ -1,4 +1,4 @@
-//! The search of a [`Shaft`] once more, keeping what it finds: slower, with a proof at the end.
+//! The search of a [`Shaft`] with a record of what it finds: slower, with a proof as the result.
 
 use super::super::octant::{Decision, SMALL_FIRST, decide};
 use super::super::rows::{Row, first_and_last, others};
@@ -13,8 +13,8 @@ impl Shaft<'_> {
     /// between; arguments as for [`Shaft::decide`]. Rectangles are named by their indices among the
     /// [`Blockers`](super::Blockers).
     ///
-    /// `None` if some do, or within the budget it is not known. What [`Shaft::decide`] calls blocked with
-    /// some budget is proven with the same. Slower: every contradiction is put in integers, small ones first.
+    /// `None` if some do, or if the budget does not suffice. What [`Shaft::decide`] finds blocked with some budget is
+    /// proven with the same budget. Slower: every contradiction is expressed in integers, small ones first.
     pub fn certify(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target, budget: u32) -> Option<BlockedProof> {
         self.left = budget;
         self.middle_blockers(from, to, target);

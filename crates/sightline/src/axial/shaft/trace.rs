@@ -83,7 +83,7 @@ impl FreeLine {
 }
 
 impl FreeSpan {
-    /// Whether the line may meet a closed box on its free part: certain if it says no.
+    /// Whether the line may meet a closed box on its free part; `false` is certain.
     #[inline]
     pub fn may_meet(&self, bounds: &Aabb<3>) -> bool {
         self.free.ray.may_meet(bounds, self.times)

@@ -66,8 +66,8 @@ proptest! {
         }
     }
 
-    /// Invariant: a proof that holds is right, wherever it comes from: that of one case says of another at
-    /// most what is true of that.
+    /// Invariant: a proof that holds is true, wherever it comes from: one that was made for another case holds only if
+    /// this case is blocked too.
     #[test]
     fn proofs_of_other_cases_prove_nothing_wrong(
         case in any_case(),

@@ -76,8 +76,7 @@ proptest! {
     }
 }
 
-/// Both answers are frequent, and that there is none is rare: on the grid, and where rounding has moved
-/// what was in line.
+/// Both answers are frequent and undecided cases are rare, on the grid and where rounding has moved what was aligned.
 #[test]
 fn questions_are_answered() {
     let (plain, moved, thin) = (Counts::default(), Counts::default(), Counts::default());

@@ -46,7 +46,7 @@ fn through(b: &Aabb<3>, forward: [bool; 3]) -> Vec<Row> {
     rows
 }
 
-/// Whether a line reaches a coordinate before another, as a row says.
+/// Whether a line reaches one coordinate before another, as a row demands.
 fn obeys(line: &AxialWitness, row: &Row) -> bool {
     let time = |axis: usize, x: f64| (fraction(x) - &line.point()[axis]) / &line.direction()[axis];
     time(row.early, row.from) < time(row.late, row.to)
@@ -123,7 +123,7 @@ impl Case {
         })
     }
 
-    /// Whether a line leads from box to box past all rectangles, in fractions: where it is when.
+    /// Whether a line leads from box to box past all rectangles: its times at coordinates, in fractions.
     pub(super) fn is_free(&self, line: &FreeLine) -> bool {
         let [p, q] = line.points().map(|p| p.map(fraction));
         let d: [BigRational; 3] = std::array::from_fn(|k| &q[k] - &p[k]);
