@@ -1,15 +1,15 @@
-//! The bytes of proofs: numbers of seven bits a byte, doubles, and a frame with a checksum around them.
+//! The bytes of proofs: numbers with seven bits to a byte, doubles, lists, and a frame with a checksum around them.
 
 use num_bigint::{BigInt, Sign};
 
-/// What proof files begin with.
+/// The first bytes of every proof file.
 const MAGIC: [u8; 8] = *b"SLPROOFS";
 /// The version that is written, and the only one that is read.
 pub const VERSION: u32 = 1;
 /// Magic, version, kind; then the body; then the checksum.
 const HEAD: usize = 8 + 4 + 1;
 
-/// Why bytes are no proofs, and where that shows.
+/// Why bytes are not proofs, and where they are wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("byte {offset}: {kind}")]
 pub struct ReadError {
@@ -29,10 +29,10 @@ pub enum ReadErrorKind {
     /// Another version.
     #[error("version {0} of the format; this reader knows version 1")]
     Version(u32),
-    /// Proofs for a kind of table that is not known.
+    /// Proofs for an unknown kind of table.
     #[error("proofs of kind {0}, which is not known")]
     Kind(u8),
-    /// The bytes end too early, or a number of items is larger than what is left can hold.
+    /// The bytes end too early, or announce more items than the rest can hold.
     #[error("{need} bytes are needed and {left} are left")]
     Cut {
         /// Bytes needed.
@@ -40,13 +40,13 @@ pub enum ReadErrorKind {
         /// Bytes left.
         left: u64,
     },
-    /// A number that is longer than it need be, or larger than it may be.
+    /// A number that is not written in the shortest form, or is out of range.
     #[error("a number is out of range")]
     Number,
-    /// A double that is no coordinate.
+    /// A double that is not a valid coordinate.
     #[error("a number is no coordinate")]
     Coordinate,
-    /// A code that means nothing.
+    /// An undefined code.
     #[error("code {0} means nothing here")]
     Code(u8),
     /// Bytes after the end.
@@ -55,7 +55,7 @@ pub enum ReadErrorKind {
     /// Damaged.
     #[error("the checksum is wrong: the file is damaged")]
     Checksum,
-    /// Proofs that are nested deeper than a proof may be.
+    /// Proofs that are nested deeper than the format allows.
     #[error("proofs are nested too deeply")]
     Depth,
 }
@@ -95,7 +95,7 @@ pub(crate) fn framed(kind: Kind, body: Writer) -> Vec<u8> {
     bytes
 }
 
-/// The kind of proofs and a reader at the beginning of their body; the checksum is right.
+/// The kind of proofs and a reader at the beginning of their body, after a check of frame and checksum.
 pub(crate) fn unframed(bytes: &[u8]) -> Result<(Kind, Reader<'_>), ReadError> {
     let fail = |offset, kind| Err(ReadError { offset, kind });
     if bytes.len() < HEAD + 4 {
@@ -120,11 +120,36 @@ pub(crate) fn unframed(bytes: &[u8]) -> Result<(Kind, Reader<'_>), ReadError> {
     }
 }
 
+/// Reads the frame of proofs of a kind: the checksum of their network, and a reader of what follows it.
+pub(crate) fn unframed_of(kind: Kind, bytes: &[u8]) -> Result<(u32, Reader<'_>), ReadError> {
+    let (own, mut reader) = unframed(bytes)?;
+    if own != kind {
+        return Err(ReadError { offset: 12, kind: ReadErrorKind::Kind(own.code()) });
+    }
+    let four = reader.bytes(4)?;
+    Ok((u32::from_le_bytes([four[0], four[1], four[2], four[3]]), reader))
+}
+
+/// Something that can be written as bytes and read back.
+pub(crate) trait Coded: Sized {
+    /// The least number of bytes that it takes. This limits the length of lists that are read.
+    const LEAST: usize;
+
+    fn write(&self, writer: &mut Writer);
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, ReadError>;
+}
+
 /// Collects bytes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Writer(Vec<u8>);
 
 impl Writer {
+    /// A body that begins with the checksum of a network.
+    pub(crate) fn for_network(checksum: u32) -> Self {
+        Self(checksum.to_le_bytes().to_vec())
+    }
+
     pub(crate) fn byte(&mut self, x: u8) {
         self.0.push(x);
     }
@@ -142,7 +167,33 @@ impl Writer {
         self.number(n as u64);
     }
 
-    /// A double: in four bytes if that loses nothing, else in eight; `wide` says which.
+    /// The number of items, then the items.
+    pub(crate) fn list<T: Coded>(&mut self, items: &[T]) {
+        self.size(items.len());
+        for item in items {
+            item.write(self);
+        }
+    }
+
+    /// Ascending pairs: the difference to the first number of the pair before, then the second number or, if the first is
+    /// the same, its difference.
+    pub(crate) fn pairs(&mut self, pairs: &[[u32; 2]]) {
+        self.size(pairs.len());
+        let mut before = [0, 0];
+        for &[a, b] in pairs {
+            let step = a.wrapping_sub(before[0]);
+            self.number(step);
+            self.number(if step == 0 { b.wrapping_sub(before[1]) } else { b });
+            before = [a, b];
+        }
+    }
+
+    /// Coordinates, given by their bits, in eight bytes each if `wide`, else in four.
+    pub(crate) fn coordinates(&mut self, bits: &[u64], wide: bool) {
+        bits.iter().for_each(|&x| self.double(f64::from_bits(x), wide));
+    }
+
+    /// A double in eight bytes if `wide`, else in four.
     pub(crate) fn double(&mut self, x: f64, wide: bool) {
         if wide {
             self.0.extend(x.to_le_bytes());
@@ -168,7 +219,12 @@ pub(crate) fn is_narrow(x: f64) -> bool {
     f64::from(x as f32) == x
 }
 
-/// Reads numbers, and never past the end.
+/// Whether some coordinate, given by its bits, needs eight bytes.
+pub(crate) fn is_wide(bits: &[u64]) -> bool {
+    !bits.iter().all(|&x| is_narrow(f64::from_bits(x)))
+}
+
+/// Reads bytes, never past their end.
 #[derive(Debug, Clone)]
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
@@ -176,7 +232,7 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// An error about the `back` bytes just read.
+    /// An error at the offset `back` bytes before the current one.
     pub(crate) fn fail<T>(&self, back: usize, kind: ReadErrorKind) -> Result<T, ReadError> {
         Err(ReadError { offset: self.at - back, kind })
     }
@@ -211,7 +267,7 @@ impl<'a> Reader<'a> {
         self.fail(5, ReadErrorKind::Number)
     }
 
-    /// The number of items to come, of `size` bytes each at least: never more than there can be.
+    /// The number of items that follow, each of at least `size` bytes; refused if the rest is too short for them.
     pub(crate) fn count(&mut self, size: usize) -> Result<usize, ReadError> {
         let before = self.at;
         let n = self.number()? as usize;
@@ -219,7 +275,40 @@ impl<'a> Reader<'a> {
         if need > left { self.fail(self.at - before, ReadErrorKind::Cut { need, left }) } else { Ok(n) }
     }
 
-    /// A coordinate of four or eight bytes.
+    /// The number of items, then the items.
+    pub(crate) fn list<T: Coded>(&mut self) -> Result<Vec<T>, ReadError> {
+        let n = self.count(T::LEAST)?;
+        (0..n).map(|_| T::read(self)).collect()
+    }
+
+    /// Pairs as [`Writer::pairs`] writes them; refused unless they ascend.
+    pub(crate) fn pairs(&mut self) -> Result<Vec<[u32; 2]>, ReadError> {
+        let n = self.count(2)?;
+        let mut before = [0u32, 0u32];
+        let mut pairs = Vec::with_capacity(n);
+        for k in 0..n {
+            let [step, second] = [self.number()?, self.number()?];
+            let base = if step == 0 { before[1] } else { 0 };
+            let pair = before[0].checked_add(step).zip(base.checked_add(second)).map(|(a, b)| [a, b]);
+            match pair.filter(|pair| k == 0 || *pair > before) {
+                Some(pair) => pairs.push(pair),
+                None => return self.fail(0, ReadErrorKind::Number),
+            }
+            before = pairs[k];
+        }
+        Ok(pairs)
+    }
+
+    /// Two points, by the bits of their coordinates, as [`Writer::coordinates`] writes them.
+    pub(crate) fn points<const D: usize>(&mut self, wide: bool) -> Result<[[u64; D]; 2], ReadError> {
+        let mut points = [[0; D]; 2];
+        for x in points.as_flattened_mut() {
+            *x = self.coordinate(wide)?.to_bits();
+        }
+        Ok(points)
+    }
+
+    /// A coordinate in eight bytes if `wide`, else in four.
     pub(crate) fn coordinate(&mut self, wide: bool) -> Result<f64, ReadError> {
         let n = if wide { 8 } else { 4 };
         let bytes = self.take(n)?;
@@ -239,7 +328,7 @@ impl<'a> Reader<'a> {
         let before = self.at;
         let n = self.number()? as usize;
         let bytes = self.take(n / 2)?;
-        // One way to write each number.
+        // Each number has one form only.
         if bytes.last() == Some(&0) || n == 1 {
             return self.fail(self.at - before, ReadErrorKind::Number);
         }
@@ -247,7 +336,7 @@ impl<'a> Reader<'a> {
         Ok(BigInt::from_bytes_le(sign, bytes))
     }
 
-    /// Nothing may follow.
+    /// Refuses bytes after the end.
     pub(crate) fn end(&self) -> Result<(), ReadError> {
         match self.bytes.len() - self.at {
             0 => Ok(()),

@@ -23,7 +23,7 @@ pub(crate) struct Dyadic {
 }
 
 impl Dyadic {
-    /// A double without loss; what is not finite counts as 0, and no caller has such a thing.
+    /// A double without loss. Callers pass finite doubles only; others count as 0.
     pub(crate) fn new(x: f64) -> Self {
         debug_assert!(x.is_finite());
         let bits = x.to_bits();
@@ -33,7 +33,7 @@ impl Dyadic {
             0x7ff => (0, 0),
             _ => (fraction | 1 << 52, field - 1075),
         };
-        // An odd mantissa, which is short for short numbers; of 0 the exponent means nothing.
+        // An odd mantissa, which is short for short numbers. The exponent of 0 has no meaning.
         let zeros = mantissa.trailing_zeros() % 64;
         let mantissa = BigInt::from(mantissa >> zeros);
         Self { mantissa: if x < 0.0 { -mantissa } else { mantissa }, exponent: exponent + zeros as i32 }
@@ -43,7 +43,8 @@ impl Dyadic {
         Self { mantissa, exponent: 0 }
     }
 
-    /// A double within 2^-51 of itself; for sums of few products of two coordinates, which no double is too small or large for.
+    /// The number as a double, with a relative error of at most 2^-51. For sums of a few products of two coordinates, which are in
+    /// the range of doubles.
     pub(crate) fn rounded(&self) -> f64 {
         self.mantissa.to_f64().unwrap_or(0.0) * 2f64.powi(self.exponent)
     }
@@ -56,7 +57,7 @@ impl Dyadic {
         }
     }
 
-    /// Whether it has no more bits than so many, nor an exponent of more than 64 times as much.
+    /// Whether the mantissa has at most `most` bits, and the exponent a magnitude of at most 64 times as much.
     pub(crate) fn has_bits(&self, most: u64) -> bool {
         self.mantissa.bits() <= most && u64::from(self.exponent.unsigned_abs()) <= 64 * most
     }
@@ -119,9 +120,9 @@ impl Neg for &Dyadic {
 
 /// On which side of the line from `a` to `b` the point `c` lies: `Greater` is left. Exact for coordinates.
 ///
-/// The determinant in doubles first. Two differences, a product and the last difference round by 2^-53 of themselves
-/// each, so the result is off by less than 2^-50 of the sum of the products' magnitudes; what is larger has the
-/// right sign. (Nothing underflows: a difference of two coordinates is 0 or at least 2^-192.)
+/// The determinant is computed in doubles first. Two differences, a product and the last difference round by 2^-53 of
+/// themselves each, so the error is less than 2^-50 of the sum of the products' magnitudes; a larger result has the right
+/// sign. (Nothing underflows: a difference of two coordinates is 0 or at least 2^-192.)
 #[inline]
 pub(crate) fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Ordering {
     let left = (a[0] - c[0]) * (b[1] - c[1]);

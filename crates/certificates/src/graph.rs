@@ -1,4 +1,4 @@
-//! Cells and gates as numbers: who leads where. No shapes.
+//! Cells and gates as numbers: which gate leads where. No shapes.
 
 /// A portal and the direction in which it is crossed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,9 +9,9 @@ pub(crate) struct Gate {
     pub(crate) sides: [u32; 2],
 }
 
-/// All gates: of portal `p` those with the numbers `2p` (from its first cell into its second) and `2p + 1`.
+/// All gates. Portal `p` has the gates `2p` (from its first cell into its second) and `2p + 1`.
 #[derive(Debug, Clone)]
-pub(crate) struct Gates {
+pub struct Gates {
     gates: Vec<Gate>,
     first_exit: Vec<u32>,
     exits: Vec<u32>,
@@ -52,13 +52,36 @@ impl Gates {
         &self.exits[self.exit_range(cell)]
     }
 
-    /// Where a cell's exits are among all.
+    /// The range of a cell's exits among all exits.
     pub(crate) fn exit_range(&self, cell: u32) -> std::ops::Range<usize> {
         self.first_exit[cell as usize] as usize..self.first_exit[cell as usize + 1] as usize
     }
 
-    /// An exit by its place among all.
+    /// An exit by its place among all exits.
     pub(crate) fn exit(&self, place: usize) -> u32 {
         self.exits[place]
+    }
+
+    /// The cells that a line passes, in order, followed both ways from one of them; empty if the line crosses no gate of that
+    /// cell. For convex cells only. `crosses` decides whether the line crosses a gate, followed backwards or not.
+    pub(crate) fn follow(&self, cell: u32, crosses: impl Fn(u32, bool) -> bool) -> Vec<u32> {
+        let mut cells = Vec::new();
+        self.follow_one_way(cell, |gate| crosses(gate, true), &mut cells);
+        cells.reverse();
+        cells.push(cell);
+        self.follow_one_way(cell, |gate| crosses(gate, false), &mut cells);
+        if cells.len() > 1 { cells } else { Vec::new() }
+    }
+
+    fn follow_one_way(&self, from: u32, crosses: impl Fn(u32) -> bool, cells: &mut Vec<u32>) {
+        let (mut cell, mut entry_side) = (from, None);
+        // A line passes each convex cell once.
+        for _ in 0..self.n_cells() {
+            let leaves = |gate: &&u32| Some(self.gate(**gate).sides[0]) != entry_side && crosses(**gate);
+            let Some(&gate) = self.exits(cell).iter().find(leaves) else { return };
+            let gate = self.gate(gate);
+            (cell, entry_side) = (gate.cells[1], Some(gate.sides[1]));
+            cells.push(cell);
+        }
     }
 }

@@ -6,11 +6,11 @@
 //!   [`plan`] for polygons of the plane, [`space`] for boxes, [`convex`] for cells joined by polygons in space. A search
 //!   that finds proofs passes them to a maker here, which checks each of them immediately.
 //! - **Out of scope**: graphs of cells, searching, tables, files.
-//! - **Invariants**: decisions are signs of exact numbers; no step of a proof rests on a later one; what is read from bytes
-//!   never takes more memory than a few times its size, and a few bits for each pair of cells of the network it is checked against.
+//! - **Invariants**: decisions are signs of exact numbers; no step of a proof rests on a later one. Reading bytes takes memory
+//!   of a few times their size; checking takes a few bits for each pair of cells of the network.
 //!
-//! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
-//! the errors of what makes them.
+//! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: a checker must not share the errors of
+//! the code that it checks.
 
 mod bits;
 mod bytes;
@@ -26,11 +26,12 @@ mod walk;
 pub use bytes::{Kind, ReadError, ReadErrorKind, VERSION};
 pub use pairs::Pairs;
 pub use proven::{NoWall, Proven, Refusal};
+pub use walk::{ChainSolver, ChainStep, Decisions, Maker};
 
-/// The kind of proofs that bytes hold; their frame and checksum are right.
+/// The kind of proofs that bytes hold, after a check of their frame and checksum.
 ///
 /// # Errors
-/// [`ReadError`] for bytes that are no proofs, or damaged.
+/// [`ReadError`] for bytes that are not proofs or are damaged.
 pub fn kind_of(bytes: &[u8]) -> Result<Kind, ReadError> {
     bytes::unframed(bytes).map(|(kind, _)| kind)
 }

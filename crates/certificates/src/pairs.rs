@@ -26,7 +26,7 @@ impl Pairs {
         a < self.n && b < self.n && self.words[a * self.width + b / 64] >> (b % 64) & 1 == 1
     }
 
-    /// Puts a pair in, both ways round.
+    /// Adds a pair, in both orders.
     ///
     /// # Panics
     /// If there are no such cells.
@@ -37,7 +37,7 @@ impl Pairs {
         self.words[b * self.width + a / 64] |= 1 << (a % 64);
     }
 
-    /// Puts in every pair of some cells, each with itself too.
+    /// Adds every pair of some cells, and each cell with itself.
     ///
     /// # Panics
     /// If there are no such cells.
@@ -47,7 +47,18 @@ impl Pairs {
         }
     }
 
-    /// Takes a pair out, both ways round.
+    /// Adds every pair of some cells if at least `at_least` pairs of different cells, and at least one, are new. Returns
+    /// whether they were added.
+    pub(crate) fn add_all_if_new(&mut self, cells: &[u32], at_least: usize) -> bool {
+        let pairs = cells.iter().enumerate().flat_map(|(i, &a)| cells[..i].iter().map(move |&b| [a, b]));
+        let is_new = pairs.filter(|&[a, b]| a != b && !self.has(a, b)).count() >= at_least.max(1);
+        if is_new {
+            self.add_all(cells);
+        }
+        is_new
+    }
+
+    /// Removes a pair, in both orders.
     ///
     /// # Panics
     /// If there are no such cells.
@@ -58,7 +69,7 @@ impl Pairs {
         self.words[b * self.width + a / 64] &= !(1 << (a % 64));
     }
 
-    /// The pairs of a cell: bit `j % 64` of word `j / 64` says whether it is paired with cell `j`.
+    /// The pairs of a cell: bit `j % 64` of word `j / 64` is set if it is paired with cell `j`.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -93,7 +104,7 @@ impl Pairs {
     }
 }
 
-/// The places of the ones of a row, ascending.
+/// The indices of the bits that are set in a row, ascending.
 pub(crate) fn ones(row: &[u64]) -> impl Iterator<Item = u32> + '_ {
     (0u32..).zip(row).flat_map(|(i, &word)| {
         let mut word = word;

@@ -1,4 +1,4 @@
-//! What proofs prove, and why they are refused.
+//! The result of a check: the pairs proven, or why proofs are refused.
 
 use crate::pairs::Pairs;
 
@@ -23,17 +23,36 @@ impl Proven {
     }
 }
 
-/// Why proofs are refused: the first that does not hold.
+/// The pairs of cells that lines join: each line is followed through the cells that it passes, and is refused if there are
+/// none.
+pub(crate) fn joined_along<L>(
+    n_cells: usize,
+    lines: &[L],
+    follow: impl Fn(&L) -> Vec<u32>,
+    refusal: impl Fn(usize, &L) -> Refusal,
+) -> Result<Pairs, Refusal> {
+    let mut joined = Pairs::none(n_cells);
+    for (index, line) in lines.iter().enumerate() {
+        let cells = follow(line);
+        if cells.is_empty() {
+            return Err(refusal(index, line));
+        }
+        joined.add_all(&cells);
+    }
+    Ok(joined)
+}
+
+/// Why proofs are refused: the first piece that does not hold.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// They speak of other cells and portals.
+    /// They are about other cells and portals.
     #[error("the proofs are about other cells or portals than the table has")]
     OtherTable,
     /// A line that passes no portal of its cell.
     #[error("line {index} passes no portal of cell {cell}")]
     Line {
-        /// Which line.
+        /// The index of the line.
         index: usize,
         /// The cell.
         cell: u32,
@@ -41,21 +60,21 @@ pub enum Refusal {
     /// A line in space that does not pass its gate.
     #[error("line {index} does not pass portal {}", gate / 2)]
     Gate {
-        /// Which line.
+        /// The index of the line.
         index: usize,
         /// The gate: twice the number of a portal, and 1 more for the way back.
         gate: u32,
     },
-    /// An unproven pair that is none.
+    /// An unproven pair that is no pair of cells in ascending order.
     #[error("unproven pair {index} is no pair of cells")]
     Pair {
-        /// Which.
+        /// The index of the pair.
         index: usize,
     },
     /// A walk from a cell that does not exist, or to one.
     #[error("walk {walk}, from cell {from}, is between cells that do not exist")]
     Source {
-        /// Which walk.
+        /// The index of the walk.
         walk: usize,
         /// The cell.
         from: u32,
@@ -63,43 +82,43 @@ pub enum Refusal {
     /// A chain is claimed to be blocked without a valid reason.
     #[error("walk {walk}, from cell {from}: reason {block} does not show that the chain is blocked")]
     Block {
-        /// Which walk.
+        /// The index of the walk.
         walk: usize,
         /// The cell.
         from: u32,
-        /// Which of its reasons.
+        /// The index of the reason among those of the walk.
         block: usize,
     },
     /// A chain of gates that nothing blocks enters a cell that is claimed to be hidden.
     #[error("walk {walk}, from cell {from}: a chain of portals enters cell {cell}, which should be hidden")]
     Entered {
-        /// Which walk.
+        /// The index of the walk.
         walk: usize,
         /// The cell.
         from: u32,
         /// The cell that is entered.
         cell: u32,
     },
-    /// A walk that ended before all its reasons were used: it is not the walk that they were made for.
+    /// A walk that ended before all its decisions were used: they were made for another walk.
     #[error("walk {walk}, from cell {from}: not all of its reasons are used")]
     Unused {
-        /// Which walk.
+        /// The index of the walk.
         walk: usize,
         /// The cell.
         from: u32,
     },
-    /// A rectangle that should hide things is no wall.
+    /// A rectangle that is used as an occluder is no wall.
     #[error("blocker {index} is no wall: {why}")]
     Blocker {
-        /// Which.
+        /// The index of the blocker.
         index: usize,
-        /// Why not.
+        /// Why it is no wall.
         why: NoWall,
     },
     /// A proof about two boxes that does not hold.
     #[error("proof {index} does not show that its two boxes are hidden from each other")]
     Boxes {
-        /// Which.
+        /// The index of the proof.
         index: usize,
     },
 }
@@ -111,10 +130,10 @@ pub enum NoWall {
     /// It is not flat along exactly one axis.
     #[error("it is no rectangle")]
     Shape,
-    /// It is in the inside of a cell.
+    /// Part of it is inside a cell.
     #[error("it goes through cell {0}")]
     Cell(u32),
-    /// A portal is in it.
+    /// A portal lies in it.
     #[error("portal {0} is in it")]
     Portal(u32),
 }

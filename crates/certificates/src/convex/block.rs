@@ -3,19 +3,20 @@
 use super::network::ConvexNetwork;
 use super::vector::{Exact, Point, cross, dot, exact, minus, plus, rough, times, turn};
 use crate::exact::{Dyadic, is_coordinate};
+use crate::walk::gate_back;
 use std::cmp::Ordering;
 
-/// How deeply parts of lines may be cut.
+/// Most cuts on a path of a tree.
 pub(super) const MOST_DEPTH: u32 = 24;
 /// Corners that a part of a gate's hull may have.
 const MOST_CORNERS: usize = 96;
-/// Bits that a coordinate of such a corner may have. Each cut through corners that come of cuts nearly doubles them, so this is what bounds
-/// the time that a proof takes for its size.
+/// Bits that a coordinate of such a corner may have. A cut through corners that are made by cuts nearly doubles them, so this
+/// bounds the time that a proof takes for its size.
 const MOST_BITS: u64 = 1 << 14;
 
 /// Why no line passes gates of a chain.
 ///
-/// Gates are counted from the end of the chain: 0 is the gate that it comes to, which must be among them.
+/// Gates are counted from the end of the chain: 0 is the gate that the chain comes to, which must be among them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ConvexBlock {
     /// A plane.
@@ -24,71 +25,70 @@ pub enum ConvexBlock {
     Sums(ConvexSums),
 }
 
-/// A plane that has a gate on one side, a later one on the other and a still later one, the last, on the first side. Corners may lie
-/// on the plane.
+/// A plane with a gate on one side, a later gate on the other, and the last gate on the first side again. Corners may lie on the
+/// plane.
 ///
-/// A line that passes in order has points of their hulls one after the other, so the plane's linear form, which along the line
-/// goes steadily, is zero on all of it: the line lies on the plane. Seen along the line the plane is a line through the viewed
-/// point, with all corners of a gate on one side, round which its edges cannot turn.
+/// A line that passes in order meets the hulls of the three gates one after the other. The plane's linear form is affine along
+/// the line, so it is zero on all of it: the line lies on the plane. Seen along the line, the line is a point, and the plane a
+/// line through it with all corners of a gate on one side; the edges of that gate cannot turn around the point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConvexPlane {
-    /// The first two gates that it stands between, earlier one first; the third is the last one.
+    /// The first two of the three gates, the earlier one first; the third is the last gate.
     pub stops: [u32; 2],
-    /// Gate and number of an edge that lies on the plane; any of the chain.
+    /// Gate and number of an edge that lies on the plane; the gate may be any of the chain.
     pub edge: [u32; 2],
-    /// Gate and number of a corner that lies on it.
+    /// Gate and number of a corner that lies on the plane and, with the edge, determines it.
     pub corner: [u32; 2],
 }
 
-/// Lines from the hull of a gate to the hull of a later one, in parts for each of which sides of edges, times positive numbers, add up
-/// to nothing positive: of a line that passes each side is positive.
+/// Lines from the hull of a gate to the hull of a later one, divided into parts. In each part some sides of edges, times
+/// positive numbers, have no positive sum. For a line that passes, every side is positive.
 ///
-/// The sum is linear in the point of the one hull and in that of the other, so it is nowhere larger than at some pair of
-/// their corners.
+/// The sum is linear in the point of the first hull and in that of the second, so it is largest at some pair of their corners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvexSums {
     /// The two gates, the earlier one first.
     pub ends: [u32; 2],
-    /// Parts, each cut before what it is cut into.
+    /// The parts.
     pub tree: ConvexTree,
 }
 
-/// All lines of a part.
+/// Why no line of a part passes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ConvexTree {
-    /// None passes, by this sum.
+    /// This sum is not positive for any of them.
     Sum(Vec<ConvexTerm>),
-    /// Cut in two.
+    /// The part is cut in two.
     Cut(Box<ConvexCut>),
 }
 
-/// Lines cut in two by a plane, by where they meet a gate's hull.
+/// A part cut in two by a plane, by where its lines meet a gate's hull.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvexCut {
-    /// Whether it cuts the hull of the later gate.
+    /// Whether the plane cuts the hull of the later gate; else it cuts that of the earlier one.
     pub later: bool,
     /// `a x + b y + c z + d = 0`.
     pub plane: [f64; 4],
-    /// The lines where that is negative or zero, and those where it is positive or zero.
+    /// The lines where the plane's form is negative or zero, and those where it is positive or zero.
     pub parts: [ConvexTree; 2],
 }
 
-/// An edge of a gate, and what its side is multiplied by.
+/// An edge of a gate, and a multiplier of its side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConvexTerm {
     /// The gate.
     pub gate: u32,
     /// The number of the edge.
     pub edge: u32,
-    /// Positive.
+    /// The multiplier, positive.
     pub times: f64,
 }
 
-/// A corner of a part: exact, times a positive number that comes last.
+/// A corner of a part in homogeneous coordinates, exact: the last coordinate is positive.
 type Corner = (Exact, Dyadic);
 
 impl ConvexBlock {
-    /// Whether it shows that no line passes a chain of gates and then another. Exact.
+    /// Whether it shows that no line passes a chain of gates and then `gate`. Exact.
     ///
     /// # Panics
     /// If the network has no such gates.
@@ -96,12 +96,10 @@ impl ConvexBlock {
         self.gates(network, chain, gate).is_some()
     }
 
-    /// The gates of the chain that it speaks of, in its order, without the new one; `None` if it proves nothing. Exact.
+    /// The gates of the chain that it names, in the order of the chain, without the new one; `None` if it proves nothing.
+    /// Exact.
     pub(super) fn gates(&self, network: &ConvexNetwork, chain: &[u32], gate: u32) -> Option<Vec<u32>> {
-        let of = |back: u32| match back {
-            0 => Some(gate),
-            back => chain.len().checked_sub(back as usize).map(|k| chain[k]),
-        };
+        let of = |back: u32| gate_back(chain, gate, back);
         let mut named = match self {
             Self::Plane(plane) => {
                 plane.holds(network, of)?;
@@ -116,7 +114,7 @@ impl ConvexBlock {
                 named
             }
         };
-        // The earliest is the one that is most far back.
+        // Earlier gates have larger numbers.
         named.sort_unstable_by(|a, b| b.cmp(a));
         named.dedup();
         (named.pop() == Some(0)).then_some(())?;
@@ -176,7 +174,7 @@ impl Part {
                 parts[1].push(corner.clone());
             }
         }
-        // The plane meets the hull in the hull of where it meets the ways between corners.
+        // The section is the hull of the points where the plane meets segments between corners.
         for ((p, v), low) in corners.iter().zip(&heights).filter(|(_, h)| h.sign() == Ordering::Less) {
             for ((q, w), high) in corners.iter().zip(&heights).filter(|(_, h)| h.sign() == Ordering::Greater) {
                 let low = &-low;
@@ -194,7 +192,7 @@ impl Part {
     }
 }
 
-/// Whether no line from the one part to the other passes, by a tree of sums; gathers the gates that it speaks of.
+/// Whether a tree of sums shows that no line from the first part to the second passes; collects the gates that it names.
 fn refutes(
     network: &ConvexNetwork,
     of: &impl Fn(u32) -> Option<u32>,
@@ -225,7 +223,7 @@ fn refutes(
     }
 }
 
-/// Whether a sum of sides is nowhere positive for lines from the one part to the other.
+/// Whether a sum of sides is positive for no line from the first part to the second.
 fn is_never_positive(edges: &[([Point; 2], f64)], first: &Part, last: &Part) -> bool {
     // The side of the edge from e to f is (f - e) · ((q - e) × (r - e)), which is (f - e) · (q × r) + (e × f) · (r - q).
     let mut sums = None;
@@ -253,7 +251,7 @@ fn is_never_positive(edges: &[([Point; 2], f64)], first: &Part, last: &Part) -> 
     qs.iter().all(|q| rs.iter().all(|r| exactly(q, r)))
 }
 
-/// A sum in doubles, and a bound on its error: those of the sides, and of adding them up.
+/// A sum in doubles, and a bound on its error: the errors of the sides and of adding them up.
 fn roughly(edges: &[([Point; 2], f64)], q: Point, r: Point) -> (f64, f64) {
     let (mut value, mut wrong, mut size) = (0.0, 0.0, 0.0);
     for &([e, f], times) in edges {
@@ -262,6 +260,7 @@ fn roughly(edges: &[([Point; 2], f64)], q: Point, r: Point) -> (f64, f64) {
         wrong += times * off;
         size += (times * side).abs();
     }
-    // Each addition and product rounds by 2^-53 of no more than the sum of magnitudes; the bounds' own rounding is far below twice.
+    // Each addition and product rounds by 2^-53 of no more than the sum of magnitudes. The factor of two covers the rounding of the
+    // bound itself.
     (value, 2.0 * (wrong + size * (edges.len() as f64 + 2.0) * f64::EPSILON))
 }

@@ -1,20 +1,16 @@
-//! Which cells lines come to behind a gate, by the planes of gates alone.
+//! Which cells lines may reach behind a gate, by the planes of gates alone.
 
 use super::network::ConvexNetwork;
-use crate::walk::Fronts;
+use crate::walk::{Fronts, MOST_FRONT_WORDS};
 
-/// Rows that are kept take no more than so many words, 64 MiB; beyond, every cell counts as in front of every gate. It
-/// is part of the format: who makes proofs and who checks them leave out the same.
-const MOST_WORDS: usize = 8 << 20;
-
-/// Rows of bits, made when they are first asked for.
-pub(super) struct Front<'a> {
+/// Rows of bits, each computed on first use.
+pub struct Front<'a> {
     network: &'a ConvexNetwork,
     /// For each gate, the gates that may follow it.
     after: Vec<Option<Box<[u64]>>>,
     /// For each gate, the cells that are reached behind it through gates that may follow it.
     rows: Vec<Option<Box<[u64]>>>,
-    /// For too large networks.
+    /// The row of all gates of a network that is too large.
     all: Option<Box<[u64]>>,
 }
 
@@ -22,7 +18,7 @@ impl<'a> Front<'a> {
     pub(super) fn new(network: &'a ConvexNetwork) -> Self {
         let (n_gates, n_cells) = (network.gates.len(), network.n_cells());
         let n_words = n_gates.saturating_mul(n_cells.div_ceil(64) + n_gates.div_ceil(64));
-        let all = (n_words > MOST_WORDS).then(|| vec![u64::MAX; n_cells.div_ceil(64)].into_boxed_slice());
+        let all = (n_words > MOST_FRONT_WORDS).then(|| vec![u64::MAX; n_cells.div_ceil(64)].into_boxed_slice());
         let n = if all.is_some() { 0 } else { n_gates };
         Self { network, after: vec![None; n], rows: vec![None; n], all }
     }
@@ -60,7 +56,7 @@ impl Fronts for Front<'_> {
     }
 }
 
-/// The cells behind a gate and those that gates lead to which may follow it.
+/// The cell behind a gate, and the cells reached from it through gates that may follow the gate.
 fn reached(network: &ConvexNetwork, gate: u32, after: &[u64]) -> Box<[u64]> {
     let mut row = vec![0u64; network.n_cells().div_ceil(64)];
     let mut waiting = vec![network.cells(gate)[1]];

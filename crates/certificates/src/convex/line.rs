@@ -3,12 +3,12 @@
 use super::vector::Point;
 use crate::exact::is_coordinate;
 
-/// A directed line that passes some gate, and so joins the cells before and behind it.
+/// A directed line that passes a gate, and so joins the cells before and behind it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConvexLine {
-    /// A gate that it passes.
+    /// A gate that the line passes.
     pub gate: u32,
-    /// From one point towards another, by the bits of their coordinates.
+    /// A point and another farther along the line, by the bits of their coordinates.
     pub bits: [[u64; 3]; 2],
 }
 
@@ -18,7 +18,7 @@ impl ConvexLine {
         Self { gate, bits: [from, to].map(|p| p.map(f64::to_bits)) }
     }
 
-    /// Its two points; `None` if they are one or none.
+    /// Its two points; `None` if they coincide or are not valid.
     pub(super) fn points(&self) -> Option<[Point; 2]> {
         let [p, q] = self.bits.map(|p| p.map(f64::from_bits));
         let fits = [p, q].as_flattened().iter().all(|x| is_coordinate(*x));

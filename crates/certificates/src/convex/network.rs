@@ -15,7 +15,7 @@ pub struct ConvexPortal {
     pub corners: Vec<Point>,
 }
 
-/// Why cells and portals are nothing that can be proven about.
+/// Why cells and portals are refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConvexNetworkError {
@@ -28,30 +28,31 @@ pub enum ConvexNetworkError {
     /// A coordinate that is not finite, or of a magnitude that is neither 0 nor from 2^-140 to 2^200.
     #[error("portal {0} has a coordinate out of range")]
     Coordinate(u32),
-    /// A portal with less than three corners, or whose corners go round nothing.
+    /// A portal with fewer than three corners, with an edge without length, or without area.
     #[error("portal {0} is no polygon")]
     NoPolygon(u32),
-    /// A flatness that is not from 0 to 2^-20.
+    /// A flatness outside the range from 0 to 2^-20.
     #[error("portals cannot be that far off their planes")]
     Flatness,
 }
 
-/// Cells, known by number only, and the polygons between them.
+/// Cells, given by number only, and the polygons between them.
 ///
-/// # What it means to pass
+/// # What passing means
 /// A directed line passes a gate if it has each edge of the polygon, from corner to corner, strictly on its inner side. It then
-/// meets the hull of the corners; and as the edges' sides add up to its share of the *normal* of the polygon (the sum of the cross
-/// products of successive corners), it goes along this normal, not against it. It passes a chain if it passes each
-/// gate and meets their hulls one after the other, each gate once.
+/// meets the hull of the corners. The sides of the edges add up to the product of its direction and the *normal* of the polygon
+/// (the sum of the cross products of successive corners), so it goes along this normal, not against it. It passes a chain if it
+/// passes each gate and meets their hulls one after the other, each gate once.
 ///
-/// # What is taken for granted
-/// Corners of files are rounded, but portals are meant to lie on planes that the map was cut by, and a line crosses a plane once. So
-/// corners count as on a portal's plane that are off it by no more than rounding each coordinate by the *flatness* times the
-/// largest one of the two portals on its axis can move them along the normal. With a flatness of 0 nothing is taken for granted.
+/// # What is assumed
+/// Corners in files are rounded, but portals are meant to lie on the planes by which the map was cut, and a line crosses a plane
+/// once. So a corner counts as on a portal's plane if rounding could have moved it off the plane that far: if each coordinate
+/// is rounded by the *flatness* times the largest coordinate of the two portals on its axis. With a flatness of 0 nothing is
+/// assumed.
 #[derive(Debug, Clone)]
 pub struct ConvexNetwork {
     pub(super) gates: Gates,
-    /// Of each gate, as seen by who crosses it.
+    /// The corners of each gate, counter-clockwise about the direction of crossing.
     corners: Vec<Vec<Point>>,
     planes: Vec<Plane>,
     flatness: f64,
@@ -62,19 +63,19 @@ pub struct ConvexNetwork {
 #[derive(Debug, Clone)]
 struct Plane {
     normal: Exact,
-    /// The normal in doubles, within 2^-51 of itself in each component.
+    /// The normal in doubles, each component within 2^-51 of its magnitude.
     rounded: Point,
     /// The largest magnitude of a coordinate of a corner, on each axis.
     largest: Point,
-    /// The least and the largest product of the rounded normal with a corner, in doubles.
+    /// The smallest and the largest product of the rounded normal with a corner, in doubles.
     range: [f64; 2],
 }
 
 impl ConvexNetwork {
-    /// The flatness of tables of maps: corners within 2^-44 of the largest coordinate count as on the plane of a portal.
+    /// The flatness for tables of maps: corners within 2^-44 of the largest coordinate count as on the plane of a portal.
     pub const OF_FILES: f64 = f64::EPSILON * 256.0;
 
-    /// Takes cells and portals. O(size).
+    /// Checks cells and portals. O(size).
     ///
     /// # Errors
     /// The first [`ConvexNetworkError`].
@@ -99,7 +100,7 @@ impl ConvexNetwork {
                 corners.push(shape);
             }
         }
-        // Each portal is a side of its own.
+        // Each portal is a side by itself.
         let gates = Gates::new(n_cells, (0u32..).zip(portals).map(|(id, p)| (p.cells, [id, id])));
         let checksum = checksum(n_cells, portals, flatness);
         Ok(Self { gates, corners, planes, flatness, checksum })
@@ -115,7 +116,7 @@ impl ConvexNetwork {
         self.gates.len() / 2
     }
 
-    /// A number that proofs carry, so that those of other cells or portals are noticed.
+    /// A checksum of cells and portals. Proofs carry it, so those of another network are refused.
     pub fn checksum(&self) -> u32 {
         self.checksum
     }
@@ -142,11 +143,11 @@ impl ConvexNetwork {
         Some([*corners.get(k)?, corners[(k + 1) % corners.len()]])
     }
 
-    /// Whether a line may pass gate `s` and then gate `t`, as far as their planes tell.
+    /// Whether a line may pass gate `s` and then gate `t`, by their planes.
     ///
-    /// Where it meets their hulls it goes along the normals of both. So `t` has a corner that is farther along the normal of `s` than
-    /// some corner of `s` is, and `s` one that is less far along the normal of `t` than some corner of `t`; farther than the flatness
-    /// lets corners be. Exact; `false` for a gate and itself.
+    /// A line that does goes along the normals of both where it meets their hulls. So some corner of `t` lies farther along the
+    /// normal of `s` than some corner of `s`, and some corner of `s` less far along the normal of `t` than some corner of `t`, by
+    /// more than the flatness allows. Exact; `false` for a gate and itself.
     pub fn may_follow(&self, s: u32, t: u32) -> bool {
         s != t && self.rises(s, [s, t]) && self.rises(t, [s, t])
     }
@@ -165,8 +166,8 @@ impl ConvexNetwork {
         // No product of the normal with a corner is larger.
         let reach: f64 = (0..3).map(|k| plane.rounded[k].abs() * largest[k]).sum();
         let allowed = self.flatness * reach;
-        // Normals are within 2^-51 of their components' magnitudes, products with them too; two products' sums round by less than
-        // 2^-51 of the reach each. Asked for is 2^-47, for all that and the rounding of the bound.
+        // Components of normals are within 2^-51 of their magnitudes, and so are products with them; the sums of both products round
+        // by less than 2^-51 of the reach each. 2^-47 covers all that and the rounding of the bound.
         let wrong = reach * 2f64.powi(-47);
         if (rise - allowed).abs() > wrong {
             return rise > allowed;
@@ -180,7 +181,7 @@ impl ConvexNetwork {
     }
 
     /// The cells that a line passes, in order, followed from its gate both ways through gates that it passes one after the other. An
-    /// open set of lines joins any two of them. Empty if it does not pass its gate, or if there is none such. Exact.
+    /// open set of lines joins any two of them. Empty if the line does not pass its gate, or if there is no such gate. Exact.
     pub fn follow(&self, line: &ConvexLine) -> Vec<u32> {
         let Some([p, q]) = line.points().filter(|_| (line.gate as usize) < self.gates.len()) else { return Vec::new() };
         if !self.passes(line.gate, p, q) {
@@ -193,7 +194,7 @@ impl ConvexNetwork {
         cells
     }
 
-    /// The cell behind a gate and those after it.
+    /// Adds the cell behind a gate, and the cells that follow it along a line.
     fn go(&self, first: u32, [p, q]: [Point; 2], cells: &mut Vec<u32>) {
         let way = minus(&exact(q), &exact(p));
         let (mut last, mut at) = (first, None);
@@ -211,8 +212,8 @@ impl ConvexNetwork {
         }
     }
 
-    /// Where a line that passes a gate is on the plane through its first corner, across its normal: a share of the way, as numerator and
-    /// positive denominator.
+    /// Where a line that passes a gate crosses the plane through the gate's first corner, perpendicular to its normal: a share of
+    /// the way between two points of the line, as numerator and positive denominator.
     fn place(&self, gate: u32, p: Point, way: &Exact) -> [Dyadic; 2] {
         let normal = &self.planes[gate as usize].normal;
         let from = minus(&exact(self.corners(gate)[0]), &exact(p));
@@ -226,7 +227,7 @@ impl ConvexNetwork {
 }
 
 impl Plane {
-    /// `None` for corners that go round nothing, and for edges without length, which every line has on a side that is neither.
+    /// `None` for a polygon without area, and for one with an edge without length, which is on neither side of any line.
     fn of(corners: &[Point]) -> Option<Self> {
         let first = exact(*corners.first()?);
         if (0..corners.len()).any(|k| corners[k] == corners[(k + 1) % corners.len()]) {

@@ -1,4 +1,4 @@
-//! Exact vectors, and the one determinant that everything is decided by.
+//! Exact vectors, and the determinant whose sign decides.
 
 use crate::exact::Dyadic;
 use std::cmp::Ordering;

@@ -3,29 +3,27 @@
 use super::line::Point;
 use super::network::PlanNetwork;
 use crate::exact::turn;
+use crate::walk::gate_back;
 use std::cmp::Ordering;
 
 /// Ends of gates of a chain, one to three left ones and one to three right ones, four at most together, that no line
 /// separates strictly: then no open set of lines passes the gates, each with its left end on the left.
 ///
-/// Gates are counted from the end of the chain: 0 is the gate that it comes to, which must be among them.
+/// Gates are counted from the end of the chain: 0 is the gate that the chain comes to, which must be among them.
 ///
 /// Four are enough: Kirchberger, Math. Ann. 57, 1903.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PlanBlock {
-    /// Gates whose left ends these are.
+    /// The gates of the left ends.
     pub lefts: Vec<u32>,
-    /// Gates whose right ends these are.
+    /// The gates of the right ends.
     pub rights: Vec<u32>,
 }
 
 impl PlanBlock {
-    /// The gates of the chain that it speaks of, ascending, without the new one; `None` if it proves nothing. Exact.
+    /// The gates of the chain that it names, ascending, without the new one; `None` if it proves nothing. Exact.
     pub(super) fn gates(&self, network: &PlanNetwork, chain: &[u32], gate: u32) -> Option<Vec<u32>> {
-        let of = |back: &u32| match *back {
-            0 => Some(gate),
-            back => chain.len().checked_sub(back as usize).map(|k| chain[k]),
-        };
+        let of = |back: &u32| gate_back(chain, gate, *back);
         let lefts: Vec<u32> = self.lefts.iter().map(of).collect::<Option<_>>()?;
         let rights: Vec<u32> = self.rights.iter().map(of).collect::<Option<_>>()?;
         let left = |k: usize| network.ends[lefts[k] as usize][0];

@@ -1,19 +1,15 @@
-//! Which cells reach in front of a gate.
+//! Which cells have a part in front of a gate.
 
 use super::network::PlanNetwork;
 use crate::exact::turn;
-use crate::walk::Fronts;
+use crate::walk::{Fronts, MOST_FRONT_WORDS};
 use std::cmp::Ordering;
 
-/// Rows that are kept take no more than so many words, 64 MiB; beyond, every cell counts as in front of every gate. It
-/// is part of the format: who makes proofs and who checks them leave out the same.
-const MOST_WORDS: usize = 8 << 20;
-
-/// Rows of bits, made when they are first asked for.
-pub(super) struct Front<'a> {
+/// Rows of bits, each computed on first use.
+pub struct Front<'a> {
     network: &'a PlanNetwork,
     rows: Vec<Option<Box<[u64]>>>,
-    /// For too large networks.
+    /// The row of all gates of a network that is too large.
     all: Option<Box<[u64]>>,
 }
 
@@ -21,7 +17,7 @@ impl<'a> Front<'a> {
     pub(super) fn new(network: &'a PlanNetwork) -> Self {
         let width = network.n_cells().div_ceil(64);
         let n_gates = network.gates.len();
-        let all = (n_gates.saturating_mul(width) > MOST_WORDS).then(|| vec![u64::MAX; width].into_boxed_slice());
+        let all = (n_gates.saturating_mul(width) > MOST_FRONT_WORDS).then(|| vec![u64::MAX; width].into_boxed_slice());
         Self { network, rows: vec![None; if all.is_some() { 0 } else { n_gates }], all }
     }
 }
@@ -39,7 +35,7 @@ impl Fronts for Front<'_> {
 /// A bit for each cell whose box has a corner strictly in front of a gate. Exact.
 fn row(network: &PlanNetwork, gate: u32) -> Box<[u64]> {
     let [left, right] = network.ends[gate as usize];
-    // The corner of a box that is farthest ahead, which is to the left of the way from the left end to the right one.
+    // The corner of a box that is farthest ahead, that is, to the left of the line from the left end to the right end.
     let ahead = |[low, high]: [[f64; 2]; 2]| {
         let x = if right[1] < left[1] { high[0] } else { low[0] };
         let y = if right[0] > left[0] { high[1] } else { low[1] };

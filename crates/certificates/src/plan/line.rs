@@ -7,21 +7,22 @@ use std::cmp::Ordering;
 /// A point of the plane, in scene units.
 pub type Point = [f64; 2];
 
-/// A directed line that passes some cell and portals, and so joins the cells between them.
+/// A directed line that crosses portals of a cell, and so joins the cells that it passes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlanLine {
-    /// A cell that it passes.
+    /// A cell that the line passes.
     pub cell: u32,
-    /// Which line.
+    /// The line.
     pub form: LineForm,
 }
 
-/// How a line is given.
+/// The form in which a line is given.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LineForm {
     /// From one point towards another, by the bits of their coordinates.
     Points([[u64; 2]; 2]),
-    /// `a x + b y + c = 0` in whole numbers; points on the left have a positive value. For lines that doubles miss.
+    /// `a x + b y + c = 0` in whole numbers; points on the left have a positive value. For lines through no two points
+    /// in doubles.
     Whole(Box<[BigInt; 3]>),
 }
 
@@ -32,14 +33,14 @@ impl PlanLine {
     }
 }
 
-/// A line whose sides can be distinguished.
+/// A line for tests of sides.
 pub(super) enum Line {
     Points(Point, Point),
     Whole([Dyadic; 3]),
 }
 
 impl Line {
-    /// `None` for points that are the same or no points.
+    /// `None` for points that coincide or are not valid.
     pub(super) fn of(line: &PlanLine) -> Option<Self> {
         match &line.form {
             LineForm::Points(points) => {

@@ -1,4 +1,4 @@
-//! The geometry that proofs of a plan speak of: convex polygons joined by segments, checked exactly.
+//! The geometry that proofs of a plan are about: convex polygons joined by segments, checked exactly.
 
 use super::line::{Line, PlanLine, Point};
 use crate::exact::{is_coordinate, turn};
@@ -12,13 +12,13 @@ pub struct PlanPortal {
     pub cells: [u32; 2],
     /// The side of each cell that it lies on. Portals on one side of a cell lie on one line.
     pub sides: [u32; 2],
-    /// The left end, seen when going from the first cell to the second.
+    /// The left end, as seen from the first cell.
     pub left: Point,
-    /// The right end.
+    /// The right end, as seen from the first cell.
     pub right: Point,
 }
 
-/// Why cells and portals are nothing that can be proven about.
+/// Why cells and portals are refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NetworkError {
@@ -28,13 +28,13 @@ pub enum NetworkError {
     /// A coordinate that is not finite, or of a magnitude that is neither 0 nor from 2^-140 to 2^200.
     #[error("cell {0} has a coordinate out of range")]
     Coordinate(u32),
-    /// Not a convex polygon with counter-clockwise corners, or no box with an inside.
+    /// Not a convex polygon with counter-clockwise corners.
     #[error("cell {0} is not convex")]
     NotConvex(u32),
     /// A portal to a cell that does not exist, or from a cell to itself.
     #[error("portal {0} does not join two cells")]
     Cells(u32),
-    /// A portal that does not lie on the border of one of its cells, with the inside on the right hand.
+    /// A portal that does not lie on the border of one of its cells, directed out of the first and into the second.
     #[error("portal {portal} is not on the border of cell {cell}")]
     OffBorder {
         /// The portal.
@@ -58,12 +58,12 @@ pub enum NetworkError {
 /// * each portal lies on the border of both its cells, and is crossed outwards;
 /// * portals with one side number of a cell lie on one line.
 ///
-/// So a line that goes from cell to cell through portals meets each cell once, and leaves none by the side that it
-/// came in by.
+/// So a line that goes from cell to cell through portals meets each cell once, and leaves none by the side through which it
+/// entered.
 #[derive(Debug, Clone)]
 pub struct PlanNetwork {
     pub(super) gates: Gates,
-    /// The ends of each gate, left and right, as seen by who crosses it.
+    /// The left and the right end of each gate, in the direction of crossing.
     pub(super) ends: Vec<[Point; 2]>,
     /// Lower and upper corners of boxes around cells.
     pub(super) boxes: Vec<[Point; 2]>,
@@ -96,7 +96,7 @@ impl PlanNetwork {
             if !ends.as_flattened().iter().all(|x| is_coordinate(*x)) {
                 return Err(NetworkError::OffBorder { portal: id, cell: a });
             }
-            // Who leaves a cell has it behind: its border runs from right to left, counter-clockwise.
+            // Counter-clockwise, the border of the cell that is left runs from the right end to the left.
             for (cell, [from, to]) in [(a, [portal.right, portal.left]), (b, [portal.left, portal.right])] {
                 if !is_on_border(&cells[cell as usize], from, to) {
                     return Err(NetworkError::OffBorder { portal: id, cell });
@@ -129,13 +129,13 @@ impl PlanNetwork {
         self.gates.len() / 2
     }
 
-    /// A number that proofs carry, so that those of other cells or portals are noticed.
+    /// A checksum of cells and portals. Proofs carry it, so those of another network are refused.
     pub fn checksum(&self) -> u32 {
         self.checksum
     }
 
-    /// The ends of a gate, left and right as seen by who crosses it. Gate `2p` is portal `p` crossed from its first cell
-    /// into its second, gate `2p + 1` the other way.
+    /// The left and the right end of a gate, in the direction of crossing. Gate `2p` is portal `p` crossed from its first
+    /// cell into its second, gate `2p + 1` the other way.
     ///
     /// # Panics
     /// If there is no such gate.
@@ -144,33 +144,16 @@ impl PlanNetwork {
     }
 
     /// The cells that a line passes, in order, followed from its cell both ways through portals that it crosses
-    /// strictly. An open set of lines joins any two of them. Empty if it crosses no portal of its cell, or if there is
-    /// no such cell. Exact.
+    /// strictly. An open set of lines joins any two of them. Empty if the line crosses no portal of its cell, or if there
+    /// is no such cell. Exact.
     pub fn follow(&self, line: &PlanLine) -> Vec<u32> {
-        let Some(exact) = Line::of(line).filter(|_| (line.cell as usize) < self.n_cells()) else { return Vec::new() };
-        let mut cells = Vec::new();
-        self.go(line.cell, &exact.reversed(), &mut cells);
-        cells.reverse();
-        cells.push(line.cell);
-        self.go(line.cell, &exact, &mut cells);
-        if cells.len() > 1 { cells } else { Vec::new() }
-    }
-
-    fn go(&self, from: u32, line: &Line, cells: &mut Vec<u32>) {
-        let (mut cell, mut entry_side) = (from, None);
-        // Convex cells are met once.
-        for _ in 0..self.n_cells() {
-            let crosses = |gate: &&u32| {
-                Some(self.gates.gate(**gate).sides[0]) != entry_side && {
-                    let [left, right] = self.ends[**gate as usize];
-                    line.side(left) == Ordering::Greater && line.side(right) == Ordering::Less
-                }
-            };
-            let Some(&gate) = self.gates.exits(cell).iter().find(crosses) else { return };
-            let gate = self.gates.gate(gate);
-            (cell, entry_side) = (gate.cells[1], Some(gate.sides[1]));
-            cells.push(cell);
-        }
+        let Some(forward) = Line::of(line).filter(|_| (line.cell as usize) < self.n_cells()) else { return Vec::new() };
+        let backward = forward.reversed();
+        self.gates.follow(line.cell, |gate, is_backward| {
+            let line = if is_backward { &backward } else { &forward };
+            let [left, right] = self.ends[gate as usize];
+            line.side(left) == Ordering::Greater && line.side(right) == Ordering::Less
+        })
     }
 }
 

@@ -1,4 +1,4 @@
-//! Why nothing leads from one box to another past rectangles: proofs about pairs of boxes, and their checker.
+//! Why no line leads from one box to another past rectangles: proofs about pairs of boxes, and their checker.
 //!
 //! # What is shown
 //! A line with a direction along every axis reaches each coordinate on an axis at some time, and times are linear in
@@ -8,10 +8,10 @@
 //! goes *past* it in one of six ways: beside one of its four edges, before it leaves the first box, or after it enters
 //! the second.
 //!
-//! For each choice of directions a tree shows that no way is left: a node names a rectangle and has a branch for each way past
-//! it that lines can take; on its leaves, positive multiples of comparisons of times that hold there add up to
-//! one that is false for all slownesses. Where a way is one comparison and was dealt with, the lines that are left obey its
-//! reverse, but for those that are equal, which are no open set.
+//! For each octant of directions a tree shows that no way is left: a node names a rectangle and has a branch for each way past
+//! it that lines can take; on its leaves, positive multiples of comparisons of times that hold there add up to one that is
+//! false for all slownesses. If a way is a single comparison, lines that are left after it obey the reverse, except for
+//! those with equal times, which form no open set.
 //!
 //! Source: that lines of one octant are linear in slownesses and offsets is the project's own.
 
@@ -36,7 +36,7 @@ pub enum Bypass {
     InSecond,
 }
 
-/// A comparison of two times that holds on a branch.
+/// A comparison of two times, by the reason why it holds on a branch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Claim {
     /// A box is entered along one axis before it is left along another.
@@ -48,23 +48,23 @@ pub enum Claim {
         /// The axis that is left.
         leave: u8,
     },
-    /// A comparison of the way that is taken past a rectangle.
+    /// A comparison of the way past a rectangle that the branch takes.
     Taken {
-        /// How many rectangles were gone past before it.
+        /// Number of rectangles on the path before it.
         depth: u32,
         /// Which comparison: [`Bypass::Beside`] has one, the others have two, for the two axes after the rectangle's own.
         part: u8,
     },
-    /// The reverse of a way beside a rectangle that was dealt with.
+    /// The reverse of a way beside a rectangle that an earlier branch takes.
     Reversed {
-        /// How many rectangles were gone past before it.
+        /// Number of rectangles on the path before it.
         depth: u32,
         /// The way.
         way: Bypass,
     },
 }
 
-/// Claims with positive multipliers, which add up to something false.
+/// Claims with positive multipliers, which add up to a contradiction.
 pub type Sum = Vec<(Claim, BigInt)>;
 
 /// Why no line is left on a branch.
@@ -72,21 +72,21 @@ pub type Sum = Vec<(Claim, BigInt)>;
 pub enum Branch {
     /// Its claims contradict each other.
     Empty(Sum),
-    /// A rectangle is in the way.
+    /// A rectangle blocks lines, except for those that go past it.
     Past {
-        /// Which, among the blockers.
+        /// The index of the rectangle among the blockers.
         blocker: u32,
-        /// Ways past it, in the order in which they are dealt with.
+        /// Ways past it, each with its branch, in the order in which they are handled.
         ways: Vec<(Bypass, Branch)>,
-        /// Why nothing is left after those; `None` if they are all that lines can take.
+        /// Why no line is left after those ways; `None` if they are all that lines can take.
         rest: Option<Sum>,
     },
 }
 
-/// The coordinate on an axis that is reached.
+/// An axis and a coordinate on it that a line reaches.
 type Event = (usize, f64);
 
-/// A rectangle gone past.
+/// A rectangle on the path from the root.
 struct Passage<'a> {
     rectangle: &'a Box3,
     axis: usize,
@@ -94,7 +94,7 @@ struct Passage<'a> {
     done: Vec<Bypass>,
 }
 
-/// The lines of one choice of directions from one box to another.
+/// The lines of one octant of directions from one box to another.
 pub(super) struct Lines<'a> {
     boxes: [&'a Box3; 2],
     blockers: &'a [Box3],
@@ -126,7 +126,7 @@ impl<'a> Lines<'a> {
         (0..3).any(|k| !self.earlier(k, self.enter(self.boxes[0], k).1, self.leave(self.boxes[1], k).1))
     }
 
-    /// The comparisons of a way, earlier event first; `None` for a way that no line takes.
+    /// The comparisons of a way, each with the earlier event first; `None` for a way that no line takes.
     fn comparisons(&self, rectangle: &Box3, own: usize, way: Bypass) -> Option<Vec<[Event; 2]>> {
         let at = rectangle[0][own];
         let plane = (own, at);
@@ -152,7 +152,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// What a claim says, if it holds on this branch.
+    /// The comparison that a claim stands for; `None` if it does not hold on this branch.
     fn comparison(&self, claim: Claim) -> Option<[Event; 2]> {
         match claim {
             Claim::Box { second, enter, leave } => {
@@ -174,7 +174,8 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Whether claims add up to: something that is never negative is negative.
+    /// Whether claims contradict each other: a claim that holds is a negative difference of times, but their sum is negative
+    /// for no line.
     fn contradict(&self, sum: &Sum) -> bool {
         let mut slownesses = [(); 3].map(|()| Dyadic::whole(BigInt::from(0)));
         let mut offsets = [(); 3].map(|()| BigInt::from(0));
@@ -224,7 +225,7 @@ impl<'a> Lines<'a> {
         is_shown
     }
 
-    /// Whether every way past a rectangle that lines can take was dealt with.
+    /// Whether every way past a rectangle that lines can take has its branch.
     fn all_are_done(&self, depth: usize) -> bool {
         let Passage { rectangle, axis, done, .. } = &self.path[depth];
         let beside = (0..3u8).flat_map(|axis| [true, false].map(|before| Bypass::Beside { axis, before }));
@@ -256,7 +257,7 @@ mod tests {
         beside.chain([Bypass::InFirst, Bypass::InSecond]).collect()
     }
 
-    /// Two or three claims that the checker takes for a contradiction.
+    /// Two or three claims that the checker accepts as a contradiction.
     fn contradiction(lines: &Lines<'_>, n_passed: u32) -> Option<Sum> {
         let all = claims(n_passed);
         let sum = |some: &[Claim]| -> Sum { some.iter().map(|claim| (*claim, BigInt::from(1))).collect() };
@@ -272,7 +273,7 @@ mod tests {
         None
     }
 
-    /// Any proof that the checker takes, with each blocker gone past once.
+    /// A proof that the checker accepts, if there is one in which each blocker occurs once on a path.
     fn any_proof(lines: &mut Lines<'_>, next: u32) -> Option<Branch> {
         if let Some(sum) = contradiction(lines, next) {
             return Some(Branch::Empty(sum));
@@ -326,7 +327,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever can be got past the checker: no line of the octant refutes it. Boxes may overlap, and rectangles lie anywhere.
+        /// No line of the octant refutes what the checker accepts. Boxes may overlap, and rectangles lie anywhere.
         #[test]
         fn no_line_refutes_what_is_accepted(
             boxes in [extent(false), extent(false)],

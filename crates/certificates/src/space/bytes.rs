@@ -1,22 +1,22 @@
 //! Proofs of scenes in space as bytes.
 //!
-//! After the frame: the checksum of the network (four bytes); lines; blockers; proofs of boxes, each with its octants. Boxes are
-//! six places among the coordinates of the network.
+//! After the frame: the checksum of the network (four bytes); lines; blockers; proofs of boxes. Each list begins with its
+//! length. A box is given by six indices of coordinates of the network.
 
 use super::branch::{Branch, Bypass, Claim, Sum};
 use super::network::{BoxLine, BoxName};
 use super::{BoxProof, BoxProofs};
-use crate::bytes::{Kind, ReadError, ReadErrorKind, Reader, Writer, framed, is_narrow, unframed};
+use crate::bytes::{Coded, Kind, ReadError, ReadErrorKind, Reader, Writer, framed, is_wide, unframed_of};
 use num_bigint::BigInt;
 
-/// Branches of branches that are read.
+/// Depth of branches that are read.
 const DEEPEST: usize = 200;
-/// Ways past a blocker that are written.
+/// Most ways past a blocker that are written.
 const MOST_WAYS: usize = 100;
-/// Claims of a sum that are written.
+/// Most claims of a sum that are written.
 const MOST_CLAIMS: usize = 254;
 
-/// Whether octants come back from their bytes as they are.
+/// Whether reading the bytes of octants gives the same octants.
 pub(super) fn can_be_written(octants: &[(u8, Branch)]) -> bool {
     let mut before = 0u8;
     octants.iter().all(|(octant, branch)| {
@@ -41,95 +41,96 @@ fn branch_can(branch: &Branch, depth: usize) -> bool {
 }
 
 impl BoxProofs {
-    /// The bytes of these proofs: for the same proofs always the same.
+    /// The bytes of these proofs: the same for equal proofs.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut writer = Writer::default();
-        writer.bytes(&self.checksum.to_le_bytes());
-        writer.size(self.lines.len());
-        for line in &self.lines {
-            let values = line.points.as_flattened().iter().map(|&x| f64::from_bits(x));
-            let wide = !values.clone().all(is_narrow);
-            writer.number(2 * u64::from(line.cell) + u64::from(wide));
-            values.for_each(|x| writer.double(x, wide));
-        }
-        writer.size(self.blockers.len());
-        self.blockers.iter().for_each(|name| write_name(name, &mut writer));
-        writer.size(self.boxes.len());
-        for proof in &self.boxes {
-            proof.boxes.iter().for_each(|name| write_name(name, &mut writer));
-            let octants = proof.octants.iter().fold(0u8, |bits, (octant, _)| bits | 1 << (octant & 7));
-            writer.byte(octants);
-            for octant in 0..8 {
-                if let Some((_, branch)) = proof.octants.iter().find(|(o, _)| *o == octant) {
-                    write_branch(branch, &mut writer);
-                }
-            }
-        }
+        let mut writer = Writer::for_network(self.checksum);
+        writer.list(&self.lines);
+        writer.list(&self.blockers);
+        writer.list(&self.boxes);
         framed(Kind::Space, writer)
     }
 
-    /// Reads proofs. Whether they prove anything is another question ([`BoxProofs::check`]).
+    /// Reads proofs without checking what they prove: see [`BoxProofs::check`].
     ///
     /// # Errors
     /// [`ReadError`] with the offset of what is wrong.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadError> {
-        let (kind, mut reader) = unframed(bytes)?;
-        if kind != Kind::Space {
-            return Err(ReadError { offset: 12, kind: ReadErrorKind::Kind(bytes[12]) });
-        }
-        let four = reader.bytes(4)?;
-        let checksum = u32::from_le_bytes([four[0], four[1], four[2], four[3]]);
-        let n = reader.count(25)?;
-        let mut lines = Vec::with_capacity(n);
-        for _ in 0..n {
-            let head = reader.number()?;
-            let mut points = [[0; 3]; 2];
-            for x in points.as_flattened_mut() {
-                *x = reader.coordinate(head % 2 == 1)?.to_bits();
-            }
-            lines.push(BoxLine { cell: head / 2, points });
-        }
-        let n = reader.count(6)?;
-        let blockers = (0..n).map(|_| read_name(&mut reader)).collect::<Result<_, _>>()?;
-        let n = reader.count(13)?;
-        let mut boxes = Vec::with_capacity(n);
-        for _ in 0..n {
-            let names = [read_name(&mut reader)?, read_name(&mut reader)?];
-            let bits = reader.byte()?;
-            let mut octants = Vec::new();
-            for octant in (0..8).filter(|octant| bits >> octant & 1 == 1) {
-                octants.push((octant, read_branch(&mut reader, 0)?));
-            }
-            boxes.push(BoxProof { boxes: names, octants });
-        }
-        reader.end()?;
-        Ok(Self { checksum, lines, blockers, boxes })
+        let (checksum, mut reader) = unframed_of(Kind::Space, bytes)?;
+        let proofs = Self { checksum, lines: reader.list()?, blockers: reader.list()?, boxes: reader.list()? };
+        reader.end().map(|()| proofs)
     }
 }
 
-/// The lower places, then how much higher the upper ones are.
-fn write_name(name: &BoxName, writer: &mut Writer) {
-    let [low, high] = name.0;
-    low.iter().for_each(|&x| writer.number(x));
-    low.iter().zip(&high).for_each(|(x, y)| writer.number(y.wrapping_sub(*x)));
+/// Twice the cell, plus 1 if coordinates are wide; then the points.
+impl Coded for BoxLine {
+    const LEAST: usize = 25;
+
+    fn write(&self, writer: &mut Writer) {
+        let bits = self.points.as_flattened();
+        let wide = is_wide(bits);
+        writer.number(2 * u64::from(self.cell) + u64::from(wide));
+        writer.coordinates(bits, wide);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let head = reader.number()?;
+        Ok(Self { cell: head / 2, points: reader.points(head % 2 == 1)? })
+    }
 }
 
-fn read_name(reader: &mut Reader<'_>) -> Result<BoxName, ReadError> {
-    let mut name = BoxName::default();
-    for side in 0..2 {
-        for k in 0..3 {
-            let x = reader.number()?;
-            let base = if side == 0 { 0 } else { name.0[0][k] };
-            match base.checked_add(x) {
-                Some(x) => name.0[side][k] = x,
-                None => return reader.fail(0, ReadErrorKind::Number),
+/// The lower indices, then the differences to the upper ones.
+impl Coded for BoxName {
+    const LEAST: usize = 6;
+
+    fn write(&self, writer: &mut Writer) {
+        let [low, high] = self.0;
+        low.iter().for_each(|&x| writer.number(x));
+        low.iter().zip(&high).for_each(|(x, y)| writer.number(y.wrapping_sub(*x)));
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut name = Self::default();
+        for side in 0..2 {
+            for k in 0..3 {
+                let x = reader.number()?;
+                let base = if side == 0 { 0 } else { name.0[0][k] };
+                match base.checked_add(x) {
+                    Some(x) => name.0[side][k] = x,
+                    None => return reader.fail(0, ReadErrorKind::Number),
+                }
+            }
+        }
+        Ok(name)
+    }
+}
+
+/// The names of the boxes; a byte with a bit for each octant; the branches of these octants, ascending.
+impl Coded for BoxProof {
+    const LEAST: usize = 13;
+
+    fn write(&self, writer: &mut Writer) {
+        self.boxes.iter().for_each(|name| name.write(writer));
+        let octants = self.octants.iter().fold(0u8, |bits, (octant, _)| bits | 1 << (octant & 7));
+        writer.byte(octants);
+        for octant in 0..8 {
+            if let Some((_, branch)) = self.octants.iter().find(|(o, _)| *o == octant) {
+                write_branch(branch, writer);
             }
         }
     }
-    Ok(name)
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let boxes = [BoxName::read(reader)?, BoxName::read(reader)?];
+        let bits = reader.byte()?;
+        let mut octants = Vec::new();
+        for octant in (0..8).filter(|octant| bits >> octant & 1 == 1) {
+            octants.push((octant, read_branch(reader, 0)?));
+        }
+        Ok(Self { boxes, octants })
+    }
 }
 
-/// Six ways beside, by axis and side, and two others.
+/// The six ways beside a rectangle by axis and side, then the two others.
 fn code_of(way: Bypass) -> u8 {
     match way {
         Bypass::Beside { axis, before } => 2 * (axis % 3) + u8::from(before),
@@ -146,7 +147,8 @@ fn way_of(code: u8) -> Bypass {
     }
 }
 
-/// A leaf begins with the number of its claims, a node with 255, its blocker, and how many ways with or without a rest.
+/// A leaf begins with the number of its claims; a node with 255, its blocker, and twice the number of its ways, plus 1 if
+/// there is a rest.
 fn write_branch(branch: &Branch, writer: &mut Writer) {
     match branch {
         Branch::Empty(sum) => write_sum(sum, writer),
@@ -190,7 +192,7 @@ fn read_branch(reader: &mut Reader<'_>, depth: usize) -> Result<Branch, ReadErro
     Ok(Branch::Past { blocker, ways, rest })
 }
 
-/// Claims of one kind, and their shape within it: 18 about boxes, 2 taken, 8 reversed.
+/// Codes of claims: 18 about boxes, 2 about ways taken, 8 about ways reversed.
 fn write_sum(sum: &Sum, writer: &mut Writer) {
     let n = sum.len().min(MOST_CLAIMS);
     writer.byte(n as u8);

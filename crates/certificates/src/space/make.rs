@@ -1,28 +1,28 @@
-//! Proofs of scenes in space, put together from what others find.
+//! Makes proofs of scenes in space from the pieces that a search finds.
 
 use super::branch::Branch;
 use super::bytes::can_be_written;
-use super::network::{Box3, BoxLine, BoxNetwork, is_within};
-use super::{BoxProof, BoxProofs, are_hidden, no_wall};
+use super::network::{Box3, BoxLine, BoxNetwork};
+use super::{BoxProof, BoxProofs, add_hidden, are_hidden, no_wall};
 use crate::pairs::Pairs;
 
-/// Collects proofs: what does not hold is not taken.
+/// Collects proofs of a scene. What does not hold is not taken.
 #[derive(Debug)]
 pub struct BoxMaker<'a> {
     network: &'a BoxNetwork,
     proofs: BoxProofs,
     visible: Pairs,
     hidden: Pairs,
-    /// What may hide, by the numbers that proofs have when they come.
+    /// Rectangles by the indices that proofs name when they are offered.
     blockers: &'a [Box3],
-    /// The number of each of them among those that are used.
+    /// The index of each blocker among those that accepted proofs use.
     number: Vec<Option<u32>>,
-    /// Whether each was found to be a wall.
+    /// Whether each blocker is a wall; `None` if that is not checked yet.
     is_wall: Vec<Option<bool>>,
 }
 
 impl<'a> BoxMaker<'a> {
-    /// No proofs yet. `blockers`: rectangles that proofs will name by their indices; only those that are named have to be walls.
+    /// A maker without proofs. Proofs name `blockers` by their indices; only rectangles that are named have to be walls.
     pub fn new(network: &'a BoxNetwork, blockers: &'a [Box3]) -> Self {
         let n = network.n_cells();
         Self {
@@ -36,29 +36,27 @@ impl<'a> BoxMaker<'a> {
         }
     }
 
-    /// The pairs that the lines taken so far prove to be visible.
+    /// The pairs that the lines taken so far prove visible.
     pub fn visible(&self) -> &Pairs {
         &self.visible
     }
 
-    /// The pairs that are proven hidden so far.
+    /// The pairs proven hidden so far.
     pub fn hidden(&self) -> &Pairs {
         &self.hidden
     }
 
-    /// Takes a line if it proves at least so many pairs, one or more, that no other did; whether it does.
+    /// Takes a line if it proves at least `at_least` pairs, and at least one, that no other line does. Returns whether it
+    /// was taken.
     pub fn take_line(&mut self, line: BoxLine, at_least: usize) -> bool {
-        let cells = self.network.follow(&line);
-        let pairs = cells.iter().enumerate().flat_map(|(i, &a)| cells[..i].iter().map(move |&b| [a, b]));
-        let is_new = pairs.filter(|&[a, b]| !self.visible.has(a, b)).count() >= at_least.max(1);
-        if is_new {
-            self.visible.add_all(&cells);
+        let is_taken = self.visible.add_all_if_new(&self.network.follow(&line), at_least);
+        if is_taken {
             self.proofs.lines.push(line);
         }
-        is_new
+        is_taken
     }
 
-    /// Takes a proof that one box is hidden from another, if it holds and bytes can hold it; whether it does.
+    /// Takes a proof that one box is hidden from another if it holds and can be written as bytes. Returns whether it was taken.
     pub fn take_boxes(&mut self, boxes: [&Box3; 2], mut octants: Vec<(u8, Branch)>) -> bool {
         let [Some(first), Some(second)] = boxes.map(|b| self.network.name(b)) else { return false };
         if !can_be_written(&octants) || !are_hidden(boxes, &octants, self.blockers) {
@@ -70,13 +68,7 @@ impl<'a> BoxMaker<'a> {
             return false;
         }
         octants.iter_mut().for_each(|(_, branch)| self.renumber(branch));
-        let within = |b: &Box3| -> Vec<u32> {
-            (0u32..).zip(&self.network.cells).filter(|(_, cell)| is_within(cell, b)).map(|(id, _)| id).collect()
-        };
-        let (firsts, seconds) = (within(boxes[0]), within(boxes[1]));
-        for &a in &firsts {
-            seconds.iter().filter(|&&b| b != a).for_each(|&b| self.hidden.add(a, b));
-        }
+        add_hidden(boxes, self.network, &mut self.hidden);
         self.proofs.boxes.push(BoxProof { boxes: [first, second], octants });
         true
     }
@@ -88,7 +80,7 @@ impl<'a> BoxMaker<'a> {
             .get_or_insert_with(|| network.name(rectangle).is_some() && no_wall(rectangle, network).is_none())
     }
 
-    /// Names blockers by their numbers among those that are used; they are all walls.
+    /// Replaces the indices of blockers, which are all walls, by their indices among those that are used.
     fn renumber(&mut self, branch: &mut Branch) {
         if let Branch::Past { blocker, ways, .. } = branch {
             let index = *blocker as usize;

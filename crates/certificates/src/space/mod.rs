@@ -1,10 +1,10 @@
 //! Proofs of tables of scenes in space that were cut into boxes.
 //!
-//! *Visible* pairs are proven by lines, each followed exactly through the portals that it crosses. *Hidden* pairs are proven for
-//! pairs of boxes, most of them around many cells: for each octant of directions a tree of rectangles shows that
-//! no line gets past them ([`Branch`]). That the rectangles are walls is checked too: no cell has a part of one in its inside, and no
-//! portal lies in one. A line that goes from cell to cell through portals is at each of its points in the inside of a cell or
-//! of a portal (or passes an edge, which no open set of lines does), and so meets none of them.
+//! *Visible* pairs are proven by lines, each followed exactly through the portals that it crosses. *Hidden* pairs are proven
+//! for pairs of boxes, most of them around many cells: for each octant of directions a tree of rectangles shows that no line
+//! gets past them ([`Branch`]). The rectangles are checked to be walls: no part of one is inside a cell, and no portal lies
+//! in one. Each point of a line that goes from cell to cell through portals is inside a cell or a portal (unless the line
+//! passes an edge, which no open set of lines does), so the line meets no wall.
 
 mod branch;
 mod bytes;
@@ -16,7 +16,7 @@ pub use make::BoxMaker;
 pub use network::{Box3, BoxLine, BoxName, BoxNetwork, BoxNetworkError, BoxPortal, Point3};
 
 use crate::pairs::Pairs;
-use crate::proven::{NoWall, Proven, Refusal};
+use crate::proven::{NoWall, Proven, Refusal, joined_along};
 use branch::Lines;
 use network::{flat_axis, is_within};
 
@@ -25,8 +25,8 @@ use network::{flat_axis, is_within};
 pub struct BoxProof {
     /// The two boxes.
     pub boxes: [BoxName; 2],
-    /// Directions of lines from the first to the second (bit `k`: towards larger coordinates on axis `k`), and why none of them is
-    /// free. Directions that are missing lead away from the second box.
+    /// Octants of directions from the first box to the second (bit `k`: towards larger coordinates on axis `k`), each with the
+    /// reason why no line passes. Octants that are missing lead away from the second box.
     pub octants: Vec<(u8, Branch)>,
 }
 
@@ -35,7 +35,7 @@ pub struct BoxProof {
 pub struct BoxProofs {
     /// [`BoxNetwork::checksum`] of the cells and portals.
     pub checksum: u32,
-    /// Lines that prove pairs to be visible.
+    /// Lines that prove pairs visible.
     pub lines: Vec<BoxLine>,
     /// Rectangles that proofs name.
     pub blockers: Vec<BoxName>,
@@ -44,10 +44,10 @@ pub struct BoxProofs {
 }
 
 impl BoxProofs {
-    /// Checks every proof, and says what they prove together. Exact.
+    /// Checks every proof, and returns what they prove together. Exact.
     ///
-    /// Cost: O(blockers (cells + portals)) comparisons, those of the proofs, and O(cells) for each proof of boxes. Memory: a few bits
-    /// for each pair of cells.
+    /// Cost: O(blockers (cells + portals)) comparisons, and those of the proofs, with O(cells) for each proof of boxes. Memory: a
+    /// few bits for each pair of cells.
     ///
     /// # Errors
     /// [`Refusal`] for proofs of another network and for the first proof that does not hold.
@@ -55,14 +55,9 @@ impl BoxProofs {
         if self.checksum != network.checksum() {
             return Err(Refusal::OtherTable);
         }
-        let mut proven = Proven::new(Pairs::none(network.n_cells()), Pairs::none(network.n_cells()));
-        for (index, line) in self.lines.iter().enumerate() {
-            let cells = network.follow(line);
-            if cells.is_empty() {
-                return Err(Refusal::Line { index, cell: line.cell });
-            }
-            proven.visible.add_all(&cells);
-        }
+        let refusal = |index, line: &BoxLine| Refusal::Line { index, cell: line.cell };
+        let visible = joined_along(network.n_cells(), &self.lines, |line| network.follow(line), refusal)?;
+        let mut hidden = Pairs::none(network.n_cells());
         let mut blockers = Vec::with_capacity(self.blockers.len());
         for (index, name) in self.blockers.iter().enumerate() {
             let shape = Err(Refusal::Blocker { index, why: NoWall::Shape });
@@ -78,16 +73,21 @@ impl BoxProofs {
             if !are_hidden([&first, &second], &proof.octants, &blockers) {
                 return Err(Refusal::Boxes { index });
             }
-            let within = |b: &Box3| -> Vec<u32> {
-                (0u32..).zip(&network.cells).filter(|(_, cell)| is_within(cell, b)).map(|(id, _)| id).collect()
-            };
-            let (firsts, seconds) = (within(&first), within(&second));
-            for &a in &firsts {
-                // A cell in both would be proven not to see itself, which no proof does.
-                seconds.iter().filter(|&&b| b != a).for_each(|&b| proven.hidden.add(a, b));
-            }
+            add_hidden([&first, &second], network, &mut hidden);
         }
-        Ok(proven)
+        Ok(Proven::new(visible, hidden))
+    }
+}
+
+/// Adds every pair of a cell in the first box and another in the second.
+fn add_hidden([first, second]: [&Box3; 2], network: &BoxNetwork, hidden: &mut Pairs) {
+    let within = |b: &Box3| -> Vec<u32> {
+        (0u32..).zip(&network.cells).filter(|(_, cell)| is_within(cell, b)).map(|(id, _)| id).collect()
+    };
+    let (firsts, seconds) = (within(first), within(second));
+    for &a in &firsts {
+        // A cell in both boxes still sees itself.
+        seconds.iter().filter(|&&b| b != a).for_each(|&b| hidden.add(a, b));
     }
 }
 
@@ -100,7 +100,7 @@ fn are_hidden(boxes: [&Box3; 2], octants: &[(u8, Branch)], blockers: &[Box3]) ->
     })
 }
 
-/// Why lines from cell to cell through portals might pass a rectangle; `None` if none does. Exact.
+/// Why a rectangle is no wall, so lines from cell to cell through portals might pass it; `None` if it is a wall. Exact.
 fn no_wall(rectangle: &Box3, network: &BoxNetwork) -> Option<NoWall> {
     let Some(axis) = flat_axis(rectangle) else { return Some(NoWall::Shape) };
     let at = rectangle[0][axis];

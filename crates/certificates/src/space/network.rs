@@ -1,4 +1,4 @@
-//! The geometry that proofs of scenes in space speak of: boxes joined by rectangles, checked exactly.
+//! The geometry that proofs of scenes in space are about: boxes joined by rectangles, checked exactly.
 
 use crate::exact::{is_coordinate, turn};
 use crate::graph::Gates;
@@ -23,7 +23,7 @@ pub struct BoxPortal {
     pub forward: bool,
 }
 
-/// Why boxes and portals are nothing that can be proven about.
+/// Why boxes and portals are refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BoxNetworkError {
@@ -46,31 +46,30 @@ pub enum BoxNetworkError {
     },
 }
 
-/// A line that passes a cell and portals of it, and so joins the cells between them: from one point towards another, by
-/// the bits of their coordinates.
+/// A directed line that crosses portals of a cell, and so joins the cells that it passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoxLine {
-    /// A cell that it passes.
+    /// A cell that the line passes.
     pub cell: u32,
-    /// The points.
+    /// A point and another farther along the line, by the bits of their coordinates.
     pub points: [[u64; 3]; 2],
 }
 
 impl BoxLine {
-    /// The line through two points.
+    /// The line from one point towards another, which passes a cell.
     pub fn through(cell: u32, from: Point3, to: Point3) -> Self {
         Self { cell, points: [from, to].map(|p| p.map(f64::to_bits)) }
     }
 }
 
-/// Boxes and the rectangles that join them, for which it was checked that boxes have an inside, and that each portal lies in
-/// the walls of its two cells, crossed outwards.
+/// Boxes and the rectangles that join them. It is checked that boxes have an inside, and that each portal lies in the walls
+/// of its two cells and leads out of the first into the second.
 #[derive(Debug, Clone)]
 pub struct BoxNetwork {
     pub(super) gates: Gates,
     pub(super) cells: Vec<Box3>,
     pub(super) portals: Vec<BoxPortal>,
-    /// The coordinates of cells and portals along each axis, ascending, each once: names for the coordinates of proofs.
+    /// The coordinates of cells and portals along each axis, ascending, each once. Proofs name coordinates by their indices.
     pub(super) places: [Vec<f64>; 3],
     checksum: u32,
 }
@@ -102,7 +101,7 @@ impl BoxNetwork {
                     return off;
                 }
                 let own = &cells[cell as usize];
-                // The first cell is left: by its upper wall, if that is forward.
+                // The portal leads out of the first cell: through its upper wall if it leads forward.
                 let wall = if portal.forward == first { own[1][axis] } else { own[0][axis] };
                 if wall != portal.extent[0][axis] || !is_within(&portal.extent, own) {
                     return off;
@@ -141,12 +140,12 @@ impl BoxNetwork {
         self.cells.len()
     }
 
-    /// A number that proofs carry, so that those of other cells or portals are noticed.
+    /// A checksum of cells and portals. Proofs carry it, so those of another network are refused.
     pub fn checksum(&self) -> u32 {
         self.checksum
     }
 
-    /// The name of a box all whose coordinates are some of cells or portals; else `None`.
+    /// The name of a box; `None` unless all its coordinates are coordinates of cells or portals.
     pub fn name(&self, b: &Box3) -> Option<BoxName> {
         let place = |k: usize, x: f64| self.places[k].binary_search_by(|y| y.total_cmp(&(x + 0.0))).ok();
         let mut name = BoxName::default();
@@ -158,7 +157,7 @@ impl BoxNetwork {
         Some(name)
     }
 
-    /// The box of a name; `None` if there is none, or it is upside down.
+    /// The box of a name; `None` if there is none, or if its lower corner is not below its upper one.
     pub(super) fn named(&self, name: &BoxName) -> Option<Box3> {
         let mut b = [[0.0; 3]; 2];
         for (corner, places) in b.iter_mut().zip(&name.0) {
@@ -170,8 +169,8 @@ impl BoxNetwork {
     }
 
     /// The cells that a line passes, in order, followed from its cell both ways through portals that it crosses
-    /// strictly. An open set of lines joins any two of them. Empty if it crosses no portal of its cell, or if there is no
-    /// such cell. Exact.
+    /// strictly. An open set of lines joins any two of them. Empty if the line crosses no portal of its cell, or if there is
+    /// no such cell. Exact.
     pub fn follow(&self, line: &BoxLine) -> Vec<u32> {
         let points = line.points.map(|p| p.map(f64::from_bits));
         let fits = points.as_flattened().iter().all(|x| is_coordinate(*x));
@@ -179,30 +178,14 @@ impl BoxNetwork {
             return Vec::new();
         }
         let [p, q] = points;
-        let mut cells = Vec::new();
-        self.go(line.cell, [q, p], &mut cells);
-        cells.reverse();
-        cells.push(line.cell);
-        self.go(line.cell, [p, q], &mut cells);
-        if cells.len() > 1 { cells } else { Vec::new() }
-    }
-
-    fn go(&self, from: u32, line: [Point3; 2], cells: &mut Vec<u32>) {
-        let (mut cell, mut entry_side) = (from, None);
-        for _ in 0..self.cells.len() {
-            let crosses = |gate: &&u32| {
-                let side = self.gates.gate(**gate).sides[0];
-                Some(side) != entry_side && passes(line, &self.portals[**gate as usize / 2].extent, side)
-            };
-            let Some(&gate) = self.gates.exits(cell).iter().find(crosses) else { return };
-            let gate = self.gates.gate(gate);
-            (cell, entry_side) = (gate.cells[1], Some(gate.sides[1]));
-            cells.push(cell);
-        }
+        self.gates.follow(line.cell, |gate, is_backward| {
+            let line = if is_backward { [q, p] } else { [p, q] };
+            passes(line, &self.portals[gate as usize / 2].extent, self.gates.gate(gate).sides[0])
+        })
     }
 }
 
-/// A box, by the places of its coordinates among those of a network.
+/// A box, by the indices of its coordinates among those of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct BoxName(pub(super) [[u32; 3]; 2]);
 
@@ -218,8 +201,8 @@ pub(super) fn is_within(inner: &Box3, outer: &Box3) -> bool {
     (0..3).all(|k| outer[0][k] <= inner[0][k] && inner[1][k] <= outer[1][k])
 }
 
-/// Whether a directed line leaves a box through a rectangle of the side `2 axis` (towards smaller coordinates) or
-/// `2 axis + 1`, strictly inside of it.
+/// Whether a directed line leaves a box strictly through the inside of a rectangle on the side `2 axis` (towards smaller
+/// coordinates) or `2 axis + 1`.
 ///
 /// Seen in the plane of the axis and another one, the line passes between two points if they are on its two sides.
 fn passes([p, q]: [Point3; 2], extent: &Box3, side: u32) -> bool {

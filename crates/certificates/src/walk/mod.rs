@@ -1,85 +1,99 @@
-//! The walk that a proof of hidden pairs is about: every chain of gates out of a cell that could lead to a cell which
-//! is to be proven hidden.
+//! The walk: it follows every chain of gates from a cell that could lead to a cell which is to be proven hidden.
 //!
 //! # What it shows
-//! Cells are convex, so a line goes through a chain of cells, each once, and leaves none by the side that it came in
-//! by. From a *source* the walk follows all such chains, each with the *candidates* that it may still lead to. It ends
-//! a chain at a gate
+//! Cells are convex, so a line goes through a chain of cells, each once, and leaves none by the side through which it
+//! entered. From a *source* the walk follows all such chains, each with the *candidates* that it may still reach. A chain
+//! ends at a gate
 //!
-//! * if gates of the chain together with this one are known to be **blocked**: a proof was checked that no open set of
-//!   lines passes all of them;
-//! * if no candidate is left. A candidate goes when it does not reach in front of a gate of the chain, and when the
-//!   chain enters a cell from which it is **proven hidden already**: lines that lead on from there would join the two.
+//! * if gates of the chain together with this one are **blocked**: a checked proof shows that no open set of lines passes
+//!   all of them;
+//! * if no candidate is left. A candidate is dropped when it has no part in front of a gate of the chain, and when the
+//!   chain enters a cell from which it is **proven hidden already**: a line that reached it would join the two.
 //!
-//! If no chain enters a candidate, all candidates are hidden from the source, and from then on count as proven. Each
+//! If no chain enters a candidate, all candidates are hidden from the source, and count as proven from then on. Each
 //! step rests on earlier ones only.
 //!
-//! Where cells are known by their portals alone ([`Fronts::IS_ORDERED`]), nothing says that they are convex. There a cell may be
-//! met again, though no gate may; a chain ends at a gate that cannot follow one of its gates; and gates are blocked in one
-//! order only.
+//! Where cells are given by their portals alone ([`Fronts::IS_ORDERED`]), they need not be convex. There a chain may
+//! re-enter a cell, but not reuse a gate; it ends at a gate that cannot follow one of its gates; and gates are blocked in
+//! one order only.
 //!
 //! # Who decides
-//! At a gate that neither rule ends, a [`Director`] says whether the chain goes on or is blocked, and by which gates.
-//! Who checks reads that from the proofs; who makes proofs asks a solver. Blocked gates are remembered with the last of
-//! them, at most [`MOST_KEPT`] lists, the ones used last first, so the same reason need not be given again.
+//! At a gate that neither rule ends, a [`Director`] decides whether the chain continues or is blocked, and by which gates.
+//! The checker reads that from the proofs; the maker queries a solver. Blocked gates are remembered with the last of them,
+//! at most [`MOST_KEPT`] lists, the most recently used first, so a reason need not be repeated.
+//!
+//! Plans and maps differ in their [`Network`]; the walk, the checker and the maker are the same.
+
+mod check;
+mod decisions;
+mod make;
+mod network;
+
+pub use decisions::Decisions;
+pub use make::{ChainSolver, ChainStep, Maker};
+
+pub(crate) use check::{WalkProof, check};
+pub(crate) use network::{Network, gate_back};
 
 use crate::graph::{Gate, Gates};
 use crate::pairs::{Pairs, ones};
 use std::rc::Rc;
 
-/// Lists of blocked gates that are remembered for each last gate. It is part of the format.
+/// The most words, 64 MiB, that the rows of a network's [`Fronts`] may take. In a larger network every cell counts as in
+/// front of every gate. It is part of the format: makers and the checker drop the same candidates.
+pub(crate) const MOST_FRONT_WORDS: usize = 8 << 20;
+
+/// Number of lists of blocked gates that are remembered for each last gate. It is part of the format.
 const MOST_KEPT: usize = 64;
 
-/// What happens at a gate.
+/// The decision at a gate.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Crossing {
-    /// The chain goes on behind it.
+    /// The chain continues through it.
     Open,
-    /// No open set of lines passes these gates of the chain and the new one; without the new one, in the order of the chain where that
-    /// counts, else ascending.
+    /// No open set of lines passes these gates of the chain and then the new gate, which is not among them. In the order of
+    /// the chain where order counts, else ascending.
     Blocked(Vec<u32>),
 }
 
-/// Says what happens at gates. `start`, then `cross` and `back` in the order of a stack: `back` for each crossing that
-/// was open.
+/// Decides at gates. Called in the order of a stack: `start`, then `cross`, with a `back` for each open crossing.
 pub(crate) trait Director {
-    /// Why it does not say.
+    /// Why it stops the walk.
     type Stop;
 
-    /// A chain begins with this gate.
+    /// A chain starts with this gate.
     fn start(&mut self, gate: u32);
 
-    /// The chain comes to a gate.
+    /// Decides about the next gate of the chain.
     fn cross(&mut self, chain: &[u32], gate: u32) -> Result<Crossing, Self::Stop>;
 
-    /// The last gate is taken off the chain.
+    /// The last gate is removed from the chain.
     fn back(&mut self);
 }
 
-/// Which cells reach in front of a gate.
-pub(crate) trait Fronts {
-    /// Whether chains may re-enter cells; gates are then tested whether they may follow others, and the order of
-    /// blocked gates counts.
+/// Which cells have a part in front of a gate.
+pub trait Fronts {
+    /// Whether chains may re-enter cells. If so, [`Self::may_follow`] is tested, and the order of blocked gates counts.
     const IS_ORDERED: bool = false;
 
-    /// A bit for each cell: `false` only for cells that no line enters after it passed the gate, as those that lie wholly behind it or
-    /// beside it on its line or plane.
+    /// A bit for each cell: `false` only for cells that no line enters after it has passed the gate, such as those that lie
+    /// wholly behind it, or beside it on its line or plane.
     fn row(&mut self, gate: u32) -> &[u64];
 
-    /// Whether lines may pass a gate after all those of a chain; `false` only if none does.
+    /// Whether lines may pass a gate after those of a chain; `false` only if none does.
     fn may_follow(&mut self, _chain: &[u32], _gate: u32) -> bool {
         true
     }
 }
 
-/// Why a walk ended early.
+/// Why a walk proves nothing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Ended<S> {
     /// The director stopped it.
     Stopped(S),
     /// A chain entered a candidate.
     Entered(u32),
-    /// It took more steps than allowed.
+    /// It took more steps than are allowed.
     TooLong,
 }
 
@@ -90,11 +104,11 @@ struct Frame {
     /// The next exit and the end of the exits.
     next: usize,
     end: usize,
-    /// Where its candidates are.
+    /// The range of its candidates in the arena.
     candidates: [usize; 2],
 }
 
-/// The scratch memory of walks, what is proven, and what is known to be blocked.
+/// The pairs proven so far, the blocked gates that are remembered, and scratch memory.
 pub(crate) struct Walk<'a, F> {
     gates: &'a Gates,
     fronts: F,
@@ -102,10 +116,10 @@ pub(crate) struct Walk<'a, F> {
     hidden: Pairs,
     /// For each gate, lists of gates that are blocked together with it.
     blocked: Vec<Vec<Rc<[u32]>>>,
-    /// What `blocked` was before this walk, where it is another now.
+    /// The lists of `blocked` that this walk changed, as they were before.
     before: Vec<(u32, Vec<Rc<[u32]>>)>,
     is_changed: Vec<bool>,
-    /// The place of each gate in the chain, from 1; 0 for gates that are not in it.
+    /// The place of each gate in the chain, counted from 1; 0 for gates that are not in it.
     places: Vec<u32>,
     is_met: Vec<bool>,
     chain: Vec<u32>,
@@ -139,8 +153,8 @@ impl<'a, F: Fronts> Walk<'a, F> {
         self.hidden
     }
 
-    /// Proves that `source` sees none of the candidates, cells in a row of bits other than itself that are not proven yet;
-    /// with at most so many steps. After an error everything is as it was before.
+    /// Proves that `source` sees none of the candidates in at most `most_steps` gates. The candidates are a row of bits: cells
+    /// other than the source that are not proven yet. After an error everything is as it was before.
     pub(crate) fn prove<D: Director>(
         &mut self,
         source: u32,
@@ -256,14 +270,14 @@ impl<'a, F: Fronts> Walk<'a, F> {
         }
         if let Some(gate) = self.chain.pop() {
             self.places[gate as usize] = 0;
-            // What is left of a chain of one gate is no chain.
+            // The director started the chain with its first gate, and gets no call for the end of it.
             if !self.chain.is_empty() {
                 director.back();
             }
         }
     }
 
-    /// Whether the chain with this gate is known to be blocked.
+    /// Whether the chain with this gate is blocked by gates that are remembered.
     fn is_blocked(&mut self, gate: u32) -> bool {
         let places = &self.places;
         let is_on_chain = |list: &Rc<[u32]>| {

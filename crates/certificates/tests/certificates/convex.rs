@@ -112,7 +112,7 @@ fn impostors_are_refused() {
     assert_eq!(refused(&|p| p.walks[0] = walk(&[true, true], vec![])), entered);
     assert_eq!(refused(&|p| p.walks[0] = walk(&[true, false], vec![])), Refusal::Block { walk: 0, from: 0, block: 0 });
     assert_eq!(refused(&|p| p.walks[0] = walk(&[true], vec![plane()])), Refusal::Block { walk: 0, from: 0, block: 0 });
-    assert_eq!(refused(&|p| p.walks[0].blocks.push(plane())), Refusal::Unused { walk: 0, from: 0 });
+    assert_eq!(refused(&|p| p.walks[0].decisions.blocks.push(plane())), Refusal::Unused { walk: 0, from: 0 });
     assert_eq!(
         refused(&|p| p.walks[0] = walk(&[true, false, true], vec![plane()])),
         Refusal::Unused { walk: 0, from: 0 }
@@ -139,7 +139,7 @@ fn impostors_are_refused() {
     let planes = planes.into_iter().chain(edges);
     let planes = planes.map(|(stops, edge, corner)| ConvexBlock::Plane(ConvexPlane { stops, edge, corner }));
     for block in planes.chain(sums) {
-        let refusal = refused(&|p| p.walks[0].blocks[0] = block.clone());
+        let refusal = refused(&|p| p.walks[0].decisions.blocks[0] = block.clone());
         assert_eq!(refusal, Refusal::Block { walk: 0, from: 0, block: 0 }, "{block:?}");
     }
     // One part of two is not enough, and neither is what is nested without an end.
@@ -148,7 +148,7 @@ fn impostors_are_refused() {
         let ConvexTree::Cut(parts) = &mut sums.tree else { panic!("a cut") };
         parts.parts[k] = ConvexTree::Sum(vec![bad]);
         let block = ConvexBlock::Sums(sums);
-        assert!(matches!(refused(&|p| p.walks[0].blocks[0] = block.clone()), Refusal::Block { .. }));
+        assert!(matches!(refused(&|p| p.walks[0].decisions.blocks[0] = block.clone()), Refusal::Block { .. }));
     }
     let mut tree = ConvexTree::Sum(vec![good]);
     for _ in 0..40 {

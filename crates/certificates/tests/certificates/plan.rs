@@ -83,7 +83,7 @@ fn impostors_are_refused() {
     assert_eq!(refused(&early), Refusal::Block { walk: 0, from: 0, block: 0 });
     let long = |p: &mut PlanProofs| p.walks[0] = PlanWalk::new(0, &[true, false, true], vec![block()]);
     assert_eq!(refused(&long), Refusal::Unused { walk: 0, from: 0 });
-    let more = |p: &mut PlanProofs| p.walks[0].blocks.push(block());
+    let more = |p: &mut PlanProofs| p.walks[0].decisions.blocks.push(block());
     assert_eq!(refused(&more), Refusal::Unused { walk: 0, from: 0 });
     // A second walk from there has nothing left to prove.
     let twice = |p: &mut PlanProofs| p.walks.push(p.walks[0].clone());

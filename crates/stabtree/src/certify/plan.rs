@@ -3,10 +3,10 @@
 use super::CertifyOptions;
 use crate::search::ones;
 use sightlines_cells::{CellGraph, CellId, Exit, Planar};
-use sightlines_certificates::Pairs;
 use sightlines_certificates::plan::{
-    LineForm, NetworkError, PlanBlock, PlanGuide, PlanLine, PlanMaker, PlanNetwork, PlanPortal, PlanProofs, PlanStep,
+    LineForm, NetworkError, PlanBlock, PlanLine, PlanMaker, PlanNetwork, PlanPortal, PlanProofs,
 };
+use sightlines_certificates::{ChainSolver, ChainStep, Pairs};
 use sightlines_geometry::Random;
 use sightlines_geometry::{Adaptive, Point2, Portal2, check_coordinate};
 use sightlines_pvs::BitMatrix;
@@ -260,23 +260,25 @@ impl<'a> Guide<'a> {
     }
 }
 
-impl PlanGuide for Guide<'_> {
+impl ChainSolver for Guide<'_> {
+    type Block = PlanBlock;
+
     fn start(&mut self, gate: u32) {
         self.undos.clear();
         self.funnel.start(self.door(gate));
     }
 
-    fn cross(&mut self, chain: &[u32], gate: u32) -> PlanStep {
+    fn cross(&mut self, chain: &[u32], gate: u32) -> ChainStep<PlanBlock> {
         self.n_steps += 1;
         if self.n_steps > self.most_steps {
-            return PlanStep::GiveUp;
+            return ChainStep::GiveUp;
         }
         match self.funnel.push(self.door(gate)) {
             Some(undo) => {
                 self.undos.push(undo);
-                PlanStep::Open
+                ChainStep::Open
             }
-            None => self.block(chain, gate).map_or(PlanStep::GiveUp, PlanStep::Blocked),
+            None => self.block(chain, gate).map_or(ChainStep::GiveUp, ChainStep::Blocked),
         }
     }
 

@@ -8,9 +8,10 @@ use super::vector::{Point3, add, cross, dot, scale};
 use crate::certify::CertifyOptions;
 use sightlines_cells::{CellGraph, Convex, Portal3};
 use sightlines_certificates::convex::{
-    ConvexBlock, ConvexCut, ConvexGuide, ConvexLine, ConvexMaker, ConvexNetwork, ConvexNetworkError, ConvexPlane,
-    ConvexPortal, ConvexProofs, ConvexStep, ConvexSums, ConvexTerm, ConvexTree,
+    ConvexBlock, ConvexCut, ConvexLine, ConvexMaker, ConvexNetwork, ConvexNetworkError, ConvexPlane, ConvexPortal,
+    ConvexProofs, ConvexSums, ConvexTerm, ConvexTree,
 };
+use sightlines_certificates::{ChainSolver, ChainStep};
 use sightlines_geometry::Random;
 use sightlines_geometry::check_coordinate;
 use sightlines_pvs::BitMatrix;
@@ -197,15 +198,17 @@ impl<'a> Guide<'a> {
     }
 }
 
-impl ConvexGuide for Guide<'_> {
+impl ChainSolver for Guide<'_> {
+    type Block = ConvexBlock;
+
     fn start(&mut self, _gate: u32) {
         self.lines.clear();
         self.lines.push(None);
     }
 
-    fn cross(&mut self, chain: &[u32], gate: u32) -> ConvexStep {
+    fn cross(&mut self, chain: &[u32], gate: u32) -> ChainStep<ConvexBlock> {
         if self.left == 0 {
-            return ConvexStep::GiveUp;
+            return ChainStep::GiveUp;
         }
         self.left -= 1;
         let shapes: Vec<&Portal3> = chain.iter().chain([&gate]).map(|&g| self.gates.shape(g)).collect();
@@ -213,13 +216,13 @@ impl ConvexGuide for Guide<'_> {
         let line = match self.stabber.stab(&shapes, hint.as_ref()) {
             Verdict::Visible(line) => Some(line),
             Verdict::Hidden(proof) => match self.block(&proof, chain, gate) {
-                Some(block) => return ConvexStep::Blocked(block),
+                Some(block) => return ChainStep::Blocked(block),
                 None => None,
             },
             Verdict::Undecided(_) => None,
         };
         self.lines.push(line);
-        ConvexStep::Open
+        ChainStep::Open
     }
 
     fn back(&mut self) {
