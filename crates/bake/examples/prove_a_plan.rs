@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let certified = certify_table(table, &baked.graph, &CertifyOptions::default())?;
     let bytes = certified.proofs.to_bytes();
     let Proofs::Plan(made) = &certified.proofs else { return Err("a plan has proofs of a plan".into()) };
-    let n_blocks: usize = made.walks.iter().map(|walk| walk.blocks.len()).sum();
+    let n_blocks: usize = made.walks.iter().map(|walk| walk.decisions.blocks.len()).sum();
     println!(
         "proven in {:?}: {} lines, {} walks with {n_blocks} blocked chains, {} bytes",
         certified.time,
