@@ -9,6 +9,7 @@ use sightlines::formats::scene::read_scene;
 use sightlines::formats::view_cells::read_view_cells;
 use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
 use sightlines::geometry::{Aabb, Point3};
+use sightlines::line_space::{Effort, LineSpace, Surface};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
 use sightlines::multifocal::{
     FromRegion, Layout, Measure, Multifocal, Occludees, OccluderSelection, RaySampler, Split, UnionMethod, Volume,
@@ -18,6 +19,7 @@ use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::city::{CityOptions, city, city_crossings};
 use sightlines::scenes::{TowerOptions, tower, tower_rooms};
 use sightlines_testkit::RayScene;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -42,6 +44,9 @@ struct Args {
     /// Numbers of planes on each side.
     #[arg(long, value_delimiter = ',', default_values_t = [1, 4, 9, 17])]
     planes: Vec<u32>,
+    /// Only methods whose name contains it.
+    #[arg(long, default_value = "")]
+    method: String,
     /// Checks the answers on a small city.
     #[arg(long)]
     test: bool,
@@ -55,6 +60,22 @@ struct Case {
     name: String,
     scene: Scene,
     cells: Vec<Aabb<3>>,
+    /// For each cell objects that millions of rays reached, if a file beside the scene has them.
+    dense: Vec<Vec<u32>>,
+}
+
+/// Objects that an independent program reached by rays, by the name of the cell.
+fn read_dense(path: &Path, cells: &str) -> BTreeMap<String, Vec<u32>> {
+    let Ok(text) = std::fs::read(path) else { return BTreeMap::new() };
+    let all: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    if all["cells"] != format!("{cells}.json") {
+        return BTreeMap::new();
+    }
+    let ids = |list: &serde_json::Value| -> Vec<u32> {
+        list.as_array().into_iter().flatten().filter_map(|id| id.as_u64()).map(|id| id as u32).collect()
+    };
+    let entry = |of: &serde_json::Value| Some((of["id"].as_str()?.to_owned(), ids(&of["objects"])));
+    all["seen"].as_array().into_iter().flatten().filter_map(entry).collect()
 }
 
 /// What one method says about a scene.
@@ -68,7 +89,7 @@ struct Found {
 }
 
 /// At most `n` of them, evenly chosen.
-fn some(cells: Vec<Aabb<3>>, n: usize) -> Vec<Aabb<3>> {
+fn some<T>(cells: Vec<T>, n: usize) -> Vec<T> {
     let step = cells.len().div_ceil(n.max(1)).max(1);
     cells.into_iter().step_by(step).collect()
 }
@@ -77,11 +98,13 @@ fn generated(args: &Args) -> Vec<Case> {
     let blocks = if args.test { 3 } else { 6 };
     let options = CityOptions { blocks_x: blocks, blocks_z: blocks, ..CityOptions::default() };
     let streets = city_crossings(options).expect("in range");
-    let mut cases = vec![Case { name: "city".to_owned(), scene: city(options).expect("in range"), cells: streets }];
+    let mut cases =
+        vec![Case { name: "city".to_owned(), scene: city(options).expect("in range"), cells: streets, dense: Vec::new() }];
     if !args.test {
         let options = TowerOptions { floors: 2, ..TowerOptions::default() };
         let rooms = tower_rooms(options).expect("in range").into_iter().map(|room| room.bounds).collect();
-        cases.push(Case { name: "tower:2".to_owned(), scene: tower(options).expect("in range"), cells: rooms });
+        let scene = tower(options).expect("in range");
+        cases.push(Case { name: "tower:2".to_owned(), scene, cells: rooms, dense: Vec::new() });
     }
     cases.iter_mut().for_each(|case| case.cells = some(std::mem::take(&mut case.cells), args.cells));
     cases
@@ -96,9 +119,15 @@ fn real(args: &Args) -> Vec<Case> {
         let (name, cells) = named.split_once(':').expect("a scene and its cells, with a colon between");
         let folder = Path::new(&data).join("scenes").join(name);
         let scene = read_scene(folder.join(format!("{name}.glb"))).expect("the scene can be read").scene;
-        let cells = read_view_cells(folder.join(format!("{cells}.json"))).expect("the cells can be read").cells;
-        let cells = some(cells.into_iter().map(|c| c.bounds).collect(), args.cells);
-        Case { name: name.to_owned(), scene, cells }
+        let mut dense = read_dense(&folder.join("seen_dense.json"), cells);
+        let mut cells = read_view_cells(folder.join(format!("{cells}.json"))).expect("the cells can be read").cells;
+        // Cells that were looked at closely are the ones to be judged by.
+        if !dense.is_empty() {
+            cells.retain(|cell| dense.contains_key(&cell.id));
+        }
+        let cells = some(cells, args.cells);
+        let dense = cells.iter().map(|cell| dense.remove(&cell.id).unwrap_or_default()).collect();
+        Case { name: name.to_owned(), scene, cells: cells.into_iter().map(|cell| cell.bounds).collect(), dense }
     };
     args.scenes.iter().map(case).collect()
 }
@@ -150,10 +179,17 @@ fn contenders(args: &Args) -> Vec<Contender> {
     add("sheets".to_owned(), 0, Box::new(|case| Box::new(SheetMethod::new(&triangles(case)))));
     add("default: height, carried, and sheets".to_owned(), 0, Box::new(shipped));
     add("the same, cells cut up to 2 times".to_owned(), 2, Box::new(shipped));
+    for (box_cells, triangle_cells) in [(30, 100), (100, 1000), (300, 10_000)] {
+        let effort = Effort { box_cells, triangle_cells, ..Effort::default() };
+        let lines = move |case: &Case| LineSpace::shared(Arc::new(Surface::new(&triangles(case))), effort);
+        let name = format!("line space, {box_cells} and {triangle_cells} cells");
+        add(name, 0, Box::new(move |case| Box::new(lines(case))));
+    }
     let cut = |case: &Case| ViewShafts::new(patches(&triangles(case), &PatchOptions::default()));
     add("shafts".to_owned(), 0, Box::new(move |case| Box::new(cut(case))));
     let voxels = |case: &Case| Voxels::new(&case.scene, VoxelOptions::default()).expect("few voxels");
     add("voxels, closed".to_owned(), 0, Box::new(move |case| Box::new(voxels(case))));
+    contenders.retain(|contender| contender.name.contains(&args.method));
     contenders
 }
 
@@ -194,7 +230,10 @@ fn table(args: &Args, cases: &[Case]) -> usize {
             rays.witness_objects(*cell, 9, args.rays).into_iter().for_each(|o| seen[o as usize] = true);
             seen
         };
-        let seen: Vec<Vec<bool>> = case.cells.iter().map(seen_from).collect();
+        let mut seen: Vec<Vec<bool>> = case.cells.iter().map(seen_from).collect();
+        for (seen, dense) in seen.iter_mut().zip(&case.dense) {
+            dense.iter().for_each(|&o| seen[o as usize] = true);
+        }
         let n_seen = seen.iter().flatten().filter(|s| **s).count();
         let n_pairs = case.cells.len() * case.scene.objects().len();
         for contender in contenders(args) {

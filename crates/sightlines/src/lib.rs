@@ -28,6 +28,8 @@ pub use sightlines_from_region as from_region;
 pub use sightlines_geometry as geometry;
 #[cfg(feature = "kdtree")]
 pub use sightlines_kdtree as kdtree;
+#[cfg(feature = "line-space")]
+pub use sightlines_line_space as line_space;
 #[cfg(feature = "multifocal")]
 pub use sightlines_multifocal as multifocal;
 #[cfg(feature = "multifocal-cpu")]

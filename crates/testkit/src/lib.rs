@@ -23,6 +23,7 @@ pub mod eye;
 pub mod eye_boxes;
 pub mod from_region;
 pub mod lp;
+pub mod meshes;
 pub mod mutate;
 pub mod plans;
 mod ray_witness;

@@ -1,24 +1,24 @@
-//! Meshes to try patches and sheets on, and rays to judge them by.
+//! Meshes of many kinds, sound and damaged, for methods that take occluders from triangles, and rays to judge these by.
 
 use proptest::prelude::*;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_testkit::Random;
-use sightlines_testkit::RayScene;
+use crate::{Random, RayScene};
 
-pub(crate) type Soup = Vec<[Point3; 3]>;
+/// Triangles in no particular order.
+pub type Soup = Vec<[Point3; 3]>;
 
 fn p(x: i32, y: i32, z: i32) -> Point3 {
     [x, y, z].map(f64::from)
 }
 
 /// Two triangles; `other` picks the diagonal.
-pub(crate) fn quad([a, b, c, d]: [Point3; 4], other: bool) -> [[Point3; 3]; 2] {
+pub fn quad([a, b, c, d]: [Point3; 4], other: bool) -> [[Point3; 3]; 2] {
     if other { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
 }
 
 /// The twelve triangles of a box.
-pub(crate) fn solid(min: Point3, max: Point3) -> Soup {
+pub fn solid(min: Point3, max: Point3) -> Soup {
     let mut all = Soup::new();
     for k in 0..3 {
         let (u, v) = ((k + 1) % 3, (k + 2) % 3);
@@ -36,7 +36,7 @@ pub(crate) fn solid(min: Point3, max: Point3) -> Soup {
 }
 
 /// A wall of `n` by `n` squares near x = 4 from (-1, -1) to (n - 1, n - 1), with bumps.
-pub(crate) fn bumpy(n: i32, bumps: &[u8]) -> Soup {
+pub fn bumpy(n: i32, bumps: &[u8]) -> Soup {
     let at = |y: i32, z: i32| p(4 + i32::from(bumps[(y * (n + 1) + z) as usize % bumps.len()] % 3), y - 1, z - 1);
     let square = |i: i32| {
         let (y, z) = (i / n, i % n);
@@ -46,7 +46,7 @@ pub(crate) fn bumpy(n: i32, bumps: &[u8]) -> Soup {
 }
 
 /// An octahedron, each face in four, twice over, pushed out to a sphere.
-pub(crate) fn sphere(middle: Point3, radius: f64, n_times: u32) -> Soup {
+pub fn sphere(middle: Point3, radius: f64, n_times: u32) -> Soup {
     let axis = |k: usize, s: f64| std::array::from_fn(|i| if i == k { s } else { 0.0 });
     let mut all = Soup::new();
     for i in 0..8 {
@@ -69,7 +69,7 @@ pub(crate) fn sphere(middle: Point3, radius: f64, n_times: u32) -> Soup {
 }
 
 /// A wall at x = 4 of rectangles whose corners lie on the sides of others, from (-1, -1) to (9, 9): cut again and again.
-pub(crate) fn uneven(cuts: &[u8]) -> Soup {
+pub fn uneven(cuts: &[u8]) -> Soup {
     let mut rectangles = vec![[-1, -1, 9, 9]];
     for &cut in cuts {
         let r = rectangles.remove(usize::from(cut) % rectangles.len());
@@ -88,7 +88,7 @@ pub(crate) fn uneven(cuts: &[u8]) -> Soup {
 }
 
 /// Walls, floor and ceiling of a room with an open door at x = 0, as thin sheets.
-pub(crate) fn room(door: [i32; 2]) -> Soup {
+pub fn room(door: [i32; 2]) -> Soup {
     let [low, high] = [door[0].min(door[1]), door[0].max(door[1]) + 1];
     let mut all = solid(p(0, -1, -1), p(8, 9, 9));
     all.retain(|t| t.iter().any(|c| c[0] != 0.0));
@@ -128,7 +128,7 @@ fn integers(n: i32) -> impl Strategy<Value = Point3> {
 }
 
 /// Meshes of many kinds, within about -1 to 9 along each axis.
-pub(crate) fn soup() -> impl Strategy<Value = Soup> {
+pub fn soup() -> impl Strategy<Value = Soup> {
     let boxes = prop::collection::vec((integers(7), prop::array::uniform3(1..=6)), 1..4).prop_map(|boxes| {
         let one = |(min, size): (Point3, [i32; 3])| solid(min, std::array::from_fn(|k| min[k] + f64::from(size[k])));
         boxes.into_iter().flat_map(one).collect::<Soup>()
@@ -148,7 +148,7 @@ pub(crate) fn soup() -> impl Strategy<Value = Soup> {
 }
 
 /// A box at low x, and one at high x or anywhere; either may be flat.
-pub(crate) fn boxes() -> impl Strategy<Value = [Aabb<3>; 2]> {
+pub fn boxes() -> impl Strategy<Value = [Aabb<3>; 2]> {
     let cube = |low: i32, high: i32| {
         (low..=high, [0i32..9, 0i32..9], prop::array::uniform3(0u8..6)).prop_map(|(x, [y, z], size)| {
             let min = [x, y, z].map(f64::from);
@@ -158,7 +158,11 @@ pub(crate) fn boxes() -> impl Strategy<Value = [Aabb<3>; 2]> {
     [cube(-3, 2), cube(3, 10)].prop_flat_map(|b| prop_oneof![4 => Just(b), 1 => Just([b[1], b[0]])])
 }
 
-pub(crate) fn scene(soup: &[[Point3; 3]]) -> RayScene {
+/// A scene of one object, to be traced.
+///
+/// # Panics
+/// If coordinates are not finite.
+pub fn scene(soup: &[[Point3; 3]]) -> RayScene {
     let vertices = soup.iter().flatten().copied().collect();
     let triangles = (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let object = SceneObject { name: String::new(), vertices, triangles };
@@ -170,7 +174,7 @@ fn random_in(b: &Aabb<3>, random: &mut Random) -> Point3 {
 }
 
 /// A segment from `v` to `e` that meets nothing before its end, out of `n` random ones.
-pub(crate) fn free_segment(rays: &RayScene, v: &Aabb<3>, e: &Aabb<3>, seed: u64, n: u64) -> Option<[Point3; 2]> {
+pub fn free_segment(rays: &RayScene, v: &Aabb<3>, e: &Aabb<3>, seed: u64, n: u64) -> Option<[Point3; 2]> {
     (0..n).find_map(|i| {
         let mut random = Random::new(seed, i);
         let (a, b) = (random_in(v, &mut random), random_in(e, &mut random));

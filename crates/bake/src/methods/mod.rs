@@ -6,6 +6,7 @@
 
 mod backend;
 mod buffers;
+mod line_space;
 mod shafts;
 mod voxels;
 
@@ -26,6 +27,8 @@ pub enum OcclusionMethod {
     Multifocal,
     /// One flat piece that cuts the whole shaft between the volume and a target.
     Shafts,
+    /// Line space subdivided, and chains of triangles in any direction.
+    LineSpace,
     /// Voxels inside closed surfaces, extended to blockers.
     Voxels,
 }
@@ -48,11 +51,12 @@ trait Prepared: Send + Sync {
 
 impl OcclusionMethod {
     /// All methods.
-    pub const ALL: [Self; 3] = [Self::Multifocal, Self::Shafts, Self::Voxels];
+    pub const ALL: [Self; 4] = [Self::Multifocal, Self::LineSpace, Self::Shafts, Self::Voxels];
 
     const fn entry(self) -> Entry {
         match self {
             Self::Multifocal => buffers::ENTRY,
+            Self::LineSpace => line_space::ENTRY,
             Self::Shafts => shafts::ENTRY,
             Self::Voxels => voxels::ENTRY,
         }

@@ -25,5 +25,6 @@ pub use method::SheetMethod;
 pub use patch::patches;
 pub use patch_options::PatchOptions;
 pub use select::{Chooser, select};
+pub use shaft::avoids;
 pub use sheet::{SheetTester, Sheets};
 pub use weld::Mesh;

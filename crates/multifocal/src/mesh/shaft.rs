@@ -131,7 +131,7 @@ impl Tilt {
 ///
 /// * `touching`: whether it may touch the border of the box, so long as it does not meet its relative
 ///   interior
-pub(super) fn avoids(t: &[Point3; 3], b: &Aabb<3>, touching: bool) -> bool {
+pub fn avoids(t: &[Point3; 3], b: &Aabb<3>, touching: bool) -> bool {
     let around = Aabb::around(*t);
     let apart = |k: usize| {
         let weakly = touching && b.min[k] < b.max[k];

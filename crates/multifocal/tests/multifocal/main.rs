@@ -3,4 +3,3 @@
 mod mesh_patches;
 mod mesh_real;
 mod mesh_sheets;
-mod meshes;

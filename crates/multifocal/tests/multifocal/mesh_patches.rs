@@ -1,6 +1,6 @@
 //! Patches against rays: where one says that it is in the way, triangles are; and patches of known walls.
 
-use crate::meshes::{Soup, quad, scene, soup, uneven};
+use sightlines_testkit::meshes::{Soup, quad, scene, soup, uneven};
 use proptest::prelude::*;
 use sightlines_geometry::{Point3, orient3d};
 use sightlines_multifocal::mesh::{Mesh, PatchOptions, patches};

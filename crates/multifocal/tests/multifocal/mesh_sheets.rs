@@ -1,7 +1,7 @@
 //! Sheets against rays: nothing that is called hidden is ever reached, and most of what is never reached is
 //! called hidden.
 
-use crate::meshes::{Soup, boxes, bumpy, free_segment, scene, solid, soup, sphere};
+use sightlines_testkit::meshes::{Soup, boxes, bumpy, free_segment, scene, solid, soup, sphere};
 use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Point3, orient3d};
 use sightlines_multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
@@ -112,7 +112,7 @@ fn a_curved_wall_hides_what_no_patch_hides() {
     };
     let square = |k: i32| {
         let (i, z) = (k / 6 - 16, k % 6 - 3);
-        crate::meshes::quad([at(i, z), at(i + 1, z), at(i + 1, z + 1), at(i, z + 1)], k % 2 == 0)
+        sightlines_testkit::meshes::quad([at(i, z), at(i + 1, z), at(i + 1, z + 1), at(i, z + 1)], k % 2 == 0)
     };
     let wall: Soup = (0..32 * 6).flat_map(square).collect();
     let (v, e) = (cube([9.0, 0.0, 0.0], 1.0), Aabb { min: [0.0, -3.4, -0.3], max: [0.3, 3.4, 0.3] });

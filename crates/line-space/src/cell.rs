@@ -1,0 +1,158 @@
+//! Cells of line space: all lines from one end to another, and how an edge passes them.
+
+use crate::end::End;
+use sightlines_geometry::vector::{cross, dot, sub};
+use sightlines_geometry::{Point3, orient3d};
+
+/// The lines from every point of `from` to every point of `to`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cell {
+    pub(crate) from: End,
+    pub(crate) to: End,
+}
+
+/// Rounding of `det(b - a, x - a, y - a)` in doubles, as a share of the sum of the magnitudes of its six products: three
+/// differences, three products and five sums round at most a dozen times by 2^-53.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// More than the bound of a product with one rounded factor.
+const MORE: f64 = 1.01;
+
+/// Which sides of an edge the lines of a cell pass on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Passing {
+    /// All lines between inner points pass on one side.
+    OneSide,
+    /// Some may pass on the one side and some on the other.
+    Both,
+}
+
+impl Cell {
+    /// How the lines pass the line through `x` and `y`.
+    ///
+    /// The side is `orient3d(a, b, x, y)`, which is affine in `a` and in `b`. So its value for inner points `a` and `b` is a sum of its
+    /// values at pairs of corners with positive weights: if none of these is negative and one is positive, it is positive. Exact
+    /// for exact ends; for others a value that is not certain counts as both sides.
+    pub(crate) fn passing(&self, x: Point3, y: Point3) -> Passing {
+        let (from, to) = (self.from.corners(), self.to.corners());
+        let mut extent = [0.0f64; 3];
+        let (mut low, mut high) = (x, x);
+        for p in from.iter().chain(to).chain([&y]) {
+            for k in 0..3 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+                extent[k] = high[k] - low[k];
+            }
+        }
+        let bound = ROUNDING * 6.0 * extent[0] * extent[1] * extent[2];
+        let (radius, is_exact) = (self.to.radius(), self.to.is_exact());
+        let (mut positive, mut negative) = (false, false);
+        for &a in from {
+            let normal = cross(sub(x, a), sub(y, a));
+            let slack = if is_exact {
+                0.0
+            } else {
+                let size = |i: usize, j: usize| (normal[3 - i - j].abs() + ROUNDING * extent[i] * extent[j]) * radius[3 - i - j];
+                MORE * (size(0, 1) + size(1, 2) + size(0, 2))
+            };
+            for &b in to {
+                let value = dot(normal, sub(b, a));
+                let sign = if value.abs() > bound + slack {
+                    value
+                } else if is_exact {
+                    orient3d(a, b, x, y)
+                } else {
+                    return Passing::Both;
+                };
+                positive |= sign > 0.0;
+                negative |= sign < 0.0;
+                if positive && negative {
+                    return Passing::Both;
+                }
+            }
+        }
+        if positive || negative { Passing::OneSide } else { Passing::Both }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_rational::BigRational;
+    use num_traits::{Signed, Zero};
+    use proptest::prelude::*;
+    use sightlines_geometry::Aabb;
+
+    fn point() -> impl Strategy<Value = Point3> {
+        [-4i32..5, -4i32..5, -4i32..5].prop_map(|p| p.map(|x| f64::from(x) * 0.3))
+    }
+
+    fn sign(p: [&[BigRational; 3]; 4]) -> i32 {
+        let d = |i: usize| [0, 1, 2].map(|k| &p[i][k] - &p[0][k]);
+        let [u, v, w] = [d(1), d(2), d(3)];
+        let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
+        let det = minor(1, 2) * &w[0] + minor(2, 0) * &w[1] + minor(0, 1) * &w[2];
+        if det.is_zero() { 0 } else if det.is_positive() { 1 } else { -1 }
+    }
+
+    fn exact(p: Point3) -> [BigRational; 3] {
+        p.map(|x| BigRational::from_float(x).expect("finite"))
+    }
+
+    /// A point of a triangle whose corners are known exactly.
+    fn mix(corners: &[[BigRational; 3]], weights: [u32; 3]) -> [BigRational; 3] {
+        let sum = BigRational::from_integer((weights[0] + weights[1] + weights[2]).into());
+        let part = |i: usize, k: usize| &corners[i][k] * BigRational::from_integer(weights[i].into());
+        [0, 1, 2].map(|k| (part(0, k) + part(1, k) + part(2, k)) / &sum)
+    }
+
+    proptest! {
+        /// Invariant: if a cell is said to pass on one side, exact lines between inner points do, also after cuts that were
+        /// rounded: the true corners of pieces are followed in fractions.
+        #[test]
+        fn all_inner_lines_pass_on_the_side_that_is_reported(
+            low in point(), size in [1i32..4, 1i32..4], triangle in [point(), point(), point()], x in point(), y in point(),
+            cuts in prop::collection::vec((0usize..3, 1u32..32, any::<bool>()), 0..4),
+            weights in prop::collection::vec([1u32..9, 1u32..9, 1u32..9, 1u32..9, 1u32..9], 12),
+        ) {
+            let high = [low[0] + f64::from(size[0]), low[1] + f64::from(size[1]), low[2]];
+            let from = End::rectangle(&Aabb { min: low, max: high }, 2).expect("it has an area");
+            let (mut to, mut truth) = (End::triangle(triangle), triangle.map(exact));
+            for (side, part, first) in cuts {
+                let t = f64::from(part) / 32.0;
+                let Some(halves) = to.cut(side, t) else { break };
+                let (i, j) = (side, (side + 1) % 3);
+                let part = BigRational::new(part.into(), 32.into());
+                let middle = [0, 1, 2].map(|k| &truth[i][k] + (&truth[j][k] - &truth[i][k]) * &part);
+                truth[if first { j } else { i }] = middle;
+                to = halves[usize::from(!first)];
+            }
+            let cell = Cell { from, to };
+            let mut signs = [0; 2];
+            for [a, b, c, d, e] in weights {
+                let part = |a: u32, b: u32| BigRational::new(a.into(), (a + b).into());
+                let (low, high) = (exact(low), exact(high));
+                let at = |k: usize, t: BigRational| &low[k] + (&high[k] - &low[k]) * t;
+                let eye = [at(0, part(a, b)), at(1, part(b, c)), low[2].clone()];
+                let s = sign([&eye, &mix(&truth, [c, d, e]), &exact(x), &exact(y)]);
+                signs[0] |= i32::from(s <= 0);
+                signs[1] |= i32::from(s >= 0);
+            }
+            if cell.passing(x, y) == Passing::OneSide {
+                prop_assert!(signs != [1, 1], "{:?} {:?} {:?}", cell, x, y);
+            }
+        }
+    }
+
+    #[test]
+    fn edges_beside_and_across() {
+        let from = End::rectangle(&Aabb { min: [0.0; 3], max: [1.0, 1.0, 0.0] }, 2).expect("an area");
+        let to = End::rectangle(&Aabb { min: [0.0, 0.0, 2.0], max: [1.0, 1.0, 2.0] }, 2).expect("an area");
+        let cell = Cell { from, to };
+        assert_eq!(cell.passing([2.0, 0.0, 1.0], [2.0, 1.0, 1.0]), Passing::OneSide);
+        assert_eq!(cell.passing([1.0, 0.0, 1.0], [1.0, 5.0, 1.0]), Passing::OneSide, "on the border");
+        assert_eq!(cell.passing([0.9, 0.0, 1.0], [0.9, 1.0, 1.0]), Passing::Both);
+        assert_eq!(cell.passing([0.5, 0.0, 0.0], [0.5, 1.0, 0.0]), Passing::Both, "in the plane of an end");
+        assert_eq!(cell.passing([3.0, 3.0, 3.0], [3.0, 3.0, 3.0]), Passing::Both, "no edge at all");
+    }
+}

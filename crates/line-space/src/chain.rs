@@ -1,0 +1,276 @@
+//! Chains of triangles that block every line of a cell.
+//!
+//! Let `F` be a set of triangles of a mesh, and its *rim* the edges at which an odd number of them end. If
+//! 1. no triangle of `F` has a point in the relative interior of either end, but for triangles on the plane where lines begin or
+//!    beyond it, which lines cross as they begin,
+//! 2. no line between inner points of the ends meets the rim, because all pass it on one side or it lies outside of their hull,
+//! 3. one such line crosses `F` an odd number of times, nowhere at an edge,
+//!
+//! then every line of the cell meets `F`. Lines between inner points can be moved into each other without passing the rim (2) or having an
+//! end on `F` (1), so the number of crossings stays odd (3); all others are limits of these, and `F` is closed.
+//!
+//! `F` is found by growth: from a triangle that the middle line hits, over every edge of the rim that lines pass on both sides, to
+//! the next triangle. Growth is a heuristic; the conditions are checked exactly.
+//!
+//! Source: parity as for the ShieldTester of Navazo, Rossignac, Jou and Shariff, Computer Graphics Forum 22(3), 2003; cells of
+//! line space and the growth within them were chosen here.
+
+use crate::cell::{Cell, Passing};
+use crate::hull::{Code, Hull};
+use crate::surface::Surface;
+use crate::touch::{Start, Target};
+use sightlines_geometry::vector::{cross, dot, sub};
+use sightlines_geometry::{Point3, orient3d};
+
+/// Why a chain does not block a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Gap {
+    /// Lines pass an edge on both sides, and nothing continues the chain there; with the triangle that ends at it.
+    Edge { edge: u32, triangle: u32 },
+    /// A triangle touches the end where lines begin.
+    Start { triangle: u32 },
+    /// A triangle touches the target.
+    Target { triangle: u32 },
+    /// The chain is too long, or is crossed an even number of times.
+    Other,
+}
+
+/// A cell with what its chains share.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shaft {
+    pub(crate) cell: Cell,
+    pub(crate) start: Start,
+    pub(crate) hull: Hull,
+    /// Inner points of the ends.
+    pub(crate) line: [Point3; 2],
+    /// How far the second of them may be from the true end.
+    pub(crate) rounding: Point3,
+}
+
+impl Shaft {
+    pub(crate) fn new(cell: Cell, start: Start, weights: [[f64; 4]; 2]) -> Self {
+        let (from, _) = cell.from.inner(weights[0]);
+        let (to, rounding) = cell.to.inner(weights[1]);
+        Self { cell, start, hull: Hull::of(&cell), line: [from, to], rounding }
+    }
+}
+
+/// Marks that are forgotten all at once.
+#[derive(Debug, Default)]
+struct Epochs {
+    /// Of the present cell, and of the present chain.
+    cell: u32,
+    chain: u32,
+}
+
+/// Memory for the search of chains in one surface.
+#[derive(Debug)]
+pub(crate) struct ChainFinder {
+    epochs: Epochs,
+    /// For each vertex the cell that its code is of, and the code.
+    codes: Vec<(u32, Code)>,
+    /// For each edge the cell that it was tested for, and whether lines may pass it on both sides.
+    mixed: Vec<(u32, bool)>,
+    /// For each edge the chain that it was counted for, and whether an odd number of triangles ends there.
+    odd: Vec<(u32, bool)>,
+    /// For each triangle the chain that it was last part of.
+    part_of: Vec<u32>,
+    chain: Vec<u32>,
+    open: Vec<(u32, u32)>,
+    /// How many triangles a chain has at most.
+    longest: usize,
+}
+
+impl ChainFinder {
+    pub(crate) fn new(surface: &Surface, longest: usize) -> Self {
+        let mesh = surface.mesh();
+        Self {
+            epochs: Epochs::default(),
+            codes: vec![(0, Code::default()); mesh.vertices().len()],
+            mixed: vec![(0, false); mesh.edges().len()],
+            odd: vec![(0, false); mesh.edges().len()],
+            part_of: vec![0; mesh.triangles().len()],
+            chain: Vec::new(),
+            open: Vec::new(),
+            longest,
+        }
+    }
+
+    /// Has to come before the chains of another cell.
+    pub(crate) fn next_cell(&mut self) {
+        if self.epochs.cell == u32::MAX {
+            self.codes.fill((0, Code::default()));
+            self.mixed.fill((0, false));
+            self.epochs.cell = 0;
+        }
+        self.epochs.cell += 1;
+    }
+
+    fn next_chain(&mut self) {
+        if self.epochs.chain == u32::MAX {
+            self.odd.fill((0, false));
+            self.part_of.fill(0);
+            self.epochs.chain = 0;
+        }
+        self.epochs.chain += 1;
+        self.chain.clear();
+        self.open.clear();
+    }
+
+    /// Grows a chain from a triangle; whether it blocks all lines of the cell.
+    pub(crate) fn block(&mut self, surface: &Surface, shaft: &Shaft, target: &Target, start: u32) -> Result<(), Gap> {
+        self.next_chain();
+        let mut folded = None;
+        self.add(surface, shaft, target, start)?;
+        while let Some((edge, triangle)) = self.open.pop() {
+            if !self.is_odd(edge) || !self.is_mixed(surface, shaft, edge) {
+                continue;
+            }
+            let gap = Gap::Edge { edge, triangle };
+            let (next, folds) = self.next_triangle(surface, shaft, target, edge, triangle).ok_or(folded.unwrap_or(gap))?;
+            if folds {
+                folded = folded.or(Some(gap));
+            }
+            if self.chain.len() == self.longest {
+                return Err(folded.unwrap_or(Gap::Other));
+            }
+            self.add(surface, shaft, target, next)?;
+        }
+        if self.is_crossed_oddly(surface, shaft) { Ok(()) } else { Err(folded.unwrap_or(Gap::Other)) }
+    }
+
+    fn add(&mut self, surface: &Surface, shaft: &Shaft, target: &Target, triangle: u32) -> Result<(), Gap> {
+        let (corners, bounds) = (surface.mesh().corners(triangle), surface.bounds(triangle));
+        if !shaft.start.is_clear_of(&corners, bounds, &shaft.cell.from) {
+            return Err(Gap::Start { triangle });
+        }
+        if !target.is_clear_of(&corners, bounds, &shaft.cell.to) {
+            return Err(Gap::Target { triangle });
+        }
+        self.part_of[triangle as usize] = self.epochs.chain;
+        self.chain.push(triangle);
+        for &edge in surface.mesh().outline_edges(triangle) {
+            let odd = !self.is_odd(edge);
+            self.odd[edge as usize] = (self.epochs.chain, odd);
+            if odd {
+                self.open.push((edge, triangle));
+            }
+        }
+        Ok(())
+    }
+
+    fn is_odd(&self, edge: u32) -> bool {
+        self.odd[edge as usize] == (self.epochs.chain, true)
+    }
+
+    /// Whether lines may pass an edge on both sides.
+    fn is_mixed(&mut self, surface: &Surface, shaft: &Shaft, edge: u32) -> bool {
+        let (cell, mixed) = self.mixed[edge as usize];
+        if cell == self.epochs.cell {
+            return mixed;
+        }
+        let ends = surface.mesh().edges()[edge as usize];
+        let [p, q] = ends.map(|v| surface.mesh().vertices()[v as usize]);
+        let [s, t] = [(ends[0], p), (ends[1], q)].map(|(v, at)| self.code(shaft, v, at));
+        let mixed = !shaft.hull.misses(s, t) && shaft.cell.passing(p, q) == Passing::Both;
+        self.mixed[edge as usize] = (self.epochs.cell, mixed);
+        mixed
+    }
+
+    fn code(&mut self, shaft: &Shaft, vertex: u32, at: Point3) -> Code {
+        let (cell, code) = self.codes[vertex as usize];
+        if cell == self.epochs.cell {
+            return code;
+        }
+        let code = shaft.hull.code(at);
+        self.codes[vertex as usize] = (self.epochs.cell, code);
+        code
+    }
+
+    /// The triangle that continues the chain beyond an edge, and whether the chain folds back there: the largest one on the other side of
+    /// the edge as seen along the middle line, else one on the same side.
+    fn next_triangle(
+        &self,
+        surface: &Surface,
+        shaft: &Shaft,
+        target: &Target,
+        edge: u32,
+        triangle: u32,
+    ) -> Option<(u32, bool)> {
+        let mesh = surface.mesh();
+        let [p, q] = mesh.edges()[edge as usize].map(|v| sub(mesh.vertices()[v as usize], shaft.line[0]));
+        let normal = cross(p, q);
+        let side = |t: u32| dot(normal, sub(surface.middle(t), shaft.line[0])) > 0.0;
+        let here = side(triangle);
+        let mut best: Option<(bool, f64, u32)> = None;
+        for &other in mesh.triangles_at(edge) {
+            if other == triangle || self.part_of[other as usize] == self.epochs.chain {
+                continue;
+            }
+            let (corners, bounds) = (mesh.corners(other), surface.bounds(other));
+            if !shaft.start.is_clear_of(&corners, bounds, &shaft.cell.from)
+                || !target.is_clear_of(&corners, bounds, &shaft.cell.to)
+            {
+                continue;
+            }
+            let candidate = (side(other) != here, surface.area(other), other);
+            if best.is_none_or(|b| (candidate.0, candidate.1) > (b.0, b.1)) {
+                best = Some(candidate);
+            }
+        }
+        best.map(|(continues, _, t)| (t, !continues))
+    }
+
+    /// Condition 3, of the middle line.
+    fn is_crossed_oddly(&self, surface: &Surface, shaft: &Shaft) -> bool {
+        let mut n = 0u32;
+        for &t in &self.chain {
+            match crosses(shaft, surface.mesh().corners(t)) {
+                Some(crossed) => n += u32::from(crossed),
+                None => return false,
+            }
+        }
+        n % 2 == 1
+    }
+}
+
+/// Rounding of `det` of three differences, as a share of the sum of magnitudes of its products.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Whether the middle line crosses a triangle in its interior; none if that is not certain.
+fn crosses(shaft: &Shaft, [a, b, c]: [Point3; 3]) -> Option<bool> {
+    let [p, q] = shaft.line;
+    let mut sides = [0i8; 3];
+    for (side, [x, y]) in sides.iter_mut().zip([[a, b], [b, c], [c, a]]) {
+        *side = sign(x, y, p, q, shaft.rounding);
+    }
+    if sides.contains(&1) && sides.contains(&-1) {
+        return Some(false);
+    }
+    let end = sign(a, b, c, q, shaft.rounding);
+    let start = sign(a, b, c, p, [0.0; 3]);
+    if sides.contains(&0) || end == 0 {
+        return None;
+    }
+    // A line that begins on a triangle crosses it there: condition 1 leaves only those that it comes to from behind.
+    Some(start != end)
+}
+
+/// The sign of `orient3d(a, b, c, d)` for every `d` within `radius`; 0 if it is not the same for all, or zero.
+fn sign(a: Point3, b: Point3, c: Point3, d: Point3, radius: Point3) -> i8 {
+    let (u, v, w) = (sub(b, a), sub(c, a), sub(d, a));
+    let normal = cross(u, v);
+    let part = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
+    let weight = [part(1, 2), part(2, 0), part(0, 1)];
+    let value = dot(normal, w);
+    let bound = (0..3).map(|k| ROUNDING * weight[k] * w[k].abs()).sum::<f64>();
+    let slack = (0..3).map(|k| 1.01 * (normal[k].abs() + ROUNDING * weight[k]) * radius[k]).sum::<f64>();
+    if value.abs() > bound + slack {
+        return if value > 0.0 { 1 } else { -1 };
+    }
+    if radius != [0.0; 3] {
+        return 0;
+    }
+    let exact = orient3d(a, b, c, d);
+    i8::from(exact > 0.0) - i8::from(exact < 0.0)
+}

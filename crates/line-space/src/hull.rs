@@ -1,0 +1,155 @@
+//! The convex hull of the two ends of a cell of line space, as half-spaces.
+//!
+//! A line from an inner point of one end to an inner point of the other stays, between its ends, strictly inside of every
+//! half-space found here. An edge with both ends outside or on the border of the same half-space is therefore never met by such a line.
+
+use crate::cell::Cell;
+use sightlines_geometry::vector::{cross, dot, sub};
+use sightlines_geometry::{Point3, orient3d};
+
+/// The most half-spaces: one for each end, one for each side of each end.
+const MOST: usize = 10;
+
+/// A half-space: points `p` with `orient3d(a, b, c, p)` of one sign.
+#[derive(Debug, Clone, Copy, Default)]
+struct HalfSpace {
+    through: [Point3; 3],
+    /// The normal, turned inwards; rounded.
+    normal: Point3,
+    /// For each axis the sum of the magnitudes of the two products in `normal`.
+    weight: Point3,
+    /// How far outside a point has to be, for the true ends to be strictly inside.
+    margin: f64,
+    /// 1 if the sign of `orient3d` is positive inside, else -1.
+    sign: f64,
+}
+
+/// Rounding of `normal · (p - a)`, as a share of the sum of magnitudes.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+impl HalfSpace {
+    fn new(through: [Point3; 3], sign: f64, radius: Point3) -> Self {
+        let [a, b, c] = through;
+        let (u, v) = (sub(b, a), sub(c, a));
+        let normal = cross(u, v).map(|x| x * sign);
+        let part = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
+        let weight = [part(1, 2), part(2, 0), part(0, 1)];
+        let margin = (0..3).map(|k| 1.01 * (normal[k].abs() + ROUNDING * weight[k]) * radius[k]).sum();
+        Self { through, normal, weight, margin, sign }
+    }
+
+    fn is_far_inside(&self, p: Point3) -> bool {
+        let d = sub(p, self.through[0]);
+        let sum = self.weight[0] * d[0].abs() + self.weight[1] * d[1].abs() + self.weight[2] * d[2].abs();
+        dot(self.normal, d) > ROUNDING * sum + self.margin
+    }
+
+    /// Whether a point is certainly outside (-1), on the border (0), or perhaps inside (1).
+    fn side(&self, p: Point3) -> i8 {
+        let [a, b, c] = self.through;
+        let d = sub(p, a);
+        let value = dot(self.normal, d);
+        let bound = ROUNDING * (self.weight[0] * d[0].abs() + self.weight[1] * d[1].abs() + self.weight[2] * d[2].abs());
+        if value > bound {
+            return 1;
+        }
+        if value < -(bound + self.margin) {
+            return -1;
+        }
+        if self.margin > 0.0 {
+            return 1;
+        }
+        let exact = self.sign * orient3d(a, b, c, p);
+        i8::from(exact > 0.0) - i8::from(exact < 0.0)
+    }
+}
+
+/// The half-spaces of a cell.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hull {
+    spaces: [HalfSpace; MOST],
+    n: usize,
+    /// Whether the first one is that of the end where lines begin.
+    begins: bool,
+}
+
+/// Where a point is: a bit for each half-space that it is outside or on the border of, and whether it is strictly behind the
+/// end where lines begin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Code(u16);
+
+/// The bit of a point strictly behind the end where lines begin.
+const BEHIND: u16 = 1 << 15;
+
+impl Hull {
+    pub(crate) fn of(cell: &Cell) -> Self {
+        let mut hull = Self { spaces: [HalfSpace::default(); MOST], n: 0, begins: false };
+        let (from, to) = (cell.from.corners(), cell.to.corners());
+        let radius = cell.to.radius();
+        hull.begins = hull.add([from[0], from[1], from[2]], cell, radius);
+        hull.add([to[0], to[1], to[2]], cell, radius);
+        for (one, other) in [(from, to), (to, from)] {
+            for i in 0..one.len() {
+                let [a, b, third] = [0, 1, 2].map(|k| one[(i + k) % one.len()]);
+                // Turned about the side until it supports the other end, too.
+                let mut best = other[0];
+                for &p in &other[1..] {
+                    let inner = orient3d(a, b, best, third);
+                    if orient3d(a, b, best, p) * inner < 0.0 {
+                        best = p;
+                    }
+                }
+                hull.add([a, b, best], cell, radius);
+            }
+        }
+        hull
+    }
+
+    /// Adds the half-space whose border goes through three points and that contains both ends; says whether there is one.
+    fn add(&mut self, through: [Point3; 3], cell: &Cell, radius: Point3) -> bool {
+        let [a, b, c] = through;
+        let (mut positive, mut negative) = (false, false);
+        for &p in cell.from.corners().iter().chain(cell.to.corners()) {
+            if through.contains(&p) {
+                continue;
+            }
+            let side = orient3d(a, b, c, p);
+            positive |= side > 0.0;
+            negative |= side < 0.0;
+        }
+        // Of a border that contains both ends nothing is strictly inside.
+        if positive == negative || self.n == MOST {
+            return false;
+        }
+        let mut space = HalfSpace::new(through, if positive { 1.0 } else { -1.0 }, radius);
+        // Where every corner that was rounded is farther inside than it was rounded, the border is exact.
+        if !cell.to.corners().iter().any(|p| through.contains(p)) && cell.to.corners().iter().all(|&p| space.is_far_inside(p)) {
+            space.margin = 0.0;
+        }
+        self.spaces[self.n] = space;
+        self.n += 1;
+        true
+    }
+
+    /// Where a point is.
+    pub(crate) fn code(&self, p: Point3) -> Code {
+        let mut code = 0;
+        for (i, space) in self.spaces[..self.n].iter().enumerate() {
+            let side = space.side(p);
+            code |= u16::from(side <= 0) << i;
+            if i == 0 && self.begins && side < 0 {
+                code |= BEHIND;
+            }
+        }
+        Code(code)
+    }
+
+    /// Whether no line between inner points meets the edge between points with these codes, except at its ends.
+    ///
+    /// An edge in the plane where lines begin is met by lines that begin there.
+    pub(crate) fn misses(&self, p: Code, q: Code) -> bool {
+        let common = p.0 & q.0 & !BEHIND;
+        let lateral = if self.begins { common & !1 } else { common };
+        lateral != 0 || common != 0 && (p.0 | q.0) & BEHIND != 0
+    }
+}

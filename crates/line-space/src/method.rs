@@ -1,0 +1,201 @@
+//! The method: what is hidden from a box, target by target.
+
+use crate::cell::Cell;
+use crate::end::End;
+use crate::search::{Outcome, Root, Search};
+use crate::surface::Surface;
+use crate::touch::{Start, Target};
+use sightlines_geometry::coordinate::MIN_MAGNITUDE;
+use sightlines_geometry::{Aabb, Point3, check_coordinate};
+use sightlines_multifocal::mesh::avoids;
+use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, Volume};
+use std::sync::Arc;
+
+/// How much is done for one target at most. More finds more hidden; nothing is ever hidden wrongly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Effort {
+    /// Cells of line space for a box.
+    pub box_cells: u32,
+    /// Cells of line space for a triangle.
+    pub triangle_cells: u32,
+    /// How many triangles that a line hits are tried as starts of chains.
+    pub attempts: u32,
+    /// How many triangles a chain has.
+    pub longest_chain: u32,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { box_cells: 300, triangle_cells: 1000, attempts: 8, longest_chain: 300 }
+    }
+}
+
+/// Hides by subdividing line space; see the front page of this crate.
+#[derive(Debug)]
+pub struct LineSpace {
+    surface: Arc<Surface>,
+    effort: Effort,
+    search: Search,
+    n_cells: u64,
+}
+
+impl LineSpace {
+    /// For a scene of triangles, with the default effort. O(n log² n).
+    pub fn new(triangles: &[[Point3; 3]]) -> Self {
+        Self::shared(Arc::new(Surface::new(triangles)), Effort::default())
+    }
+
+    /// For a surface that others use as well. O(n).
+    pub fn shared(surface: Arc<Surface>, effort: Effort) -> Self {
+        let search = Search::new(&surface, effort.attempts as usize, effort.longest_chain as usize);
+        Self { surface, effort, search, n_cells: 0 }
+    }
+
+    /// How many cells of line space were tested until now.
+    pub const fn n_cells(&self) -> u64 {
+        self.n_cells
+    }
+
+    /// Decides whether a box can be seen from another one: about the lines from all points of `volume` to all points of
+    /// `target`.
+    pub fn see_box(&mut self, volume: &Aabb<3>, target: &Aabb<3>, budget: u32) -> Outcome {
+        let Some((volume, target)) = with_area(volume).zip(with_area(target)) else { return Outcome::Undecided };
+        if (0..3).all(|k| volume.min[k] <= target.max[k] && target.min[k] <= volume.max[k]) {
+            return Outcome::Undecided;
+        }
+        self.run(box_roots(&volume, &target), &Target::Box, budget)
+    }
+
+    /// Decides whether a triangle can be seen from a box: about the lines from all points of `volume` to all inner points of the
+    /// triangle.
+    pub fn see_triangle(&mut self, volume: &Aabb<3>, triangle: [Point3; 3], budget: u32) -> Outcome {
+        let Some(volume) = with_area(volume) else { return Outcome::Undecided };
+        if triangle.iter().flatten().any(|&x| check_coordinate(x).is_err()) || !avoids(&triangle, &volume, false) {
+            return Outcome::Undecided;
+        }
+        if is_flat(triangle) {
+            return self.see_box(&volume, &Aabb::around(triangle), budget);
+        }
+        self.run(triangle_roots(&volume, triangle), &Target::Triangle(triangle), budget)
+    }
+
+    fn run(&mut self, roots: Vec<Root>, target: &Target, budget: u32) -> Outcome {
+        let (outcome, n) = self.search.run(&self.surface, roots, target, budget);
+        self.n_cells += u64::from(n);
+        outcome
+    }
+}
+
+/// Whether three points lie on a line. Exact.
+fn is_flat(t: [Point3; 3]) -> bool {
+    use sightlines_geometry::{Point2, orient2d};
+    (0..3).all(|k| {
+        let of = |p: Point3| Point2::new(p[k], p[(k + 1) % 3]);
+        orient2d(of(t[0]), of(t[1]), of(t[2])) == 0.0
+    })
+}
+
+/// The box, or a larger one where it has no area: a box that is flat along two axes is made thicker along these, by a 2^-40th of its
+/// coordinates or size. None for boxes without points and coordinates that predicates cannot take.
+fn with_area(b: &Aabb<3>) -> Option<Aabb<3>> {
+    let is_flat = |k: usize| b.min[k] == b.max[k];
+    let mut larger = *b;
+    if (0..3).filter(|&k| is_flat(k)).count() > 1 {
+        let size = (0..3).map(|k| b.min[k].abs().max(b.max[k].abs())).fold(MIN_MAGNITUDE * (1u64 << 50) as f64, f64::max);
+        let more = size / (1u64 << 40) as f64;
+        for k in (0..3).filter(|&k| is_flat(k)) {
+            (larger.min[k], larger.max[k]) = (b.min[k] - more, b.max[k] + more);
+        }
+    }
+    let usable = |x: &f64| check_coordinate(*x).is_ok();
+    (!b.is_empty() && larger.min.iter().chain(&larger.max).all(usable)).then_some(larger)
+}
+
+/// The sides of a box: axis, whether it is the upper one, and the rectangle.
+fn sides(b: &Aabb<3>) -> impl Iterator<Item = (usize, bool, Aabb<3>)> + '_ {
+    (0..6).map(|i| {
+        let (axis, upper) = (i / 2, i % 2 == 1);
+        let mut side = *b;
+        let at = if upper { b.max[axis] } else { b.min[axis] };
+        (side.min[axis], side.max[axis]) = (at, at);
+        (axis, upper, side)
+    })
+}
+
+fn start_at(volume: &Aabb<3>, axis: usize, upward: bool) -> Start {
+    Start { axis, upward, from_behind: volume.min[axis] < volume.max[axis] }
+}
+
+/// The part of a rectangle beyond a plane across an axis.
+fn beyond(mut side: Aabb<3>, axis: usize, at: f64, upward: bool) -> Option<Aabb<3>> {
+    if upward {
+        side.min[axis] = side.min[axis].max(at);
+    } else {
+        side.max[axis] = side.max[axis].min(at);
+    }
+    let inside = if upward { side.max[axis] > at } else { side.min[axis] < at };
+    inside.then_some(side)
+}
+
+/// All lines from a box to another: for each side by which they leave the one and each by which they enter the other.
+///
+/// Lines that leave or enter through an edge, or run within a side, are limits of these.
+fn box_roots(volume: &Aabb<3>, target: &Aabb<3>) -> Vec<Root> {
+    let mut roots = Vec::new();
+    for (axis, upward, start) in sides(volume) {
+        for (across, outward, end) in sides(target) {
+            let to = beyond(end, axis, start.min[axis], upward);
+            let from = beyond(start, across, end.min[across], outward);
+            let ends = from.zip(to).and_then(|(f, t)| End::rectangle(&f, axis).zip(End::rectangle(&t, across)));
+            roots.extend(ends.map(|(from, to)| Root { cell: Cell { from, to }, start: start_at(volume, axis, upward) }));
+        }
+    }
+    roots
+}
+
+/// All lines from a box to a triangle beside it.
+fn triangle_roots(volume: &Aabb<3>, triangle: [Point3; 3]) -> Vec<Root> {
+    let mut roots = Vec::new();
+    for (axis, upward, start) in sides(volume) {
+        let Some(from) = End::rectangle(&start, axis) else { continue };
+        let pieces = End::beyond(triangle, axis, start.min[axis], upward);
+        roots.extend(pieces.map(|to| Root { cell: Cell { from, to }, start: start_at(volume, axis, upward) }));
+    }
+    roots
+}
+
+impl FromRegion for LineSpace {
+    fn name(&self) -> String {
+        "line-space".to_owned()
+    }
+
+    fn guarantee(&self) -> Guarantee {
+        Guarantee::Conservative
+    }
+
+    fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError> {
+        let volume = *volume.bounds();
+        Ok(Box::new(LineUmbra { method: self, volume }))
+    }
+}
+
+#[derive(Debug)]
+struct LineUmbra<'a> {
+    method: &'a mut LineSpace,
+    volume: Aabb<3>,
+}
+
+impl Umbra for LineUmbra<'_> {
+    fn hides(&mut self, target: &Aabb<3>) -> bool {
+        let budget = self.method.effort.box_cells;
+        self.method.see_box(&self.volume, target, budget) == Outcome::Hidden
+    }
+
+    fn hides_points(&mut self, points: &[Point3]) -> bool {
+        let budget = self.method.effort.triangle_cells;
+        match *points {
+            [a, b, c] => self.method.see_triangle(&self.volume, [a, b, c], budget) == Outcome::Hidden,
+            _ => self.hides(&Aabb::around(points.iter().copied())),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The surfaces of a scene, prepared for lines: a mesh, a tree of its triangles, and what estimates need.
+
+use sightlines_geometry::vector::{add, length, normal, scale, sub};
+use sightlines_geometry::{Aabb, BoxTree, Point3, ray_box, ray_triangle};
+use sightlines_multifocal::mesh::Mesh;
+
+/// A mesh with what is looked up for every line. Can be shared by threads.
+#[derive(Debug)]
+pub struct Surface {
+    mesh: Mesh,
+    boxes: Vec<Aabb<3>>,
+    tree: BoxTree<3>,
+    middles: Vec<Point3>,
+    areas: Vec<f64>,
+}
+
+/// A triangle that a segment meets, as doubles have it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Hit {
+    /// The part of the segment before.
+    pub(crate) at: f64,
+    pub(crate) triangle: u32,
+}
+
+/// By how much segments may miss triangles and still start a chain there; decides nothing.
+const SLACK: f64 = 1e-9;
+
+impl Surface {
+    /// Welds the triangles. O(n log² n).
+    pub fn new(triangles: &[[Point3; 3]]) -> Self {
+        let mesh = Mesh::weld(triangles);
+        let all = || (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t));
+        let boxes: Vec<Aabb<3>> = all().map(Aabb::around).collect();
+        let tree = BoxTree::build(&boxes, 4);
+        let middles = all().map(|[a, b, c]| scale(add(add(a, b), c), 1.0 / 3.0)).collect();
+        let areas = all().map(|t| length(normal(t)) / 2.0).collect();
+        Self { mesh, boxes, tree, middles, areas }
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    pub(crate) fn bounds(&self, triangle: u32) -> &Aabb<3> {
+        &self.boxes[triangle as usize]
+    }
+
+    pub(crate) fn middle(&self, triangle: u32) -> Point3 {
+        self.middles[triangle as usize]
+    }
+
+    pub(crate) fn area(&self, triangle: u32) -> f64 {
+        self.areas[triangle as usize]
+    }
+
+    /// The triangles that the segment from `p` to `q` meets, in no particular order.
+    pub(crate) fn hits(&self, p: Point3, q: Point3, hits: &mut Vec<Hit>) {
+        hits.clear();
+        let d = sub(q, p);
+        // An axis along which the segment does not move is left out for boxes around it; others it misses.
+        let inverse = d.map(|x| 1.0 / x);
+        let enters = |b: &Aabb<3>| {
+            if (0..3).any(|k| d[k] == 0.0 && (p[k] < b.min[k] || p[k] > b.max[k])) {
+                return false;
+            }
+            let [first, last] = ray_box(b, p, [0, 1, 2].map(|k| if d[k] == 0.0 { f64::NAN } else { inverse[k] }));
+            first.max(-SLACK) <= last.min(1.0 + SLACK) + SLACK
+        };
+        self.tree.visit(enters, |triangle| {
+            let [x, y, at] = ray_triangle(&self.mesh.corners(triangle), p, d);
+            if x >= -SLACK && y >= -SLACK && x + y <= 1.0 + SLACK && (-SLACK..=1.0).contains(&at) {
+                hits.push(Hit { at, triangle });
+            }
+        });
+    }
+}
