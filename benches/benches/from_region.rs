@@ -98,8 +98,12 @@ fn generated(args: &Args) -> Vec<Case> {
     let blocks = if args.test { 3 } else { 6 };
     let options = CityOptions { blocks_x: blocks, blocks_z: blocks, ..CityOptions::default() };
     let streets = city_crossings(options).expect("in range");
-    let mut cases =
-        vec![Case { name: "city".to_owned(), scene: city(options).expect("in range"), cells: streets, dense: Vec::new() }];
+    let mut cases = vec![Case {
+        name: "city".to_owned(),
+        scene: city(options).expect("in range"),
+        cells: streets,
+        dense: Vec::new(),
+    }];
     if !args.test {
         let options = TowerOptions { floors: 2, ..TowerOptions::default() };
         let rooms = tower_rooms(options).expect("in range").into_iter().map(|room| room.bounds).collect();

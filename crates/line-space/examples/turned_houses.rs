@@ -16,9 +16,8 @@ fn house(middle: Point3, angle: f64) -> Vec<[Point3; 3]> {
 
 fn main() {
     // Three rows of four; eyes are in the street in front of the first one.
-    let houses: Vec<Vec<[Point3; 3]>> = (0..12)
-        .map(|i| house([f64::from(i % 4) * 9.0, f64::from(i / 4) * 14.0, 0.0], f64::from(i) * 0.05))
-        .collect();
+    let houses: Vec<Vec<[Point3; 3]>> =
+        (0..12).map(|i| house([f64::from(i % 4) * 9.0, f64::from(i / 4) * 14.0, 0.0], f64::from(i) * 0.05)).collect();
     let eyes = Aabb { min: [0.0, -9.0, 1.0], max: [27.0, -7.0, 2.0] };
     let mut lines = LineSpace::new(&houses.concat());
     let seen: Vec<bool> = houses

@@ -52,7 +52,9 @@ impl Cell {
             let slack = if is_exact {
                 0.0
             } else {
-                let size = |i: usize, j: usize| (normal[3 - i - j].abs() + ROUNDING * extent[i] * extent[j]) * radius[3 - i - j];
+                let size = |i: usize, j: usize| {
+                    (normal[3 - i - j].abs() + ROUNDING * extent[i] * extent[j]) * radius[3 - i - j]
+                };
                 MORE * (size(0, 1) + size(1, 2) + size(0, 2))
             };
             for &b in to {
@@ -92,7 +94,13 @@ mod tests {
         let [u, v, w] = [d(1), d(2), d(3)];
         let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
         let det = minor(1, 2) * &w[0] + minor(2, 0) * &w[1] + minor(0, 1) * &w[2];
-        if det.is_zero() { 0 } else if det.is_positive() { 1 } else { -1 }
+        if det.is_zero() {
+            0
+        } else if det.is_positive() {
+            1
+        } else {
+            -1
+        }
     }
 
     fn exact(p: Point3) -> [BigRational; 3] {

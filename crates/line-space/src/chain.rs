@@ -127,7 +127,8 @@ impl ChainFinder {
                 continue;
             }
             let gap = Gap::Edge { edge, triangle };
-            let (next, folds) = self.next_triangle(surface, shaft, target, edge, triangle).ok_or(folded.unwrap_or(gap))?;
+            let (next, folds) =
+                self.next_triangle(surface, shaft, target, edge, triangle).ok_or(folded.unwrap_or(gap))?;
             if folds {
                 folded = folded.or(Some(gap));
             }

@@ -127,7 +127,8 @@ impl End {
         }
         let sum = weights[0] + weights[1] + weights[2];
         let corners = self.corners();
-        let at = |k: usize| (corners[0][k] * weights[0] + corners[1][k] * weights[1] + corners[2][k] * weights[2]) / sum;
+        let at =
+            |k: usize| (corners[0][k] * weights[0] + corners[1][k] * weights[1] + corners[2][k] * weights[2]) / sum;
         let size = |k: usize| corners.iter().map(|c| c[k].abs()).fold(0.0, f64::max);
         let same = |k: usize| corners[0][k] == corners[1][k] && corners[1][k] == corners[2][k];
         let point = std::array::from_fn(|k| if same(k) { corners[0][k] } else { at(k) });

@@ -49,7 +49,8 @@ impl HalfSpace {
         let [a, b, c] = self.through;
         let d = sub(p, a);
         let value = dot(self.normal, d);
-        let bound = ROUNDING * (self.weight[0] * d[0].abs() + self.weight[1] * d[1].abs() + self.weight[2] * d[2].abs());
+        let bound =
+            ROUNDING * (self.weight[0] * d[0].abs() + self.weight[1] * d[1].abs() + self.weight[2] * d[2].abs());
         if value > bound {
             return 1;
         }
@@ -123,7 +124,9 @@ impl Hull {
         }
         let mut space = HalfSpace::new(through, if positive { 1.0 } else { -1.0 }, radius);
         // Where every corner that was rounded is farther inside than it was rounded, the border is exact.
-        if !cell.to.corners().iter().any(|p| through.contains(p)) && cell.to.corners().iter().all(|&p| space.is_far_inside(p)) {
+        if !cell.to.corners().iter().any(|p| through.contains(p))
+            && cell.to.corners().iter().all(|&p| space.is_far_inside(p))
+        {
             space.margin = 0.0;
         }
         self.spaces[self.n] = space;

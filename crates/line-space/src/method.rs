@@ -26,7 +26,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { box_cells: 300, triangle_cells: 1000, attempts: 8, longest_chain: 300 }
+        Self { box_cells: 40, triangle_cells: 1000, attempts: 8, longest_chain: 300 }
     }
 }
 
@@ -101,7 +101,8 @@ fn with_area(b: &Aabb<3>) -> Option<Aabb<3>> {
     let is_flat = |k: usize| b.min[k] == b.max[k];
     let mut larger = *b;
     if (0..3).filter(|&k| is_flat(k)).count() > 1 {
-        let size = (0..3).map(|k| b.min[k].abs().max(b.max[k].abs())).fold(MIN_MAGNITUDE * (1u64 << 50) as f64, f64::max);
+        let size =
+            (0..3).map(|k| b.min[k].abs().max(b.max[k].abs())).fold(MIN_MAGNITUDE * (1u64 << 50) as f64, f64::max);
         let more = size / (1u64 << 40) as f64;
         for k in (0..3).filter(|&k| is_flat(k)) {
             (larger.min[k], larger.max[k]) = (b.min[k] - more, b.max[k] + more);
@@ -147,7 +148,8 @@ fn box_roots(volume: &Aabb<3>, target: &Aabb<3>) -> Vec<Root> {
             let to = beyond(end, axis, start.min[axis], upward);
             let from = beyond(start, across, end.min[across], outward);
             let ends = from.zip(to).and_then(|(f, t)| End::rectangle(&f, axis).zip(End::rectangle(&t, across)));
-            roots.extend(ends.map(|(from, to)| Root { cell: Cell { from, to }, start: start_at(volume, axis, upward) }));
+            roots
+                .extend(ends.map(|(from, to)| Root { cell: Cell { from, to }, start: start_at(volume, axis, upward) }));
         }
     }
     roots

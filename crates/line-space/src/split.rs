@@ -22,7 +22,8 @@ pub(crate) fn promise(surface: &Surface, shaft: &Shaft, gap: &Gap) -> f64 {
         Gap::Edge { edge, triangle } => {
             let values = Values::of_edge(surface, shaft, edge, triangle);
             let all = values.n[0] * values.n[1];
-            let good = (0..values.n[0]).map(|i| (0..values.n[1]).filter(|&j| values.of[i][j] > 0.0).count()).sum::<usize>();
+            let good =
+                (0..values.n[0]).map(|i| (0..values.n[1]).filter(|&j| values.of[i][j] > 0.0).count()).sum::<usize>();
             good as f64 / all as f64
         }
         Gap::Start { triangle } if straddles(surface, triangle, &shaft.cell.from) => 2.0,
@@ -167,13 +168,15 @@ fn at_plane(surface: &Surface, triangle: u32, end: &End) -> Option<[End; 2]> {
     let mut heights: Vec<f64> = heights(surface, triangle, end).collect();
     if heights.len() == 4 {
         // Both sides of a rectangle along a direction count.
-        heights = vec![heights[0] + heights[3], heights[1] + heights[2], heights[0] + heights[1], heights[3] + heights[2]];
+        heights =
+            vec![heights[0] + heights[3], heights[1] + heights[2], heights[0] + heights[1], heights[3] + heights[2]];
         let sides = [[heights[0], heights[1]], [heights[2], heights[3]]];
         let side = if (sides[0][1] - sides[0][0]).abs() >= (sides[1][1] - sides[1][0]).abs() { 0 } else { 1 };
         return cut_at_root(end, side, sides[side]);
     }
     let sides = [[heights[0], heights[1]], [heights[1], heights[2]], [heights[2], heights[0]]];
-    let side = (0..3).max_by(|&s, &t| (sides[s][1] - sides[s][0]).abs().total_cmp(&(sides[t][1] - sides[t][0]).abs()))?;
+    let side =
+        (0..3).max_by(|&s, &t| (sides[s][1] - sides[s][0]).abs().total_cmp(&(sides[t][1] - sides[t][0]).abs()))?;
     cut_at_root(end, side, sides[side])
 }
 
@@ -187,7 +190,12 @@ fn cut_at_root(end: &End, side: usize, [low, high]: [f64; 2]) -> Option<[End; 2]
 
 fn longest(cell: &Cell) -> Option<[Cell; 2]> {
     let longest_side = |end: &End| {
-        let size = |i: usize| length({ let [a, b] = end.side(i); sub(b, a) });
+        let size = |i: usize| {
+            length({
+                let [a, b] = end.side(i);
+                sub(b, a)
+            })
+        };
         let i = (0..end.n_sides_to_cut()).max_by(|&i, &j| size(i).total_cmp(&size(j))).unwrap_or(0);
         (size(i), i)
     };

@@ -112,7 +112,13 @@ fn plane_splits(a: Point3, b: Point3, c: Point3, t: &[Point3; 3], end: &[Point3]
         let mut has = [false; 3];
         for &p in points {
             let side = orient3d(a, b, c, p);
-            has[if side > 0.0 { 0 } else if side < 0.0 { 1 } else { 2 }] = true;
+            has[if side > 0.0 {
+                0
+            } else if side < 0.0 {
+                1
+            } else {
+                2
+            }] = true;
         }
         has
     };
@@ -136,7 +142,13 @@ fn coplanar_apart(t: &[Point3; 3], end: &[Point3], touching: bool) -> bool {
             let mut has = [false; 3];
             for &p in points {
                 let side = orient2d(a, b, p);
-                has[if side > 0.0 { 0 } else if side < 0.0 { 1 } else { 2 }] = true;
+                has[if side > 0.0 {
+                    0
+                } else if side < 0.0 {
+                    1
+                } else {
+                    2
+                }] = true;
             }
             has
         };

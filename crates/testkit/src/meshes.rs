@@ -1,9 +1,9 @@
 //! Meshes of many kinds, sound and damaged, for methods that take occluders from triangles, and rays to judge these by.
 
+use crate::{Random, RayScene};
 use proptest::prelude::*;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3};
-use crate::{Random, RayScene};
 
 /// Triangles in no particular order.
 pub type Soup = Vec<[Point3; 3]>;

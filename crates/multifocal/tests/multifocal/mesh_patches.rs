@@ -1,11 +1,11 @@
 //! Patches against rays: where one says that it is in the way, triangles are; and patches of known walls.
 
-use sightlines_testkit::meshes::{Soup, quad, scene, soup, uneven};
 use proptest::prelude::*;
 use sightlines_geometry::{Point3, orient3d};
 use sightlines_multifocal::mesh::{Mesh, PatchOptions, patches};
 use sightlines_multifocal::{Occluder, Plane, Volume, mesh};
 use sightlines_testkit::Random;
+use sightlines_testkit::meshes::{Soup, quad, scene, soup, uneven};
 use sightlines_testkit::{RayScene, draw};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,12 +1,12 @@
 //! Sheets against rays: nothing that is called hidden is ever reached, and most of what is never reached is
 //! called hidden.
 
-use sightlines_testkit::meshes::{Soup, boxes, bumpy, free_segment, scene, solid, soup, sphere};
 use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Point3, orient3d};
 use sightlines_multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
 use sightlines_multifocal::{FromRegion, Guarantee, Occluder, Volume};
 use sightlines_testkit::draw;
+use sightlines_testkit::meshes::{Soup, boxes, bumpy, free_segment, scene, solid, soup, sphere};
 
 const LIMIT: usize = 1 << 14;
 

@@ -18,7 +18,8 @@ use std::path::Path;
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct RegionArgs {
     /// Scenes in space: sightlines (through portals; axis-aligned walls occlude), multifocal (from whole cells; any
-    /// surfaces occlude), both (hides what either hides), or shafts and voxels (older methods, for comparison). auto,
+    /// surfaces occlude), both (hides what either hides), line-space (from whole cells; surfaces that meet or overlap occlude
+    /// together; slower), or shafts and voxels (older methods, for comparison). auto,
     /// for any input, measures it, chooses the methods and prints the reasons [default: sightlines]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
     method: Option<SceneMethod>,
