@@ -17,6 +17,7 @@ pub mod axial;
 pub mod conformance;
 pub mod convex;
 pub mod planar;
+mod simplex;
 mod stabber;
 mod verdict;
 

@@ -1,16 +1,17 @@
 //! The linear program of one octant, in doubles: it finds candidates and decides nothing.
 //!
-//! Unknown are the slownesses `s > 0` and offsets `q` of a line: it reaches coordinate `c` of axis `i`
-//! at time `s_i c - q_i`, after every axis was moved and scaled to the interval from 0 to 1 in the
-//! octant's direction. Wanted is the largest `margin` such that every row holds with `margin` to spare,
-//! `s_i >= margin`, and the slownesses add up to 1. The dual asks for weights of rows; it is solved by
-//! the simplex method with the most violated row entering, on an explicit inverse of six by six.
+//! The unknowns are the slownesses `s > 0` and offsets `q` of a line: it reaches coordinate `c` of axis `i` at time
+//! `s_i c - q_i`, after every axis was moved and scaled to the interval from 0 to 1 in the octant's direction. The program
+//! maximises `margin` such that every row holds with `margin` to spare, `s_i >= margin`, and the slownesses add up to 1.
+//! Its dual seeks weights of rows. It is solved by the simplex method, in which the most violated row enters, with an
+//! explicit inverse of six by six.
 //!
-//! Adding the slownesses up is what makes proofs easy: if the margin is negative, the weighted rows add
-//! up to slownesses with coefficients of at least its size, not just to zero, so that weights rounded
-//! to integers still prove that no line passes.
+//! Fixing the sum of the slownesses makes proofs easy: if the margin is negative, the weighted rows add up to slownesses
+//! with coefficients of at least its magnitude, not just to zero, so weights rounded to integers still prove that no line
+//! passes.
 
 use super::rows::{Line, Octant, Row, is_forward};
+use crate::simplex::Basis;
 
 /// Unknowns: three slownesses, two offsets (the first is 0), the margin.
 const N: usize = 6;
@@ -18,11 +19,9 @@ const N: usize = 6;
 const FAR: f64 = 8.0;
 /// Violations below this are rounding.
 const VIOLATED: f64 = 1e-12;
-/// Columns of smaller size are no pivots.
-const PIVOT: f64 = 1e-11;
 /// Weights below this are rounding.
 const WEIGHT: f64 = 1e-11;
-/// Pivots after which the answer is taken as it is.
+/// Number of pivots after which the current answer is returned.
 const MAX_PIVOTS: usize = 80;
 /// Least slowness of the bounded program.
 const FLOOR: f64 = 1.0 / 64.0;
@@ -30,7 +29,7 @@ const FLOOR: f64 = 1.0 / 64.0;
 /// A column of the dual program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Column {
-    /// What the slownesses add up to; it never leaves.
+    /// The sum of the slownesses, an equation; it never leaves the basis.
     Total,
     /// A slowness is at least the margin.
     Sign(usize),
@@ -82,8 +81,8 @@ impl Frame {
         Row { from: self.unit(row.early, row.from), to: self.unit(row.late, row.to), ..*row }
     }
 
-    /// Where the line of unknowns starts its time on each axis, and the time that a step of a scene unit
-    /// takes there. Slownesses that vanish are made small.
+    /// For the line of the unknowns: its place on each axis at time 0, and the time that a scene unit takes there.
+    /// Slownesses that vanish are made small.
     pub(super) fn starts_and_paces(&self, y: &[f64; N]) -> [[f64; 3]; 2] {
         let (q, slow) = ([0.0, y[3], y[4]], [y[0], y[1], y[2]].map(|s| s.max(VIOLATED)));
         [[0, 1, 2].map(|i| self.place(i, q[i] / slow[i])), [0, 1, 2].map(|i| slow[i] / self.span[i])]
@@ -101,12 +100,10 @@ pub(super) struct Solution {
     pub(super) signs: [bool; 3],
 }
 
-/// The state of the simplex method. A copy can go on with more rows.
+/// The state of the simplex method. A copy can be continued with more rows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tableau {
-    basis: [Column; N],
-    inverse: [[f64; N]; N],
-    weights: [f64; N],
+    basis: Basis<Column, N>,
     /// Whether slownesses are bounded by [`FLOOR`], not by the margin.
     bounded: bool,
 }
@@ -128,19 +125,15 @@ impl Tableau {
         (inverse[3], weights[3]) = (mean, share);
         inverse[4][3] = 1.0;
         inverse[5][4] = 1.0;
-        Self {
-            basis: [Sign(0), Sign(1), Sign(2), Total, Offset(1, 1.0), Offset(2, 1.0)],
-            inverse,
-            weights,
-            bounded: false,
-        }
+        let columns = [Sign(0), Sign(1), Sign(2), Total, Offset(1, 1.0), Offset(2, 1.0)];
+        Self { basis: Basis { columns, inverse, weights }, bounded: false }
     }
 
     /// The same for the bounded program, in which no slowness is less than [`FLOOR`].
     ///
-    /// In the other program the slownesses of two axes can vanish, so its margin is zero and its weights
-    /// have no slack where lines are blocked by what happens along these two. This one finds proofs with
-    /// slack there, and lines that are not steep; that it finds none does not prove that there is none.
+    /// In the other program the slownesses of two axes can vanish, so its margin is zero and its weights have no slack where
+    /// rows about these two axes block all lines. This one finds proofs with slack there, and lines that are not steep. If it
+    /// finds none, that proves nothing.
     pub(super) fn bounded() -> Self {
         use Column::{Cap, Floor, Offset, Total};
         let mut inverse = [[0.0; N]; N];
@@ -151,18 +144,14 @@ impl Tableau {
             (inverse[row][0], inverse[row][k]) = (1.0, -1.0);
         }
         let weights = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
-        Self {
-            basis: [Total, Floor(1), Floor(2), Offset(1, 1.0), Offset(2, 1.0), Cap],
-            inverse,
-            weights,
-            bounded: true,
-        }
+        let columns = [Total, Floor(1), Floor(2), Offset(1, 1.0), Offset(2, 1.0), Cap];
+        Self { basis: Basis { columns, inverse, weights }, bounded: true }
     }
 
     /// The unknowns of the primal program.
     fn unknowns(&self) -> [f64; N] {
         let mut y = [0.0; N];
-        for (column, row) in self.basis.iter().zip(&self.inverse) {
+        for (column, row) in self.basis.columns.iter().zip(&self.basis.inverse) {
             let cost = match column {
                 Column::Total | Column::Cap => 1.0,
                 Column::Offset(..) => FAR,
@@ -176,13 +165,13 @@ impl Tableau {
         y
     }
 
-    /// Goes on to an optimum for `rows`, of which the first are those it has seen before. Returns the
-    /// unknowns: slownesses, two offsets, the margin.
+    /// Continues to an optimum for `rows`, which begin with the rows of earlier calls. Returns the unknowns: slownesses, two
+    /// offsets, the margin.
     pub(super) fn improve(&mut self, rows: &[Row]) -> [f64; N] {
         let mut y = self.unknowns();
         for _ in 0..MAX_PIVOTS {
             let Some(entering) = most_violated(&y, rows, self.bounded) else { break };
-            if !self.pivot(entering, &coefficients(entering, rows)) {
+            if !self.basis.exchange(entering, &coefficients(entering, rows), |column| column == Column::Total) {
                 break;
             }
             y = self.unknowns();
@@ -192,39 +181,10 @@ impl Tableau {
 
     /// The rows with positive weights.
     pub(super) fn support(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.basis.iter().zip(&self.weights).filter_map(|(column, &weight)| match column {
+        self.basis.columns.iter().zip(&self.basis.weights).filter_map(|(column, &weight)| match column {
             Column::Row(k) if weight > WEIGHT => Some((*k, weight)),
             _ => None,
         })
-    }
-
-    /// Exchanges a column of the basis for `entering`; false if none can leave.
-    fn pivot(&mut self, entering: Column, column: &[f64; N]) -> bool {
-        let image = self.inverse.map(|row| row.iter().zip(column).map(|(r, c)| r * c).sum::<f64>());
-        let mut leaving: Option<(usize, f64)> = None;
-        for i in 0..N {
-            if image[i] <= PIVOT || self.basis[i] == Column::Total {
-                continue;
-            }
-            let ratio = self.weights[i] / image[i];
-            let better = leaving.is_none_or(|(k, best)| ratio < best || (ratio == best && image[i] > image[k]));
-            if better {
-                leaving = Some((i, ratio));
-            }
-        }
-        let Some((out, ratio)) = leaving else { return false };
-        let scaled = self.inverse[out].map(|r| r / image[out]);
-        for (i, factor) in image.into_iter().enumerate().filter(|&(i, _)| i != out) {
-            self.weights[i] -= ratio * factor;
-            if self.basis[i] != Column::Total {
-                self.weights[i] = self.weights[i].max(0.0);
-            }
-            for (r, s) in self.inverse[i].iter_mut().zip(&scaled) {
-                *r -= factor * s;
-            }
-        }
-        (self.inverse[out], self.weights[out], self.basis[out]) = (scaled, ratio, entering);
-        true
     }
 }
 
@@ -238,8 +198,8 @@ pub(super) fn solve(rows: &[Row], octant: Octant, total: [bool; 3], scratch: &mu
     scratch.extend(rows.iter().map(|r| frame.scaled(r)));
     let mut tableau = Tableau::new(total);
     let y = tableau.improve(scratch);
-    let positive =
-        |column: Column| tableau.basis.iter().zip(&tableau.weights).any(|(c, w)| *c == column && *w > WEIGHT);
+    let Basis { columns, weights, .. } = &tableau.basis;
+    let positive = |column: Column| columns.iter().zip(weights).any(|(c, w)| *c == column && *w > WEIGHT);
     Solution {
         line: line(&frame, &y, scratch),
         support: tableau.support().collect(),
@@ -301,7 +261,7 @@ fn coefficients(column: Column, rows: &[Row]) -> [f64; N] {
     a
 }
 
-/// The line of the unknowns, by its places at the first and the last time that rows speak of.
+/// The line of the unknowns, by its places at the first and the last time that occurs in rows.
 fn line(frame: &Frame, y: &[f64; N], rows: &[Row]) -> Option<Line> {
     if y[5] <= 0.0 {
         return None;
