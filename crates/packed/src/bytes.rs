@@ -1,4 +1,4 @@
-//! Numbers as bytes, and back without ever reading past the end.
+//! Numbers as bytes, and a reader that never reads past the end.
 
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use sightlines_pvs::SectionId;
@@ -20,7 +20,7 @@ impl Writer {
         xs.iter().for_each(|x| self.u64(x.to_bits()));
     }
 
-    /// Seven bits in a byte, the low ones first; the top bit says that more follow.
+    /// Seven bits per byte, the low ones first; the top bit is set if more follow.
     pub(crate) fn varint(&mut self, mut x: u64) {
         while x >= 0x80 {
             self.0.push(x as u8 | 0x80);
@@ -29,7 +29,7 @@ impl Writer {
         self.0.push(x as u8);
     }
 
-    /// An ascending list: its length, then its differences less one.
+    /// An ascending list: its length, then its differences minus one.
     pub(crate) fn ascending(&mut self, list: impl ExactSizeIterator<Item = u32>) {
         self.varint(list.len() as u64);
         let mut next = 0;
@@ -45,7 +45,7 @@ impl Writer {
     }
 }
 
-/// Where bytes come from, for errors.
+/// The origin of bytes, for errors.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) section: SectionId,
@@ -58,7 +58,7 @@ impl Place {
     }
 }
 
-/// Reads what [`Writer`] wrote.
+/// Reads the output of [`Writer`].
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
     place: Place,
@@ -126,7 +126,7 @@ impl<'a> Reader<'a> {
         u32::try_from(x).ok().filter(|_| x < limit).ok_or_else(|| self.impossible(x))
     }
 
-    /// How many things of at least `size` bytes follow; they fit the bytes that are left.
+    /// The number of items that follow, each of at least `size` bytes; they fit the remaining bytes.
     pub(crate) fn count(&mut self, size: usize) -> Result<usize, PackedError> {
         let n = self.varint()?;
         if n.saturating_mul(size.max(1) as u64) > self.left() as u64 {
@@ -152,7 +152,7 @@ impl<'a> Reader<'a> {
         std::str::from_utf8(self.take(n)?).map_err(|_| self.fail(Kind::Text))
     }
 
-    /// Checks that nothing is left.
+    /// Checks that no bytes are left.
     pub(crate) fn finish(self) -> Result<(), PackedError> {
         match self.left() {
             0 => Ok(()),
@@ -161,19 +161,19 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The number at byte `at`, which the caller knows to be there.
+/// The number at byte `at`, which must exist.
 #[inline]
 pub(crate) fn u32_at(bytes: &[u8], at: usize) -> u32 {
     u32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]))
 }
 
-/// The number at byte `at`, which the caller knows to be there.
+/// The number at byte `at`, which must exist.
 #[inline]
 pub(crate) fn u64_at(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(std::array::from_fn(|i| bytes[at + i]))
 }
 
-/// The number at byte `at`, which the caller knows to be there.
+/// The number at byte `at`, which must exist.
 #[inline]
 pub(crate) fn f64_at(bytes: &[u8], at: usize) -> f64 {
     f64::from_bits(u64_at(bytes, at))
@@ -184,7 +184,7 @@ pub(crate) fn bytes_of(words: &[u64]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// Little-endian bytes as words; a rest of less than a word is left out.
+/// Little-endian bytes as words; an incomplete last word is dropped.
 pub(crate) fn words_of(bytes: &[u8]) -> Vec<u64> {
     bytes.chunks_exact(8).map(|word| u64_at(word, 0)).collect()
 }
@@ -211,7 +211,7 @@ mod tests {
             prop_assert_eq!(&read, &list);
             prop_assert_eq!(r.text().unwrap(), "ä");
             r.finish().unwrap();
-            // The twin: the list does not come back where its last number is too large.
+            // The twin: the list is refused if its last number is too large.
             if let Some(&last) = list.last() {
                 let mut r = Reader::new(&out.0, PLACE);
                 r.varint().unwrap();

@@ -1,4 +1,4 @@
-//! Unpacked blocks, kept within a budget: who was not used for longest goes first.
+//! Unpacked blocks, kept within a budget; the least recently used are evicted first.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -7,12 +7,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 pub(crate) enum Block {
     /// Rows of bits.
     Words(Vec<u64>),
-    /// Records, behind their ends.
+    /// Records, preceded by their ends.
     Bytes(Vec<u8>),
 }
 
 impl Block {
-    /// Bytes that keeping the block takes, with what is needed to find it.
+    /// Bytes in memory for the block, including its bookkeeping.
     pub(crate) fn size(&self) -> usize {
         let content = match self {
             Self::Words(words) => 8 * words.capacity(),
@@ -22,17 +22,17 @@ impl Block {
     }
 }
 
-/// What a packed table has read so far.
+/// Counters of the work done so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PackedStats {
-    /// Blocks that were there when they were asked for.
+    /// Requested blocks that were in memory.
     pub hits: u64,
-    /// Blocks that had to be read.
+    /// Requested blocks that had to be read.
     pub misses: u64,
-    /// Blocks that were given up for others.
+    /// Blocks that were evicted.
     pub evictions: u64,
-    /// Bytes read from the source, with those read when it was opened.
+    /// Bytes read from the source, including those read when it was opened.
     pub bytes_read: u64,
 }
 
@@ -66,7 +66,7 @@ pub(crate) struct Cache {
 }
 
 impl Cache {
-    /// A cache for blocks 0 to `n_blocks` that keeps at most `budget` bytes. 4 bytes a block.
+    /// A cache for blocks 0 to `n_blocks` that keeps at most `budget` bytes. Takes 4 bytes per block.
     pub(crate) fn new(n_blocks: usize, budget: usize) -> Self {
         let kept = Kept {
             slot_of: vec![NONE; n_blocks],
@@ -80,11 +80,11 @@ impl Cache {
     }
 
     fn lock(&self) -> MutexGuard<'_, Kept> {
-        // Nothing in here panics half-way; and if it did, a cache that lost a block is still a cache.
+        // Nothing here panics half-way; and even then, a cache that lost a block is still valid.
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The block, if it is there; counts a hit or a miss. O(1), no memory.
+    /// The block, if it is in memory; counts a hit or a miss. O(1), no allocation.
     #[inline]
     pub(crate) fn get(&self, number: usize) -> Option<Arc<Block>> {
         let mut kept = self.lock();
@@ -101,7 +101,7 @@ impl Cache {
         Some(Arc::clone(&kept.slots[slot as usize].block))
     }
 
-    /// Keeps a block if the budget has room for it when all others are gone, and gives up others for it.
+    /// Keeps a block if it fits the budget on its own, and evicts others for it.
     pub(crate) fn put(&self, number: usize, block: &Arc<Block>) {
         let size = block.size();
         let mut kept = self.lock();
@@ -158,7 +158,7 @@ impl Kept {
         }
     }
 
-    /// Gives up the oldest block; the last slot takes its place.
+    /// Evicts the oldest block; the last slot takes its place.
     fn evict(&mut self) {
         let slot = self.oldest;
         self.unlink(slot);

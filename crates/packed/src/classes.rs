@@ -1,4 +1,4 @@
-//! Equal rows and equal columns are kept once.
+//! Equal rows and equal columns are stored once.
 
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::ones;
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// A division of rows or columns into classes of equal ones.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Classes {
-    /// The class of each; classes are counted by their first members.
+    /// The class of each; classes are numbered by their first members.
     pub of: Vec<u32>,
     /// The first member of each class.
     pub first: Vec<u32>,
@@ -53,7 +53,7 @@ fn transposed(matrix: &BitMatrix) -> BitMatrix {
     out
 }
 
-/// A matrix without the repetitions of its rows and columns.
+/// A matrix without repeated rows and columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Distinct {
     /// Classes of rows.
@@ -65,7 +65,7 @@ pub struct Distinct {
 }
 
 impl Distinct {
-    /// Takes out repeated rows and columns. O(words) expected, and O(ones of the different rows).
+    /// Removes repeated rows and columns. O(words) expected, and O(ones of the distinct rows).
     pub fn new(matrix: &BitMatrix) -> Self {
         let rows = Classes::of_rows(matrix);
         let mut kept = BitMatrix::new(rows.first.len(), matrix.n_cols());

@@ -1,4 +1,4 @@
-//! Header, section table, block index: where things are in a file, and that they are what was written.
+//! Header, section table, block index: the positions of things in a file, and the check that they are intact.
 
 use crate::bytes::{Place, Reader, u32_at, u64_at};
 use crate::error::{PackedError, PackedErrorKind as Kind};
@@ -17,7 +17,7 @@ pub(crate) struct ResidentPart {
     found: [Option<Range<usize>>; SECTIONS.len()],
 }
 
-/// A section's bytes, and where they are.
+/// A section's bytes and their position.
 #[derive(Clone, Copy)]
 pub(crate) struct Section<'a> {
     pub(crate) bytes: &'a [u8],
@@ -25,7 +25,7 @@ pub(crate) struct Section<'a> {
 }
 
 impl Section<'_> {
-    /// Checks that the section has a size.
+    /// Checks the size of the section.
     pub(crate) fn expect(&self, needed: u64) -> Result<(), PackedError> {
         let found = self.bytes.len() as u64;
         if needed == found { Ok(()) } else { Err(self.place.fail(Kind::Size { needed, found })) }
@@ -35,7 +35,7 @@ impl Section<'_> {
 impl ResidentPart {
     /// Reads and checks header, section table and sections; also returns the length of the file.
     ///
-    /// Takes no more memory than the file is long.
+    /// Takes no more memory than the length of the file.
     pub(crate) fn read(source: &impl Source) -> Result<(Self, u64), PackedError> {
         let fail = |offset: u64, kind| PackedError::new(None, offset, kind);
         let io = |offset: u64| move |error: std::io::Error| fail(offset, Kind::Io(error));
@@ -96,12 +96,12 @@ impl ResidentPart {
         Some(Section { bytes: &self.bytes[range], place })
     }
 
-    /// Where a section lies in [`ResidentPart::bytes`].
+    /// The position of a section in [`ResidentPart::bytes`].
     pub(crate) fn range(&self, id: SectionId) -> Option<Range<usize>> {
         SECTIONS.iter().position(|(known, _)| *known == id).and_then(|known| self.found[known].clone())
     }
 
-    /// A section that may not be missing.
+    /// A required section.
     pub(crate) fn need(&self, id: SectionId) -> Result<Section<'_>, PackedError> {
         self.find(id).ok_or_else(|| PackedError::new(Some(id), self.end(), Kind::Missing))
     }
@@ -112,7 +112,7 @@ impl ResidentPart {
         &self.bytes
     }
 
-    /// The sections that are known and there, with their bytes.
+    /// The known sections that exist, with their lengths.
     pub(crate) fn sizes(&self) -> impl Iterator<Item = (SectionId, u64)> + '_ {
         SECTIONS.iter().zip(&self.found).filter_map(|((id, _), at)| Some((*id, at.as_ref()?.len() as u64)))
     }
@@ -123,7 +123,7 @@ impl ResidentPart {
     }
 }
 
-/// Where the sections lie, counted from the first, and their checksums.
+/// The positions of the sections, relative to the first, and their checksums.
 type Layout = Vec<(SectionId, Range<usize>, u32)>;
 
 fn layout(table: &[u8], base: u64, len: u64) -> Result<Layout, PackedError> {
@@ -180,7 +180,7 @@ impl StoreIndex {
     }
 }
 
-/// Where all blocks are.
+/// The positions of all blocks.
 #[derive(Debug)]
 pub(crate) struct Index {
     stores: Vec<(SectionId, StoreIndex)>,
@@ -228,7 +228,7 @@ impl Index {
         self.stores.iter().any(|(known, _)| *known == id)
     }
 
-    /// A store that has as many records as it must have.
+    /// A store, with a check of its number of records.
     pub(crate) fn need(&self, id: SectionId, n_records: u32) -> Result<StoreIndex, PackedError> {
         let missing = || PackedError::new(Some(id), 0, Kind::Missing);
         let (_, store) = self.stores.iter().find(|(known, _)| *known == id).ok_or_else(missing)?;
@@ -252,7 +252,7 @@ impl Index {
         Ok(store)
     }
 
-    /// Reads and unpacks a block. Takes at most twice [`MAX_UNPACKED_BLOCK`], whatever the file says.
+    /// Reads and unpacks a block. Takes at most twice [`MAX_UNPACKED_BLOCK`] bytes, whatever the file claims.
     pub(crate) fn unpack(&self, source: &impl Source, id: SectionId, number: usize) -> Result<Vec<u8>, PackedError> {
         let Entry { offset, len, raw, crc } = self.entries[number];
         let place = Place { section: id, offset };

@@ -1,12 +1,12 @@
-//! Why bytes are no packed table, and why a table cannot be packed.
+//! Why bytes are not a packed table, and why a table cannot be packed.
 
 use sightlines_pvs::{CellId, ObjectId, PortalId, SectionId, TableError};
 use std::{fmt, io};
 
-/// Why a question to a packed table has no answer, and where that shows.
+/// Why a query to a packed table failed, and where in the file.
 #[derive(Debug)]
 pub struct PackedError {
-    /// The section or store; `None` for what stands before them, and for questions about what is not there.
+    /// The section or store; `None` for what precedes them, and for queries about things that do not exist.
     pub section: Option<SectionId>,
     /// Byte offset from the beginning of the file; inside a block, that of the block.
     pub offset: u64,
@@ -19,7 +19,7 @@ impl PackedError {
         Self { section, offset, kind }
     }
 
-    /// A question about something that the table does not have.
+    /// A query about something that the table does not have.
     pub(crate) fn asked(kind: PackedErrorKind) -> Self {
         Self { section: None, offset: 0, kind }
     }
@@ -51,49 +51,49 @@ pub enum PackedErrorKind {
     /// The first bytes are not those of a packed table.
     #[error("this is no packed visibility table")]
     Magic,
-    /// A version that is too new, or was never there.
+    /// A version that is too new, or never existed.
     #[error("version {major} of the packed format; this reader knows version {}", crate::format::MAJOR)]
     Major {
         /// The version found.
         major: u16,
     },
-    /// The bytes are cut, or something follows them.
+    /// The bytes are truncated, or something follows them.
     #[error("the packed table says that it has {stated} bytes, but there are {len}")]
     Length {
-        /// What the file says.
+        /// The length that the file states.
         stated: u64,
-        /// Bytes there are.
+        /// Number of bytes.
         len: u64,
     },
-    /// A checksum is wrong: something was changed.
+    /// A checksum is wrong: something has changed.
     #[error("the checksum is {computed:08x} instead of {stored:08x}")]
     Checksum {
-        /// What was written.
+        /// The stored checksum.
         stored: u32,
-        /// What the bytes give.
+        /// The checksum of the bytes.
         computed: u32,
     },
     /// A section that does not begin where the one before ended, or ends outside the file.
     #[error("the section does not lie where it must")]
     Misplaced,
-    /// A section that is there twice.
+    /// A section that occurs twice.
     #[error("the section is there twice")]
     Repeated,
-    /// A section that must be there is not.
+    /// A required section is missing.
     #[error("the section is missing")]
     Missing,
-    /// A section that is not optional and not known.
+    /// A section that is neither optional nor known.
     #[error("the section is needed and unknown")]
     Unknown,
-    /// Something has another size than it must have.
+    /// Something has the wrong size.
     #[error("{found} bytes instead of {needed}")]
     Size {
-        /// What it must be.
+        /// The required size.
         needed: u64,
-        /// What it is.
+        /// The actual size.
         found: u64,
     },
-    /// A number that cannot stand here.
+    /// An invalid number.
     #[error("{value} is not possible here")]
     Value {
         /// The number.
@@ -102,7 +102,7 @@ pub enum PackedErrorKind {
     /// The bytes end inside something.
     #[error("the bytes end inside something")]
     Cut,
-    /// More bytes than there is something to say.
+    /// More bytes than expected.
     #[error("{left} bytes too many")]
     Surplus {
         /// Bytes left over.
@@ -111,10 +111,10 @@ pub enum PackedErrorKind {
     /// A text that is not UTF-8.
     #[error("the text is not UTF-8")]
     Text,
-    /// A block that zstd cannot unpack to what the index says.
+    /// A block that zstd cannot unpack to the size in the index.
     #[error("the block does not unpack to {raw} bytes")]
     Unpack {
-        /// Bytes that it should have.
+        /// The expected number of bytes.
         raw: u32,
     },
     /// More memory than [`crate::format::MAX_TABLE`] allows.
@@ -123,7 +123,7 @@ pub enum PackedErrorKind {
         /// Bytes needed.
         bytes: u64,
     },
-    /// The pages of the coarse table are not what the rows say.
+    /// A page of the coarse table does not agree with the rows.
     #[error("page {page} of the coarse table is not what its cells see")]
     Coarse {
         /// The page.
@@ -135,10 +135,10 @@ pub enum PackedErrorKind {
         /// The cell.
         cell: CellId,
     },
-    /// What was read is no table.
+    /// The content is not a valid table.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A cell that the table does not have was asked for.
+    /// A query about a cell that the table does not have.
     #[error("there is no cell {cell}, only {n_cells}")]
     NoCell {
         /// The cell.
@@ -146,7 +146,7 @@ pub enum PackedErrorKind {
         /// Number of cells.
         n_cells: u32,
     },
-    /// An object that the table does not have was asked for.
+    /// A query about an object that the table does not have.
     #[error("there is no object {object}, only {n_objects}")]
     NoObject {
         /// The object.
@@ -154,7 +154,7 @@ pub enum PackedErrorKind {
         /// Number of objects.
         n_objects: u32,
     },
-    /// A portal that the table does not have was asked for.
+    /// A query about a portal that the table does not have.
     #[error("there is no portal {portal}, only {n_portals}")]
     NoPortal {
         /// The portal.
@@ -162,7 +162,7 @@ pub enum PackedErrorKind {
         /// Number of portals.
         n_portals: u32,
     },
-    /// A node that the stab trees do not have was asked for.
+    /// A query about a node that the stab trees do not have.
     #[error("there is no node {node}, only {n_nodes}")]
     NoNode {
         /// The node.
@@ -173,7 +173,7 @@ pub enum PackedErrorKind {
 }
 
 impl PackedErrorKind {
-    /// Whether the question was wrong and not the file.
+    /// Whether the query was wrong and not the file.
     fn is_question(&self) -> bool {
         use PackedErrorKind::{NoCell, NoNode, NoObject, NoPortal};
         matches!(self, NoCell { .. } | NoObject { .. } | NoPortal { .. } | NoNode { .. })
@@ -189,7 +189,7 @@ pub enum PackError {
     Budget {
         /// The budget.
         budget: u64,
-        /// The size with nothing left to merge.
+        /// The size after all merges.
         smallest: u64,
     },
     /// One record (the row or the lists of a cell, an object, a portal) is larger than a block may be.
@@ -209,7 +209,7 @@ pub enum PackError {
         /// The store.
         store: SectionId,
     },
-    /// zstd refuses.
+    /// zstd failed.
     #[error("zstd cannot pack a block of store {store}")]
     Zstd {
         /// The store.

@@ -1,7 +1,7 @@
 //! The bytes of a packed table.
 //!
-//! All numbers are little-endian, coordinates are IEEE doubles, bit for bit. A *varint* has seven bits in
-//! a byte, the low ones first, and a top bit that says that more follow.
+//! All numbers are little-endian, coordinates are IEEE doubles, bit for bit. A *varint* has seven bits per byte, the
+//! low ones first, and a top bit that is set if more follow.
 //!
 //! ```text
 //! offset  size
@@ -34,7 +34,7 @@
 //! | `SCLR`, `SCLC`, optional | the same for rows and columns of `SEEN`: cells, objects |
 //! | `BLKS` | number of stores (`u32`); for each: id, records, records per block (`u32`), then for each block: length in the file, length unpacked, CRC-32 in the file (`u32`) |
 //!
-//! A block is packed by zstd, or stands there as it is where both lengths are equal.
+//! A block is packed by zstd, or stored as it is if both lengths are equal.
 //!
 //! | store | record | content |
 //! | --- | --- | --- |
@@ -51,19 +51,19 @@
 
 use sightlines_pvs::SectionId;
 
-/// The first bytes of every file, made as those of [`sightlines_pvs::format::MAGIC`] are.
+/// The first bytes of every file, chosen like [`sightlines_pvs::format::MAGIC`].
 pub const MAGIC: [u8; 8] = *b"\x89PVP\r\n\x1a\n";
 /// Major version that this crate writes, and the largest that it reads.
 pub const MAJOR: u16 = 1;
-/// Largest minor version that this crate writes. It writes the least that has all that is in a table, so that files
-/// without what is new stay as they were.
+/// Largest minor version that this crate writes. It writes the smallest version that supports the content of a table,
+/// so that files without newer features stay unchanged.
 pub const MINOR: u16 = 2;
-/// Bytes that a reader accepts in an unpacked block, so that no file can demand more memory at once. How large blocks are *written*
-/// is [`BLOCK_BYTES`] and [`ROW_BLOCK_BYTES`].
+/// Largest unpacked block that a reader accepts, in bytes, so that no file can demand more memory at once. The size of
+/// *written* blocks is [`BLOCK_BYTES`] and [`ROW_BLOCK_BYTES`].
 pub const MAX_UNPACKED_BLOCK: u32 = 1 << 24;
-/// Bytes that an unpacked block of records is written with, about: the unit that is read from a file at once.
+/// Approximate size of a written block of records, unpacked, in bytes: the unit that is read from a file at once.
 pub const BLOCK_BYTES: usize = 16 << 10;
-/// Bytes that an unpacked block of rows of bits is written with, at most, but a block has at least 16 rows. Rows are
+/// Largest size of a written block of rows of bits, unpacked, in bytes, though a block has at least 16 rows. Rows are
 /// read one by one, but pack better together.
 pub const ROW_BLOCK_BYTES: usize = 64 << 10;
 /// Bytes that rows of bits may take in [`crate::Packed::to_table`]: a small file can describe a large table.
@@ -108,9 +108,9 @@ pub(crate) const OBJECTS: SectionId = SectionId(*b"OBJS");
 pub(crate) const STAB: SectionId = SectionId(*b"STAB");
 pub(crate) const CELL_NAMES: SectionId = SectionId(*b"CNAM");
 
-/// The minor version that brought names of cells.
+/// The minor version that added names of cells.
 pub(crate) const SINCE_CELL_NAMES: u16 = 1;
-/// The minor version that brought the kind of a table.
+/// The minor version that added the kind of a table.
 pub(crate) const SINCE_KIND: u16 = 2;
 
 /// Bytes before the section table.
@@ -121,20 +121,20 @@ pub(crate) const ENTRY: usize = 24;
 pub(crate) const OPTIONAL: u32 = 1;
 /// Bytes of `HEAD`.
 pub(crate) const HEAD_LEN: usize = 48;
-/// Flag of `HEAD`: the numbers of polygons of objects are known.
+/// Flag of `HEAD`: objects have numbers of polygons.
 pub(crate) const POLYGONS_KNOWN: u32 = 1;
 /// Flag of `HEAD`: there are rows of objects.
 pub(crate) const HAS_SEEN: u32 = 2;
-/// Coding of rows: their bits as they are, for zstd to find what repeats.
+/// Coding of rows: their plain bits; zstd finds the repetitions.
 ///
-/// Each row xor the one above it, or corners of rectangles only, were tried: on every real table zstd makes
-/// less of the plain bits (the chart `docs/charts/packed.md` has the figures).
+/// Rows xor their predecessors, and only the corners of rectangles, were tried: on every real table zstd compresses the
+/// plain bits better (the chart `docs/charts/packed.md` has the figures).
 pub(crate) const DENSE: u32 = 0;
-/// Number that says "none".
+/// Number that stands for "none".
 pub(crate) const NONE: u32 = u32::MAX;
-/// Cells in a page of the coarse table, if there are few cells.
+/// Cells in a page of the coarse table, unless there are many cells.
 pub(crate) const PAGE: usize = 64;
-/// Pages that the coarse table may have before they are made larger: with so many it has half a megabyte.
+/// Most pages of the coarse table before pages become larger: with this many it takes half a megabyte.
 pub(crate) const MAX_PAGES: usize = 2048;
 
 /// Cells in a page of the coarse table.

@@ -1,4 +1,4 @@
-//! Which cells a point is in, from the bytes of the resident part.
+//! Point location in the bytes of the resident part.
 
 use crate::bytes::{Reader, f64_at, u32_at, u64_at};
 use crate::container::{ResidentPart, Section};
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Bytes of a node of the locator.
 const NODE: usize = 16;
 
-/// Boxes, polygons, locator and planes, where they lie in the resident part.
+/// Boxes, polygons, locator and planes, by their positions in the resident part.
 #[derive(Debug)]
 pub(crate) struct PointLocation {
     d: usize,
@@ -25,7 +25,7 @@ pub(crate) struct PointLocation {
 impl PointLocation {
     /// Checks the sections: sizes, that the locator is a tree, that its cells exist. O(bytes).
     ///
-    /// That the locator misses no cell is left to [`crate::Packed::verify`].
+    /// Whether the locator misses a cell is checked by [`crate::Packed::verify`].
     pub(crate) fn read(resident: &ResidentPart, d: usize, n_cells: u32) -> Result<Self, PackedError> {
         resident.need(format::BOXES)?.expect(16 * d as u64 * u64::from(n_cells))?;
         let polygons = resident.find(format::POLYGONS).map(|section| polygons(section, d, n_cells)).transpose()?;
@@ -47,7 +47,7 @@ impl PointLocation {
         })
     }
 
-    /// The box of a cell, which the caller knows to exist.
+    /// The box of a cell, which must exist.
     #[inline]
     pub(crate) fn cell_box(&self, resident: &ResidentPart, cell: usize) -> ([f64; 3], [f64; 3]) {
         let bytes = &resident.bytes()[self.boxes.clone()];
@@ -62,7 +62,7 @@ impl PointLocation {
         (corner(0), corner(1))
     }
 
-    /// The corners of a cell, which the caller knows to exist; none if it is its box.
+    /// The corners of a cell, which must exist; none if the cell is its box.
     #[inline]
     pub(crate) fn polygon<'a>(
         &self,
@@ -77,7 +77,8 @@ impl PointLocation {
         resident.bytes()[range].chunks_exact(16).map(|c| [f64_at(c, 0), f64_at(c, 8)])
     }
 
-    /// Puts the cells at a point with finite coordinates into `out`, in any order and repeated or not. `pending` is scratch.
+    /// Puts the cells at a point with finite coordinates into `out`, in any order, perhaps repeated. `pending` is
+    /// scratch space.
     pub(crate) fn locate(&self, resident: &ResidentPart, p: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
         if let Some(planes) = &self.planes {
             planes.for_each_cell(p, pending, |cell| out.push(cell));
@@ -125,7 +126,7 @@ impl PointLocation {
             if x > split {
                 at = second as usize;
             } else {
-                // On the split, both ways.
+                // On the split, both children count.
                 if x == split {
                     pending.push(second);
                 }
@@ -149,7 +150,7 @@ impl PointLocation {
     }
 }
 
-/// Checks `POLY`; the number of corners.
+/// Checks `POLY`; returns the number of corners.
 fn polygons(section: Section<'_>, d: usize, n_cells: u32) -> Result<usize, PackedError> {
     let Section { bytes, place } = section;
     let n_starts = n_cells as usize + 1;
@@ -170,7 +171,7 @@ fn polygons(section: Section<'_>, d: usize, n_cells: u32) -> Result<usize, Packe
     Ok(last as usize)
 }
 
-/// Checks that `LOCA` is a tree in preorder over cells; the numbers of nodes and entries.
+/// Checks that `LOCA` is a tree in preorder over cells; returns the numbers of nodes and entries.
 fn check_locator(section: Section<'_>, d: usize, n_cells: u32) -> Result<(usize, usize), PackedError> {
     let Section { bytes, place } = section;
     let wrong = |value: u64| place.fail(Kind::Value { value });
@@ -180,7 +181,7 @@ fn check_locator(section: Section<'_>, d: usize, n_cells: u32) -> Result<(usize,
     let (n_nodes, n_entries) = (u32_at(bytes, 0), u32_at(bytes, 4));
     section.expect(8 + NODE as u64 * u64::from(n_nodes) + 4 * u64::from(n_entries))?;
     let (nodes, entries) = bytes[8..].split_at(NODE * n_nodes as usize);
-    // High children that are to come; a leaf ends the subtree before the last of them.
+    // High children still to come; a leaf ends the subtree before the last of them.
     let mut highs: Vec<u32> = Vec::new();
     let (mut listed, mut done) = (0u64, false);
     for (i, node) in (0u64..).zip(nodes.chunks_exact(NODE)) {

@@ -1,19 +1,19 @@
 //! Smaller tables that show more: classes of cells are merged, cheapest first.
 //!
-//! Merged classes see what either saw, and are seen from where either was seen; so rows and columns only
-//! gain bits, the matrix stays symmetric, and a cell keeps seeing itself.
+//! A merged class sees what either class saw, and is seen from where either was seen; so rows and columns only gain
+//! bits, the matrix stays symmetric, and a cell still sees itself.
 
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::or_words;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// How many classes after a class, in the order of cells, are tried as partners.
+/// How many following classes, in the order of cells, are tried as partners of a class.
 const WINDOW: usize = 6;
-/// What a row costs besides its changes, in changed bits: its part of maps and of the block index.
+/// The cost of a row besides its changes, in changed bits: its share of maps and of the block index.
 const ROW_COST: u64 = 16;
 
-/// What classes of cells see, and what it weighs when it is drawn.
+/// The visibility of classes of cells, and its weight when drawn.
 pub(crate) struct Sight<'a> {
     /// Class by class: symmetric, ones on the diagonal.
     pub(crate) cells: &'a BitMatrix,
@@ -27,17 +27,17 @@ pub(crate) struct Sight<'a> {
     pub(crate) object_weights: &'a [u64],
 }
 
-/// The order in which to merge, down to one class: the class that stays, and the one merged into it.
+/// The order in which to merge, down to one class: the class that remains, and the one merged into it.
 ///
-/// The next merge is the one that adds the least weight for each changed bit that is saved, among classes
-/// that are neighbours in the order of cells; ties go to the first. Prices are computed anew when they come
-/// first, so a price that fell meanwhile may be overlooked: the order is good, not best.
-/// O(classes * (window * words + ones of a row)), and O(log) for each price.
+/// The next merge is the one that adds the least weight for each changed bit saved, among classes that are neighbours
+/// in the order of cells; ties go to the first. A price is recomputed only when it reaches the front of the queue, so a
+/// price that fell meanwhile may be overlooked: the order is good, not optimal. O(classes * (window * words + ones of a
+/// row)), and O(log) for each price.
 pub(crate) fn merge_order(sight: &Sight<'_>) -> Vec<(u32, u32)> {
     let mut state = State::new(sight);
     let mut order = Vec::new();
     while state.n_alive > 1 {
-        // All that was queued is used up or gone: neighbours at least are still to be had.
+        // The queue is used up; at least neighbours can still be merged.
         state.queue_all();
         while let Some(Reverse((price, a, b))) = state.queue.pop() {
             let (p, q) = (a as usize, b as usize);
@@ -57,7 +57,7 @@ pub(crate) fn merge_order(sight: &Sight<'_>) -> Vec<(u32, u32)> {
     order
 }
 
-/// The class of each after the first `n` merges, and the number of classes; counted by first members.
+/// The class of each after the first `n` merges, and the number of classes; numbered by first members.
 pub(crate) fn after(order: &[(u32, u32)], n: usize, n_classes: usize) -> (Vec<u32>, usize) {
     let mut into: Vec<u32> = (0..n_classes as u32).collect();
     order[..n].iter().for_each(|&(stays, goes)| into[goes as usize] = stays);
@@ -79,7 +79,7 @@ pub(crate) fn after(order: &[(u32, u32)], n: usize, n_classes: usize) -> (Vec<u3
     (of, n_left as usize)
 }
 
-/// The rows of merged classes: `of` says where each goes. Merges columns too if `square`.
+/// The rows of merged classes: `of` gives the new class of each. Merges columns too if `square`.
 pub(crate) fn merged(bits: &BitMatrix, of: &[u32], n_left: usize, square: bool) -> BitMatrix {
     let mut rows = BitMatrix::new(n_left, bits.n_cols());
     for (class, &into) in of.iter().enumerate() {
@@ -97,7 +97,7 @@ pub(crate) fn merged(bits: &BitMatrix, of: &[u32], n_left: usize, square: bool) 
     out
 }
 
-/// A price, ordered; all prices are numbers from 0.
+/// A price, ordered; all prices are non-negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Price(f64);
 
@@ -123,7 +123,7 @@ struct State<'a> {
     weights: Vec<u64>,
     alive: Vec<bool>,
     n_alive: usize,
-    /// The living class before and after each, or `usize::MAX`.
+    /// The remaining class before and after each, or `usize::MAX`.
     before: Vec<usize>,
     after: Vec<usize>,
     queue: BinaryHeap<Reverse<(Price, u32, u32)>>,
@@ -182,9 +182,9 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Weight added for each changed bit that is saved by merging `q` into `p`, which comes before it.
+    /// Weight added for each changed bit saved by merging `q` into `p`, which comes before it.
     fn price(&self, p: usize, q: usize) -> Price {
-        // What is seen more times who sees it, from both ends of the new sight lines.
+        // The additional objects and cells times their viewers, from both ends of the new sight lines.
         let sums = |from: &[u64], without: &[u64]| {
             let (mut weight, mut n) = (0u64, 0u64);
             for (k, (a, b)) in from.iter().zip(without).enumerate() {

@@ -1,4 +1,4 @@
-//! A table to bytes.
+//! From a table to bytes.
 
 use crate::bytes::Writer;
 use crate::classes::{Classes, Distinct};
@@ -10,33 +10,33 @@ use crate::write;
 use sightlines_pvs::format::kind_section;
 use sightlines_pvs::{BitMatrix, ObjectId, SectionId, Table};
 
-/// Wishes about a packed table.
+/// Options for packing.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct PackOptions {
-    /// Bytes that the whole file may have. If it has more, cells are merged until it fits: merged cells see
-    /// what any of them saw and are seen from where any of them was, so more is visible and nothing less.
-    /// `None`: nothing is merged, and the table comes back exactly.
+    /// Largest size of the whole file, in bytes. If it is larger, cells are merged until it fits: merged cells see what
+    /// any of them saw and are seen from where any of them was, so more is visible and nothing less. `None`: nothing is
+    /// merged, and the table comes back exactly.
     pub max_bytes: Option<u64>,
 }
 
-/// What was done to keep a table small.
+/// The result of packing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PackReport {
-    /// Bytes of the file.
+    /// Size of the file in bytes.
     pub bytes: u64,
-    /// Bytes of the rows in it: what merging can make smaller.
+    /// Size of the rows in it: the part that merging can reduce.
     pub row_bytes: u64,
-    /// Different rows that are left.
+    /// Number of distinct rows that are left.
     pub n_classes: usize,
-    /// Merges of classes of cells that were not equal.
+    /// Number of merges of different classes of cells.
     pub n_merges: usize,
 }
 
 /// Packs a table: same table and options, same bytes, on every machine.
 ///
-/// Equal rows and columns are kept once, and blocks of rows go through zstd. O(size); with a budget that needs merging, also O(classes * ones of a row), and some ten
-/// times the packing of rows.
+/// Equal rows and columns are stored once, and blocks of rows go through zstd. O(size); with a budget that needs
+/// merging, also O(classes * ones of a row), and some ten times the packing of rows.
 ///
 /// # Errors
 /// [`PackError`] if a budget cannot be kept, or a record is larger than a block may be.
@@ -44,7 +44,7 @@ pub fn pack(table: &Table, options: &PackOptions) -> Result<Vec<u8>, PackError> 
     pack_report(table, options).map(|(bytes, _)| bytes)
 }
 
-/// Packs as [`pack`] does, and says what was done.
+/// Packs as [`pack`] does, and reports the result.
 ///
 /// # Errors
 /// As [`pack`].
@@ -76,7 +76,7 @@ pub fn pack_report(table: &Table, options: &PackOptions) -> Result<(Vec<u8>, Pac
     Ok(frame.write(table, &best, enough))
 }
 
-/// The classes of cells that differ in nothing that they see, to be merged.
+/// The classes of cells with equal visibility, to be merged.
 struct Whole {
     classes: Classes,
     cells: BitMatrix,
@@ -92,7 +92,7 @@ impl Whole {
         let seen = parts.objects_seen.as_ref();
         let classes = Classes::of_keys((0..table.n_cells()).map(|i| (parts.rows.row(i), seen.map(|s| s.row(i)))));
         let n = classes.first.len();
-        // Columns are equal where rows are; where only the rows of objects differ, they are not merged here.
+        // Columns are equal where rows are; classes that differ only in their rows of objects are not merged here.
         let (mut n_members, mut weights) = (vec![0u64; n], vec![0u64; n]);
         let object_weights: Vec<u64> =
             (0..parts.objects.len() as u32).map(|o| u64::from(table.polygons_of(ObjectId(o))).max(1)).collect();
@@ -125,7 +125,7 @@ impl Whole {
     }
 }
 
-/// The visibility, packed.
+/// The packed visibility.
 struct Visibility {
     /// Classes of cells by rows, by rows of objects, and of objects.
     n_classes: [u32; 3],
@@ -146,7 +146,7 @@ impl Visibility {
             }
         };
         if let Some((whole, (of, _))) = &classes {
-            // Back from merged classes to cells.
+            // From merged classes back to cells.
             let to_cells = |classes: &Classes| {
                 let of = whole.classes.of.iter().map(|&class| classes.of[of[class as usize] as usize]);
                 Classes::of_keys(of)
@@ -172,7 +172,7 @@ impl Visibility {
         Ok(Self { n_classes, sections, stores })
     }
 
-    /// Bytes in the file, with the parts of the index.
+    /// Bytes in the file, including the parts of the index.
     fn len(&self) -> usize {
         self.sections.iter().map(|(_, bytes)| bytes.len()).sum::<usize>()
             + self.stores.iter().map(Store::len).sum::<usize>()
@@ -217,9 +217,9 @@ impl Frame {
         Ok(Self { sections, stores })
     }
 
-    /// Bytes of the file with this visibility.
+    /// Size of the file with this visibility, in bytes.
     fn len(&self, visibility: &Visibility) -> u64 {
-        // `HEAD` and `BLKS` besides the sections that are there already.
+        // `HEAD` and `BLKS` in addition to the existing sections.
         let n_sections = self.sections.len() + visibility.sections.len() + 2;
         let n_stores = self.stores.len() + visibility.stores.len();
         let fixed = FIXED + ENTRY * n_sections + 4 + format::HEAD_LEN + 4 + 12 * n_stores;

@@ -13,10 +13,10 @@ use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
 use sightlines_pvs::{Axis, CellId, MirrorId, MirrorRecord, SectionId, TableKind};
 use std::sync::Arc;
 
-/// A packed table that is read piece by piece, and keeps to a budget of memory.
+/// A packed table that is read piece by piece within a memory budget.
 ///
-/// The resident part is read when it is opened; rows, exits and objects are read on demand, in blocks that are kept
-/// until others need their place. Any number of threads may query it at once.
+/// The resident part is read when the file is opened; rows, exits and objects are read on demand, in blocks that are
+/// kept until others need their space. Any number of threads may query it at once.
 #[derive(Debug)]
 pub struct Packed<S: Source> {
     pub(crate) source: S,
@@ -86,15 +86,16 @@ pub(crate) struct RowStore {
     id: SectionId,
     store: StoreIndex,
     n_columns: usize,
-    /// The class of each cell; `None` if each is its own.
+    /// The class of each cell; `None` if each is its own class.
     row_of: Option<Vec<u32>>,
-    /// What is in the classes of columns; `None` if each is its own.
+    /// The members of the classes of columns; `None` if each is its own class.
     columns: Option<Members>,
     n_items: usize,
 }
 
 impl RowStore {
-    /// `sections` have the classes of rows and of columns, `n` the numbers of rows, items, row classes and column classes.
+    /// `sections` are those of the classes of rows and of columns, `n` the numbers of rows, items, row classes and
+    /// column classes.
     fn read(
         resident: &ResidentPart,
         index: &Index,
@@ -133,7 +134,7 @@ impl RowStore {
         self.n_columns.div_ceil(64)
     }
 
-    /// The rows of an unpacked block; bits past the last column are left out.
+    /// The rows of an unpacked block; bits past the last column are dropped.
     fn decode(&self, bytes: &[u8]) -> Vec<u64> {
         let mut words = words_of(bytes);
         let (stride, used) = (self.stride(), self.n_columns % 64);
@@ -143,7 +144,7 @@ impl RowStore {
         words
     }
 
-    /// Puts the items of the classes that a row has into `out`, ascending.
+    /// Puts the items of the classes in a row into `out`, ascending.
     fn expand<T>(&self, row: &[u64], out: &mut Vec<T>, item: impl Fn(u32) -> T) {
         let Some(members) = &self.columns else {
             out.extend(ones(row).map(|i| item(i as u32)));
@@ -157,7 +158,7 @@ impl RowStore {
     }
 }
 
-/// The classes of `n` things, all below `n_classes`; `None` if each is its own.
+/// The classes of `n` things, all below `n_classes`; `None` if each is its own class.
 fn classes(resident: &ResidentPart, id: SectionId, n: u32, n_classes: u32) -> Result<Option<Vec<u32>>, PackedError> {
     let section = resident.need(id)?;
     if section.bytes.is_empty() && n == n_classes {
@@ -165,7 +166,7 @@ fn classes(resident: &ResidentPart, id: SectionId, n: u32, n_classes: u32) -> Re
     }
     let place = section.place;
     let raw = if section.bytes.len() < 4 { return Err(place.fail(Kind::Cut)) } else { u32_at(section.bytes, 0) };
-    // Each takes a byte at least, so that no more things are taken for true than fit a block.
+    // Each takes at least one byte, so a file cannot claim more things than fit a block.
     if raw > MAX_UNPACKED_BLOCK || raw < n {
         return Err(place.fail(Kind::Value { value: u64::from(raw) }));
     }
@@ -184,12 +185,12 @@ fn classes(resident: &ResidentPart, id: SectionId, n: u32, n_classes: u32) -> Re
 }
 
 impl<S: Source> Packed<S> {
-    /// Opens a file: reads and checks the resident part. At most `cache_bytes` of unpacked blocks will be
-    /// kept; with 0 every question reads its blocks anew.
+    /// Opens a file: reads and checks the resident part. At most `cache_bytes` of unpacked blocks will be kept; with 0
+    /// every query reads its blocks anew.
     ///
-    /// Memory is in proportion to the resident part, whatever it claims; numbers of objects and the like are bounded by
-    /// what the blocks hold when they are unpacked. What is in blocks is checked when
-    /// it is read; [`Packed::verify`] checks all. O(resident part).
+    /// Memory is proportional to the resident part, whatever it claims; numbers of objects and the like are bounded by
+    /// the content of the unpacked blocks. The content of blocks is checked when it is read; [`Packed::verify`] checks
+    /// everything. O(resident part).
     ///
     /// # Errors
     /// [`PackedError`], with section and byte offset.
@@ -284,9 +285,9 @@ impl<S: Source> Packed<S> {
         &self.mirrors
     }
 
-    /// Bytes of unpacked blocks that are kept now, with what finding them takes; never more than the budget.
+    /// Size of the unpacked blocks in memory, including their bookkeeping, in bytes; never more than the budget.
     ///
-    /// Besides them, each question under way holds the blocks that it reads.
+    /// In addition, each query in progress holds the blocks that it reads.
     pub fn bytes_in_use(&self) -> usize {
         self.cache.bytes()
     }
@@ -296,12 +297,12 @@ impl<S: Source> Packed<S> {
         self.cache.budget()
     }
 
-    /// Bytes of the resident part as it stands in the file; it stays in memory.
+    /// Size of the resident part in the file, in bytes; it stays in memory.
     pub fn resident_bytes(&self) -> usize {
         self.resident.bytes().len()
     }
 
-    /// What was read so far.
+    /// Counters of what was read so far.
     pub fn stats(&self) -> PackedStats {
         self.cache.stats()
     }
@@ -311,7 +312,7 @@ impl<S: Source> Packed<S> {
         if cell.0 < n_cells { Ok(()) } else { Err(PackedError::asked(Kind::NoCell { cell, n_cells })) }
     }
 
-    /// The block with a number, kept or read.
+    /// The block with a number, from memory or newly read.
     fn block(
         &self,
         id: SectionId,
@@ -339,7 +340,7 @@ impl<S: Source> Packed<S> {
         }
     }
 
-    /// Puts what the row of a cell has into `out`, which is cleared, ascending.
+    /// Puts the items in the row of a cell into `out`, which is cleared, ascending.
     pub(crate) fn items<T>(
         &self,
         rows: &RowStore,
@@ -352,7 +353,7 @@ impl<S: Source> Packed<S> {
         self.with_row(rows, cell, |row| rows.expand(row, out, item))
     }
 
-    /// Calls `visit` with a record, which the caller knows to be one of the store.
+    /// Calls `visit` with a record, which must exist in the store.
     pub(crate) fn with_record<T>(
         &self,
         (id, store): (SectionId, StoreIndex),
@@ -373,7 +374,7 @@ impl<S: Source> Packed<S> {
 
     /// Puts the cells of the pages that the page of `cell` sees into `out`, which is cleared, ascending.
     ///
-    /// A superset of [`Packed::visible`] that is always in memory: what to draw until the row is there.
+    /// A superset of [`Packed::visible`] that is always in memory: what to draw until the row has been read.
     /// O(result).
     ///
     /// # Errors
@@ -389,7 +390,7 @@ impl<S: Source> Packed<S> {
         Ok(())
     }
 
-    /// Whether some cell of a page sees some cell of another; the caller knows that they exist.
+    /// Whether some cell of a page sees some cell of another; both must exist.
     #[inline]
     pub(crate) fn page_sees(&self, page: usize, other: usize) -> bool {
         let stride = self.head.n_pages().div_ceil(64);
@@ -411,7 +412,7 @@ fn info(resident: &ResidentPart) -> Result<Vec<(String, String)>, PackedError> {
     Ok(info)
 }
 
-/// Kind and upward axis; a file of a later minor version may have values that are not known here.
+/// Kind and upward axis; a file of a later minor version may have values that are unknown here.
 fn kind(
     resident: &ResidentPart,
     dimension: u8,

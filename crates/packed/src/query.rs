@@ -1,4 +1,4 @@
-//! Questions about cells, objects and stab trees.
+//! Queries about cells, objects and stab trees.
 
 use crate::bytes::Reader;
 use crate::error::{PackedError, PackedErrorKind as Kind};
@@ -9,8 +9,8 @@ use sightlines_pvs::{
     CellId, DimensionError, ObjectId, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalId, PortalRecord,
 };
 
-/// What [`Packed::exits`] calls: portal, whether it is crossed from its first cell into its second, the cell it
-/// leads to, its corners.
+/// Called by [`Packed::exits`] with the portal, whether it is crossed from its first cell into its second, the cell
+/// that it leads to, and its corners.
 pub type ExitVisitor<'a> = dyn FnMut(PortalId, bool, CellId, &[[f64; 3]]) + 'a;
 
 /// A node of stab trees, without its children.
@@ -59,7 +59,7 @@ impl<S: Source> Packed<S> {
         Ok(())
     }
 
-    /// What says instead of the cells' boxes which cells a point is in, if there is such a thing.
+    /// The plane tree that locates points in place of the cells' boxes, if there is one.
     pub fn planes(&self) -> Option<&PlaneTree> {
         self.places.planes.as_ref()
     }
@@ -133,7 +133,7 @@ impl<S: Source> Packed<S> {
         })
     }
 
-    /// What a cell belongs to, such as a Doom sector.
+    /// The group of a cell, such as a Doom sector.
     ///
     /// # Errors
     /// If there is no such cell, or its block cannot be read.
@@ -149,7 +149,7 @@ impl<S: Source> Packed<S> {
         })
     }
 
-    /// What users call a cell; `None` if the cells of the table have no names.
+    /// The name of a cell for users; `None` if the cells of the table have no names.
     ///
     /// # Errors
     /// If there is no such cell, its block cannot be read, or the name is not UTF-8.
@@ -217,7 +217,7 @@ impl<S: Source> Packed<S> {
         Ok(PortalRecord { cells: [CellId(a), CellId(b)], sides: [s, t], points })
     }
 
-    /// Puts the corners into `points`; the cells and sides of the portal.
+    /// Puts the corners into `points`; returns the cells and sides of the portal.
     fn read_portal(&self, portal: PortalId, points: &mut Vec<[f64; 3]>) -> Result<[u32; 4], PackedError> {
         let d = usize::from(self.head.dimension);
         self.with_record((format::PORTALS, self.portals), portal.0, |mut r| {
@@ -263,7 +263,7 @@ impl<S: Source> Packed<S> {
         Ok(self.object(object)?.0.name)
     }
 
-    /// The number of polygons of an object; 1 if the table does not know.
+    /// The number of polygons of an object; 1 if it is unknown.
     ///
     /// # Errors
     /// As [`Packed::object_box`].
@@ -287,8 +287,8 @@ impl<S: Source> Packed<S> {
         self.head.n_nodes
     }
 
-    /// Puts the nodes that begin the sequences out of a cell into `out`, which is cleared, ascending; whether
-    /// the tree was cut at once, so that any sequence may be seen. Without stab trees, so it is.
+    /// Puts the nodes that begin the sequences out of a cell into `out`, which is cleared, ascending. Returns whether
+    /// the tree was cut at its root, so that any sequence may be visible; `true` without stab trees.
     ///
     /// # Errors
     /// If there is no such cell, or its block cannot be read.
@@ -307,8 +307,7 @@ impl<S: Source> Packed<S> {
         })
     }
 
-    /// A node of the stab trees; puts what may be crossed after it into `children`, which is cleared,
-    /// ascending.
+    /// A node of the stab trees; puts the gates that may follow it into `children`, which is cleared, ascending.
     ///
     /// # Errors
     /// If there is no such node, or its block cannot be read.

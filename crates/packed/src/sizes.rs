@@ -1,4 +1,4 @@
-//! What takes how much of a file.
+//! The size of each part of a file.
 
 use crate::packed::Packed;
 use crate::source::Source;
@@ -16,8 +16,8 @@ pub struct PartSize {
 }
 
 impl<S: Source> Packed<S> {
-    /// The sections and then the stores that are known and there, in the order of the file. With the header and the section
-    /// table before them these are all bytes of a file of this version. O(blocks).
+    /// The known sections and then stores that exist, in the order of the file. Together with the header and the
+    /// section table these are all bytes of a file of this version. O(blocks).
     pub fn part_sizes(&self) -> Vec<PartSize> {
         let sections = self.resident.sizes().map(|(id, bytes)| PartSize { id, bytes, resident: true });
         let stores = self.index.sizes().map(|(id, bytes)| PartSize { id, bytes, resident: false });

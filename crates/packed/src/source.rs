@@ -1,16 +1,16 @@
-//! Where the bytes of a packed table come from.
+//! The source of the bytes of a packed table.
 
 use std::io;
 use std::sync::Arc;
 
-/// Bytes that can be read at any place, by several threads at once.
+/// Bytes that can be read at any position, by several threads at once.
 ///
 /// A host that maps a file itself passes the map as `&'static [u8]`, or implements this for its map.
 pub trait Source: Send + Sync {
     /// Number of bytes.
     ///
     /// # Errors
-    /// Whatever the medium says.
+    /// Any error of the medium.
     fn len(&self) -> io::Result<u64>;
 
     /// Whether there are no bytes.
@@ -24,7 +24,7 @@ pub trait Source: Send + Sync {
     /// Fills `buf` with the bytes from `offset` on.
     ///
     /// # Errors
-    /// [`io::ErrorKind::UnexpectedEof`] if there are not as many, or whatever the medium says.
+    /// [`io::ErrorKind::UnexpectedEof`] if there are too few, or any error of the medium.
     fn read_at(&self, offset: u64, buf: &mut [u8]) -> io::Result<()>;
 }
 

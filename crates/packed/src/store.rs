@@ -1,16 +1,16 @@
-//! Records in blocks, to be written.
+//! Records in blocks, for writing.
 
 use crate::bytes::{Writer, bytes_of};
 use crate::error::PackError;
 use crate::format::{BLOCK_BYTES, MAX_UNPACKED_BLOCK, ROW_BLOCK_BYTES};
 use sightlines_pvs::{BitMatrix, SectionId};
 
-/// How hard zstd tries. Higher levels save a few per cent and cost several times the time.
+/// Compression level of zstd. Higher levels save a few per cent and take several times as long.
 pub(crate) const LEVEL: i32 = 15;
-/// Rows in a block, at most.
+/// Most rows in a block.
 const MAX_ROWS: usize = 256;
 
-/// A store with all its blocks as they stand in the file.
+/// A store with all its blocks as written to the file.
 pub(crate) struct Store {
     id: SectionId,
     n_records: u32,
@@ -54,7 +54,7 @@ impl Store {
         Ok(store)
     }
 
-    /// Packs rows of bits, as many together as make a good block.
+    /// Packs rows of bits into blocks of a suitable size.
     pub(crate) fn of_rows(id: SectionId, bits: &BitMatrix) -> Result<Self, PackError> {
         let per_block = rows_per_block(bits.n_cols());
         let mut store = Self::new(id, bits.n_rows(), per_block)?;
@@ -69,7 +69,7 @@ impl Store {
         Ok(store)
     }
 
-    /// Bytes in the file, with the part of the index.
+    /// Bytes in the file, including the part of the index.
     pub(crate) fn len(&self) -> usize {
         self.bytes.len() + 12 * self.index.len()
     }
@@ -83,7 +83,7 @@ impl Store {
     }
 }
 
-/// Rows in a block: as many as a block should hold, a power of two.
+/// Rows in a block: as many as a block should contain, a power of two.
 fn rows_per_block(n_cols: usize) -> usize {
     let fit = ROW_BLOCK_BYTES / (8 * n_cols.div_ceil(64)).max(1);
     let power = if fit == 0 { 1 } else { 1 << fit.ilog2() };

@@ -1,4 +1,4 @@
-//! Everything at once: back to a table, and the check of all that a file says.
+//! The whole file: conversion back to a table, and the check of its entire content.
 
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, MAX_TABLE, POLYGONS_KNOWN};
@@ -10,11 +10,12 @@ use sightlines_pvs::{
 };
 
 impl<S: Source> Packed<S> {
-    /// The whole table, checked as every table is: the one that was packed, if nothing had to be merged.
+    /// The whole table, checked as every table is; equal to the packed one if nothing was merged.
     /// O(size of the table).
     ///
     /// # Errors
-    /// If a block cannot be read, if this is no table, or if its rows take more than [`MAX_TABLE`] bytes.
+    /// If a block cannot be read, if the content is not a valid table, or if its rows take more than [`MAX_TABLE`]
+    /// bytes.
     pub fn to_table(&self) -> Result<Table, PackedError> {
         let table_error = |id: SectionId| {
             let offset = self.resident.find(id).map_or(0, |section| section.place.offset);
@@ -61,11 +62,11 @@ impl<S: Source> Packed<S> {
         Table::new(parts).map_err(table_error(format::HEAD))
     }
 
-    /// Checks all that the file says: every block, that it is a table, that the exits of cells are its
-    /// portals, and that the coarse table is what the rows say. O(size of the table).
+    /// Checks the entire content: every block, that it is a valid table, that the exits of cells are its portals, and
+    /// that the coarse table agrees with the rows. O(size of the table).
     ///
     /// # Errors
-    /// As [`Packed::to_table`], or what else is wrong.
+    /// As [`Packed::to_table`], or any other defect.
     pub fn verify(&self) -> Result<(), PackedError> {
         let table = self.to_table()?;
         let page = self.head.page as usize;

@@ -105,9 +105,9 @@ pub(crate) fn info(info: &[(String, String)]) -> Vec<u8> {
     out.0
 }
 
-/// The classes of each, packed; nothing if each is its own.
+/// The classes of each, packed; empty if each is its own class.
 ///
-/// Classes are counted by their first members, so most entries are "the next new one", which is 0.
+/// Classes are numbered by their first members, so most entries are "the next new one", which is 0.
 pub(crate) fn classes(id: SectionId, classes: &Classes) -> Result<Vec<u8>, PackError> {
     if classes.is_identity() {
         return Ok(Vec::new());
@@ -125,11 +125,11 @@ pub(crate) fn classes(id: SectionId, classes: &Classes) -> Result<Vec<u8>, PackE
     Ok(out.0)
 }
 
-/// Which pages of cells see which. O(cells * classes / 64 + ones of the distinct rows).
+/// Which pages of cells see each other. O(cells * classes / 64 + ones of the distinct rows).
 pub(crate) fn coarse(rows: &Distinct, n_cells: usize) -> Vec<u8> {
     let page = page_size(n_cells);
     let n_pages = n_cells.div_ceil(page);
-    // First pages by classes, then the classes become the pages in which they have members.
+    // First pages by classes, then each class is replaced by the pages in which it has members.
     let mut seen = BitMatrix::new(n_pages, rows.bits.n_cols());
     for (i, &class) in rows.rows.of.iter().enumerate() {
         sightlines_pvs::bits::or_words(seen.row_mut(i / page), rows.bits.row(class as usize));

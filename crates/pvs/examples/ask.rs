@@ -1,4 +1,4 @@
-//! Makes the table of four rooms by hand, writes it, reads it again, and asks it.
+//! Makes the table of four rooms by hand, writes it, reads it again, and queries it.
 //!
 //! ```text
 //! +---+---+---+---+

@@ -5,8 +5,8 @@ pub(crate) const WORD: usize = u64::BITS as usize;
 
 /// A matrix of bits; each row is a slice of `u64` words.
 ///
-/// Column `j` is bit `j % 64` of word `j / 64`. Bits of the last word past the last column are zero;
-/// every method keeps them so, and who writes through [`BitMatrix::row_mut`] must too.
+/// Column `j` is bit `j % 64` of word `j / 64`. Bits of the last word past the last column are zero; every method keeps
+/// them zero, and code that writes through [`BitMatrix::row_mut`] must do so too.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct BitMatrix {
     n_rows: usize,
@@ -186,7 +186,7 @@ pub fn ones(words: &[u64]) -> Ones<'_> {
     Ones { words, next: 0, current: 0 }
 }
 
-/// Sets in `into` every bit that `from` has; the longer one's surplus words are left as they are.
+/// Sets in `into` every bit that `from` has; surplus words of the longer one are left as they are.
 pub fn or_words(into: &mut [u64], from: &[u64]) {
     into.iter_mut().zip(from).for_each(|(a, b)| *a |= b);
 }
@@ -259,7 +259,7 @@ mod tests {
             }
         }
 
-        /// Mirroring gives a symmetric matrix; one bit less, and it is one no more.
+        /// Mirroring gives a symmetric matrix; with one bit less it no longer is.
         #[test]
         fn mirroring_sets_the_upper_triangle((mut matrix, plain) in squares(), at in any::<(usize, usize)>()) {
             let n = plain.len();

@@ -1,4 +1,4 @@
-//! What must be true of a table's parts.
+//! The validation of a table's parts.
 
 use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
@@ -49,33 +49,33 @@ pub enum TableError {
     /// More items of one kind than 32 bits count.
     #[error("{n} are more than 32 bits can count (item kind: {item})")]
     TooMany {
-        /// What there is too much of; corners of all polygons count as [`Item::Polygon`].
+        /// The kind of item; corners of all polygons count as [`Item::Polygon`].
         item: Item,
-        /// How many.
+        /// The number of items.
         n: usize,
     },
     /// NaN or an infinity.
     #[error("{item} {index} has a coordinate that is not a finite number")]
     NotFinite {
-        /// What.
+        /// The kind of item.
         item: Item,
-        /// Which.
+        /// Its index.
         index: usize,
     },
     /// A box with a lower corner above the upper one.
     #[error("{item} {index} has a lower corner above its upper corner")]
     Inverted {
-        /// What.
+        /// The kind of item.
         item: Item,
-        /// Which.
+        /// Its index.
         index: usize,
     },
     /// A z that is not 0, in a plane.
     #[error("{item} {index} has a z that is not 0, in a table of the plane")]
     OffPlane {
-        /// What.
+        /// The kind of item.
         item: Item,
-        /// Which.
+        /// Its index.
         index: usize,
     },
     /// A polygon in space, or one with one or two corners.
@@ -91,7 +91,7 @@ pub enum TableError {
     NotConvex {
         /// The cell.
         cell: CellId,
-        /// Where that shows.
+        /// The corner at which it shows.
         corner: usize,
     },
     /// A polygon that leaves the cell's box.
@@ -237,7 +237,7 @@ pub enum TableError {
 }
 
 impl TableParts {
-    /// Checks everything that a table promises. O(size), but for the locator, O(entries * depth).
+    /// Checks everything that a table guarantees. O(size), except for the locator, O(entries * depth).
     pub(crate) fn check(&self) -> Result<(), TableError> {
         if !matches!(self.dimension, 2 | 3) {
             return Err(TableError::Dimension(self.dimension));
@@ -296,7 +296,7 @@ impl TableParts {
         if !points.as_flattened().iter().all(|x| x.is_finite()) {
             return Err(TableError::NotFinite { item, index });
         }
-        // The bits are compared: a negative zero would not survive a file.
+        // Bits are compared: a negative zero would not survive a file.
         let off_plane = self.dimension == 2 && points.iter().any(|p| p[2].to_bits() != 0);
         if off_plane { Err(TableError::OffPlane { item, index }) } else { Ok(()) }
     }
@@ -332,7 +332,7 @@ impl TableParts {
         self.check_points(Item::Portal, index, &portal.points)
     }
 
-    /// Whether `n` points can go round something flat.
+    /// Whether `n` points can be the outline of something flat.
     fn outlines(&self, n: usize) -> bool {
         if self.dimension == 2 { n == 2 } else { n >= 3 && u32::try_from(n).is_ok() }
     }
@@ -395,7 +395,7 @@ impl TableParts {
             if !list.is_sorted_by(|a, b| a < b) {
                 return Err(TableError::ObjectOrder(cell));
             }
-            // The list ascends, so its last entry is its largest.
+            // The list ascends, so its last entry is the largest.
             if let Some(&object) = list.last().filter(|o| o.idx() >= self.objects.len()) {
                 return Err(TableError::UnknownObject { cell, object });
             }

@@ -1,4 +1,4 @@
-//! Ids, dense from 0. Each kind has its own type, so that one cannot stand where another is meant.
+//! Ids, dense from 0. Each kind has its own type, so that they cannot be confused.
 
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident)*) => {$(

@@ -1,4 +1,4 @@
-//! What a table was made of, and how.
+//! What a table was made from, and how.
 
 use std::fmt;
 

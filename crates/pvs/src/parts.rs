@@ -1,11 +1,11 @@
-//! What a table is made of.
+//! The parts of a table.
 
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
 use crate::{Axis, BitMatrix, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
 
 /// The parts of a [`crate::Table`], not yet checked.
 ///
-/// [`TableParts::empty`] has the values of what a table need not have.
+/// [`TableParts::empty`] has the values of optional parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableParts {
     /// 2 for a plane, 3 for space.
@@ -16,7 +16,7 @@ pub struct TableParts {
     pub up: Option<Axis>,
     /// The cells; their index is their id.
     pub cells: Vec<CellRecord>,
-    /// The portals; may be empty, no question is answered from them.
+    /// The portals; may be empty, as no query uses them.
     pub portals: Vec<PortalRecord>,
     /// Bit `j` of row `i`: cell `i` may see cell `j`. Square, symmetric, with ones on the diagonal.
     pub rows: BitMatrix,
@@ -31,11 +31,11 @@ pub struct TableParts {
     pub object_polygons: Vec<u32>,
     /// The parts of mirrors; may be empty.
     pub mirrors: Vec<MirrorRecord>,
-    /// What users call each cell, in the order of `cells`; need not differ. Empty: cells have no names.
+    /// The name of each cell for users, in the order of `cells`; names may repeat. Empty: cells have no names.
     pub cell_names: Vec<String>,
     /// Finds the cells at a point; complete for the cells' boxes.
     pub locator: Locator,
-    /// In space: says which cells a point is in, instead of the cells' boxes. `None`: the boxes do.
+    /// In space: locates points in place of the cells' boxes. `None`: the boxes do.
     pub planes: Option<PlaneTree>,
     /// The stab trees of all cells, over the portals of the table; `None`: not known.
     pub stab: Option<StabTrees>,
@@ -44,7 +44,7 @@ pub struct TableParts {
 }
 
 impl TableParts {
-    /// The parts of a table of a kind without anything, in a plane (2) or in space (3): to be filled.
+    /// Parts without any content, of a kind, in a plane (2) or in space (3): to be filled.
     pub fn empty(dimension: u8, kind: TableKind) -> Self {
         Self {
             dimension,

@@ -1,9 +1,8 @@
-//! Which cell a point is in, by a binary tree of planes in space.
+//! Point location by a binary tree of planes in space.
 //!
-//! Cells of a map that was cut along planes are not their boxes: the boxes of neighbours overlap, and a
-//! viewer would be found in many. The tree that cut them says in which cell a point is. It is walked in
-//! plain doubles; a point that they cannot tell from a plane goes to both sides of it, and is found in a
-//! cell more.
+//! Cells of a map that was cut along planes are not their boxes: the boxes of neighbours overlap, and a viewer would be
+//! found in many. The tree that cut them locates a point exactly. It is walked in plain doubles; a point so close to a
+//! plane that rounding could matter goes to both sides, and is found in additional cells.
 
 use crate::CellId;
 
@@ -18,7 +17,7 @@ pub enum PlaneChild {
     Nothing,
 }
 
-/// A plane and what is on its two sides.
+/// A plane and the children on its two sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneNode {
     /// Normal of the plane. Of any length; distances are measured in it, see [`PlaneTree::new`].
@@ -37,17 +36,17 @@ pub struct PlaneTree {
     slack: f64,
 }
 
-/// What is wrong with a plane tree.
+/// A defect of a plane tree.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlaneError {
     /// There are no nodes, so there is no root.
     #[error("the plane tree has no root")]
     Empty,
-    /// More nodes, or larger ids of cells, than a file can tell.
+    /// More nodes, or larger ids of cells, than a file can store.
     #[error("the plane tree counts up to {n}, more than 31 bits can")]
     TooMany {
-        /// How many.
+        /// The number.
         n: usize,
     },
     /// A slack below 0, NaN or infinite.
@@ -99,17 +98,16 @@ pub enum PlaneError {
 }
 
 impl PlaneTree {
-    /// Longest path from the root, so that no file can make a table slow to ask.
+    /// Longest path from the root, so that no file can make queries slow.
     pub const MAX_DEPTH: usize = 1024;
-    /// Nodes and ids of cells stay below this: a file has one bit to tell them apart.
+    /// Nodes and ids of cells stay below this: a file distinguishes them by one bit.
     const LIMIT: usize = 1 << 31;
 
     /// Checks a tree whose root is node 0. O(nodes).
     ///
-    /// A point `p` with `|normal · p - offset| <= slack` goes to both sides of a plane. With normals of
-    /// unit length `slack` is a distance in scene units; with others it is one times that length. It is
-    /// for trees whose planes are known roughly only, such as rounded ones; rounding of our own is taken
-    /// care of besides.
+    /// A point `p` with `|normal · p - offset| <= slack` goes to both sides of a plane. With normals of unit length
+    /// `slack` is a distance in scene units; otherwise it is one times that length. It is for trees whose planes are
+    /// known only approximately, such as rounded ones; our own rounding is accounted for in addition.
     ///
     /// # Errors
     /// [`PlaneError`] if this is no tree. Whether the cells exist is checked by [`crate::Table::new`].
@@ -122,7 +120,7 @@ impl PlaneTree {
             n if n > Self::LIMIT => return Err(PlaneError::TooMany { n }),
             _ => {}
         }
-        // Parents come first, so a node's depth is known when it is looked at; 0 says "not reached".
+        // Parents come first, so a node's depth is known when it is reached; 0 stands for "not reached".
         let mut depth = vec![0usize; nodes.len()];
         depth[0] = 1;
         for (i, PlaneNode { normal, offset, children }) in nodes.iter().enumerate() {
@@ -157,14 +155,14 @@ impl PlaneTree {
         &self.nodes
     }
 
-    /// How near to a plane a point goes to both sides, as [`PlaneTree::new`] says.
+    /// The distance from a plane within which a point goes to both sides; see [`PlaneTree::new`].
     pub fn slack(&self) -> f64 {
         self.slack
     }
 
-    /// Calls `visit` with every cell that `p` (scene units) may be in; a cell comes more than once if it is
-    /// on several leaves that `p` leads to. `pending` is scratch: who keeps it needs no new memory after a
-    /// while. Errs towards more cells. O(depth), if `p` is near no plane.
+    /// Calls `visit` with every cell that `p` (scene units) may be in; a cell is visited more than once if `p` leads to
+    /// several of its leaves. `pending` is scratch space: if it is reused, nothing is allocated once it is warm. Errs
+    /// towards more cells. O(depth), if `p` is near no plane.
     ///
     /// Coordinates that are not finite are near every plane.
     #[inline]
@@ -229,9 +227,9 @@ impl PlaneTree {
 }
 
 impl PlaneNode {
-    /// Whether `p` may be above the plane or within `slack` of it, and whether it may be below or so.
+    /// Whether `p` may be above the plane or within `slack` of it, and whether it may be below or within `slack`.
     ///
-    /// Errs towards `true`, one of the two is always `true`. Any doubles will do: overflow makes the bound
+    /// Errs towards `true`, and one of the two is always `true`. Holds for all doubles: overflow makes the bound
     /// infinite or a comparison one with NaN, and both give `true`.
     ///
     /// The bound is our own. Let u = 2^-53 and m the sum of the absolute values of the three products, of
@@ -252,7 +250,8 @@ impl PlaneNode {
         (!certainly_below, !certainly_above)
     }
 
-    /// Whether some point of a box may be above the plane or within `slack` of it, and whether one may be below or so.
+    /// Whether some point of a box may be above the plane or within `slack` of it, and whether one may be below or
+    /// within `slack`.
     ///
     /// As [`PlaneNode::sides`] for the box's corners that are farthest above and below; these are chosen by signs, without
     /// rounding. The bound is taken for the largest magnitudes in the box, so it is enough for both, and a larger box has a

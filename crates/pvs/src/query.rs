@@ -4,13 +4,13 @@ use crate::bits::WORD;
 use crate::{BitMatrix, CellId, CellSet, ObjectId, Table};
 use std::borrow::Cow;
 
-/// Where a point is, and what follows from that.
+/// The result of locating a point.
 ///
-/// Match it: outside of every cell nothing is known, so *everything* has to be drawn.
+/// Match it: outside every cell nothing is known, so *everything* has to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[must_use = "outside of every cell nothing is known, so everything has to be drawn"]
 pub enum Place<T> {
-    /// In no cell, or nobody knows: a coordinate is not finite, or the table does not say where its cells are.
+    /// In no cell, or unknown: a coordinate is not finite, or the table has no positions of its cells.
     Outside,
     /// In at least one cell.
     Inside(T),
@@ -22,7 +22,7 @@ impl<T> Place<T> {
         matches!(self, Self::Outside)
     }
 
-    /// What is known inside; `None` outside.
+    /// The content inside; `None` outside.
     pub fn inside(self) -> Option<T> {
         match self {
             Self::Outside => None,
@@ -30,7 +30,7 @@ impl<T> Place<T> {
         }
     }
 
-    /// The same place with something else known inside.
+    /// The same place with other content inside.
     pub fn map<U>(self, change: impl FnOnce(T) -> U) -> Place<U> {
         match self {
             Self::Outside => Place::Outside,
@@ -40,7 +40,7 @@ impl<T> Place<T> {
 }
 
 impl Place<Inside<'_>> {
-    /// The cells that contain the point, ascending; none outside. To find out where a point is: what to draw there is in
+    /// The cells that contain the point, ascending; none outside. For locating a point only: what to draw there is in
     /// [`Inside`].
     pub fn cells(&self) -> &[CellId] {
         match self {
@@ -50,7 +50,7 @@ impl Place<Inside<'_>> {
     }
 }
 
-/// Room to work in. Queries that are given the same one again allocate nothing once it is warm.
+/// Working memory of queries, which allocate nothing once it is warm.
 #[derive(Debug, Clone, Default)]
 pub struct PlaceBuffer {
     pending: Vec<u32>,
@@ -63,8 +63,8 @@ impl PlaceBuffer {
         Self::default()
     }
 
-    /// The cells that `find` puts into its second argument, in any order and repeated or not; its first argument is scratch. Both are
-    /// empty at first. For other forms of tables.
+    /// The cells that `find` puts into its second argument, in any order, perhaps repeated; its first argument is
+    /// scratch space. Both are empty at first. For other forms of tables.
     pub fn fill(&mut self, find: impl FnOnce(&mut Vec<u32>, &mut Vec<CellId>)) -> Place<&[CellId]> {
         self.pending.clear();
         self.cells.clear();

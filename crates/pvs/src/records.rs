@@ -9,7 +9,7 @@ pub struct CellRecord {
     pub min: [f64; 3],
     /// Upper corner of that box.
     pub max: [f64; 3],
-    /// What the cell belongs to, such as a Doom sector.
+    /// The group of the cell, such as a Doom sector.
     pub group: Option<u32>,
     /// In a plane: the cell's corners, convex, counter-clockwise, inside the box. Empty if the cell is
     /// the box itself, always so in space.
@@ -28,10 +28,10 @@ pub struct PortalRecord {
     pub points: Vec<[f64; 3]>,
 }
 
-/// Something that is seen or not, and hides nothing.
+/// Something that is visible or not, and hides nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectRecord {
-    /// What users call it.
+    /// The name of the object for users.
     pub name: String,
     /// Lower corner of a box around the object, in scene units; z is 0 in a plane.
     pub min: [f64; 3],

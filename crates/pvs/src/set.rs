@@ -20,7 +20,7 @@ impl CellSet {
         bits::or_words(&mut self.words, row);
     }
 
-    /// Whether `cell` is in the set; a cell that the table does not have is not.
+    /// Whether `cell` is in the set; `false` for a cell that the table does not have.
     #[inline]
     pub fn contains(&self, cell: CellId) -> bool {
         self.words.get(cell.idx() / WORD).is_some_and(|word| word >> (cell.idx() % WORD) & 1 == 1)

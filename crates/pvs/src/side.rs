@@ -1,14 +1,14 @@
 //! Is a point in a convex polygon? Decided in plain doubles with an error bound.
 //!
-//! This crate ships with games and carries no exact arithmetic. It does not need any: where the bound
-//! cannot tell on which side of a line a point lies, the point counts as inside. So a point that is
-//! inside or on the boundary is always found there, and a point outside, but within rounding of the
-//! boundary, may be found there too: a table's answers can only gain cells by it.
+//! This crate ships with games and contains no exact arithmetic. It needs none: where the bound leaves open on which
+//! side of a line a point lies, the point counts as inside. So a point that is inside or on the boundary is always
+//! found there, and a point outside, but within rounding of the boundary, may be found there too: answers can only gain
+//! cells by it.
 
 /// Whether `c` is certainly to the right of the directed line from `a` to `b`.
 ///
-/// Errs towards `false`. Any doubles will do: overflow makes the bound infinite or the comparison one
-/// with NaN, and both give `false`.
+/// Errs towards `false`. Holds for all doubles: overflow makes the bound infinite or the comparison one with NaN, and
+/// both give `false`.
 ///
 /// Source: Shewchuk 1997, bound A: the rounding error of the determinant is below
 /// (3 + 16 u) u (|left| + |right|) with u = 2^-53, as long as nothing underflows. Subtractions never
@@ -23,7 +23,7 @@ pub(crate) fn certainly_right(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
     left - right < -bound
 }
 
-/// Whether `p` may be in the closed convex polygon with these counter-clockwise corners; so it is if there are none.
+/// Whether `p` may be in the closed convex polygon with these counter-clockwise corners; `true` if there are none.
 ///
 /// Errs towards `true`, near the lines through the sides only. O(corners).
 #[inline]
@@ -38,8 +38,9 @@ pub fn polygon_may_contain(corners: impl IntoIterator<Item = [f64; 2]>, p: [f64;
     !ends.is_some_and(|(first, last)| certainly_right(last, first, p))
 }
 
-/// Whether the closed box from `min` to `max` may touch the closed convex polygon with these counter-clockwise corners, as far as
-/// the lines through the polygon's sides tell; so it does if there are none. With the polygon's own box they tell all.
+/// Whether the closed box from `min` to `max` may touch the closed convex polygon with these counter-clockwise corners,
+/// judging by the lines through the polygon's sides; `true` if there are none. Together with the polygon's own box
+/// these lines decide completely.
 ///
 /// Errs towards `true`, near those lines only. O(corners).
 #[inline]
@@ -54,15 +55,15 @@ pub(crate) fn polygon_may_touch_box(polygon: &[[f64; 2]], min: [f64; 2], max: [f
 
 /// The first corner at which the polygon certainly is not convex and counter-clockwise, if any.
 ///
-/// Finds right turns that are more than rounding, and polygons that do not go round just once, which
-/// comparisons of coordinates tell. Every exactly convex polygon passes, with repeated corners or not.
+/// Finds right turns beyond rounding, and polygons that do not wind exactly once, by comparing coordinates. Every
+/// exactly convex polygon passes, with repeated corners or not.
 pub(crate) fn first_defect(polygon: &[[f64; 2]]) -> Option<usize> {
     let n = polygon.len();
     let corner = |i: usize| polygon[i % n];
     if let Some(i) = (0..n).find(|&i| certainly_right(corner(i), corner(i + 1), corner(i + 2))) {
         return Some((i + 1) % n);
     }
-    // With left turns only, each time round passes once from going down to not going down.
+    // With left turns only, each winding passes once from going down to not going down.
     let down: Vec<bool> =
         sides(polygon).filter(|(a, b)| a != b).map(|(a, b)| b[1] < a[1] || (b[1] == a[1] && b[0] < a[0])).collect();
     let rounds = (0..down.len()).filter(|&i| down[i] && !down[(i + 1) % down.len()]).count();
@@ -79,7 +80,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The oracle: the determinant of whole numbers up to 2^60, without rounding.
+    /// The oracle: the determinant of integers up to 2^60, without rounding.
     fn exact(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i128 {
         let d = |p: i64, q: i64| i128::from(p) - i128::from(q);
         d(a[0], c[0]) * d(b[1], c[1]) - d(a[1], c[1]) * d(b[0], c[0])
@@ -93,12 +94,12 @@ mod tests {
         [-4i64..5, -4i64..5]
     }
 
-    /// The nearest whole number that is a double.
+    /// The nearest integer that is a double.
     fn rounded(x: i64) -> i64 {
         x as f64 as i64
     }
 
-    /// The points `a + v`, `a + v t`, moved by `nudge` and rounded to doubles, after `a`: nearly in line.
+    /// The points `a + v`, `a + v t`, moved by `nudge` and rounded to doubles, after `a`: nearly collinear.
     fn in_line(a: [i64; 2], v: [i64; 2], t: i64, nudge: [i64; 2]) -> [[i64; 2]; 3] {
         let at = |t: i64, k: usize| rounded(a[k] + v[k] * t);
         [a, [at(1, 0), at(1, 1)], [rounded(at(t, 0) + nudge[0]), rounded(at(t, 1) + nudge[1])]]
@@ -112,7 +113,7 @@ mod tests {
     }
 
     proptest! {
-        /// Invariant: what counts as right is right; on a small grid, the reverse is true as well.
+        /// Invariant: what counts as right is right; on a small grid, the converse holds as well.
         #[test]
         fn sides_small_grid_is_exact(a in small(), b in small(), c in small(), k in 0u32..20) {
             let [p, q, r] = [a, b, c].map(|p| float(p.map(|x| x << k)));
@@ -126,7 +127,7 @@ mod tests {
             }
         }
 
-        /// The tightness twin: only what rounding can hide is left undecided.
+        /// The tightness twin: only cases within rounding are left undecided.
         #[test]
         fn sides_tightness_clear_is_certain([a, b, c] in nearly_collinear()) {
             let d = |p: i64, q: i64| i128::from(p) - i128::from(q);
@@ -147,7 +148,7 @@ mod tests {
         }
     }
 
-    /// The impostor: without the bound, the plain formula calls points right of a line that are not.
+    /// The impostor: without the bound, the plain formula reports points to the right of a line that are not.
     #[test]
     fn sides_plain_doubles_are_not_sound() {
         let plain =
@@ -171,7 +172,7 @@ mod tests {
     }
 
     proptest! {
-        /// Invariant: a box touches a triangle if no axis and no side separates the two, in whole numbers.
+        /// Invariant: a box touches a triangle if no axis and no side separates the two, in integers.
         #[test]
         fn sides_boxes_touch_as_in_whole_numbers(t in [small(), small(), small()], min in small(), size in [0i64..4, 0i64..4]) {
             let [a, b, c] = t;
@@ -192,7 +193,7 @@ mod tests {
         assert!(first_defect(&[[0., 0.], [0., 2.], [2., 2.], [2., 0.]]).is_some(), "clockwise");
         assert_eq!(first_defect(&[[0., 0.], [2., 0.], [0.5, 0.5], [0., 2.]]), Some(2), "a dent");
         assert!(first_defect(&[[1., 1.]; 3]).is_some(), "one point");
-        // A pentagram turns left at each corner and goes round twice.
+        // A pentagram turns left at each corner and winds twice.
         assert_eq!(first_defect(&[[0., 0.], [4., 0.], [1., 3.], [2., -2.], [3., 3.]]), Some(0));
     }
 }

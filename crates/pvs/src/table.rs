@@ -4,7 +4,7 @@ use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
 use crate::{Axis, CellId, CellSet, Locator, ObjectId, PlaneTree, StabTrees, TableError, TableKind, bits, side};
 
-/// Which cells of a scene can be seen from which: checked, and never changed.
+/// Which cells of a scene can see each other: checked, and immutable.
 ///
 /// Every answer errs towards "visible".
 #[derive(Debug, Clone, PartialEq)]
@@ -23,18 +23,18 @@ impl Table {
         Ok(Self { parts })
     }
 
-    /// The parts, to be looked at.
+    /// The parts, for inspection.
     pub fn parts(&self) -> &TableParts {
         &self.parts
     }
 
-    /// The parts, to be changed and checked again.
+    /// The parts, for changes and another check.
     pub fn into_parts(self) -> TableParts {
         self.parts
     }
 
-    /// The same table without portals, stab trees and polygons: smaller, and enough for a game that asks
-    /// by cell or by position.
+    /// The same table without portals, stab trees and polygons: smaller, and enough for a game that queries by cell or
+    /// by position.
     ///
     /// The cells become their boxes, so a point may be found in more cells than before, and never in
     /// fewer. Rows, objects, mirrors, planes, ids and names stay.
@@ -87,12 +87,12 @@ impl Table {
         &self.parts.objects
     }
 
-    /// What finds the cells at a point.
+    /// The locator of the cells at a point.
     pub fn locator(&self) -> &Locator {
         &self.parts.locator
     }
 
-    /// Number of polygons of an object; 1 if the table does not know.
+    /// Number of polygons of an object; 1 if it is unknown.
     ///
     /// # Panics
     /// If the table has no such object.
@@ -102,7 +102,7 @@ impl Table {
         self.parts.object_polygons.get(object.idx()).copied().unwrap_or(1)
     }
 
-    /// What users call a cell; `None` if the cells of the table have no names. O(1).
+    /// The name of a cell for users; `None` if the cells of the table have no names. O(1).
     ///
     /// # Panics
     /// If the table has no such cell.
@@ -112,7 +112,7 @@ impl Table {
         self.parts.cell_names.get(cell.idx()).map(String::as_str)
     }
 
-    /// Whether [`Table::cell_name`] has names to tell.
+    /// Whether the cells have names ([`Table::cell_name`]).
     pub fn has_cell_names(&self) -> bool {
         !self.parts.cell_names.is_empty()
     }
@@ -122,7 +122,7 @@ impl Table {
         &self.parts.mirrors
     }
 
-    /// What says instead of the cells' boxes which cells a point is in, if there is such a thing.
+    /// The plane tree that locates points in place of the cells' boxes, if there is one.
     pub fn planes(&self) -> Option<&PlaneTree> {
         self.parts.planes.as_ref()
     }
@@ -143,8 +143,7 @@ impl Table {
         info.binary_search_by(|(k, _)| k.as_str().cmp(key)).ok().map(|i| info[i].1.as_str())
     }
 
-    /// Whether something in `a` may be seen from somewhere in `b`, which is the same the other way
-    /// round. O(1).
+    /// Whether something in `a` may be seen from somewhere in `b`; symmetric. O(1).
     ///
     /// # Panics
     /// If the table has no such cells.
@@ -161,7 +160,7 @@ impl Table {
         self.parts.rows.iter_ones(cell.idx()).map(|i| CellId(i as u32))
     }
 
-    /// The row of a cell: bit `j % 64` of word `j / 64` says whether it may see cell `j`.
+    /// The row of a cell: bit `j % 64` of word `j / 64` is set if it may see cell `j`.
     ///
     /// # Panics
     /// If the table has no such cell.
@@ -205,8 +204,9 @@ impl Table {
         objects
     }
 
-    /// Calls `visit` with every cell that contains the point, see [`crate::Query::at`]; a cell may come more than once, in no
-    /// particular order. The coordinates are finite, and z is 0 in a plane. `pending` is scratch.
+    /// Calls `visit` with every cell that contains the point, see [`crate::Query::at`]; a cell may be visited more than
+    /// once, in no particular order. The coordinates must be finite, and z must be 0 in a plane. `pending` is scratch
+    /// space.
     pub(crate) fn for_each_cell_at(&self, p: [f64; 3], pending: &mut Vec<u32>, mut visit: impl FnMut(CellId)) {
         match &self.parts.planes {
             Some(planes) => planes.for_each_cell(p, pending, visit),
@@ -218,11 +218,13 @@ impl Table {
         }
     }
 
-    /// Calls `visit` with every cell that the closed box from `min` to `max` (scene units; z is 0 in a plane) touches, until it says
-    /// `false`; a cell may come more than once, in no particular order. `pending` is scratch.
+    /// Calls `visit` with every cell that the closed box from `min` to `max` (scene units; z is 0 in a plane) touches,
+    /// until it returns `false`; a cell may be visited more than once, in no particular order. `pending` is scratch
+    /// space.
     ///
-    /// Cells are closed polygons, or boxes, or what a [`PlaneTree`] says, as for [`crate::Query::at`]. Errs towards touching, by
-    /// rounding only: every cell that the box touches is visited. A NaN bounds nothing. O(cells near the box).
+    /// Cells are closed polygons, or boxes, or defined by a [`PlaneTree`], as for [`crate::Query::at`]. Errs towards
+    /// touching, by rounding only: every cell that the box touches is visited. A NaN bounds nothing. O(cells near the
+    /// box).
     #[inline]
     pub fn for_each_touching(
         &self,
@@ -241,8 +243,8 @@ impl Table {
         });
     }
 
-    /// The share of all cells that a cell sees, averaged over all cells: what a viewer has to draw, if
-    /// all cells are alike. 0 for a table without cells.
+    /// The share of all cells that a cell sees, averaged over all cells: what a viewer has to draw, if all cells are
+    /// equal. 0 for a table without cells.
     pub fn mean_visible_share(&self) -> f64 {
         let n = self.n_cells() as f64;
         if n == 0.0 { 0.0 } else { self.parts.rows.count_ones() as f64 / (n * n) }

@@ -1,4 +1,4 @@
-//! What is left of a city for who stands where two streets cross, by budget.
+//! What is left of a city for a viewer at a street crossing, by budget.
 
 use sightlines_geometry::Point3;
 use sightlines_multifocal::mesh::{SheetMethod, Sheets};

@@ -1,4 +1,4 @@
-//! What a simplified scene changes, measured where it can have changed.
+//! The change between a scene and its simplification, measured with rays towards the changed triangles.
 
 use crate::compared::{Cause, Compared, Eyes};
 use crate::measure::MeasureOptions;
@@ -11,25 +11,25 @@ use sightlines_cells::Scene;
 use sightlines_geometry::vector::{dot, length, normal, sub};
 use sightlines_geometry::{Point3, Random};
 
-/// The share of directions that is changed, by rays that are aimed.
+/// The share of changed directions, measured with aimed rays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aimed {
     /// The mean over all eyes.
     pub changed: f64,
-    /// For the eye for which it is most.
+    /// For the worst eye.
     pub worst: f64,
-    /// The standard error of that: how far the estimate is off, typically.
+    /// The standard error of `worst`.
     pub worst_error: f64,
-    /// That eye.
+    /// The worst eye.
     pub worst_eye: Point3,
 }
 
-/// Measures as [`measure`](crate::measure) does, by rays towards the triangles that were taken away or put in: only such can have changed, so
-/// that small shares are found with few rays.
+/// Measures as [`measure`](crate::measure) does, with rays towards the triangles that were removed or added: only those
+/// can have changed, so small shares are found with few rays.
 ///
 /// For each eye, half of the rays go to points of triangles that are reported hidden, half to those of the others, to
-/// each about as often as it takes up of the view. A changed ray counts for the triangle that it was aimed at if that
-/// is the one which made the change, weighted by one over how likely it was sent. The mean is the share that changes;
+/// each about in proportion to its share of the view. A changed ray counts for the triangle that it was aimed at if
+/// that triangle caused the change, weighted by the reciprocal of its probability. The mean is the share that changes;
 /// eyes within a triangle's plane do not count it.
 ///
 /// Deterministic for a seed. O(n log n), and for each eye O(m) for m such triangles and two traced rays for each ray.
@@ -50,7 +50,7 @@ pub fn measure_aimed(
         let look = |eye: usize| {
             let (place, mut random) = eyes.place(eye);
             let mut rays = traced.each_ref().map(Traced::rays);
-            // Means add up, and so do squares of their errors.
+            // Means add up, and so do the squares of their errors.
             let (mut mean, mut error) = (0.0, 0.0);
             for causes in &causes {
                 let targets = Targets::new(&compared, causes, place);
@@ -70,7 +70,7 @@ pub fn measure_aimed(
         };
         let found: Vec<(Point3, f64, f64)> = (0..options.n_eyes).into_par_iter().map(look).collect();
         let changed = found.iter().map(|f| f.1).sum::<f64>() / options.n_eyes.max(1) as f64;
-        // Of equals the first.
+        // The first of equals.
         let worst = found.iter().rev().max_by(|a, b| a.1.total_cmp(&b.1)).copied();
         let (worst_eye, worst, worst_error) = worst.unwrap_or(([0.0; 3], 0.0, 0.0));
         Ok(Aimed { changed, worst, worst_error, worst_eye })
@@ -81,7 +81,7 @@ pub fn measure_aimed(
 struct Targets<'a> {
     causes: &'a [Cause],
     eye: Point3,
-    /// Sums of how much each takes up of the view, about.
+    /// Cumulative approximate shares of the view.
     sums: Vec<f64>,
 }
 
@@ -89,7 +89,7 @@ struct Targets<'a> {
 struct AimedRay {
     way: Point3,
     cause: Cause,
-    /// What a change along it counts.
+    /// The weight of a change along it.
     weight: f64,
 }
 
@@ -99,7 +99,7 @@ impl<'a> Targets<'a> {
         let add = |&cause: &Cause| {
             let t = compared.corners(cause);
             let middle = [0, 1, 2].map(|k| t.iter().map(|p| p[k] / 3.0).sum::<f64>());
-            // Never nothing: also a triangle whose middle is seen edge-on is aimed at.
+            // Never zero: triangles whose middle is seen edge-on get rays too.
             let (area, square) = (length(normal(*t)) / 2.0, dot(sub(middle, eye), sub(middle, eye)));
             sum += share(t, sub(middle, eye)).min(0.5) + 0.01 * area / (area + square);
             sum
@@ -121,7 +121,7 @@ impl<'a> Targets<'a> {
     }
 }
 
-/// The share of the sphere that a triangle takes up, as if all of it were seen as its point at `way` from the eye.
+/// The share of the sphere that a triangle takes up, if all of it appeared as its point at `way` from the eye does.
 fn share(t: &[Point3; 3], way: Point3) -> f64 {
     let cube = dot(way, way) * length(way);
     let share = dot(normal(*t), way).abs() / 2.0 / cube / (4.0 * std::f64::consts::PI);

@@ -2,46 +2,48 @@
 //!
 //! From an eye at distance `r` of a piece of surface `dA`, seen at the angle `theta` from its normal, the piece takes up
 //! `cos(theta) dA / r^2` of the sphere's `4 pi`, and `cos(theta) = h / r`, where `h` is the eye's distance to the surface's plane. So a
-//! triangle takes up at most `A min(1 / d^2, h / d^3)` if all eyes are at least at distance `d` of it and at most at distance `h` of its
-//! plane; and at most half of the sphere, as all of it lies on one side of a plane through the eye. A triangle that is large beside
-//! its distance is cut in four at the middles of its sides, and the bounds of its parts are added.
-//!
+//! triangle takes up at most `A min(1 / d^2, h / d^3)` if all eyes are at least at distance `d` from it and at most at
+//! distance `h` from its plane; and at most half of the sphere, as all of it lies on one side of a plane through the
+//! eye. A triangle that is large compared with its distance is split in four at the midpoints of its sides, and the
+//! bounds of its parts are added.
 //! # Rounding
-//! Every step is rounded to the side that makes the result larger. Parts have exactly a quarter of the area and the same plane, so
-//! only boxes around them are constructed; their corners are widened by the rounding of the middles.
+//! Every step is rounded so that the result can only grow. Parts have exactly a quarter of the area and the same plane,
+//! so only their bounding boxes are constructed; their corners are widened by the rounding of the midpoints.
 
 use sightlines_geometry::{Aabb, Point3};
 
 /// Unit of rounding of doubles, 2^-53.
 const U: f64 = f64::EPSILON / 2.0;
-/// Below what is left of `4 pi` when it is written as a double.
+/// A lower bound of `4 pi` as a double.
 const SPHERE: f64 = 12.566_370_614_359_172;
 
 /// The largest share of the sphere of directions that a triangle takes up for any eye of a box, from 0 to 1/2.
 ///
 /// * `eyes`: the closed box, scene units
-/// * `depth`: how often the triangle is cut in four at most; each time bounds get better where the box is near
+/// * `depth`: how often the triangle is split in four at most; each split improves the bound where the box is near
 ///
-/// Errs upwards only. 1/2 for triangles that touch the box; near 0, and not always 0, for such without area. O(4^depth) at worst.
+/// Errs upwards only. 1/2 for triangles that touch the box; near 0, but not always 0, for triangles without area.
+/// O(4^depth) in the worst case.
 ///
 /// # Source
-/// The bound is elementary; that a sum of such bounds limits the error of an image for all eyes is the idea of Andújar et al.,
-/// "Integrating occlusion culling and levels of detail through hardly-visible sets", Computer Graphics Forum 19(3), 2000.
+/// The bound is elementary; that a sum of such bounds limits the error of an image for all eyes is the idea of Andújar
+/// et al., "Integrating occlusion culling and levels of detail through hardly-visible sets", Computer Graphics Forum
+/// 19(3), 2000.
 pub fn share(triangle: &[Point3; 3], eyes: &Aabb<3>, depth: u32) -> f64 {
     let plane = PlaneOf::new(triangle, eyes);
     let largest = triangle.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     Piece { corners: *triangle, area: plane.area, level: 0 }.share(&plane, eyes, largest, depth).min(0.5)
 }
 
-/// What all parts of a triangle have in common.
+/// The data that all parts of a triangle share.
 struct PlaneOf {
-    /// At least the area.
+    /// An upper bound of the area.
     area: f64,
-    /// At most the least distance of an eye to the plane, and at least the greatest.
+    /// A lower bound of the least distance of an eye from the plane, and an upper bound of the greatest.
     heights: [f64; 2],
 }
 
-/// The product and sum of numbers that are not negative, rounded up.
+/// The result of a sum or product of non-negative numbers, rounded up.
 fn up(x: f64) -> f64 {
     if x == 0.0 { x } else { x.next_up() }
 }
@@ -51,13 +53,13 @@ fn down(x: f64) -> f64 {
     if x <= 0.0 { 0.0 } else { x.next_down() }
 }
 
-/// At least the length of a vector of parts that are not negative.
+/// An upper bound of the length of a vector with non-negative components.
 fn length_up(v: Point3) -> f64 {
     let sum = v.iter().fold(0.0, |sum, &x| up(sum + (x * x).next_up()));
     up(sum.sqrt())
 }
 
-/// At most that length.
+/// A lower bound of that length.
 fn length_down(v: Point3) -> f64 {
     let sum = v.iter().fold(0.0, |sum, &x| down(sum + down(x * x)));
     down(sum.sqrt())
@@ -67,8 +69,8 @@ impl PlaneOf {
     fn new(&[a, b, c]: &[Point3; 3], eyes: &Aabb<3>) -> Self {
         let sub = |p: Point3, q: Point3| [0, 1, 2].map(|k| p[k] - q[k]);
         let (u, v) = (sub(b, a), sub(c, a));
-        // Each product has two rounded differences and its own rounding, and the difference rounds once more: less than 5 U of the
-        // products' sizes; what is lost below the smallest normal number comes on top.
+        // Each product has two rounded differences and its own rounding, and the difference rounds once more: less than
+        // 5 U of the products' sizes, plus what is lost below the smallest normal number.
         let part = |i: usize, j: usize| {
             let (s, t) = (u[i] * v[j], u[j] * v[i]);
             (s - t, 8.0 * U * (s.abs() + t.abs()) + 4.0 * f64::MIN_POSITIVE)
@@ -97,12 +99,12 @@ impl PlaneOf {
     }
 }
 
-/// At most the distance of two boxes, in scene units: 0 if they touch.
+/// A lower bound of the distance of two boxes, in scene units: 0 if they touch.
 pub(crate) fn distance(a: &Aabb<3>, b: &Aabb<3>) -> f64 {
     apart(a, b, 0.0)
 }
 
-/// At most their distance, if the first may be larger by `off` on each side.
+/// A lower bound of their distance, if the first may be larger by `off` on each side.
 fn apart(a: &Aabb<3>, b: &Aabb<3>, off: f64) -> f64 {
     let gap = |k: usize| {
         let apart = (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]);
@@ -114,9 +116,9 @@ fn apart(a: &Aabb<3>, b: &Aabb<3>, off: f64) -> f64 {
 
 /// A part of a triangle.
 struct Piece {
-    /// Rounded once for each level at most.
+    /// Rounded at most once for each level.
     corners: [Point3; 3],
-    /// At least its area.
+    /// An upper bound of its area.
     area: f64,
     level: u32,
 }
@@ -124,7 +126,8 @@ struct Piece {
 impl Piece {
     fn share(&self, plane: &PlaneOf, eyes: &Aabb<3>, largest: f64, depth: u32) -> f64 {
         let around = Aabb::<3>::around(self.corners);
-        // A middle is off by a rounding of a number no larger than the corners, beyond what its ends are off.
+        // A midpoint is off by the rounding of a number no larger than the corners, in addition to the error of its
+        // ends.
         let off = 2.0 * U * largest * f64::from(self.level) + f64::MIN_POSITIVE * f64::from(self.level);
         let near = apart(&around, eyes, off).max(plane.heights[0]);
         let size = (0..3).map(|k| around.max[k] - around.min[k]).fold(0.0, f64::max);
@@ -137,7 +140,7 @@ impl Piece {
         let square = down(near * near);
         let slanted = if plane.heights[1] < near { up(plane.heights[1] / near) } else { 1.0 };
         let share = up(up(up(self.area / square) * slanted) / SPHERE);
-        // Nothing that has an area takes up nothing, however little it is.
+        // The share of a triangle with an area is never 0, however small it is.
         if share.is_nan() { 0.5 } else { share.clamp(f64::from_bits(1), 0.5) }
     }
 
@@ -145,7 +148,7 @@ impl Piece {
         let [a, b, c] = self.corners;
         let middle = |p: Point3, q: Point3| [0, 1, 2].map(|k| p[k] / 2.0 + q[k] / 2.0);
         let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-        // A quarter is exact but below the smallest normal number, where it is rounded up.
+        // A quarter is exact except below the smallest normal number, where it is rounded up.
         let (area, level) = (up(self.area / 4.0), self.level + 1);
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]].map(|corners| Self { corners, area, level })
     }

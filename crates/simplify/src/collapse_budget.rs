@@ -10,7 +10,7 @@ use sightlines_geometry::{Aabb, Point3};
 use sightlines_visible_surface::Faces;
 use std::collections::BTreeMap;
 
-/// Accepts changes of the mesh as long as what they may change of the view stays within the budget.
+/// Accepts changes of the mesh as long as the change of the view that they may cause stays within the budget.
 pub(crate) struct CollapseBudget<'a> {
     faces: &'a Faces,
     views: &'a Views,
@@ -21,9 +21,9 @@ pub(crate) struct CollapseBudget<'a> {
     /// The largest shift so far.
     pub(crate) shift: f64,
     account: Account,
-    /// Faces whose change is paid for.
+    /// Faces whose change is within the budget already.
     may_go: Vec<bool>,
-    /// What new faces take up, part by part.
+    /// The shares of new faces, part by part.
     charges: BTreeMap<u32, Vec<f64>>,
 }
 
@@ -55,12 +55,12 @@ impl<'a> CollapseBudget<'a> {
         }
     }
 
-    /// What a triangle takes up at most, in each part.
+    /// An upper bound of the share of a triangle, in each part.
     fn shares(&self, corners: &[Point3; 3]) -> Vec<f64> {
         self.views.parts().iter().map(|v| bound::share(corners, v.volume.bounds(), self.depth)).collect()
     }
 
-    /// At most the distance of any eye to the faces of a change, before and after.
+    /// A lower bound of the distance of any eye from the faces of a change, before and after.
     fn nearest(&self, mesh: &Mesh, change: &Change) -> f64 {
         let changed = change.lost.iter().chain(change.moved.iter().map(|(f, _)| f));
         let corners = changed.flat_map(|&f| mesh.corners(f)).chain([mesh.place(change.to)]);
@@ -69,7 +69,7 @@ impl<'a> CollapseBudget<'a> {
         self.views.parts().iter().map(to).fold(f64::INFINITY, f64::min)
     }
 
-    /// What was not changed after all need not be paid for.
+    /// Refunds what was not changed after all.
     pub(crate) fn settle(mut self, mesh: &Mesh) -> Account {
         for face in self.faces.ids().filter(|&f| self.may_go[f as usize] && mesh.face(f).state == State::Kept) {
             self.account.refund(|part| self.intercepts.of(part, face));
@@ -87,9 +87,9 @@ impl Policy for CollapseBudget<'_> {
         if change.lost.iter().chain(change.moved.iter().map(|(f, _)| f)).any(|&f| !self.may_go[f as usize]) {
             return false;
         }
-        // What was there at the beginning may be nearer by as much as it is away.
+        // The original surface may be nearer by as much as the surface has moved.
         let shift = (moved / (self.nearest(mesh, change) - moved).next_down().max(0.0)).next_up();
-        // Also where the distance is 0.
+        // If both are 0, the quotient is NaN.
         if shift.is_nan() || shift > self.most_shift {
             return false;
         }

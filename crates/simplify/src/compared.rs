@@ -1,4 +1,4 @@
-//! A scene before and after, looked at along the same rays.
+//! A scene before and after, compared along the same rays.
 
 use crate::estimate::EyeSampler;
 use crate::rays::{FirstHits, Traced};
@@ -22,8 +22,8 @@ impl<'a> Eyes<'a> {
         Self { views, places: EyeSampler::new(views), seed }
     }
 
-    /// Where an eye is, and what its rays are drawn by. Every other eye is in one part after the other, so that flat parts get some
-    /// as well.
+    /// The position of an eye, and the random numbers of its rays. Every other eye is in one part after the other, so
+    /// that flat parts get some too.
     pub(crate) fn place(&self, eye: usize) -> (Point3, Random) {
         let mut random = Random::new(self.seed ^ (eye as u64).wrapping_mul(0x2545_f491_4f6c_dd1d));
         let part = self.views.parts()[eye / 2 % self.views.parts().len()].volume;
@@ -32,20 +32,20 @@ impl<'a> Eyes<'a> {
     }
 }
 
-/// A triangle that was taken away, or one that was put in.
+/// A triangle that was removed or added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Cause {
     Gone(u32),
     New(u32),
 }
 
-/// What differs along a ray.
+/// The difference along a ray.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Difference {
-    /// What was met before and is gone; else what is met now and was not there.
+    /// The triangle that was hit before and is gone; otherwise the new one that is hit now.
     pub(crate) cause: Cause,
     pub(crate) is_other_object: bool,
-    /// Another object, or another depth by more than a hundredth.
+    /// Whether the hit is on another object, or at another depth by more than a hundredth.
     pub(crate) has_moved: bool,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Difference {
 pub(crate) struct Compared {
     before: Faces,
     after: Left,
-    /// Of faces before.
+    /// For each face of the original.
     is_kept: Vec<bool>,
     is_hidden: Vec<bool>,
 }
@@ -73,13 +73,13 @@ impl Compared {
         Ok(Self { before, after, is_kept, is_hidden })
     }
 
-    /// Both, to send rays through.
+    /// Both scenes, ready for rays.
     pub(crate) fn traced(&self) -> [Traced<'_>; 2] {
         [Traced::new(&self.before), Traced::new(&self.after.faces)]
     }
 
-    /// What may make a difference: triangles with an area that are gone, or new; and those that should not, because
-    /// they are reported hidden.
+    /// The triangles that may cause a difference: those with an area that were removed or added; and those that should
+    /// not, because they are reported hidden.
     pub(crate) fn causes(&self) -> [Vec<Cause>; 2] {
         let gone = self.before.ids().filter(|&f| !self.is_kept[f as usize] && self.before.has_area(f));
         let (hidden, gone): (Vec<u32>, Vec<u32>) = gone.partition(|&f| self.is_hidden[f as usize]);
@@ -94,8 +94,8 @@ impl Compared {
         }
     }
 
-    /// What differs along a ray; nothing if both first hits are on the same triangle, or on triangles of the same object in the
-    /// same plane.
+    /// The difference along a ray; `None` if both first hits are on the same triangle, or on triangles of the same
+    /// object in the same plane.
     pub(crate) fn look(&self, [old, new]: &mut [FirstHits<'_>; 2], eye: Point3, way: Point3) -> Option<Difference> {
         let (a, b) = (old.of(eye, way), new.of(eye, way));
         let origin = b.and_then(|b| self.after.origin[b as usize]);
@@ -121,11 +121,11 @@ impl Compared {
     }
 }
 
-/// What is left, with where it comes from.
+/// The remaining triangles with their origins.
 struct Left {
     faces: Faces,
     object: Vec<u32>,
-    /// The face of the whole scene that each one was.
+    /// For each, the face of the original scene that it was.
     origin: Vec<Option<u32>>,
 }
 
@@ -151,7 +151,7 @@ fn in_one_plane([a, b, c]: &[Point3; 3], other: &[Point3; 3]) -> bool {
     other.iter().all(|p| orient3d(*a, *b, *c, *p) == 0.0)
 }
 
-/// How far along a ray the plane of a triangle is, rounded.
+/// The distance along a ray to the plane of a triangle, rounded.
 fn depth(t: &[Point3; 3], eye: Point3, way: Point3) -> f64 {
     let n = normal(*t);
     dot(n, sub(t[0], eye)) / dot(n, way)

@@ -1,4 +1,4 @@
-//! What faces intercept, by counting rays.
+//! The shares that faces intercept, estimated by counting rays.
 
 use crate::rays::Traced;
 use crate::views::Views;
@@ -6,17 +6,17 @@ use rayon::prelude::*;
 use sightlines_geometry::{Point3, Random};
 use sightlines_visible_surface::Faces;
 
-/// Rays that are sent by one task.
+/// Rays sent by one task.
 const PER_TASK: u64 = 1 << 12;
 
-/// How often each face was met first, by rays from all of the views.
+/// How often each face was hit first, by rays from all of the views.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Estimate {
     hits: Vec<u64>,
     n_rays: u64,
 }
 
-/// A range in which a share lies.
+/// A confidence interval of a share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// The share that was counted.
@@ -26,12 +26,12 @@ pub struct Interval {
 }
 
 impl Estimate {
-    /// Sends rays. Eyes are spread over the parts of the views, in proportion to their volumes (all parts count alike
-    /// if all are flat); directions are spread over the sphere: ray `i` of `n` has its direction anywhere in strip `i`
-    /// of `n` equal strips of latitude, which are taken in a scattered order. So the rays are independent, and fewer
-    /// are needed than of directions anywhere.
+    /// Sends rays. Eyes are spread over the parts of the views, in proportion to their volumes (all parts count equally
+    /// if all are flat); directions are spread over the sphere: ray `i` of `n` has a random direction in strip `i` of
+    /// `n` equal strips of latitude, which are taken in a scattered order. So the rays are independent, and fewer are
+    /// needed than with unrestricted random directions.
     ///
-    /// Deterministic, whatever the number of threads. O(n log n) for each ray in practice.
+    /// Deterministic, whatever the number of threads. O(log n) for each ray in practice, after O(n log n).
     pub fn new(faces: &Faces, views: &Views, n_rays: u64) -> Self {
         Self::of(&Traced::new(faces), faces.len(), views, n_rays)
     }
@@ -53,18 +53,18 @@ impl Estimate {
         Self { hits, n_rays }
     }
 
-    /// How many rays were sent.
+    /// Number of rays sent.
     pub const fn n_rays(&self) -> u64 {
         self.n_rays
     }
 
-    /// How often a face was met first.
+    /// How often a face was hit first.
     pub fn hits(&self, face: u32) -> u64 {
         self.hits[face as usize]
     }
 
-    /// The share of rays that a face intercepts, mean over all eyes of the views; it lies in the interval with a probability of at least
-    /// `confidence` (for one face that is chosen without looking at its hits).
+    /// The share of rays that a face intercepts, averaged over all eyes of the views; it lies in the interval with a
+    /// probability of at least `confidence` (for one face that is chosen without regard to its hits).
     ///
     /// # Source
     /// Hoeffding, "Probability inequalities for sums of bounded random variables", J. Am. Stat. Assoc. 58, 1963, theorem 1: the tail of
@@ -73,7 +73,7 @@ impl Estimate {
         interval(self.hits(face), self.n_rays, confidence)
     }
 
-    /// The share of rays that meet a face first, as counted.
+    /// The share of rays that hit a face first, as counted.
     pub fn share(&self, face: u32) -> f64 {
         self.hits(face) as f64 / self.n_rays.max(1) as f64
     }
@@ -85,11 +85,11 @@ pub fn interval(k: u64, n: u64, confidence: f64) -> Interval {
         return Interval { share: 0.0, ends: [0.0, 1.0] };
     }
     let counted = k.min(n) as f64 / n as f64;
-    // Half of what may go wrong on each side.
+    // Half of the error probability on each side.
     let allowed = (2.0 / (1.0 - confidence.clamp(0.0, 1.0 - 1e-15))).ln() / n as f64;
     let term = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (x / y).ln() };
     let kl = |p: f64| term(counted, p) + term(1.0 - counted, 1.0 - p);
-    // Where the divergence is what is allowed, from the counted share outwards, by halving; the outer end is taken.
+    // Bisects outwards from the counted share to where the divergence reaches the limit; returns the outer end.
     let end = |mut inner: f64, mut outer: f64| {
         for _ in 0..64 {
             let p = inner / 2.0 + outer / 2.0;
@@ -100,12 +100,12 @@ pub fn interval(k: u64, n: u64, confidence: f64) -> Interval {
     Interval { share: counted, ends: [end(counted, 0.0), end(counted, 1.0)] }
 }
 
-/// A whole number below `n` for each below `n`, all different, neighbours far apart; `step` is [`step_of`] n.
+/// Maps numbers below `n` to distinct numbers below `n`, with neighbours far apart; `step` is [`step_of`] n.
 fn scattered(i: u64, n: u64, step: u64) -> u64 {
     (u128::from(i) * u128::from(step) % u128::from(n)) as u64
 }
 
-/// A step near the golden section of n that has no divisor in common with it.
+/// A step near the golden section of n that is coprime to it.
 fn step_of(n: u64) -> u64 {
     let near = ((n as f64 * 0.618_033_988_749_895) as u64).max(1);
     (near..).find(|&step| gcd(step, n) == 1).unwrap_or(1)
@@ -119,7 +119,7 @@ fn gcd(a: u64, b: u64) -> u64 {
 fn direction_in_strip(i: u64, n: u64, random: &mut Random) -> Point3 {
     let z = 2.0 * ((i as f64 + random.unit()) / n as f64) - 1.0;
     let radius = (1.0 - z * z).max(0.0).sqrt();
-    // A point of the circle, by throwing away what is outside of the disc.
+    // A point of the circle, by rejecting what is outside the disc.
     loop {
         let (x, y) = (2.0 * random.unit() - 1.0, 2.0 * random.unit() - 1.0);
         let square = x * x + y * y;
@@ -130,10 +130,10 @@ fn direction_in_strip(i: u64, n: u64, random: &mut Random) -> Point3 {
     }
 }
 
-/// Eyes anywhere in views.
+/// Random eyes in views.
 pub(crate) struct EyeSampler<'a> {
     views: &'a Views,
-    /// Sums of volumes.
+    /// Cumulative volumes.
     sums: Vec<f64>,
 }
 
@@ -167,7 +167,7 @@ mod tests {
     use sightlines_geometry::Aabb;
     use sightlines_multifocal::Volume;
 
-    /// A cube of two triangles a side around the origin, with a shelf in it.
+    /// A cube around the origin, two triangles a side, with a shelf in it.
     fn cube() -> Faces {
         let mut faces = Vec::new();
         for axis in 0..3 {
@@ -209,10 +209,10 @@ mod tests {
                     !(ends[0] <= p && p <= ends[1])
                 })
                 .count();
-            // At most a tenth, but for chance: 40 and four standard deviations.
+            // At most a tenth, except by chance: 40 and four standard deviations.
             assert!(missed <= 64, "{p} {missed}");
         }
-        // And an interval that is too narrow does not.
+        // An interval that is too narrow misses more.
         let narrow = |k: u64| [k as f64 / 1000.0 - 0.005, k as f64 / 1000.0 + 0.005];
         let missed = (0..400).filter(|_| {
             let k = (0..1000).filter(|_| random.unit() < 0.5).count() as u64;

@@ -1,4 +1,4 @@
-//! The ordinary metric of shape, to compare with.
+//! The ordinary metric of shape, for comparison.
 
 use crate::mesh::{Change, Collapser, Mesh, Policy, Weights};
 use crate::simplified::{Counts, Simplified};
@@ -8,7 +8,7 @@ use sightlines_cells::Scene;
 use sightlines_visible_surface::Faces;
 
 /// Simplifies a scene by its shape alone, to at most `target` triangles as far as edges can be collapsed: the ordinary
-/// metric, which knows no eyes, to compare with. Each object is a mesh of its own. Gives no guarantee about what is
+/// metric, independent of eyes, for comparison. Each object is a mesh of its own. Gives no guarantee about what is
 /// visible.
 ///
 /// # Errors

@@ -11,12 +11,12 @@ use std::fmt;
 /// Makes a from-region method for the scene, for one thread.
 pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
 
-/// What says what is hidden. What any of them hides is hidden.
+/// Sources of proofs that faces are hidden. A face that any of them hides is hidden.
 #[derive(Clone, Copy, Default)]
 pub struct HiddenBy<'a> {
     /// A from-region method, such as the multifocal z-buffer with sheets.
     pub method: Option<MakeMethod<'a>>,
-    /// A table of the scene, used for views that are its cells, see [`Views::of_cells`].
+    /// A table of the scene, used for views that are its cells; see [`Views::of_cells`].
     pub table: Option<&'a Table>,
 }
 
@@ -29,7 +29,7 @@ impl fmt::Debug for HiddenBy<'_> {
     }
 }
 
-/// Rays from each box towards what is not yet seen: what they hit need not be tested.
+/// Rays from each box towards each undecided face: faces that they hit need no test.
 const N_RAYS_PER_FACE: u32 = 8;
 
 /// The occluders of a scene, prepared for queries about any views.
@@ -50,7 +50,7 @@ impl<'a> Hider<'a> {
         Self { faces, table: by.table.map(|table| TableFaces::new(faces, table)), method }
     }
 
-    /// For each view which faces may be visible from it. Errs towards visible only, as far as method and table do.
+    /// For each view, which faces may be visible from it. Errs towards visible only, provided that method and table do.
     pub(crate) fn may_see(&self, views: &Views) -> Result<Vec<Vec<bool>>, BackendError> {
         let start = |view: &View| -> Vec<bool> {
             let mut visible: Vec<bool> = self.faces.ids().map(|face| self.faces.has_area(face)).collect();
@@ -73,10 +73,11 @@ impl<'a> Hider<'a> {
     }
 }
 
-/// A table as something that hides faces.
+/// A table as a source of hidden faces.
 struct TableFaces<'a> {
     table: &'a Table,
-    /// For each face the cells whose closed boxes meet its box; none if cells do not tell where it can be reached.
+    /// For each face, the cells whose closed boxes meet its box; none if cells do not determine where it can be
+    /// reached.
     touched: Vec<Vec<u32>>,
 }
 
@@ -88,7 +89,7 @@ impl<'a> TableFaces<'a> {
         }
         let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
         let tree = BoxTree::build(&cells, 8);
-        // Within the box around all cells, what is in no cell is inside of something solid.
+        // Within the box around all cells, everything outside every cell is solid.
         let all = Aabb::<3>::around(cells.iter().flat_map(|b| [b.min, b.max]));
         let meet = |a: &Aabb<3>, b: &Aabb<3>| (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k]);
         let touched = |face: u32| {
@@ -110,9 +111,9 @@ impl<'a> TableFaces<'a> {
         Self { table, touched: faces.ids().into_par_iter().map(touched).collect() }
     }
 
-    /// Hides faces of objects that the view's cell does not see, and faces that touch no cell that it sees: a ray that reaches a face
-    /// comes through a cell whose closed box the face touches. A face that touches no cell of a k-d tree is inside of something solid, but
-    /// is left visible: this costs little, and nothing has to be said about what is outside.
+    /// Hides faces of objects that the view's cell does not see, and faces that touch no cell that it sees: a ray that
+    /// reaches a face comes through a cell whose closed box the face touches. A face that touches no cell of a k-d tree
+    /// is inside something solid, but is left visible: this costs little, and makes no assumption about the outside.
     fn hide(&self, view: &View, faces: &Faces, visible: &mut [bool]) {
         let Some(cell) = view.cell else { return };
         let mut objects = vec![false; self.table.objects().len()];

@@ -1,4 +1,4 @@
-//! What faces can intercept of the rays of a view.
+//! Bounds on what faces can intercept of the rays of a view.
 
 use crate::bound;
 use crate::hidden::{HiddenBy, Hider};
@@ -19,9 +19,8 @@ pub struct Intercepts {
 impl Intercepts {
     /// Bounds for all faces of a scene.
     ///
-    /// * `by`: what proves faces hidden; a table has to be of the scene that the faces are of, by [`Faces::of_scene`]
-    ///
-    /// * `depth`: how often a triangle is cut in four to bound what it takes up, see [`bound::share`]
+    /// * `by`: what proves faces hidden; a table has to be of the scene whose faces these are, by [`Faces::of_scene`]
+    /// * `depth`: how often a triangle is split in four to bound its share, see [`bound::share`]
     ///
     /// # Panics
     /// If a view is of a cell that the table does not have, or a face of an object that it does not have.
@@ -38,7 +37,7 @@ impl Intercepts {
         Ok(Self::of_visible(faces, views, &hider.may_see(views)?, depth))
     }
 
-    /// With what is known of each part: which faces may be visible.
+    /// From the faces that may be visible in each part.
     pub(crate) fn of_visible(faces: &Faces, views: &Views, visible: &[Vec<bool>], depth: u32) -> Self {
         let of = |(view, visible): (&View, &Vec<bool>)| {
             let share = |face: u32| {
@@ -60,7 +59,7 @@ impl Intercepts {
         self.n_faces
     }
 
-    /// What a face can intercept for eyes of a part.
+    /// The largest share that a face can intercept for eyes of a part.
     ///
     /// # Panics
     /// If there is no such part or face.
@@ -68,7 +67,7 @@ impl Intercepts {
         self.bounds[part * self.n_faces + face as usize]
     }
 
-    /// What it can intercept for any eye.
+    /// The largest share that it can intercept for any eye.
     pub fn largest(&self, face: u32) -> f64 {
         (0..self.n_parts()).map(|part| self.of(part, face)).fold(0.0, f64::max)
     }

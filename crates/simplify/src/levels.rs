@@ -1,7 +1,7 @@
 //! Simplified variants of a scene for the cells of a table, within a memory budget.
 //!
-//! A cell's variant is what is left of the scene for eyes in that cell. Cells that see much the same share one: the variants are merged,
-//! those first that grow least by it, until all together fit.
+//! A cell's variant is what is left of the scene for eyes in that cell. Cells that see much the same share one:
+//! variants are merged, those that grow least first, until all of them together fit.
 
 use crate::hidden::{HiddenBy, Hider};
 use crate::intercepts::Intercepts;
@@ -17,19 +17,19 @@ use sightlines_pvs::{CellId, Table};
 use sightlines_visible_surface::Faces;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How to make levels.
+/// Options for levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelOptions {
     /// How to simplify for each group of cells.
     pub simplify: SimplifyOptions,
-    /// Bytes that all levels may take together.
+    /// Most bytes that all levels together may take.
     pub memory: u64,
-    /// Bytes that a triangle takes where levels are kept: three indices and its share of vertices.
+    /// Bytes of a stored triangle: three indices and its share of vertices.
     pub bytes_per_triangle: u64,
 }
 
 impl Default for LevelOptions {
-    /// No budget of rays, a part for each cell, 64 MiB, and a triangle with half a vertex of 32 bytes.
+    /// No budget of rays, one part for each cell, 64 MiB, and a triangle with half a vertex of 32 bytes.
     fn default() -> Self {
         let simplify = SimplifyOptions { n_parts: 1, ..SimplifyOptions::default() };
         Self { simplify, memory: 64 << 20, bytes_per_triangle: 28 }
@@ -41,9 +41,9 @@ impl Default for LevelOptions {
 pub struct Level {
     /// The cells that it may be drawn for, ascending.
     pub cells: Vec<CellId>,
-    /// What is left.
+    /// What is left of the scene.
     pub simplified: Simplified,
-    /// What it takes, by the options' measure.
+    /// Its size, by the options' measure.
     pub n_bytes: u64,
 }
 
@@ -58,11 +58,12 @@ pub struct Levels {
 
 /// Makes levels for all cells of a table, whose cells have to be boxes.
 ///
-/// * `by`: what proves faces hidden, beside the table itself
+/// * `by`: what proves faces hidden, in addition to the table itself
 ///
-/// Each level keeps the promise of [`simplify`](crate::simplify) for all eyes in its cells. Memory counts triangles, not files.
-/// Deterministic. Costs a simplification for each cell and each merged level, and for each cell the bounds of what it may see; merging is quadratic in the
-/// number of cells at worst, times the number of triangles over 64.
+/// Each level keeps the guarantee of [`simplify`](crate::simplify) for all eyes in its cells. Memory counts triangles,
+/// not files. Deterministic. Costs a simplification for each cell and each merged level, and for each cell the bounds
+/// of what it may see; merging is quadratic in the number of cells in the worst case, times the number of triangles
+/// over 64.
 ///
 /// # Errors
 /// [`SimplifyError`]; [`SimplifyError::Memory`] if a single level for all cells is too large.
@@ -123,7 +124,7 @@ impl Levels {
     }
 }
 
-/// What levels are made from.
+/// The input of levels.
 struct LevelBuilder<'a> {
     scene: &'a Scene,
     table: &'a Table,
@@ -134,7 +135,8 @@ struct LevelBuilder<'a> {
 }
 
 impl LevelBuilder<'_> {
-    /// What may be visible for the eyes of one cell, and what is left of it, without collapsing: near enough to choose what to merge.
+    /// The faces that may be visible for the eyes of one cell, and those that remain, without collapsing: accurate
+    /// enough to choose merges.
     fn kept(&self, cell: CellId) -> Result<(Vec<bool>, Bits), SimplifyError> {
         let views = Views::of_cells(self.table, &[cell])?;
         let mut visible = self.hider.may_see(&views)?;
@@ -150,7 +152,7 @@ impl LevelBuilder<'_> {
         Ok((visible.pop().unwrap_or_default(), kept))
     }
 
-    /// * `visible`: for each cell what may be visible
+    /// * `visible`: for each cell the faces that may be visible
     fn level(&self, cells: &[CellId], visible: &[Vec<bool>]) -> Result<Level, SimplifyError> {
         let options = &self.options.simplify;
         let views = Views::of_cells(self.table, cells)?;
@@ -197,26 +199,26 @@ impl Bits {
     }
 }
 
-/// Cells that share what is kept.
+/// Cells that share their remaining faces.
 struct Group {
     cells: Vec<CellId>,
     kept: Bits,
     n_kept: u64,
-    /// Groups that it may be merged with.
+    /// Groups with which it may be merged.
     near: BTreeSet<usize>,
 }
 
 /// A partition of the cells.
 struct Groups {
-    /// None where one was merged into another.
+    /// `None` where one was merged into another.
     all: Vec<Option<Group>>,
-    /// Pairs that may be merged, by how many more triangles that keeps in memory.
+    /// Pairs that may be merged, by the increase of stored triangles.
     pairs: BTreeSet<(i64, usize, usize)>,
     bytes_per_triangle: u64,
 }
 
 impl Groups {
-    /// Each cell by itself. Those may be merged that have a portal between them, or follow each other in the table.
+    /// Each cell by itself. Two cells may be merged if a portal joins them, or if they are consecutive in the table.
     fn new(table: &Table, kept: Vec<Bits>, bytes_per_triangle: u64) -> Self {
         let n = kept.len();
         let mut near = vec![BTreeSet::new(); n];
@@ -244,7 +246,7 @@ impl Groups {
         self.all[id].as_ref().expect("only existing groups are looked up")
     }
 
-    /// What merging costs: triangles of the union, less those of both.
+    /// The cost of a merge: triangles of the union, minus those of both.
     fn cost(&self, a: usize, b: usize) -> i64 {
         let (a, b) = (self.group(a), self.group(b));
         a.kept.count_with(&b.kept) as i64 - a.n_kept as i64 - b.n_kept as i64
@@ -262,7 +264,7 @@ impl Groups {
         self.all.iter().flatten().map(|g| g.cells.clone()).collect()
     }
 
-    /// Merges all that keep the same.
+    /// Merges all groups with equal faces.
     fn merge_equal(&mut self) {
         let mut first: BTreeMap<Bits, usize> = BTreeMap::new();
         for id in 0..self.all.len() {
@@ -274,7 +276,7 @@ impl Groups {
         }
     }
 
-    /// Merges the two that save most; whether there were two.
+    /// Merges the two that save most; returns whether there were two.
     fn merge_cheapest(&mut self) -> bool {
         match self.pairs.first() {
             Some(&(_, a, b)) => {

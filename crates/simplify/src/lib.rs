@@ -6,20 +6,21 @@
 //!   estimate by rays ([`Estimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table
 //!   ([`levels()`]); the measurement of the change ([`measure`]); the ordinary geometric metric, for comparison
 //!   ([`geometric`]).
-//! - **Out of scope**: how hidden things are proven (a [`FromRegion`](sightlines_multifocal::FromRegion) method or a table says so), files.
+//! - **Out of scope**: how hidden things are proven (this is left to a
+//!   [`FromRegion`](sightlines_multifocal::FromRegion) method or a table), files.
 //! - **Invariants**: for every eye in the closed boxes of [`Views`] that lies on no surface, the share of the sphere of
 //!   directions in which the first surface met changes is at most [`Simplified::bound`], which is at most the budget;
 //!   with a budget of 0 nothing changes.
 //!
 //! # The promise
-//! Let a direction's first hit be the face that its ray from the eye meets first. Faces are kept, taken away, or put
-//! in. If a ray's first hit before is a kept face and its first hit after is no new one, they are the same face: a kept
-//! face that is nearer after was as near before. So a direction can only change if its first hit before was taken away,
-//! or if its first hit after is new. Therefore the share that changes is at most the sum of what faces taken away and
-//! new faces take up of the sphere of directions, each counted where it is not proven hidden; and this holds for every
-//! eye of a box if each term is a bound for every eye of it. A face is hidden in terms of the scene before; for a new
-//! face it may be used as well, as a ray that reaches it has passed a place where a face was taken away, and counts
-//! already. Merging faces in one plane changes no surface, and so no first hit but in its name.
+//! Let a direction's first hit be the face that its ray from the eye meets first. Faces are kept, removed, or added. If
+//! a ray's first hit before is a kept face and its first hit after is not a new one, they are the same face: a kept
+//! face that is nearer after was as near before. So a direction can only change if its first hit before was removed, or
+//! if its first hit after is new. Therefore the share that changes is at most the sum of the shares of removed and new
+//! faces of the sphere of directions, each counted where it is not proven hidden; and this holds for every eye of a box
+//! if each term is a bound for every eye of it. A face is hidden in terms of the original scene; this may be used for a
+//! new face as well, as a ray that reaches it although it is hidden passes a place where a face was removed, and is
+//! counted there. Merging faces in one plane changes no surface, and so it changes first hits only in name.
 
 mod aimed;
 pub mod bound;

@@ -1,4 +1,4 @@
-//! What a simplified scene changes, measured by fresh rays.
+//! The change between a scene and its simplification, measured with fresh rays.
 
 use crate::compared::{Compared, Eyes};
 use crate::rays::Traced;
@@ -9,16 +9,16 @@ use rayon::prelude::*;
 use sightlines_cells::Scene;
 use sightlines_geometry::Point3;
 
-/// How to measure.
+/// Options for [`measure`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MeasureOptions {
-    /// Eyes: half of them anywhere in the views by volume, the others in one box of them after the other.
+    /// Number of eyes: half of them anywhere in the views by volume, the others in each box in turn.
     pub n_eyes: usize,
-    /// Rays from each eye, anywhere on the sphere.
+    /// Number of rays from each eye, anywhere on the sphere.
     pub n_rays: u64,
     /// Other seeds give other eyes and rays.
     pub seed: u64,
-    /// Number of threads; 0 for one for each core.
+    /// Number of threads; 0 for one per core.
     pub threads: usize,
 }
 
@@ -28,22 +28,22 @@ impl Default for MeasureOptions {
     }
 }
 
-/// Shares of rays that are changed.
+/// Shares of changed rays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// Rays whose first hit is on another surface: not on the same face, nor on one of the same object in the same plane, exactly. What
-    /// is promised.
+    /// Rays whose first hit is on another surface: not on the same face, nor on one of the same object exactly in the
+    /// same plane. This is the share that the guarantee bounds.
     pub changed: f64,
-    /// The same, for the eye for which it is most.
+    /// The same, for the worst eye.
     pub worst: f64,
-    /// That eye.
+    /// The worst eye.
     pub worst_eye: Point3,
-    /// Rays that meet another object, or nothing in place of something, or the other way round.
+    /// Rays that hit another object, or nothing in place of something, or the other way round.
     pub other_object: f64,
-    /// Rays that meet another object or at a distance that differs by more than a hundredth: what is seen, where the surface is
-    /// another one and looks the same.
+    /// Rays that hit another object or at a distance that differs by more than a hundredth: the visible change, where
+    /// another surface may look the same.
     pub moved: f64,
-    /// How many rays there were.
+    /// Number of rays.
     pub n_rays: u64,
 }
 
@@ -89,7 +89,7 @@ pub fn measure(
         let n_rays = options.n_rays * options.n_eyes as u64;
         let share = |n: u64| n as f64 / n_rays.max(1) as f64;
         let sum = |of: fn(&Changes) -> u64| share(found.iter().map(|(_, c)| of(c)).sum());
-        // Of equals the first.
+        // The first of equals.
         let worst = found.iter().rev().max_by_key(|(_, c)| c.changed);
         Ok(Measured {
             changed: sum(|c| c.changed),

@@ -1,28 +1,29 @@
-//! How to simplify.
+//! Options of simplification.
 
-/// How to simplify.
+/// Options of [`simplify`](crate::simplify).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimplifyOptions {
-    /// The largest share of the sphere of directions, from 0 to 1, in which the first hit may be another one, for every eye that lies on no surface. 0 takes
-    /// away only what is proven hidden.
+    /// The largest share of the sphere of directions, from 0 to 1, whose first hit may change, for every eye that lies
+    /// on no surface. 0 removes only what is proven hidden.
     pub budget: f64,
-    /// The share of the budget, from 0 to 1, that is kept for collapsing edges; the rest is for triangles to be left out, which makes
-    /// holes as large as the budget.
+    /// The share of the budget, from 0 to 1, that is reserved for collapsing edges; the rest is for leaving out
+    /// triangles, which makes holes as large as the budget.
     pub collapse: f64,
-    /// Whether to merge faces of an object that lie in one plane, exactly. It changes no place that is seen; colours and texture
-    /// coordinates are interpolated over the larger faces, so they stay the same only where they are linear.
+    /// Whether to merge faces of an object that lie exactly in one plane. This moves no visible point; colours and
+    /// texture coordinates are interpolated over the larger faces, so they stay the same only where they are linear.
     pub flat: bool,
-    /// Whether scenes with mirrors are taken as if there were none; else they are refused, as mirrors show what is hidden.
+    /// Whether mirrors in scenes are ignored; otherwise such scenes are refused, as mirrors show what is hidden.
     pub ignore_mirrors: bool,
-    /// How far collapsing may move a surface, as a part of its distance to the eye, for every eye; infinite for any.
+    /// How far collapsing may move a surface, as a fraction of its distance from the eye, for every eye; infinite for
+    /// no limit.
     pub shift: f64,
-    /// At least so many boxes are made of the views before bounds are made.
+    /// Smallest number of boxes into which the views are split before bounds are computed.
     pub n_parts: usize,
     /// Rays for the estimate that weighs faces for collapsing.
     pub n_rays: u64,
-    /// How often a triangle is cut in four, to bound what it takes up.
+    /// How often a triangle is split in four to bound its share.
     pub depth: u32,
-    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    /// Number of threads; 0 for one per core. Affects only the time.
     pub threads: usize,
 }
 
@@ -74,7 +75,7 @@ impl SimplifyOptions {
     /// Checks all ranges.
     ///
     /// # Errors
-    /// [`OptionsError`], of the first offender.
+    /// [`OptionsError`], for the first invalid option.
     pub fn check(&self) -> Result<(), OptionsError> {
         let share = |x: f64| (0.0..=1.0).contains(&x);
         if !share(self.budget) {

@@ -28,17 +28,17 @@ impl<'a> Traced<'a> {
 pub(crate) struct FirstHits<'a>(Rays<'a>);
 
 impl FirstHits<'_> {
-    /// The face that a ray meets first; none if it meets nothing, or if the direction is nowhere.
+    /// The face that a ray hits first; `None` if it hits nothing, or if the direction is zero.
     pub(crate) fn of(&mut self, eye: Point3, direction: Point3) -> Option<u32> {
         let camera = one_pixel(eye, direction)?;
         Some(self.0.first(&camera, 0, 0)).filter(|&face| face != NOTHING)
     }
 }
 
-/// A camera with one pixel, whose ray has a direction but for the last bits.
+/// A camera with one pixel, whose ray has a direction except for the last bits.
 fn one_pixel(eye: Point3, direction: Point3) -> Option<Camera> {
     let [x, y, z] = direction.map(f64::abs);
-    // Across and down along the axes to which the direction is most perpendicular; half of each is taken off again.
+    // Right and down along the axes to which the direction is most perpendicular; half of each is subtracted again.
     let (i, j) = if x >= y && x >= z {
         (1, 2)
     } else if y >= z {

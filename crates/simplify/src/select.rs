@@ -4,7 +4,7 @@ use crate::intercepts::Intercepts;
 use crate::mesh::{Mesh, State};
 use sightlines_visible_surface::Faces;
 
-/// What may still change of the view, for each part of the views. Sums are rounded up.
+/// The spent share of the view, for each part of the views. Sums are rounded up.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Account {
     spent: Vec<f64>,
@@ -15,7 +15,7 @@ impl Account {
         Self { spent: vec![0.0; n_parts] }
     }
 
-    /// What is spent in the part where it is most.
+    /// The spent share of the part with the most.
     pub(crate) fn most(&self) -> f64 {
         self.spent.iter().copied().fold(0.0, f64::max)
     }
@@ -29,11 +29,11 @@ impl Account {
         true
     }
 
-    /// Takes back what was spent before.
+    /// Refunds an earlier cost.
     pub(crate) fn refund(&mut self, cost: impl Fn(usize) -> f64) {
         self.spent.iter_mut().enumerate().for_each(|(part, spent)| {
             let cost = cost(part);
-            // What is left is rounded up; it is never less than nothing, nor more than before.
+            // The remainder is rounded up; it is never negative, nor more than before.
             if cost > 0.0 {
                 *spent = (*spent - cost).next_up().clamp(0.0, *spent);
             }
@@ -41,7 +41,7 @@ impl Account {
     }
 }
 
-/// A sum of numbers that are not negative, rounded up.
+/// A sum of non-negative numbers, rounded up.
 pub(crate) fn sum_up(a: f64, b: f64) -> f64 {
     if a == 0.0 {
         b
@@ -52,12 +52,13 @@ pub(crate) fn sum_up(a: f64, b: f64) -> f64 {
     }
 }
 
-/// The faces that are as they were in the scene.
+/// The unchanged faces of the scene.
 pub(crate) fn kept_faces<'a>(mesh: &'a Mesh, faces: &Faces) -> impl Iterator<Item = u32> + 'a {
     faces.ids().filter(|&f| mesh.face(f).state == State::Kept)
 }
 
-/// Takes faces, those that intercept least first, as long as their sum stays within `budget` in each part, and calls `take` with each.
+/// Takes faces, those that intercept least first, as long as their sum stays within `budget` in each part, and calls
+/// `take` with each.
 pub(crate) fn least_visible(
     intercepts: &Intercepts,
     candidates: impl Iterator<Item = u32>,
@@ -68,7 +69,7 @@ pub(crate) fn least_visible(
     let mut faces: Vec<(f64, u32)> = candidates.map(|face| (intercepts.largest(face), face)).collect();
     faces.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     for (largest, face) in faces {
-        // Those to come are no less visible, and no part has room left for them.
+        // Later faces are no less visible, and no part has room left for them.
         if largest > budget {
             break;
         }
@@ -88,7 +89,7 @@ mod tests {
         assert!(account.spend(1.0, |part| [0.5, 0.25][part]));
         assert!(!account.spend(1.0, |part| [0.6, 0.0][part]));
         assert_eq!(account.most(), 0.5);
-        // Half and half is a rounding more than one.
+        // One half plus one half, rounded up, exceeds one.
         assert!(!account.spend(1.0, |part| [0.5, 0.0][part]));
         assert!(account.spend(1.0, |part| [0.0, 0.7][part]));
         assert!((0.95..0.951).contains(&account.most()));

@@ -23,7 +23,7 @@ pub enum SimplifyError {
     /// An option out of its range.
     #[error(transparent)]
     Options(#[from] OptionsError),
-    /// A scene that cannot be looked at.
+    /// A scene whose faces cannot be rendered.
     #[error(transparent)]
     Faces(#[from] FacesError),
     /// The method failed.
@@ -38,46 +38,48 @@ pub enum SimplifyError {
         /// The cell.
         cell: u32,
     },
-    /// A scene in which things are seen that are hidden.
+    /// A scene whose mirrors show hidden things.
     #[error("the scene has mirrors ({n}), and what is seen in them alone would be left out; mirrors can be ignored")]
     Mirrors {
-        /// How many.
+        /// Number of mirrors.
         n: usize,
     },
-    /// Cells of a table that are no boxes, or none at all.
+    /// Cells of a table that are not boxes, or an empty list.
     #[error(transparent)]
     Views(#[from] ViewsError),
-    /// A memory that is too small for one level.
+    /// A memory budget that is too small for one level.
     #[error("{asked} bytes are too few: a level for all cells takes {least}")]
     Memory {
-        /// What was asked for.
+        /// The requested memory.
         asked: u64,
-        /// What is needed at least, with this budget.
+        /// The smallest possible memory, with this budget.
         least: u64,
     },
 }
 
-/// The weight of an area beside that of rays: a face that no ray of the estimate met counts as if all faces together had so much of the
-/// view, by area. Without it, what is not met would be bent in any way.
+/// The weight of area relative to that of rays: a face that no ray of the estimate hit counts as if all faces together
+/// had this much of the view, by area. Without it, such faces could be deformed arbitrarily.
 const WEIGHT_OF_AREA: f64 = 1e-3;
 
 /// Simplifies a scene for all eyes of `views`.
 ///
-/// 1. What is proven hidden from every eye, or has no area, is taken away; no ray is changed.
-/// 2. The faces that intercept least are left out, within the budget but for the part that is kept for collapsing.
-/// 3. Of what intercepts least among the rest, edges are collapsed, those first that change the shape least where rays see it
-///    (quadrics weighted by the estimate; silhouettes and borders keep their share). A corner moves to a
-///    neighbour, so no vertex is new and all that belongs to vertices survives.
-/// 4. What is left of the budget leaves out more.
-/// 5. If asked for, faces of an object that lie in one plane, exactly, are merged where the surface stays the same set of points.
+/// 1. Faces that are proven hidden from every eye, or have no area, are removed; no ray changes.
+/// 2. The faces that intercept least are left out, within the budget except for the part reserved for collapsing.
+/// 3. Among the faces that intercept least of the rest, edges are collapsed, in order of how little the shape changes
+///    where rays see it (quadrics weighted by the estimate; silhouettes and borders in proportion). A corner moves to a
+///    neighbour, so no vertex is new and vertices keep all their attributes.
+/// 4. The rest of the budget is spent on leaving out more faces.
+/// 5. On request, faces of an object that lie exactly in one plane are merged where the surface stays the same set of
+///    points.
 ///
-/// * `by`: what proves faces hidden; with nothing, bounds are still bounds, and larger
+/// * `by`: what proves faces hidden; without it, bounds still hold, but are larger
 ///
-/// The promise is for eyes that lie on no surface: an eye on a wall sees past it on both sides, and what it hides from all other eyes is gone.
+/// The guarantee is for eyes that lie on no surface: an eye on a wall sees past it on both sides, where surfaces hidden
+/// from all other eyes are removed.
 ///
-/// Errs on the side of the promise (see [`crate`]): fewer triangles might do. A view inside of an object, or through which surfaces pass,
-/// is a place as any other: what it touches is never left out within a budget below one half. Meshes may be open, and need not be manifold: places at
-/// which more than two faces meet at an edge stay where they are.
+/// Errs on the side of the guarantee (see [`crate`]): fewer triangles might suffice. Views inside an object, or crossed
+/// by surfaces, need no special care: what touches a view is never left out within a budget below one half. Meshes may
+/// be open, and need not be manifold: places at which more than two faces meet at an edge stay where they are.
 ///
 /// Deterministic, whatever the number of threads. Costs what the method costs for each part of the views, the rays, and
 /// O(n log n) for collapsing. Memory: 8 bytes for each face and part.
@@ -86,7 +88,8 @@ const WEIGHT_OF_AREA: f64 = 1e-3;
 /// [`SimplifyError`]
 ///
 /// # Source
-/// What a face intercepts as the metric: Marsden's slides on the multifocal z-buffer, 2002; hardly-visible sets: Andújar et
+/// The intercepted share as the metric: Marsden's slides on the multifocal z-buffer, 2002; hardly-visible sets: Andújar
+/// et
 /// al., Computer Graphics Forum 19(3), 2000.
 pub fn simplify(
     scene: &Scene,
@@ -97,7 +100,7 @@ pub fn simplify(
     Prepared::new(scene, views, by, options)?.simplify(options)
 }
 
-/// A scene of which it is known what its faces can intercept for some views: to be simplified with several budgets.
+/// A scene with bounds on what its faces can intercept for some views: to be simplified with several budgets.
 #[derive(Debug)]
 pub struct Prepared<'a> {
     scene: &'a Scene,
@@ -107,7 +110,8 @@ pub struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Asks what is hidden, and bounds what is not. Of the options, only the number of parts, the depth and the threads matter.
+    /// Determines what is hidden, and bounds the rest. Of the options, only the number of parts, the depth and the
+    /// threads matter.
     ///
     /// # Errors
     /// [`SimplifyError`]
@@ -131,7 +135,7 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// What [`simplify`] does with what is known.
+    /// Simplifies as [`simplify`] does, with the prepared bounds.
     ///
     /// # Errors
     /// [`SimplifyError::Options`]
@@ -141,7 +145,7 @@ impl<'a> Prepared<'a> {
         Ok(in_threads(options.threads, || within_budget(scene, faces, Mesh::new(scene), views, intercepts, options)))
     }
 
-    /// What its faces can intercept, for each part of [`Self::views`].
+    /// Bounds on what its faces can intercept, for each part of [`Self::views`].
     pub const fn intercepts(&self) -> &Intercepts {
         &self.intercepts
     }
@@ -157,16 +161,16 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Runs with so many threads; 0 for one for each core.
+/// Runs on this many threads; 0 for one per core.
 pub(crate) fn in_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(run),
-        // Threads cannot be had: those of the process will do.
+        // No threads could be created: the existing ones are used.
         Err(_) => run(),
     }
 }
 
-/// Refuses scenes with mirrors, unless they do not matter.
+/// Refuses scenes with mirrors, unless they are ignored.
 pub(crate) fn check_mirrors(scene: &Scene, options: &SimplifyOptions) -> Result<(), SimplifyError> {
     match scene.mirrors().len() {
         n if n > 0 && !options.ignore_mirrors => Err(SimplifyError::Mirrors { n }),
@@ -209,7 +213,7 @@ pub(crate) fn check_table(scene: &Scene, table: &Table) -> Result<(), SimplifyEr
     Ok(())
 }
 
-/// What remains when it is known what faces intercept; `mesh` is the whole scene's.
+/// Simplifies within the budget, given bounds on what faces intercept; `mesh` is that of the whole scene.
 pub(crate) fn within_budget(
     scene: &Scene,
     faces: &Faces,
@@ -250,7 +254,7 @@ pub(crate) fn within_budget(
     }
     let [mut deviation, mut shift] = [0.0; 2];
     if kept > 0.0 {
-        // Half of what is kept pays for what goes, the other for what comes.
+        // One half of the reserved budget covers removed faces, the other new ones.
         let mut paying = CollapseBudget::choose(faces, views, intercepts, &mesh, options, account);
         let estimate = Estimate::new(faces, views, options.n_rays);
         let fronts = Fronts::new(faces, views);

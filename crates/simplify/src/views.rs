@@ -1,4 +1,4 @@
-//! From where a scene is looked at.
+//! The places from which a scene is viewed.
 
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::{Volume, VolumeError};
@@ -11,21 +11,21 @@ use std::collections::BinaryHeap;
 pub struct View {
     /// Where the eye can be, a closed box.
     pub volume: Volume,
-    /// The cell of a table that it is in, if it comes from one.
+    /// The table's cell that it is in, if it comes from one.
     pub cell: Option<CellId>,
 }
 
-/// All places of the eye: some closed boxes, which may overlap.
+/// All places of the eye: closed boxes, which may overlap.
 ///
-/// Bounds are made for each of them and hold for each, so many small boxes give better bounds than one large one.
+/// Bounds are computed for each box and hold in it, so many small boxes give better bounds than one large one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Views(Vec<View>);
 
-/// Why there are no such views.
+/// Why views are invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewsError {
-    /// No box at all.
+    /// The list is empty.
     #[error("there is no place for the eye: no view volume is given")]
     None,
     /// The table is of a plan.
@@ -34,23 +34,23 @@ pub enum ViewsError {
     /// The table has no such cell.
     #[error("the table has no cell {cell}; it has {n_cells}, numbered from 0")]
     NoCell {
-        /// What was asked for.
+        /// The requested cell.
         cell: u32,
-        /// How many there are.
+        /// Number of cells.
         n_cells: usize,
     },
-    /// The table does not say which box a cell fills.
+    /// The table has no box for a cell.
     #[error("cell {cell} of the table is no box, or its shape is not known")]
     NoBox {
         /// The cell.
         cell: u32,
     },
-    /// A box that is no volume.
+    /// A box that is not a valid volume.
     #[error(transparent)]
     Volume(#[from] VolumeError),
 }
 
-/// Whether the cells of a table are the boxes that it has of them.
+/// Whether the cells of a table are equal to their boxes.
 fn has_boxes(table: &Table) -> bool {
     table.planes().is_none() && table.kind().has_box_cells()
 }
@@ -89,10 +89,11 @@ impl Views {
         if views.is_empty() { Err(ViewsError::None) } else { Ok(Self(views)) }
     }
 
-    /// The same places in at least `n` boxes, as far as doubles allow: the box with the longest side is halved until there are enough.
+    /// The same places in at least `n` boxes, as far as doubles permit: the box with the longest side is halved until
+    /// there are enough.
     #[must_use]
     pub fn cut(mut self, n: usize) -> Self {
-        // A length that is not negative has the order of its bits.
+        // Non-negative lengths have the order of their bits.
         let longest = |v: &View| {
             let b = v.volume.bounds();
             (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max).to_bits()
@@ -100,7 +101,7 @@ impl Views {
         let mut heap: BinaryHeap<(u64, Reverse<usize>)> =
             self.0.iter().enumerate().map(|(at, v)| (longest(v), Reverse(at))).collect();
         while self.0.len() < n.min(Self::MOST) {
-            // Of equals the first.
+            // The first of equals.
             let Some((_, Reverse(at))) = heap.pop() else { break };
             let Some([low, high]) = self.0[at].volume.halves() else { break };
             self.0[at].volume = low;

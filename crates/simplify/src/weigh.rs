@@ -1,4 +1,4 @@
-//! What weighs faces and edges: from which sides they are seen, and how large they are.
+//! Weights of faces and edges: from which sides they are seen, and how large they are.
 
 use crate::views::Views;
 use sightlines_geometry::vector::{length, normal};
@@ -31,7 +31,7 @@ impl Fronts {
     }
 }
 
-/// Areas of faces as shares of all.
+/// Areas of faces as shares of the total.
 pub(crate) struct Areas {
     of: Vec<f64>,
     sum: f64,

@@ -1,4 +1,4 @@
-//! A graph as the search walks it: every exit with all that a step needs, in one array.
+//! A graph in the form that the search uses: every exit with all that a step needs, in one array.
 
 use crate::zones::Zones;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Exit, Planar, Space};
@@ -10,22 +10,22 @@ pub(crate) const NO_ZONE: u32 = u32::MAX;
 /// One exit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step<P> {
-    /// The portal, as who crosses it sees it.
+    /// The portal, oriented for crossing it.
     pub(crate) portal: P,
-    /// The side of the cell that is left by.
+    /// The side through which the cell is left.
     pub(crate) side: u32,
     /// The cell entered.
     pub(crate) to: u32,
-    /// The side that is entered by.
+    /// The side through which the cell is entered.
     pub(crate) entry_side: u32,
     /// The zone of the cell entered, or [`NO_ZONE`].
     pub(crate) zone: u32,
 }
 
-/// Objects, and where they are.
+/// Objects and their positions.
 #[derive(Debug, Clone)]
 pub(crate) struct Objects<B> {
-    /// What each object lies inside of.
+    /// The bounds of each object.
     pub(crate) bounds: Vec<B>,
     /// For each cell, the objects that touch it and the part of their bounds inside it.
     entries: Vec<(u32, B)>,
@@ -50,16 +50,16 @@ impl<B> Objects<B> {
     }
 }
 
-/// Cells, exits, zones and objects, ready for [`crate::visible_zones`]. `P` is the stabber's portal, `B`
-/// what it takes for bounds.
+/// Cells, exits, zones and objects, ready for [`crate::visible_zones`]. `P` is the stabber's portal type, `B` its type
+/// of bounds.
 #[derive(Debug, Clone)]
 pub struct Network<P, B> {
     pub(crate) steps: Vec<Step<P>>,
     /// Exits of cell `c` are `steps[first[c]..first[c + 1]]`.
     pub(crate) first: Vec<u32>,
-    /// Exits out of each zone into something else: where its searches begin.
+    /// Exits that lead out of each zone: where its searches begin.
     pub(crate) sources: Vec<Vec<u32>>,
-    /// What each zone lies inside of.
+    /// The bounds of each zone.
     pub(crate) bounds: Vec<B>,
     pub(crate) objects: Objects<B>,
 }
@@ -83,7 +83,7 @@ impl<P, B> Network<P, B> {
         &self.objects.of_zone[zone]
     }
 
-    /// Words of a row with a bit for each zone and, from a whole word on, one for each object.
+    /// Words of a row with a bit for each zone, followed, from the next whole word on, by one for each object.
     pub(crate) fn row_width(&self) -> usize {
         self.n_zones().div_ceil(64) + self.n_objects().div_ceil(64)
     }
@@ -100,7 +100,7 @@ impl<P, B> Network<P, B> {
 }
 
 impl<P, const D: usize> Network<P, Aabb<D>> {
-    /// The network of a graph whose exits are crossed as `crossing` says and whose cells have `extent`.
+    /// The network of a graph whose exits are crossed as given by `crossing` and whose cells have `extent`.
     fn of<S: Space>(
         graph: &CellGraph<S>,
         zones: &Zones,
@@ -144,8 +144,8 @@ impl Network<Portal2, Aabb<2>> {
 }
 
 impl Network<AxialDoor, Aabb<3>> {
-    /// The network of boxes in space, with objects by their boxes. An object is in every cell that its
-    /// closed box touches, with the part of its box inside the cell.
+    /// The network of boxes in space, with objects given by their boxes. An object is in every cell that its closed box
+    /// touches, with the part of its box inside the cell.
     pub fn axial(graph: &CellGraph<Axial>, zones: &Zones, objects: &[Aabb<3>]) -> Self {
         let extent = |id: CellId| graph.cell(id).bounds;
         let mut network = Self::of(graph, zones, |exit| graph.door(exit), extent);
@@ -169,7 +169,7 @@ impl Network<AxialDoor, Aabb<3>> {
     }
 }
 
-/// What two boxes have in common; empty if they do not touch.
+/// The intersection of two boxes; empty if they do not touch.
 fn common(a: &Aabb<3>, b: &Aabb<3>) -> Aabb<3> {
     let mut part = *a;
     for k in 0..3 {

@@ -1,17 +1,17 @@
-//! Which zones see each other: depth first from every zone, cut short by what is already known.
+//! Which zones see each other: a depth-first search from every zone, pruned by what is already known.
 //!
-//! From each exit of a zone the search follows every sequence of portals that the stabber lets pass.
-//! The zones it enters are visible. A branch carries its *candidates*, the zones that it may still
-//! reach and that matter, and ends when there are none. A candidate goes
+//! From each exit of a zone the search follows every sequence of portals that the stabber finds passable. The zones it
+//! enters are visible. A branch carries its *candidates*, the zones that it may still reach and that are not decided
+//! yet, and ends when there are none. A candidate is dropped
 //!
 //! * when it has been seen from the source;
-//! * when the branch enters a zone that is finished and does not see it: what a line sees after passing
-//!   a zone, that zone sees (symmetry makes a finished zone count for both);
+//! * when the branch enters a finished zone that does not see it: whatever a line sees after passing a zone is visible
+//!   from that zone (by symmetry a finished zone counts for both directions);
 //! * when its bounds lie behind a portal of the branch, or outside all lines of the branch.
 //!
-//! Each rule only removes zones that no line of the branch reaches, so the answer is exact whatever the
-//! order of the sources; the order, and zones known beforehand to be visible, only save work. That is
-//! also why threads may share their findings and the result is still the same.
+//! Each rule removes only zones that no line of the branch reaches, so the answer is exact for every order of the
+//! sources; the order, and zones known beforehand to be visible, only save work. For the same reason threads may share
+//! their findings without affecting the result.
 //!
 //! Source: Teller and Séquin, SIGGRAPH 1991, section 4, for the search; the candidate sets are in the
 //! spirit of the "might see" vectors of Quake's vis, made exact and symmetric.
@@ -22,10 +22,10 @@ use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Stabber;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 
-/// How to search. None of it changes the answer.
+/// Options of a search. None of them affects the answer.
 #[derive(Clone, Copy)]
 pub struct SearchOptions<'a> {
-    /// Number of threads; 0 for one for each core.
+    /// Number of threads; 0 for one per core.
     pub threads: usize,
     /// Chords shot through each exit before the search.
     pub chords: u32,
@@ -45,7 +45,7 @@ impl std::fmt::Debug for SearchOptions<'_> {
     }
 }
 
-/// What a search did. With several threads the counts vary from run to run; the answer does not.
+/// The work of a search. With several threads the counts vary from run to run; the answer does not.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct SearchSummary {
     /// Portals pushed, passable or not.
@@ -85,7 +85,7 @@ pub struct ZoneVisibility {
     pub zones: BitMatrix,
     /// Zones by objects: which objects are seen from which zones.
     pub objects: BitMatrix,
-    /// What it took.
+    /// The work done.
     pub summary: SearchSummary,
 }
 
@@ -94,7 +94,7 @@ pub struct ZoneVisibility {
 /// * `network`: cells, exits, zones, objects.
 /// * `stabber`: cloned for each thread; its state does not matter.
 ///
-/// Exact if the stabber is. Cost: output-sensitive in practice and exponential at worst, as every
+/// Exact if the stabber is. Cost: output-sensitive in practice and exponential in the worst case, as for every
 /// search over portal sequences; memory is a few bit matrices.
 ///
 /// # Errors
@@ -118,7 +118,7 @@ where
     let possible_fits = known.possible.iter().all(|(z, o)| fits(z, n) && fits(o, network.n_objects()));
     assert!(fits(&known.visible, n) && possible_fits, "what is known is about these zones and objects");
     let mut order: Vec<u32> = (0..n as u32).collect();
-    // Zones that see little are finished quickly and then cut the searches of those that see much.
+    // Zones that see little are finished quickly and then prune the searches of those that see much.
     order.sort_by_key(|&z| (known.visible.count_row(z as usize), z));
     let shared = Shared::new(network, stabber, known);
     let counter = Counter::new(options.progress, "zones", n);
@@ -197,13 +197,12 @@ impl Front {
     }
 }
 
-/// What all threads see. Rows have a bit for each zone and, from the next whole word on, one for each
-/// object.
+/// What all threads share. Rows have a bit for each zone and, from the next whole word on, one for each object.
 struct Shared<'a, P, B> {
     network: &'a Network<P, B>,
     /// Words of a row.
     width: usize,
-    /// Words of the part of a row that is about zones.
+    /// Words of the zone part of a row.
     zone_width: usize,
     front: Front,
     /// Zones and objects found visible.
@@ -270,7 +269,7 @@ struct Frame<U> {
 struct Worker<'a, S: Stabber> {
     shared: &'a Shared<'a, S::Portal, S::Bounds>,
     stabber: S,
-    /// Row of the source, as far as known.
+    /// The row of the source so far.
     seen: Vec<u64>,
     /// Candidate words of all frames: index of the word, and its bits.
     arena: Vec<(u32, u64)>,
@@ -364,7 +363,7 @@ impl<'a, S: Stabber> Worker<'a, S> {
         }
     }
 
-    /// Enters the cell behind `exit`: marks its zone, and goes on if that can show anything new.
+    /// Enters the cell behind `exit`: marks its zone, and continues if that can reveal anything new.
     fn enter(&mut self, exit: u32, from_zone: u32, candidates: (u32, u32), undo: Option<S::Undo>) -> bool {
         let step = &self.shared.network.steps[exit as usize];
         self.summary.n_visits += 1;
@@ -407,8 +406,8 @@ impl<'a, S: Stabber> Worker<'a, S> {
         self.seen[word] |= bit;
     }
 
-    /// The candidates that remain after crossing `exit` into `zone`, as a new list; nothing is added to
-    /// the arena if none remain.
+    /// The candidates that remain after crossing `exit` into `zone`, as a new list; nothing is added to the arena if
+    /// none remain.
     fn narrow(&mut self, exit: u32, zone: u32, candidates: (u32, u32)) -> (u32, u32) {
         let shared = self.shared;
         let might = &shared.might[zone as usize * shared.width..][..shared.width];

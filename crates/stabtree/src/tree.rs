@@ -23,12 +23,12 @@ pub struct StabNode {
     pub cell: CellId,
     /// The portal crossed last; `None` at the root.
     pub portal: Option<PortalId>,
-    /// Index of the node that the sequence came from; `None` at the root.
+    /// Index of the node before the last portal; `None` at the root.
     pub parent: Option<u32>,
 }
 
-/// All sequences of portals out of a cell that an open set of lines passes, as a tree in depth-first
-/// order. A cell occurs once for each sequence that reaches it.
+/// All sequences of portals out of a cell that an open set of lines passes, as a tree in depth-first order. A cell
+/// occurs once for each sequence that reaches it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StabTree {
     nodes: Vec<StabNode>,
@@ -44,19 +44,19 @@ pub struct TooLarge {
     pub max_nodes: usize,
 }
 
-/// A node whose exits are not all tried yet.
+/// A node with exits still to try.
 struct Open<U> {
     node: u32,
-    /// The side it was entered by; `None` at the root.
+    /// The side through which it was entered; `None` at the root.
     entry_side: Option<u32>,
     /// Place of the next exit to try.
     next: usize,
-    /// How to take its portal back; `None` if the sequence began with it.
+    /// How to undo its portal; `None` if the sequence began with it.
     undo: Option<U>,
 }
 
 impl StabTree {
-    /// Builds the tree of `root`; `crossing` gives an exit's portal as who crosses it sees it.
+    /// Builds the tree of `root`; `crossing` gives an exit's portal, oriented for crossing it.
     ///
     /// Exact if the stabber is. The number of nodes can be exponential in the size of the graph, hence
     /// `max_nodes`.

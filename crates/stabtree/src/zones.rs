@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// A partition of some of the cells of a graph into zones, numbered from 0.
 ///
 /// A zone is a single cell in a search for every cell, or all cells with the same groups in a search for groups (Doom
-/// sectors). Cells without a zone only let sight pass.
+/// sectors). Lines pass through cells without a zone, which are neither source nor target.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Zones {
     of_cell: Vec<u32>,
@@ -22,8 +22,8 @@ impl Zones {
         Self { of_cell: graph.cell_ids().map(|c| c.0).collect(), n_zones: graph.n_cells() }
     }
 
-    /// Cells with the same set of groups make a zone. Returns the groups of each zone too; zones are
-    /// numbered in the order of their groups.
+    /// Cells with the same set of groups make a zone. Also returns the groups of each zone; zones are numbered in the
+    /// order of their groups.
     pub fn by_groups(graph: &CellGraph<Planar>) -> (Self, Vec<Vec<u32>>) {
         let mut numbers: BTreeMap<&[u32], u32> = BTreeMap::new();
         for cell in graph.cells().iter().filter(|c| !c.groups.is_empty()) {

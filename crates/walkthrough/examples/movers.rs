@@ -1,8 +1,9 @@
-//! Things that move in an office tower while a viewer walks through it: what the movers of a frame cost with temporal bounding volumes, and
-//! with the plain method that asks each mover for its place and each place for its cells.
+//! Moving objects in an office tower while a viewer walks through it: the cost of the movers in a frame with temporal
+//! bounding volumes, and with the plain method that queries the position of every mover and the cells at every
+//! position.
 //!
-//! `movers [FLOORS] [FRAMES] [CELLS]`: a tower of 6 floors, 900 frames at 60 frames a second, and as many cells for a
-//! volume at most as [`MoverOptions`] allow by default.
+//! `movers [FLOORS] [FRAMES] [CELLS]`: a tower of 6 floors, 900 frames at 60 frames per second, and the default of
+//! [`MoverOptions`] as the largest number of cells of a volume.
 
 use sightlines_bake::{SceneBakeOptions, bake_scene};
 use sightlines_eye_to_cell::{Method, TableCells, View, VisibleSet};
@@ -18,15 +19,15 @@ use std::time::{Duration, Instant};
 
 type Cells = TableCells<Arc<Table>>;
 
-/// Frames a second.
+/// Frames per second.
 const RATE: f64 = 60.0;
 
 /// How a mover moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// About a room, to and fro; what is promised is a top speed, and to stay in the tower.
+    /// To and fro in a room; promises a top speed, and to stay in the tower.
     Fast,
-    /// The same; what is promised is the room too.
+    /// The same; promises the room too.
     InRoom,
     /// Up and down through all floors.
     Lifts,
@@ -38,7 +39,7 @@ struct Thing {
     from: [f64; 3],
     to: [f64; 3],
     size: [f64; 3],
-    /// Seconds for the way there and back, and where it begins.
+    /// Seconds for the way there and back, and the phase at the start.
     period: f64,
     phase: f64,
 }
@@ -51,14 +52,14 @@ impl Thing {
         Aabb { min, max: std::array::from_fn(|k| min[k] + self.size[k]) }
     }
 
-    /// The most that a coordinate changes in a second, and a millionth for the rounding of [`Thing::at`].
+    /// The largest change of a coordinate per second, and a millionth more for the rounding of [`Thing::at`].
     fn speed(&self) -> f64 {
         let way = (0..3).map(|k| (self.to[k] - self.from[k]).abs()).fold(0.0, f64::max);
         2.0 * way / self.period * (1.0 + 1e-6) + 1e-6
     }
 }
 
-/// Chance that is the same everywhere.
+/// Pseudorandom numbers that are the same everywhere.
 struct Chance(u64);
 
 impl Chance {
@@ -89,7 +90,7 @@ fn things(n: usize, kind: Kind, rooms: &[Aabb<3>], all: &Aabb<3>) -> Vec<(Thing,
         .expect("rooms and speeds are finite")
 }
 
-/// A frame of the walk, kept: what it sees does not depend on movers.
+/// A stored frame of the walk: its visible cells do not depend on movers.
 struct Kept {
     seen: VisibleSet,
     answer: Answer,
@@ -136,7 +137,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Goes through the frames by both ways, and prints what they cost.
+/// Runs the frames with both methods, and prints their cost.
 fn compare(cells: &Cells, frames: &[Kept], how: MoverOptions, kind: Kind, things: &[(Thing, Motion)]) {
     let n = things.len();
     let mut movers = Movers::new(cells.clone(), how);
@@ -153,7 +154,8 @@ fn compare(cells: &Cells, frames: &[Kept], how: MoverOptions, kind: Kind, things
         let told = movers.frame(now, &frame, &mut |id: MoverId| things[id.slot()].0.at(now)).expect("time goes on");
         ours.push(start.elapsed());
         let told: Vec<usize> = told.iter().map(|id| id.slot()).collect();
-        // The plain method is slow with many movers: some of the frames tell its time, and that the answers are the same.
+        // The plain method is slow with many movers: a sample of the frames measures its time and checks that the
+        // answers are equal.
         if k % 20 == 1 {
             let start = Instant::now();
             let all: Vec<usize> = (0..n).filter(|&i| twin.sees(&frame, &things[i].0.at(now))).collect();

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let view = View::planar([0.25 + 0.5 * f64::from(k), 0.5], [1.0, 0.0], 0.3)?;
         walk.frame(&view, Method::Exact);
-        // A game would draw the superset now; this example waits for what it asked for.
+        // A game would draw the superset now; this example waits for its requests.
         while !walk.is_idle() {
             std::thread::yield_now();
         }

@@ -95,7 +95,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Invariant: never above the budget unless by one thing alone; who was used last stays; the books balance.
+        /// Invariant: never above the budget except by one item alone; the most recently used item stays; the counters
+        /// agree with the content.
         #[test]
         fn budget_is_kept(budget in 0usize..50, steps in prop::collection::vec((0u32..8, 1usize..20, any::<bool>()), 1..60)) {
             let mut cache = Cache::new(budget);

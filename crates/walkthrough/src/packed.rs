@@ -1,4 +1,4 @@
-//! Packed tables, for both sides: the resident part, and what is read on demand.
+//! Packed tables for both roles: the resident part, and the data read on demand.
 
 use crate::coarse::CoarseVisibility;
 use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge, StabStep};

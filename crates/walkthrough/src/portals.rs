@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 /// sides.
 type Corners = Vec<[u64; 3]>;
 
-/// For each portal of `old`, by number, the portal of `new` with the same corners, bit for bit; in any direction. `None` where there is none,
-/// or several, or several in `old`. Zeros of both signs are the same.
+/// For each portal of `old`, by number, the portal of `new` with the same corners, bit for bit; in any direction.
+/// `None` if there is none, or several, or several in `old`. Zeros of both signs are equal.
 ///
 /// Reads the exits of all cells of both tables: O(portals · log portals); too slow for every frame.
 ///
@@ -47,7 +47,7 @@ fn by_corners<S: CellSource + ?Sized>(source: &S) -> Result<BTreeMap<Corners, Ve
 }
 
 fn canonical(corners: &[[f64; 3]]) -> Corners {
-    // Adding a zero makes a zero of any sign the positive one.
+    // Adding zero makes a negative zero positive.
     let bits: Corners = corners.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
     let turned = |corners: &Corners| {
         let mut corners = corners.clone();

@@ -92,7 +92,7 @@ impl<S: CellSource<Error: Send + 'static> + Send + 'static> Prepare for VisibleS
 /// `R` answers at once (point location, and a superset of what a cell sees). `S` is a source that may be slow; only
 /// another thread reads it. Both may be the same table.
 ///
-/// A frame never waits. If the subgraph of the eye's cell has not arrived yet, the frame gets a superset. VisibleSubgraphs of
+/// A frame never waits. If the subgraph of the eye's cell has not arrived yet, the frame gets a superset. Subgraphs of
 /// the cells ahead are prepared in advance.
 pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static> {
     resident: R,
@@ -277,7 +277,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         changed
     }
 
-    /// Switches to another table, for example after a wall was added or removed. VisibleSubgraphs and mirrors of the old one
+    /// Switches to another table, for example after a wall was added or removed. Subgraphs and mirrors of the old one
     /// are dropped, and pending results of its thread are ignored; the first frames are [`Answer::Late`], as at the
     /// start. The path of the eye and the counters continue.
     ///
@@ -323,7 +323,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         self.subgraphs.is_idle()
     }
 
-    /// Takes the last error of preparing an subgraph, with its cell. Until preparing succeeds, frames there are
+    /// Takes the last error of preparing a subgraph, with its cell. Until preparing succeeds, frames there are
     /// [`Answer::Late`].
     pub fn take_error(&mut self) -> Option<(CellId, S::Error)> {
         self.subgraphs.take_error()

@@ -1,15 +1,15 @@
-//! A walk through a scene without a goal, for measuring.
+//! A random walk through a scene, for measuring.
 
 use sightlines_eye_to_cell::CellSource;
 use sightlines_geometry::Random;
 use sightlines_pvs::{CellId, PortalId};
 
-/// Where the viewer of a frame is, and looks.
+/// The position and direction of the viewer in a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraPose {
     /// The eye, in scene units; z is 0 in a plane.
     pub eye: [f64; 3],
-    /// The direction of view; of any length but zero.
+    /// The direction of view; any non-zero vector.
     pub dir: [f64; 3],
 }
 
@@ -17,13 +17,13 @@ pub struct CameraPose {
 const INERTIA: f64 = 0.875;
 
 /// Walks through a scene for `n_frames` frames: from the middle of a cell through a portal into the next, seldom back,
-/// looking where it goes, with smooth turns; every so often it begins anew somewhere else, so that long walks see most
-/// of a scene. `step` is the way from frame to frame in scene units.
+/// looking ahead, with smooth turns; now and then the walk restarts elsewhere, so that long walks see most of a scene.
+/// `step` is the distance between frames in scene units.
 ///
-/// The same numbers give the same walk on every machine. Empty if no cell has a portal.
+/// The same arguments give the same walk on every machine. Empty if no cell has a portal.
 ///
 /// # Errors
-/// The first of the source.
+/// The first error of the source.
 pub fn wander<S: CellSource + ?Sized>(
     source: &S,
     n_frames: usize,
@@ -33,7 +33,7 @@ pub fn wander<S: CellSource + ?Sized>(
     let mut chance = Random::new(seed);
     let mut frames = Vec::with_capacity(n_frames);
     let n_cells = source.n_cells();
-    // Tries without finding a portal in a row.
+    // Consecutive attempts without finding a portal.
     let mut n_failed = 0;
     while frames.len() < n_frames && n_failed < 16 * n_cells {
         let mut cell = CellId(below(&mut chance, n_cells) as u32);
@@ -62,7 +62,7 @@ pub fn wander<S: CellSource + ?Sized>(
     Ok(frames)
 }
 
-/// Goes straight to `goal`, a frame at each step.
+/// Goes straight to `goal`, one frame per step.
 fn go(
     place: &mut [f64; 3],
     dir: &mut [f64; 3],
@@ -83,7 +83,7 @@ fn go(
             return;
         }
         *dir = std::array::from_fn(|i| INERTIA * dir[i] + (1.0 - INERTIA) * way[i] / length);
-        // The last step ends where it should, without rounding.
+        // The last step ends exactly at the goal, without rounding.
         *place = if k as f64 == n { goal } else { std::array::from_fn(|i| start[i] + way[i] * (k as f64 / n)) };
         let looks = if dir.iter().all(|x| x.abs() < 1e-3) { way } else { *dir };
         frames.push(CameraPose { eye: *place, dir: looks });
@@ -109,7 +109,7 @@ fn doors<S: CellSource + ?Sized>(source: &S, cell: CellId) -> Result<Vec<Door>, 
     Ok(doors)
 }
 
-/// A point of the cell, as it is convex: between its portals. Not on a portal if there are several on different sides.
+/// A point of the convex cell between its portals. Not on a portal if there are several on different sides.
 fn middle(doors: &[Door]) -> Option<[f64; 3]> {
     mean(doors.iter().map(|door| door.at))
 }
@@ -120,7 +120,7 @@ fn mean(points: impl ExactSizeIterator<Item = [f64; 3]>) -> Option<[f64; 3]> {
     (n > 0.0).then(|| sum.map(|x| x / n))
 }
 
-/// A whole number from 0 to before `n`.
+/// An integer from 0 to before `n`.
 fn below(chance: &mut Random, n: usize) -> usize {
     ((u128::from(chance.bits()) * n as u128) >> 64) as usize
 }

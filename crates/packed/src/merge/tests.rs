@@ -42,8 +42,8 @@ fn added(less: &BitMatrix, more: &BitMatrix, of: &[u32]) -> Option<usize> {
 }
 
 proptest! {
-    /// Whatever is merged, nothing that was seen is hidden, and the matrix stays what a table needs; more
-    /// merges never show less; without merges nothing is added (the tightness twin).
+    /// Whatever is merged, nothing visible is hidden, and the matrix stays valid for a table; more merges never show
+    /// less; without merges nothing is added (the tightness twin).
     #[test]
     fn merging_only_adds_sight((cells, objects, weights, members) in sights()) {
         let n = cells.n_rows();
@@ -70,10 +70,10 @@ proptest! {
         prop_assert_eq!(after(&order, n - 1, n), (vec![0; n], 1));
     }
 
-    /// Tightness: what can be merged for nearly nothing is merged first.
+    /// Tightness: the cheapest merges come first.
     #[test]
     fn blocks_are_merged_before_anything_else(n_blocks in 2usize..9, size in 2usize..6, noise in any::<u64>()) {
-        // Cells of a block see each other, but for one pair.
+        // Cells of a block see each other, except for one pair.
         let n = n_blocks * size;
         let mut cells = BitMatrix::identity(n);
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
@@ -93,7 +93,7 @@ proptest! {
     }
 }
 
-/// The impostor: rows merged without their columns are not symmetric, and the check above says so.
+/// The impostor: rows merged without their columns are not symmetric, and the check above detects it.
 #[test]
 fn rows_alone_are_not_symmetric() {
     let mut cells = BitMatrix::identity(3);

@@ -33,7 +33,7 @@ fn merged_pairs(recipe: crate::common::Recipe, share: u64) -> Result<(usize, usi
             let (hidden, added) = differences(&table, &other);
             prop_assert_eq!(hidden, 0);
             prop_assert!((merged.n_merges > 0) == (budget < exact.len() as u64));
-            // All the rest is as it was.
+            // Everything else is unchanged.
             let mut parts = other.into_parts();
             parts.rows = table.parts().rows.clone();
             parts.objects_seen = table.parts().objects_seen.clone();
@@ -55,10 +55,10 @@ proptest! {
     }
 }
 
-/// The tightness twin: a budget that is a little short costs a little, and one that is enough nothing.
+/// The tightness twin: a slightly smaller budget costs little, and a sufficient one nothing.
 #[test]
 fn little_is_added_for_little() {
-    // With blocks of five cells, the merges that are left are those that cost something.
+    // With blocks of five cells, only merges with a cost are left.
     let mut added = Vec::new();
     for share in [0, 2, 6, 12, 25] {
         added.push(merged_pairs((2, 13, 7, 3, 0b0100), share).unwrap());
@@ -78,7 +78,7 @@ fn a_budget_that_cannot_be_kept_says_what_can() {
     assert!(error.to_string().starts_with("a budget of 10 bytes cannot be kept"));
 }
 
-/// The impostor: a table that lacks a pair is found out by the comparison that the property uses.
+/// The impostor: a table that lacks a pair is detected by the comparison in the property.
 #[test]
 fn impostor_a_hidden_pair_is_counted() {
     let table = table((2, 6, 5, 7, 0xFF));

@@ -1,4 +1,4 @@
-//! The budget of memory is kept, changes no answer, and threads do not disturb each other.
+//! The memory budget holds, affects no answer, and threads do not interfere.
 
 use crate::common::{recipes, table};
 use crate::round_trip::compare;
@@ -18,7 +18,7 @@ proptest! {
         prop_assert!(budget > 0 || stats.hits == 0);
         prop_assert!(stats.misses == 0 || stats.bytes_read > packed.resident_bytes() as u64);
         compare(&packed, &table);
-        // With room for all, nothing is read twice; the twin: without any, all is.
+        // With room for everything, nothing is read twice; the twin: without any, everything is.
         let again = packed.stats();
         prop_assert!(budget < 1 << 20 || again.misses == stats.misses);
         prop_assert!(budget > 0 || again.misses == 2 * stats.misses);
@@ -35,7 +35,7 @@ fn a_file_that_the_host_opened_answers_the_same() {
     assert_eq!(packed.to_table().unwrap(), table);
 }
 
-/// A file that is cut while it is open gives errors, and a resident part that still answers.
+/// A file that is truncated while it is open gives errors, and its resident part still answers.
 #[test]
 fn a_file_that_is_cut_while_open_gives_errors() {
     let table = table((2, 13, 7, 3, 0xFF));

@@ -1,4 +1,4 @@
-//! Tables with all parts that a table can have, and with rows and columns that repeat.
+//! Tables with all optional parts, and with rows and columns that repeat.
 
 use proptest::prelude::*;
 use sightlines_pvs::{
@@ -26,7 +26,7 @@ impl Dice {
     }
 }
 
-/// A grid of unit cells, some of which see the same.
+/// A grid of unit cells, some with equal visibility.
 pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
     let mut dice = Dice(seed);
     let has = |k: u8| parts >> k & 1 == 1;
@@ -84,13 +84,13 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
         out.up = Some(Axis::ALL[seed as usize % 2]);
     }
     if seed % 2 == 1 {
-        // Some are alike, some empty, some no ASCII.
+        // Some are equal, some empty, some not ASCII.
         out.cell_names = (0..n).map(|i| ["", "room", "Küche", "room0_Living Room"][i % 4].repeat(1 + i % 3)).collect();
     }
     Table::new(out).expect("a table")
 }
 
-/// Blocks of cells that see the same, and some pairs besides.
+/// Blocks of cells with equal visibility, and some additional pairs.
 fn rows(n: usize, dice: &mut Dice, size: u32) -> BitMatrix {
     let pattern = dice.0;
     let sees = |a: u32, b: u32| a == b || pattern.rotate_left(7 * a.min(b) + 5 * a.max(b)) & 3 == 0;
@@ -148,7 +148,7 @@ fn stab(table: &TableParts) -> StabTrees {
     StabTrees::new(parts, &table.portals, table.cells.len()).expect("trees")
 }
 
-/// A chain of planes, one between any two cells; what they say need not be true.
+/// A chain of planes, one between any two cells; it need not be correct.
 fn planes(n: u32) -> PlaneTree {
     let node = |k: u32| PlaneNode {
         normal: [1.0, 0.25, 0.0],
@@ -161,7 +161,7 @@ fn planes(n: u32) -> PlaneTree {
     PlaneTree::new((0..n.min(9)).map(node).collect(), 0.125).expect("a tree")
 }
 
-/// Points on and off the grid, and some that are no points.
+/// Points on and off the grid, and some that are not finite.
 pub(crate) fn points(dimension: u8) -> Vec<[f64; 3]> {
     let line = [-1.0, 0.0, 0.5, 1.0, 2.75, 3.0, 6.0, f64::NAN, f64::INFINITY];
     let z = if dimension == 2 { 0.0 } else { 0.75 };

@@ -1,10 +1,10 @@
-//! Cut and changed files are refused, or answer as before; nothing panics.
+//! Truncated and changed files are refused, or answer as before; nothing panics.
 
 use crate::common::{SMALL, table};
 use sightlines_packed::{PackOptions, Packed, PackedError, pack};
 use sightlines_pvs::{CellId, ObjectId, PlaceBuffer, Table};
 
-/// Asks everything; whatever comes must be an answer or an error.
+/// Makes all queries; each must give an answer or an error.
 pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
     let (mut cells, mut numbers, mut nodes, mut n_errors) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let mut count = |result: Result<(), PackedError>| n_errors += usize::from(result.is_err());
@@ -55,8 +55,8 @@ fn every_prefix_is_refused() {
     assert!(n > 1000, "{n} prefixes");
 }
 
-/// Every byte is under a checksum: no change of one goes unnoticed by the full check, and none of a
-/// resident byte when a file is opened.
+/// Every byte is covered by a checksum: the full check detects a change of any byte, and opening a file detects one of
+/// any resident byte.
 #[test]
 fn every_changed_byte_is_noticed() {
     let mut n = [0; 2];
@@ -91,7 +91,7 @@ fn n_block_bytes(bytes: &[u8]) -> usize {
     bytes.len() - (offset + length)
 }
 
-/// Makes the checksums of sections and header right again.
+/// Corrects the checksums of sections and header.
 fn seal(bytes: &mut [u8]) {
     let all = sections(bytes);
     for (i, &(offset, length)) in all.iter().enumerate() {
@@ -103,7 +103,7 @@ fn seal(bytes: &mut [u8]) {
     bytes[end..end + 4].copy_from_slice(&crc.to_le_bytes());
 }
 
-/// A file that claims four thousand million objects, in a block that is as small as it was: a run-time would take memory for each.
+/// A file that claims four thousand million objects in an unchanged small block: a game would allocate memory for each.
 #[test]
 fn numbers_of_objects_are_held_against_blocks() {
     let bytes = pack(&table(SMALL[0]), &PackOptions::default()).unwrap();
@@ -118,14 +118,14 @@ fn numbers_of_objects_are_held_against_blocks() {
         for at in [head + 8, objects + 4, objects + 8] {
             lie[at..at + 4].copy_from_slice(&number);
         }
-        // Without own rows of objects, whose length would give it away.
+        // Without its own rows of objects, whose length would be wrong.
         lie[head + 20] &= !2;
         seal(&mut lie);
         assert_eq!(Packed::open(lie, 0).is_ok(), right, "{claimed} objects");
     }
 }
 
-/// What a patient vandal would write: resident bytes changed, and the checksums made right again.
+/// What a patient vandal would write: changed resident bytes with correct checksums.
 #[test]
 fn lies_with_right_checksums_are_refused_or_answered() {
     let (mut n_opened, mut n_refused) = (0, 0);
@@ -150,14 +150,14 @@ fn lies_with_right_checksums_are_refused_or_answered() {
     assert!(n_opened > 1000 && n_refused > 1000, "{n_opened} opened, {n_refused} refused");
 }
 
-/// The checksum bit by bit, as its definition says: another method than the crate's.
+/// The checksum bit by bit, from its definition: a different method from the crate's.
 fn crc32(bytes: &[u8]) -> u32 {
     let step = |crc: u32| (0..8).fold(crc, |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xEDB8_8320 } else { crc >> 1 });
     !bytes.iter().fold(u32::MAX, |crc, &byte| step(crc ^ u32::from(byte)))
 }
 
-/// A file whose block `wanted` is unpacked, shown to `change`, and put back as it is then, with all checksums
-/// right; `None` if there are not as many blocks.
+/// A file whose block `wanted` is unpacked, passed to `change`, and stored again, with all checksums correct; `None` if
+/// there are not that many blocks.
 fn with_block(bytes: &[u8], wanted: usize, change: impl FnOnce(&mut Vec<u8>)) -> Option<Vec<u8>> {
     let (index, n_index) = *sections(bytes).last()?;
     let (mut at, mut offset, mut seen) = (index + 4, index + n_index, 0);
@@ -193,7 +193,7 @@ fn with_block(bytes: &[u8], wanted: usize, change: impl FnOnce(&mut Vec<u8>)) ->
     Some(out)
 }
 
-/// The same in blocks: their contents lie, and every checksum says that they do not.
+/// The same in blocks: wrong contents with correct checksums.
 #[test]
 fn blocks_that_lie_with_right_checksums_are_refused_or_answered() {
     let (mut n_files, mut n_errors, mut n_blocks) = (0, 0, 0);
@@ -212,7 +212,7 @@ fn blocks_that_lie_with_right_checksums_are_refused_or_answered() {
                 let _ = packed.verify();
                 n_files += 1;
             }
-            // A block that is cut short, too.
+            // Also a block that is truncated.
             let cut = with_block(&bytes, wanted, |block| block.truncate(n / 2)).unwrap();
             assert!(read(cut).is_err());
         }

@@ -1,4 +1,4 @@
-//! What comes out is what went in.
+//! A packed table comes back unchanged.
 
 use crate::common::{points, recipes, table};
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use sightlines_packed::{PackOptions, Packed, PackedErrorKind, pack, pack_report}
 use sightlines_pvs::format::kind_to_bytes;
 use sightlines_pvs::{Axis, CellId, ObjectId, PlaceBuffer, PortalId, Table, TableKind, TableParts};
 
-/// All that a packed table answers, compared with the table; the number of comparisons.
+/// Compares all queries of the packed table with the table; returns the number of comparisons.
 pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
     let (mut cells, mut numbers, mut n, mut buffer) = (Vec::new(), Vec::new(), 0, PlaceBuffer::new());
     let mut nodes = Vec::new();
@@ -80,7 +80,7 @@ proptest! {
     }
 }
 
-/// Names are a store of their own: without them a file is of version 1.0, and the rest of it is what it was.
+/// Names are a separate store: without them a file has version 1.0, and the rest of it is unchanged.
 #[test]
 fn names_come_and_go_alone() {
     let named = table((3, 6, 5, 7, 0xFF));
@@ -93,7 +93,7 @@ fn names_come_and_go_alone() {
     assert!(with.has_cell_names() && !without.has_cell_names());
     assert_eq!((without.cell_name(CellId(3)).unwrap(), without.to_table().unwrap()), (None, bare));
     assert_eq!(with.cell_name(CellId(2)).unwrap().as_deref(), Some("KücheKücheKüche"));
-    // Every part but the names and the index of blocks is as long as before; names are not kept in memory.
+    // Every part except the names and the index of blocks is as long as before; names are not resident.
     let index = sightlines_pvs::SectionId(*b"BLKS");
     let rest = |packed: &Packed<Vec<u8>>| {
         packed.part_sizes().into_iter().filter(|part| part.id.0 != *b"CNAM" && part.id != index).collect::<Vec<_>>()
@@ -110,7 +110,7 @@ fn names_come_and_go_alone() {
     assert_eq!(merged.parts().cell_names, named.parts().cell_names);
 }
 
-/// A comparison can fail: a table with one pair less is another one.
+/// The comparison can fail: a table with one pair less differs.
 #[test]
 fn impostor_a_table_without_a_pair_is_told_apart() {
     let table = table((2, 6, 5, 7, 0xFF));
@@ -151,7 +151,7 @@ fn what_is_not_there_is_an_error_that_says_so() {
     assert_eq!(error.to_string(), "byte 0: this is no packed visibility table");
 }
 
-/// The section `KIND` of a packed table, renamed so that no reader knows it, or changed; with right checksums.
+/// The section `KIND` of a packed table, renamed to an unknown id, or changed; with correct checksums.
 fn with_kind(bytes: &[u8], id: [u8; 4], content: Option<[u8; 12]>, minor: u8) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     bytes[10] = minor;
@@ -179,9 +179,9 @@ fn kinds_are_stored_and_older_files_understood() {
     assert_eq!(bytes[10], 2, "the minor version");
     let known = (kind, Some(Axis::Z), false);
     assert_eq!(made(bytes.clone()).unwrap(), known);
-    // As before version 1.2, by the texts.
+    // As before version 1.2, from the texts.
     assert_eq!(made(with_kind(&bytes, *b"xIND", None, 1)).unwrap(), known);
-    // The section, not the texts, if there is one.
+    // The section, if there is one, takes precedence over the texts.
     let other = kind_to_bytes(TableKind::QuakeMap, None);
     assert_eq!(made(with_kind(&bytes, *b"KIND", Some(other), 2)).unwrap(), (TableKind::QuakeMap, None, false));
     let unknown = [9; 12];

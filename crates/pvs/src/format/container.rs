@@ -1,4 +1,4 @@
-//! Header, section table, checksums: everything about the file but what the sections mean.
+//! Header, section table, checksums: everything in the file except the meaning of sections.
 
 use super::error::{DecodeError, DecodeErrorKind as Kind, SectionId};
 use super::{ENTRY, FIXED, KNOWN, MAGIC, MAJOR, OPTIONAL};
@@ -10,7 +10,7 @@ pub(super) struct Payload {
     pub(super) bytes: Vec<u8>,
 }
 
-/// A known section that was found and has the right checksum.
+/// A known section with the right checksum.
 #[derive(Clone, Copy)]
 pub(super) struct Section<'a> {
     pub(super) id: SectionId,
@@ -18,7 +18,7 @@ pub(super) struct Section<'a> {
     pub(super) bytes: &'a [u8],
 }
 
-/// Whether this version has the section; if so, whether as an optional one.
+/// Whether this version has the section; if so, whether it is optional.
 fn known(id: SectionId) -> Option<bool> {
     KNOWN.iter().find(|(known, ..)| *known == id).map(|&(_, optional, _)| optional)
 }
@@ -55,7 +55,7 @@ pub(super) fn write(sections: &[Payload]) -> Vec<u8> {
     out
 }
 
-/// Checks everything about the file but what the sections mean; returns the minor version and the known sections.
+/// Checks everything in the file except the meaning of sections; returns the minor version and the known sections.
 pub(super) fn read(bytes: &[u8]) -> Result<(u16, Vec<Section<'_>>), DecodeError> {
     let entries = read_header(bytes)?;
     let mut end = FIXED + entries.len() + 8;
@@ -143,7 +143,7 @@ fn check_zero(bytes: &[u8], from: usize, to: usize, section: Option<SectionId>) 
     }
 }
 
-/// The `N` bytes at `at`, which the caller knows to be there.
+/// The `N` bytes at `at`, which must exist.
 pub(super) fn array<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
     std::array::from_fn(|i| bytes[at + i])
 }

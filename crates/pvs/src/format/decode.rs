@@ -16,10 +16,10 @@ use crate::{
 use crate::{Table, TableError, TableParts};
 
 impl Table {
-    /// Reads the bytes of a `.pvs` file and checks them as [`Table::new`] does. O(size), and memory in
-    /// proportion to the number of bytes, whatever they claim.
+    /// Reads the bytes of a `.pvs` file and checks them as [`Table::new`] does. O(size), and memory proportional to the
+    /// number of bytes, whatever they claim.
     ///
-    /// A cut file, one with something after its end, and one with any single byte changed are errors.
+    /// A truncated file, one with something after its end, and one with any single byte changed are errors.
     ///
     /// # Errors
     /// [`DecodeError`], with section and byte offset.
@@ -39,7 +39,7 @@ impl Table {
         let object_polygons = sections.find(OBJECT_POLYGONS).map_or(Ok(Vec::new()), polygons_of)?;
         let names_of = |s| read(s, |r: &mut Reader<'_>| cell_names(r, cells.len()));
         let cell_names = sections.find(CELL_NAMES).map_or(Ok(Vec::new()), names_of)?;
-        // Stab trees refer to the portals of cells, so these must be there.
+        // Stab trees refer to the portals of cells, so these cells must exist.
         if let (Some(_), Some(error)) = (sections.find(STAB), unknown_cell(&portals, cells.len())) {
             return Err(sections.blame(error));
         }
@@ -85,7 +85,7 @@ impl<'a> Sections<'a> {
         self.find(id).ok_or(DecodeError { section: Some(id), offset: self.len, kind: Kind::Missing })
     }
 
-    /// Says in which section the mistake is.
+    /// Adds the section of the defect.
     fn blame(&self, error: TableError) -> DecodeError {
         let id = section_of(&error);
         let offset = self.find(id).map_or(self.len, |section| section.offset as u64);
@@ -153,7 +153,7 @@ fn cells(r: &mut Reader<'_>) -> Result<(u8, Vec<CellRecord>), DecodeError> {
     Ok((dimension, cells))
 }
 
-/// The lengths of `n` lists, and the check that as many items of `size` bytes follow.
+/// The lengths of `n` lists, with a check that as many items of `size` bytes follow.
 fn lengths(r: &mut Reader<'_>, n: usize, size: usize) -> Result<Vec<u32>, DecodeError> {
     let lengths = r.u32s(n as u64)?;
     // At most 2^32 lengths below 2^32: the sum fits.
@@ -270,12 +270,12 @@ fn cell_objects(r: &mut Reader<'_>, n: usize) -> Result<Vec<Vec<ObjectId>>, Deco
 }
 
 fn cell_names(r: &mut Reader<'_>, n: usize) -> Result<Vec<String>, DecodeError> {
-    // Each takes four bytes at least, so that memory is taken for no more names than there can be.
+    // Each takes at least four bytes, so memory is allocated for no more names than there can be.
     r.expect(n as u64, 4)?;
     (0..n).map(|_| r.text()).collect()
 }
 
-/// Kind and upward axis; a file of a later minor version may have values that are not known here.
+/// Kind and upward axis; a file of a later minor version may have values that are unknown here.
 fn kind(r: &mut Reader<'_>, is_later: bool) -> Result<(TableKind, Option<Axis>), DecodeError> {
     let bytes = r.take(KIND_LEN)?;
     match kind_from_bytes(array(bytes, 0)) {

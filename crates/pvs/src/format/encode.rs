@@ -12,7 +12,7 @@ use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectId, ObjectRecord, PortalR
 impl Table {
     /// The table as the bytes of a `.pvs` file, the same on every machine. O(size).
     ///
-    /// Optional sections are written only if there is something in them.
+    /// Optional sections are written only if they have content.
     pub fn to_bytes(&self) -> Vec<u8> {
         let parts = self.parts();
         let d = usize::from(parts.dimension);

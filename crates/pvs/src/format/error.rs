@@ -1,4 +1,4 @@
-//! Why bytes are no table.
+//! Why bytes are not a table.
 
 use crate::TableError;
 use std::fmt;
@@ -19,14 +19,14 @@ impl fmt::Debug for SectionId {
     }
 }
 
-/// Why bytes are no table, and where that shows.
+/// Why bytes are not a table, and where the defect is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DecodeError {
-    /// The section; `None` for what stands before the sections.
+    /// The section; `None` for what precedes the sections.
     pub section: Option<SectionId>,
-    /// Byte offset from the beginning of the whole.
+    /// Byte offset from the beginning of the file.
     pub offset: u64,
-    /// What is wrong.
+    /// The defect.
     pub kind: DecodeErrorKind,
 }
 
@@ -45,14 +45,14 @@ impl std::error::Error for DecodeError {
     }
 }
 
-/// What is wrong with bytes.
+/// A defect in bytes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
     /// The first bytes are not those of a table.
     #[error("this is no visibility table")]
     Magic,
-    /// A version that is too new, or was never there.
+    /// A version that is too new, or never existed.
     #[error("version {major} of the format; this reader knows version {}", super::MAJOR)]
     Major {
         /// The version found.
@@ -63,23 +63,23 @@ pub enum DecodeErrorKind {
     HeaderCut {
         /// Bytes needed.
         need: u64,
-        /// Bytes there are.
+        /// Number of bytes.
         len: u64,
     },
-    /// The bytes are cut, or something follows them.
+    /// The bytes are truncated, or something follows them.
     #[error("the table says that it has {stated} bytes, but there are {len}")]
     Length {
-        /// What the header says.
+        /// The length that the header states.
         stated: u64,
-        /// Bytes there are.
+        /// Number of bytes.
         len: u64,
     },
-    /// A checksum is wrong: something was changed.
+    /// A checksum is wrong: something has changed.
     #[error("the checksum is {computed:08x} instead of {stored:08x}")]
     Checksum {
-        /// What was written.
+        /// The stored checksum.
         stored: u32,
-        /// What the bytes give.
+        /// The checksum of the bytes.
         computed: u32,
     },
     /// A byte that must be zero is not.
@@ -94,30 +94,30 @@ pub enum DecodeErrorKind {
         /// The flags.
         flags: u32,
     },
-    /// A section that is not optional and not known.
+    /// A section that is neither optional nor known.
     #[error("the section is needed and unknown")]
     Unknown,
-    /// A section that is there twice.
+    /// A section that occurs twice.
     #[error("the section is there twice")]
     Repeated,
-    /// A section that must be there is not.
+    /// A required section is missing.
     #[error("the section is missing")]
     Missing,
-    /// A count promises more bytes than the section has left.
+    /// A count implies more bytes than the section has left.
     #[error("{need} bytes are promised, but the section has {left} left")]
     Cut {
-        /// Bytes promised.
+        /// Bytes needed.
         need: u64,
         /// Bytes left in the section.
         left: u64,
     },
-    /// The section is longer than its counts say.
+    /// The section is longer than its counts imply.
     #[error("the section has {left} bytes too many")]
     Surplus {
         /// Bytes left over.
         left: u64,
     },
-    /// A field has a value that it cannot have.
+    /// A field has an invalid value.
     #[error("{value} is not possible here")]
     Value {
         /// The value.
@@ -132,16 +132,16 @@ pub enum DecodeErrorKind {
         /// The row.
         row: u32,
     },
-    /// A number that is longer than it need be, or does not fit.
+    /// A number that is longer than necessary, or too large.
     #[error("the number is not written as short as it can be, or is too large")]
     Number,
-    /// A reference to a node of stab trees that was not there yet.
+    /// A reference to a node of stab trees that does not exist yet.
     #[error("the node of the stab trees is not there")]
     NoNode,
-    /// Stab trees that are not written in the one way that they can be.
+    /// Stab trees that are not in their canonical form.
     #[error("the stab trees are not in order")]
     StabOrder,
-    /// The bytes say clearly what no table can be; the offset is that of the section.
+    /// The content violates a rule of tables; the offset is that of the section.
     #[error(transparent)]
     Table(#[from] TableError),
 }

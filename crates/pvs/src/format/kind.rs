@@ -1,4 +1,4 @@
-//! The section that says what kind of table it is, and how older files say it.
+//! The section with the kind of table, and how older files express it.
 
 use crate::{Axis, SceneMethods, TableKind};
 
@@ -32,10 +32,10 @@ pub fn kind_to_bytes(kind: TableKind, up: Option<Axis>) -> [u8; KIND_LEN] {
     out
 }
 
-/// What the section `KIND` says.
+/// Decodes the content of the section `KIND`.
 ///
 /// # Errors
-/// The field that has a value that this version does not know.
+/// The field with a value that is unknown to this version.
 pub fn kind_from_bytes(bytes: [u8; KIND_LEN]) -> Result<(TableKind, Option<Axis>), u32> {
     let field = |k: usize| u32::from_le_bytes(std::array::from_fn(|i| bytes[4 * k + i]));
     let [number, methods, up] = [0, 1, 2].map(field);
@@ -57,14 +57,15 @@ pub fn kind_from_bytes(bytes: [u8; KIND_LEN]) -> Result<(TableKind, Option<Axis>
         1..=3 => Some(Axis::ALL[up as usize - 1]),
         _ => return Err(up),
     };
-    // One way to write each: no bits that mean nothing.
+    // The encoding is unique: unused bits are refused.
     if kind_to_bytes(kind, up) == bytes { Ok((kind, up)) } else { Err(methods) }
 }
 
-/// What files without the section `KIND`, which are older than it or of an unspecified kind, say in their free texts.
+/// The kind according to the free texts of files without the section `KIND`, which are older than it or of an
+/// unspecified kind.
 ///
-/// The one place that reads a decision from a free text. What is not understood, or does not fit the dimension, is
-/// [`TableKind::Unspecified`].
+/// This is the only place that derives a decision from a free text. Unknown texts, and those that do not fit the
+/// dimension, mean [`TableKind::Unspecified`].
 pub fn kind_from_info(dimension: u8, info: &[(String, String)]) -> (TableKind, Option<Axis>) {
     let value = |key: &str| info.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str());
     let source = value("source").unwrap_or_default();
@@ -102,8 +103,8 @@ pub fn kind_from_info(dimension: u8, info: &[(String, String)]) -> (TableKind, O
     (kind, up)
 }
 
-/// The content of `KIND`, or `None` where readers conclude the same without it: files of tables of an unspecified kind stay
-/// as they were.
+/// The content of `KIND`, or `None` if readers conclude the same without it: files of tables of an unspecified kind
+/// stay unchanged.
 pub fn kind_section(
     dimension: u8,
     kind: TableKind,

@@ -15,10 +15,10 @@
 //! 28+32n     4  zero
 //! ```
 //!
-//! The sections follow in the order of the table, without gaps: each begins at the next multiple of 8,
-//! and so does the end; the bytes between are zero. So every byte is under a checksum or has one value
-//! only. (CRC-32 tells every change within 32 consecutive bits.) A reader skips a section that it does
-//! not know if it is optional, and refuses the file otherwise.
+//! The sections follow in the order of the table, without gaps: each begins at the next multiple of 8, and so does the
+//! end; the bytes between are zero. So every byte either is covered by a checksum or has a fixed value. (CRC-32 detects
+//! every change within 32 consecutive bits.) A reader skips an unknown section if it is optional, and refuses the file
+//! otherwise.
 //!
 //! With `d` the dimension, counts in `u32` and coordinates in `f64`:
 //!
@@ -40,21 +40,21 @@
 //! | `KIND`, optional | what kind of table it is (`u32`): 0 not stated, 1 plan by k-d tree, 2 plan by triangulation, 3 scene by k-d tree, 4 scene with given cells, 5 Quake portal file, 6 Quake map; for scenes, what found the hidden (`u32`): 1 sight lines, plus 2 a from-region method, plus 4 if nothing is promised for eyes inside solid matter; the axis that points up (`u32`): 0 not known, 1 to 3 |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
-//! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are
-//! their boxes, a missing `PORT` that there are no portals, a missing `SEEN` (new in 1.1) that a cell sees
-//! the objects that touch any cell that it sees. Of what is new in 1.2, a missing `MIRR` means that there are
-//! no mirrors, a missing `OPOL` that the numbers of polygons are not known, a missing `PLNS` that the cells'
-//! outlines say where a point is, a missing `STAB` that the stab trees are not known. A missing `CNAM` (new in 1.3)
-//! means that the cells have no names. Without a `KIND` (new in 1.4), kind and axis are what older programs left in `INFO`
-//! under the keys `source`, `subdivide`, `method` and `up` ([`kind_from_info`]), or not known; a later minor version may add
-//! kinds, which a reader takes as not stated.
+//! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are their boxes, a
+//! missing `PORT` that there are no portals, a missing `SEEN` (new in 1.1) that a cell sees the objects that touch any
+//! cell that it sees. Of the sections new in 1.2, a missing `MIRR` means that there are no mirrors, a missing `OPOL`
+//! that the numbers of polygons are unknown, a missing `PLNS` that the cells' outlines locate points, a missing `STAB`
+//! that the stab trees are unknown. A missing `CNAM` (new in 1.3) means that the cells have no names. Without a `KIND`
+//! (new in 1.4), kind and axis are those that older programs left in `INFO` under the keys `source`, `subdivide`,
+//! `method` and `up` ([`kind_from_info`]), or unknown; a later minor version may add kinds, which a reader treats as
+//! not stated.
 //!
 //! # Stab trees
 //!
-//! The graph of [`crate::StabTrees`], in its order, which is the only one that is read. A *varint* is a number of up to
-//! 64 bits in bytes of seven, the lowest first; the high bit says that another byte follows; no longer than it
-//! need be. A *gate* is twice the number of a portal, and 1 more if it is crossed from its second cell into its
-//! first; the *entries* of a cell are the gates into it, ascending. All numbers are varints.
+//! The graph of [`crate::StabTrees`], in its order, which is the only one accepted. A *varint* is a number of up to 64
+//! bits in groups of seven bits per byte, the lowest first; the high bit is set if another byte follows; the shortest
+//! form is required. A *gate* is twice the number of a portal, and 1 more if it is crossed from its second cell into
+//! its first; the *entries* of a cell are the gates into it, ascending. All numbers are varints.
 //!
 //! ```text
 //! for each level of the graph, the nodes without children first:
@@ -67,11 +67,10 @@
 //! for each cell: twice the number of roots, plus 1 if it is open; roots
 //! ```
 //!
-//! A header says which nodes have the list. With at most 16 entries it is one number: bit 0 says whether
-//! another list follows in the group, bit `1 + i` whether there is a node that crosses entry `i`, the rest is
-//! the number of children, less 1 but for the first level. With more entries it is several: the number of
-//! children (less 1 likewise) above the bit for another list; the number of nodes; and for each how many
-//! entries are passed over since the one before.
+//! A header lists the nodes with these children. With at most 16 entries it is one number: bit 0 is set if another list
+//! follows in the group, bit `1 + i` if a node crosses entry `i`, the rest is the number of children, minus 1 except on
+//! the first level. With more entries it is several: the number of children (minus 1 likewise) above the bit for
+//! another list; the number of nodes; and for each the number of entries skipped since the one before.
 //!
 //! Children, and roots, are nodes out of one cell. Of the nodes out of this cell on the levels before (for roots, on
 //! all) they are stored from the last to the first, each as the number of skipped nodes.
@@ -90,14 +89,13 @@ pub use error::{DecodeError, DecodeErrorKind, SectionId};
 pub use kind::{KIND_LEN, kind_from_bytes, kind_from_info, kind_section, kind_to_bytes};
 
 /// The first bytes of every file.
-///
-/// The first is no ASCII, and two kinds of line ends follow the name, so that programs that take the
-/// file for a text spoil the magic.
+/// The first byte is not ASCII, and two kinds of line ends follow the name, so that programs that treat the file as
+/// text corrupt the magic.
 pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 /// Major version that this crate writes, and the largest that it reads.
 pub const MAJOR: u16 = 1;
-/// Largest minor version that this crate writes. It writes the least that has all the sections of a
-/// table, so that files without the new ones stay as they were.
+/// Largest minor version that this crate writes. It writes the smallest version with all the sections of a table, so
+/// that files without newer sections stay unchanged.
 pub const MINOR: u16 = 4;
 
 const CELLS: SectionId = SectionId(*b"CELL");
@@ -116,17 +114,16 @@ const CELL_NAMES: SectionId = SectionId(*b"CNAM");
 const KIND: SectionId = SectionId(*b"KIND");
 const INFO: SectionId = SectionId(*b"INFO");
 
-/// The minor version that brought rows of objects.
+/// The minor version that added rows of objects.
 const SINCE_SEEN: u16 = 1;
-/// The minor version that brought mirrors, numbers of polygons, planes and stab trees.
+/// The minor version that added mirrors, numbers of polygons, planes and stab trees.
 const SINCE_MIRRORS_PLANES_STAB: u16 = 2;
-/// The minor version that brought names of cells.
+/// The minor version that added names of cells.
 const SINCE_CELL_NAMES: u16 = 3;
-/// The minor version that brought the kind of a table.
+/// The minor version that added the kind of a table.
 const SINCE_KIND: u16 = 4;
 
-/// The sections of this version, whether they are optional, and the minor version that brought them: a constant that never
-/// changes.
+/// The sections of this version, whether they are optional, and the minor version that added each, which is a constant.
 const KNOWN: [(SectionId, bool, u16); 15] = [
     (CELLS, false, 0),
     (POLYGONS, true, 0),

@@ -6,8 +6,8 @@ use super::reader::{Reader, read};
 use super::writer::Writer;
 use crate::{CellId, PlaneChild, PlaneNode, PlaneTree, TableError};
 
-/// Flag of a child that is a cell; without it, a child is a node, or nothing if it is 0: the root is
-/// nobody's child.
+/// Flag of a child that is a cell; without it, a child is a node, or nothing if it is 0, as the root is no node's
+/// child.
 const CELL: u32 = 1 << 31;
 /// Bytes of a node.
 const NODE: usize = 40;
@@ -19,7 +19,7 @@ pub(super) fn write(out: &mut Writer, planes: &PlaneTree) {
         out.floats(normal);
         out.floats(&[*offset]);
         for child in children {
-            // Both are below 2^31, which the tree has checked.
+            // Both are below 2^31, which was checked when the tree was made.
             out.u32(match *child {
                 PlaneChild::Nothing => 0,
                 PlaneChild::Node(node) => node,

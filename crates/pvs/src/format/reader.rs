@@ -3,7 +3,7 @@
 use super::container::{Section, array};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 
-/// A place in a section.
+/// A position in a section.
 pub(super) struct Reader<'a> {
     section: Section<'a>,
     at: usize,
@@ -23,7 +23,7 @@ impl<'a> Reader<'a> {
         self.section.bytes.len() - self.at
     }
 
-    /// Checks that `n` items of `size` bytes can follow; to be called before memory is taken for them.
+    /// Checks that `n` items of `size` bytes can follow; called before memory is allocated for them.
     pub(super) fn expect(&self, n: u64, size: usize) -> Result<(), DecodeError> {
         let (need, left) = (n.saturating_mul(size as u64), self.left() as u64);
         if need > left { Err(self.fail(0, Kind::Cut { need, left })) } else { Ok(()) }
@@ -43,7 +43,7 @@ impl<'a> Reader<'a> {
         Ok(u64::from_le_bytes(array(self.take(8)?, 0)))
     }
 
-    /// A number as bytes of seven bits, the lowest first; refused if it is longer than it need be.
+    /// A number in groups of seven bits per byte, the lowest first; refused if it is longer than necessary.
     pub(super) fn varint(&mut self) -> Result<u64, DecodeError> {
         let mut x = 0u64;
         for k in 0..10 {
@@ -73,7 +73,7 @@ impl<'a> Reader<'a> {
         Ok(n as usize)
     }
 
-    /// `n` numbers; their memory is taken after a check.
+    /// `n` numbers; memory is allocated after a check.
     pub(super) fn u32s(&mut self, n: u64) -> Result<Vec<u32>, DecodeError> {
         self.expect(n, 4)?;
         (0..n).map(|_| self.u32()).collect()

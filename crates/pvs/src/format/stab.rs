@@ -1,4 +1,4 @@
-//! The section of the stab trees; the layout stands in the documentation of [`super`].
+//! The section of the stab trees; the layout is in the documentation of [`super`].
 
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::Reader;
@@ -6,7 +6,7 @@ use super::writer::Writer;
 use crate::stab::{Bits, ends};
 use crate::{CellId, PortalRecord, StabTrees};
 
-/// A cell with more entries than this has them listed where others have a mask.
+/// A cell with more entries than this has a list of them instead of a mask.
 const MASK: usize = 16;
 
 /// The gates into each cell, ascending.
@@ -37,7 +37,7 @@ impl Entries {
     }
 }
 
-/// What groups go by, and whether anything may follow.
+/// The sort key of groups: the cell and whether anything may follow.
 fn group_key(cell: CellId, open: bool) -> u64 {
     2 * u64::from(cell.0) + u64::from(open)
 }
@@ -50,7 +50,7 @@ pub(super) fn write(out: &mut Writer, stab: &StabTrees, portals: &[PortalRecord]
         let below = stab.list(list).iter().map(|&c| height[stab.after[c as usize] as usize] + 1);
         height[list] = below.max().unwrap_or(0);
     }
-    // Place of each node among those out of the same cell, and how many there are below the level.
+    // Position of each node among those out of the same cell, and their number below the level.
     let (mut place, mut leaving) = (vec![0u32; n], vec![0u32; stab.n_cells()]);
     let key = |node: usize| group_key(ends(portals, stab.gates[node])[1], stab.open.get(stab.after[node] as usize));
     let mut begin = 0;
@@ -106,7 +106,7 @@ fn header(out: &mut Writer, entries: &[u32], gates: &[u32], n_children: u64, mor
     }
 }
 
-/// Nodes out of a cell from the last to the first: how many are passed over each time.
+/// Nodes out of a cell from the last to the first: the number skipped each time.
 fn references(out: &mut Writer, nodes: &[u32], place: &[u32], n_leaving: u32) {
     let mut next = n_leaving;
     for &node in nodes.iter().rev() {
@@ -116,8 +116,8 @@ fn references(out: &mut Writer, nodes: &[u32], place: &[u32], n_leaving: u32) {
     }
 }
 
-/// Reads trees over portals whose cells exist. What comes out has the order of [`StabTrees`]; whether its
-/// portals meet is checked with the table.
+/// Reads trees over portals whose cells exist. The result has the order of [`StabTrees`]; whether its portals fit
+/// together is checked with the table.
 pub(super) fn parse(r: &mut Reader<'_>, portals: &[PortalRecord], n_cells: usize) -> Result<StabTrees, DecodeError> {
     if portals.len() >= 1 << 31 {
         return Err(r.fail(0, Kind::Number)); // a gate is a portal and one bit
@@ -148,7 +148,7 @@ pub(super) fn parse(r: &mut Reader<'_>, portals: &[PortalRecord], n_cells: usize
     parser.roots(r)?;
     match parser.used.iter().all(|&used| used) {
         true => Ok(parser.stab),
-        // Something leads to every node that was written.
+        // Every written node is referenced.
         false => Err(r.fail(0, Kind::StabOrder)),
     }
 }
@@ -158,7 +158,7 @@ struct Parser {
     stab: StabTrees,
     /// Height of each list.
     height: Vec<u32>,
-    /// Whether something leads to a node.
+    /// Whether a node is referenced.
     used: Vec<bool>,
     /// The nodes out of each cell, of the levels below.
     leaving: Vec<Vec<u32>>,
@@ -193,7 +193,7 @@ impl Parser {
         }
     }
 
-    /// Reads a header and makes its nodes, which have the list to come; returns how long that is, and
+    /// Reads a header and makes its nodes, which share the list that follows; returns the length of that list, and
     /// whether another one follows in the group.
     fn header(&mut self, r: &mut Reader<'_>, entries: &[u32]) -> Result<(u64, bool), DecodeError> {
         let list = u32::try_from(self.stab.open.len()).map_err(|_| r.fail(0, Kind::Number))?;

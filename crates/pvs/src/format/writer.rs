@@ -1,6 +1,6 @@
 //! Numbers and texts as bytes.
 
-/// The bytes of a section to be.
+/// The bytes of a section under construction.
 #[derive(Default)]
 pub(super) struct Writer(pub(super) Vec<u8>);
 
@@ -14,7 +14,7 @@ impl Writer {
         self.u32(u32::try_from(n).expect("a checked table counts with 32 bits"));
     }
 
-    /// Seven bits in a byte, the lowest first; the high bit says that another byte follows.
+    /// Seven bits per byte, the lowest first; the high bit is set if another byte follows.
     pub(super) fn varint(&mut self, mut x: u64) {
         while x >= 0x80 {
             self.0.push(x as u8 | 0x80);

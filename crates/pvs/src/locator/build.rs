@@ -10,9 +10,9 @@ impl Locator {
     /// Builds a complete locator over boxes `(min, max)`, box `i` for cell `i`, in the first
     /// `dimension` coordinates. Deterministic.
     ///
-    /// Splits at the median of the boxes' faces, on the axis that leaves the smaller of the larger
-    /// halves, as long as that divides anything. Boxes on both sides of a split are listed on both; at
-    /// most three times as many entries as boxes are added so. O(n log n) time, depth O(log n).
+    /// Splits at the median of the boxes' faces, on the axis with the smaller larger half, as long as that divides
+    /// anything. Boxes on both sides of a split are listed on both; this adds at most three times as many entries as
+    /// boxes. O(n log n) time, depth O(log n).
     ///
     /// # Panics
     /// If there are more than 2^29 boxes: no table has so many cells.
@@ -34,7 +34,7 @@ struct Builder<'a> {
     out: Locator,
 }
 
-/// A way to divide some boxes.
+/// A division of some boxes.
 #[derive(Clone, Copy)]
 struct Split {
     axis: usize,

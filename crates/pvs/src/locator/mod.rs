@@ -17,7 +17,7 @@ pub enum LocatorNode {
     Inner {
         /// 0, 1 or 2 for x, y or z.
         axis: u8,
-        /// Where, in scene units; finite.
+        /// The coordinate, in scene units; finite.
         split: f64,
         /// Index of the child with the smaller coordinates.
         low: u32,
@@ -47,8 +47,8 @@ pub(crate) enum Node {
     Leaf { start: u32, end: u32 },
 }
 
-/// What is wrong with a locator. Nodes are counted in preorder, but in the variants of
-/// [`Locator::from_nodes`] as they were given.
+/// A defect of a locator. Nodes are numbered in preorder, except in the variants of [`Locator::from_nodes`], where they
+/// have the given numbers.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LocatorError {
@@ -58,7 +58,7 @@ pub enum LocatorError {
     /// More nodes or leaf entries than 32 bits count.
     #[error("the locator has {n} entries, more than 32 bits can count")]
     TooMany {
-        /// How many.
+        /// The number of entries.
         n: usize,
     },
     /// A child that does not exist, or, in a file, one out of order.
@@ -149,7 +149,7 @@ impl Locator {
         if nodes.is_empty() {
             return Err(LocatorError::Empty);
         }
-        // Nodes to visit, and which written node waits to learn where its high child lies.
+        // Nodes to visit, each with the index of the written node that needs the index of its high child.
         let mut pending: Vec<(usize, Option<usize>)> = vec![(0, None)];
         while let Some((i, parent)) = pending.pop() {
             if std::mem::replace(&mut seen[i], true) {
@@ -211,14 +211,14 @@ impl Locator {
         self.cells.len()
     }
 
-    /// Calls `visit` with every cell listed in a leaf whose closed region contains `p`; a cell comes
-    /// more than once if `p` lies on a split. O(depth), if `p` lies on no split.
+    /// Calls `visit` with every cell listed in a leaf whose closed region contains `p`; a cell is visited more than
+    /// once if `p` lies on a split. O(depth), if `p` lies on no split.
     #[inline]
     pub fn for_each_candidate(&self, p: [f64; 3], visit: impl FnMut(CellId)) {
         self.for_each_candidate_in(p, &mut Vec::new(), visit);
     }
 
-    /// As [`Locator::for_each_candidate`], with the scratch given: no new memory after a while.
+    /// As [`Locator::for_each_candidate`], with scratch space: allocates nothing once that is warm.
     #[inline]
     pub fn for_each_candidate_in(&self, p: [f64; 3], pending: &mut Vec<u32>, mut visit: impl FnMut(CellId)) {
         pending.clear();
@@ -247,10 +247,10 @@ impl Locator {
         }
     }
 
-    /// Calls `visit` with every cell listed in a leaf whose closed region meets the closed box from `min` to `max` (scene
-    /// units), until it says `false`; a cell comes once for each leaf that lists it. A cell whose box a complete locator
-    /// was built for is among them if the two boxes share a point: that point leads to such a leaf. A NaN bounds nothing.
-    /// `pending` is scratch. O(nodes met).
+    /// Calls `visit` with every cell listed in a leaf whose closed region meets the closed box from `min` to `max`
+    /// (scene units), until it returns `false`; a cell is visited once for each leaf that lists it. If the locator is
+    /// complete for the box of a cell, and that box shares a point with this one, the cell is visited: that point leads
+    /// to such a leaf. A NaN bounds nothing. `pending` is scratch space. O(nodes met).
     #[inline]
     pub fn for_each_candidate_of_box(
         &self,
@@ -290,9 +290,9 @@ impl Locator {
         (&self.nodes, &self.cells)
     }
 
-    /// Checks nodes that claim to be in preorder, with leaves that take `cells` one after the other.
+    /// Checks nodes that claim to be in preorder, with leaves that use `cells` one after the other.
     pub(crate) fn from_raw(nodes: Vec<Node>, cells: Vec<CellId>) -> Result<Self, LocatorError> {
-        // Inner nodes whose high child is to come, with that child and its depth.
+        // Inner nodes whose high child is still to come, with that child and its depth.
         let mut highs: Vec<(usize, u32, usize)> = Vec::new();
         let last = nodes.len().checked_sub(1).ok_or(LocatorError::Empty)?;
         let (mut listed, mut depth) = (0, 0);
@@ -307,7 +307,7 @@ impl Locator {
                     }
                 }
                 Node::Leaf { start, end } => {
-                    // A subtree ends here: what comes next is the high child that waits longest inside.
+                    // A subtree ends here: next comes the high child of the innermost waiting node.
                     let list = cells.get(start as usize..end as usize).filter(|_| start == listed);
                     check_order(i, list.ok_or(LocatorError::Order { node: i })?)?;
                     listed = end;
@@ -331,8 +331,8 @@ impl Locator {
 
     /// Checks that this is a complete locator for boxes in `dimension` coordinates. O(entries * depth).
     ///
-    /// A box that ends at a split is looked for below the split only, one that begins there above only:
-    /// its points on the split lead to both. A box of no extent, on the split, is looked for below.
+    /// A box that ends at a split is searched for only below the split, one that begins there only above: its points on
+    /// the split lead to both. A box of no extent, on the split, is searched for below.
     pub(crate) fn check(&self, bounds: &[([f64; 3], [f64; 3])], dimension: u8) -> Result<(), LocatorError> {
         for (node, n) in self.nodes.iter().enumerate() {
             match *n {

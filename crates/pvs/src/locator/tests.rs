@@ -63,8 +63,8 @@ proptest! {
         prop_assert_eq!(Locator::from_raw(nodes.to_vec(), cells.to_vec()), Ok(locator.clone()));
     }
 
-    /// The impostor: a locator with one entry less. What the check accepts misses nothing; and where
-    /// brute force finds a miss, the check refuses.
+    /// The impostor: a locator with one entry less. An accepted locator misses nothing; and where brute force finds a
+    /// miss, the check refuses.
     #[test]
     fn locator_impostors_are_caught((boxes, dimension) in boxes(), at in any::<prop::sample::Index>()) {
         let mut nodes = Locator::build(&boxes, dimension).to_nodes();
@@ -104,7 +104,7 @@ proptest! {
     }
 }
 
-/// The tightness twin: a point has few candidates, or a list of all cells would pass.
+/// The tightness twin: a point has few candidates; otherwise a list of all cells would pass.
 #[test]
 fn locator_tightness_few_candidates_on_a_grid() {
     let n = 64;

@@ -1,11 +1,11 @@
-//! One order for equal trees.
+//! A canonical order for equal trees.
 
 use super::{Bits, StabTrees, count, ends};
 use crate::records::PortalRecord;
 
-/// A node that waits for its number.
+/// A node that has no number yet.
 struct Entry {
-    /// What the order goes by, before the children.
+    /// The first sort key, before the children.
     into: u32,
     open: bool,
     /// Its children, by their new numbers, ascending: a range of the scratch.
@@ -14,11 +14,10 @@ struct Entry {
     old: u32,
 }
 
-/// The same trees with each node once, without those that no root leads to, in the order that
-/// [`StabTrees`] describes.
+/// The same trees with each node once, without unreachable nodes, in the order that [`StabTrees`] describes.
 ///
-/// Level by level, from the leaves: when a level's turn comes, its nodes' children have their numbers, so
-/// equal nodes have equal lists, and lie side by side when the level is sorted.
+/// Level by level, from the leaves: when a level is processed, its nodes' children already have their numbers, so equal
+/// nodes have equal lists, and are adjacent when the level is sorted.
 pub(super) fn ordered(given: &StabTrees, portals: &[PortalRecord]) -> StabTrees {
     let levels = levels(given);
     let mut number = vec![u32::MAX; given.n_nodes()];
@@ -30,7 +29,7 @@ pub(super) fn ordered(given: &StabTrees, portals: &[PortalRecord]) -> StabTrees 
             let begin = scratch.len();
             scratch.extend(given.children(old).iter().map(|&c| number[c as usize]));
             scratch[begin..].sort_unstable();
-            // What was different may be equal now.
+            // Different nodes may have become equal.
             let mut end = begin;
             for i in begin..scratch.len() {
                 if i == begin || scratch[i] != scratch[end - 1] {
@@ -72,12 +71,12 @@ pub(super) fn ordered(given: &StabTrees, portals: &[PortalRecord]) -> StabTrees 
     out
 }
 
-/// What decides whether nodes share a list, then what tells them apart.
+/// The key that determines whether nodes share a list, then the key that distinguishes them.
 fn key<'a>(entry: &Entry, scratch: &'a [u32]) -> ((u32, bool, &'a [u32]), u32) {
     ((entry.into, entry.open, &scratch[entry.children.clone()]), entry.gate)
 }
 
-/// The nodes that some root leads to, by their height: 0 for those without children.
+/// The reachable nodes, by their height: 0 for those without children.
 fn levels(given: &StabTrees) -> Vec<Vec<u32>> {
     let n = given.n_nodes();
     let mut reached = vec![false; n];

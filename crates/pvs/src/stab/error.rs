@@ -1,17 +1,16 @@
-//! What is wrong with stab trees.
+//! Defects of stab trees.
 
 use super::StabParts;
 use crate::CellId;
 
-/// What is wrong with stab trees. In the errors of [`super::StabTrees::new`], nodes have the numbers that
-/// they were given.
+/// A defect of stab trees. In the errors of [`super::StabTrees::new`], nodes have their given numbers.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StabError {
     /// More nodes, or gates of portals, than 32 bits count.
     #[error("{n} are more nodes or portals than stab trees can count")]
     TooMany {
-        /// How many.
+        /// The number.
         n: usize,
     },
     /// Lists that do not fit each other: not one gate, one list of children and one flag for each node,
@@ -23,10 +22,10 @@ pub enum StabError {
         /// Number of entries that fit the other lists.
         expected: usize,
     },
-    /// A list that ends before it begins, or does not end where the entries do.
+    /// A list that ends before it begins, or does not end where its entries do.
     #[error("list {list} of the stab trees does not lie where it must")]
     Bounds {
-        /// Which of the lists of children, or of roots.
+        /// The index among the lists of children, or of roots.
         list: usize,
     },
     /// Trees for another number of cells.
@@ -71,7 +70,7 @@ pub enum StabError {
     },
 }
 
-/// Checks what does not need the portals: lists that fit each other, and children before parents.
+/// Checks what does not depend on the portals: lists that fit each other, and children before parents.
 pub(super) fn check_parts(parts: &StabParts, n_cells: usize) -> Result<(), StabError> {
     let n = parts.gates.len();
     if u32::try_from(n).is_err() {
@@ -101,7 +100,7 @@ pub(super) fn check_parts(parts: &StabParts, n_cells: usize) -> Result<(), StabE
     Ok(())
 }
 
-/// Checks that `first` says where `n` lists begin and end, which together have `n_items` entries.
+/// Checks that `first` holds the begins and ends of `n` lists, which together have `n_items` entries.
 fn check_lists(first: &[u32], n_items: usize, n: usize) -> Result<(), StabError> {
     if first.is_empty() && n == 0 {
         return if n_items == 0 { Ok(()) } else { Err(StabError::Bounds { list: 0 }) };

@@ -1,9 +1,10 @@
-//! Stab trees as a table keeps them: one graph without cycles for all cells.
+//! Stab trees as a table stores them: one acyclic graph for all cells.
 //!
-//! A stab tree lists the sequences of portals out of a cell that have a sightline. Written out, one node for each
+//! A stab tree lists the sequences of portals out of a cell that have a sight line. Written out, with one node for each
 //! sequence, the trees of a scene are larger than everything else in its table. But what can follow a portal is often
-//! the same after different beginnings, and then it is stored once: a node says which portal is crossed, and its
-//! children what may be crossed next, on every way here. Trees of different cells share nodes as parts of one tree do.
+//! the same after different beginnings, and is then stored once: a node has the portal that is crossed, and its
+//! children are the portals that may be crossed next, on every path to it. Trees of different cells share nodes as
+//! parts of one tree do.
 
 mod canon;
 mod error;
@@ -13,9 +14,9 @@ pub use error::StabError;
 use crate::records::PortalRecord;
 use crate::{CellId, PortalId, bits};
 
-/// Nodes and edges under construction. Numbers of nodes are given by [`StabParts::push_node`], from 0.
+/// Nodes and edges under construction. Nodes are numbered by [`StabParts::push_node`], from 0.
 ///
-/// Equal nodes need not be given once only, [`StabTrees::new`] finds them.
+/// Equal nodes may be given more than once; [`StabTrees::new`] merges them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct StabParts {
     /// For each node the gate it crosses: twice the number of a portal, and 1 more if it is crossed from
@@ -31,12 +32,12 @@ pub struct StabParts {
     pub first_root: Vec<u32>,
     /// The roots of all cells, one list after the other: the gates out of the cell.
     pub roots: Vec<u32>,
-    /// For each cell whether its tree was cut at once: any sequence may be seen from it.
+    /// For each cell whether its tree was cut at the root: any sequence may be visible from it.
     pub root_open: Vec<bool>,
 }
 
 impl StabParts {
-    /// Adds a node and returns its number. `children` are numbers of nodes that are there already.
+    /// Adds a node and returns its number. `children` are numbers of existing nodes.
     ///
     /// # Panics
     /// If there are more nodes or children than 32 bits count.
@@ -49,7 +50,7 @@ impl StabParts {
         node
     }
 
-    /// Adds the tree of the next cell, the first one's first.
+    /// Adds the tree of the next cell, starting with the first.
     ///
     /// # Panics
     /// If there are more roots than 32 bits count.
@@ -67,21 +68,21 @@ fn push_list(first: &mut Vec<u32>, items: &mut Vec<u32>, list: &[u32]) {
     first.push(count(items.len()));
 }
 
-/// A number of things in memory that the caller bounds.
+/// A number of items in memory, which the caller bounds.
 fn count(n: usize) -> u32 {
     u32::try_from(n).expect("stab trees count with 32 bits")
 }
 
 /// The stab trees of all cells.
 ///
-/// Always in one order, whatever order the parts came in: nodes by their height over the leaves, by the
-/// cell that they lead into, by whether they are open, by their children, by their gate. No two nodes are
-/// equal, each is reached from some root, and lists of children and of roots ascend. So two `StabTrees`
-/// with the same sequences written in equal trees are equal.
+/// Always in canonical order, independent of the order of the parts: nodes by their height over the leaves, by the cell
+/// that they lead into, by whether they are open, by their children, by their gate. No two nodes are equal, each is
+/// reached from some root, and lists of children and of roots ascend. So two `StabTrees` with the same sequences
+/// written in equal trees are equal.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct StabTrees {
     pub(crate) gates: Vec<u32>,
-    /// For each node what may follow it: the number of a list. Nodes with the same list are neighbours.
+    /// For each node the number of the list of its children. Nodes with the same list are adjacent.
     pub(crate) after: Vec<u32>,
     /// Where the lists begin in `children`; one entry more than lists.
     pub(crate) first_child: Vec<u32>,
@@ -95,17 +96,16 @@ pub struct StabTrees {
 }
 
 impl StabTrees {
-    /// Checks the parts, for a table with these portals and so many cells, merges equal nodes, leaves out
-    /// those that no root leads to, and brings the rest into order: the numbers of nodes change. The
-    /// children of a node become a set.
+    /// Checks the parts, for a table with these portals and this many cells, merges equal nodes, drops unreachable
+    /// ones, and brings the rest into order: the numbers of nodes change. The children of a node become a set.
     ///
     /// O(n log n) comparisons of lists, and memory for the parts twice.
     ///
     /// # Errors
-    /// [`StabError`], with numbers of nodes as they were given.
+    /// [`StabError`], with the given numbers of nodes.
     pub fn new(parts: StabParts, portals: &[PortalRecord], n_cells: usize) -> Result<Self, StabError> {
         error::check_parts(&parts, n_cells)?;
-        // The order needs to know where gates lead, so they must lead somewhere.
+        // The order depends on where gates lead, so they must lead somewhere.
         let given = Self {
             after: (0..parts.gates.len() as u32).collect(),
             gates: parts.gates,
@@ -163,7 +163,7 @@ impl StabTrees {
         &self.roots[self.first_root[k] as usize..self.first_root[k + 1] as usize]
     }
 
-    /// Whether the tree of a cell was cut at once: any sequence may be seen from it.
+    /// Whether the tree of a cell was cut at the root: any sequence may be visible from it.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -182,8 +182,8 @@ impl StabTrees {
         self.gates.len()
     }
 
-    /// Number of different lists of children, which is how many are kept: one for all nodes that lead into
-    /// the same cell and have the same children.
+    /// Number of different lists of children, which is the number stored: one for all nodes that lead into the same
+    /// cell and have the same children.
     pub fn n_lists(&self) -> usize {
         self.open.len()
     }
@@ -193,8 +193,8 @@ impl StabTrees {
         (0..self.n_nodes() as u32).map(|node| self.children(node).len() as u64).sum()
     }
 
-    /// Number of sequences in the trees of all cells, which is the number of nodes that the trees would
-    /// have without sharing, roots not counted; at most `u128::MAX`. O(size).
+    /// Number of sequences in the trees of all cells, which is the number of nodes that the trees would have without
+    /// sharing, roots excluded; at most `u128::MAX`. O(size).
     pub fn n_sequences(&self) -> u128 {
         // For each list, with the node that it follows. Children have earlier lists.
         let mut below = vec![1u128; self.n_lists()];
@@ -208,7 +208,7 @@ impl StabTrees {
         nodes.iter().fold(start, |n, &node| n.saturating_add(below[self.after[node as usize] as usize]))
     }
 
-    /// Checks that the trees belong to a table with these portals and so many cells. O(size).
+    /// Checks that the trees belong to a table with these portals and this many cells. O(size).
     pub(crate) fn check(&self, portals: &[PortalRecord], n_cells: usize) -> Result<(), StabError> {
         if self.n_cells() != n_cells {
             return Err(StabError::Cells { n: self.n_cells(), n_cells });
@@ -222,7 +222,7 @@ impl StabTrees {
                 return Err(StabError::Portal { node, portal: gate / 2 });
             }
         }
-        // A list is looked at once, with the first node that it follows: the others lead to the same cell.
+        // A list is checked once, with the first node that it follows: the others lead to the same cell.
         let (mut last, mut expected) = (None, None);
         for node in 0..self.n_nodes() {
             let (list, into) = (self.after[node], ends(portals, self.gates[node])[1]);

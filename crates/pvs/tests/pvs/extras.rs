@@ -1,4 +1,4 @@
-//! What a table need not have: mirrors, numbers of polygons, planes, stab trees and names of cells in files.
+//! The optional parts of a table in files: mirrors, numbers of polygons, planes, stab trees and names of cells.
 
 use crate::common::assert_well_formed;
 use crate::common::file::{File, Part, assert_damage_is_noticed};
@@ -22,7 +22,7 @@ proptest! {
         prop_assert!(bare.stab().is_none());
         prop_assert_eq!(&bare.parts().cell_names, &table.parts().cell_names);
         prop_assert_eq!(Table::from_bytes(&bare.to_bytes()).unwrap(), bare);
-        // The least version that has all that is there.
+        // The smallest version that has all the parts.
         let parts = table.parts();
         let new = parts.stab.is_some() || parts.planes.is_some() || !parts.mirrors.is_empty() || !parts.object_polygons.is_empty();
         let made = (table.kind(), table.up()) != (TableKind::Unspecified, None);
@@ -35,8 +35,8 @@ proptest! {
         assert_damage_is_noticed(&Table::new(parts).unwrap(), at, flip);
     }
 
-    /// Bytes changed, removed or added in the new sections, with right checksums: no panic, and what is a
-    /// table after all is a good one. Stab trees have one way only to be written.
+    /// Bytes changed, removed or added in the new sections, with correct checksums: no panic, and what is accepted is a
+    /// valid table. The encoding of stab trees is unique.
     #[test]
     fn extras_forgeries_are_errors_or_tables(
         parts in any_full_parts(),
@@ -44,7 +44,7 @@ proptest! {
     ) {
         let mut file = File::parse(&Table::new(parts).unwrap().to_bytes());
         let new: Vec<usize> = (0..file.parts.len()).filter(|&i| is_new(&file.parts[i])).collect();
-        // Most have something new, the others pass untouched.
+        // Most have a new section; the others pass unchanged.
         for (which, place, action, value) in changes.into_iter().filter(|_| !new.is_empty()) {
             let bytes = &mut file.parts[new[which.index(new.len())]].bytes;
             let at = place.index(bytes.len() + 1);
@@ -93,7 +93,7 @@ fn every_prefix_and_changed_byte_of_extras_is_an_error() {
     }
 }
 
-/// Every byte of the new sections, changed into every other value, with right checksums; and every length.
+/// Every byte of the new sections, changed into every other value, with correct checksums; and every length.
 #[test]
 fn every_forged_byte_of_extras_is_an_error_or_a_table() {
     let (mut n_tables, mut n_errors) = (0, 0);
@@ -131,7 +131,7 @@ fn every_forged_byte_of_extras_is_an_error_or_a_table() {
     assert!(n_tables > 1000 && n_errors > 1000, "{n_tables} tables, {n_errors} errors");
 }
 
-/// Each optional section may go, but stab trees not without their portals.
+/// Each optional section may be removed, but not the portals of stab trees.
 #[test]
 fn extras_may_go() {
     let mut n_gone = 0;
@@ -147,7 +147,7 @@ fn extras_may_go() {
             }
             n_gone += 1;
         }
-        // A reader that does not know the new sections has the table without them.
+        // A reader that does not know the new sections gets the table without them.
         let old = |parts: TableParts| {
             let (mirrors, object_polygons, cell_names) = (vec![], vec![], vec![]);
             Table::new(TableParts { mirrors, object_polygons, cell_names, planes: None, stab: None, ..parts }).unwrap()
@@ -189,7 +189,7 @@ fn extras_answer() {
     assert_eq!(named.strip_geometry().cell_name(CellId(3)), Some("Küche"), "a stripped table keeps names");
 }
 
-/// Names change nothing else: without their section the file of a named table is that of the same table without.
+/// Names are independent: without their section the file of a named table is that of the same table without names.
 #[test]
 fn names_are_a_section_of_their_own() {
     let [villa, _, named] = full();
@@ -209,7 +209,7 @@ fn an_unknown_cell_has_no_name() {
     Table::new(named_villa()).unwrap().cell_name(CellId(5));
 }
 
-/// Not even in a table that has no names at all.
+/// Not even in a table without any names.
 #[test]
 #[should_panic(expected = "cell 5 of 5")]
 fn an_unknown_cell_is_not_one_without_a_name() {
@@ -222,7 +222,7 @@ fn an_unknown_object_has_no_polygons() {
     Table::new(rooms()).unwrap().polygons_of(ObjectId(2));
 }
 
-/// Each defect alone is refused, with its place and in words.
+/// Each defect alone is refused, with its position and a message.
 #[test]
 fn defects_of_extras_are_refused() {
     let refused = |parts: TableParts, spoil: &dyn Fn(&mut TableParts)| {
@@ -254,7 +254,7 @@ fn defects_of_extras_are_refused() {
     assert_eq!(refused(villa(), &upright).0, TableError::OffPlane { item: Item::Mirror, index: 0 });
 }
 
-/// Writes over, or replaces, a section of the villa with names and returns the error, which must name the section.
+/// Overwrites or replaces a section of the villa with names and returns the error, which must name the section.
 fn forge(id: &[u8; 4], change: impl Fn(&mut Vec<u8>)) -> Kind {
     let mut file = File::parse(&Table::new(named_villa()).unwrap().to_bytes());
     change(&mut file.part(id).bytes);
@@ -273,13 +273,13 @@ fn forged_extras_are_refused() {
     assert_eq!(forge(b"MIRR", |b| b[4] = 9), Kind::Table(cell));
     assert!(matches!(forge(b"OPOL", |b| b.truncate(4)), Kind::Cut { .. }));
     assert!(matches!(forge(b"OPOL", |b| b.extend([0; 4])), Kind::Surplus { .. }));
-    // Names: a length that promises too much, a text that is none, one name too few and one too many.
+    // Names: a length that is too large, a text that is not UTF-8, one name too few and one too many.
     assert!(matches!(forge(b"CNAM", |b| b[..4].copy_from_slice(&huge)), Kind::Cut { .. }));
     assert_eq!(forge(b"CNAM", |b| b[4] = 0xff), Kind::Text);
     assert!(matches!(forge(b"CNAM", |b| b.truncate(b.len() - 8)), Kind::Cut { .. }));
     assert!(matches!(forge(b"CNAM", |b| b.extend([0; 4])), Kind::Surplus { left: 4 }));
     assert!(matches!(forge(b"CNAM", |b| b.truncate(19)), Kind::Cut { need: 20, left: 19 }));
-    // A number that is longer than it need be, one that does not fit, one that does not end.
+    // A number that is longer than necessary, one that does not fit, one that does not end.
     let replaced = |bytes: &'static [u8]| move |b: &mut Vec<u8>| *b = bytes.to_vec();
     assert_eq!(forge(b"STAB", replaced(&[0x80, 0])), Kind::Number);
     let long = [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 2];
@@ -292,7 +292,7 @@ fn forged_extras_are_refused() {
     assert!(matches!(forge(b"STAB", replaced(&[1, 0, 6])), Kind::Cut { .. }), "a child is promised");
     assert_eq!(forge(b"STAB", replaced(&[1, 0, 6, 0])), Kind::NoNode);
     assert_eq!(forge(b"STAB", replaced(&[0, 2, 0])), Kind::NoNode);
-    // A node that nothing leads to.
+    // A node that is never referenced.
     assert_eq!(forge(b"STAB", replaced(&[1, 0, 2, 0, 0, 0, 0, 0, 0])), Kind::StabOrder);
     assert!(matches!(forge(b"STAB", |b| b.push(0)), Kind::Surplus { .. }));
     let text = |kind: Kind| kind.to_string();
@@ -301,7 +301,7 @@ fn forged_extras_are_refused() {
     assert_eq!(text(Kind::StabOrder), "the stab trees are not in order");
 }
 
-/// A table may be of nothing but mirrors' cells; nothing in it is taken for granted.
+/// A table may consist of nothing but cells with mirrors.
 #[test]
 fn mirrors_have_any_number_of_corners_in_space() {
     let mut parts = wedges();

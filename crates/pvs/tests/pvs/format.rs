@@ -1,4 +1,4 @@
-//! The byte format: what is written is read, and nothing else is.
+//! The byte format: what is written can be read, and nothing else can.
 
 use crate::common::file::{File, Part, assert_damage_is_noticed, fix_header};
 use crate::common::{any_parts, assert_well_formed, rooms};
@@ -9,7 +9,7 @@ fn house() -> Table {
     Table::new(rooms()).unwrap()
 }
 
-/// A changed file: refused, and the bytes must be what was written if they are not.
+/// A changed file is refused, or is one that would be written.
 fn assert_error_or_well_formed(bytes: &[u8]) -> bool {
     match Table::from_bytes(bytes) {
         Ok(table) => {
@@ -56,8 +56,8 @@ proptest! {
         prop_assert!(Table::from_bytes(&bytes).is_err());
     }
 
-    /// Bytes changed, removed or added inside sections, with right checksums: the checks behind the
-    /// checksums. No panic; what is a table after all is a good one, and is written as it was read.
+    /// Bytes changed, removed or added inside sections, with correct checksums: the checks behind the checksums. No
+    /// panic; what is accepted is a valid table, and is written as it was read.
     #[test]
     fn format_forgeries_are_errors_or_tables(
         parts in any_parts(),
@@ -88,7 +88,7 @@ proptest! {
         let mut forged = bytes.clone();
         forged[at] = value;
         fix_header(&mut forged);
-        // A minor version may change, and an optional section may get a name that nobody knows.
+        // A minor version may change, and an optional section may become an unknown one.
         let renamed = at >= 24 && (at - 24) % 32 < 4 && parts[(at - 24) / 32].flags == 1;
         let harmless = forged == bytes || at == 10 || at == 11 || renamed;
         prop_assert_eq!(assert_error_or_well_formed(&forged), harmless, "byte {}", at);
@@ -123,7 +123,7 @@ fn every_changed_byte_is_an_error() {
     assert_eq!((n_tried, Table::from_bytes(&bytes)), (255 * bytes.len(), Ok(house())));
 }
 
-/// Every byte of every section, changed in every bit and into a few other values, with right checksums.
+/// Every byte of every section, changed in every bit and into a few other values, with correct checksums.
 #[test]
 fn every_forged_byte_is_an_error_or_a_table() {
     let original = house().to_bytes();
@@ -210,7 +210,7 @@ fn versions_are_told() {
     assert_eq!(text(b""), "byte 0: the header needs 32 bytes, but there are 0");
 }
 
-/// A padding byte is under no checksum, and must be zero.
+/// A padding byte is covered by no checksum, and must be zero.
 #[test]
 fn padding_is_checked() {
     let mut bytes = house().to_bytes();
@@ -230,7 +230,7 @@ fn forge(id: &[u8; 4], at: usize, value: &[u8]) -> Kind {
     error.kind
 }
 
-/// Counts that promise more than there is are refused before any memory is taken for them.
+/// Counts that exceed the content are refused before any memory is allocated for them.
 #[test]
 fn forged_counts_are_refused() {
     let huge = u32::MAX.to_le_bytes();
@@ -248,7 +248,7 @@ fn forged_contents_are_refused() {
     let table = |error: TableError| Kind::Table(error);
     assert_eq!(forge(b"CELL", 0, &[4]), Kind::Value { value: 4 });
     assert_eq!(forge(b"CELL", 40, &[2]), Kind::Value { value: 2 });
-    // Cell 1 has no group, and so no number of one.
+    // Cell 1 has no group, and so no group number.
     assert_eq!(forge(b"CELL", 8 + 40 + 36, &[9]), Kind::Value { value: 9 });
     assert_eq!(forge(b"ROWS", 0, &[0]), table(TableError::NotReflexive(CellId(0))));
     assert_eq!(forge(b"ROWS", 0, &[3]), Kind::PastDiagonal { row: 0 });
@@ -269,7 +269,7 @@ fn forged_contents_are_refused() {
     assert!(matches!(forge(b"LOCA", 8 + 80, &[9]), Kind::Table(TableError::Locator(_))));
 }
 
-/// Half a symmetric matrix cannot be asymmetric: a pair that goes, goes on both sides.
+/// Half a symmetric matrix cannot be asymmetric: a removed pair is removed on both sides.
 #[test]
 fn forged_rows_stay_symmetric() {
     let mut file = File::parse(&house().to_bytes());

@@ -1,4 +1,4 @@
-//! The kind of a table: stored, refused where it cannot be, and concluded from what older files say.
+//! The kind of a table: stored, refused where it is invalid, and derived from the texts of older files.
 
 use crate::common::file::File;
 use crate::common::full::{kinds, map_of_wedges};
@@ -24,7 +24,7 @@ fn every_kind_survives_a_file() {
                 let table = Table::new(parts).expect("a table without cells");
                 let bytes = table.to_bytes();
                 assert_eq!(Table::from_bytes(&bytes), Ok(table));
-                // Nothing is written that says nothing.
+                // Empty information is not written.
                 let is_said = (kind, up) != (TableKind::Unspecified, None);
                 assert_eq!(bytes[10], if is_said { 4 } else { 0 }, "the minor version");
             }
@@ -55,7 +55,7 @@ fn numbers_that_are_not_known_are_refused_or_from_a_later_version() {
     assert_eq!(Table::from_bytes(&file.write()).expect_err("too long").kind, DecodeErrorKind::Surplus { left: 1 });
 }
 
-/// A dimension, the texts of an old table, and the kind that they mean.
+/// A dimension, the texts of an old table, and the kind that they stand for.
 type OldTable = (u8, &'static [(&'static str, &'static str)], TableKind);
 
 /// What programs before version 1.4 of the format left in the texts of each kind of table.
@@ -87,7 +87,7 @@ fn older_files_are_understood() {
     for (dimension, info, kind) in cases {
         let info = texts(info);
         assert_eq!(kind_from_info(dimension, &info).0, kind, "{info:?}");
-        // A file without the section means the same, one with it what the section says.
+        // A file without the section means the same; in one with it, the section decides.
         let parts = TableParts { info, ..TableParts::empty(dimension, kind) };
         let table = Table::new(parts).expect("a table without cells");
         let mut file = File::parse(&table.to_bytes());

@@ -1,4 +1,4 @@
-//! Point location by planes, against whole numbers.
+//! Point location by planes, against integers.
 
 use crate::common::full::{plane_choices, plane_nodes, wedges};
 use proptest::prelude::*;
@@ -14,14 +14,14 @@ fn found(tree: &PlaneTree, p: [f64; 3]) -> Vec<CellId> {
     cells
 }
 
-/// Height over a plane, which must have whole numbers.
+/// Height over a plane, which must have integer coefficients.
 fn height(node: &PlaneNode, p: [i64; 3]) -> i128 {
     let product = |k: usize| node.normal[k] as i128 * i128::from(p[k]);
     (0..3).map(product).sum::<i128>() - node.offset as i128
 }
 
-/// The oracle, from node to node: the cells on leaves whose planes all have `p` on the right side, or no
-/// more than `slack` on the wrong one.
+/// The oracle, from node to node: the cells on leaves whose planes all have `p` on the right side, or at most `slack`
+/// on the wrong one.
 fn expected(nodes: &[PlaneNode], p: [i64; 3], slack: impl Fn(&PlaneNode, [i64; 3]) -> i128 + Copy) -> Vec<CellId> {
     fn walk(
         nodes: &[PlaneNode],
@@ -70,8 +70,8 @@ fn large() -> impl Strategy<Value = (PlaneNode, [i64; 3])> {
 }
 
 proptest! {
-    /// Invariant: on a small grid, where doubles are exact but for their bound, a point is found in the
-    /// cells whose closed leaves have it, in all and in no others; with a slack, in those not farther off.
+    /// Invariant: on a small grid, where doubles are exact except for their bound, a point is found in exactly the
+    /// cells whose closed leaves contain it; with a slack, in those not farther off.
     #[test]
     fn planes_small_grid_is_exact(choices in plane_choices(), p in [-5i64..6, -5i64..6, -5i64..6], slack in 0u8..3) {
         let nodes = plane_nodes(&choices, 5, 1.0);
@@ -88,7 +88,7 @@ proptest! {
         prop_assert!(expected(&[node], p, |_, _| i128::from(slack)).iter().all(|cell| found.contains(cell)));
     }
 
-    /// The tightness twin: a point goes to both sides only where rounding could hide on which it is.
+    /// The tightness twin: a point goes to both sides only where rounding could matter.
     #[test]
     fn planes_tightness_clear_is_certain((node, p) in large()) {
         let tree = PlaneTree::new(vec![node], 0.0).unwrap();
@@ -98,8 +98,8 @@ proptest! {
         prop_assert!(found.iter().all(|cell| clear.contains(cell)), "{:?} {:?}", found, clear);
     }
 
-    /// Invariant: a box has the cells of all its points; if there is one plane, those of its corners and no others; a larger box has
-    /// at least as many.
+    /// Invariant: a box has the cells of all its points; with a single plane, exactly those of its corners; a larger
+    /// box has at least as many.
     #[test]
     fn planes_boxes_have_the_cells_of_their_points(
         choices in plane_choices(),
@@ -132,7 +132,7 @@ proptest! {
         prop_assert_eq!(of_box(&one, p, far), cells);
     }
 
-    /// Whatever the numbers, one side at least is open.
+    /// Whatever the numbers, at least one side is open.
     #[test]
     fn planes_extreme_numbers_lose_nothing(n in any::<[f64; 4]>(), p in any::<[f64; 3]>(), slack in any::<f64>()) {
         let children = [PlaneChild::Cell(CellId(0)), PlaneChild::Cell(CellId(1))];
@@ -177,12 +177,12 @@ fn tables_in_space_ask_the_planes() {
     );
     assert_eq!(table.in_dimension().unwrap().at([f64::NAN, 1.0, 1.0]).cells(), []);
     assert_eq!(table.in_dimension().unwrap().at([f64::INFINITY, 1.0, 1.0]).cells(), []);
-    // Without the planes, the boxes do; a stripped table keeps the planes.
+    // Without the planes, the boxes decide; a stripped table keeps the planes.
     let mut parts = wedges();
     parts.planes = None;
     assert_eq!(Table::new(parts).unwrap().in_dimension().unwrap().at([3.0, 1.0, 1.0]).cells(), both);
     assert_eq!(table.strip_geometry().in_dimension().unwrap().at([3.0, 1.0, 1.0]).cells(), [CellId(0)]);
-    // The scratch does not change the answer.
+    // The scratch space does not affect the answer.
     let mut buffer = PlaceBuffer::new();
     let query = table.in_dimension().unwrap();
     assert_eq!(query.at_with([1.0, 1.0, 1.0], &mut buffer).cells(), both);
@@ -224,7 +224,7 @@ fn defects_of_planes_are_refused() {
     assert_eq!(Table::new(flat).unwrap_err(), TableError::Planes(PlaneError::Dimension));
 }
 
-/// The same mistakes in a file, with right checksums.
+/// The same defects in a file, with correct checksums.
 #[test]
 fn forged_planes_are_refused() {
     let forge = |at: usize, value: &[u8]| {

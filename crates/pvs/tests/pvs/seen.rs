@@ -1,9 +1,9 @@
-//! Rows of objects: finer than "whatever touches a cell that is seen".
+//! Rows of objects: finer than "whatever touches a visible cell".
 
 use crate::common::rooms;
 use sightlines_pvs::{BitMatrix, CellId, ObjectId, Table, TableError, TableParts};
 
-/// The rooms, where the first sees the lamp only and the second both objects.
+/// The rooms, where the first sees only the lamp and the second both objects.
 fn parts() -> TableParts {
     let mut parts = rooms();
     let mut seen = BitMatrix::new(5, 2);
@@ -19,7 +19,7 @@ fn rows_of_objects_answer_before_the_union() {
     let table = Table::new(parts()).unwrap();
     assert_eq!(table.visible_objects(CellId(1)), [ObjectId(0), ObjectId(1)]);
     assert_eq!(table.visible_objects(CellId(2)), []);
-    // Without the rows, what touches a cell that is seen is seen.
+    // Without the rows, everything that touches a visible cell is visible.
     assert_eq!(Table::new(rooms()).unwrap().visible_objects(CellId(2)), [ObjectId(0), ObjectId(1)]);
     assert_eq!(
         table.in_dimension().unwrap().at([4.0, 1.0]).inside().map_or(Vec::new(), |at| at.visible_objects()),

@@ -1,4 +1,4 @@
-//! Stab trees as they are kept, against their sequences written out.
+//! Stored stab trees, against their sequences written out.
 
 use crate::common::file::File;
 use crate::common::full::{Choice, choices, stab_parts, villa};
@@ -20,7 +20,7 @@ fn any_stab() -> impl Strategy<Value = (Vec<PortalRecord>, usize, Vec<Choice>, V
     (network(), choices(0..30), choices(1..6)).prop_map(|((portals, n), nodes, roots)| (portals, n, nodes, roots))
 }
 
-/// Trees identified by their content, wherever they are stored: each gets a number.
+/// Trees identified by their content, regardless of where they are stored: each gets a number.
 #[derive(Default)]
 struct Forest(BTreeMap<(u32, bool, BTreeSet<usize>), usize>);
 
@@ -61,7 +61,7 @@ impl Forest {
     }
 }
 
-/// The nodes that some root leads to.
+/// The reachable nodes.
 fn shown(parts: &StabParts) -> BTreeSet<u32> {
     let mut pending: Vec<u32> = parts.roots.clone();
     let mut seen: BTreeSet<u32> = BTreeSet::new();
@@ -78,7 +78,7 @@ fn opened(parts: &StabParts, portals: &[PortalRecord], n: usize) -> StabTrees {
     StabTrees::new(parts.clone(), portals, n).expect("trees over the portals")
 }
 
-/// The same trees with twice the nodes: each is there again, and is used by every other parent.
+/// The same trees with twice the nodes: each has a copy, which every other parent uses.
 fn doubled(parts: &StabParts) -> StabParts {
     let mut out = StabParts::default();
     let list = |first: &[u32], items: &[u32], i: usize| -> Vec<u32> {
@@ -98,8 +98,8 @@ fn doubled(parts: &StabParts) -> StabParts {
 }
 
 proptest! {
-    /// Invariant: no sequence is lost and none is added; each node is there once, and only if it is used;
-    /// children come before parents, and lists ascend.
+    /// Invariant: no sequence is lost and none is added; each node is stored once, and only if it is used; children
+    /// come before parents, and lists ascend.
     #[test]
     fn stab_trees_are_what_was_given((portals, n, nodes, roots) in any_stab()) {
         let parts = stab_parts(&portals, n, &nodes, &roots);
@@ -117,13 +117,13 @@ proptest! {
         prop_assert!(stab.n_lists() <= stab.n_nodes());
     }
 
-    /// Invariant: however the nodes are shared and numbered, the same trees come out.
+    /// Invariant: however the nodes are shared and numbered, the result is the same.
     #[test]
     fn stab_trees_have_one_order((portals, n, nodes, roots) in any_stab()) {
         let parts = stab_parts(&portals, n, &nodes, &roots);
         let stab = opened(&parts, &portals, n);
         prop_assert_eq!(&opened(&doubled(&parts), &portals, n), &stab);
-        // Taken apart and put together again.
+        // Taken apart and reassembled.
         let mut again = StabParts::default();
         for node in 0..stab.n_nodes() as u32 {
             let (portal, forward) = stab.gate(node);
@@ -152,7 +152,7 @@ proptest! {
         prop_assert_eq!(stab.n_edges(), edges);
     }
 
-    /// Invariant: what is written is read, with cells of few entries and of many.
+    /// Invariant: written trees can be read, with cells of few entries and of many.
     #[test]
     fn stab_trees_survive_a_file((portals, n, nodes, roots) in any_stab()) {
         let stab = opened(&stab_parts(&portals, n, &nodes, &roots), &portals, n);
@@ -188,11 +188,11 @@ proptest! {
     #[test]
     fn impostor_children_apart_are_refused((portals, n, nodes, roots) in any_stab(), at in any::<prop::sample::Index>()) {
         let mut parts = stab_parts(&portals, n, &nodes, &roots);
-        // Without children there is nothing to spoil.
+        // Without children there is nothing to damage.
         if parts.children.is_empty() {
             return Ok(());
         }
-        // A gate turned round begins in the cell that it led into, which is another one.
+        // A reversed gate begins in the cell that it led into, which is another one.
         let k = at.index(parts.children.len());
         let child = parts.children[k];
         parts.gates[child as usize] ^= 1;
@@ -238,7 +238,7 @@ fn section_len(table: &Table) -> usize {
     File::parse(&table.to_bytes()).part(b"STAB").bytes.len()
 }
 
-/// Both ways to write a header: sixteen entries have a mask, seventeen a list.
+/// Both forms of a header: sixteen entries have a mask, seventeen a list.
 #[test]
 fn headers_are_masks_or_lists() {
     for (n, expected) in [(16, 1 + 1 + 3 + 1 + 1 + 16 + 1), (17, 1 + 1 + 1 + 1 + 17 + 1 + 1 + 17 + 1)] {
@@ -253,7 +253,7 @@ fn headers_are_masks_or_lists() {
     }
 }
 
-/// Rooms on a grid, and all ways that go at most eight steps and never back: their trees, stored.
+/// Rooms on a grid, and all paths of at most eight steps that never go back: their trees, stored.
 #[test]
 fn trees_on_a_grid_are_small() {
     let side = 12usize;
@@ -273,7 +273,8 @@ fn trees_on_a_grid_are_small() {
     let into = |(portal, forward): (u32, bool)| portals[portal as usize].cells[usize::from(forward)].idx();
     let mut parts = StabParts::default();
     let mut roots: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); side * side];
-    // A quadrant has two ways; nodes[room][way]: what crosses that gate with so many steps to go.
+    // A quadrant has two directions; nodes[room][direction]: the node that crosses that gate with this many steps to
+    // go.
     for quadrant in 0..4 {
         let ways = [quadrant, (quadrant + 1) % 4];
         let mut nodes: Vec<Vec<u32>> = vec![Vec::new(); side * side];
@@ -298,7 +299,7 @@ fn trees_on_a_grid_are_small() {
     assert_eq!(Table::from_bytes(&table.to_bytes()), Ok(table));
 }
 
-/// More sequences than can be counted are as many as can be.
+/// Numbers of sequences saturate at the maximum.
 #[test]
 fn numbers_of_sequences_saturate() {
     // Two cells with two portals: every step doubles.
@@ -314,10 +315,10 @@ fn numbers_of_sequences_saturate() {
     assert_eq!((stab.n_nodes(), stab.n_lists(), stab.n_sequences()), (400, 200, u128::MAX));
 }
 
-/// Makes one mistake.
+/// Introduces one defect.
 type Spoil = fn(&mut StabParts);
 
-/// Each defect alone is refused, with its place.
+/// Each defect alone is refused, with its position.
 #[test]
 fn defects_of_stab_trees_are_refused() {
     let portals = rooms().portals;
@@ -383,7 +384,7 @@ fn defects_of_stab_trees_are_refused() {
         let error = StabTrees::new(parts, &portals, 5).unwrap_err();
         assert_eq!((&error, error.to_string().as_str()), (&expected, text));
     }
-    // Good trees of another table.
+    // Valid trees of another table.
     let mut parts = villa();
     parts.portals.pop();
     assert!(matches!(Table::new(parts).unwrap_err(), TableError::Stab(StabError::Portal { portal: 2, .. })));

@@ -1,4 +1,4 @@
-//! What makes a table, what is refused, and what it answers.
+//! Which parts make a table, which are refused, and the answers of its queries.
 
 use crate::common::{any_parts, assert_well_formed, located, rooms};
 use proptest::prelude::*;
@@ -16,8 +16,8 @@ fn misplaced(table: &Table) -> Option<(Vec<f64>, Vec<CellId>, Vec<CellId>)> {
 }
 
 proptest! {
-    /// Invariant: a point is located in the cells whose closed outline contains it, in all and no others.
-    /// (On a small grid the error bound never gets in the way.)
+    /// Invariant: a point is located in exactly the cells whose closed outline contains it. (On a small grid the error
+    /// bound never matters.)
     #[test]
     fn location_is_what_brute_force_says(parts in any_parts()) {
         let table = Table::new(parts).unwrap();
@@ -25,7 +25,7 @@ proptest! {
         assert_well_formed(&table);
     }
 
-    /// Invariant: what is seen from a point is what any cell there sees.
+    /// Invariant: a point sees what any cell there sees.
     #[test]
     fn view_from_a_point_unites_rows(parts in any_parts(), p in [-9i8..10, -9i8..10, -9i8..10]) {
         let table = Table::new(parts).unwrap();
@@ -121,8 +121,8 @@ proptest! {
     }
 }
 
-/// The impostor for point location: brute force tells a table whose cell is not where its locator
-/// thinks, and no table can be made from a locator that misses a cell.
+/// The impostor for point location: brute force detects a table whose cell is not where its locator has it, and no
+/// table can be made from a locator that misses a cell.
 #[test]
 fn impostor_locator_is_caught() {
     let mut parts = rooms();
@@ -196,7 +196,7 @@ fn a_point_of_space_is_no_point_of_the_plane() {
     assert_eq!(table.in_dimension::<3>().unwrap_err().to_string(), "the table has 2 dimensions, not 3");
     assert_eq!(table.in_dimension::<4>().unwrap_err(), DimensionError { table: 2, points: 4 });
     assert!(table.in_dimension::<2>().unwrap().at([-1.0, 1.0]).is_outside());
-    // For code that serves both, z does not count.
+    // For code that serves both dimensions, z does not count.
     assert_eq!(table.place_at([1.0, 1.0, f64::NAN]).cells(), [CellId(0)]);
 }
 
@@ -210,10 +210,10 @@ fn clusters_without_planes_are_nowhere() {
     assert!(!table.has_places() && table.place_at([1.0; 3]).is_outside());
 }
 
-/// Makes one mistake.
+/// Introduces one defect.
 type Spoil = fn(&mut TableParts);
 
-/// Each defect alone is refused, with its place.
+/// Each defect alone is refused, with its position.
 #[test]
 fn defects_are_refused() {
     let refused = |spoil: Spoil| {

@@ -4,8 +4,8 @@ use sightlines_geometry::Random;
 
 /// The share that a triangle takes up for an eye.
 ///
-/// Van Oosterom and Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983; no part of this is used
-/// by the bound.
+/// Van Oosterom and Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983; the bound
+/// uses no part of this.
 fn exact(triangle: &[Point3; 3], eye: Point3) -> f64 {
     let [a, b, c] = triangle.map(|p| [0, 1, 2].map(|k| p[k] - eye[k]));
     let dot = |a: Point3, b: Point3| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
@@ -15,7 +15,7 @@ fn exact(triangle: &[Point3; 3], eye: Point3) -> f64 {
     2.0 * dot(a, cross).abs().atan2(below) / (4.0 * std::f64::consts::PI)
 }
 
-/// The largest share for eyes at the corners of the box and some in it.
+/// The largest share for eyes at the corners of the box and some inside.
 fn largest(triangle: &[Point3; 3], eyes: &Aabb<3>, random: &mut Random) -> f64 {
     let corners = (0..8).map(|i| [0, 1, 2].map(|k| if i >> k & 1 == 0 { eyes.min[k] } else { eyes.max[k] }));
     let inside: Vec<Point3> = (0..32).map(|_| random.point(eyes)).collect();
@@ -23,7 +23,7 @@ fn largest(triangle: &[Point3; 3], eyes: &Aabb<3>, random: &mut Random) -> f64 {
 }
 
 fn point(size: f64) -> impl Strategy<Value = Point3> {
-    // Small whole numbers make flat and touching cases.
+    // Small integers make flat and touching cases.
     prop_oneof![
         prop::array::uniform3(-size..size),
         prop::array::uniform3((-4i32..5).prop_map(move |x| f64::from(x) * size / 4.0))
@@ -53,7 +53,7 @@ proptest! {
         (eyes.min[0], eyes.max[0]) = (eyes.min[0] + away, eyes.max[0] + away);
         let bound = share(&triangle, &eyes, depth);
         let seen = largest(&triangle, &eyes, &mut Random::new(seed));
-        // The oracle is in plain doubles: differences of coordinates are exact here but for their last bits.
+        // The oracle uses plain doubles: differences of coordinates are exact here except for their last bits.
         prop_assert!(seen <= bound * (1.0 + 1e-9) + 1e-13, "{} {}", seen, bound);
         prop_assert!((0.0..=0.5).contains(&bound));
     }
@@ -63,7 +63,8 @@ proptest! {
         let eyes = Aabb { min: [40.0, -1.0, -1.0], max: [41.0, 1.0, 1.0] };
         let seen = largest(&[a, b, c], &eyes, &mut Random::new(seed));
         let bound = share(&[a, b, c], &eyes, 4);
-        // Seen from 39 to 42 units away and turned by a few degrees: cos(theta) varies by the box's size over the distance.
+        // Seen from 39 to 42 units away and turned by a few degrees: cos(theta) varies by the box's size over the
+        // distance.
         let area = PlaneOf::new(&[a, b, c], &eyes).area;
         prop_assert!(bound <= seen * 1.2 + area / (39.0 * 39.0 * SPHERE) * 0.12 + 1e-15, "{} {}", seen, bound);
     }
@@ -75,7 +76,7 @@ proptest! {
     }
 }
 
-/// Bounds that are wrong in ways in which one errs.
+/// Bounds with typical mistakes.
 #[test]
 fn the_oracle_tells_wrong_bounds() {
     let triangle = [[3.0, -1.0, -1.0], [3.0, 1.0, -1.0], [3.0, 0.0, 1.0]];
@@ -98,7 +99,7 @@ fn bounds_of_known_shapes() {
     let middle = Aabb { min: [0.0; 3], max: [0.0; 3] };
     let bounds: Vec<f64> = (0..9).map(|depth| share(&face, &middle, depth)).collect();
     assert!((1.0 / 12.0..=1.0 / 12.0 * 1.2).contains(&bounds[8]), "{bounds:?}");
-    // What touches the eyes may take up half of the sphere, what has no area nearly nothing.
+    // A triangle that touches the eyes may take up half of the sphere, one without area nearly nothing.
     assert_eq!(share(&face, &Aabb { min: [0.0; 3], max: [1.0; 3] }, 8), 0.5);
     assert!(share(&[[1.0; 3], [2.0; 3], [3.0; 3]], &middle, 4) < 1e-14);
     // Very large, very small, and far out.

@@ -1,4 +1,4 @@
-//! How far the surface is apart before and after a change.
+//! The distance between the surfaces before and after a change.
 
 use super::{Change, Mesh};
 use sightlines_geometry::Point3;
@@ -7,12 +7,13 @@ use sightlines_geometry::vector::{dot, length, normal, sub};
 /// Unit of rounding of doubles, 2^-53.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// How far a point of the faces at `change.from` is from those that replace them at most, and the other way round, in scene units.
+/// Upper bound of the distance of a point of the faces at `change.from` from the faces that replace them, and the other
+/// way round, in scene units.
 ///
-/// Seen along the mean normal, the faces around a place all show their fronts, before and after, and their rim is one way; so both cover the same
-/// outline as often, and are apart by no more than the outline's corners differ in height. On a border the outline loses or
-/// gains a triangle, no wider than the corner that goes is away from the new edge. Where the fan is no such thing, the bound is the
-/// way that the corner goes.
+/// Seen along the mean normal, if the faces around a place all show their fronts, before and after, and their rim is a
+/// single path, both cover the same outline equally often, and their distance is at most the difference in height of
+/// the outline's corners. On a border the outline loses or gains a triangle, no wider than the distance of the removed
+/// corner from the new edge. Otherwise the bound is the distance that the corner moves.
 pub(super) fn apart(mesh: &Mesh, change: &Change) -> f64 {
     let (from, to) = (mesh.place(change.from), mesh.place(change.to));
     seen_from_above(mesh, change).unwrap_or_else(|| length(sub(to, from)) * (1.0 + 8.0 * U)) + f64::MIN_POSITIVE
@@ -35,9 +36,9 @@ fn seen_from_above(mesh: &Mesh, change: &Change) -> Option<f64> {
     }
     let heights = before.iter().flatten().map(|&p| dot(p, up));
     let (low, high) = heights.fold((0.0f64, 0.0f64), |(low, high), h| (low.min(h), high.max(h)));
-    // In units of U times the largest coordinate, whose places are at most the root of 3 times it away: places are differences (1), `up` is a
-    // unit vector but for four roundings (4), products and two sums (3), so a height is off by 8 times that root, two by 28; their
-    // difference, twice as large, is rounded once (4).
+    // In units of U times the largest coordinate; points are at most sqrt(3) times that away. They are differences (1),
+    // `up` is a unit vector except for four roundings (4), products and two sums (3), so a height is off by 8 sqrt(3),
+    // two by 28; their difference, twice as large, is rounded once (4).
     let size = before.iter().flatten().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     let height = high - low + 32.0 * U * size;
     let border: Vec<u32> = mesh.around(change.from).iter().filter(|(_, n)| *n == 1).map(|(p, _)| *p).collect();
@@ -45,8 +46,8 @@ fn seen_from_above(mesh: &Mesh, change: &Change) -> Option<f64> {
         [] => 0.0,
         [a, b] => {
             let [a, b] = [a, b].map(|p| sub(mesh.place(p), from));
-            // In the same units: a coordinate of the nearest point comes of differences (1 and 4), a product (2) and a sum (1), three of
-            // them of 8 are 14 off; squares, sums and the root add 5.
+            // In the same units: a coordinate of the nearest point comes from differences (1 and 4), a product (2) and
+            // a sum (1); three of these errors of 8 amount to 14; squares, sums and the root add 5.
             to_segment(a, b) + 32.0 * U * size
         }
         _ => return None,
@@ -54,7 +55,7 @@ fn seen_from_above(mesh: &Mesh, change: &Change) -> Option<f64> {
     Some((height + aside) * (1.0 + 8.0 * U))
 }
 
-/// Whether the rim of the faces around a place is one way: no place of it begins two edges, or ends two.
+/// Whether the rim of the faces around a place is a single path: no place on it begins two edges, or ends two.
 fn has_plain_rim(mesh: &Mesh, centre: u32, faces: &[u32]) -> bool {
     let mut ends = [Vec::new(), Vec::new()];
     for &face in faces {
@@ -69,7 +70,7 @@ fn has_plain_rim(mesh: &Mesh, centre: u32, faces: &[u32]) -> bool {
     })
 }
 
-/// How far the origin is from a segment.
+/// The distance of the origin from a segment.
 fn to_segment(a: Point3, b: Point3) -> f64 {
     let way = sub(b, a);
     let square = dot(way, way);

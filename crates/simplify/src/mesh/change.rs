@@ -16,8 +16,8 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// The change, if the surface stays what it is: no edge gets more than two faces, no border and no seam is torn, no face turns
-    /// over. None else; also where edges of more than two faces meet, which are left alone.
+    /// The change, if it preserves the topology: no edge gets more than two faces, no border and no seam is torn, no
+    /// face turns over. `None` otherwise, and where more than two faces share an edge; such edges are left alone.
     pub(crate) fn new(mesh: &Mesh, from: u32, to: u32) -> Option<Self> {
         let around = mesh.around(from);
         if around.iter().any(|(_, n)| *n > 2) {
@@ -25,13 +25,13 @@ impl Change {
         }
         let of_edge = around.iter().find(|(place, _)| *place == to)?.1;
         let border = around.iter().filter(|(_, n)| *n == 1).count();
-        // A border is moved along itself, and not where several borders touch.
+        // A border is collapsed only along itself, and not where several borders touch.
         if border > 0 && (of_edge != 1 || border != 2) {
             return None;
         }
         let (lost, rest): (Vec<u32>, Vec<u32>) =
             mesh.at(from).iter().partition(|&&face| mesh.face(face).corners.contains(&to));
-        // What a lost face covered falls together with its third edge, which some other face has to have.
+        // The surface of a lost face collapses onto its third edge, which some other face must have.
         let keeps_edge = |&face: &u32| {
             let corners = mesh.face(face).corners;
             let third = corners.into_iter().find(|&c| c != from && c != to);
@@ -43,7 +43,7 @@ impl Change {
         if !lost.iter().all(keeps_edge) {
             return None;
         }
-        // What is next to both is next to a face that goes, else two sheets would be glued together.
+        // A common neighbour must belong to a lost face; otherwise two sheets would be glued together.
         let others = mesh.around(to);
         let next_to_both = around.iter().filter(|(p, _)| others.binary_search_by_key(p, |o| o.0).is_ok()).count();
         if next_to_both != lost.len() {
@@ -60,7 +60,7 @@ impl Change {
         Some(Self { from, to, lost, moved })
     }
 
-    /// The corners of a moved face, afterwards.
+    /// The corners of a moved face after the change.
     pub(crate) fn corners(&self, mesh: &Mesh, face: u32) -> [Point3; 3] {
         mesh.face(face).corners.map(|c| mesh.place(if c == self.from { self.to } else { c }))
     }
@@ -81,7 +81,8 @@ impl Change {
     }
 }
 
-/// The vertex at `to` that goes with a face's vertex at `from`: the one that a face with both has of the same object.
+/// The vertex at `to` that corresponds to a face's vertex at `from`: the one in a face of the same object that has
+/// both.
 fn partner(mesh: &Mesh, lost: &[u32], face: u32, from: u32, to: u32) -> Option<u32> {
     let wedge_at = |id: u32, place: u32| {
         let face = mesh.face(id);
@@ -93,7 +94,7 @@ fn partner(mesh: &Mesh, lost: &[u32], face: u32, from: u32, to: u32) -> Option<u
     lost.iter().find(goes_with).and_then(|&other| wedge_at(other, to))
 }
 
-/// Whether a face would be seen from behind, or lose its area. In doubles: this keeps meshes tidy, and promises nothing.
+/// Whether a face would turn over or lose its area. In doubles: this keeps meshes tidy, and guarantees nothing.
 fn turns_over(mesh: &Mesh, face: u32, from: u32, to: u32) -> bool {
     let before = mesh.corners(face);
     let after = mesh.face(face).corners.map(|c| mesh.place(if c == from { to } else { c }));

@@ -1,4 +1,4 @@
-//! Collapsing edges, those that matter least first.
+//! Edge collapse, in order of least importance.
 
 use super::apart::apart;
 use super::quadric::Quadric;
@@ -8,27 +8,28 @@ use sightlines_geometry::vector::{cross, dot, length, normal};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Who decides what may be collapsed.
+/// Decides which edges may be collapsed.
 pub(crate) trait Policy {
     /// Whether a face may be changed at all.
     fn may_touch(&self, mesh: &Mesh, face: u32) -> bool;
 
-    /// Whether a change is made; if so it is paid for. `moved`: how far the surface has moved there at most, since the beginning.
+    /// Whether to make a change; if so, it is charged to the budget. `moved`: an upper bound of how far the surface has
+    /// moved there since the beginning.
     fn accepts(&mut self, mesh: &Mesh, change: &Change, moved: f64) -> bool;
 
     /// Whether there are few enough faces.
     fn is_done(&self, mesh: &Mesh) -> bool;
 }
 
-/// What weighs faces and edges.
+/// The weights of faces and edges.
 pub(crate) struct Weights<'a> {
-    /// Of each face.
+    /// For each face.
     pub(crate) face: &'a dyn Fn(u32) -> f64,
     /// Whether some eye may see one of two faces from the front and the other from behind.
     pub(crate) may_be_silhouette: &'a dyn Fn(u32, u32) -> bool,
 }
 
-/// A place that may be moved to another one, and what that costs.
+/// A place that may be moved to another one, and the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Candidate {
     cost: f64,
@@ -57,7 +58,7 @@ impl Ord for Candidate {
 pub(crate) struct Collapser {
     quadrics: Vec<Quadric>,
     stamps: Vec<u32>,
-    /// For each face how far it is from what was there at the beginning at most, and what was there from it.
+    /// For each face, upper bounds of its distance from the original surface, and of the original surface from it.
     moved: Vec<f64>,
     deviation: f64,
     /// Subtracted from all places, so that quadrics have small numbers.
@@ -96,8 +97,8 @@ impl Collapser {
         [0, 1, 2].map(|k| p[k] - self.origin[k])
     }
 
-    /// Keeps borders, and edges that may be silhouettes: a plane through the edge, upright on a face, with the weight of the heavier
-    /// face and, where two faces meet, in proportion to how much they bend.
+    /// Preserves borders and edges that may be silhouettes: adds a plane through the edge, perpendicular to a face,
+    /// with the weight of the heavier face and, where two faces meet, in proportion to how much they bend.
     fn keep_edge(&mut self, mesh: &Mesh, weights: &Weights<'_>, a: u32, b: u32) {
         let faces: Vec<u32> = mesh.at(a).iter().copied().filter(|&f| mesh.face(f).corners.contains(&b)).collect();
         let normals: Vec<Point3> = faces.iter().map(|&f| unit(normal(mesh.corners(f)))).collect();
@@ -120,7 +121,7 @@ impl Collapser {
         }
     }
 
-    /// Collapses while the policy lets it, least cost first.
+    /// Collapses edges as long as the policy permits, least cost first.
     pub(crate) fn run(&mut self, mesh: &mut Mesh, policy: &mut dyn Policy) {
         for place in 0..mesh.n_places() as u32 {
             for (other, _) in mesh.around(place) {
@@ -136,8 +137,8 @@ impl Collapser {
                 continue;
             }
             let Some(change) = Change::new(mesh, from, to) else { continue };
-            // What is near to a face now was near to what it replaces, and that to what was there. What was near to a lost face is now
-            // near to one that is next to it.
+            // Points near a face now were near those that it replaces, and those near the original surface. Points near
+            // a lost face are now near one of its neighbours.
             let before = mesh.at(from).iter().map(|&f| self.moved[f as usize]).fold(0.0, f64::max);
             let moved = (before + apart(mesh, &change)).next_up();
             if !policy.accepts(mesh, &change, moved) {
@@ -145,7 +146,7 @@ impl Collapser {
             }
             self.deviation = self.deviation.max(moved);
             change.apply(mesh);
-            // Also of those that stay as they are: what was lost may now be nearest to one of them.
+            // Unchanged neighbours too: lost surface may now be nearest to one of them.
             for &face in mesh.at(to) {
                 self.moved[face as usize] = self.moved[face as usize].max(moved);
             }
@@ -171,7 +172,7 @@ impl Collapser {
         }
     }
 
-    /// How far a point of the surface is from the surface at the beginning at most, and the other way round; scene units.
+    /// Upper bound of the distance between the surface and the original one, in both directions; scene units.
     pub(crate) fn deviation(&self) -> f64 {
         self.deviation
     }

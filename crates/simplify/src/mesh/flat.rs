@@ -1,10 +1,10 @@
-//! Merging faces that lie in one plane, exactly: the surface stays the same set of points.
+//! Merging of faces that lie exactly in one plane: the surface stays the same set of points.
 
 use super::{Change, Mesh, State};
 use sightlines_geometry::{Adaptive, Orient2d, Point2, Point3, orient3d};
 use std::collections::VecDeque;
 
-/// Merges what can be merged without changing the surface of any object by a point. O(n) tries in practice.
+/// Merges faces without changing the surface of any object. O(n) attempts in practice.
 pub(crate) fn merge(mesh: &mut Mesh) {
     let mut queue: VecDeque<u32> = (0..mesh.n_places() as u32).collect();
     let mut waits = vec![true; mesh.n_places()];
@@ -24,9 +24,9 @@ pub(crate) fn merge(mesh: &mut Mesh) {
 
 /// Whether a change leaves the set of points of each object as it is.
 ///
-/// The faces around the place, taken together by object and plane, have to form fans: a closed one, which covers the outline of its rim once; or
-/// an open one, of which the place that is moved to is one end and the other end lies opposite on one line. Then the new fan covers the same
-/// outline, if none of its faces turns over. All by exact signs.
+/// The faces around the place, grouped by object and plane, have to form fans: a closed one, which covers the outline
+/// of its rim once; or an open one, of which the target place is one end and the other end lies opposite on one line.
+/// Then the new fan covers the same outline, if none of its faces turns over. All signs are exact.
 fn keeps_the_surface(mesh: &Mesh, change: &Change) -> bool {
     let mut rest: Vec<u32> = mesh.at(change.from).to_vec();
     while let Some(&first) = rest.first() {
@@ -50,7 +50,7 @@ struct Projection {
 }
 
 impl Projection {
-    /// One in which a triangle is counter-clockwise; none if it has no area.
+    /// One in which a triangle is counter-clockwise; `None` if it has no area.
     fn new([a, b, c]: [Point3; 3]) -> Option<Self> {
         let all = [[0, 1], [1, 0], [1, 2], [2, 1], [2, 0], [0, 2]];
         all.into_iter().map(|axes| Self { axes }).find(|projection| projection.turn([a, b, c]) > 0.0)
@@ -78,7 +78,7 @@ fn keeps_fan(mesh: &Mesh, change: &Change, fan: &[u32], projection: &Projection)
     if edges.iter().any(|e| projection.turn([centre, mesh.place(e[0]), mesh.place(e[1])]) <= 0.0) {
         return false;
     }
-    // All edges turn one way, so the rim goes round as often as it gets from below to above.
+    // All edges turn one way, so the rim winds as often as it crosses from below to above.
     let above = |p: u32| projection.point(mesh.place(p)).y >= projection.point(centre).y;
     if edges.iter().filter(|e| !above(e[0]) && above(e[1])).count() > 1 {
         return false;
@@ -96,7 +96,7 @@ fn keeps_fan(mesh: &Mesh, change: &Change, fan: &[u32], projection: &Projection)
     fits && left.all(|e| projection.turn([to, mesh.place(e[0]), mesh.place(e[1])]) > 0.0)
 }
 
-/// Whether the place that goes lies on the segment between where it goes and another place.
+/// Whether the removed place lies on the segment between its target and another place.
 fn is_opposite(mesh: &Mesh, change: &Change, other: u32) -> bool {
     let [p, q, r] = [change.to, change.from, other].map(|c| mesh.place(c));
     let flat = |i: usize, j: usize, v: Point3| Point2::new(v[i], v[j]);
@@ -109,7 +109,7 @@ fn is_opposite(mesh: &Mesh, change: &Change, other: u32) -> bool {
 impl Change {
     /// Applies a change that keeps the surface: kept faces become merged ones, new ones stay new.
     fn apply_flat(&self, mesh: &mut Mesh) {
-        // What takes the place of new faces is new.
+        // A replacement of new faces is new.
         let any_new = mesh.at(self.from).iter().any(|&f| mesh.face(f).state == State::New);
         self.apply(mesh);
         if !any_new {

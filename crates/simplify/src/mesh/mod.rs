@@ -1,7 +1,7 @@
-//! The triangles of a scene as one mesh: corners at one place are one.
+//! The triangles of a scene as one mesh: coincident corners are one place.
 //!
-//! Objects keep their own vertices, as they may differ in more than their place (texture coordinates, normals); the mesh knows which
-//! vertex of its object each corner is.
+//! Objects keep their own vertices, as they may differ in more than their position (texture coordinates, normals); the
+//! mesh stores which vertex of its object each corner is.
 
 mod apart;
 mod change;
@@ -28,44 +28,44 @@ pub(crate) struct Face {
     pub(crate) state: State,
 }
 
-/// What has become of a face.
+/// The state of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum State {
-    /// It is as it was.
+    /// Unchanged.
     Kept,
-    /// It covers a part of what kept faces in its plane covered: a face that was not there before, of a surface that was.
+    /// It covers a part of what kept faces in its plane covered: a new face of an old surface.
     Merged,
-    /// Some corner has moved: a face that was not there before.
+    /// Some corner has moved: a new face.
     New,
-    /// It is gone.
+    /// Removed.
     Gone,
 }
 
-/// Of each object the triangles that are left, and which triangle of the object each of them was.
+/// For each object the remaining triangles, and which triangle of the object each of them was.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Left {
     pub(crate) triangles: Vec<Vec<[u32; 3]>>,
     pub(crate) origin: Vec<Vec<Option<u32>>>,
 }
 
-/// Triangles with what is next to what.
+/// Triangles with their adjacency.
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
     places: Vec<Point3>,
     faces: Vec<Face>,
-    /// For each place the faces at it that are not gone.
+    /// For each place the faces at it that are not removed.
     at: Vec<Vec<u32>>,
     n_left: usize,
 }
 
 impl Mesh {
-    /// All triangles of a scene, in the order of `Faces::of_scene`; corners at one place are one, whichever objects they are of.
-    /// O(n log n).
+    /// All triangles of a scene, in the order of `Faces::of_scene`; coincident corners are one place, whichever objects
+    /// they belong to. O(n log n).
     pub(crate) fn new(scene: &Scene) -> Self {
         Self::joined(scene, true)
     }
 
-    /// The same, but objects have nothing in common.
+    /// The same, but objects share no places.
     pub(crate) fn of_objects(scene: &Scene) -> Self {
         Self::joined(scene, false)
     }
@@ -113,7 +113,7 @@ impl Mesh {
         &self.faces[id as usize]
     }
 
-    /// Number of faces that are not gone.
+    /// Number of faces that are not removed.
     pub(crate) fn n_left(&self) -> usize {
         self.n_left
     }
@@ -126,7 +126,7 @@ impl Mesh {
         self.places[id as usize]
     }
 
-    /// The faces at a place that are not gone.
+    /// The faces at a place that are not removed.
     pub(crate) fn at(&self, place: u32) -> &[u32] {
         &self.at[place as usize]
     }
@@ -135,7 +135,7 @@ impl Mesh {
         self.face(face).corners.map(|c| self.place(c))
     }
 
-    /// Takes a face away.
+    /// Removes a face.
     pub(crate) fn remove(&mut self, id: u32) {
         let face = &mut self.faces[id as usize];
         if std::mem::replace(&mut face.state, State::Gone) == State::Gone {
@@ -147,7 +147,7 @@ impl Mesh {
         }
     }
 
-    /// Places next to one, ascending, each with the number of faces at the edge between.
+    /// The neighbouring places, ascending, each with the number of faces at the edge between.
     pub(crate) fn around(&self, place: u32) -> Vec<(u32, u32)> {
         let mut others: Vec<u32> =
             self.at(place).iter().flat_map(|&f| self.face(f).corners).filter(|&c| c != place).collect();
@@ -162,7 +162,7 @@ impl Mesh {
         around
     }
 
-    /// For each object what is left: kept triangles first, then merged ones.
+    /// For each object the remaining triangles: kept ones first, then merged ones.
     pub(crate) fn left(&self, scene: &Scene) -> Left {
         let mut left = Left::default();
         let mut first = 0;

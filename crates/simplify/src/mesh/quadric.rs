@@ -1,4 +1,4 @@
-//! Squared distances to planes, added up.
+//! Sums of squared distances to planes.
 
 use sightlines_geometry::Point3;
 
@@ -15,7 +15,7 @@ pub(super) struct Quadric {
 }
 
 impl Quadric {
-    /// The plane through a point with a normal of any length; nothing if it has none.
+    /// The plane through a point with a normal of any length; zero if it has none.
     pub(super) fn plane(normal: Point3, through: Point3, weight: f64) -> Self {
         let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
         let [x, y, z] = normal.map(|n| n / length);
@@ -38,7 +38,7 @@ impl Quadric {
         self.constant += other.constant;
     }
 
-    /// Its value at a point; not negative.
+    /// Its value at a point; never negative.
     pub(super) fn at(&self, [x, y, z]: Point3) -> f64 {
         let q = &self.square;
         let square = q[0] * x * x + q[3] * y * y + q[5] * z * z + 2.0 * (q[1] * x * y + q[2] * x * z + q[4] * y * z);

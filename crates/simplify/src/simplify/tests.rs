@@ -34,7 +34,7 @@ fn simplified(scene: &Scene, views: &Views, options: &SimplifyOptions) -> Simpli
     with_sheets(scene, |by| simplify(scene, views, by, options)).unwrap()
 }
 
-/// A small tower and the places of some rooms in it.
+/// A small tower and the boxes of some rooms in it.
 fn small_tower() -> (Scene, Vec<Aabb<3>>) {
     let options = TowerOptions { floors: 2, rooms_x: 2, rooms_y: 2, furniture: 1, ..TowerOptions::default() };
     let rooms = tower_rooms(options).unwrap().into_iter().map(|r| r.bounds).collect();
@@ -58,7 +58,7 @@ fn terrain(n: u32, z: f64, bend: f64, seed: u64) -> SceneObject {
     SceneObject { name: format!("terrain {seed}"), vertices, triangles }
 }
 
-/// Faces of the whole scene, in pictures of the whole sphere.
+/// The faces visible from an eye, in pictures of the whole sphere.
 fn panorama(faces: &Faces, caster: &RayCaster, eye: Point3, n: u32) -> Vec<u32> {
     let mut all = Vec::new();
     for axis in 0..3 {
@@ -115,11 +115,11 @@ fn no_budget_changes_no_pixel() {
         let left = simplified(&scene, &views, &SimplifyOptions::default());
         let (changed, all) = changed_pixels(&scene, &left, &views, 100, 12);
         assert_eq!((changed, left.bound), (0, 0.0), "{name}: of {all}");
-        // And much is gone.
+        // And much is removed.
         let Counts { before, hidden, left: n, .. } = left.counts;
         assert!(n + hidden == before && hidden * 2 > before, "{name}: {:?}", left.counts);
         assert!(left.is_part_of_the_original());
-        // An impostor: one face less, of those that are seen.
+        // An impostor: one visible face less.
         let mut wrong = left.clone();
         let estimate = Estimate::new(&Faces::of_scene(&scene).unwrap(), &views, 4096);
         let mut face = 0;
@@ -160,7 +160,7 @@ fn no_budget_changes_no_pixel_of_a_real_scene() {
     assert!(all == 24 * 6 * 144 && left.counts.hidden * 10 > left.counts.before, "{:?}", left.counts);
 }
 
-/// That a measured share can be at most `bound`: of all rays, and of the worst eye's, where that is not chance.
+/// Whether a measured share can be at most `bound`: of all rays, and of the worst eye's, except by chance.
 fn check(measured: &crate::Measured, bound: f64, n_rays: u64, n_eyes: usize) -> Result<(), TestCaseError> {
     let low =
         |share: f64, n: u64, wrong: f64| estimate::interval((share * n as f64).round() as u64, n, 1.0 - wrong).ends[0];
@@ -229,7 +229,7 @@ fn aimed_rays_agree_with_others() {
     assert!(aimed.worst - 4.0 * aimed.worst_error > 1e-4, "{aimed:?}");
 }
 
-/// What is left out is not far from what could be: where the budget allows a share, some of it is used.
+/// The bound is not far from tight: where the budget permits a share, some of it is used.
 #[test]
 fn budgets_are_used() {
     let streets = CityOptions { blocks_x: 4, blocks_z: 4, ..CityOptions::default() };
@@ -261,7 +261,7 @@ fn a_broken_promise_is_measured() {
     };
     let good = simplified(&scene, &views, &SimplifyOptions::default().with_budget(0.05));
     assert!(!told(&good, good.bound));
-    // Made for another place; of the shape alone; for a budget that is ten times as large.
+    // Made for another place; by shape alone; for a budget ten times as large.
     let elsewhere = self::views([4.0, 4.0, 200.0], [8.0, 8.0, 220.0]);
     let other = simplified(&scene, &elsewhere, &SimplifyOptions::default().with_budget(0.05));
     let shape = geometric(&scene, good.counts.left).unwrap();
@@ -272,7 +272,7 @@ fn a_broken_promise_is_measured() {
     }
 }
 
-/// At equal counts, what is seen changes less than by the ordinary metric.
+/// At equal counts, the visible change is less than with the ordinary metric.
 #[test]
 fn the_geometric_metric_changes_more() {
     let far = |seed| {
@@ -292,7 +292,7 @@ fn the_geometric_metric_changes_more() {
     assert!(measured[0].moved < measured[1].moved, "{measured:?}");
 }
 
-/// Faces that were merged cover what was covered, and nothing else.
+/// Merged faces cover what was covered, and nothing else.
 #[test]
 fn merging_changes_no_surface() {
     let streets = CityOptions { blocks_x: 2, blocks_z: 2, ..CityOptions::default() };
@@ -303,7 +303,7 @@ fn merging_changes_no_surface() {
     let left = simplified(&scene, &views, &options);
     let Counts { hidden, merged_away, left: n, before, .. } = left.counts;
     assert!(n * 2 < before - hidden && merged_away > 0 && left.is_part_of_the_original(), "{:?}", left.counts);
-    // From anywhere, what is left looks as what was left without merging.
+    // From anywhere, the result looks like the result without merging.
     let plain = simplified(&scene, &views, &SimplifyOptions::default());
     let plain = plain.scene(&scene).unwrap();
     let all = simplified(
@@ -315,7 +315,7 @@ fn merging_changes_no_surface() {
     let measure_options = MeasureOptions { n_eyes: 50, n_rays: 2000, ..MeasureOptions::default() };
     let measured = measure(&plain, &all, &anywhere, &measure_options).unwrap();
     assert_eq!((measured.changed, measured.other_object), (0.0, 0.0), "{:?}", all.counts);
-    // Bent ever so little, nothing is merged.
+    // If bent ever so slightly, nothing is merged.
     let mut random = Random::new(8);
     let mut bent = terrain(6, 3.0, 0.0, 1);
     bent.vertices.iter_mut().for_each(|v| {
@@ -334,7 +334,8 @@ fn merging_changes_no_surface() {
 
 #[test]
 fn collapsing_keeps_what_belongs_to_vertices() {
-    // Two sheets of one object that share places but not vertices, as at a seam of texture coordinates; and another object beside.
+    // Two sheets of one object that share places but not vertices, as at a seam of texture coordinates; and another
+    // object next to them.
     let mut seam = terrain(8, 30.0, 0.1, 4);
     let n = seam.vertices.len() as u32;
     seam.vertices.extend(seam.vertices.clone());
@@ -353,7 +354,7 @@ fn collapsing_keeps_what_belongs_to_vertices() {
     let options = SimplifyOptions { collapse: 1.0, shift: 0.1, ..SimplifyOptions::default().with_budget(0.05) };
     let left = simplified(&scene, &views, &options);
     assert!(left.counts.new > 10 && left.deviation > 0.0, "{:?}", left.counts);
-    // On one side of the seam there are its vertices, on the other side the copies; both still meet all along it.
+    // One side of the seam has its vertices, the other side the copies; both still meet all along it.
     let seam_of = |t: &[u32; 3]| t.iter().filter(|&&v| v >= n).count();
     assert!(left.triangles[0].iter().all(|t| [0, 3].contains(&seam_of(t))));
     let on_seam = |copies: bool| {
@@ -381,7 +382,7 @@ fn collapsing_keeps_what_belongs_to_vertices() {
     }
 }
 
-/// The distance of a point and a triangle, by the nearest of its inside, its sides and corners.
+/// The distance of a point from a triangle: the least of those to its inside, sides and corners.
 fn to_triangle(p: Point3, &[a, b, c]: &[Point3; 3]) -> f64 {
     let sub = |p: Point3, q: Point3| [0, 1, 2].map(|k| p[k] - q[k]);
     let dot = |p: Point3, q: Point3| (0..3).map(|k| p[k] * q[k]).sum::<f64>();
@@ -405,7 +406,7 @@ fn to_triangle(p: Point3, &[a, b, c]: &[Point3; 3]) -> f64 {
     side(a, b).min(side(b, c)).min(side(c, a))
 }
 
-/// How far points of one surface are from another one at most, by sampling.
+/// The largest distance of points of one surface from another, by sampling.
 fn far_from(from: &Scene, to: &Scene, random: &mut Random) -> f64 {
     let triangles = |s: &Scene| s.objects().iter().flat_map(|o| o.corners()).collect::<Vec<_>>();
     let to = triangles(to);
@@ -421,7 +422,7 @@ fn far_from(from: &Scene, to: &Scene, random: &mut Random) -> f64 {
 proptest! {
     #[test]
     fn surfaces_are_no_farther_apart_than_said(seed: u64, bend in 0.0..2.0f64, target in 4usize..60) {
-        // Corners are moved about in the plane, too.
+        // Corners are moved within the plane, too.
         let mut bent = terrain(6, 0.0, bend, seed);
         let mut random = Random::new(seed ^ 5);
         bent.vertices.iter_mut().for_each(|v| *v = [v[0] + 0.7 * random.unit(), v[1] + 0.7 * random.unit(), v[2]]);
@@ -434,7 +435,7 @@ proptest! {
 }
 
 proptest! {
-    /// Few triangles of few places: strips, lone ones, such that face different ways, and such that pass through each other.
+    /// Few triangles on few places: strips, single ones, ones that face different ways, and ones that intersect.
     #[test]
     fn small_meshes_are_no_farther_apart_than_said(
         places in prop::collection::vec(prop::array::uniform3(0i32..8), 4..9),
@@ -457,8 +458,8 @@ proptest! {
         prop_assume!(before.n_triangles() > 0);
         prop_assert!(after.n_triangles() > 0);
         let mut random = Random::new(seed);
-        // What the measurement itself rounds: on this grid it divides products of four differences, below (8 √3)^4 < 2^16, by a
-        // squared area of at least 1, and each product is wrong by no more than 16 units in the last place.
+        // The rounding of the measurement itself: on this grid it divides products of four differences, below (8 √3)^4
+        // < 2^16, by a squared area of at least 1, and each product is off by no more than 16 units in the last place.
         let rounding = f64::exp2(16.0) * 16.0 * f64::EPSILON;
         for _ in 0..4 {
             let apart = far_from(&before, &after, &mut random).max(far_from(&after, &before, &mut random));
@@ -467,7 +468,7 @@ proptest! {
     }
 }
 
-/// Cases in which steps do not add up by themselves.
+/// Cases in which single steps do not simply add up.
 #[test]
 fn ears_and_lone_triangles_count() {
     let object = |vertices: &[Point3], triangles: &[[u32; 3]]| SceneObject {
@@ -497,7 +498,7 @@ fn ears_and_lone_triangles_count() {
         let apart = (0..500).map(|_| far_from(&scene, &after, &mut random)).fold(0.0, f64::max);
         assert!(apart <= left.deviation, "{apart} {}", left.deviation);
     }
-    // What is far from everything else does not collapse to nothing.
+    // An isolated triangle does not collapse to nothing.
     let lone = [
         object(&[[0.; 3], [1., 0., 0.], [0., 1., 0.]], &[[0, 1, 2]]),
         object(&[[1e3, 0., 0.], [1.1e3, 0., 0.], [1e3, 100., 0.]], &[[0, 1, 2]]),
@@ -510,7 +511,7 @@ fn flat_surfaces_do_not_move() {
     let scene = Scene::new(vec![terrain(8, 3.0, 0.0, 1)]).unwrap();
     let left = geometric(&scene, 2).unwrap();
     assert!(left.counts.left == 2 && left.deviation < 1e-10, "{left:?}");
-    // And a bent one does: the bound is not far above what is sampled.
+    // A bent surface does collapse: the bound is not far above the sampled distance.
     let scene = Scene::new(vec![terrain(8, 3.0, 1.0, 1)]).unwrap();
     let left = geometric(&scene, 100).unwrap();
     let apart = far_from(&left.scene(&scene).unwrap(), &scene, &mut Random::new(1));
@@ -538,7 +539,7 @@ fn sums_never_exceed_the_budget_by_refunds() {
     assert!(account.spend(1.0, |_| a));
     account.refund(|_| b);
     assert_eq!(account.most(), a);
-    // The smallest triangle as far away as coordinates go still takes up something.
+    // The smallest triangle at the largest distance that coordinates permit still takes up something.
     let [e, d] = [-140, -192].map(|k| 2f64.powi(k));
     let far = Aabb { min: [2f64.powi(200), e, e + d], max: [2f64.powi(200), e, e + d] };
     assert!(bound::share(&[[e, e, e], [e + d, e, e], [e, e + d, e]], &far, 4) > 0.0);
@@ -594,7 +595,7 @@ fn strange_scenes_have_answers() {
 #[test]
 fn inside_of_an_object_little_more_than_its_inside_is_left() {
     let (scene, rooms) = small_tower();
-    // Within the roof's slab, which is closed and in which nothing is.
+    // Within the closed slab of the roof, in which nothing is.
     let roof = scene.objects().last().unwrap().bounds();
     let b = rooms[0];
     let middle = [(b.min[0] + b.max[0]) / 2.0, (roof.min[1] + roof.max[1]) / 2.0, (b.min[2] + b.max[2]) / 2.0];

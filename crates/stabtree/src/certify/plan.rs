@@ -12,15 +12,15 @@ use sightlines_geometry::{Adaptive, Point2, Portal2, check_coordinate};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, PlanarWitness};
 
-/// Lines are taken in rounds: at first only those that prove at least so many new pairs.
+/// Lines are added in rounds: at first only those that prove at least this many new pairs.
 const ROUNDS: [usize; 3] = [32, 6, 1];
 
-/// Doors that a line between two single cells is sought through, one after the other. Pairs farther apart are left to lines that are
-/// shot, or open.
+/// Longest sequence of doors in the search for a line between two single cells. Pairs farther apart need a line that
+/// was shot, or stay open.
 const MOST_DOORS: usize = 1500;
 
-/// Proves what `rows` says of the cells of `graph`: which see each other (symmetric, with the diagonal set). Pairs that
-/// it finds no proof of, because they are wrong or take too much effort, are left open.
+/// Proves the visibility in `rows` for the cells of `graph` (symmetric, with the diagonal set). Pairs without a proof,
+/// because they are wrong or take too much effort, are left open.
 ///
 /// Cost: about that of the search for the rows, and some more for each pair that few lines join.
 ///
@@ -57,7 +57,7 @@ pub fn certify_plan(
     Ok(maker.finish())
 }
 
-/// The graph as proofs know it.
+/// The graph in the form that proofs use.
 ///
 /// # Errors
 /// [`NetworkError`] for a graph that is not well formed, or one of too large coordinates.
@@ -78,7 +78,7 @@ pub fn plan_network(graph: &CellGraph<Planar>) -> Result<PlanNetwork, NetworkErr
     PlanNetwork::new(&cells, &portals)
 }
 
-/// A coordinate in four bytes if it can be, rounded.
+/// A coordinate, rounded to four bytes if it fits.
 fn short(x: f64) -> f64 {
     check_coordinate(f64::from(x as f32)).unwrap_or(x)
 }
@@ -100,7 +100,7 @@ fn shoot(graph: &CellGraph<Planar>, maker: &mut PlanMaker<'_>, per_portal: u32) 
     }
     for at_least in ROUNDS {
         lines.retain(|&(cell, rounded, exact)| {
-            // Whether it leaves the cell or enters it does not matter, and where four bytes miss the portal, eight may not.
+            // Whether it leaves or enters the cell does not matter; where four bytes miss the portal, eight may not.
             ![rounded, exact].into_iter().any(|[p, q]| maker.take_line(PlanLine::through(cell, p, q), at_least))
         });
     }
@@ -111,7 +111,7 @@ fn front(portal: Portal2, bounds: &sightlines_geometry::Aabb<2>) -> bool {
     sightlines_sightline::Stabber::in_front(&Funnel::new(Adaptive), &portal, bounds)
 }
 
-/// Seeks lines to cells that are known to be seen, from one cell.
+/// Searches for lines from one cell to cells that are known to be visible.
 struct Seeker<'a, 'm, 'n> {
     graph: &'a CellGraph<Planar>,
     rows: &'a BitMatrix,
@@ -126,7 +126,7 @@ impl<'a, 'm, 'n> Seeker<'a, 'm, 'n> {
         Self { graph, rows, maker, funnel: Funnel::new(Adaptive), doors: Vec::new(), left: most_steps }
     }
 
-    /// Finds a line to each cell of a greater number that no line joins it with yet.
+    /// Finds a line to each cell with a greater number that has none yet.
     fn seek(&mut self, from: CellId) {
         let missing: Vec<u64> = missing(self.rows, self.maker.visible(), from);
         if missing.iter().all(|word| *word == 0) {
@@ -142,7 +142,7 @@ impl<'a, 'm, 'n> Seeker<'a, 'm, 'n> {
         }
     }
 
-    /// Goes on behind an exit; `wanted` may hold what is found by now.
+    /// Continues behind an exit; some of `wanted` may have been found meanwhile.
     fn enter(&mut self, from: CellId, entered_by: &Exit, wanted: &[u64]) {
         let (graph, here) = (self.graph, entered_by.to);
         if self.left == 0 || self.doors.len() > MOST_DOORS {
@@ -179,7 +179,7 @@ impl<'a, 'm, 'n> Seeker<'a, 'm, 'n> {
         }
     }
 
-    /// Hands on a line through all doors: in four bytes, in eight, or in whole numbers.
+    /// Passes on a line through all doors: in four bytes, in eight, or in integers.
     fn take(&mut self, from: CellId) {
         let witness = self.funnel.witness();
         if let Some([p, q]) = witness.rounded(&self.doors) {
@@ -193,7 +193,7 @@ impl<'a, 'm, 'n> Seeker<'a, 'm, 'n> {
     }
 }
 
-/// The cells of greater numbers that a cell sees and no line joins it with.
+/// The cells with greater numbers that a cell sees and that have no line yet.
 fn missing(rows: &BitMatrix, visible: &Pairs, from: CellId) -> Vec<u64> {
     let words = rows.row(from.idx()).iter().zip(visible.row(from.0));
     let mut missing: Vec<u64> = words.map(|(sees, proven)| sees & !proven).collect();
@@ -207,14 +207,14 @@ fn missing(rows: &BitMatrix, visible: &Pairs, from: CellId) -> Vec<u64> {
     missing
 }
 
-/// A line in whole numbers.
+/// A line in integers.
 fn whole(witness: &PlanarWitness) -> LineForm {
     let [a, b, c] = witness.coefficients();
     let common = a.denom() * b.denom() * c.denom();
     LineForm::Whole(Box::new([a, b, c].map(|x| x.numer() * (&common / x.denom()))))
 }
 
-/// The funnel, and why it is closed where it is.
+/// The funnel, and for a blocked sequence the reason.
 struct Guide<'a> {
     graph: &'a CellGraph<Planar>,
     funnel: Funnel<Adaptive>,

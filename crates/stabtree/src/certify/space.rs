@@ -13,7 +13,7 @@ use sightlines_geometry::{Aabb, BoxTree, check_coordinate};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, Target, Verdict};
 
-/// Lines are taken in rounds: at first only those that prove at least so many new pairs.
+/// Lines are added in rounds: at first only those that prove at least this many new pairs.
 const ROUNDS: [usize; 3] = [64, 8, 1];
 
 /// Linear programs spent on a pair of groups; one that takes more is halved.
@@ -22,18 +22,18 @@ const GROUP_BUDGET: u32 = 64;
 /// Linear programs spent on a pair of single cells that is hidden: as many as the search spends.
 const CELL_BUDGET: u64 = 2000;
 
-/// Linear programs spent on a line between two cells. A pair that takes more is left open, which hides nothing; most such pairs are
-/// only assumed to see each other.
+/// Linear programs spent on a line between two cells. A pair that takes more is left open, which hides nothing; most
+/// such pairs are only assumed visible.
 const LINE_BUDGET: u64 = 100;
 
-/// Lines beside one that is found, which are tried where that one touches an edge of a portal.
+/// Number of nearby lines that are tried where a line touches an edge of a portal.
 const MOST_TRIED: u32 = 24;
 
-/// Proves what `rows` says of the cells of `graph`: which see each other (symmetric, with the diagonal set). Pairs that
-/// it finds no proof of, because they are wrong, only assumed, or too thin for doubles, are left open.
+/// Proves the visibility in `rows` for the cells of `graph` (symmetric, with the diagonal set). Pairs without a proof,
+/// because they are wrong, only assumed visible, or too thin for doubles, are left open.
 ///
-/// Cost: some times that of the search for the rows: each contradiction is put in whole numbers, and what is visible needs a line
-/// of its own or with others.
+/// Cost: several times that of the search for the rows: each contradiction is converted to integers, and each visible
+/// pair needs a line, its own or a shared one.
 ///
 /// # Errors
 /// [`BoxNetworkError`] for a graph that is not well formed.
@@ -58,7 +58,7 @@ pub fn certify_space(
     Ok(search.run(maker, options.threads, options.most_steps_in_all))
 }
 
-/// The graph as proofs know it.
+/// The graph in the form that proofs use.
 ///
 /// # Errors
 /// [`BoxNetworkError`] for a graph that is not well formed.
@@ -81,17 +81,17 @@ fn corners(b: &Aabb<3>) -> Box3 {
     [b.min, b.max]
 }
 
-/// A coordinate in four bytes if it can be, rounded.
+/// A coordinate, rounded to four bytes if it fits.
 fn short(x: f64) -> f64 {
     check_coordinate(f64::from(x as f32)).unwrap_or(x)
 }
 
-/// A coordinate that proofs take; tiny ones are zero.
+/// A coordinate in the range that proofs accept; tiny ones become zero.
 fn valid(x: f64) -> f64 {
     check_coordinate(x).unwrap_or(0.0)
 }
 
-/// Hands on a line: in four bytes a coordinate, else in eight.
+/// Passes on a line: with four bytes per coordinate, else with eight.
 fn take(maker: &mut BoxMaker<'_>, cell: u32, [p, q]: [[f64; 3]; 2], at_least: usize) -> bool {
     maker.take_line(BoxLine::through(cell, p.map(short), q.map(short)), at_least)
         || maker.take_line(BoxLine::through(cell, p.map(valid), q.map(valid)), at_least)
@@ -106,7 +106,7 @@ fn shoot(graph: &CellGraph<Axial>, maker: &mut BoxMaker<'_>, per_portal: u32) {
         let extent = &portal.shape.extent;
         for k in 0..per_portal {
             let p = [0, 1, 2].map(|k| extent.min[k] + (extent.max[k] - extent.min[k]) * random.open_unit());
-            // Rooms are wide and low: half of the lines are level, but for a little.
+            // Rooms are wide and low: half of the lines are nearly level.
             let step = [0, 1, 2].map(|axis| {
                 let size = all.max[axis] - all.min[axis];
                 (random.open_unit() - 0.5) * size * if k.is_multiple_of(2) { 1.0 } else { 1.5 - 0.7 * axis as f64 }
@@ -125,21 +125,21 @@ struct Search<'a> {
     graph: &'a CellGraph<Axial>,
     blockers: &'a Blockers,
     tree: BoxTree<3>,
-    /// The cell at each place of the tree.
+    /// The cell at each position of the tree.
     cell_at: Vec<u32>,
-    /// Places by places: which see each other.
+    /// Positions by positions: which see each other.
     sees: AtomicBitMatrix,
-    /// Linear programs for a pair of cells that is hidden, and for one that is not.
+    /// Linear programs for a hidden pair of cells, and for a visible one.
     budgets: [u32; 2],
 }
 
 /// Two nodes of the tree of cells.
 type Pair = [u32; 2];
 
-/// What was found of two boxes: that they are hidden from each other.
+/// A finding about two boxes: they are hidden from each other.
 type Found = ([Aabb<3>; 2], BlockedProof);
 
-/// Pairs of groups are halved on one thread until there are so many. It does not depend on the number of threads.
+/// Pairs of groups are halved on one thread until there are this many. Independent of the number of threads.
 const N_TASKS: usize = 2048;
 
 impl<'a> Search<'a> {
@@ -189,7 +189,7 @@ impl<'a> Search<'a> {
         maker.finish()
     }
 
-    /// Proves two groups to be hidden from each other, or hands on smaller ones.
+    /// Proves that two groups are hidden from each other, or passes on smaller pairs.
     fn hide(&self, [a, b]: Pair, shaft: &mut Shaft<'a>, found: &mut Vec<Found>, smaller: &mut Vec<Pair>) {
         let (na, nb) = (self.tree.nodes()[a as usize], self.tree.nodes()[b as usize]);
         if a == b {
@@ -230,12 +230,12 @@ impl<'a> Search<'a> {
         is_leaf: bool,
     ) -> Option<BlockedProof> {
         let apart = (0..3).any(|k| a.max[k] <= b.min[k] || b.max[k] <= a.min[k]);
-        // Cells are known to be hidden; of groups that is not known, and to decide about them is quicker than to prove.
+        // Single cells are known to be hidden. For groups this is unknown, and deciding is quicker than proving.
         let worth_it = apart && (is_leaf || shaft.decide(a, b, Target::Inside, budget).is_hidden());
         if worth_it { shaft.certify(a, b, Target::Inside, budget) } else { None }
     }
 
-    /// Finds lines between all cells that see each other and that no line joins yet.
+    /// Finds a line for each visible pair of cells that has none yet.
     fn seek_all(&self, maker: &mut BoxMaker<'_>, shaft: &mut Shaft<'a>) {
         let mut random = Random::new(0x7072_6F6F_6673_0003);
         for a in 0..self.cell_at.len() {
@@ -245,7 +245,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Finds a line between two cells, by their places, if none joins them yet.
+    /// Finds a line between two cells, given by their positions, if they have none yet.
     fn seek(&self, places: [usize; 2], maker: &mut BoxMaker<'_>, shaft: &mut Shaft<'a>, random: &mut Random) {
         let cells = places.map(|place| self.cell_at[place]);
         if maker.visible().has(cells[0], cells[1]) {
@@ -258,7 +258,7 @@ impl<'a> Search<'a> {
         }
         let Verdict::Visible(line) = shaft.decide(&a, &b, Target::Inside, self.budgets[1]) else { return };
         let [p, q] = line.points();
-        // A line that is free may pass the common edge of two portals. Lines next to it do not.
+        // A free line may pass the common edge of two portals; lines next to it do not.
         let mut width = 0.25;
         for k in 0..=MOST_TRIED {
             let mut beside = |p: [f64; 3], b: &Aabb<3>| {
@@ -277,7 +277,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A proof in the words of the proofs' format.
+/// A proof in the terms of the proof format.
 fn translated(proof: &BlockedProof) -> Vec<(u8, Proof)> {
     let octant = |signs: &[bool; 3]| (0..3).fold(0u8, |bits, k| bits | u8::from(signs[k]) << k);
     proof.octants.iter().map(|(signs, branch)| (octant(signs), branch_of(branch))).collect()

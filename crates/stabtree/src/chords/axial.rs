@@ -6,7 +6,7 @@ use sightlines_cells::{Axial, AxialDoor, CellGraph, CellId, Exit};
 use sightlines_geometry::Random;
 use sightlines_pvs::BitMatrix;
 
-/// A line through `p` in direction `d`; both are meant exactly.
+/// A line through `p` in direction `d`; both count as exact.
 #[derive(Debug, Clone, Copy)]
 struct Chord {
     p: [f64; 3],

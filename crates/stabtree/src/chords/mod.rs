@@ -1,7 +1,7 @@
 //! Chords: straight lines shot through the portals of a graph, to find most visible pairs cheaply.
 //!
-//! Each step of a chord is certain that it passes a portal strictly, so every pair that chords find is
-//! visible; what they miss is left to the search. They change no answer, only its cost.
+//! Each step of a chord certainly passes a portal strictly, so every pair that chords find is visible; what they miss
+//! is left to the search. Chords affect the cost of a search, never its answer.
 
 mod axial;
 mod planar;

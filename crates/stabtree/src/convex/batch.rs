@@ -4,20 +4,20 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// A pool of threads, or the thread of the caller.
+/// A pool of threads, or the caller's thread.
 #[derive(Debug)]
 pub(crate) struct Workers {
     pool: Option<rayon::ThreadPool>,
 }
 
 impl Workers {
-    /// `threads` of them; 0 for one for each core. Where no threads can be made, the caller's does the work.
+    /// `threads` of them; 0 for one per core. If no threads can be created, the caller's thread does the work.
     pub(crate) fn new(threads: usize) -> Self {
         let pool = (threads != 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok());
         Self { pool: pool.flatten() }
     }
 
-    /// `work` on each unit, in the order of units; `scratch` makes what a thread needs for it.
+    /// Applies `work` to each unit and returns the results in order; `scratch` makes the working memory of a thread.
     pub(crate) fn map<S: Send, T: Send>(
         &self,
         units: Range<usize>,
@@ -28,7 +28,7 @@ impl Workers {
             let mut scratch = scratch();
             return units.map(|unit| work(&mut scratch, unit)).collect();
         };
-        // One for each thread is made.
+        // Each thread makes one.
         let spare = Mutex::new(Vec::new());
         let one = |unit: usize| {
             let taken = lock(&spare).pop();
@@ -41,7 +41,7 @@ impl Workers {
     }
 }
 
-/// The list behind a lock; a panic of another thread is passed on by the pool.
+/// The list behind a lock; the pool propagates panics of other threads.
 fn lock<T>(list: &Mutex<Vec<T>>) -> std::sync::MutexGuard<'_, Vec<T>> {
     list.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }

@@ -6,17 +6,16 @@
 //!
 //! Three things keep the number of beams small:
 //!
-//! * Only cells that are in doubt are looked for, and they go down with the beam: those that the new planes
-//!   have on the wrong side, or that cannot be seen through the gate as is known already, are dropped, and a beam
-//!   without any ends.
-//! * What lies beyond a part of a gate depends on the source and the part, not on the way that led there. So a
-//!   beam whose part lies within the part of an earlier beam, and looks for nothing that the earlier one did not
-//!   look for, ends. (The earlier one may still wait to be followed; all of them are followed in the end.)
-//! * After [`MOST_PARTS`] parts of one gate, the next one is the whole gate: from then on every beam through it
-//!   ends at once. This bounds the work for a source by the number of gates, at the price of looser answers
-//!   where a thousand ways lead through open space; later stages decide those exactly.
+//! * Only cells that are in doubt are searched for, and a beam carries them along: cells on the wrong side of its new
+//!   planes, or known not to be visible through the gate, are dropped, and a beam without any ends.
+//! * What lies beyond a part of a gate depends on the source and the part, not on the route to it. So a beam ends if
+//!   its part lies within the part of an earlier beam whose targets include its own. (The earlier one may still be
+//!   waiting; all beams are followed in the end.)
+//! * After [`MOST_PARTS`] parts of one gate, the next one is the whole gate: from then on every beam through it ends at
+//!   once. This bounds the work for a source by the number of gates, at the price of looser answers where a thousand
+//!   routes lead through open space; later stages decide those exactly.
 //!
-//! When a beam reaches a cell in doubt, a line is sought through the gates that it came by, exactly. If there is
+//! When a beam reaches a cell in doubt, an exact search looks for a line through its sequence of gates. If there is
 //! none, the cell is left to a later stage, which follows sequences of gates one by one.
 
 use super::ConvexCounters;
@@ -31,14 +30,14 @@ use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
 /// How many different parts of one gate are followed before the whole gate is.
 const MOST_PARTS: usize = 8;
 
-/// Beams want a line, and leave proofs to a later stage.
+/// Beams only need a line; proofs are left to a later stage.
 const ONLY_LINES: StabLimits = StabLimits { boxes: 1, turns: 8 };
 
-/// A part of a gate, and what is looked for behind it.
+/// A part of a gate, and the cells that are searched for behind it.
 #[derive(Debug)]
 struct Beam {
     gate: u32,
-    /// The beam that it came from; the first is its own.
+    /// The beam that it continues; the first one is its own parent.
     parent: u32,
     part: Part,
     wanted: CellSet,
@@ -65,12 +64,12 @@ pub(super) struct BeamTracer {
     sequence: Vec<u32>,
 }
 
-/// What was found out about one gate.
+/// The results for one gate.
 #[derive(Debug, Default)]
 pub(super) struct Traced {
-    /// Cells that are not visible through the gate, of those that were in doubt.
+    /// The cells that were in doubt and are not visible through the gate.
     pub(super) hidden: Vec<u64>,
-    /// Lines that show that cells see each other: the gates that each passes.
+    /// Lines that prove cells visible: the gates that each passes.
     pub(super) chains: Vec<Vec<u32>>,
 }
 
@@ -95,7 +94,7 @@ impl BeamTracer {
         }
     }
 
-    /// What was done since this was last asked.
+    /// The work done since the last call.
     pub(super) fn take_counters(&mut self) -> ConvexCounters {
         let programs = self.stabber.counters().n_programs;
         self.counted.programs = programs - std::mem::replace(&mut self.programs_before, programs);
@@ -103,7 +102,7 @@ impl BeamTracer {
         std::mem::take(&mut self.counted)
     }
 
-    /// Looks through the gate `source` for the cells in `in_doubt`. Row `g` of `through` has the cells that may be
+    /// Searches through the gate `source` for the cells in `in_doubt`. Row `g` of `through` has the cells that may be
     /// seen through gate `g`.
     pub(super) fn trace(&mut self, gates: &Gates, source: u32, mut in_doubt: Vec<u64>, through: &BitMatrix) -> Traced {
         let mut traced = Traced::default();
@@ -185,7 +184,7 @@ impl BeamTracer {
         }
         self.source.clear();
         self.source.extend_from_slice(gates.corners(source));
-        // Who passes the gate comes from behind its plane.
+        // Lines through the gate come from behind its plane.
         if !self.cutter.cut(&mut self.source, &gates.behind(at)) {
             return false;
         }
@@ -194,7 +193,7 @@ impl BeamTracer {
         true
     }
 
-    /// Goes on through a gate, if something is left of it and of what is wanted behind it.
+    /// Continues through a gate, if something is left of it and of the cells wanted behind it.
     #[expect(clippy::too_many_arguments, reason = "the state of one trace, borrowed in pieces")]
     fn pass(
         &mut self,
@@ -226,7 +225,7 @@ impl BeamTracer {
             }
         }
         if self.wanted.has(gate.to) {
-            // The line is sought through the gates themselves; the part is only a hint.
+            // The search for a line uses the gates themselves; the part is only a hint.
             let part = std::mem::take(&mut self.part);
             self.seek(gates, source, Some(beam), exit, &part, in_doubt, traced);
             self.part = part;
@@ -251,8 +250,8 @@ impl BeamTracer {
         self.push(exit, beam);
     }
 
-    /// Seeks a line through the gates that lead to `exit`, whose cell is in doubt. Found or not, the cell is no
-    /// longer in doubt here: if not, it is left to a later stage.
+    /// Searches for a line through the gates that lead to `exit`, whose cell is in doubt. In either case the cell is no
+    /// longer in doubt here: without a line it is left to a later stage.
     #[expect(clippy::too_many_arguments, reason = "the state of one trace, borrowed in pieces")]
     fn seek(
         &mut self,
@@ -278,7 +277,8 @@ impl BeamTracer {
             let shapes: Vec<&Portal3> = self.sequence.iter().map(|&g| gates.shape(g)).collect();
             let hint = Line3::through(start, end);
             if let Verdict::Visible(line) = self.stabber.stab(&shapes, hint.as_ref()) {
-                // Followed on, it may pass more; where rounding could matter, it is what was decided exactly.
+                // Followed further, the line may pass more gates; where rounding could matter, the exact decision
+                // stands.
                 self.counted.lines += 1;
                 gates.chain(source, line.a, unit(sub(line.b, line.a)), &mut self.chain);
                 if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
@@ -297,7 +297,7 @@ impl BeamTracer {
         }
     }
 
-    /// The gates from the source to `exit`, by the way that the beam came; without one, `exit` is the source.
+    /// The gates from the source to `exit` along the beam's route; without a beam, `exit` is the source.
     fn sequence_to(&mut self, beam: Option<u32>, exit: u32) {
         self.sequence.clear();
         self.sequence.push(exit);

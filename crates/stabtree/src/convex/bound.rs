@@ -2,8 +2,8 @@
 
 use super::gates::Gates;
 
-/// The cells that are reached from behind the gate through gates that a line may pass after it, as far as the two
-/// planes tell ([`Gates::may_follow`]); a row of bits. O(gates reached).
+/// The cells reached from behind the gate through gates that a line may pass after it, judging by the two planes alone
+/// ([`Gates::may_follow`]); a row of bits. O(gates reached).
 ///
 /// Source: the first step of Quake's vis.
 pub(super) fn seen_through(gates: &Gates, gate: u32) -> Vec<u64> {

@@ -1,4 +1,4 @@
-//! Sets of cells that are mostly near each other in number, as what lies in one beam is.
+//! Sets of cells with mostly similar numbers, such as the cells in one beam.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ impl CellSet {
         word.is_some_and(|word| word >> (cell % 64) & 1 == 1)
     }
 
-    /// Makes it the cells of a row.
+    /// Sets it to the cells of a row.
     pub(super) fn set(&mut self, row: &[u64]) {
         self.start = 0;
         self.words.clear();
@@ -27,7 +27,7 @@ impl CellSet {
         self.trim();
     }
 
-    /// Makes it the cells of another set that are in two rows as well.
+    /// Sets it to the intersection of another set and two rows.
     pub(super) fn set_common(&mut self, other: &Self, first: &[u64], second: &[u64]) {
         let range = other.range();
         self.start = other.start;
@@ -44,7 +44,7 @@ impl CellSet {
         self.trim();
     }
 
-    /// Keeps the cells for which `keep` says so.
+    /// Keeps the cells for which `keep` returns `true`.
     pub(super) fn retain(&mut self, mut keep: impl FnMut(usize) -> bool) {
         for (k, word) in self.words.iter_mut().enumerate() {
             let mut bits = *word;
@@ -59,13 +59,13 @@ impl CellSet {
         self.trim();
     }
 
-    /// Whether a cell is in both.
+    /// Whether the two sets have a cell in common.
     pub(super) fn meets(&self, other: &Self) -> bool {
         let common = self.common(other);
         self.part(&common).iter().zip(other.part(&common)).any(|(a, b)| a & b != 0)
     }
 
-    /// Takes out what is in another set.
+    /// Removes the cells of another set.
     pub(super) fn remove(&mut self, other: &Self) {
         let common = self.common(other);
         let start = self.start;
@@ -75,12 +75,12 @@ impl CellSet {
         self.trim();
     }
 
-    /// The words, as places in a row.
+    /// The words, as a range of a row.
     fn range(&self) -> Range<usize> {
         self.start..self.start + self.words.len()
     }
 
-    /// The words that both have; empty where they are apart.
+    /// The words that both have; empty if they are disjoint.
     fn common(&self, other: &Self) -> Range<usize> {
         let (a, b) = (self.range(), other.range());
         let (start, end) = (a.start.max(b.start), a.end.min(b.end));
@@ -130,7 +130,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against plain sets.
+        /// Compared with ordinary sets.
         #[test]
         fn sets_behave_like_sets(a in row(), b in row(), c in row()) {
             let ((mut x, xs), (y, ys), (_, zs)) = (of(&a), of(&b), of(&c));

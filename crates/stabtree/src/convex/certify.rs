@@ -18,20 +18,20 @@ use sightlines_pvs::BitMatrix;
 use sightlines_sightline::convex::{Block, BoxProof, ConvexCertificate, ConvexNode, PlaneProof};
 use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
 
-/// Lines are taken in rounds: at first only those that prove at least so many new pairs.
+/// Lines are added in rounds: at first only those that prove at least this many new pairs.
 const ROUNDS: [usize; 3] = [32, 6, 1];
-/// Steps that a question about a sequence counts for: it takes as much longer than what is a step in plans.
+/// Steps that a stabbing query counts for: it takes about as many times longer than a step in a plan.
 const STEPS_EACH: u64 = 1000;
-/// Walks that are too long are tried again with half of their targets, so many times.
+/// How often a walk that is too long is repeated with half of its targets.
 const MOST_HALVINGS: u32 = 4;
-/// The largest of whole multipliers, tried one after the other: small ones take less bytes, and leave less of what is to spare.
+/// The largest integer multipliers, tried in order: small ones take fewer bytes, but use up more of the margin.
 const MULTIPLIERS: [f64; 3] = [120.0, 16_000.0, 2_000_000.0];
 
-/// Proves what `rows` says of the cells of `graph`: which see each other (symmetric, with the diagonal set). Pairs that
-/// it finds no proof of, because they are wrong, undecided or take too much effort, are left open.
+/// Proves the visibility in `rows` for the cells of `graph` (symmetric, with the diagonal set). Pairs without a proof,
+/// because they are wrong, undecided or take too much effort, are left open.
 ///
-/// Cost: about that of the search for the rows for what is visible, and for what is hidden a question for each gate to which a
-/// chain of gates leads that has a line; through open space these are many.
+/// Cost: for visible pairs about that of the search for the rows; for hidden pairs a query for each gate at the end of
+/// a stabbable chain of gates, and through open space these are many.
 ///
 /// # Errors
 /// [`ConvexNetworkError`] for a graph that is not well formed.
@@ -66,7 +66,7 @@ pub fn certify_convex(
         while let Some((targets, n_halvings)) = waiting.pop() {
             guide.left = (most >> n_halvings).min(left);
             let before = guide.left;
-            // All that is left is not listed.
+            // If it covers all that is left, the list is empty.
             let listed = if n_halvings == 0 { &[][..] } else { &targets[..] };
             let is_proven = maker.prove_hidden(source, listed, &mut guide, options.most_steps);
             left -= before - guide.left;
@@ -79,7 +79,7 @@ pub fn certify_convex(
     Ok(maker.finish())
 }
 
-/// The graph as proofs know it.
+/// The graph in the form that proofs use.
 ///
 /// # Errors
 /// [`ConvexNetworkError`] for a graph that is not well formed.
@@ -92,7 +92,8 @@ pub fn convex_network(graph: &CellGraph<Convex>) -> Result<ConvexNetwork, Convex
     ConvexNetwork::new(graph.n_cells(), &portals, ConvexNetwork::OF_FILES)
 }
 
-/// A line through a gate with coordinates of four bytes, and with those of eight. It depends on the line which of them passes.
+/// A line through a gate with coordinates of four bytes, and with those of eight. Which of them passes depends on the
+/// line.
 fn lines(gate: u32, points: [Point3; 2]) -> [ConvexLine; 2] {
     let short = |x: f64| check_coordinate(f64::from(x as f32)).unwrap_or(x);
     let [a, b] = points;
@@ -123,7 +124,7 @@ fn shoot(gates: &Gates, maker: &mut ConvexMaker<'_>, per_portal: u32) {
     }
 }
 
-/// Lines to cells that are seen, and that no line was found to yet: by beams, then by sequences.
+/// Searches for lines to visible cells that have none yet: by beams, then by sequences.
 fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
     let mut through = BitMatrix::new(gates.len(), gates.n_cells());
     for gate in 0..gates.len() {
@@ -177,7 +178,7 @@ impl<'a> Guide<'a> {
         Self { gates, network, stabber: ConvexStabber::new(StabLimits::default()), lines: Vec::new(), left: 0 }
     }
 
-    /// What a proof says, in a form that the checker accepts.
+    /// The content of a proof, in a form that the checker accepts.
     fn block(&self, proof: &ConvexCertificate, chain: &[u32], gate: u32) -> Option<ConvexBlock> {
         let last = chain.len();
         let back = |place: usize| (last - place) as u32;
@@ -230,7 +231,7 @@ impl ChainSolver for Guide<'_> {
     }
 }
 
-/// The boxes of a proof from a node on. Multipliers are whole numbers up to `most`, or as they are.
+/// The boxes of a proof from a node on. Multipliers are integers up to `most`, or left as they are.
 fn tree(proof: &BoxProof, node: usize, back: &impl Fn(usize) -> u32, most: Option<f64>) -> Option<ConvexTree> {
     match proof.nodes.get(node)? {
         ConvexNode::Leaf(terms) => {

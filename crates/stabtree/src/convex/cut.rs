@@ -38,13 +38,13 @@ pub(super) struct Vertex {
 /// A convex part of a portal.
 pub(super) type Part = Vec<Vertex>;
 
-/// Cosine above which two separating planes of two parts are so much alike that one of them is enough.
+/// Cosine above which two separating planes of two parts are so similar that one of them is enough.
 const ALIKE: f64 = 1.0 - 1e-9;
 
-/// Normals are at most so long, rounding included.
+/// Upper bound on the length of normals, rounding included.
 const LONGEST: f64 = 1.02;
 
-/// Vertices of a part that is still cut; one with more stays as it is, which is a superset.
+/// Most vertices of a part that is still cut; one with more stays uncut, which is a superset.
 const MAX_VERTICES: usize = 24;
 
 /// The points with `normal · (x - origin) + offset >= 0`.
@@ -72,12 +72,12 @@ impl Plane {
     }
 }
 
-/// Cuts parts; counts how often.
+/// Cuts parts and counts how often.
 #[derive(Debug, Clone)]
 pub(super) struct Cutter {
     pub(super) eps: f64,
     step: f64,
-    /// Parts cut, or tried to.
+    /// Number of attempted cuts.
     pub(super) clips: u64,
     spare: Part,
 }
@@ -88,7 +88,7 @@ impl Cutter {
         Self { eps: m * 2f64.powi(-48), step: m * 2f64.powi(-49), clips: 0, spare: Vec::new() }
     }
 
-    /// Cuts off what lies below the plane; `false` if nothing is left, and then the part is not to be used.
+    /// Cuts off what lies below the plane; `false` if nothing is left, and then the part must not be used.
     ///
     /// The cut is made below the plane by the part's own inaccuracy and once more by the error of evaluation,
     /// so that a constructed vertex lies beyond the true cut.
@@ -107,7 +107,7 @@ impl Cutter {
             clearance = clearance.max(v.clearance);
         }
         let below = LONGEST * clearance + self.eps;
-        // What is not a number tells nothing.
+        // NaN decides nothing.
         if !(low.is_finite() && high.is_finite()) {
             return true;
         }
@@ -136,13 +136,13 @@ impl Cutter {
         part.len() >= 3
     }
 
-    /// Cuts by all planes.
+    /// Cuts with all planes.
     pub(super) fn cut_all(&mut self, part: &mut Part, planes: &[Plane]) -> bool {
         planes.iter().all(|plane| self.cut(part, plane))
     }
 
-    /// Appends planes that have `first` below and `second` above: for each edge of either, the one that leans on
-    /// the other. Both go round counter-clockwise about the direction in which lines pass them.
+    /// Appends planes that have `first` below and `second` above: for each edge of either, the supporting plane of the
+    /// other. Both run counter-clockwise about the direction in which lines pass them.
     pub(super) fn separators(&self, first: &[Vertex], second: &[Vertex], planes: &mut Vec<Plane>) {
         let mut shared = None;
         for a in first {
@@ -164,7 +164,7 @@ impl Cutter {
         let found = planes.len();
         leaning(second, first, -1.0, shared, |plane| {
             let plane = plane.flipped();
-            // Parallel edges lean on each other; one plane for both will do.
+            // Parallel edges support each other; one plane for both is enough.
             let is_known = |other: &Plane| dot(other.normal, plane.normal) > ALIKE;
             if !planes[start..found].iter().any(is_known) && separates(&plane, first, second, shared) {
                 planes.push(plane);
@@ -173,9 +173,9 @@ impl Cutter {
     }
 }
 
-/// For each edge of `part`, the plane through it that leans on `other`: `part` below, `other` above, as far as
-/// the points that it leans on tell. `turn` is 1 if lines pass `part` first, and -1 if they pass it last: then its
-/// corners go round the other way as seen from `other`.
+/// For each edge of `part`, the plane through it that supports `other`: `part` below, `other` above, judging by the
+/// points that it touches. `turn` is 1 if lines pass `part` first, and -1 if they pass it last: then its corners run
+/// the other way round as seen from `other`.
 #[inline(always)]
 fn leaning(part: &[Vertex], other: &[Vertex], turn: f64, shared: Option<Point3>, mut found: impl FnMut(Plane)) {
     for_edges(part, |a, b| {
@@ -217,15 +217,15 @@ fn first_met<'v>(
     met
 }
 
-/// Appends planes that have both parts above, and with them all segments between the two: for each edge of either,
-/// the one that leans on the other. Where rounding or a strange shape would have a point below, the plane is moved
-/// down by as much, so it holds in any case.
+/// Appends planes that have both parts above, and with them all segments between the two: for each edge of either, the
+/// supporting plane of the other. Where rounding or an unusual shape would put a point below, the plane is moved down
+/// by as much, so the claim always holds.
 pub(super) fn enclosing(first: &[Vertex], second: &[Vertex], planes: &mut Vec<Plane>) {
     for (part, other, turn) in [(first, second, -1.0), (second, first, 1.0)] {
         for_edges(part, |a, b| {
             let Some((_, normal)) = first_met(a, b, turn, other.iter()) else { return };
             let square = dot(normal, normal);
-            // A plane from three points in line is none.
+            // Three collinear points span no plane.
             if square.partial_cmp(&f64::MIN_POSITIVE) == Some(std::cmp::Ordering::Greater) {
                 let mut plane = Plane { normal: scale(normal, 1.0 / square.sqrt()), origin: a.at, offset: 0.0 };
                 let lowest = first.iter().chain(second).map(|v| plane.at(v.at) - v.clearance);
@@ -280,7 +280,7 @@ fn is_shared(v: &Vertex, shared: Option<Point3>) -> bool {
 /// Whether all of `inner` is certainly within `outer`, both of them parts of one portal with this normal, as far as
 /// points of the portal itself are concerned: edges of the portal are not looked at.
 pub(super) fn is_within(inner: &[Vertex], outer: &[Vertex], normal: Point3) -> bool {
-    // A vertex of the outer part, no less sure, is within it.
+    // A vertex that is also a vertex of the outer part, with no smaller clearance, is within it.
     let is_same = |v: &Vertex| outer.iter().any(|w| w.at == v.at && w.clearance >= v.clearance);
     let others: Vec<&Vertex> = inner.iter().filter(|v| !is_same(v)).collect();
     let mut last = outer[outer.len() - 1];
@@ -291,8 +291,8 @@ pub(super) fn is_within(inner: &[Vertex], outer: &[Vertex], normal: Point3) -> b
         }
         let inwards = cross(normal, sub(b.at, a.at));
         let length = dot(inwards, inwards).sqrt();
-        // The edge's ends are off by less than their clearances, so that its direction is off the more the shorter
-        // it is; of an edge without length nothing is known, and nothing is within.
+        // The ends of an edge are off by less than their clearances, so the shorter the edge, the less certain is its
+        // direction; for an edge of length zero nothing is known, and nothing is within.
         others.iter().all(|v| {
             let from = sub(v.at, a.at);
             let off = length * (v.clearance + b.clearance) + (a.clearance + b.clearance) * dot(from, from).sqrt();

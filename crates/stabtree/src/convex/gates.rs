@@ -1,11 +1,11 @@
-//! The graph as a search uses it: portals with a direction of crossing.
+//! The graph in the form that the search uses: portals with a direction of crossing.
 
 use super::cut::{Part, Plane, Vertex};
 use super::vector::{Point3, cross, dot, scale, sub, unit};
 use sightlines_cells::{CellGraph, Convex, Portal3};
 
-/// A portal with the direction in which it is crossed. Gate `2 p` leads from the first cell of portal `p` into
-/// the second, gate `2 p + 1` back.
+/// A portal with the direction in which it is crossed. Gate `2 p` leads from the first cell of portal `p` into the
+/// second, gate `2 p + 1` back.
 #[derive(Debug, Clone)]
 pub(super) struct Gate {
     pub(super) from: u32,
@@ -13,20 +13,20 @@ pub(super) struct Gate {
     first: u32,
     n_corners: u32,
     pub(super) center: Point3,
-    /// Of the ball around the center that holds the corners, rounded up.
+    /// Radius of the ball around the center that contains the corners, rounded up.
     pub(super) radius: f64,
     /// The direction of crossing, of length 1.
     pub(super) normal: Point3,
-    /// How far corners are from the plane through the center with this normal.
+    /// Distance of the corners from the plane through the center with this normal.
     uneven: f64,
-    /// How much the normal may lean, by rounding: sixteen units in the last place of 1, times how long the gate is for
-    /// its width.
+    /// How far rounding may tilt the normal: sixteen units in the last place of 1, times the ratio of the gate's length
+    /// to its width.
     lean: f64,
-    /// How far corners that are meant to be on the gate's plane are from it: `2^-44` of its largest coordinate.
+    /// Tolerance for corners that are meant to lie on the gate's plane: `2^-44` of its largest coordinate.
     ///
-    /// Portals of a subdivision lie on its planes, and a line crosses a plane but once. The corners in files are
-    /// rounded, each some units in its last place (2^-53) off, which planes through nearby corners magnify by
-    /// the ratio of portal sizes. So what is nearer than this counts as on the plane.
+    /// Portals of a subdivision lie on its planes, and a line crosses a plane only once. The corners in files are
+    /// rounded, each by some units in the last place (2^-53), which planes through nearby corners magnify by the ratio
+    /// of portal sizes. So what is nearer than this counts as on the plane.
     flat: f64,
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct Gates {
     corners: Part,
     first_exit: Vec<u32>,
     exits: Vec<u32>,
-    /// Boxes around the portals of each cell.
+    /// Bounding boxes of the portals of each cell.
     pub(super) boxes: Vec<[Point3; 2]>,
     /// Largest coordinate, at least the smallest positive one.
     pub(super) largest: f64,
@@ -67,7 +67,7 @@ impl Gates {
                 let twice_area = dot(shape.normal(), shape.normal()).sqrt();
                 let lean = 8.0 * f64::EPSILON * (radius * radius / twice_area).max(1.0);
                 if uneven > flat {
-                    // Such portals reach into each other where they meet, by as much as they are uneven.
+                    // Such portals overlap where they meet, by as much as they are uneven.
                     for v in &mut corners[first as usize..] {
                         (v.clearance, v.exact) = (clearance + 2.0 * uneven, false);
                     }
@@ -126,18 +126,18 @@ impl Gates {
         &self.exits[self.first_exit[cell as usize] as usize..self.first_exit[cell as usize + 1] as usize]
     }
 
-    /// Whether a line may pass gate `s` and after it gate `t`, as far as their planes tell: `t` has a corner in front
-    /// of the plane of `s`, and `s` one behind the plane of `t`.
+    /// Whether a line may pass gate `s` and then gate `t`, judging by their planes: `t` has a corner in front of the
+    /// plane of `s`, and `s` one behind the plane of `t`.
     #[inline]
     pub(crate) fn may_follow(&self, s: u32, t: u32) -> bool {
         let (gs, gt) = (self.get(s), self.get(t));
         let between = sub(gt.center, gs.center);
-        // A line meets a gate no farther behind its plane than the gate's own corners lie, and the plane leans by
-        // rounding.
+        // A line meets a gate no farther behind its plane than the gate's own corners lie, and rounding tilts the
+        // plane.
         let flat = gs.flat.max(gt.flat);
         let reach = dot(between, between).sqrt() + gs.radius + gt.radius;
         let (flat_s, flat_t) = (flat - gs.uneven - gs.lean * reach, flat - gt.uneven - gt.lean * reach);
-        // Balls decide nearly all; their margin is far above the error of evaluation.
+        // Balls decide nearly all cases; their margin is far above the error of evaluation.
         let margin = self.largest * 1e-9 + gs.uneven.max(gt.uneven) + gs.lean.max(gt.lean) * reach;
         let ahead = dot(gs.normal, between);
         if ahead < gt.radius + margin {
@@ -160,8 +160,8 @@ impl Gates {
     /// side, by more than rounding.
     ///
     /// The side of an edge is a determinant of three vectors: `d`, of length 1, and the differences of two corners
-    /// with the origin, at most `r` long. Two subtractions, two levels of products and a sum of three are off by
-    /// less than `16 u r²`; asked for is twice as much.
+    /// and the origin, at most `r` long. Two subtractions, two levels of products and a sum of three are off by
+    /// less than `16 u r²`; the margin is twice that.
     #[inline]
     pub(super) fn passes(&self, gate: u32, origin: Point3, d: Point3) -> bool {
         let corners = self.corners(gate);
@@ -176,7 +176,7 @@ impl Gates {
         least > farthest * (32.0 * 0.5 * f64::EPSILON)
     }
 
-    /// The points that a line may meet after it has passed a gate, as far as the gate's plane tells.
+    /// The points that a line may meet after it has passed a gate, judging by the gate's plane.
     pub(super) fn in_front(&self, gate: u32) -> Plane {
         let gate = self.get(gate);
         let lean = gate.lean * 4.0 * self.largest;
@@ -188,13 +188,13 @@ impl Gates {
         self.in_front(gate ^ 1)
     }
 
-    /// Appends the gates that the line passes after `gate`, until it meets a wall or comes so near to an edge that
+    /// Appends the gates that the line passes after `gate`, until it meets a wall or comes so close to an edge that
     /// rounding could matter.
     pub(super) fn follow(&self, gate: u32, origin: Point3, d: Point3, passed: &mut Vec<u32>) {
         let (mut last, most) = (gate, passed.len() + self.n_cells());
         'cells: while passed.len() < most {
             for &exit in self.exits(self.get(last).to) {
-                // The way back has the line on the wrong side.
+                // The gate in the opposite direction has the line on the wrong side.
                 if exit != last ^ 1 && dot(self.get(exit).normal, d) > 0.0 && self.passes(exit, origin, d) {
                     passed.push(exit);
                     last = exit;
@@ -205,8 +205,8 @@ impl Gates {
         }
     }
 
-    /// The gates that the line through `origin` along `d` passes, in order, `gate` among them; empty if it does
-    /// not certainly pass that one. Replaces `passed`.
+    /// The gates that the line through `origin` along `d` passes, in order, `gate` among them; empty if it does not
+    /// certainly pass that one. Replaces the content of `passed`.
     pub(super) fn chain(&self, gate: u32, origin: Point3, d: Point3, passed: &mut Vec<u32>) {
         passed.clear();
         if !self.passes(gate, origin, d) {

@@ -1,20 +1,19 @@
 //! Which convex cells see each other through convex portals.
 //!
-//! Four stages, each quick where the one after it is exact:
+//! Four stages, from quick to exact:
 //!
 //! 1. **Bound** ([`bound`]): what may be seen through each gate, by the planes of portals alone.
 //! 2. **Lines** ([`sampled`]): some lines through every gate; all cells on a line see each other.
-//! 3. **Beams** ([`beams`]): for each gate, what is still in doubt is looked for by beams of lines. Most of it is
-//!    hidden, and shown to be; for most of the rest an exact line is found.
-//! 4. **Pairs** ([`pairs`]): what beams neither hide nor show, decided sequence by sequence.
+//! 3. **Beams** ([`beams`]): for each gate, beams of lines search for what is still in doubt. Most of it is proven
+//!    hidden; for most of the rest an exact line is found.
+//! 4. **Pairs** ([`pairs`]): the pairs that beams leave in doubt are decided sequence by sequence.
 //!
-//! Visibility is symmetric, and each answer counts for both sides. Every stage works through its gates or cells
-//! in batches that do not depend on the number of threads: members of a batch know what batches before have found,
-//! and nothing of each other. So the answer, the lines tried and the operations counted are the same with any
-//! number of threads.
+//! Visibility is symmetric, and each answer counts for both sides. Every stage processes its gates or cells in batches
+//! that do not depend on the number of threads: members of a batch use the results of earlier batches, and not those of
+//! each other. So the answer, the lines tried and the operations counted are the same with any number of threads.
 //!
-//! Source: the question is Teller's (PhD thesis, 1992, chapter 5); planes between portals are those of Quake's
-//! vis. Lines first, beams that depend on two portals only, exact sequences last: ours.
+//! Source: the question is Teller's (PhD thesis, 1992, chapter 5); planes between portals are those of Quake's vis.
+//! Lines first, beams that depend on two portals only, exact sequences last: ours.
 
 mod batch;
 mod beams;
@@ -45,15 +44,15 @@ use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{LimitReached, Verdict};
 use std::ops::ControlFlow;
 
-/// The stages; their number also says that all are done.
+/// Number of stages, and the stage number of a finished search.
 const N_STAGES: u32 = 4;
-/// Lines followed through each portal before anything else.
+/// Lines followed through each portal before the other stages.
 const LINES_EACH: u32 = 32;
-/// Gates of a batch, for the stages whose gates take little.
+/// Batch size of the stages with little work per gate.
 const MANY: usize = 1024;
-/// Gates of a batch, for the stage whose gates may take long.
+/// Batch size of the stage whose gates may take long.
 const FEW: usize = 64;
-/// Pairs of a batch, at least, but for the last one.
+/// Smallest number of pairs in a batch, except for the last.
 const PAIRS: usize = 256;
 
 /// A search that can be stopped between any two steps.
@@ -62,12 +61,12 @@ pub struct ConvexSearch {
     gates: Gates,
     options: ConvexOptions,
     state: ConvexState,
-    /// Gates, those behind which there is least to see first.
+    /// Gates in ascending order of how much lies behind them.
     order: Vec<u32>,
-    /// The places of cells in an order of the same kind.
+    /// The rank of each cell in a similar order.
     rank: Vec<u32>,
-    /// All cells in an order without meaning, so that neighbours, which take alike, are far from each other and the
-    /// remaining work can be estimated from what is done.
+    /// All cells in an arbitrary order: neighbours, which take similar time, are far apart, so that the remaining work
+    /// can be estimated from what is done.
     scattered: Vec<u32>,
     workers: Workers,
 }
@@ -93,8 +92,8 @@ impl ConvexSearch {
         Self { gates, options, state, order: Vec::new(), rank: Vec::new(), scattered, workers }
     }
 
-    /// Goes on with a search of the same graph with the same options (the number of threads may differ).
-    /// `None` if the state cannot be one of this graph.
+    /// Resumes a search of the same graph with the same options (the number of threads may differ). `None` if the state
+    /// cannot belong to this graph.
     pub fn resume(graph: &CellGraph<Convex>, options: ConvexOptions, state: ConvexState) -> Option<Self> {
         let mut search = Self::new(graph, options);
         let size = |m: &BitMatrix| (m.n_rows(), m.n_cols());
@@ -116,12 +115,12 @@ impl ConvexSearch {
         Some(search)
     }
 
-    /// Where the search stands.
+    /// The current state of the search.
     pub fn state(&self) -> &ConvexState {
         &self.state
     }
 
-    /// How far the search is. The share is an estimate of time.
+    /// The progress of the search. The share is an estimate of time.
     pub fn progress(&self) -> Progress {
         let ConvexState { stage, done, .. } = self.state;
         let (phase, total) = match stage {
@@ -138,17 +137,17 @@ impl ConvexSearch {
             1 => 0.02 + 0.03 * part,
             // Gates are in the order of what lies behind them; on maps, time grows with the square of their number.
             2 => 0.05 + 0.4 * part.powi(2),
-            // Between a half and twice the time of all before, on the maps that were measured.
+            // Between half and twice the time of all earlier stages, on the maps that were measured.
             3 => 0.45 + 0.55 * part,
             _ => 1.0,
         })
     }
 
-    /// Takes all steps that are left, with a report before the first and after each. `after_step` may store the state
-    /// ([`ConvexSearch::state`]), to resume it if the process is stopped.
+    /// Takes all remaining steps, with a report before the first and after each. `after_step` may store the state
+    /// ([`ConvexSearch::state`]), to resume the search if the process is stopped.
     ///
     /// # Errors
-    /// [`Cancelled`] by the observer. The search can go on from where it stands.
+    /// [`Cancelled`] by the observer. The search can continue from its current state.
     pub fn run(&mut self, observer: Option<&dyn Observer>, mut after_step: impl FnMut(&Self)) -> Result<(), Cancelled> {
         let report = |search: &Self| match observer.map(|observer| observer.report(search.progress())) {
             Some(ControlFlow::Break(())) => Err(Cancelled),
@@ -164,7 +163,7 @@ impl ConvexSearch {
         Ok(())
     }
 
-    /// Does a step; whether more is left.
+    /// Takes a step; returns whether more are left.
     pub fn advance(&mut self) -> bool {
         match self.state.stage {
             0 => self.bound(),
@@ -179,7 +178,7 @@ impl ConvexSearch {
     /// The answer.
     ///
     /// # Panics
-    /// If [`ConvexSearch::advance`] still had something left to do.
+    /// If [`ConvexSearch::advance`] has steps left.
     pub fn finish(self) -> ConvexVisibility {
         let ConvexState { stage, visible, possible, mut undecided, counters, .. } = self.state;
         assert!(stage == N_STAGES, "the search is not done");
@@ -238,8 +237,8 @@ impl ConvexSearch {
         (self.order, self.rank) = (order, rank);
     }
 
-    /// Says that two cells may see each other if each may see the other through one of its gates; and takes the
-    /// others out of what may be seen through gates.
+    /// Marks pairs of cells as possible if each may see the other through one of its gates, and removes the others from
+    /// what may be seen through gates.
     fn set_possible(&mut self) {
         let n = self.gates.n_cells();
         let mut reach = BitMatrix::identity(n);
@@ -310,7 +309,7 @@ impl ConvexSearch {
             self.state.counters += counters;
             touched.push(self.gates.get(gate).from);
         }
-        // What a cell, all gates of which are done, cannot see, cannot see it either.
+        // A cell that cannot be seen from a cell with all gates done cannot see that cell either.
         touched.sort_unstable();
         touched.dedup();
         let mut place_of = vec![0u32; self.order.len()];
@@ -338,7 +337,7 @@ impl ConvexSearch {
 
     fn decide_pairs(&mut self) {
         let (gates, state, rank) = (&self.gates, &self.state, &self.rank);
-        // Each pair is decided from the cell from which there is less to see.
+        // Each pair is decided from the cell that sees less.
         let others = |cell: usize| -> Vec<u32> {
             let row = state.possible.row(cell).iter().zip(state.visible.row(cell));
             let in_doubt: Vec<u64> = row.map(|(possible, visible)| possible & !visible).collect();

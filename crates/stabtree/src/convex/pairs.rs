@@ -1,12 +1,11 @@
 //! Pairs of cells that beams leave in doubt, decided exactly: sequence by sequence.
 //!
-//! From each gate of one cell, sequences of gates are followed towards each gate into the other, as far as planes
-//! (see [`cut`](super::cut)) leave something of the first gate, of the last, of the gate that is the goal, and of
-//! the space between first and goal. Where a sequence arrives, [`ConvexStabber`] decides exactly whether an open
-//! set of lines passes it.
+//! From each gate of one cell, sequences of gates are followed towards each gate into the other, as long as planes (see
+//! [`cut`](super::cut)) leave something of the first gate, the last, the goal gate, and the space between first and
+//! goal. Where a sequence arrives, [`ConvexStabber`] decides exactly whether an open set of lines passes it.
 //!
-//! If none does, its proof names the gates that make it so: the search goes back to before the last of them, and
-//! leaves other sequences with the same gates at once.
+//! If none does, its proof names the gates responsible: the search backtracks to before the last of them, and skips
+//! other sequences with the same gates at once.
 
 use super::ConvexCounters;
 use super::cut::{Cutter, Part, Plane, enclosing, middle};
@@ -21,10 +20,10 @@ use std::collections::HashMap;
 /// Maximum number of queries about sequences for a pair; a pair that takes more counts as visible.
 const MOST_QUESTIONS: u64 = 20_000;
 
-/// How many planes of earlier gates cut a gate: the last ones cut most, the others hardly any more.
+/// How many planes of earlier gates cut a gate: the latest ones cut most, older ones hardly at all.
 const PLANES: usize = 20;
 
-/// Of how many gates, without the last, it is remembered that no line passes them all.
+/// Largest number of gates, without the last, that is stored as a blocked set.
 const MOST_LEARNT: usize = 5;
 
 /// Number of sequences examined behind one before testing whether it can lead to the goal.
@@ -36,9 +35,9 @@ struct Level {
     gate: u32,
     /// The part of the first gate that lines of the sequence may pass.
     source: Part,
-    /// The same of this gate.
+    /// The same for this gate.
     part: Part,
-    /// The same of the gate that is the goal.
+    /// The same for the goal gate.
     goal: Part,
 }
 
@@ -55,11 +54,11 @@ pub(super) struct SequenceTracer {
     levels: Vec<Level>,
     planes: Vec<Plane>,
     chain: Vec<u32>,
-    /// Gates that no line passes all of, by the last of them, for the pair that is decided.
+    /// Sets of gates that no line passes, by their last gate, for the current pair.
     learnt: HashMap<u32, Vec<Vec<u32>>>,
     asked: u64,
     undecided: bool,
-    /// The level up to which no line passes the sequence, and behind which there is nothing to follow.
+    /// The level at which the sequence is blocked; nothing is to be followed behind it.
     blocked: usize,
     turned: [Part; 2],
     back: Vec<Plane>,
@@ -84,7 +83,7 @@ impl SequenceTracer {
         }
     }
 
-    /// What was done since this was last asked.
+    /// The work done since the last call.
     pub(super) fn take_counters(&mut self) -> ConvexCounters {
         let programs = self.stabber.counters().n_programs;
         self.counted.programs = programs - std::mem::replace(&mut self.programs_before, programs);
@@ -92,8 +91,8 @@ impl SequenceTracer {
         std::mem::take(&mut self.counted)
     }
 
-    /// Decides whether cell `a` sees cell `b`, another one. Row `g` of `through` has the cells that may be seen
-    /// through gate `g`.
+    /// Decides whether cell `a` sees another cell `b`. Row `g` of `through` has the cells that may be seen through gate
+    /// `g`.
     pub(super) fn decide(&mut self, gates: &Gates, [a, b]: [u32; 2], through: &BitMatrix) -> PairVerdict {
         (self.asked, self.undecided) = (0, false);
         self.learnt.clear();
@@ -134,7 +133,8 @@ impl SequenceTracer {
         &mut self.levels[depth]
     }
 
-    /// Goes on behind the gate of a level; whether a line was found, with the gates that it passes in the chain.
+    /// Continues behind the gate of a level; returns whether a line was found, with the gates that it passes in the
+    /// chain.
     fn follow(&mut self, gates: &Gates, depth: usize, pair: &Pair<'_>) -> bool {
         let n_planes = self.planes.len();
         let mut found = false;
@@ -146,7 +146,7 @@ impl SequenceTracer {
                     has_asked = true;
                     found = self.ask(gates, depth, Some(pair.goal));
                 }
-                // Behind what is blocked there is nothing to follow; what is blocked later is left by now.
+                // Nothing is followed behind a blocked level.
                 if found || self.blocked <= depth || self.asked >= MOST_QUESTIONS {
                     break;
                 }
@@ -166,7 +166,7 @@ impl SequenceTracer {
         found
     }
 
-    /// Finds the planes of a level, and cuts the goal by them; whether something is left of it.
+    /// Finds the planes of a level and cuts the goal with them; returns whether something is left of it.
     fn narrow(&mut self, gates: &Gates, depth: usize) -> bool {
         let n_planes = self.planes.len();
         let level = &mut self.levels[depth];
@@ -181,10 +181,10 @@ impl SequenceTracer {
         left
     }
 
-    /// Lengthens the sequence by a gate; whether it is worth following.
+    /// Extends the sequence by a gate; returns whether it is worth following.
     fn enter(&mut self, gates: &Gates, depth: usize, exit: u32, pair: &Pair<'_>) -> bool {
         let gate = gates.get(exit);
-        // A line meets each cell once; and from wherever it is, it sees the first cell and the last.
+        // A line meets each cell once, and every point on it sees the first cell and the last.
         let sees_both = exit == pair.goal
             || gate.to != pair.b
                 && pair.through.get(exit as usize, pair.b as usize)
@@ -230,7 +230,7 @@ impl SequenceTracer {
         true
     }
 
-    /// Asks whether a line passes the sequence up to a level, then the goal, if that is not the last gate.
+    /// Queries the stabber for a line through the sequence up to a level, then the goal, if that is not the last gate.
     ///
     /// `true` if a line was found that reaches the goal's cell; the gates that it passes are then in the chain. If no
     /// line passes, `self.blocked` is the level up to which none does.
@@ -243,7 +243,8 @@ impl SequenceTracer {
         let shapes: Vec<&Portal3> = sequence.iter().map(|&gate| gates.shape(gate)).collect();
         match self.stabber.stab(&shapes, hint.as_ref()) {
             Verdict::Visible(line) => {
-                // Followed on, it may pass more; where rounding could matter, it is what was decided exactly.
+                // Followed further, the line may pass more gates; where rounding could matter, the exact decision
+                // stands.
                 self.counted.lines += 1;
                 gates.chain(sequence[0], line.a, unit(sub(line.b, line.a)), &mut self.chain);
                 if self.chain.contains(&sequence[sequence.len() - 1]) {
@@ -263,7 +264,7 @@ impl SequenceTracer {
                         let others = named.iter().map(|&place| sequence[place]).collect();
                         self.learnt.entry(sequence[last]).or_default().push(others);
                     }
-                    // The goal comes last whatever lies between.
+                    // The goal comes last, whatever lies between.
                     if goal.is_some() && last > depth {
                         last = named.pop().unwrap_or(0);
                     }
@@ -274,8 +275,8 @@ impl SequenceTracer {
         }
     }
 
-    /// Whether it was learnt that no line passes the first levels, then a gate. Gates are learnt in order, and a
-    /// proof may depend on it.
+    /// Whether the first levels and a gate are known to be blocked. Gates are stored in order, and a proof may depend
+    /// on it.
     fn is_learnt(&self, n_levels: usize, gate: u32) -> bool {
         let Some(sets) = self.learnt.get(&gate) else { return false };
         sets.iter().any(|set| {
@@ -285,7 +286,7 @@ impl SequenceTracer {
     }
 }
 
-/// What is sought.
+/// A pair of cells and the gate in question.
 struct Pair<'a> {
     a: u32,
     b: u32,

@@ -1,15 +1,15 @@
-//! Pairs that a line shows to see each other, found by following many lines.
+//! Pairs proven visible by following many lines.
 
 use super::gates::Gates;
 use super::vector::{Point3, add, dot, scale};
 use sightlines_geometry::Random;
 use sightlines_pvs::BitMatrix;
 
-/// Says that all cells on a line see each other. `chain` has the gates that the line passes, in order.
+/// Marks all cells on a line as seeing each other. `chain` has the gates that the line passes, in order.
 pub(super) fn mark(gates: &Gates, chain: &[u32], visible: &mut BitMatrix) {
     let Some(&last) = chain.last() else { return };
     let cells = || chain.iter().map(|&g| gates.get(g).from).chain([gates.get(last).to]);
-    // Only the words that the line's cells are in.
+    // Only the words with cells of the line.
     let (low, high) = cells().fold((u32::MAX, 0), |(low, high), c| (low.min(c / 64), high.max(c / 64)));
     let words = low as usize..high as usize + 1;
     let mut mask = vec![0u64; words.len()];
@@ -45,7 +45,7 @@ impl Chance {
     }
 }
 
-/// Follows `n` lines through a gate, the same ones each time, and hands over what each passes.
+/// Follows `n` lines through a gate, always the same ones, and passes the gates of each to `each`.
 pub(super) fn shoot_through(gates: &Gates, gate: u32, n: u32, mut each: impl FnMut(&[u32])) {
     let mut chance = Chance(Random::new(u64::from(gate) << 32));
     let mut chain = Vec::new();

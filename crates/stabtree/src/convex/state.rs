@@ -2,17 +2,17 @@
 
 use sightlines_pvs::BitMatrix;
 
-/// How to search.
+/// Options of a search.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ConvexOptions {
-    /// Only the first, coarse bound: quick, and shows much that is hidden.
+    /// Only the first, coarse bound: quick, but reports much that is hidden as visible.
     pub fast: bool,
-    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    /// Number of threads; 0 for one per core. Affects only the time.
     pub threads: usize,
 }
 
-/// What a search did: counts of elementary operations, the same for the same input and options, whatever the
-/// machine and the number of threads.
+/// The work of a search: counts of elementary operations, equal for equal input and options on every machine and with
+/// any number of threads.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ConvexCounters {
     /// Polygons cut by planes.
@@ -23,7 +23,7 @@ pub struct ConvexCounters {
     pub programs: u64,
     /// Beams followed.
     pub beams: u64,
-    /// Sequences of gates looked at one by one.
+    /// Sequences of gates followed one by one.
     pub sequences: u64,
 }
 
@@ -37,10 +37,10 @@ impl std::ops::AddAssign for ConvexCounters {
     }
 }
 
-/// Where a search stands: all that is needed to go on with it later, for the same graph and options.
+/// The state of a search: all that is needed to resume it later, for the same graph and options.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvexState {
-    /// Which stage is under way, from 0; 4 when all is done.
+    /// The current stage, from 0; 4 when all are done.
     pub stage: u32,
     /// How many gates or cells of that stage are done.
     pub done: u64,
@@ -48,8 +48,8 @@ pub struct ConvexState {
     pub visible: BitMatrix,
     /// Pairs of cells not known to be hidden; symmetric, a superset of `visible`.
     pub possible: BitMatrix,
-    /// Row `2 p` has the cells that may be seen through portal `p`, row `2 p + 1` those that may be seen through it
-    /// the other way.
+    /// Row `2 p` has the cells that may be seen through portal `p`, row `2 p + 1` those that may be seen through it in
+    /// the opposite direction.
     pub through: BitMatrix,
     /// Pairs (lower id first, in any order) that count as visible unless a line is found.
     pub undecided: Vec<[u32; 2]>,
@@ -62,9 +62,9 @@ pub struct ConvexState {
 pub struct ConvexVisibility {
     /// Which cells see each other; symmetric, diagonal set.
     pub cells: BitMatrix,
-    /// Pairs (lower id first, ascending) that count as visible without a line that shows it. Empty for
-    /// [`ConvexOptions::fast`], which shows no lines at all.
+    /// Pairs (lower id first, ascending) that count as visible without a line that proves it. Empty for
+    /// [`ConvexOptions::fast`], which searches for no lines.
     pub undecided: Vec<[u32; 2]>,
-    /// What was done.
+    /// The work done.
     pub counters: ConvexCounters,
 }

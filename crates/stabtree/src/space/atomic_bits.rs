@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A matrix of bits that are only ever set.
+/// A matrix of bits that are only ever set, never cleared.
 #[derive(Debug)]
 pub(crate) struct AtomicBitMatrix {
     width: usize,
@@ -33,7 +33,7 @@ impl AtomicBitMatrix {
     #[inline]
     pub(crate) fn set(&self, row: usize, col: usize) -> bool {
         let (word, bit) = (&self.words[row * self.width + col / 64], 1 << (col % 64));
-        // Most bits are set already, and loading is cheaper.
+        // Most bits are set already, and a load is cheaper.
         word.load(Relaxed) & bit == 0 && word.fetch_or(bit, Relaxed) & bit == 0
     }
 

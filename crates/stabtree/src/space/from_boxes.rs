@@ -1,10 +1,11 @@
-//! From-region queries for boxes that are no cells, past the walls of a graph.
+//! From-region queries for boxes that are not cells, past the walls of a graph.
 //!
-//! Such a box may lie anywhere among the cells, with walls inside of it. They do not count: an eye is between any of
-//! them and the side by which a line leaves the box, so only what lies between the box and a target matters
-//! ([`Shaft`]). That is exact: a line that is free from where it leaves the box on is seen by eyes just before that
-//! place, and what an eye in the box sees is seen along a line that is free from there on. Groups of targets are tested
-//! first, then their halves; what shares a cell with the box, or lies on a line that was found, is visible.
+//! Such a box may lie anywhere among the cells, and walls may lie inside it. Those do not count: the eye may be
+//! anywhere between them and the side through which a line leaves the box, so only what lies between the box and a
+//! target matters ([`Shaft`]). This is exact: a line that is free from where it leaves the box is seen by eyes just
+//! before that point, and what an eye in the box sees is seen along a line that is free from there on. Groups of
+//! targets are tested first, then their halves; targets that share a cell with the box, or lie on a line found earlier,
+//! are visible.
 
 use super::atomic_bits::AtomicBitMatrix;
 use super::objects::touch;
@@ -32,40 +33,40 @@ pub struct PairMask {
 /// The answer for boxes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BoxVisibility {
-    /// Boxes by boxes: of the pairs that were asked, those that see each other. Symmetric.
+    /// Boxes by boxes: the requested pairs that see each other. Symmetric.
     pub boxes: BitMatrix,
-    /// Boxes by objects: of the pairs that were asked, those of which the box sees the object.
+    /// Boxes by objects: the requested pairs in which the box sees the object.
     pub objects: BitMatrix,
-    /// Opaque rectangles that the walls were put together to.
+    /// Number of opaque rectangles that the walls were merged into.
     pub n_blockers: usize,
-    /// Pairs that count as visible because it would have taken too much effort, or more digits than doubles have,
-    /// to decide about them. Like `counters`, it varies with threads, as a line for another pair may prove such a pair visible first.
+    /// Pairs that count as visible because deciding them would take too much effort, or more digits than doubles have.
+    /// Like `counters`, it varies with threads, as a line for another pair may prove such a pair visible first.
     pub n_assumed: u64,
-    /// What it took. With several threads the counts vary from run to run; the answer does not.
+    /// The work done. With several threads the counts vary from run to run; the answer does not.
     pub counters: ShaftCounters,
 }
 
 /// Finds which of `boxes` see each other, and which objects they see, past the walls of a graph.
 ///
-/// * `graph`: cells that fill, with `solid`, all of the box around them; what is beyond it is unknown, so whatever
-///   reaches out of it is visible.
-/// * `solid`: boxes beside the cells, that no line from a cell gets into and no eye is in.
-/// * `boxes`: closed boxes, scene units, that eyes are in. They may overlap, and lie astride of walls. They see each other if an
-///   open set of lines leads from inside of one to inside of the other without meeting a wall between where it leaves the one and where it
-///   enters the other, and if they touch. Flat ones, and ones that are thinner than 2^-32 of the scene, are made a
-///   little thicker.
+/// * `graph`: cells that, together with `solid`, fill their whole bounding box; what is beyond it is unknown, so
+///   whatever extends beyond it is visible.
+/// * `solid`: boxes beside the cells that no line from a cell enters and that contain no eye.
+/// * `boxes`: closed boxes, in scene units, that contain the eyes. They may overlap and straddle walls. Two of them see
+///   each other if they touch, or if an open set of lines leads from inside one to inside the other without meeting a
+///   wall between leaving the first and entering the second. Flat boxes, and those thinner than 2^-32 of the scene, are
+///   thickened slightly.
 /// * `objects`: as for [`space_visibility`](super::space_visibility).
-/// * `asked`: the pairs that are of interest.
+/// * `asked`: the requested pairs.
 ///
-/// Exact, but for thin boxes, which may see more, and pairs that take thousands of linear programs, which count as
-/// visible. The same pairs for any number of threads. Cost: O(log n) questions for each hidden group; what is visible is mostly found in the
-/// same cell, or on lines found before. Memory: four bits for each pair.
+/// Exact, except for thin boxes, which may see more, and pairs that take thousands of linear programs, which count as
+/// visible. The same pairs for any number of threads. Cost: O(log n) queries for each hidden group; most visible
+/// targets are found in the same cell, or on earlier lines. Memory: four bits for each pair.
 ///
 /// # Errors
 /// [`Cancelled`] by the observer.
 ///
 /// # Panics
-/// If a matrix of `asked` is not about as many boxes and objects.
+/// If a matrix of `asked` has the wrong size.
 pub fn box_visibility(
     graph: &CellGraph<Axial>,
     solid: &[Aabb<3>],
@@ -121,13 +122,13 @@ pub fn box_visibility(
             let hidden: Vec<usize> = matrix.iter_ones(eye).filter(|&other| !marks.get(eye, other)).collect();
             hidden.into_iter().for_each(|other| matrix.set(eye, other, false));
         }
-        // A box sees itself, if that was asked.
+        // A box sees itself, if that was requested.
         answer.boxes.set(eye, eye, asked.boxes.get(eye, eye));
     }
     Ok(answer)
 }
 
-/// What is known to be seen: it only grows, and all threads see it.
+/// What is known to be visible: shared by all threads, and only ever extended.
 struct FoundVisible<'a> {
     boxes: AtomicBitMatrix,
     objects: AtomicBitMatrix,
@@ -144,9 +145,10 @@ enum Kind {
 }
 
 impl FoundVisible<'_> {
-    /// Marks what lies in one cell: nothing is between two places in it.
+    /// Marks what lies in one cell: nothing is between two points in it.
     fn mark_within(&self, graph: &CellGraph<Axial>, places: &CellLocator) {
-        // A box of eyes shares some of the inside of the cell; an object may be flat along an axis, but not in the cell's border.
+        // A box of eyes overlaps the interior of the cell; an object may be flat along an axis, but not within the
+        // cell's border.
         let shares = |b: &Aabb<3>, cell: &Aabb<3>| (0..3).all(|k| b.min[k] < cell.max[k] && cell.min[k] < b.max[k]);
         (0..graph.n_cells()).into_par_iter().for_each(|cell| {
             let bounds = &places.extents[cell];
@@ -215,14 +217,14 @@ impl FoundVisible<'_> {
     }
 }
 
-/// Where boxes lie among the cells.
+/// Locates boxes among the cells.
 struct CellLocator {
     all: Aabb<3>,
-    /// Half of how thick a box is made, at least.
+    /// Half of the minimum thickness of a box.
     thin: f64,
     extents: Vec<Aabb<3>>,
     tree: BoxTree<3>,
-    /// For each cell, which cells it hangs together with through portals, as the least of them.
+    /// For each cell, its connected component through portals, given by the least cell in it.
     component: Vec<u32>,
 }
 
@@ -277,7 +279,7 @@ struct Targets<'a> {
     target: Target,
     tree: BoxTree<3>,
     components: Vec<Vec<u32>>,
-    /// Those that reach out of the cells.
+    /// Whether each extends beyond the cells.
     outside: Vec<bool>,
 }
 
@@ -300,7 +302,7 @@ impl<'a> Targets<'a> {
     }
 }
 
-/// A box that eyes are in, and its solver.
+/// A box that contains eyes, and its solver.
 struct BoxSearch<'a, 's, 'b> {
     own: &'a Aabb<3>,
     thick: &'a Aabb<3>,
@@ -343,7 +345,7 @@ impl BoxSearch<'_, '_, '_> {
                 left.into_iter().for_each(|i| self.settle(kind, targets, i as usize));
                 continue;
             }
-            // Of a group of which something is seen it is known that nothing hides it.
+            // If some member of a group is visible, nothing hides the whole group.
             let none_seen = || within.iter().all(|&i| !marks.get(self.id, i as usize));
             if n_left > 1 && apart(self.thick, &node.bounds) && none_seen() {
                 match self.shaft.decide(self.thick, &node.bounds, targets.target, GROUP_BUDGET) {
@@ -361,7 +363,7 @@ impl BoxSearch<'_, '_, '_> {
         let sight = if apart(self.thick, target) {
             self.shaft.decide(self.thick, target, targets.target, CELL_BUDGET)
         } else {
-            // Made thicker, they overlap.
+            // After thickening, they overlap.
             return self.known.see(kind, self.id, i);
         };
         match sight {

@@ -1,14 +1,13 @@
-//! Which boxes of a graph in space see each other, and which objects: from pairs of groups to pairs of
-//! cells.
+//! Which boxes of a graph in space see each other, and which objects: from pairs of groups to pairs of cells.
 //!
-//! Not sequences of portals are followed here: in open space that is cut into many cells there are more of them than
-//! can be counted. What matters is what lies *between* two boxes ([`Shaft`]), first for large groups of cells, then for
-//! their halves, until a wall hides one group from the other or single cells are left. Lines found on the way are
-//! followed through all cells that they pass, all of which see each other.
+//! This search does not follow sequences of portals: in open space that is cut into many cells there are too many. What
+//! matters is what lies *between* two boxes ([`Shaft`]), first for large groups of cells, then for their halves, until
+//! a wall hides one group from the other or single cells are left. Lines found on the way are followed through all
+//! cells that they pass, all of which see each other.
 //!
-//! A group is tested with the box around its cells, so when nothing of its box is visible, none of its cells is; when
-//! something is, nothing follows, and its halves are tested. Single cells are decided exactly, but for [`slivers`]. So
-//! the answer does not depend on how cells are grouped, nor on the order of work.
+//! A group is tested with the bounding box of its cells: if nothing of its box is visible, none of its cells is;
+//! otherwise nothing follows, and its halves are tested. Single cells are decided exactly, except for [`slivers`]. So
+//! the answer depends neither on how cells are grouped nor on the order of work.
 
 mod atomic_bits;
 mod explain;
@@ -49,17 +48,17 @@ pub struct SpaceVisibility {
     pub objects: BitMatrix,
     /// For each cell the objects whose closed boxes touch it, ascending.
     pub touching: Vec<Vec<u32>>,
-    /// Opaque rectangles that the walls were put together to.
+    /// Number of opaque rectangles that the walls were merged into.
     pub n_blockers: usize,
-    /// Pairs of a cell and a cell or object that count as visible because it would have taken too much
-    /// effort, or more digits than doubles have, to decide about them. Like `counters`, it varies with
-    /// threads, as a line for another pair may prove such a pair visible first.
+    /// Pairs of a cell and a cell or object that count as visible because deciding them would take too much effort, or
+    /// more digits than doubles have. Like `counters`, it varies with threads, as a line for another pair may prove
+    /// such a pair visible first.
     pub n_assumed: u64,
-    /// What it took. With several threads the counts vary from run to run; the answer does not.
+    /// The work done. With several threads the counts vary from run to run; the answer does not.
     pub counters: ShaftCounters,
 }
 
-/// The pairs about which nothing is known. All others are visible already, or hidden.
+/// The undecided pairs. All others are already visible or hidden.
 #[derive(Debug)]
 struct PairsInDoubt {
     /// Places by places.
@@ -68,11 +67,11 @@ struct PairsInDoubt {
     objects: AtomicBitMatrix,
     /// Places in doubt about some object that is not new.
     rows: Vec<bool>,
-    /// New objects, each with the places within whose reach it is.
+    /// New objects, each with the places that it is within reach of.
     near_new: Vec<(u32, usize)>,
 }
 
-/// What all threads see. Places count the cells in the order of the tree.
+/// What all threads share. Places number the cells in the order of the tree.
 struct SpaceSearch<'a> {
     graph: &'a CellGraph<Axial>,
     boxes: &'a [Aabb<3>],
@@ -80,7 +79,7 @@ struct SpaceSearch<'a> {
     possible: Option<&'a (BitMatrix, BitMatrix)>,
     tree: BoxTree<3>,
     object_tree: BoxTree<3>,
-    /// The cells that are no slivers, which the tree is made of.
+    /// The cells that are not slivers, which the tree contains.
     regular: Vec<u32>,
     /// The cell at each place of the tree.
     cell_at: Vec<u32>,
@@ -89,26 +88,26 @@ struct SpaceSearch<'a> {
     touching: Vec<Vec<u32>>,
     /// For each cell the objects that a line may reach in it or in a sliver behind it.
     within_reach: Vec<Vec<u32>>,
-    /// For each cell the objects that it lies in.
+    /// For each cell the objects that contain it.
     around: Vec<Vec<u32>>,
     /// The places of cells that lie in some object.
     inner: Vec<usize>,
-    /// For each cell, which cells it hangs together with through portals, as the least of them.
+    /// For each cell, its connected component through portals, given by the least cell in it.
     component: Vec<u32>,
     /// Places by places.
     cells: AtomicBitMatrix,
-    /// Objects by places: which see it.
+    /// Objects by places: which places see the object.
     objects: AtomicBitMatrix,
-    /// Objects by places: which may see it.
+    /// Objects by places: which places may see the object.
     maybe: AtomicBitMatrix,
-    /// The only pairs to decide, if not all.
+    /// The only pairs to decide; `None` for all pairs.
     doubt: Option<PairsInDoubt>,
     /// Whether lines are kept for later.
     logging: bool,
     n_assumed: AtomicU64,
 }
 
-/// For each cell the least cell that chains of portals join it with.
+/// For each cell the least cell in its connected component.
 fn components(graph: &CellGraph<Axial>) -> Vec<u32> {
     let mut of = vec![u32::MAX; graph.n_cells()];
     for first in graph.cell_ids() {
@@ -129,30 +128,30 @@ const SLIVER: u32 = u32::MAX;
 /// Pairs of groups are halved on one thread until there are this many for each thread.
 const TASKS_PER_THREAD: usize = 256;
 
-/// The same where few pairs are to be decided.
+/// The same for a search that decides few pairs.
 const FEW_TASKS_PER_THREAD: usize = 16;
 
 /// Finds which cells of a graph see each other, and which objects they see.
 ///
-/// * `solid`: boxes beside the cells, that no line from a cell gets into; they make walls larger, which saves
-///   much, and change no answer but that fewer pairs are assumed visible.
-/// * `objects`: closed boxes, scene units. A cell sees those that touch it, and those that an open set
-///   of lines reaches from inside of it without meeting a wall before. Flat boxes can be seen; boxes
-///   that are flat along two axes are seen only where they touch. Empty ones never are.
-/// * `known`: pairs known to see each other, and pairs that may (subsets and supersets of the answer,
-///   by cells and by cells and objects).
+/// * `solid`: boxes beside the cells that no line from a cell enters; they make walls larger, which saves much work,
+///   and affect the answer only in that fewer pairs are assumed visible.
+/// * `objects`: closed boxes, in scene units. A cell sees those that touch it, and those that an open set of lines from
+///   inside the cell reaches before meeting a wall. Flat boxes can be seen; boxes that are flat along two axes are seen
+///   only where they touch. Empty ones are never seen.
+/// * `known`: pairs known to see each other, and pairs that may (subsets and supersets of the answer, by cells and by
+///   cells and objects).
 ///
 /// Exact, unless a pair takes thousands of linear programs: such pairs count as visible, and are counted
 /// in [`SpaceVisibility::n_assumed`].
 ///
-/// Cost: in practice near-linear in the number of cells as long as each sees only those near it; cells
-/// that see each other cost a few bits each. Memory: two bit matrices.
+/// Cost: near-linear in the number of cells in practice, as long as each sees only nearby cells; visible pairs cost a
+/// few bits each. Memory: two bit matrices.
 ///
 /// # Errors
 /// [`Cancelled`] by the observer.
 ///
 /// # Panics
-/// If a matrix of `known` is not about as many cells and objects.
+/// If a matrix of `known` has the wrong size.
 pub fn space_visibility(
     graph: &CellGraph<Axial>,
     solid: &[Aabb<3>],
@@ -178,7 +177,7 @@ pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T +
     };
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(|| run(threads)),
-        // Threads cannot be had: the threads of the process will do.
+        // No threads could be created: the existing ones are used.
         Err(_) => run(threads),
     }
 }

@@ -18,11 +18,11 @@ pub(super) fn within(inner: &Aabb<3>, outer: &Aabb<3>) -> bool {
 }
 
 impl SpaceSearch<'_> {
-    /// Marks the objects that the cell at a place certainly sees, and those that it may see, once it is
-    /// known which cells it sees.
+    /// Marks the objects that the cell at a place certainly sees, and those that it may see, once its visible cells are
+    /// known.
     ///
-    /// A line to an object ends in a cell that the object touches, so only objects that touch a visible
-    /// cell, or a sliver behind it, may be seen; those that a visible cell lies in are.
+    /// A line to an object ends in a cell that the object touches, so only objects that touch a visible cell, or a
+    /// sliver behind it, may be seen; those that contain a visible cell are.
     pub(super) fn survey_objects(&self, place: usize, mut log: Option<&mut WitnessLog>) {
         let own = self.cell_at[place] as usize;
         for &object in &self.touching[own] {
@@ -36,7 +36,7 @@ impl SpaceSearch<'_> {
             }
         };
         if let Some(doubt) = self.doubt.as_ref().filter(|doubt| !doubt.rows[place]) {
-            // Little has to be looked at, for most places.
+            // For most places little has to be examined.
             self.inner
                 .iter()
                 .filter(|other| self.cells.get(place, **other))
@@ -71,7 +71,7 @@ impl SpaceSearch<'_> {
             if !self.maybe.any_beyond(&self.objects, row, places) {
                 continue;
             }
-            // Groups that touch the object, or some cell of which sees it, are not hidden from it.
+            // Groups that touch the object, or have a cell that sees it, are not hidden from it.
             let worth_it = || self.doubt.is_none() || self.maybe.count_beyond(&self.objects, row, places, FEW) > FEW;
             let ask = node.is_leaf() || (apart(&node.bounds, target) && !self.objects.any(row, places) && worth_it());
             if ask {
@@ -99,8 +99,9 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// Where groups were not all asked, as only some pairs are in doubt: whether one with a cell, by its place, does
-    /// not see an object. A search over all pairs has tested these, and did not reach the cell.
+    /// For a search in which only some pairs are in doubt and so not all groups are tested: whether an object is hidden
+    /// from a group that contains the cell at a place. A search over all pairs has tested these groups and never
+    /// reached the cell.
     fn is_object_hidden_in_groups(&self, object: usize, place: usize, worker: &mut Worker<'_>) -> bool {
         if self.doubt.is_none() {
             return false;

@@ -1,15 +1,14 @@
 //! The walls of a graph of boxes, as few large rectangles.
 //!
-//! A wall of a cell is opaque wherever no portal is. Walls of many cells that lie on one plane are put
-//! together, and covered by rectangles that cannot be made larger: each blocks as much as can be blocked
-//! by one.
+//! A wall of a cell is opaque wherever there is no portal. Walls of many cells that lie on one plane are merged, and
+//! covered by maximal rectangles: each blocks as much as one rectangle can.
 
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use std::collections::BTreeMap;
 
-/// Fields of a plane that are painted at once; larger planes are cut.
+/// Most fields of a plane that are painted at once; larger planes are split.
 pub(super) const MAX_FIELDS: usize = 1 << 24;
 
 /// A rectangle on a plane, by its extents along two axes.
@@ -20,7 +19,7 @@ pub(super) type Patch = Aabb<2>;
 pub(super) struct Plane {
     pub(super) walls: Vec<Patch>,
     pub(super) portals: Vec<Patch>,
-    /// Cross-sections of what no line gets into.
+    /// Cross-sections of solid boxes.
     pub(super) solid: Vec<Patch>,
 }
 
@@ -36,17 +35,16 @@ pub(super) const fn others(axis: usize) -> [usize; 2] {
     [(axis + 1) % 3, (axis + 2) % 3]
 }
 
-/// Rectangles that together cover exactly the closed walls of a graph that are not portals. They may
-/// overlap; none can be made larger within the walls of its plane.
+/// Rectangles that together cover exactly the closed walls of a graph that are not portals. They may overlap; none can
+/// be enlarged within the walls of its plane.
 ///
-/// `solid` are boxes that no line from a cell gets into: with them, walls go on through what stands
-/// between them.
+/// `solid` are boxes that no line from a cell enters: with them, walls continue through what stands between them.
 pub(super) fn opaque_rectangles(graph: &CellGraph<Axial>, solid: &[Aabb<3>]) -> Vec<Aabb<3>> {
     Walls::of(graph, solid, &Walls::default()).rectangles().collect()
 }
 
-/// Rectangles that cover all walls of a graph, made as large as can be without a part of them in the inside of a cell or of a portal:
-/// they go on through all that is no cell. What is solid need not be known for that.
+/// Rectangles that cover all walls of a graph, enlarged as far as possible without a part of them inside a cell or a
+/// portal: they continue through everything that is not a cell. `solid` is not needed for that.
 pub(crate) fn opaque_without_solid(graph: &CellGraph<Axial>) -> Vec<Aabb<3>> {
     let all = Aabb::<3>::around(graph.cells().iter().flat_map(|c| [c.bounds.min, c.bounds.max]));
     let mut planes = Walls::planes(graph);
@@ -80,8 +78,8 @@ struct Covered {
 }
 
 impl Walls {
-    /// The walls of a graph; arguments as for [`opaque_rectangles`]. Planes with the same on them as `before` are not
-    /// covered anew, which is most of the cost.
+    /// The walls of a graph; arguments as for [`opaque_rectangles`]. Planes with the same content as in `before` are
+    /// not covered anew, which is most of the cost.
     pub(super) fn of(graph: &CellGraph<Axial>, solid: &[Aabb<3>], before: &Self) -> Self {
         let mut planes = Self::planes(graph);
         planes.par_iter_mut().for_each(|(&(axis, at_key), covered)| {
@@ -95,7 +93,7 @@ impl Walls {
         Self { planes }
     }
 
-    /// The planes of a graph with walls and portals on them, not covered yet.
+    /// The planes of a graph with their walls and portals, not yet covered.
     fn planes(graph: &CellGraph<Axial>) -> BTreeMap<(usize, u64), Covered> {
         let mut planes: BTreeMap<(usize, u64), Covered> = BTreeMap::new();
         for cell in graph.cells() {
@@ -186,9 +184,9 @@ pub(super) struct Painting {
 /// What a field of a plane is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Field {
-    /// Open, or of no cell.
+    /// Open, or in no cell.
     Free,
-    /// Inside of what no line gets into.
+    /// Inside a solid box.
     Solid,
     /// The wall of a cell.
     Wall,
@@ -218,7 +216,7 @@ impl Painting {
         }
     }
 
-    /// Hands out rectangles that cover all walls, as large as walls and solid things allow.
+    /// Passes on rectangles that cover all walls, as large as walls and solid boxes allow.
     fn cover(&self, take: &mut impl FnMut(Patch)) {
         if self.fields.is_empty() {
             return;
@@ -251,7 +249,7 @@ impl Painting {
     }
 }
 
-/// The largest range around `range` below `n` of which every member is accepted.
+/// The largest range around `range`, below `n`, all members of which are accepted.
 fn grow([mut low, mut high]: [usize; 2], n: usize, accept: impl Fn(usize) -> bool) -> [usize; 2] {
     while low > 0 && accept(low - 1) {
         low -= 1;

@@ -1,4 +1,4 @@
-//! Pairs of groups of cells, halved until one hides from the other or they are single cells.
+//! Pairs of groups of cells, halved until one is hidden from the other or they are single cells.
 
 use super::witness_log::{FoundFor, Line, Proof, Worker};
 use super::{PairsInDoubt, SpaceSearch};
@@ -12,10 +12,10 @@ pub(super) const GROUP_BUDGET: u32 = 64;
 /// Linear programs spent on a pair of single cells, or a cell and an object, before it counts as visible.
 pub(super) const CELL_BUDGET: u32 = 2000;
 
-/// The same where only some pairs are to be decided: less depends on the answer.
+/// The same if only some pairs are to be decided: less depends on the answer.
 pub(super) const FEW_BUDGET: u32 = 12;
 
-/// Where only some pairs are to be decided, groups with no more of them than this are halved at once.
+/// If only some pairs are to be decided, groups with at most this many of them are halved at once.
 pub(super) const FEW: u32 = 3;
 
 /// Two nodes of the tree of cells, the first not after the second.
@@ -34,7 +34,7 @@ pub(crate) fn halves_first(tree: &BoxTree<3>, pair: Pair) -> bool {
 }
 
 impl SpaceSearch<'_> {
-    /// Decides what can be decided of a pair; the rest is handed on as smaller pairs.
+    /// Decides a pair as far as possible; the rest is passed on as smaller pairs.
     pub(super) fn settle(&self, [a, b]: Pair, worker: &mut Worker<'_>, smaller: &mut impl FnMut(Pair)) {
         let (na, nb) = (self.tree.nodes()[a as usize], self.tree.nodes()[b as usize]);
         let (rows, cols) = ([na.start as usize, na.end as usize], [nb.start as usize, nb.end as usize]);
@@ -71,9 +71,9 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// Where groups were not all asked, as only some pairs are in doubt: whether one of those with two cells, by their
-    /// places in order, is hidden from the other. A search over all pairs has tested these, and did not reach the
-    /// cells.
+    /// For a search in which only some pairs are in doubt and so not all groups are tested: whether two groups that
+    /// contain two cells, given by their places in order, are hidden from each other. A search over all pairs has
+    /// tested these groups and never reached the cells.
     fn is_hidden_in_groups(&self, [first, second]: [usize; 2], worker: &mut Worker<'_>) -> bool {
         if self.doubt.is_none() {
             return false;
@@ -131,8 +131,8 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// Marks two cells, by index, as seeing each other and returns whether they were not before; of several threads
-    /// that join the same cells, one gets `true`.
+    /// Marks two cells, by index, as seeing each other and returns whether that was new; of several threads that join
+    /// the same cells, one gets `true`.
     pub(super) fn join(&self, a: usize, b: usize) -> bool {
         let new = self.cells.set(a.min(b), a.max(b));
         self.cells.set(a.max(b), a.min(b));
@@ -213,8 +213,8 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// Marks what the free part of a line passes among places and objects that `is_new`, with all that it passes;
-    /// returns what was not marked yet, pairs of cells and pairs of an object and a cell.
+    /// Marks what the free part of a line passes among places and objects that are new (`is_new`), paired with all that
+    /// it passes; returns the newly marked pairs of cells, and of an object and a cell.
     pub(super) fn mark_new(&self, line: u32, span: &FreeSpan, is_new: &[Vec<bool>; 2]) -> [Vec<Proof>; 2] {
         let (mut pairs, mut seen) = (Vec::new(), Vec::new());
         let cells = self.cells_on(span);

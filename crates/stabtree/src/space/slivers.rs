@@ -1,9 +1,9 @@
-//! Cells so thin that programs in doubles cannot tell their sides apart.
+//! Cells so thin that programs in doubles cannot separate their sides.
 //!
-//! Coordinates of real buildings differ by rounding where they are meant to be equal, and a subdivision that is exact
-//! has cells of that thickness. No eye gets into one, but it must not be reported hidden wrongly. Every line through a
-//! cell that is not in it altogether comes through a portal from a neighbour, so the visible set of a sliver is the
-//! union of its neighbours' visible sets: slivers inherit their neighbours' visibility.
+//! In real buildings, coordinates that should be equal differ by rounding, and an exact subdivision has cells of that
+//! thickness. No eye is ever in one, but it must not be reported hidden wrongly. Every line through a cell, unless it
+//! lies wholly in the cell, comes through a portal from a neighbour, so the visible set of a sliver is the union of its
+//! neighbours' visible sets: slivers inherit their neighbours' visibility.
 
 use sightlines_cells::{Axial, CellGraph, CellId};
 use sightlines_geometry::Aabb;
@@ -21,9 +21,9 @@ pub(super) fn find(extents: &[Aabb<3>]) -> Vec<bool> {
     extents.iter().map(|b| size(b).into_iter().any(|x| x < thin)).collect()
 }
 
-/// For each cell the objects that touch it or a sliver that lines from it lead into.
+/// For each cell the objects that touch it or a sliver that lines from it enter.
 ///
-/// A line that reaches an object in a sliver came into that sliver from a neighbour; so testing only the neighbours
+/// A line that reaches an object in a sliver entered that sliver from a neighbour; so testing only the neighbours
 /// misses nothing.
 pub(super) fn within_reach(graph: &CellGraph<Axial>, slivers: &[bool], touching: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let mut reach = touching.to_vec();
@@ -39,7 +39,7 @@ pub(super) fn within_reach(graph: &CellGraph<Axial>, slivers: &[bool], touching:
     reach
 }
 
-/// Fills in the rows and columns of slivers, when those of all other cells are known.
+/// Fills in the rows and columns of slivers from those of all other cells.
 pub(super) fn fill(
     graph: &CellGraph<Axial>,
     is_sliver: impl Fn(usize) -> bool,
@@ -52,14 +52,14 @@ pub(super) fn fill(
     for &sliver in &slivers {
         touching[sliver].iter().for_each(|&o| objects.set(sliver, o as usize, true));
     }
-    // What is around a sliver are all slivers that hang together with it, and the cells around those.
+    // The surroundings of a sliver: all slivers connected with it, and the cells around those.
     for (&sliver, around) in slivers.iter().zip(&around) {
         for &cell in around {
             cells.or_into(sliver, cell);
             objects.or_into(sliver, cell);
         }
     }
-    // A sliver sees another if a neighbour does: so first all that neighbours see, then the others.
+    // A sliver sees another if a neighbour does: so first everything that neighbours see, then the slivers.
     for _ in 0..2 {
         for &sliver in &slivers {
             let seen: Vec<usize> = cells.iter_ones(sliver).collect();
@@ -75,7 +75,7 @@ pub(super) fn fill(
     }
 }
 
-/// A sliver's neighbours beyond other slivers, and those slivers.
+/// The neighbours of a sliver beyond other slivers, and those slivers.
 fn neighbours(graph: &CellGraph<Axial>, is_sliver: &impl Fn(usize) -> bool, cell: usize) -> Vec<usize> {
     let mut found = vec![cell];
     let mut next = 0;

@@ -1,8 +1,8 @@
-//! What a search writes down for a later one: lines, and which pairs each of them was the first to prove.
+//! What a search records for a later one: lines, and the pairs that each of them was the first to prove.
 
 use sightlines_sightline::{FreeLine, FreeSpan, Shaft};
 
-/// A line that is free.
+/// A free line.
 #[derive(Debug, Clone)]
 pub(super) struct Line {
     pub(super) line: FreeLine,
@@ -19,8 +19,8 @@ pub(super) struct Proof {
     pub(super) line: u32,
 }
 
-/// Why pairs count as visible: each visible pair of regular cells, and of an object and a regular cell that it does
-/// not touch, is in one list, once.
+/// Why pairs count as visible: each visible pair of regular cells, and of an object and a regular cell that it does not
+/// touch, is in exactly one list, once.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WitnessLog {
     pub(super) lines: Vec<Line>,
@@ -28,16 +28,16 @@ pub(super) struct WitnessLog {
     pub(super) cells: Vec<Proof>,
     /// Pairs of an object and a cell.
     pub(super) objects: Vec<Proof>,
-    /// Pairs of cells that count as visible as it is too hard to decide about them.
+    /// Pairs of cells that count as visible because they are too hard to decide.
     pub(super) assumed: Vec<[u32; 2]>,
     /// The same for an object and a cell.
     pub(super) assumed_objects: Vec<[u32; 2]>,
-    /// Pairs of an object and a cell that sees a cell inside of the object.
+    /// Pairs of an object and a cell that sees a cell inside the object.
     pub(super) inside: Vec<[u32; 2]>,
 }
 
 impl WitnessLog {
-    /// Adds those of another search.
+    /// Adds the records of another search.
     pub(super) fn append(&mut self, mut other: Self) {
         let first = self.lines.len() as u32;
         let moved = |proof: Proof| Proof { line: first + proof.line, ..proof };
@@ -49,8 +49,8 @@ impl WitnessLog {
         self.inside.append(&mut other.inside);
     }
 
-    /// Takes lines out, by their indices, ascending. Returns them, and for each line there was its index now, or
-    /// `None` if it is out; proofs are left as they are. O(lines), with little of it for each line that stays.
+    /// Removes lines, by their indices, ascending. Returns them, and for each old line its new index, or `None` if it
+    /// was removed; proofs are left as they are. O(lines), with little work for each line that stays.
     pub(super) fn take_lines(&mut self, out: &[u32]) -> (Vec<Line>, Vec<Option<u32>>) {
         let mut number = vec![None; self.lines.len()];
         let mut origin: Vec<u32> = (0..self.lines.len() as u32).collect();
@@ -80,10 +80,10 @@ impl WitnessLog {
     }
 }
 
-/// What a line was found for: a pair that it proves, whether or not doubles can tell that it passes both.
+/// Why a line was sought: a pair that it proves, even if doubles cannot confirm that it passes both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum FoundFor {
-    /// Groups, of which nothing follows.
+    /// Groups, which proves nothing by itself.
     Groups,
     /// Two cells, by their places.
     Cells([usize; 2]),
@@ -91,16 +91,16 @@ pub(super) enum FoundFor {
     Object([usize; 2]),
 }
 
-/// What one thread works with.
+/// The working memory of one thread.
 #[derive(Debug)]
 pub(super) struct Worker<'a> {
     pub(super) shaft: Shaft<'a>,
-    /// What it writes down, if anything.
+    /// Its records, if any are kept.
     pub(super) log: Option<WitnessLog>,
 }
 
 impl Worker<'_> {
-    /// What was written down since the last time.
+    /// The records since the last call.
     pub(super) fn take_log(&mut self) -> WitnessLog {
         self.log.as_mut().map(std::mem::take).unwrap_or_default()
     }

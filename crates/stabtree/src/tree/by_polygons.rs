@@ -1,4 +1,4 @@
-//! Sequences of convex portals, made longer and shorter by one.
+//! Sequences of convex portals, extended and shortened by one.
 
 use super::follow::Follower;
 use crate::convex::Gates;
@@ -7,7 +7,7 @@ use sightlines_sightline::{ConvexSequence, Line3, StabLimits};
 use std::borrow::Borrow;
 use std::sync::Arc;
 
-/// Follows sequences of convex portals. What is not decided counts as passed.
+/// Follows sequences of convex portals. Undecided ones count as passed.
 #[derive(Debug, Clone)]
 pub struct ByPolygons {
     gates: Arc<Gates>,
@@ -42,9 +42,9 @@ impl ByPolygons {
 impl Follower for ByPolygons {
     type Note = Option<Line3>;
 
-    /// Cost: a linear program or some, unless the line of the sequence before passes the gate too.
+    /// Cost: a few linear programs, unless the line of the shorter sequence passes the gate too.
     fn push(&mut self, gate: u32) -> Option<Option<Line3>> {
-        // What portals' planes hide is hidden from the search that made the table's rows too.
+        // What the planes of portals hide is hidden in the table's rows too.
         if !self.sequence.iter().all(|&before| self.gates.may_follow(before, gate)) {
             return None;
         }

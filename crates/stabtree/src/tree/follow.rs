@@ -1,4 +1,4 @@
-//! What a tree is grown along: sequences of gates, made longer and shorter by one.
+//! What a tree grows along: sequences of gates, extended and shortened by one.
 
 use sightlines_cells::{CellGraph, Exit, PortalId, Space};
 use sightlines_sightline::Stabber;
@@ -14,12 +14,12 @@ pub const fn portal_of(gate: u32) -> (PortalId, bool) {
     (PortalId(gate / 2), gate.is_multiple_of(2))
 }
 
-/// Follows a sequence of gates (see [`gate_of`]), which leads from cell to cell and begins empty.
+/// Follows a sequence of gates (see [`gate_of`]), which leads from cell to cell and is empty at first.
 ///
-/// Contract: `push` says `None` only if no open set of lines passes the sequence and the gate. Its answer depends on
-/// nothing but the sequence, and the sequence is then as before.
+/// Contract: `push` returns `None` only if no open set of lines passes the sequence and the gate; the sequence is then
+/// unchanged. Its answer depends on nothing but the sequence.
 pub trait Follower: Clone + Send + Sync {
-    /// What makes it cheap to push a gate again that was found to be passed.
+    /// What makes it cheap to push a passable gate again.
     type Note: Copy + Send;
 
     /// Adds a gate; `None` and no change if no line passes.
@@ -28,10 +28,10 @@ pub trait Follower: Clone + Send + Sync {
     /// Adds a gate again after the same sequence as before.
     fn push_again(&mut self, gate: u32, note: Self::Note);
 
-    /// Takes back the last gate.
+    /// Undoes the last gate.
     fn pop(&mut self);
 
-    /// How many times `push` has said that lines pass because it was not decided; pushing again does not count.
+    /// How many times `push` has accepted a gate because it was undecided; pushing again does not count.
     fn n_undecided(&self) -> u64 {
         0
     }
@@ -41,14 +41,14 @@ pub trait Follower: Clone + Send + Sync {
 #[derive(Debug, Clone)]
 pub struct ByStabber<S: Stabber> {
     stabber: S,
-    /// By gate, as who crosses it sees it.
+    /// By gate, oriented for crossing it.
     portals: Arc<[S::Portal]>,
-    /// How to take back each gate; `None` for the first.
+    /// How to undo each gate; `None` for the first.
     undos: Vec<Option<S::Undo>>,
 }
 
 impl<S: Stabber> ByStabber<S> {
-    /// For the portals of a graph; `turned` gives a portal's shape as seen from its second cell for `false`.
+    /// For the portals of a graph; `turned` gives a portal's shape, as seen from its second cell for `false`.
     pub fn new<C: Space>(graph: &CellGraph<C>, stabber: S, turned: impl Fn(&C::Portal, bool) -> S::Portal) -> Self {
         let both = |shape: &C::Portal| [turned(shape, true), turned(shape, false)];
         let portals = graph.portals().iter().flat_map(|p| both(&p.shape)).collect();

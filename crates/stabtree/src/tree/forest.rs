@@ -12,18 +12,19 @@ use sightlines_progress::{Cancelled, Counter, Observer};
 use sightlines_pvs::{BitMatrix, StabParts};
 use sightlines_sightline::{AxialStabber, Funnel, StabLimits};
 
-/// Cells whose trees are in memory at a time, for each that is being grown.
+/// Cells whose trees are in memory at a time, for each one being grown.
 const BATCH: usize = 64;
-/// Nodes and children of the whole graph, so that ids have 32 bits with a bit to spare. Trees beyond are left out.
+/// Most nodes, and most children, of the whole graph, so that ids have 32 bits with a bit to spare. Trees beyond are
+/// left out.
 const MOST: usize = 1 << 31;
 
-/// How far trees are followed.
+/// Limits on trees.
 #[derive(Clone, Copy)]
 pub struct StabTreesOptions<'a> {
-    /// The most nodes of one tree, unfolded, the root among them. Beyond, it is cut breadth first: the nearest
-    /// sequences stay, and what may go on is marked open. At least 1, which is taken for 0 too.
+    /// The most nodes of one tree, unfolded, the root included. Larger trees are cut breadth first: the nearest
+    /// sequences stay, and nodes that may continue are marked open. At least 1; 0 counts as 1.
     pub max_nodes: usize,
-    /// Number of threads; 0 for one for each core. Changes nothing but the time.
+    /// Number of threads; 0 for one per core. Affects only the time.
     pub threads: usize,
     /// Receives a report for each finished tree, and may cancel.
     pub progress: Option<&'a dyn Observer>,
@@ -42,23 +43,23 @@ impl std::fmt::Debug for StabTreesOptions<'_> {
     }
 }
 
-/// What the trees of all cells are, before equal ones are put together.
+/// Numbers of the trees of all cells, before equal ones are shared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct StabTreesSummary {
     /// Sequences of at least one gate: nodes of all trees but their roots.
     pub n_sequences: u64,
-    /// Of these, ones that others may follow which are not in the tree.
+    /// Those of them that may continue with sequences that are not in the tree.
     pub n_open: u64,
     /// Cells whose tree was cut.
     pub n_cut_cells: u64,
-    /// Nodes of the largest tree, the root among them.
+    /// Nodes of the largest tree, the root included.
     pub n_largest: u64,
-    /// Sequences of convex portals that count as passed because it was not decided.
+    /// Sequences of convex portals that count as passed because they are undecided.
     pub n_undecided: u64,
 }
 
-/// One tree with equal nodes put together.
+/// One tree with equal nodes shared.
 struct Folded {
     shared: Shared,
     roots: Vec<u32>,
@@ -107,21 +108,21 @@ impl Shared {
     }
 }
 
-/// The stab trees of all cells, in one graph in which equal trees are kept once.
+/// The stab trees of all cells, in one graph in which equal trees are stored once.
 ///
 /// * `rows`: cells by cells, symmetric: pairs that may see each other. Only sequences whose cells are all in each
-///   other's rows are followed; rows that hide no pair lose none, and the better they are, the less it takes.
+///   other's rows are followed; rows that hide no visible pair lose none, and tighter rows save work.
 /// * `follower`: cloned for each thread.
 ///
-/// Returns the graph with each node once, children and roots ascending; each way from a root of a cell is a sequence of
-/// gates, see `gate_of`.
+/// Returns the graph with each node once, children and roots ascending; each path from a root of a cell is a sequence
+/// of gates, see `gate_of`.
 ///
-/// Conservative for every limit: a sequence that an open set of lines passes is in the graph, or begins with one
-/// that ends in an open node (or at an open root). Exact beyond that if the follower is: every sequence in the graph is
-/// passed, and open is only what goes on. It does not depend on the number of threads.
+/// Conservative for every limit: a sequence that an open set of lines passes is in the graph, or begins with one that
+/// ends in an open node (or at an open root). Beyond that it is exact if the follower is: every sequence in the graph
+/// is passed, and only nodes that continue are open. Independent of the number of threads.
 ///
-/// Cost: a push for each sequence and about as many again for those that come to nothing, and for taking the
-/// follower from one end of a tree to the other; memory is the graph, and a batch of trees.
+/// Cost: a push for each sequence and about as many again for rejected gates, and for moving the follower from one end
+/// of a tree to the other; memory is the graph, and a batch of trees.
 ///
 /// # Errors
 /// [`Cancelled`] by the observer.
@@ -130,7 +131,7 @@ impl Shared {
 /// If `rows` has another size.
 ///
 /// # Source
-/// Teller and Séquin, SIGGRAPH 1991, section 4, for the trees; keeping equal ones once, and cutting them, are our own.
+/// Teller and Séquin, SIGGRAPH 1991, section 4, for the trees; sharing equal ones, and cutting them, are our own.
 pub fn stab_trees<C: Space, F: Follower>(
     graph: &CellGraph<C>,
     rows: &BitMatrix,
@@ -152,7 +153,7 @@ pub fn stab_trees<C: Space, F: Follower>(
     let mut forest = StabParts { first_root: vec![0], ..StabParts::default() };
     let mut summary = StabTreesSummary::default();
     for first in (0..n).step_by(BATCH) {
-        // In the order of cells, so that ids do not depend on who was done first.
+        // In the order of cells, so that ids do not depend on which finished first.
         for tree in workers.map(first..n.min(first + BATCH), || follower.clone(), one) {
             let tree = tree?;
             let fits = shared.len() + tree.shared.len() <= MOST

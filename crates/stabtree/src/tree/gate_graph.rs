@@ -4,7 +4,7 @@ use super::follow::gate_of;
 use sightlines_cells::{CellGraph, CellId, Space};
 use sightlines_pvs::BitMatrix;
 
-/// The graph as trees grow along it.
+/// The graph along which trees grow.
 pub(super) struct GateGraph<'a> {
     rows: &'a BitMatrix,
     /// The cell that each gate leads into, and the side of that cell.
@@ -31,11 +31,11 @@ impl<'a> GateGraph<'a> {
         self.heads[gate as usize].0
     }
 
-    /// Gates that may follow: `met` are the cells on the way, at least one, `entry` the gate into the last of them.
+    /// Gates that may follow: `met` are the cells so far, at least one, `entry` the gate into the last of them.
     ///
-    /// A line meets a convex cell once and does not leave it by the side it came in by; and from wherever it is it
-    /// sees all the cells that it meets, so each pair of them is in the rows. Neither loses a sequence that lines pass,
-    /// if rows lose no pair that sees each other.
+    /// A line meets a convex cell once and does not leave it by the side through which it entered; and every point on
+    /// it sees all the cells that it meets, so each pair of them is in the rows. Neither rule loses a sequence that
+    /// lines pass, if rows lose no visible pair.
     pub(super) fn onward(&self, met: &[CellId], entry: Option<u32>) -> impl Iterator<Item = u32> {
         let here = met[met.len() - 1].idx();
         let side = entry.map(|gate| self.heads[gate as usize].1);

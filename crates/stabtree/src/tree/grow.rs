@@ -1,9 +1,8 @@
 //! One tree, breadth first up to a number of nodes.
 //!
-//! Nodes are expanded in the order in which they were found, so that what a limit cuts off are the longest
-//! sequences. The follower goes from node to node by the way over their last common gate; as nodes of a level lie
-//! side by side, a level costs no more pushes than the tree up to it has nodes, mostly far fewer, and memory is what
-//! the nodes take.
+//! Nodes are expanded in the order in which they were found, so that a limit cuts off the longest sequences. The
+//! follower moves from node to node by way of their last common gate; as nodes of a level lie side by side, a level
+//! costs no more pushes than the tree up to it has nodes, mostly far fewer, and memory is that of the nodes.
 
 use super::follow::Follower;
 use super::gate_graph::GateGraph;
@@ -12,13 +11,13 @@ use sightlines_cells::CellId;
 /// A tree in breadth-first order: node 0 is the root, the children of a node lie side by side.
 #[derive(Debug)]
 pub(super) struct Grown {
-    /// The gate crossed last; of the root, nothing that means anything.
+    /// The gate crossed last; meaningless for the root.
     pub(super) gates: Vec<u32>,
     /// Where the children of each node begin; those of the next node follow.
     first_child: Vec<u32>,
-    /// Nodes that have sequences beyond them which are not in the tree. They have no children.
+    /// Nodes with sequences beyond them that are not in the tree. They have no children.
     pub(super) open: Vec<bool>,
-    /// Pushes that were not decided.
+    /// Number of undecided pushes.
     pub(super) n_undecided: u64,
 }
 
@@ -33,17 +32,17 @@ impl Grown {
     }
 }
 
-/// Where the follower is.
+/// The position of the follower.
 struct Place<N> {
     /// The parent of each node, and the follower's note of it.
     nodes: Vec<(u32, Option<N>)>,
-    /// Nodes from below the root to where the follower is.
+    /// Nodes from below the root to the follower's position.
     path: Vec<u32>,
     way: Vec<u32>,
 }
 
 impl<N: Copy> Place<N> {
-    /// Takes the follower to a node.
+    /// Moves the follower to a node.
     fn go<F: Follower<Note = N>>(&mut self, node: u32, gates: &[u32], follower: &mut F) {
         self.way.clear();
         let mut at = node;
@@ -66,8 +65,8 @@ impl<N: Copy> Place<N> {
     }
 }
 
-/// Grows the tree of `root` up to `max_nodes` nodes, at least 1, the root among them. What does not fit any more ends
-/// in open nodes; a node is open only if some sequence goes on from it.
+/// Grows the tree of `root` up to `max_nodes` nodes, at least 1, the root included. What no longer fits ends in open
+/// nodes; a node is open only if some sequence continues from it.
 pub(super) fn grow<F: Follower>(ways: &GateGraph<'_>, root: CellId, follower: &mut F, max_nodes: usize) -> Grown {
     let undecided_before = follower.n_undecided();
     let mut tree = Grown { gates: vec![u32::MAX], first_child: Vec::new(), open: Vec::new(), n_undecided: 0 };

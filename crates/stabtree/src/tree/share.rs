@@ -1,4 +1,4 @@
-//! Equal trees, kept once.
+//! Equal trees, stored once.
 //!
 //! Two nodes with the same gate, the same children and the same mark are one. Children come before their parents,
 //! so their ids are known when the parent is looked up, and equal trees have equal ids from the leaves up: the
@@ -9,7 +9,7 @@
 
 use std::collections::HashMap;
 
-/// Nodes, each kept once.
+/// Nodes, each stored once.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     pub(super) gates: Vec<u32>,
@@ -19,7 +19,7 @@ pub(super) struct Shared {
     pub(super) open: Vec<bool>,
     /// The last node with each hash. Never iterated.
     last: HashMap<u64, u32>,
-    /// The node before with the same hash.
+    /// The previous node with the same hash.
     before: Vec<u32>,
 }
 
@@ -47,7 +47,7 @@ impl Shared {
         [0].into_iter().chain(self.ends.iter().copied()).collect()
     }
 
-    /// The id of a node, new or not. `children` are ids, ascending, each once.
+    /// The id of a node, new or not. `children` are distinct ids, ascending.
     pub(super) fn id(&mut self, gate: u32, open: bool, children: &[u32]) -> u32 {
         let hash = hash(gate, open, children);
         let last = self.last.get(&hash).copied().unwrap_or(NONE);

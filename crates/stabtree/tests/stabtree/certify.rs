@@ -1,5 +1,5 @@
-//! Proofs of whole tables against the searches that made the tables, on random plans, boxes and convex worlds: everything is proven, and
-//! wrong rows are not.
+//! Proofs of whole tables against the searches that made the tables, on random plans, boxes and convex worlds:
+//! everything is proven, except wrong rows.
 
 use crate::boxes::{cut, faces, objects};
 use proptest::prelude::*;
@@ -44,7 +44,7 @@ fn proven_space(graph: &CellGraph<Axial>, rows: &BitMatrix) -> Proven {
     read.check(&space_network(graph).expect("the graph is good")).expect("proofs hold")
 }
 
-/// Asserts that exactly what rows say is proven; returns how many pairs are visible and hidden.
+/// Asserts that exactly the content of `rows` is proven; returns how many pairs are visible and hidden.
 fn assert_proven(rows: &BitMatrix, proven: &Proven) -> [u64; 2] {
     for a in 0..rows.n_rows() as u32 {
         for b in 0..a {
@@ -55,7 +55,7 @@ fn assert_proven(rows: &BitMatrix, proven: &Proven) -> [u64; 2] {
     [proven.visible.len(), proven.hidden.len()]
 }
 
-/// Asserts that nothing is proven that rows deny.
+/// Asserts that nothing is proven that contradicts `rows`.
 fn assert_nothing_wrong(rows: &BitMatrix, proven: &Proven) {
     for [a, b] in proven.visible.iter() {
         assert!(rows.get(a as usize, b as usize), "cells {a} and {b} are hidden");
@@ -87,7 +87,7 @@ proptest! {
         }
     }
 
-    /// The impostor: rows with a pair that is wrong. That pair stays open, or its truth is proven; nothing wrong is.
+    /// The impostor: rows with one wrong pair. That pair stays open, or its truth is proven; nothing wrong is.
     #[test]
     fn wrong_rows_of_plans_are_not_proven(plan in small_grid_plan(3..14), pick in any::<prop::sample::Index>()) {
         if let Some(graph) = cut_plan(&plan).filter(|graph| graph.n_cells() > 1) {
@@ -141,7 +141,7 @@ fn flipped(rows: &BitMatrix, a: u32, b: u32) -> BitMatrix {
     other
 }
 
-/// Tight and counted: an office where most is hidden.
+/// Tight and counted: an office where most pairs are hidden.
 #[test]
 fn an_office_is_proven_whole() {
     let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();
@@ -151,7 +151,7 @@ fn an_office_is_proven_whole() {
     assert!(visible > 100 && hidden > 400, "{visible} {hidden}");
 }
 
-/// Too little effort leaves pairs open, and says so; what is proven is still right.
+/// Too little effort leaves pairs open, and reports them; what is proven is still right.
 #[test]
 fn effort_has_a_limit() {
     let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();
@@ -189,8 +189,8 @@ fn proven_convex(graph: &CellGraph<Convex>, rows: &BitMatrix, options: &CertifyO
     read.check(&convex_network(graph).expect("the graph is good")).expect("proofs hold")
 }
 
-/// Asserts that all pairs are proven to be as the search says, but for those that it could not decide, which may be proven
-/// to be hidden or left open; returns how many are visible, hidden and undecided.
+/// Asserts that all pairs are proven as the search decided them, except those that it could not decide, which may be
+/// proven hidden or left open; returns how many are visible, hidden and undecided.
 fn assert_world_is_proven(name: &str, graph: &CellGraph<Convex>) -> [u64; 3] {
     let seen = searched(graph);
     let proven = proven_convex(graph, &seen.cells, &CertifyOptions::default());
@@ -234,13 +234,13 @@ fn worlds_are_proven_whole() {
     assert!(sum[0] > 4000 && sum[1] > 4000 && sum[2] * 100 < sum[0], "{sum:?}");
 }
 
-/// Lines shot through solid leafs follow no portals: what they show is never proven to be hidden.
+/// Lines shot through solid leafs follow no portals: what they prove visible is never proven hidden.
 #[test]
 fn nothing_that_lines_show_is_proven_hidden() {
     let mut n_seen = 0;
     for seed in 0..4 {
         let world = leafs(seed, 60);
-        // Rows that hide everything: whatever can be proven of them is tried.
+        // Rows that hide everything: the prover attempts every pair.
         let rows = BitMatrix::identity(world.graph.n_cells());
         let proven = proven_convex(&world.graph, &rows, &CertifyOptions::default());
         for [a, b] in seen_by_rays(&world, 2000, seed).pairs {
@@ -251,7 +251,8 @@ fn nothing_that_lines_show_is_proven_hidden() {
     assert!(n_seen > 200, "{n_seen}");
 }
 
-/// The impostors: rows with a pair that is wrong, each one in turn. That pair stays open, or its truth is proven; nothing wrong is.
+/// The impostors: rows with one wrong pair, each in turn. That pair stays open, or its truth is proven; nothing wrong
+/// is.
 #[test]
 fn wrong_rows_of_worlds_are_not_proven() {
     let bent = corridor(9, [1, 2], 7).expect("a short corridor");

@@ -1,5 +1,5 @@
-//! Boxes that are no cells against the search that follows every sequence of portals, in a graph whose cells are cut
-//! where the boxes begin and end: what a box sees is what the cells in it see.
+//! Boxes that are not cells against the search that follows every sequence of portals, in a graph whose cells are cut
+//! along the boxes: a box sees what the cells in it see.
 
 use crate::boxes::{SIDE, cut, faces, objects};
 use proptest::prelude::*;
@@ -29,7 +29,7 @@ fn seen(graph: &CellGraph<Axial>, solid: &[Aabb<3>], eyes: &[Aabb<3>], things: &
     one
 }
 
-/// The same room and walls, with cells cut along the faces of boxes.
+/// The same space and walls, with cells cut along the faces of boxes.
 fn cut_along(graph: &CellGraph<Axial>, boxes: &[Aabb<3>]) -> CellGraph<Axial> {
     let mut pieces: Vec<(usize, Aabb<3>)> = Vec::new();
     for (cell, own) in graph.cells().iter().enumerate() {
@@ -96,7 +96,7 @@ fn touch(a: &Aabb<3>, b: &Aabb<3>) -> bool {
     (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
 }
 
-/// What boxes see of each other and of objects, by the cells in them; and touching counts.
+/// What boxes see of each other and of objects, by the cells in them; touching counts as seeing.
 fn by_cells(graph: &CellGraph<Axial>, eyes: &[Aabb<3>], things: &[Aabb<3>]) -> [BitMatrix; 2] {
     let fine = cut_along(graph, eyes);
     let network = Network::axial(&fine, &Zones::cells(&fine), things);
@@ -137,7 +137,7 @@ fn eyes() -> impl Strategy<Value = Vec<Aabb<3>>> {
     prop::collection::vec(one, 1..4)
 }
 
-/// Invariant: boxes see exactly what the cells in them see and what they touch; what is solid adds nothing that is hidden.
+/// Invariant: boxes see exactly what the cells in them see and what they touch; solid boxes reveal nothing hidden.
 #[test]
 fn boxes_see_what_the_cells_in_them_see() {
     let (shown, hidden, in_solid) = (Cell::new(0u64), Cell::new(0u64), Cell::new(0u64));
@@ -146,7 +146,7 @@ fn boxes_see_what_the_cells_in_them_see() {
     let mut runner = proptest::test_runner::TestRunner::new(config);
     let out = || prop::collection::vec(prop::bool::weighted(0.04), 1..9);
     let result = runner.run(&(faces(24), out(), eyes(), objects()), |(faces, out, eyes, objects)| {
-        // Objects are in the cube, as beyond it nothing is known.
+        // Objects are in the cube; beyond it nothing is known.
         let is_in = |b: &Aabb<3>| (0..3).all(|k| b.min[k] >= 0.0 && b.max[k] <= f64::from(SIDE));
         let objects: Vec<Aabb<3>> = objects.into_iter().filter(is_in).collect();
         let (graph, solid) = cut(&faces, &out);
@@ -188,7 +188,7 @@ fn cube(at: [f64; 3], size: f64) -> Aabb<3> {
     Aabb { min: at, max: at.map(|x| x + size) }
 }
 
-/// Only requested pairs are answered; a box that reaches out of the cells sees everything requested.
+/// Only requested pairs are answered; a box that extends beyond the cells sees everything requested.
 #[test]
 fn only_what_is_asked_is_answered() {
     let graph = door();
@@ -211,7 +211,7 @@ fn only_what_is_asked_is_answered() {
     assert!(found.objects.get(0, 0), "nothing is known of what is beyond the cells");
 }
 
-/// A flat box, or a point, sees what a box around it sees.
+/// A flat box, or a point, sees what a thin box around it sees.
 #[test]
 fn flat_boxes_see_what_is_around_them() {
     let graph = door();

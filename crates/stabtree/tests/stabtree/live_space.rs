@@ -1,4 +1,4 @@
-//! Answers that are brought up to date against answers that are found anew, after random edits.
+//! Updated answers against answers computed anew, after random edits.
 
 use crate::boxes::{cut, faces, objects};
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
 use std::cell::Cell;
 
-/// What is there at one time.
+/// The scene at one time.
 #[derive(Debug, Clone)]
 struct State {
     graph: CellGraph<Axial>,
@@ -17,7 +17,7 @@ struct State {
     objects: Vec<Aabb<3>>,
 }
 
-/// What becomes of a scene in one step.
+/// One edit of a scene.
 #[derive(Debug, Clone)]
 enum Edit {
     /// Faces that are added.
@@ -30,9 +30,9 @@ enum Edit {
     Close(Vec<prop::sample::Index>),
     /// Which cells are left out.
     LeaveOut(Vec<bool>),
-    /// Objects in place of all there were.
+    /// Objects that replace all earlier ones.
     Furnish(Vec<Aabb<3>>),
-    /// An object that goes, and one that comes.
+    /// An object that is removed, and one that is added.
     Carry(prop::sample::Index, Vec<Aabb<3>>),
     /// Back to the step before.
     Undo,
@@ -126,8 +126,8 @@ fn same(a: &SpaceVisibility, b: &SpaceVisibility) -> bool {
     a.cells == b.cells && a.objects == b.objects && a.touching == b.touching && a.n_blockers == b.n_blockers
 }
 
-/// Invariant: after any edits, one after the other, the answer is the one found anew, bit for bit, with any number of
-/// threads.
+/// Invariant: after any edits, one after the other, the answer equals the one computed anew, bit for bit, with any
+/// number of threads.
 #[test]
 fn updates_equal_answers_found_anew() {
     let [changed, kept, rebuilt] = [(); 3].map(|()| Cell::new(0u64));
@@ -184,8 +184,8 @@ fn rooms(doors: [Option<f64>; 2]) -> State {
     State { graph, solid, objects: vec![Aabb { min: [3.5, 1.0, 0.0], max: [4.0, 2.0, 0.0] }] }
 }
 
-/// Comparisons that have to fail: updates that do not look at lines that are cut, or at walls that are opened, are
-/// noticed. Both are what an answer for the old rooms says, where it is taken for one about the new.
+/// Comparisons that have to fail: updates that ignore cut lines, or opened walls, are detected. Both give the answer
+/// for the old rooms as that for the new.
 #[test]
 fn what_an_update_forgets_is_noticed() {
     let [shut, open] = [rooms([Some(0.0), None]), rooms([Some(0.0), Some(0.0)])];

@@ -141,7 +141,7 @@ proptest! {
         prop_assert_eq!(&visible_zones(&network, &Funnel::new(Adaptive), &bounds, &options).expect("nobody cancels").zones, &all);
     }
 
-    /// Invariant: an explanation says what the table says, and proves it.
+    /// Invariant: an explanation agrees with the table, and proves it.
     #[test]
     fn explanations_agree_with_the_search(plan in plan()) {
         let graph = cut(&plan);
@@ -167,7 +167,7 @@ proptest! {
     }
 }
 
-/// A stabber that takes every tie for closed, as a careless funnel would.
+/// A stabber that treats every tie as closed, as a careless funnel would.
 #[derive(Clone)]
 struct CarelessTies {
     funnel: Funnel<Adaptive>,
@@ -223,7 +223,7 @@ fn walk(graph: &CellGraph<Planar>, cell: sightlines_cells::CellId, careless: &mu
     }
 }
 
-/// The impostor of the comparison with enumeration: a row with one pair removed is another row.
+/// The impostor of the comparison with enumeration: a row with one pair removed differs.
 #[test]
 fn a_removed_pair_is_noticed() {
     let p = Point2::new;

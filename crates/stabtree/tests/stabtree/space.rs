@@ -27,8 +27,8 @@ fn by_sequences(graph: &CellGraph<Axial>, objects: &[Aabb<3>]) -> (BitMatrix, Bi
     (seen.zones, seen.objects)
 }
 
-/// Invariant: pairs of boxes and sequences of portals give the same answer, for cells and for objects;
-/// what is solid, and how many threads there are, changes nothing.
+/// Invariant: pairs of boxes and sequences of portals give the same answer, for cells and for objects; solid boxes and
+/// the number of threads change nothing.
 #[test]
 fn pairs_and_sequences_agree() {
     let (seen, hidden) = (Cell::new(0u64), Cell::new(0u64));
@@ -60,8 +60,8 @@ fn pairs_and_sequences_agree() {
     assert!(seen.get() > cases && hidden.get() > cases, "{} seen, {} hidden", seen.get(), hidden.get());
 }
 
-/// Invariant: where coordinates that were meant to be equal differ by a little, nothing that sequences show
-/// is hidden; more may be visible.
+/// Invariant: where coordinates that were meant to be equal differ slightly, nothing that sequences prove visible is
+/// hidden; more may be visible.
 #[test]
 fn nothing_is_hidden_by_slivers() {
     let (seen, slivers) = (Cell::new(0u64), Cell::new(0u64));
@@ -73,12 +73,12 @@ fn nothing_is_hidden_by_slivers() {
     let result = runner.run(&strategy, |(mut faces, mut objects, nudges, more)| {
         let thin = 2f64.powi(-40);
         let mut nudges = nudges.into_iter().cycle();
-        // Each face comes twice, once a little moved.
+        // Each face comes twice, once moved slightly.
         faces.extend(faces.clone());
         let n_faces = faces.len();
         for face in &mut faces[n_faces / 2..] {
             let by = f64::from(nudges.next().unwrap_or(0)) * thin;
-            // Inside of the cube, whichever way.
+            // Inside the cube, whichever way.
             let moved = |x: f64| if x > 0.0 && x < f64::from(SIDE) { x + by } else { x };
             *face = AxialFace::new(face.axis, face.min.map(moved), face.max.map(moved));
         }
@@ -130,7 +130,7 @@ fn row_of_boxes(ends: &[f64]) -> CellGraph<Axial> {
     CellGraph::<Axial>::new(ends.windows(2).map(cell).collect(), portals)
 }
 
-/// An object that touches only slivers is seen by whom those lie before, and by slivers beside them.
+/// An object that touches only slivers is seen from the cells in front of them, and from slivers beside them.
 #[test]
 fn objects_behind_slivers_are_seen() {
     let thin = 2f64.powi(-40);
@@ -155,7 +155,7 @@ fn objects_behind_slivers_are_seen() {
     assert!((0..3).all(|cell| seen.objects.get(cell, 0) && (0..3).all(|other| seen.cells.get(cell, other))));
 }
 
-/// Cells thinner than doubles can tell inherit their neighbours' visibility.
+/// Cells too thin for doubles inherit their neighbours' visibility.
 #[test]
 fn slivers_take_after_their_neighbours() {
     let ulp = f64::EPSILON;

@@ -1,5 +1,5 @@
-//! The stab trees of all cells in one graph against the plain tree of each: equal where nothing is cut, and where
-//! something is, neither less than there is nor more than has to be.
+//! The stab trees of all cells in one graph against the plain tree of each: equal where nothing is cut; where something
+//! is, nothing is missing and nothing is cut without need.
 
 use proptest::prelude::*;
 use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, CellId, Convex, Plan, Planar, Portal};
@@ -21,14 +21,14 @@ const MAX_NODES: usize = 20_000;
 const BUDGETS: [usize; 6] = [1, 2, 7, 30, 200, MAX_NODES];
 
 type Sequence = Vec<u32>;
-/// Sequences of gates out of a cell, the empty one too, and whether others may follow.
+/// Sequences of gates out of a cell, the empty one included, and whether others may follow.
 type Unfolded = BTreeMap<Sequence, bool>;
 
 fn options(max_nodes: usize, threads: usize) -> StabTreesOptions<'static> {
     StabTreesOptions { max_nodes, threads, progress: None }
 }
 
-/// All ways from the roots of a cell.
+/// All paths from the roots of a cell.
 fn unfold(forest: &StabParts, cell: CellId) -> Unfolded {
     fn list(forest: &StabParts, nodes: &[u32], sequence: &mut Sequence, all: &mut Unfolded) {
         for &node in nodes {
@@ -68,7 +68,7 @@ fn plain_sequences<C: sightlines_cells::Space>(
     (0..tree.nodes().len()).map(sequence).collect()
 }
 
-/// What is wrong with an unfolded tree, which may be cut, beside all sequences that lines pass.
+/// The defect, if any, of an unfolded tree, which may be cut, compared with all sequences that lines pass.
 fn defect(cut: &Unfolded, all: &BTreeSet<Sequence>, max_nodes: usize) -> Option<String> {
     let is_covered = |s: &Sequence| (0..=s.len()).any(|n| cut.get(&s[..n]).is_some_and(|&open| open || n == s.len()));
     if let Some(lost) = all.iter().find(|s| !is_covered(s)) {
@@ -95,7 +95,7 @@ fn defect(cut: &Unfolded, all: &BTreeSet<Sequence>, max_nodes: usize) -> Option<
     (fits || cut.len() > max_nodes).then(|| format!("{} of {max_nodes} nodes, and some were left out", cut.len()))
 }
 
-/// What a run of comparisons looked at.
+/// What a run of comparisons examined.
 #[derive(Debug, Default)]
 struct Counts {
     sequences: Cell<u64>,
@@ -176,7 +176,7 @@ fn runner() -> (proptest::test_runner::TestRunner, u64) {
     (proptest::test_runner::TestRunner::new(config), cases)
 }
 
-/// Invariant: in the plane the graph unfolds to the plain trees, or to what is left of them by a budget.
+/// Invariant: in the plane the graph unfolds to the plain trees, or to what a budget leaves of them.
 #[test]
 fn plans_unfold_to_plain_trees() {
     let counts = Counts::default();
@@ -192,7 +192,7 @@ fn plans_unfold_to_plain_trees() {
             },
             &counts,
         )?;
-        // Rows that hide nothing make no difference but to the time.
+        // Rows that hide nothing affect only the time.
         let n = graph.n_cells();
         let mut all = BitMatrix::new(n, n);
         (0..n).for_each(|i| (0..n).for_each(|j| all.set(i, j, true)));

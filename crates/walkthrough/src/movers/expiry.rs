@@ -25,18 +25,19 @@ impl PartialOrd for Entry {
     }
 }
 
-/// The volumes that run out, the earliest first. What is taken back stays in the heap until its time comes or the heap is swept.
+/// The volumes that expire, the earliest first. A cancelled entry stays in the heap until its time comes or the heap is
+/// swept.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Expiries {
     heap: BinaryHeap<Entry>,
-    /// For each slot the stamp of the entry that counts; 0 for none.
+    /// For each slot the stamp of the valid entry; 0 for none.
     stamps: Vec<u64>,
     last_stamp: u64,
     n_set: usize,
 }
 
 impl Expiries {
-    /// From now on the volume of a slot runs out after `time`; never, if that is infinite. O(log n).
+    /// From now on the volume of a slot expires after `time`; never, if that is infinite. O(log n).
     pub(super) fn set(&mut self, slot: u32, time: f64) {
         self.unset(slot);
         if time == f64::INFINITY {
@@ -49,14 +50,14 @@ impl Expiries {
         self.stamps[slot as usize] = self.last_stamp;
         self.n_set += 1;
         self.heap.push(Entry { time, slot, stamp: self.last_stamp });
-        // Each sweep is paid for by the entries that were taken back since the last one.
+        // The entries cancelled since the last sweep pay for each sweep.
         if self.heap.len() > 2 * self.n_set + 64 {
             let stamps = &self.stamps;
             self.heap.retain(|entry| stamps[entry.slot as usize] == entry.stamp);
         }
     }
 
-    /// The slot has no volume any more. O(1).
+    /// The slot no longer has a volume. O(1).
     pub(super) fn unset(&mut self, slot: u32) {
         if let Some(stamp) = self.stamps.get_mut(slot as usize)
             && *stamp != 0
@@ -66,7 +67,7 @@ impl Expiries {
         }
     }
 
-    /// Takes out a slot whose volume ran out before `now`, the earliest first. O(log n).
+    /// Removes a slot whose volume expired before `now`, the earliest first. O(log n).
     pub(super) fn pop(&mut self, now: f64) -> Option<u32> {
         while let Some(&Entry { time, slot, stamp }) = self.heap.peek() {
             let counts = self.stamps[slot as usize] == stamp;
@@ -89,7 +90,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Invariant: what is popped is what a list says, and the heap does not grow with what was taken back.
+        /// Invariant: popped slots are those of a plain list, and the heap does not grow with cancelled entries.
         #[test]
         fn pops_are_those_of_a_list(steps in prop::collection::vec((0u32..6, 0u32..30, any::<bool>()), 1..400)) {
             let mut expiries = Expiries::default();

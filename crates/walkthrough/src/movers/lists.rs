@@ -9,16 +9,16 @@ struct Entry {
     place: u32,
 }
 
-/// For each cell the slots whose volumes touch it, and the cells that have any. Entering and leaving are O(1) for each cell; what is
-/// not touched costs nothing.
+/// For each cell the slots whose volumes touch it, and the cells with such slots. Entering and leaving are O(1) for
+/// each cell; other cells cost nothing.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lists {
     /// By cell: slots, and which of their entries this is.
     by_cell: Vec<Vec<(u32, u32)>>,
     by_slot: Vec<Vec<Entry>>,
-    /// The cells that have any.
+    /// The cells with entries.
     occupied: Vec<u32>,
-    /// By cell: its place among them.
+    /// By cell: its position in `occupied`.
     place_of: Vec<u32>,
     n_entries: usize,
 }
@@ -78,7 +78,7 @@ impl Lists {
         self.by_cell.get(cell as usize).into_iter().flatten().map(|&(slot, _)| slot)
     }
 
-    /// The cells that have any.
+    /// The cells with entries.
     pub(super) fn occupied(&self) -> &[u32] {
         &self.occupied
     }

@@ -90,8 +90,8 @@ impl Motion {
     /// `until`; `None` if there is no bound. Rounded outwards.
     ///
     /// With u the rounding of a double: the span `until - from` and its product with the speed are each rounded to the
-    /// nearest and then up to the next double, so the way is no less than the true one; adding and subtracting it is rounded to
-    /// the nearest and then to the next double outwards. An overflow gives an infinite way.
+    /// nearest and then up to the next double, so the distance is no less than the true one; adding and subtracting it
+    /// is rounded to the nearest and then to the next double outwards. An overflow gives an infinite distance.
     pub(super) fn volume(&self, bounds: &Aabb<3>, from: f64, until: f64, dimension: u8) -> Option<Aabb<3>> {
         let grown = self.speed.map(|speed| {
             let span = (until - from).max(0.0);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     proptest! {
-        /// Invariant: the volume holds the true box, compared in whole numbers of 2^-80, and hardly more.
+        /// Invariant: the volume contains the true box, compared in integers of 2^-80, and hardly more.
         #[test]
         fn volumes_round_outwards(at in -(1i64 << 52)..(1i64 << 52), speed in 1i64 << 20..1 << 45, from in 0i64..1 << 20, span in 1i64..1 << 20) {
             let scaled = |x: i64, bits: i32| x as f64 * 2.0f64.powi(-bits);

@@ -1,4 +1,4 @@
-//! Tables in memory and packed ones keep the contract of cell sources, and impostors are refused.
+//! Tables in memory and packed ones satisfy the contract of cell sources, and impostors are refused.
 
 use sightlines_bake::{PlanBakeOptions, StabOptions, bake_plan, with_stab_trees};
 use sightlines_eye_to_cell::TableCells;

@@ -1,4 +1,4 @@
-//! A viewer walks along a row of rooms: with everything at hand, with a source that is late, that fails, that is gone.
+//! A viewer walks along a row of rooms: with everything in memory, and with sources that are late, fail, or are gone.
 
 use sightlines_eye_to_cell::{CellSource, Method, MirrorPiece, PortalEdge, StabStep, TableCells, View};
 use sightlines_geometry::Aabb;
@@ -10,7 +10,7 @@ use sightlines_walkthrough::{Answer, Prefetcher, Prepare, WalkOptions, Walkthrou
 use std::collections::BTreeSet;
 use std::sync::{Arc, Condvar, Mutex};
 
-/// `n` rooms of unit size in a row, each with an object, seen by those at most two away; doors in the middle.
+/// `n` rooms of unit size in a row, each with an object, visible from at most two rooms away; doors in the middle.
 fn rooms(n: u32) -> Arc<Table> {
     let record = |i: u32| {
         let x = f64::from(i);
@@ -163,7 +163,7 @@ fn frames_do_not_wait_for_a_source_that_never_comes() {
         n += 1;
     }
     assert_eq!((n, walk.counters().late), (1000, 1000));
-    // Once it comes, the answer is the method's.
+    // When it arrives, the answer is the method's.
     gate.open();
     let view = looking_right(0.5);
     assert_eq!(until_full(&mut walk, &view, Method::Exact), until_full(&mut twin, &view, Method::Exact));
@@ -182,12 +182,12 @@ fn what_is_ahead_is_there_in_time() {
         if walk.frame(&view, Method::IncidentPortals).answer == Answer::Late {
             late.push(k);
         }
-        // The rest of the frame takes its time: as long as what was asked for takes.
+        // The rest of the frame takes as long as its requests.
         while !walk.is_idle() {
             std::thread::yield_now();
         }
     }
-    // The first cell cannot be foreseen, and nothing else is late.
+    // The first cell cannot be predicted; nothing else is late.
     assert_eq!(late, [0]);
     assert!(walk.prepared().0 >= 31, "{:?}", walk.prepared());
 }
@@ -261,7 +261,7 @@ fn failures_are_told_and_frames_stay_right() {
     }
 }
 
-/// A maker that panics: the frames go on without it.
+/// A maker that panics: frames continue without it.
 struct Panics;
 
 impl Prepare for Panics {
@@ -316,7 +316,7 @@ fn hall_of_mirrors() -> Arc<Table> {
         mirror: MirrorId(face),
         points: vec![[left[0], left[1], 0.0], [right[0], right[1], 0.0]],
     };
-    // Left end first, as who stands in the room sees them.
+    // Left end first, as seen from inside the room.
     parts.mirrors = vec![mirror(0, 7, [0.0, 1.0], [1.0, 1.0]), mirror(1, 8, [2.0, 0.0], [1.0, 0.0])];
     Arc::new(Table::new(parts).unwrap())
 }

@@ -1,6 +1,6 @@
-//! Files taken apart and put together again, with right checksums: what a patient vandal would write.
+//! Files taken apart and reassembled, with correct checksums: what a patient vandal would write.
 //!
-//! Written from the description of the format, apart from the code that is tested.
+//! Written from the description of the format, independently of the code under test.
 
 use proptest::prelude::*;
 use sightlines_pvs::Table;
@@ -66,7 +66,7 @@ impl File {
     }
 }
 
-/// Makes the checksum of header and section table right again, if the table's position can be found.
+/// Corrects the checksum of header and section table, if the table's position can be found.
 pub(crate) fn fix_header(bytes: &mut [u8]) {
     let end = 24 + 32 * number(bytes, 12, 4) as usize;
     if end + 4 <= bytes.len() {
@@ -75,7 +75,7 @@ pub(crate) fn fix_header(bytes: &mut [u8]) {
     }
 }
 
-/// Panics unless the table's bytes are refused when they end at a place, and with the byte there changed.
+/// Panics unless the table's bytes are refused when they are truncated at a position, and with the byte there changed.
 pub(crate) fn assert_damage_is_noticed(table: &Table, at: prop::sample::Index, flip: u8) {
     let bytes = table.to_bytes();
     let at = at.index(bytes.len());

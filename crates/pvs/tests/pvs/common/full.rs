@@ -1,4 +1,4 @@
-//! Tables with everything in them that a table need not have.
+//! Tables with all optional parts.
 
 use super::{any_parts, rooms};
 use proptest::prelude::*;
@@ -7,8 +7,8 @@ use sightlines_pvs::{
     PortalRecord, SceneMethods, StabParts, StabTrees, TableKind, TableParts,
 };
 
-/// The rooms with a mirror at the western wall, numbers of polygons, and their stab trees by hand: the door
-/// that is the first of one tree and the last of another is there once.
+/// The rooms with a mirror at the western wall, numbers of polygons, and their stab trees by hand: the door that is the
+/// first of one tree and the last of another is stored once.
 pub(crate) fn villa() -> TableParts {
     let parts = rooms();
     let mut stab = StabParts::default();
@@ -58,7 +58,7 @@ pub(crate) fn map_of_wedges() -> TableParts {
     TableParts { kind: TableKind::QuakeMap, up: Some(Axis::Z), ..wedges() }
 }
 
-/// The villa with names of its cells: two that are alike, an empty one, one that is no ASCII.
+/// The villa with names of its cells: two that are equal, an empty one, one that is not ASCII.
 pub(crate) fn named_villa() -> TableParts {
     let names = ["room0_Living Room", "hall", "", "Küche", "hall"];
     TableParts { cell_names: names.map(str::to_owned).to_vec(), ..villa() }
@@ -101,7 +101,7 @@ pub(crate) fn wedges() -> TableParts {
     }
 }
 
-/// What a random node or cell takes of what there is: a gate, some of the nodes that fit, a flag.
+/// A random choice for a node or cell: a gate, some of the nodes that fit, a flag.
 pub(crate) type Choice = (u32, u64, bool);
 
 /// The cells that a gate leads from and into.
@@ -162,7 +162,7 @@ pub(crate) fn plane_choices() -> impl Strategy<Value = Vec<([i8; 3], i8, usize, 
     prop::collection::vec(([-2i8..3, -2i8..3, -2i8..3], -4i8..5, any::<usize>(), any::<[u32; 2]>()), 1..12)
 }
 
-/// Anything that is a table, with any of what a table need not have.
+/// Any valid table, with any optional parts.
 pub(crate) fn any_full_parts() -> impl Strategy<Value = TableParts> {
     let mirrors = prop::collection::vec((any::<u32>(), any::<u32>(), any::<[i8; 3]>()), 0..4);
     let planes = prop::option::of((plane_choices(), 0u8..3));

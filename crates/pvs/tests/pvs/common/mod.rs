@@ -1,4 +1,4 @@
-//! Tables to test with: one small one with everything in it, and random ones.
+//! Tables to test with: a small one with every part, and random ones.
 
 use proptest::prelude::*;
 use sightlines_pvs::{
@@ -50,7 +50,7 @@ pub(crate) fn rooms() -> TableParts {
     }
 }
 
-/// The cells' polygons, boxes for those without, doubled: whole numbers for coordinates on the grid.
+/// The cells' polygons, boxes for those without, doubled: integer coordinates on the grid.
 fn outline(cell: &CellRecord) -> Vec<[i64; 2]> {
     let (a, b) = (cell.min, cell.max);
     let corners = match cell.polygon.is_empty() {
@@ -65,7 +65,7 @@ pub(crate) fn doubled(x: f64) -> i64 {
     (2.0 * x) as i64
 }
 
-/// The oracle for point location: every cell, in whole numbers.
+/// The oracle for point location: every cell, in integers.
 pub(crate) fn located(cells: &[CellRecord], p: &[f64]) -> Vec<CellId> {
     let inside = |cell: &CellRecord| {
         let in_box =
@@ -122,7 +122,7 @@ fn triangle([a, b, c]: Corners) -> Option<CellRecord> {
     Some(CellRecord { min, max, group: None, polygon })
 }
 
-/// Anything that is a table; the cells lie on a small grid and over each other, some of them flat.
+/// Any valid table; the cells lie on a small grid and overlap, some of them flat.
 pub(crate) fn any_parts() -> impl Strategy<Value = TableParts> {
     (2u8..4, 0usize..70).prop_flat_map(|(dimension, n)| {
         let names = prop::collection::vec(".{0,4}", 0..4);
@@ -178,7 +178,7 @@ fn assemble(
     }
 }
 
-/// Asks a table everything, and panics unless the answers agree with each other.
+/// Makes all queries, and panics unless the answers agree with each other.
 pub(crate) fn assert_well_formed(table: &Table) {
     Table::new(table.parts().clone()).expect("a table's parts make a table");
     let ids = || (0..table.n_cells() as u32).map(CellId);

@@ -20,7 +20,7 @@ fn towards(a: &Exact, b: &Exact, share: &BigRational) -> Exact {
     [0, 1, 2].map(|k| &a[k] + share * (&b[k] - &a[k]))
 }
 
-/// The value of a plane as its numbers say it, without rounding.
+/// The value of a plane, evaluated without rounding.
 fn value(plane: &Plane, x: &Exact) -> BigRational {
     let (n, o) = (point(plane.normal), point(plane.origin));
     (0..3).map(|k| &n[k] * (&x[k] - &o[k])).sum::<BigRational>() + exact(plane.offset)
@@ -36,7 +36,7 @@ fn inside(part: &[Vertex], weights: &[u8]) -> Exact {
 
 const LARGEST: f64 = 4096.0;
 
-/// A convex polygon on the grid, in a plane that is perpendicular to an axis or leans, and how it is cut first.
+/// A convex polygon on the grid, in a plane that is perpendicular to an axis or oblique, and its first cuts.
 #[derive(Debug, Clone)]
 struct Start {
     part: Part,
@@ -83,8 +83,8 @@ fn cut(start: &Start, cutter: &mut Cutter) -> Option<Part> {
 }
 
 proptest! {
-    /// Points of the portal that are above all cuts are within the part, up to the radius that constructed vertices are
-    /// grown by: so they are on no wrong side of any plane that has the part above by that much.
+    /// Points of the portal that are above all cuts are within the part, up to the radius of constructed vertices: so
+    /// no plane that has the part above it by that much excludes them.
     #[test]
     fn cutting_leaves_everything_above(start in start(0), weights in proptest::collection::vec(1u8..20, 1..6)) {
         let mut cutter = Cutter::new(LARGEST);
@@ -137,8 +137,8 @@ proptest! {
     }
 }
 
-/// The tightness twin and the impostor: separators that are moved in by a thousandth hide something; and they
-/// are there at all.
+/// The tightness twin and the impostor: separators exist, and separators that are moved inwards by a thousandth hide
+/// something.
 #[test]
 fn separators_are_tight() {
     let clearance = Cutter::new(LARGEST).eps;
@@ -176,7 +176,7 @@ fn parts_within_parts() {
     let (more, less) = (half(2.0), half(4.0));
     assert!(is_within(&less, &more, normal) && is_within(&more, &whole, normal) && is_within(&less, &less, normal));
     assert!(!is_within(&more, &less, normal) && !is_within(&whole, &more, normal));
-    // Of a corner that is cut off so near that both ends of the cut are the same number, nothing is known.
+    // A cut so near the corner that both of its ends round to the same number decides nothing.
     let end = |cut: bool| Vertex { at: [0.0, 1e-9, 1e-9], clearance: 2.0 * clearance, exact: false, cut };
     let speck = vec![whole[0], end(false), end(true)];
     assert!(!is_within(&whole, &speck, normal) && !is_within(&less, &speck, normal));

@@ -1,4 +1,4 @@
-//! Where walls are that were none, and where there are none any more.
+//! Where walls were added and where they were removed.
 
 use super::super::opaque::{Field, MAX_FIELDS, Painting, Patch, Plane, key, others};
 use super::matching::{Matching, same_boxes};
@@ -9,16 +9,16 @@ use std::collections::BTreeMap;
 /// How the walls of two graphs differ.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Change {
-    /// Closed rectangles that cover all that is a wall now and was none, and maybe more.
+    /// Closed rectangles that cover all walls that were added, and maybe more.
     pub(super) closed: Vec<Aabb<3>>,
-    /// Closed rectangles that cover all that was a wall and is none any more, and maybe more.
+    /// Closed rectangles that cover all walls that were removed, and maybe more.
     pub(super) opened: Vec<Aabb<3>>,
 }
 
-/// A plane on which something differs.
+/// A plane that has changed.
 struct Site {
     at: f64,
-    /// The part of it outside of which nothing differs.
+    /// The part of it that contains all differences.
     region: Patch,
     /// What lies in that part, before and after.
     planes: [Plane; 2],
@@ -28,8 +28,7 @@ type Sites = BTreeMap<(usize, u64), Site>;
 
 /// How the walls of `new` differ from those of `old`.
 ///
-/// Planes are looked at only where cells or portals differ. O(cells + portals), and what it takes to paint those
-/// parts.
+/// Only planes where cells or portals differ are examined. O(cells + portals), plus the cost of painting those parts.
 pub(super) fn between(old: &CellGraph<Axial>, new: &CellGraph<Axial>, cells: &Matching) -> Change {
     let mut sites = Sites::new();
     let removed = old.cells().iter().zip(&cells.new_of).filter(|(_, new)| new.is_none());
@@ -105,7 +104,7 @@ fn common(patch: &Patch, region: &Patch) -> Option<Patch> {
 }
 
 impl Site {
-    /// Hands out rectangles that cover what is a wall before and not after, with 0, and the other way round, with 1.
+    /// Passes on rectangles that cover walls before and not after, with 0, and walls after and not before, with 1.
     fn compare(&self, give: &mut impl FnMut(Patch, usize)) {
         let [before, after] = &self.planes;
         let both = Plane {
@@ -115,7 +114,7 @@ impl Site {
         };
         let (us, vs) = (both.lines(0), both.lines(1));
         if us.len().saturating_mul(vs.len()) > MAX_FIELDS {
-            // Too much to paint: anything there may differ.
+            // Too large to paint: anything there may differ.
             for (which, plane) in self.planes.iter().enumerate() {
                 plane.walls.iter().for_each(|wall| give(*wall, which));
             }
@@ -159,7 +158,7 @@ mod tests {
 
     #[test]
     fn fields_are_covered_once() {
-        // An angle, a hole in a frame, and nothing.
+        // An angle, a frame around a hole, and nothing.
         for rows in [["##..", "#...", "#..."], ["####", "#..#", "####"], ["....", "....", "...."]] {
             let open: Vec<bool> = rows.concat().bytes().map(|b| b == b'#').collect();
             let mut times = [0; 12];

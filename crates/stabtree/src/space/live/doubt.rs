@@ -19,19 +19,19 @@ impl PairsInDoubt {
         Self { cells, objects, rows: vec![false; n_places], near_new: Vec::new() }
     }
 
-    /// Doubts whether two places see each other.
+    /// Marks that it is unknown whether two places see each other.
     pub(super) fn pair(&self, a: usize, b: usize) {
         self.cells.set(a, b);
         self.cells.set(b, a);
     }
 
-    /// Doubts whether an object is seen from a place.
+    /// Marks that it is unknown whether a place sees an object.
     pub(super) fn object(&mut self, object: u32, place: usize) {
         self.objects.set(object as usize, place);
         self.rows[place] = true;
     }
 
-    /// Doubts from where an object is seen that was none before. O(places).
+    /// Marks that it is unknown which places see a new object. O(places).
     pub(super) fn new_object(&mut self, object: u32, search: &SpaceSearch<'_>) {
         for (place, &cell) in search.cell_at.iter().enumerate() {
             self.objects.set(object as usize, place);
@@ -41,10 +41,10 @@ impl PairsInDoubt {
         }
     }
 
-    /// What may have come into sight through a place where a wall was: pairs that see it, or touch it, from either
-    /// side, and objects near such cells.
+    /// Marks what may have become visible through a removed wall: pairs that see or touch it, from either side, and
+    /// objects near such cells.
     ///
-    /// If an open set of lines joins a pair that was hidden, each of them met a wall that is none any more; as the
+    /// If an open set of lines joins a pair that was hidden, each of them met a wall that has been removed; as the
     /// rectangles are few and closed, an open set of them meets the same one.
     pub(super) fn through(&mut self, opened: &Aabb<3>, seers: &[usize], search: &SpaceSearch<'_>) {
         let axis = (0..3).find(|&k| opened.min[k] == opened.max[k]).unwrap_or(0);
@@ -61,7 +61,7 @@ impl PairsInDoubt {
             near.dedup();
             near
         };
-        // A line to an object goes on to it on the other side; slivers, which are thin, are on both.
+        // A line to an object continues on the other side; slivers, which are thin, are on both.
         let has_slivers = search.regular.len() < search.graph.n_cells();
         let sides = if has_slivers { vec![(seers, seers)] } else { vec![(&low[..], &high[..]), (&high, &low)] };
         for (from, to) in sides {
@@ -72,10 +72,10 @@ impl PairsInDoubt {
         }
     }
 
-    /// What cells see that were none before: at most what those saw that they overlap, what comes through places
-    /// where walls were, and what lies, like themselves, where no cells were.
+    /// Marks what new cells may see: at most what the old cells that they overlap saw, what is visible through removed
+    /// walls, and what, like themselves, lies where no cells were.
     ///
-    /// A line between two cells that meets no place where a wall was never crosses the border of what was cells.
+    /// A line between two cells that meets no removed wall never crosses the border of the old cells.
     pub(super) fn new_cells(
         &mut self,
         search: &SpaceSearch<'_>,
@@ -129,11 +129,11 @@ impl PairsInDoubt {
     }
 }
 
-/// The places that may see or touch a rectangle that was opened, as one row: new cells, and those that saw a cell
-/// which touches one.
+/// The places that may see or touch an opened rectangle, as one row: new cells, and those that saw a cell that touches
+/// one.
 ///
-/// A line from an old cell to such a rectangle meets a first one; until then nothing is there that was not, so it comes to
-/// that through a cell that the old one saw.
+/// A line from an old cell to such a rectangle meets a first one; up to there nothing has changed, so it arrives
+/// through a cell that the old one saw.
 pub(super) fn candidates(
     search: &SpaceSearch<'_>,
     old: &LiveSpace,
@@ -194,7 +194,7 @@ fn is_covered(bounds: Aabb<3>, cells: &[u32], extents: &[Aabb<3>]) -> bool {
 }
 
 impl SpaceSearch<'_> {
-    /// The places of those candidates that see a flat box, or touch it; perhaps of some more.
+    /// The places of those candidates that see or touch a flat box; perhaps some more.
     pub(super) fn seers(&self, target: &Aabb<3>, candidates: &AtomicBitMatrix, worker: &mut Worker<'_>) -> Vec<usize> {
         let mut found = Vec::new();
         let mut stack = vec![0];
@@ -216,7 +216,7 @@ impl SpaceSearch<'_> {
         found
     }
 
-    /// The place of a cell that is no sliver.
+    /// The place of a cell that is not a sliver.
     pub(super) fn place_of(&self, cell: u32) -> Option<usize> {
         Some(self.place[cell as usize]).filter(|p| *p != SLIVER).map(|p| p as usize)
     }

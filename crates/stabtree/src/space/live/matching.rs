@@ -1,9 +1,9 @@
-//! What is the same before and after.
+//! What is equal before and after.
 
 use super::super::opaque::key;
 use sightlines_geometry::Aabb;
 
-/// Which things are the same, one to one.
+/// A one-to-one matching of equal things.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Matching {
     /// For each new thing the old one.
@@ -25,8 +25,8 @@ pub(super) fn same_boxes(old: &[Aabb<3>], new: &[Aabb<3>]) -> Vec<Option<u32>> {
 }
 
 impl Matching {
-    /// From the old thing that each new one equals. Of several that equal the same, the first counts as it, and the
-    /// others as new.
+    /// Builds a matching from the old thing that each new one equals. If several equal the same one, the first is
+    /// matched and the others count as new.
     pub(super) fn of(same: &[Option<u32>], n_old: usize) -> Self {
         let mut new_of = vec![None; n_old];
         let old_of = (0u32..).zip(same).map(|(new, old)| {
@@ -37,7 +37,7 @@ impl Matching {
         Self { old_of: old_of.collect(), new_of }
     }
 
-    /// Without the pairs that are not wanted.
+    /// Without the unwanted pairs.
     pub(super) fn only(mut self, mut wanted: impl FnMut(u32, u32) -> bool) -> Self {
         for (new, old) in (0u32..).zip(&mut self.old_of) {
             if let Some(other) = old.filter(|&old| !wanted(old, new)) {

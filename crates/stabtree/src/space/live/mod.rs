@@ -1,16 +1,15 @@
-//! An answer that is brought up to date when walls, doors or objects change, instead of found anew.
+//! An answer that is updated when walls, doors or objects change, instead of computed anew.
 //!
-//! Beside the answer the lines are kept that proved it. When walls change:
-//! * a pair that was visible stays so unless its line meets a rectangle that was closed;
-//! * a pair that was hidden stays so unless both see, or touch, one rectangle that was opened: every line that joins
-//!   them now was blocked there;
-//! * a cell that was none before sees at most what those saw that it overlaps, what those rectangles show, and what
-//!   lies with it where no cells were. Lines that are not cut and pass it show what it sees.
-//!
+//! The lines that proved the answer are kept with it. When walls change:
+//! * a visible pair stays visible unless its line meets a closed rectangle;
+//! * a hidden pair stays hidden unless both see, or touch, one opened rectangle: every line that joins them now was
+//!   blocked there;
+//! * a new cell sees at most what the old cells that it overlaps saw, what opened rectangles reveal, and what lies with
+//!   it where no cells were. Uncut lines through it prove part of what it sees.
 //! All other pairs are decided as usual, groups first; groups without such pairs are skipped. Lines that are cut are
-//! followed once more on both sides of the cut, and those that ended at a wall that is gone, further on; those that
-//! proved what cells see that are gone show much of what the cells see that are there instead.
-//!
+//! All other pairs are decided as usual, groups first; groups without such pairs are skipped. Lines that are cut are
+//! followed once more on both sides of the cut, and lines that ended at a removed wall are followed further; lines that
+//! proved what removed cells saw prove much of what the cells in their place see.
 //! The answer is that of [`space_visibility`](super::space_visibility): both are exact, but for pairs that are given up
 //! ([`SpaceVisibility::n_assumed`]). Such a pair is decided again with every update, but a pair that was proven to be
 //! hidden stays hidden, though a new search, which meets other groups and rectangles, might give it up.
@@ -33,13 +32,13 @@ use sightlines_progress::{Cancelled, Observer, Uncancelled};
 use sightlines_sightline::{Blockers, ShaftCounters};
 use std::cell::Cell;
 
-/// Rectangles opened beyond which all is found anew: as many questions to all cells.
+/// Number of opened rectangles beyond which everything is computed anew: each means a query to all cells.
 const MOST_OPENED: usize = 256;
 
-/// The answer for a graph in space, and what it takes to keep it up to date.
+/// The answer for a graph in space, with the data needed to update it.
 ///
-/// Memory beside the answer: about 300 bytes for each line (there are fewer than visible pairs of cells, as a line shows
-/// several), twelve bytes for each pair that is visible, and the walls, plane by plane.
+/// Memory beside the answer: about 300 bytes for each line (there are fewer than visible pairs of cells, as a line
+/// proves several), twelve bytes for each visible pair, and the walls, plane by plane.
 #[derive(Debug, Clone)]
 pub struct LiveSpace {
     graph: CellGraph<Axial>,
@@ -49,27 +48,27 @@ pub struct LiveSpace {
     log: WitnessLog,
 }
 
-/// What an update did.
+/// The work of an update.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SpaceUpdate {
-    /// Whether so much changed that everything was found anew.
+    /// Whether so much changed that everything was computed anew.
     pub rebuilt: bool,
-    /// Cells with the same bounds as one before.
+    /// Cells whose bounds are those of an old cell.
     pub n_cells_kept: usize,
     /// All other cells.
     pub n_cells_new: usize,
-    /// Objects with a box that no object had before.
+    /// Objects whose box no object had before.
     pub n_objects_new: usize,
-    /// Rectangles that are walls now and were none.
+    /// Rectangles that have become walls.
     pub n_closed: usize,
-    /// Rectangles that were walls and are none any more.
+    /// Rectangles that are no longer walls.
     pub n_opened: usize,
     /// Lines known before.
     pub n_lines: usize,
-    /// Those of them that a wall cuts now.
+    /// Those of them that are now cut by a wall.
     pub n_lines_cut: usize,
-    /// What it took to decide. Varies with threads.
+    /// The work of the decisions. Varies with threads.
     pub counters: ShaftCounters,
 }
 
@@ -93,7 +92,7 @@ impl LiveSpace {
         Ok(Self { graph, objects, seen, walls, log })
     }
 
-    /// The graph that the answer is about.
+    /// The graph of the answer.
     pub const fn graph(&self) -> &CellGraph<Axial> {
         &self.graph
     }
@@ -103,20 +102,20 @@ impl LiveSpace {
         &self.seen
     }
 
-    /// Number of lines that are kept.
+    /// Number of lines kept.
     pub const fn n_lines(&self) -> usize {
         self.log.lines.len()
     }
 
-    /// Goes over to another graph, other solid boxes and other objects; arguments as for [`Self::new`].
+    /// Moves to another graph, other solid boxes and other objects; arguments as for [`Self::new`].
     ///
-    /// Whatever they are, the answer is the one for them; if most cells and objects have the bounds that they had, it is
-    /// found quickly. Ids of cells and objects need not be the same.
+    /// The answer is correct for any arguments; it is found quickly if most cells and objects keep their bounds. Ids of
+    /// cells and objects need not be the same.
     ///
     /// The observer receives reports, but cannot cancel an update.
     ///
-    /// Cost: O(cells + portals + objects + visible pairs), with small constants, and what it takes to decide about pairs
-    /// whose line is cut, pairs that see the same opened rectangle, and new cells and objects.
+    /// Cost: O(cells + portals + objects + visible pairs), with small constants, plus the decisions about pairs whose
+    /// line is cut, pairs that see the same opened rectangle, and new cells and objects.
     pub fn update(
         &mut self,
         graph: CellGraph<Axial>,
@@ -125,7 +124,7 @@ impl LiveSpace {
         options: &SearchOptions<'_>,
     ) -> SpaceUpdate {
         let log = std::mem::take(&mut self.log);
-        // Half an update would be none, and the last answer is gone by then.
+        // Half an update is no valid state, and the last answer is already gone.
         let observer = options.progress.map(Uncancelled);
         let options =
             SearchOptions { progress: observer.as_ref().map(|observer| observer as &dyn Observer), ..*options };
@@ -178,7 +177,7 @@ impl LiveSpace {
         Ok((search.into_seen(counters), walls, kept, update))
     }
 
-    /// The cells that have the same bounds and are no slivers.
+    /// The cells that keep their bounds and are not slivers.
     fn same_cells(&self, graph: &CellGraph<Axial>) -> Matching {
         let [old, new] = [&self.graph, graph].map(|g| g.cells().iter().map(|c| c.bounds).collect::<Vec<_>>());
         let [old_slivers, new_slivers] = [&old, &new].map(|extents| slivers::find(extents));
@@ -202,7 +201,7 @@ fn anew(
     Ok((search.into_seen(counters), log))
 }
 
-/// Whether the free part of a line may meet any box of a tree: certain if it says no.
+/// Whether the free part of a line may meet any box of a tree: `false` is certain.
 fn meets_any(line: &Line, tree: &BoxTree<3>) -> bool {
     let met = Cell::new(false);
     tree.visit(|b| !met.get() && line.span.may_meet(b), |_| met.set(true));
@@ -219,7 +218,7 @@ struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Marks what old lines still prove; returns what is in doubt, what is noted, and how many lines are cut.
+    /// Marks what old lines still prove; returns the doubtful pairs, the log, and the number of lines cut.
     fn prepare(
         &self,
         mut log: WitnessLog,
@@ -289,13 +288,13 @@ impl Step<'_> {
         [cells, objects]
     }
 
-    /// The place of an old cell that is still there.
+    /// The place of an old cell that still exists.
     fn place(&self, cell: u32) -> Option<usize> {
         self.search.place_of(self.cells.new_of[cell as usize]?)
     }
 
-    /// Marks the pairs of lines that are still there, by their new numbers, and gives them the new ids; the other pairs
-    /// are in doubt. Returns lines that proved pairs of cells that are gone: they may pass what is there instead.
+    /// Marks the pairs whose lines still exist, by their new numbers, and gives them the new ids; the other pairs are
+    /// in doubt. Returns lines that proved pairs of removed cells: they may pass the cells in their place.
     fn carry_over(&self, log: &mut WitnessLog, number: &[Option<u32>], doubt: &mut PairsInDoubt) -> Vec<u32> {
         let PairsInDoubt { cells, objects, rows, .. } = doubt;
         let (of_cells, of_objects) = rayon::join(
@@ -370,7 +369,7 @@ impl Step<'_> {
         again
     }
 
-    /// Follows a line from cells on it, as far as it goes from there.
+    /// Follows a line in both directions from cells on it, as far as it is free.
     fn follow_parts(&self, line: &Line, worker: &mut Worker<'_>) {
         let search = self.search;
         let mut left = search.cells_on(&line.span);
@@ -384,12 +383,12 @@ impl Step<'_> {
     }
 }
 
-/// What a change means to a line.
+/// What a change means for a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// A wall may be in its way now.
+    /// A wall may block it now.
     Cut,
-    /// It may go further now.
+    /// It may continue further now.
     Freed,
     /// It may pass a new object.
     Near,

@@ -30,7 +30,7 @@ pub(crate) fn objects() -> impl Strategy<Value = Vec<Aabb<3>>> {
     prop::collection::vec((ends(), ends()).prop_map(move |(p, q)| half(unordered([p, q]))), 0..6)
 }
 
-/// Cuts the cube along faces, and leaves some cells out: those at which `out` says so.
+/// Cuts the cube along faces, and leaves out the cells with `out` set.
 pub(crate) fn cut(faces: &[AxialFace<3>], out: &[bool]) -> (CellGraph<Axial>, Vec<Aabb<3>>) {
     let side = f64::from(SIDE);
     let tree =

@@ -1,4 +1,5 @@
-//! Tables over a grid of unit cells, with rows drawn by chance, and an oracle for what touches what in whole numbers.
+//! Tables over a grid of unit cells, with pseudorandom rows, and an oracle in integers for which box touches which
+//! cell.
 
 use proptest::prelude::*;
 use sightlines_eye_to_cell::{TableCells, VisibleSet};
@@ -10,7 +11,7 @@ use sightlines_pvs::{
 use sightlines_walkthrough::{Answer, Frame};
 use std::sync::Arc;
 
-/// Quarters of a unit: all coordinates of the tests are whole numbers of them.
+/// Quarters of a unit: all coordinates of the tests are integers in this unit.
 pub(crate) const UNIT: i64 = 4;
 
 /// What kind of cells a grid has.
@@ -20,11 +21,11 @@ pub(crate) enum Kind {
     Plane,
     /// Unit cubes.
     Space,
-    /// Unit cubes found by planes, with boxes that are too large.
+    /// Unit cubes located by planes, with boxes that are too large.
     Planes,
 }
 
-/// A cell as the oracle knows it, in quarters.
+/// A cell in the oracle's form, in quarters.
 #[derive(Debug, Clone)]
 pub(crate) struct Shape {
     pub(crate) min: [i64; 3],
@@ -149,7 +150,7 @@ pub(crate) fn grid(
     }
     let dimension = if kind == Kind::Plane { 2 } else { 3 };
     let planes = (kind == Kind::Planes).then(|| planes(n, &at));
-    // The cells at the border of a tree of planes go on without end.
+    // The border cells of a plane tree are unbounded.
     if kind == Kind::Planes {
         for shape in &mut shapes {
             for (k, &cells) in n.iter().enumerate() {
@@ -170,7 +171,7 @@ pub(crate) fn grid(
     Grid { kind, table: Arc::new(table.unwrap()), shapes, size: n.map(|x| x as i64 * UNIT) }
 }
 
-/// In a row of squares, doors between neighbours; else none.
+/// Doors between neighbours in a row of squares; otherwise none.
 fn doors(shapes: &[Shape], dimension: u8) -> Vec<PortalRecord> {
     let mut doors = Vec::new();
     for (i, pair) in (0u32..).zip(shapes.windows(2)) {
@@ -209,14 +210,14 @@ fn planes(n: [usize; 3], at: &[Option<CellId>]) -> PlaneTree {
     }
     let mut nodes = Vec::new();
     if let PlaneChild::Cell(_) | PlaneChild::Nothing = cut([0; 3], n, n, at, &mut nodes) {
-        // One cell alone: a plane that it is above of.
+        // A single cell: one plane with the cell above it.
         let children = [at[0].map_or(PlaneChild::Nothing, PlaneChild::Cell), PlaneChild::Nothing];
         nodes = vec![PlaneNode { normal: [1.0, 0.0, 0.0], offset: -9.0, children }];
     }
     PlaneTree::new(nodes, 0.0).unwrap()
 }
 
-/// Chance that is the same everywhere.
+/// Pseudorandom numbers that are the same everywhere.
 #[derive(Debug, Clone)]
 pub(crate) struct Chance(pub(crate) u64);
 

@@ -4,7 +4,7 @@ use sightlines_pvs::CellId;
 use sightlines_walkthrough::{Draw, LevelError, LevelIndex, LevelSize, Levels, LoadLevel};
 use std::sync::{Arc, Mutex};
 
-/// Gives the number of a level, if it is let; and says what it was asked for.
+/// Returns the number of a level while it is allowed to, and records the requests.
 #[derive(Clone, Default)]
 struct Loader {
     is_shut: Arc<Mutex<bool>>,
@@ -35,7 +35,7 @@ fn cells(ids: &[u32]) -> Vec<CellId> {
     ids.iter().copied().map(CellId).collect()
 }
 
-/// Frames until all that was asked for is there; the last one.
+/// Runs frames until all requested levels have arrived; returns the last one.
 fn settle(levels: &mut Levels<Loader>, at: &[u32], ahead: &[u32]) -> Draw<String> {
     levels.frame(&cells(at), &cells(ahead));
     while !levels.is_idle() {
@@ -66,19 +66,19 @@ fn originals_are_drawn_until_a_level_comes() {
     let loader = Loader::default();
     *loader.is_shut.lock().unwrap() = true;
     let mut levels = Levels::new(index(), loader.clone(), 1000);
-    // The loader is shut: if a frame waited, this would never end.
+    // The loader is blocked: if a frame waited, this would never end.
     for _ in 0..1000 {
         assert_eq!(levels.frame(&cells(&[0]), &cells(&[2])), Draw::Original);
     }
     assert_eq!((levels.counters().late, levels.counters().frames), (1000, 1000));
     *loader.is_shut.lock().unwrap() = false;
     assert_eq!(settle(&mut levels, &[0], &[2]), level(0));
-    // What was ahead is there at once.
+    // A level that was ahead is ready at once.
     let n_late = levels.counters().late;
     assert_eq!(levels.frame(&cells(&[3]), &[]), level(1));
     assert_eq!(levels.counters().late, n_late);
     assert_eq!(*loader.asked.lock().unwrap(), [0, 1]);
-    // On the border between levels, in a cell without, and outside: the original.
+    // On the border between levels, in a cell without one, and outside: the original.
     for at in [&[1, 2][..], &[4], &[3, 4], &[]] {
         assert_eq!(settle(&mut levels, at, &[]), Draw::Original, "{at:?}");
     }
@@ -95,7 +95,7 @@ fn budget_of_levels_is_kept() {
         assert_eq!(settle(&mut levels, &[here], &[ahead, 5]), level(k % 2));
         assert_eq!(levels.kept(), (100, 1));
     }
-    // The large one is never read, as it is above the budget; it is not late, it is not to be had.
+    // The large one is never read, as it exceeds the budget; it counts as unavailable, not as late.
     let n_late = levels.counters().late;
     assert_eq!(settle(&mut levels, &[5], &[]), Draw::Original);
     assert_eq!(levels.counters().late, n_late);
@@ -127,7 +127,7 @@ fn forgotten_cells_draw_the_original() {
     assert_eq!(settle(&mut levels, &[0, 1], &[]), Draw::Original);
     assert_eq!(settle(&mut levels, &[1], &[]), level(0));
     assert_eq!(levels.index().level_of(CellId(0)), None);
-    // An index of which something was forgotten before.
+    // An index from which a level was removed earlier.
     let mut levels = Levels::new(levels.index().clone(), Loader::default(), 1000);
     assert_eq!(settle(&mut levels, &[1], &[0, 2]), level(0));
     assert_eq!(levels.read(), (2, 0));

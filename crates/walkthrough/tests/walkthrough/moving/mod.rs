@@ -1,4 +1,4 @@
-//! Scenes that change under a viewer: things that move, tables that are replaced, levels that come when they are read.
+//! Scenes that change under a viewer: moving objects, replaced tables, levels that arrive later.
 
 mod grid;
 mod levels;

@@ -1,4 +1,4 @@
-//! Movers against the plain method: the box of each one against the cells that are seen, in each frame.
+//! Movers against the plain method: the box of each one against the visible cells, in each frame.
 
 use crate::moving::grid::{Chance, Grid, IntBox, Kind, UNIT, any_grid, float, frame, grid, see};
 use proptest::prelude::*;
@@ -9,7 +9,8 @@ use sightlines_walkthrough::{Answer, CellBoxes, Motion, MoverId, MoverOptions, M
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A mover as the oracle knows it: a box that moves by at most `speed` quarters along each axis in a quarter of a time unit.
+/// A mover in the oracle's form: a box that moves by at most `speed` quarters along each axis in a quarter of a time
+/// unit.
 #[derive(Debug, Clone)]
 struct Thing {
     at: IntBox,
@@ -102,7 +103,7 @@ impl Game {
         self.things.keys().nth(k).copied()
     }
 
-    /// Something that happens now and then.
+    /// A random event.
     fn happen(&mut self) {
         let now = self.time();
         match self.chance.below(12) {
@@ -133,7 +134,7 @@ impl Game {
         }
     }
 
-    /// What the viewer sees from now on.
+    /// Changes what the viewer sees.
     fn look(&mut self) {
         let n = self.grid.n_cells();
         let eye = CellId(self.chance.below(n as u64) as u32);
@@ -170,8 +171,8 @@ impl Game {
 }
 
 proptest! {
-    /// Invariant: as long as promises are kept, the movers that are reported are those of the plain method, no fewer and no more, whatever comes
-    /// and goes, and however the table changes.
+    /// Invariant: as long as promises are kept, the reported movers are exactly those of the plain method, whatever
+    /// comes and goes, and however the table changes.
     #[test]
     fn movers_are_those_of_the_plain_method(grid in any_grid(), seed in any::<u64>(), n in 1usize..12) {
         let mut game = Game::new(grid, seed);
@@ -186,7 +187,7 @@ proptest! {
         }
     }
 
-    /// Invariant: what is seen in mirrors is what the plain method says for the cells seen there, and no mover is
+    /// Invariant: movers seen in mirrors are those of the plain method for the cells seen there, and no mover is
     /// queried twice.
     #[test]
     fn movers_in_mirrors_are_those_of_the_plain_method(grid in any_grid(), seed in any::<u64>()) {
@@ -217,7 +218,8 @@ proptest! {
         }
     }
 
-    /// Invariant: a table's cells that a box touches are those of the oracle; boxes of cells alone are at least these.
+    /// Invariant: the cells of a table that a box touches are those of the oracle; by boxes of cells alone, at least
+    /// these.
     #[test]
     fn touching_is_that_of_whole_numbers(grid in any_grid(), seed in any::<u64>()) {
         let mut chance = Chance(seed);
@@ -241,7 +243,7 @@ proptest! {
                 (0u32..).zip(&grid.shapes).filter(|(_, s)| s.touches(&b, grid.dimension())).map(|(i, _)| i).collect();
             prop_assert_eq!(&told, &oracle);
             prop_assert!(oracle.iter().all(|cell| loose.binary_search(cell).is_ok()));
-            // The first no ends it.
+            // The first `false` ends the search.
             for places in [&cells as &dyn sightlines_walkthrough::CellLocator, &boxes] {
                 let mut n = 0;
                 places.touching(&float(&b), &mut pending, &mut |_| { n += 1; false });
@@ -297,7 +299,7 @@ fn hidden_movers_are_not_asked() {
         assert_eq!(asked[0], n as u64 + 1);
         assert!(asked[1..].iter().all(|&n| n == 1), "only the one that is seen");
     }
-    // Those that may go anywhere slowly: ever more seldom, and spread over the frames.
+    // Those that may go anywhere slowly: ever more rarely, and spread over the frames.
     let n = 5_600;
     let asked = asked_in_frames(n, 3000, |_| Motion::speed(0.1).unwrap());
     let late: u64 = asked[1800..].iter().sum::<u64>() - 1200;
@@ -326,7 +328,7 @@ fn volumes_shrink_when_they_come_into_view_for_nothing() {
     let mut seen = VisibleSet::new();
     let mut widths = Vec::new();
     let mut in_vain = Vec::new();
-    // The viewer comes nearer every second second, and stops two rooms away.
+    // The viewer approaches every other second, and stops two rooms away.
     for k in 0..2400 {
         let at = (k / 120).min(17) as u32;
         see(&mut seen, 64, [at, at + 1]);
@@ -344,7 +346,7 @@ fn volumes_shrink_when_they_come_into_view_for_nothing() {
     assert!(movers.counters().asked < 600, "{:?}", movers.counters());
 }
 
-/// In a plane a region has no height, so in space nothing is left of it: a mover that rises within what it promised is seen.
+/// In a plane a region has no height, so in space it is discarded: a mover that rises within its promise is seen.
 #[test]
 fn regions_of_a_plane_say_nothing_in_space() {
     let [plane, space] = [Kind::Plane, Kind::Space].map(|kind| grid(kind, [4, 1, 3], |_| false, |_, _| true));
@@ -364,11 +366,11 @@ fn regions_of_a_plane_say_nothing_in_space() {
     for k in 10..20 {
         assert!(movers.frame(f64::from(k), &frame(&seen, Answer::Full), &mut |_| at(0.0)).unwrap().is_empty());
     }
-    // The uppermost cell of its column comes into view, and it is there.
+    // The topmost cell of its column comes into view, and the mover is there.
     see(&mut seen, n, [n as u32 - 1]);
     assert_eq!(movers.frame(20.0, &frame(&seen, Answer::Full), &mut |_| at(2.5)).unwrap(), [id]);
     assert!(movers.broken().is_empty());
-    // From outside everything is seen, also who came after the frame.
+    // From outside everything is seen, including movers added after the frame.
     movers.frame(21.0, &frame(&seen, Answer::Outside), &mut |_| at(2.5)).unwrap();
     let new = movers.add(at(0.0), Motion::ANY, 21.0).unwrap();
     assert_eq!(movers.also(&[], &mut |_| unreachable!()), [id, new]);

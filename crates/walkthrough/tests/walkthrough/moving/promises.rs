@@ -1,4 +1,4 @@
-//! Promises that are broken, and the impostor: volumes that hold too long.
+//! Broken promises, and the impostor: volumes that last too long.
 
 use crate::moving::grid::{frame, see};
 use crate::moving::movers::row;
@@ -10,8 +10,8 @@ fn at(x: f64) -> Aabb<3> {
     Aabb { min: [x, 0.25, 0.25], max: [x + 0.25, 0.75, 0.75] }
 }
 
-/// A mover comes along the row by one room a second, to a viewer that sees the first four rooms, and stays there: the
-/// frames in which it is in them and is missed, and the reports about its promise.
+/// A mover comes along the row by one room per second, to a viewer that sees the first four rooms, and stays there: the
+/// number of frames in which it is there and missed, and the reports about its promise.
 fn missed(promised: f64) -> (usize, Vec<Broken>) {
     let grid = row(40);
     let mut movers = Movers::new(grid.cells(), MoverOptions::default());
@@ -32,9 +32,9 @@ fn missed(promised: f64) -> (usize, Vec<Broken>) {
 
 #[test]
 fn volumes_that_hold_too_long_are_caught() {
-    // A little more than it moves, for the rounding of the test's own positions.
+    // Slightly more than it moves, for the rounding of the test's own positions.
     assert_eq!(missed(1.0 + 1e-9), (0, vec![]));
-    // The impostor: its volumes hold eight times as long as they should.
+    // The impostor: its volumes last eight times too long.
     let (n_missed, broken) = missed(0.125);
     assert!(n_missed > 0, "nothing was missed: the comparison cannot fail");
     assert!(broken.iter().all(|b| b.promise == BrokenPromise::Speed && b.known_at < b.at));
@@ -58,16 +58,16 @@ fn broken_promises_are_told_and_survived() {
         };
     assert_eq!(step(&mut movers, 1.0, &seen, at(5.25)), (vec![], vec![]));
     assert_eq!(movers.sleeps_in(id), Some(room));
-    // It leaves the room; nobody looks.
+    // It leaves the room unobserved.
     assert_eq!(step(&mut movers, 2.0, &seen, at(2.5)), (vec![], vec![]));
-    // Somebody looks into the room: it is found elsewhere, and the room is not relied upon any more.
+    // The room comes into view: the mover is found elsewhere, and its region is no longer relied upon.
     see(&mut seen, 8, [5]);
     assert_eq!(step(&mut movers, 3.0, &seen, at(2.5)), (vec![], vec![BrokenPromise::Region]));
     assert_eq!(movers.broken()[0].to_string(), "mover 0/0 was outside its region at 3");
     assert_eq!((movers.sleeps_in(id), movers.n_awake()), (None, 1));
     see(&mut seen, 8, [2]);
     assert_eq!(step(&mut movers, 4.0, &seen, at(2.5)), (vec![id], vec![]));
-    // No box at all: it is seen.
+    // No box at all: it counts as visible.
     for nonsense in
         [Aabb::EMPTY, Aabb { min: [f64::NAN; 3], max: [0.0; 3] }, Aabb { min: [0.0; 3], max: [f64::INFINITY; 3] }]
     {
@@ -111,7 +111,7 @@ fn what_reaches_beyond_all_cells_is_seen() {
     let view = frame(&seen, Answer::Full);
     assert_eq!(movers.frame(0.0, &view, &mut |_| at(7.9)).unwrap(), [id]);
     assert!(movers.sees(&view, &at(7.9)) && !movers.sees(&view, &at(7.5)) && movers.sees(&view, &at(0.5)));
-    // With more room for what is solid it is not.
+    // With a larger solid region it is not.
     let solid_within = Some(Aabb { min: [-9.0; 3], max: [99.0; 3] });
     let mut movers = Movers::new(grid.cells(), MoverOptions { solid_within, ..MoverOptions::default() });
     movers.add(at(7.9), Motion::speed(0.0).unwrap(), 0.0).unwrap();

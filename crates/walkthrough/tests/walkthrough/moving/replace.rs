@@ -1,4 +1,4 @@
-//! A walkthrough that goes on in another table.
+//! A walkthrough that continues in another table.
 
 use crate::moving::grid::{Grid, Kind, grid};
 use sightlines_eye_to_cell::{Method, TableCells, View};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 type Walk = Walkthrough<TableCells<Arc<Table>>, TableCells<Arc<Table>>>;
 
-/// Seven places in a row, of which some are solid; those with an even number are two triangles.
+/// Seven positions in a row, some of them solid; those with an even number are two triangles.
 fn squares(solid: impl Fn(usize) -> bool) -> Grid {
     grid(Kind::Plane, [7, 1, 1], solid, |_, _| true)
 }
@@ -25,7 +25,7 @@ fn until_full(walk: &mut Walk, view: &View) -> BTreeSet<u32> {
     }
 }
 
-/// `n` rooms in a row with doors between them but for those that are walled up, in the other order if `turned`.
+/// `n` rooms in a row with doors between them except where `walled`, in the opposite order if `turned`.
 fn rooms(n: u32, walled: &[u32], turned: bool) -> Arc<Table> {
     use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, TableKind, TableParts};
     let record = |i: u32| {
@@ -69,7 +69,7 @@ fn walks_go_on_in_another_table() {
     walk.open(PortalId(2));
     assert_eq!(until_full(&mut walk, &view), (0..6).collect());
 
-    // The door between rooms 1 and 2 is walled up; the others have other numbers. What was closed stays closed.
+    // The door between rooms 1 and 2 is walled up; the others have new numbers. Closed doors stay closed.
     let new = TableCells::new(rooms(8, &[1], true));
     let same = same_portals(&old, &new).unwrap();
     assert_eq!(same, [Some(5), None, Some(4), Some(3), Some(2), Some(1), Some(0)].map(|portal| portal.map(PortalId)));
@@ -82,7 +82,7 @@ fn walks_go_on_in_another_table() {
     assert_eq!(until_full(&mut walk, &behind), (2..6).collect());
     assert!(walk.counters().frames > frames);
 
-    // And back: what is not kept is open.
+    // And back: doors that are not kept are open.
     walk.replace(old.clone(), old.clone(), |_| None);
     assert_eq!((walk.doors().n_closed(), until_full(&mut walk, &view)), (0, (0..8).collect()));
     // A table with fewer cells.
@@ -98,7 +98,7 @@ fn movers_follow_into_another_table() {
     let walled = squares(|i| i == 3);
     let mut movers = Movers::new(open.cells(), MoverOptions::default());
     let at = |x: f64| Aabb { min: [x, 0.25, 0.0], max: [x + 0.25, 0.75, 0.0] };
-    // One that sleeps in place 5, and one that sleeps for a while in the place that becomes solid.
+    // One that sleeps in position 5, and one that sleeps for a while in the position that becomes solid.
     let ids = [5.5, 3.5].map(|x| movers.add(at(x), Motion::speed(0.0).unwrap(), 0.0).unwrap());
     let mut seen = sightlines_eye_to_cell::VisibleSet::new();
     crate::moving::grid::see(&mut seen, open.n_cells(), [0]);
@@ -107,7 +107,7 @@ fn movers_follow_into_another_table() {
     assert_eq!((movers.n_awake(), movers.n_entries()), (0, 2));
     movers.replace(walled.cells());
     assert_eq!((movers.n_awake(), movers.n_entries(), movers.counters().asked), (0, 1, 2));
-    // The cell of place 5 has another number now.
+    // The cell of position 5 has a new number now.
     let cell = walled.table.in_dimension().unwrap().at([5.5, 0.5]).cells()[0];
     assert_ne!(open.table.in_dimension().unwrap().at([5.5, 0.5]).cells()[0], cell);
     crate::moving::grid::see(&mut seen, walled.n_cells(), [cell.0]);
