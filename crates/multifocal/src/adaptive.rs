@@ -1,34 +1,34 @@
-//! Volumes cut into smaller ones where the answer is worth it.
+//! Volumes that are subdivided where it pays.
 //!
-//! What is hidden from both halves of a volume is hidden from it, and much more is hidden from a half. The price is
-//! two more answers of the method; it is paid only where much is still in doubt: neither hidden nor seen by a ray.
+//! What is hidden from both halves of a volume is hidden from it, and much more is hidden from a half. The price is two
+//! more runs of the method; it is paid only where much is still in doubt: neither hidden nor hit by a ray.
 
 use crate::{BackendError, FromRegion, Occludees, QueryCounts, RaySampler, Umbra, Volume};
 
-/// When to cut a volume.
+/// When to subdivide a volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Split {
-    /// How often a volume is cut in two at most; 0 never.
+    /// How often a volume is halved at most; 0 for never.
     pub depth: u32,
-    /// A volume is cut if the triangles of objects in doubt are at least this share of all.
+    /// A volume is halved if the triangles of objects in doubt are at least this share of all.
     pub worth: f64,
-    /// Rays from each volume, to know what is in doubt.
+    /// Rays from each volume, to find out what is in doubt.
     pub n_rays: u32,
 }
 
 impl Default for Split {
-    /// Volumes are left whole; if they are to be cut, then for a fiftieth of the triangles.
+    /// Volumes stay whole; if they are subdivided, then for at least a fiftieth of the triangles.
     fn default() -> Self {
         Self { depth: 0, worth: 0.02, n_rays: 16_384 }
     }
 }
 
-/// What was done for a volume.
+/// The work done for a volume.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Effort {
     /// Volumes that the method was run for.
     pub n_volumes: u64,
-    /// Questions about boxes and triangles.
+    /// Queries about boxes and triangles.
     pub queries: QueryCounts,
 }
 
@@ -43,7 +43,7 @@ impl std::ops::Add for Effort {
 /// Finds the objects that may be visible from a volume: clears `visible` for those that the method proves hidden, from
 /// the whole volume or from all of its parts; objects that are not visible at the start are skipped.
 ///
-/// * `also`: asked once about the whole volume, for whatever else is of interest
+/// * `also`: called once with the umbra of the whole volume, for additional queries
 ///
 /// # Errors
 /// [`BackendError`], from the method.
@@ -101,7 +101,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Clears what an umbra hides, of what no ray hit.
+    /// Clears what an umbra hides, among objects that no ray hit.
     fn ask(&mut self, umbra: &mut dyn Umbra, seen: &[bool], visible: &mut [bool]) {
         let asked: Vec<bool> = visible.iter().zip(seen).map(|(visible, seen)| *visible && !seen).collect();
         let did = self.occludees.see(umbra, &asked, visible);
@@ -110,7 +110,7 @@ impl Search<'_> {
 
     /// Tests the halves of a volume that has been tested, if it is worth it.
     ///
-    /// `seen`: what rays were seen to hit, from this volume or a part of one that it belongs to; grows.
+    /// `seen`: the objects that rays hit, from this volume or a part of the original one; grows.
     fn see_parts(
         &mut self,
         method: &mut dyn FromRegion,

@@ -1,4 +1,4 @@
-//! The contract of those who fill buffers.
+//! The contract of backends, which fill buffers.
 
 use crate::{Buffer, Job, Measure};
 use std::fmt;
@@ -7,12 +7,12 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BackendError {
-    /// It has no form of this measure.
+    /// It does not support this measure.
     #[error("{backend} cannot measure {}", .measure.name())]
     Unsupported {
         /// Its name.
         backend: &'static str,
-        /// What it was asked for.
+        /// The requested measure.
         measure: Measure,
     },
     /// The device has no room for the job.
@@ -22,7 +22,7 @@ pub enum BackendError {
         backend: &'static str,
         /// Bytes of the largest buffer of the job.
         needed: u64,
-        /// What the device has.
+        /// Bytes that the device offers.
         offered: u64,
     },
     /// The device is gone; every later job fails too.
@@ -30,7 +30,7 @@ pub enum BackendError {
     Lost {
         /// Its name.
         backend: &'static str,
-        /// What the driver says.
+        /// The message of the driver.
         reason: String,
     },
     /// The driver refused something that should have worked.
@@ -38,14 +38,14 @@ pub enum BackendError {
     Device {
         /// Its name.
         backend: &'static str,
-        /// What the driver says.
+        /// The message of the driver.
         reason: String,
     },
 }
 
 /// Fills the multifocal buffers of a job, one for each plane.
 ///
-/// What every implementation promises, checked by the crate's `conformance` module:
+/// The guarantees of every implementation, checked by the crate's `conformance` module:
 /// 1. sound: a stored value never exceeds the exact one at any point of its texel;
 /// 2. tight: where one occluder blocks the whole bundle with room to spare, the texel is blocked, and its value is
 ///    within the stated slack;
@@ -55,7 +55,7 @@ pub trait MultifocalBackend: fmt::Debug + Send {
     /// Stable lower-case name for test titles and charts, such as `"cpu-reference"`.
     fn name(&self) -> &'static str;
 
-    /// Whether it has a form of `measure`.
+    /// Whether it supports `measure`.
     fn supports(&self, measure: Measure) -> bool;
 
     /// Fills `out`, one buffer for each plane of the job; resizes it to fit. After an error its content is

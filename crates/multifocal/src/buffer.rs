@@ -2,12 +2,11 @@
 
 use crate::Plane;
 
-/// One value for each texel of a plane, row by row (`y * width + x`): 0 where nothing is known to block, else 1 more
-/// than the [`Measure`](crate::Measure) from which on everything is surely blocked, in units of the job,
+/// One value for each texel of a plane, row by row (`y * width + x`): 0 where nothing is known to block, otherwise 1
+/// more than the [`Measure`](crate::Measure) from which on everything is certainly blocked, in units of the job,
 /// rounded down.
 ///
-/// So a texel that is blocked by something at height 0 is not the same as one that is not blocked: value 1, and
-/// value 0.
+/// So a texel that is blocked from height 0 on (value 1) differs from one that is not blocked (value 0).
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Buffer {
     texels: [u32; 2],
@@ -22,14 +21,14 @@ impl Buffer {
         buffer
     }
 
-    /// Makes it a buffer of `texels` in which nothing blocks. Allocates only if it has to grow.
+    /// Resets it to a buffer of `texels` in which nothing blocks. Allocates only if it has to grow.
     pub fn reset(&mut self, texels: [u32; 2]) {
         self.texels = texels;
         self.values.clear();
         self.values.resize(texels[0] as usize * texels[1] as usize, 0);
     }
 
-    /// How many texels along each axis.
+    /// Number of texels along each axis.
     pub const fn texels(&self) -> [u32; 2] {
         self.texels
     }
@@ -55,7 +54,7 @@ impl Buffer {
         self.row(y)[x as usize]
     }
 
-    /// How many texels are blocked.
+    /// Number of blocked texels.
     pub fn n_blocked(&self) -> usize {
         self.values.iter().filter(|&&v| v > 0).count()
     }

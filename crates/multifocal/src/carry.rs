@@ -1,8 +1,8 @@
-//! Re-projection: what is known on a plane, carried over to the next one.
+//! Carrying (re-projection): blocking information from one plane applied to the next.
 //!
-//! A texel of a plane is blocked also if all lines from it to the volume cross the plane before in blocked texels:
-//! whatever blocks them there blocks them here, as much higher as the planes are apart. This puts occluders
-//! together that none of the lines of a bundle have in common.
+//! A texel of a plane is also blocked if all lines from it to the volume cross the previous plane in blocked texels:
+//! whatever blocks them there blocks them here, higher by the distance of the planes. This fuses occluders that no line
+//! of a bundle has in common.
 //!
 //! Source: Durand, Drettakis, Thollot and Puech, SIGGRAPH 2000 (re-projection of extended projections), with
 //! heights kept.
@@ -11,20 +11,20 @@ use crate::{Job, Plane, Volume};
 
 /// How to carry values from one plane of a job to the next, in integers.
 ///
-/// A texel `(x, y)` whose ranges are not empty, and lie on texels that are all blocked, is blocked with the least of
-/// their values and `rise`.
+/// A texel `(x, y)` whose ranges are not empty and cover only blocked texels is blocked, with the least of their values
+/// plus `rise`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Carry {
-    /// For each column of texels the first and the last column that its lines cross on the plane before; the first is
-    /// larger than the last where they leave its window.
+    /// For each column of texels the first and the last column that its lines cross on the previous plane; the first is
+    /// larger than the last where lines leave its window.
     pub columns: Vec<[u32; 2]>,
-    /// For each row likewise.
+    /// The same for each row.
     pub rows: Vec<[u32; 2]>,
-    /// What is added to a value.
+    /// The number added to a value.
     pub rise: u32,
 }
 
-/// What stands for lines that leave the window.
+/// The range for lines that leave the window.
 pub const OUTSIDE: [u32; 2] = [1, 0];
 
 impl Carry {
@@ -44,12 +44,12 @@ impl Carry {
     }
 }
 
-/// The lines from the texels of one plane to a volume, along one axis across.
+/// The lines from the texels of one plane to a volume, along one of the axes across.
 struct Lines<'a> {
     before: &'a Plane,
     after: &'a Plane,
     k: usize,
-    /// Eyes.
+    /// The range of the eyes.
     eyes: [f64; 2],
     /// Which part of the way from the plane to an eye lies between the planes: least and largest.
     parts: [f64; 2],
@@ -66,9 +66,10 @@ impl<'a> Lines<'a> {
 
     /// The texels that the lines from texel `i` cross.
     ///
-    /// A line from `p` to an eye `v` crosses the plane before at `p + t (v - p)`, affine in each of the three, so the ends
-    /// are at ends. Each is computed with three roundings of magnitudes up to `m = |p| + |v|`, besides two in `t`: within
-    /// 8 ε m; the texel's number with two more, for which the same bound is taken of its parts.
+    /// A line from `p` to an eye `v` crosses the previous plane at `p + t (v - p)`, affine in each of the three, so
+    /// extremes are at ends of the ranges. Each is computed with three roundings of magnitudes up to `m = |p| + |v|`,
+    /// in addition to two in `t`: within 8 ε m; the texel's number with two more, for which the same bound of its parts
+    /// is used.
     fn range(&self, i: u32) -> [u32; 2] {
         let (origin, step) = (self.after.origin()[self.k], self.after.step()[self.k]);
         let (from, to) = (self.before.origin()[self.k], self.before.step()[self.k]);

@@ -1,4 +1,4 @@
-//! Where the lines from a volume through an occludee meet a plane, and whether all of it is blocked.
+//! Where the lines from a volume through an occludee meet a plane, and whether all of that is blocked.
 //!
 //! The projections of an occludee from the corners of a volume leave gaps; their convex hull does not: the place
 //! where the line from `v` through `e` meets the plane is a quotient of affine functions of either, with a positive
@@ -7,7 +7,7 @@
 use crate::{Buffer, Plane, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
-/// Where lines from a volume through an occludee meet a plane, in whole texels, and what value blocks it.
+/// Where lines from a volume through an occludee meet a plane, in whole texels, and the value that blocks it.
 ///
 /// Texel `(x, y)` is touched if it is within `bounds` and `A * x + B * y + C >= 0` for each of the edges. The occludee is
 /// hidden if it is `inside`, and the value of every touched texel is more than `limit`.
@@ -24,8 +24,8 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// The footprint of the convex hull of `points`, for values that are heights. None if some line from an eye through
-    /// the hull does not go towards the plane, or goes along it.
+    /// The footprint of the convex hull of `points`, for values that are heights. `None` if some line from an eye
+    /// through the hull does not go towards the plane, or is parallel to it.
     ///
     /// * `unit`: scene units in one unit of the values, a power of two; see [`Job::unit`](crate::Job::unit)
     ///
@@ -83,10 +83,10 @@ impl Footprint {
     }
 }
 
-/// The least value that does not suffice to hide something that reaches up to `height`, see [`Footprint::limit`].
+/// The largest value that does not suffice to hide something that reaches up to `height`, see [`Footprint::limit`].
 ///
-/// What is beyond the plane is hidden by whatever blocks. What reaches height `h` needs a value of more than `h`: whole
-/// units above `floor(h / unit)`, and the code has one more.
+/// Any blocked texel hides what is beyond the plane. To hide what reaches height `h`, a value must exceed `h`: whole
+/// units above `floor(h / unit)`, and the encoding adds one.
 pub(crate) fn limit(height: f64, unit: f64) -> u32 {
     if height < 0.0 {
         return 0;
@@ -103,7 +103,7 @@ struct Lines<'a> {
     eyes: [f64; 2],
     /// Eyes along the axes across.
     across: [[f64; 2]; 2],
-    /// Rectangles that the lines meet the plane in, in texels.
+    /// Rectangles in which the lines meet the plane, in texels.
     rectangles: Vec<[[f64; 2]; 2]>,
     highest: f64,
 }
@@ -117,13 +117,13 @@ impl<'a> Lines<'a> {
         Self { plane, eyes, across, rectangles: Vec::with_capacity(4), highest: f64::NEG_INFINITY }
     }
 
-    /// Adds points of a height (rounded to nearest) in a rectangle across; None if lines to them do not come nearer to
-    /// the plane.
+    /// Adds points of a height (rounded to nearest) in a rectangle across; `None` if lines to them do not approach the
+    /// plane.
     fn add(&mut self, heights: [f64; 2], at: [[f64; 2]; 2]) -> Option<()> {
         let heights = [heights[0].next_down(), heights[1].next_up()];
         self.highest = self.highest.max(heights[1]);
         for eye in self.eyes {
-            // The way to the plane over the way to the point.
+            // The distance to the plane over the distance to the point.
             let down = (eye - heights[1]).next_down();
             if down <= 0.0 {
                 return None;
@@ -182,8 +182,8 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Edges in integers around `points`, in the directions of the slanted edges of their hull. Those along the axes are
-/// the bounds' matter.
+/// Integer edges around `points`, in the directions of the slanted edges of their hull. The bounds cover those along
+/// the axes.
 fn slanted(points: &[[f64; 2]], largest: f64, bounds: [i32; 4]) -> Vec<[i32; 3]> {
     let hull = hull(points);
     let mut edges = Vec::new();

@@ -3,19 +3,19 @@
 use crate::plane::power_of_two_at_most;
 use crate::{Measure, Occluder, Plane, PlaneError, Volume};
 
-/// Why a job cannot be done by anyone.
+/// Why a job is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum JobError {
-    /// No plane at all.
+    /// A list without planes.
     #[error("a job needs at least one plane")]
     NoPlane,
     /// A plane that is not in front of the volume.
     #[error("plane {idx}: {error}")]
     Plane {
-        /// Which.
+        /// Its index.
         idx: usize,
-        /// What is wrong.
+        /// The defect.
         error: PlaneError,
     },
     /// Planes of one job look the same way, each farther away than the one before.
@@ -87,12 +87,12 @@ impl<'a> Job<'a> {
         &self.planes
     }
 
-    /// What hides.
+    /// The occluders.
     pub fn occluders(&self) -> &[&'a Occluder] {
         &self.occluders
     }
 
-    /// What the values mean.
+    /// The meaning of the values.
     pub const fn measure(&self) -> Measure {
         self.measure
     }

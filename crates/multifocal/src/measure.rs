@@ -1,4 +1,4 @@
-//! What a buffer's values mean.
+//! The meaning of a buffer's values.
 
 /// How far in front of a texel everything is blocked: the measure that occluders and occludees are compared by.
 ///
@@ -33,7 +33,7 @@ impl Measure {
         }
     }
 
-    /// Whether values are heights above the plane, else distances to the texel.
+    /// Whether values are heights above the plane; otherwise they are distances from the texel.
     pub const fn is_height(self) -> bool {
         matches!(self, Self::VertexHeight | Self::SectionHeight)
     }

@@ -1,4 +1,4 @@
-//! The multifocal z-buffer as a method that says what is hidden from a volume.
+//! The multifocal z-buffer as a from-region method.
 
 use crate::mesh::Chooser;
 use crate::{
@@ -20,7 +20,7 @@ pub struct Multifocal<B> {
 }
 
 impl<B: MultifocalBackend> Multifocal<B> {
-    /// * `occluders`: what hides
+    /// * `occluders`: the occluders to select from
     /// * `scene`: the box of everything that will be tested
     pub fn new(backend: B, occluders: Arc<OccluderSelection>, scene: Aabb<3>, layout: Layout) -> Self {
         Self { backend, occluders, scene, layout, buffers: Default::default(), surround: None }
@@ -65,7 +65,8 @@ impl Umbra for Surrounded<'_> {
     }
 }
 
-/// Occluders of which for each volume and side some are chosen: those that seem to hide most. Any choice is sound.
+/// Occluders from which some are selected for each volume and side: those that seem to hide most. Any selection is
+/// sound.
 #[derive(Debug)]
 pub struct OccluderSelection {
     occluders: Vec<Occluder>,

@@ -8,8 +8,8 @@ const PER_LEAF: usize = 4;
 
 /// Objects as occludees: a tree over their boxes, and for each object a tree over its triangles.
 ///
-/// What is hidden is decided for the box of a node first; nodes whose box is hidden are not entered. An object is
-/// hidden if all of its triangles are, so the first triangle that is not ends the search in it.
+/// A node is tested with its box first; nodes whose box is hidden are not entered. An object is hidden if all of its
+/// triangles are, so the first visible triangle ends the search in it.
 #[derive(Debug, Clone)]
 pub struct Occludees {
     objects: Vec<Object>,
@@ -22,7 +22,7 @@ struct Object {
     tree: BoxTree<3>,
 }
 
-/// How much was asked.
+/// Numbers of queries.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct QueryCounts {
     /// Boxes of groups of objects.
@@ -56,13 +56,13 @@ impl Occludees {
             })
             .collect();
         let boxes: Vec<Aabb<3>> = objects.iter().map(|o| o.tree.nodes()[0].bounds).collect();
-        // Nothing is around an object without triangles; its place does not matter.
+        // An object without triangles has no box; its position does not matter.
         let boxes: Vec<Aabb<3>> =
             boxes.iter().map(|b| if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b }).collect();
         Self { tree: BoxTree::build(&boxes, 1), objects }
     }
 
-    /// How many objects.
+    /// Number of objects.
     pub fn len(&self) -> usize {
         self.objects.len()
     }

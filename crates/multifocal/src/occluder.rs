@@ -1,8 +1,8 @@
-//! What hides: patches.
+//! Occluders: patches of surfaces.
 
 use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate, orient3d};
 
-/// Why something is no occluder.
+/// Why an occluder is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OccluderError {
@@ -19,9 +19,9 @@ pub enum OccluderError {
 
 /// A piece of surface without holes: triangles put together, and the closed loop of edges around them.
 ///
-/// It need be neither flat nor convex; but it hides something from a volume of eyes only on those lines that pass
-/// all edges of the outline on the same side, and cross the planes of all facets. So what is nearly flat, with an
-/// outline that is nearly convex, hides most of what is behind it, and nothing that is not.
+/// It need be neither flat nor convex; but it hides something from a volume of eyes only on those lines that pass all
+/// edges of the outline on the same side, and cross the planes of all facets. So a nearly flat patch with a nearly
+/// convex outline hides most of what is behind it, and never anything visible.
 ///
 /// # Why this is sound
 /// Let a segment from an eye `v` to a point `p` pass every edge of the outline on the same side. Seen along
@@ -54,8 +54,8 @@ impl Occluder {
     ///   exactly on the straight line between their neighbours may be left out
     /// * `triangles`: all triangles of the surface
     ///
-    /// That the one bounds the others is the caller's promise; it is not checked. Keeps one triangle for each
-    /// different plane. O(triangles · planes).
+    /// That the outline bounds the triangles is the caller's responsibility; it is not checked. Keeps one triangle for
+    /// each different plane. O(triangles · planes).
     ///
     /// # Errors
     /// [`OccluderError`]
@@ -103,7 +103,7 @@ impl Occluder {
     }
 
     /// Whether all of `eyes` are strictly in front of all facets (`Some(true)`), or strictly behind all
-    /// (`Some(false)`). An occluder that says `None` hides nothing from them. Exact.
+    /// (`Some(false)`). With `None` the occluder hides nothing from them. Exact.
     pub fn side_of(&self, eyes: &[Point3]) -> Option<bool> {
         let mut sides = self.facets.iter().flat_map(|&[a, b, c]| eyes.iter().map(move |&v| orient3d(a, b, c, v)));
         let first = sides.next()?;

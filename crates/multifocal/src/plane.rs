@@ -6,7 +6,7 @@ use sightlines_geometry::{CoordinateError, Point3, check_coordinate};
 /// Most texels along one side of a buffer.
 pub const MAX_TEXELS: u32 = 1 << 13;
 
-/// Why something is no plane with texels.
+/// Why a plane with texels is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlaneError {
@@ -16,7 +16,7 @@ pub enum PlaneError {
     /// No texels, or more than [`MAX_TEXELS`] along a side.
     #[error("a buffer of {0} x {1} texels; both have to be from 1 to {MAX_TEXELS}")]
     Texels(u32, u32),
-    /// The window has no area, or is so small for its place that texels have no size.
+    /// The window has no area, or is too small for its position to have texels of non-zero size.
     #[error("the window from {min:?} to {max:?} is empty, or too small to be divided into texels")]
     Window {
         /// Lower corner.
@@ -34,15 +34,15 @@ pub enum PlaneError {
         axis: usize,
         /// Of the plane.
         at: f64,
-        /// How far the volume reaches towards the plane.
+        /// The largest coordinate of the volume towards the plane.
         reach: f64,
     },
 }
 
 /// A plane perpendicular to an axis, with a window of square or oblong texels on it.
 ///
-/// The corners of all texels are doubles without rounding, so that predicates can take them: the window asked
-/// for is widened to a grid that has this property, by less than one part in 2^20 of a texel on each side.
+/// The corners of all texels are doubles without rounding, so that predicates accept them: the requested window is
+/// widened to a grid that has this property, by less than one part in 2^20 of a texel on each side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
     axis: usize,
@@ -60,7 +60,7 @@ impl Plane {
     /// * `positive`: whether viewers look along the axis (else against it)
     /// * `at`: where along the axis, in scene units
     /// * `min`, `max`: the window along axes `(axis + 1) % 3` and `(axis + 2) % 3`, in scene units
-    /// * `texels`: how many along these two
+    /// * `texels`: their numbers along these two
     ///
     /// # Errors
     /// [`PlaneError`]
@@ -108,7 +108,7 @@ impl Plane {
         self.at
     }
 
-    /// How many texels.
+    /// Number of texels along each axis.
     pub const fn texels(&self) -> [u32; 2] {
         self.texels
     }

@@ -1,12 +1,12 @@
-//! What rays from a volume are seen to hit: a quick lower bound of what is visible.
+//! Objects hit by rays from a volume: a quick lower bound of what is visible.
 //!
-//! Only steers the work: what a ray hits need not be tested again when a volume is cut into smaller ones. Rays are
-//! traced in plain doubles.
+//! Only steers the work: what a ray hits need not be tested again when a volume is subdivided. Rays are traced in plain
+//! doubles.
 
 use crate::Volume;
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random, ray_box, ray_triangle};
 
-/// The most rays towards one object: what so many do not reach is hidden, or hardly visible.
+/// Most rays towards one object: what they miss is hidden, or hardly visible.
 const MOST_FOR_ONE: u32 = 64;
 
 /// Triangles of objects, to be hit by rays.
@@ -14,7 +14,7 @@ const MOST_FOR_ONE: u32 = 64;
 pub struct RaySampler {
     triangles: Vec<[Point3; 3]>,
     object: Vec<u32>,
-    /// For each object where its triangles begin, and where the last one's end.
+    /// For each object the start of its triangles, and the end of the last one's.
     first: Vec<usize>,
     tree: BoxTree<3>,
 }
@@ -69,8 +69,8 @@ impl RaySampler {
         }
     }
 
-    /// Whether one of `n_rays` segments from points of a volume to points of a box meets nothing on its way. The same for
-    /// the same volume and box.
+    /// Whether one of `n_rays` segments from points of a volume to points of a box is free. The same for the same
+    /// volume and box.
     pub fn sees(&self, volume: &Volume, target: &Aabb<3>, n_rays: u32) -> bool {
         let b = volume.bounds();
         let mut random =
@@ -114,7 +114,7 @@ impl RaySampler {
             }
             let [a, b] = self.tree.children(n);
             let [ta, tb] = [a, b].map(|c| enters(&self.tree.nodes()[c as usize].bounds, origin, inverse));
-            // The nearer one is looked at first.
+            // The nearer one is visited first.
             pending.extend(if ta < tb { [b, a] } else { [a, b] });
         }
         best.1

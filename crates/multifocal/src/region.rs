@@ -1,27 +1,29 @@
-//! The contract of those who say what is hidden from a volume, by whatever method.
+//! The contract of from-region methods, which determine what is hidden from a volume.
 
 use crate::{BackendError, Volume};
 use sightlines_geometry::Aabb;
 use std::fmt;
 
-/// On which side a method errs.
+/// The guarantee of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Guarantee {
-    /// What it calls hidden is hidden, for every scene.
+    /// What it reports hidden is hidden, for every scene.
     Conservative,
-    /// What it calls hidden is hidden if the scene is as the text says, such as `"closed surfaces only"`.
+    /// What it reports hidden is hidden if the scene satisfies the condition in the text, such as `"closed surfaces
+    /// only"`.
     ConservativeIf(&'static str),
 }
 
-/// A from-region method, made ready for a scene.
+/// A from-region method, prepared for a scene.
 pub trait FromRegion: fmt::Debug {
     /// Stable lower-case name for test titles and charts.
     fn name(&self) -> String;
 
-    /// On which side it errs.
+    /// Its guarantee.
     fn guarantee(&self) -> Guarantee;
 
-    /// Whether nothing is promised for eyes inside solid matter, because the method uses its inside as an occluder.
+    /// Whether eyes inside solid matter are excluded from the guarantee, because the method uses its inside as an
+    /// occluder.
     fn only_in_air(&self) -> bool {
         false
     }

@@ -1,28 +1,27 @@
 //! Planes all around a volume: nested boxes, each with a plane on each of its six sides.
 //!
-//! A line from an eye leaves a box around the volume through one of its sides, so the buffers of six planes know all
-//! lines. Several boxes, one inside the other, know more: near planes see the gaps between things better, and planes
-//! behind a target are reached by what blocks in front of it.
+//! A line from an eye leaves a box around the volume through one of its sides, so the buffers of six planes cover all
+//! lines. Several nested boxes give more: near planes separate the gaps between things better, and planes behind a
+//! target also show what blocks in front of it.
 
 use crate::footprint::{is_blocked_by_distance, limit};
 use crate::volume::corners;
 use crate::{Buffer, Footprint, Job, JobError, Measure, Occluder, Plane, PlaneError, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
-/// How many planes, where, and how fine.
+/// The number, positions and resolution of planes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layout {
     /// Number of boxes, one inside the other; at least 1.
     pub n_levels: u32,
     /// Texels along the longer side of each plane, 1 to [`MAX_TEXELS`](crate::MAX_TEXELS).
     pub texels: u32,
-    /// Distances of the boxes grow as the number to the power of this: 1 is evenly spaced. Positive; without that there
-    /// is nothing to know.
+    /// Exponent of the distances of the boxes: 1 for even spacing. Positive; other values place no planes.
     pub growth: f64,
-    /// How much wider than the sides of its box a plane is, at least 1: a target whose lines all meet one plane
-    /// is proven hidden by it alone.
+    /// How much wider than the sides of its box a plane is, at least 1: a target whose lines all meet one plane is
+    /// proven hidden by it alone.
     pub spread: f64,
-    /// What is compared.
+    /// The measure of the buffers.
     pub measure: Measure,
     /// Whether values are carried over from plane to plane.
     pub reproject: bool,
@@ -166,7 +165,7 @@ impl<'a> Surrounded<'a> {
 
     /// Whether a closed box is certainly hidden from the whole volume.
     ///
-    /// It is if one plane, or all six sides of one box together, say so. A box that meets the volume is not.
+    /// It is if one plane, or all six sides of one box together, prove it. A box that meets the volume never is.
     pub fn hides(&self, target: &Aabb<3>) -> bool {
         self.hides_hull(&corners(target), target)
     }
@@ -204,7 +203,7 @@ impl<'a> Surrounded<'a> {
         let (plane, buffer, unit) =
             (&self.surround.directions[side].planes[k], &self.buffers[side][k], self.units[side]);
         let volume = &self.surround.volume;
-        // Of a box, projections of four of its faces' corners say everything.
+        // For a box, projections of four corners of its faces suffice.
         let footprint = if points.len() == 8 {
             Footprint::of_box(volume, plane, unit, target)
         } else {

@@ -14,12 +14,12 @@ pub struct UnionMethod {
 impl UnionMethod {
     /// The methods, in the order in which they run. Without methods nothing is hidden.
     ///
-    /// Single polygons are tested by the first method only: after tests of boxes, most hidden ones are known by then.
+    /// Only the first method tests single polygons: after the tests of boxes, most hidden ones are already known.
     pub fn new(methods: Vec<Box<dyn FromRegion + Send>>) -> Self {
         Self { methods, n_about_points: 1 }
     }
 
-    /// The same, but tests single polygons by all methods too, for callers that test nothing else.
+    /// The same, but all methods test single polygons too, for callers that test nothing else.
     pub fn for_polygons(methods: Vec<Box<dyn FromRegion + Send>>) -> Self {
         Self { n_about_points: methods.len(), methods }
     }

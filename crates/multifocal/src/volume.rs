@@ -2,7 +2,7 @@
 
 use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate};
 
-/// Why a box is no volume of viewpoints.
+/// Why a box is not a valid volume of viewpoints.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VolumeError {
@@ -50,8 +50,8 @@ impl Volume {
         corners(&self.0)
     }
 
-    /// Its halves along its longest axis. They share the border between them. None if no double lies between
-    /// the ends.
+    /// Its halves along its longest axis, which share the border between them. `None` if no double lies between the
+    /// ends.
     pub fn halves(&self) -> Option<[Self; 2]> {
         let size = |k: usize| self.0.max[k] - self.0.min[k];
         let axis = (1..3).fold(0, |best, k| if size(k) > size(best) { k } else { best });

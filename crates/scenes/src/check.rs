@@ -1,10 +1,10 @@
-//! What the tests of several generators ask of a plan.
+//! Checks of plans, shared by the tests of several generators.
 
 use sightlines_cells::Plan;
 use sightlines_geometry::Segment2;
 use std::collections::BTreeMap;
 
-/// FNV-1a over everything a plan holds, so that a changed bit changes the number.
+/// FNV-1a over the whole content of a plan, so that a changed bit changes the number.
 pub(crate) fn checksum(plan: &Plan) -> u64 {
     let mut hash = 0xCBF2_9CE4_8422_2325_u64;
     let mut eat = |bytes: &[u8]| {
@@ -42,7 +42,7 @@ pub(crate) fn outer_boundary_is_closed(plan: &Plan) -> bool {
     })
 }
 
-/// How many pairs of lines meet elsewhere than in an end point that they share.
+/// Number of pairs of lines that meet elsewhere than in a common end point.
 pub(crate) fn crossings(plan: &Plan) -> usize {
     let lines: Vec<Segment2> = plan.lines().iter().map(|l| Segment2::new(l.a, l.b)).collect();
     // Buckets by a coarse grid keep this linear for large plans.

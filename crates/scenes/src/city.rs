@@ -1,7 +1,7 @@
 //! Cities: boxes along straight streets, of many triangles.
 //!
-//! The setting of from-region visibility: nearly all of a city is hidden from a place in a street, mostly by the
-//! next few houses. Every wall is a grid of bays and storeys, so there are many triangles in few planes.
+//! The setting of from-region visibility: nearly all of a city is hidden from a box in a street, mostly by the next few
+//! houses. Every wall is a grid of bays and storeys, so there are many triangles in few planes.
 
 use crate::error::{SceneError, check_range};
 use crate::rng::Rng;
@@ -9,10 +9,10 @@ use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::Aabb;
 use std::collections::BTreeMap;
 
-/// What city to generate.
+/// Options of [`city`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CityOptions {
-    /// Every choice follows from it.
+    /// Determines every random choice.
     pub seed: u64,
     /// Blocks along x, from 1 to 64.
     pub blocks_x: u32,
@@ -35,7 +35,7 @@ const BAY: i32 = 4;
 const LOT: i32 = 5;
 /// Bays from one block to the next: two lots and a street of 12 m.
 const PITCH: i32 = 2 * LOT + 3;
-/// Height of eyes, in metres, below and above: who walks, and who sits on a bus.
+/// Height of eyes, in metres, lowest and highest: from pedestrians to passengers on a bus.
 const EYES: [f64; 2] = [1.25, 2.25];
 
 /// A city in metres, y up: the first block has a corner at x = z = 0, the ground is at height 0.
@@ -55,7 +55,7 @@ pub fn city(options: CityOptions) -> Result<Scene, SceneError> {
     for (bz, bx) in (0..n_z).flat_map(|z| (0..n_x).map(move |x| (z, x))) {
         for lot in 0..4 {
             let (dx, dz) = (lot % 2, lot / 2);
-            // Back from the street by a bay, or not; towards the middle of the block.
+            // Set back from the street by a bay, or not; towards the middle of the block.
             let back = |rng: &mut Rng| i32::from(rng.one_in(4));
             let (off_x, off_z) = (back(&mut rng), back(&mut rng));
             let storeys = rng.between(2, 6) + if rng.one_in(6) { rng.between(4, 10) } else { 0 };
@@ -68,8 +68,8 @@ pub fn city(options: CityOptions) -> Result<Scene, SceneError> {
     Ok(Scene::new(objects).expect("corners of bays make a scene"))
 }
 
-/// Where streets of the city that [`city`] makes from the same options cross: a cube of a metre in the middle of
-/// each, at the height of eyes, none on the outer streets; along x first.
+/// The crossings of streets in the city that [`city`] makes from the same options: a cube of one metre in the middle of
+/// each, at eye height, none on the outer streets; along x first.
 ///
 /// # Errors
 /// As [`city`].
@@ -111,7 +111,7 @@ fn cuboid(name: String, min: [i32; 3], size: [i32; 3], n: [i32; 3]) -> SceneObje
     SceneObject { name, vertices: mesh.vertices, triangles }
 }
 
-/// The corners of a box's grid that were asked for.
+/// The requested corners of a box's grid.
 struct Grid {
     min: [i32; 3],
     size: [i32; 3],

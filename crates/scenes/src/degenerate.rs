@@ -1,4 +1,4 @@
-//! Small plans of everything that real plans have and textbooks exclude: one family, one plan.
+//! Small plans of cases that occur in real plans and are excluded in textbooks: one family, one plan.
 //!
 //! Most are closed by a box, so that a subdivision has an inside; none names a group.
 
@@ -71,21 +71,21 @@ fn shared_end_points() -> Vec<Wall> {
     boxed(8., 8., &[&fan[..], &jamb].concat())
 }
 
-/// Two walls, each broken by five doors in one line; the doors of both face each other.
+/// Two walls, each interrupted by five doors in one line; the doors of both face each other.
 fn collinear_doors() -> Vec<Wall> {
     let pieces = [[0., 1.], [2., 3.], [4., 5.], [6., 7.], [8., 9.], [10., 11.]];
     let walls: Vec<Wall> = [3., 5.].iter().flat_map(|&x| pieces.map(|[lo, hi]| [x, lo, x, hi])).collect();
     boxed(8., 11., &walls)
 }
 
-/// Doors of three walls whose ends all lie on one oblique line: nothing gets through but a graze.
+/// Doors of three walls whose ends all lie on one oblique line: only grazing lines pass.
 fn lined_up_door_ends() -> Vec<Wall> {
     let walls =
         [[2., 0., 2., 2.], [2., 4., 2., 12.], [4., 0., 4., 4.], [4., 6., 4., 12.], [6., 0., 6., 1.], [6., 6., 6., 12.]];
     boxed(8., 12., &[&walls[..], &[[5., 0., 5., 5.]]].concat())
 }
 
-/// Long rooms of almost no width, and angles of almost nothing.
+/// Long rooms of almost no width, and very small angles.
 fn slivers() -> Vec<Wall> {
     let walls = [
         [0., 0., 1000., 1.],
@@ -114,13 +114,13 @@ fn one_ulp_doors() -> Vec<Wall> {
         [0.7, 0.3, f64::next_down(1.), 0.3],
         [0.1, f64::next_up(0.), 0.3, 0.6],
     ];
-    // The smallest step above 0 is no coordinate: the wall stops short of the floor by 2^-140.
+    // The smallest step above 0 is not a valid coordinate: the wall stops short of the floor by 2^-140.
     let walls = walls.map(|w| w.map(|x| if x == f64::next_up(0.) { 2f64.powi(-140) } else { x }));
     boxed(1., 1., &walls)
 }
 
-/// Holes of one unit in the last place in three walls; a line gets through all of them, and the
-/// fourth wall's hole is just off that line.
+/// Holes of one unit in the last place in three walls; a line passes all of them, and the hole in the fourth wall is
+/// just off that line.
 fn one_ulp_pinholes() -> Vec<Wall> {
     let (low, high) = (f64::next_down(0.5), f64::next_up(0.5));
     let holed = |x: f64, lo: f64, hi: f64| [[x, 0., x, lo], [x, hi, x, 1.]];
@@ -132,7 +132,7 @@ fn t_junctions() -> Vec<Wall> {
     boxed(8., 8., &[[0., 4., 6., 4.], [3., 0., 3., 4.], [3., 4., 3., 7.], [6., 2., 6., 8.], [6., 5., 8., 5.]])
 }
 
-/// The same where the meeting points are no doubles: walls that end as near as doubles allow.
+/// The same with meeting points that no double represents: walls that end as near as doubles permit.
 fn oblique_t_junctions() -> Vec<Wall> {
     let third = 1.0 / 3.0;
     let walls = [
@@ -149,12 +149,12 @@ fn axial_crossings() -> Vec<Wall> {
     boxed(9., 9., &[[3., -1., 3., 6.], [6., 3., 6., 10.], [-1., 3., 7., 3.], [2., 6., 10., 6.], [3., 5., 3., 8.]])
 }
 
-/// Walls that cross where no double is.
+/// Walls that cross in points that no double represents.
 fn oblique_crossings() -> Vec<Wall> {
     boxed(10., 10., &[[1., 1., 8., 9.], [1., 8., 9., 2.], [4., 0., 5., 10.], [0., 5., 10., 6.], [2., 3., 11., 7.]])
 }
 
-/// Walls that all cross in (10/3, 10/3), which is no double.
+/// Walls that all cross in (10/3, 10/3), which no double represents.
 fn concurrent_crossings() -> Vec<Wall> {
     let walls = [[1., 1., 9., 9.], [0., 5., 10., 0.], [5., 0., 0., 10.], [2., 6., 4., 2.], [6., 2., 2., 4.]];
     boxed(10., 10., &walls)
@@ -177,7 +177,7 @@ fn oblique_overlaps() -> Vec<Wall> {
     boxed(10., 10., &[[0., 0., 6., 4.], [3., 2., 9., 6.], [6., 4., 3., 2.], [1., 8., 5., 6.], [3., 7., 7., 5.]])
 }
 
-/// Walls on each other but for one unit in the last place at an end.
+/// Walls that overlap except for one unit in the last place at an end.
 fn almost_collinear_overlaps() -> Vec<Wall> {
     let walls = [
         [0.1, 0.2, 0.9, 0.6],
@@ -196,7 +196,7 @@ fn duplicate_walls() -> Vec<Wall> {
     boxed(6., 6., &[wall, wall, turned, [4., 0., 4., 6.], [4., 6., 4., 0.], [0., 0., 6., 0.]])
 }
 
-/// Walls that lead into a room and end there.
+/// Walls that end inside a room.
 fn spurs() -> Vec<Wall> {
     let walls = [
         [0., 3., 3., 3.],
@@ -241,7 +241,7 @@ fn nested_boxes() -> Vec<Wall> {
     boxed(12., 12., &[ring(1.), ring(2.), ring(5.)].concat())
 }
 
-/// Closed rings without any area, alone and along a wall.
+/// Closed rings without any area, isolated and along a wall.
 fn flat_pockets() -> Vec<Wall> {
     let walls = [
         [1., 1., 4., 1.],
@@ -256,7 +256,7 @@ fn flat_pockets() -> Vec<Wall> {
     boxed(8., 8., &walls)
 }
 
-/// A room of a millionth inside a room of a million.
+/// A room of a millionth of a unit inside a room of a million units.
 fn mixed_scales() -> Vec<Wall> {
     let s = 2f64.powi(-20);
     let small = boxed(s, s, &[[0.5 * s, 0., 0.5 * s, 0.25 * s]]);
@@ -264,7 +264,7 @@ fn mixed_scales() -> Vec<Wall> {
     [small, big].concat()
 }
 
-/// A box with an open side: the inside and the endless outside are one.
+/// A box with an open side: the inside is connected with the unbounded outside.
 fn open_to_outside() -> Vec<Wall> {
     vec![[0., 0., 6., 0.], [6., 0., 6., 6.], [6., 6., 0., 6.], [3., 0., 3., 4.], [-4., 3., -2., 3.], [-3., 5., -3., 1.]]
 }
@@ -298,7 +298,7 @@ mod tests {
         all().into_iter().find(|(name, _)| *name == wanted).unwrap().1
     }
 
-    /// The families are what their names say.
+    /// The families have the properties in their names.
     #[test]
     fn degenerate_families_are_degenerate() {
         for name in ["t-junctions", "axial-crossings", "oblique-crossings", "collinear-overlaps", "duplicate-walls"] {
@@ -314,7 +314,7 @@ mod tests {
         assert!(family("very-far-from-origin").bounds().min[0] == 1e9);
     }
 
-    /// Concurrent walls do meet in one point, and the gaps of one ulp are gaps.
+    /// Concurrent walls do meet in one point, and the gaps of one ulp exist.
     #[test]
     fn degenerate_points_are_where_they_should_be() {
         let third = Point2::new(10., 10.);

@@ -1,8 +1,8 @@
-//! Doom-like maps: rooms of many shapes on integer coordinates, passages, stairs, windows, pillars,
-//! platforms; every line names the sector on each of its sides.
+//! Doom-like maps: rooms of many shapes on integer coordinates, passages, stairs, windows, pillars, platforms; every
+//! line has the sectors on both of its sides.
 //!
-//! Rooms lie in square slots of side 512 with wide margins, passages only in the margins between two
-//! slots, pillars and platforms only in the middle of a room: that is why nothing ever crosses.
+//! Rooms lie in square slots of side 512 with wide margins, passages only in the margins between two slots, pillars and
+//! platforms only in the middle of a room: therefore nothing ever crosses.
 
 use crate::error::{SceneError, check_range};
 use crate::rng::Rng;
@@ -20,18 +20,18 @@ pub struct DoomLikeLine {
     pub end: u16,
     /// Sector on the right, going from start to end.
     pub right: u16,
-    /// Sector on the left hand; a line without one is a wall.
+    /// Sector on the left; a line without one is a wall.
     pub left: Option<u16>,
 }
 
-/// A generated map in the terms of a Doom map: what its vertices, lines and sectors would hold.
+/// A generated map in the terms of a Doom map: the content of its vertices, lines and sectors.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DoomLike {
     /// Distinct points.
     pub vertices: Vec<[i16; 2]>,
     /// Lines between them; they meet in shared vertices only.
     pub lines: Vec<DoomLikeLine>,
-    /// One more than the largest sector; every smaller one is named by a closed ring of sides.
+    /// One more than the largest sector; every sector has a closed ring of sides.
     pub n_sectors: u16,
 }
 
@@ -186,7 +186,7 @@ impl Builder {
         }
     }
 
-    /// A row of `steps` sectors between two rooms, from sixteenth to sixteenth of their sides.
+    /// A row of `steps` sectors between two rooms, between the given sixteenths of their sides.
     fn passage(&mut self, rooms: [usize; 2], sides: [usize; 2], width: [i32; 2], steps: i32) {
         let first = self.map.n_sectors;
         self.map.n_sectors += u16::try_from(steps).expect("at most 6");
@@ -358,7 +358,7 @@ mod tests {
         }
     }
 
-    /// The impostor: one wrong side, and the checks above notice.
+    /// The impostor: the checks above detect one wrong side.
     #[test]
     fn doom_like_checks_can_fail() {
         let mut map = DoomLike::generate(1, 3).unwrap();

@@ -1,19 +1,19 @@
-//! What can be wrong with the options of a generator.
+//! Errors of the options of generators.
 
 /// Why a scene cannot be generated.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A count is outside what the generator can make.
+    /// A count is outside the range of the generator.
     #[error("{option} is {value}, but must be from {min} to {max}")]
     OutOfRange {
         /// Name of the option.
         option: &'static str,
-        /// What was asked for.
+        /// The requested value.
         value: u32,
-        /// The smallest that works.
+        /// The smallest valid value.
         min: u32,
-        /// The largest that works.
+        /// The largest valid value.
         max: u32,
     },
     /// A wall thickness that would leave the grid of eighths, or close the doors.

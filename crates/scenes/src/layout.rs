@@ -1,4 +1,4 @@
-//! Where the walls, doors, rooms and desks of an office floor are, on a grid of eighths of a unit.
+//! The layout of an office floor on a grid of eighths of a unit: walls, doors, rooms and desks.
 //!
 //! Rows of rooms lie in pairs, back to back, with a corridor along the front of each; corridors across
 //! cut the rows into blocks. Generators turn a layout into a plan or into the floors of a tower.
@@ -14,7 +14,7 @@ pub(crate) const CORRIDOR: i32 = 16;
 pub(crate) const DOOR: i32 = 8;
 /// Mean width of a room place: 4 units.
 pub(crate) const PLACE: i32 = 32;
-/// The dividing wall between two places is moved by up to this, so a room is at least 20 steps wide.
+/// The dividing wall between two places is moved by at most this, so a room is at least 20 steps wide.
 const JITTER: i32 = 6;
 
 /// One row of rooms.
@@ -26,7 +26,7 @@ struct Row {
     corridor_above: bool,
 }
 
-/// What stands on the floor.
+/// The kind of a piece of furniture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PieceKind {
     /// A desk for one.
@@ -39,7 +39,7 @@ pub(crate) enum PieceKind {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Piece {
     pub(crate) kind: PieceKind,
-    /// Index of the room that it stands in.
+    /// Index of the room that contains it.
     pub(crate) room: usize,
     pub(crate) rect: Rect,
 }
@@ -50,7 +50,7 @@ pub(crate) struct Room {
     pub(crate) rect: Rect,
     /// Whether its front, where the corridor is, is at `y1` (otherwise at `y0`).
     pub(crate) corridor_above: bool,
-    /// Where along the front its door is; `None` for an open-plan area.
+    /// The range of its door along the front; `None` for an open-plan area.
     pub(crate) door: Option<[i32; 2]>,
 }
 
@@ -63,13 +63,13 @@ struct Block {
     places: i32,
 }
 
-/// An office floor while it is built, and after.
+/// An office floor, during and after its construction.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     rng: Rng,
     blocks: Vec<Block>,
     rows: Vec<Row>,
-    /// Where the core begins.
+    /// The start of the core.
     core: Option<i32>,
     /// Middle lines of the outer walls.
     pub(crate) outer: Rect,
@@ -90,7 +90,7 @@ impl Layout {
         let mut blocks = Vec::new();
         let (mut x, mut left) = (0, rooms_x);
         while left > 0 {
-            // The last two blocks share what is left evenly.
+            // The last two blocks share the remaining places evenly.
             let n = if left <= block { left } else { block.min(left.div_ceil(2)) };
             let places = n.cast_signed();
             blocks.push(Block { x0: x, x1: x + places * PLACE, places });
@@ -133,7 +133,7 @@ impl Layout {
         core && self.rows.iter().step_by(4).any(|row| row.y0 == room.rect.y0)
     }
 
-    /// The same blocks and rows, to be built with another source of chance.
+    /// The same blocks and rows, to be built with other random numbers.
     pub(crate) fn with_rng(&self, rng: Rng) -> Self {
         Self { rng, ..self.clone() }
     }

@@ -6,8 +6,8 @@ use crate::spanning::Passages;
 use crate::stroke::{Rect, Stroke, merge};
 use sightlines_cells::Plan;
 
-/// A maze of `w` times `h` square rooms of side 1 with corner (0, 0): every room can be reached, and
-/// one wall in sixteen that would make it a tree is missing. Axial, thin walls, closed boundary.
+/// A maze of `w` times `h` square rooms of side 1 with corner (0, 0): every room can be reached, and one wall in
+/// sixteen of those of a tree is missing. Axial, thin walls, closed boundary.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`] unless both counts are from 1 to 1000.

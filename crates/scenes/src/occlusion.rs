@@ -1,24 +1,24 @@
-//! A benchmark for what is hidden from a volume: rectangles that hide, and boxes behind them and beside them.
+//! A benchmark of visibility from a volume: rectangles as occluders, and boxes behind and beside them.
 //!
 //! The rectangles stand between a volume around the origin and most of the boxes, in no order; about half of the boxes
-//! are hidden, most of them by several rectangles together or by one with little to spare. So methods that differ
-//! in how tightly they bound differ in what they find.
+//! are hidden, most of them by several rectangles together or by one with a small margin. So methods with bounds of
+//! different tightness find different numbers of them.
 
 use crate::error::{SceneError, check_range};
 use crate::rng::Rng;
 use sightlines_cells::{Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
 
-/// What benchmark to generate.
+/// Options of [`occlusion`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OcclusionOptions {
-    /// Every choice follows from it. With another tilt the same rectangles are tilted otherwise.
+    /// Determines every random choice. Another tilt tilts the same rectangles differently.
     pub seed: u64,
     /// Rectangles, from 1 to 65536.
     pub occluders: u32,
     /// Boxes, from 1 to 65536.
     pub occludees: u32,
-    /// How steep rectangles may be, in hundredths, from 0 to 100: the depth along a rectangle differs by at most so
+    /// How steep rectangles may be, in hundredths, from 0 to 100: the depth along a rectangle differs by at most this
     /// much for each unit across, along either of its sides. 0: all face the volume.
     pub tilt: u32,
 }
@@ -33,10 +33,10 @@ impl Default for OcclusionOptions {
 /// A benchmark.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Occlusion {
-    /// What hides: objects `occluder_0` and so on, each of four corners in a plane and two triangles that face
-    /// the origin.
+    /// The occluders: objects `occluder_0` and so on, each of four corners in a plane and two triangles that face the
+    /// origin.
     pub scene: Scene,
-    /// What may be hidden, and hides nothing.
+    /// The boxes that may be hidden, and hide nothing.
     pub occludees: Vec<Aabb<3>>,
 }
 
@@ -46,14 +46,14 @@ impl Occlusion {
         self.scene.objects().iter().map(|o| [0, 1, 2, 3].map(|k| o.vertices[k]))
     }
 
-    /// The cube around the origin that is looked from.
+    /// The cube of eyes around the origin.
     ///
-    /// * `half`: half of its side in units, at most 0.5 for it to be in front of everything
+    /// * `half`: half of its side in units, at most 0.5 so that it is in front of everything
     pub const fn volume(half: f64) -> Aabb<3> {
         Aabb { min: [-half; 3], max: [half; 3] }
     }
 
-    /// The farthest depth that anything reaches, in units, and more: where a plane can be.
+    /// A depth in units beyond everything: where a plane can be.
     pub const FAR: f64 = 20.0;
 }
 
@@ -84,7 +84,7 @@ fn real(p: [i32; 3]) -> Point3 {
     p.map(|x| f64::from(x) / f64::from(FINE))
 }
 
-/// The place of a centre in steps: evenly over depths, and over what is in sight there: 45 degrees wide and high.
+/// The position of a centre in steps: uniform over depths, and over the view at each depth, 45 degrees wide and high.
 fn centre(rng: &mut Rng, near: i32, far: i32) -> [i32; 3] {
     let z = rng.between(near * FINE, far * FINE);
     let wide = z * 2 / 5;
@@ -97,7 +97,7 @@ fn rectangle(rng: &mut Rng, tilt: i32, name: String) -> SceneObject {
     // Grows with depth, so that near ones do not hide everything.
     let mut half = || FINE / 4 + rng.between(z / 24, z / 8);
     let [a, b] = [half(), half()];
-    // Drawn for every tilt, so that the rest does not depend on it.
+    // Drawn for every tilt, so that the rest does not depend on the tilt.
     let [s, t] = [rng.between(-FINE, FINE), rng.between(-FINE, FINE)];
     let rise = |slope: i32, half: i32| slope * tilt / 100 * half / FINE;
     let (p, q) = (rise(s, a), rise(t, b));

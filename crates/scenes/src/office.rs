@@ -10,10 +10,10 @@ use crate::stroke::{Stroke, merge, outline};
 use sightlines_cells::{Plan, PlanLine, PlanObject};
 use sightlines_geometry::Aabb;
 
-/// What office to generate.
+/// Options of [`office`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OfficeOptions {
-    /// Every choice follows from it.
+    /// Determines every random choice.
     pub seed: u64,
     /// Room places side by side in a row, from 1 to 128; some rooms take two places.
     pub rooms_x: u32,
@@ -120,12 +120,12 @@ mod tests {
         }
     }
 
-    /// Flood over squares of one grid step: all free space inside is one piece, so every room has a
-    /// door, and the outside is another.
+    /// Flood fill over squares of one grid step: all free space inside is connected, so every room has a door, and the
+    /// outside is another component.
     fn free_pieces(options: &OfficeOptions) -> usize {
         let half = half_thickness(options.wall_thickness).unwrap();
         let floor = build(options).unwrap();
-        // Twice as fine, so that thin walls take squares too.
+        // Twice as fine, so that thin walls occupy squares too.
         let (w, h) = ((2 * floor.outer.x1 + 17) as usize, (2 * floor.outer.y1 + 17) as usize);
         let mut wall = vec![false; w * h];
         for s in &all_strokes(&floor) {

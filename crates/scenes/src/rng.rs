@@ -2,12 +2,12 @@
 
 use sightlines_geometry::Random;
 
-/// A stream of numbers that its seed determines; integers only, so nothing rounds.
+/// A stream of numbers that is determined by its seed; integers only, so nothing rounds.
 #[derive(Debug, Clone)]
 pub(crate) struct Rng(Random);
 
 impl Rng {
-    /// The stream of `seed`; `purpose` keeps the streams of different generators apart.
+    /// The stream of `seed`; `purpose` separates the streams of different generators.
     pub(crate) fn new(seed: u64, purpose: u64) -> Self {
         let mut random = Random::new(seed ^ purpose.wrapping_mul(0x9E37_79B9_7F4A_7C15));
         random.bits();
@@ -19,7 +19,7 @@ impl Rng {
         self.0.bits()
     }
 
-    /// A number below `n`, which is not 0. The bias is below n / 2^32, which no scene shows.
+    /// A number below `n`, which is not 0. The bias is below n / 2^32, which is negligible.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         let high = self.next() >> 32;
         let n = u64::try_from(n).expect("sizes have 64 bits");

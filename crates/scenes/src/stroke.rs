@@ -1,4 +1,4 @@
-//! Axis-parallel walls on an integer grid, and the outlines of what thick walls cover.
+//! Axis-parallel walls on an integer grid, and the outlines of the area that thick walls cover.
 
 use sightlines_cells::PlanLine;
 use sightlines_geometry::Point2;
@@ -10,9 +10,9 @@ pub(crate) struct Stroke {
     pub(crate) horizontal: bool,
     /// The coordinate that all its points share.
     pub(crate) at: i32,
-    /// Where it begins.
+    /// Its lower end.
     pub(crate) lo: i32,
-    /// Where it ends.
+    /// Its upper end.
     pub(crate) hi: i32,
 }
 
@@ -37,7 +37,7 @@ impl Stroke {
         ]
     }
 
-    /// What remains when `gaps` (ascending, disjoint, inside) are cut out.
+    /// The parts that remain without `gaps` (ascending, disjoint, inside).
     pub(crate) fn without(self, gaps: &[[i32; 2]]) -> Vec<Self> {
         let starts = std::iter::once(self.lo).chain(gaps.iter().map(|g| g[1]));
         let ends = gaps.iter().map(|g| g[0]).chain(std::iter::once(self.hi));
@@ -98,7 +98,7 @@ pub(crate) fn outline(rects: &[Rect]) -> Vec<Stroke> {
         v.dedup();
     }
     let place = |v: &[i32], x: i32| v.binary_search(&x).expect("every box side is in the list");
-    // A frame of free cells around the grid saves the tests for its border.
+    // A border of free cells around the grid avoids special cases.
     let width = xs.len() + 1;
     let mut solid = vec![false; width * (ys.len() + 1)];
     for r in rects {

@@ -5,7 +5,7 @@ use super::scene::Scene;
 use super::{Violation, sweep};
 use crate::{BackendError, Buffer, Job, Measure};
 
-/// What a buffer may be full of before: of the right size, or of any other size and number.
+/// The previous content of a buffer: of the right size, or of any other size and number.
 fn used(job: &Job<'_>, right_size: bool) -> Vec<Buffer> {
     let full = |texels: [u32; 2], value: u32| {
         let mut buffer = Buffer::default();
@@ -29,7 +29,7 @@ pub(super) fn first([a, b]: [&[Buffer]; 2], wrong: impl Fn(u32, u32) -> bool) ->
     })
 }
 
-/// Clauses 1, 3 and 4, and 2 for planes that are carried over.
+/// Clauses 1, 3 and 4, and 2 for carried planes.
 pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, measure: Measure, round: u32) -> Result<(), Violation> {
     let job = scene.job(measure);
     let got = render(pair.backend, scene, &job, Vec::new())?;
@@ -37,7 +37,7 @@ pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, measure: Measure, roun
     if let Some((plane, texel, [first, second])) = first([&got, &again], |a, b| a != b) {
         return Err(Violation::NotRepeatable { place: scene.place(measure, plane, texel), first, second });
     }
-    // Every other pair of scenes, so that both happen with planes carried over and without.
+    // Every other pair of scenes, so that both happen with carried planes and without.
     let reused = render(pair.backend, scene, &job, used(&job, (round / 2).is_multiple_of(2)))?;
     if let Some((plane, texel, [fresh, got])) = first([&got, &reused], |a, b| a != b) {
         return Err(Violation::Incomplete { place: scene.place(measure, plane, texel), got, fresh });
@@ -54,7 +54,7 @@ pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, measure: Measure, roun
     if job.reproject() { sweep::compare(pair, scene, &job, &got) } else { Ok(()) }
 }
 
-/// A measure that is not supported has to be refused.
+/// A measure that is not supported must be refused.
 pub(super) fn refuses(pair: &mut Pair<'_>, scene: &Scene, measure: Measure) -> Result<(), Violation> {
     pair.report.unsupported += 1;
     match pair.backend.render(&scene.job(measure), &mut Vec::new()) {

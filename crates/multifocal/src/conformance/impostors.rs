@@ -1,36 +1,36 @@
-//! Backends with one fault each. The suite refuses every one of them, or it proves nothing.
+//! Backends with one fault each. The suite must refuse every one of them, or it proves nothing.
 
 use super::Clause;
 use crate::{BackendError, Buffer, Job, Measure, MultifocalBackend, Plane, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
-/// What an [`Impostor`] does wrong.
+/// The fault of an [`Impostor`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// Values of blocked texels are one unit too much. (Who errs by a unit himself hides it.)
+    /// Values of blocked texels are one unit too large. (A backend that errs by a unit itself masks this.)
     OneUnitNearer,
-    /// One texel beside a blocked one counts as blocked, too.
+    /// One texel beside a blocked one counts as blocked too.
     OneTexelMore,
     /// One row of each buffer is left empty.
     MissedRow,
-    /// What was in a buffer before stays, where it is larger.
+    /// Old content of a buffer stays where it is larger.
     ForgetsToReset,
-    /// Every other job has a texel less.
+    /// Every other job has one texel less.
     NotRepeatable,
-    /// Nothing is ever blocked: as sound as can be.
+    /// Nothing is ever blocked, which is sound.
     NothingBlocked,
     /// Values of blocked texels are all 1: blocked from the plane on, no more. Sound as well.
     NoValues,
-    /// A texel counts as blocked if each corner of the volume has some occluder that blocks it. Wrong, because
-    /// between two occluders eyes inside the volume may look through.
+    /// A texel counts as blocked if each corner of the volume has some occluder that blocks it. Wrong, because eyes
+    /// inside the volume may see through between two occluders.
     UnionOfCorners,
-    /// What nothing blocks has the value of what is blocked at height 0.
+    /// An unblocked texel has the value of one that is blocked from height 0 on.
     ZeroForNothing,
     /// Planes are not carried over.
     NothingCarried,
     /// Planes are carried over as if all lines to a texel went from the middle of the volume to the middle of the texel.
     NoErosion,
-    /// Does nothing for a measure that it says it supports.
+    /// Does nothing for a measure that it claims to support.
     Idle,
 }
 
@@ -51,7 +51,7 @@ impl Fault {
         Self::Idle,
     ];
 
-    /// The promise that it breaks.
+    /// The clause that it breaks.
     pub const fn clause(self) -> Clause {
         match self {
             Self::OneUnitNearer
@@ -67,7 +67,7 @@ impl Fault {
     }
 }
 
-/// A backend made worse.
+/// A backend with a fault.
 #[derive(Debug)]
 pub struct Impostor<B> {
     inner: B,
@@ -148,7 +148,7 @@ impl<B: MultifocalBackend> MultifocalBackend for Impostor<B> {
     }
 }
 
-/// Faults that are seen in a buffer alone.
+/// Faults that a single buffer shows.
 fn spoil(fault: Fault, is_odd: bool, before: Option<&Buffer>, buffer: &mut Buffer) {
     let [width, height] = buffer.texels().map(|n| n as usize);
     let first_blocked = buffer.values().iter().position(|&v| v > 0);
@@ -160,7 +160,7 @@ fn spoil(fault: Fault, is_odd: bool, before: Option<&Buffer>, buffer: &mut Buffe
         Fault::ZeroForNothing => values.iter_mut().for_each(|v| *v = (*v).max(1)),
         Fault::MissedRow => values[height / 2 * width..][..width].fill(0),
         Fault::OneTexelMore => {
-            // The first blocked texel has none before it, if it is not the very first.
+            // No texel precedes the first blocked one if it is the very first.
             if let Some(i) = first_blocked.and_then(|i| i.checked_sub(1)) {
                 values[i] = 1;
             }

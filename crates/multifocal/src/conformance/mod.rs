@@ -1,14 +1,15 @@
 //! The contract of [`MultifocalBackend`], as code that anyone can run.
 //!
-//! [`run`] draws scenes, asks a backend and a reference for their buffers, and compares:
+//! [`run`] draws scenes, runs a backend and a reference on them, and compares their buffers:
 //! 1. sound: no texel has more than the reference has;
-//! 2. tight: texels that one occluder blocks with room to spare are blocked, and have values within the [`Slack`];
-//!    what is blocked on a plane is carried to the next one;
-//! 3. complete: buffers full of other things, of other sizes and numbers, end up the same as new ones;
-//! 4. repeatable: the same twice.
+//! 2. tight: texels that one occluder blocks with room to spare are blocked, and have values within the [`Slack`]; what
+//!    is blocked on a plane is carried to the next one;
+//! 3. complete: buffers with other content, of other sizes and numbers, end up equal to new ones;
+//! 4. repeatable: two runs give the same bits.
 //!
-//! Nothing here knows how buffers are filled: the reference is another backend (that of `sightlines-multifocal-cpu`),
-//! and so is whatever is compared with it. [`impostors`] are backends with one fault each, which the suite has to refuse.
+//! The suite is independent of how buffers are filled: the reference is another backend (that of
+//! `sightlines-multifocal-cpu`), like the one under test. [`impostors`] are backends with one fault each, which the
+//! suite must refuse.
 
 mod check;
 pub mod from_region;
@@ -24,44 +25,43 @@ mod violation;
 use crate::{Measure, MultifocalBackend};
 pub use violation::{Clause, Place, Violation};
 
-/// By how much a backend may miss the reference, on the safe side. These are all the tolerances there are.
+/// How much a backend may miss of the reference, on the safe side. There are no other tolerances.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slack {
     /// Texels: what is blocked by this much more than a texel on all sides, and towards the viewers, has to be blocked.
     pub edge: f64,
-    /// Units of the job: how much less a value may be than the one that it is compared with.
+    /// Units of the job: how much smaller a value may be than the one it is compared with.
     pub value: u32,
     /// Whether values of single occluders are compared with the reference's, else with the height of the occluder's
     /// lowest corner, and with the reference's only if the occluder is parallel to the plane.
     pub exact: bool,
-    /// Heights above that of the occluder's lowest corner: the part of the reference's, over all texels that are compared,
-    /// that values have to have.
+    /// Heights above that of the occluder's lowest corner: the part of the reference's, over all compared texels, that
+    /// values must reach.
     pub section: f64,
 }
 
 impl Slack {
-    /// None: for those who compute what the reference does.
+    /// None: for backends that compute what the reference computes.
     pub const EXACT: Self = Self { edge: 0.0, value: 0, exact: true, section: 1.0 };
 
     /// The integer form of umbrae and values ([`crate::form`]).
     ///
     /// * edge: coefficients are rounded by half a unit of at least 2^13 to a texel for windows of up to 2^13 texels, so over
     ///   the suite's windows, of less than 2^7 texels, an edge is off by less than 2^-6 texels, its constant included
-    /// * value: one unit for rounding a bound down, one for rounding coefficients
     /// * section: heights are replaced by the chord of a concave function, taken over the whole umbra, and bounded from
-    ///   the texel's lowest corner. How much that loses depends on the scene: in 50 quick efforts from 0.67 to 0.94 were
-    ///   kept. This is no theorem, but less would be a reason to look
+    ///   the texel's lowest corner. The loss depends on the scene: in 50 quick runs 0.67 to 0.94 were kept. This is not
+    ///   a theorem, but less would be a reason to investigate
     pub const INTEGER: Self = Self { edge: 1.0 / 64.0, value: 2, exact: false, section: 0.5 };
 }
 
-/// How much is looked at.
+/// The effort of the suite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
-    /// Of the scenes.
+    /// The seed of the scenes.
     pub seed: u64,
-    /// Scenes of each family.
+    /// Number of scenes in each family.
     pub rounds: u32,
-    /// What the backend may miss.
+    /// The slack of the backend.
     pub slack: Slack,
 }
 
@@ -72,7 +72,7 @@ impl Effort {
     }
 }
 
-/// What was looked at, without finding fault.
+/// Counts of a run without a violation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Report {
     /// Scenes.
@@ -81,23 +81,23 @@ pub struct Report {
     pub jobs: usize,
     /// Texels compared with the reference's.
     pub texels: usize,
-    /// Of these, how many the reference calls blocked.
+    /// Those of them that the reference reports blocked.
     pub blocked: usize,
-    /// Of these, how many the backend calls blocked as well.
+    /// Those of them that the backend reports blocked as well.
     pub found: usize,
     /// Texels that had to be blocked by one occluder.
     pub tight: usize,
-    /// Of these, how many were compared with the reference's value.
+    /// Those of them that were compared with the reference's value.
     pub valued: usize,
     /// Texels that had to be blocked because of the plane before.
     pub carried: usize,
-    /// Of these, how many no occluder blocks alone.
+    /// Those of them that no occluder blocks alone.
     pub fused: usize,
     /// Units above the lowest corner that the reference has for one occluder, in all.
     pub section: f64,
-    /// Of these, how many the backend has.
+    /// Those of them that the backend has.
     pub section_kept: f64,
-    /// Measures that the backend says it has no form of.
+    /// Measures that the backend does not support.
     pub unsupported: usize,
 }
 
@@ -137,7 +137,7 @@ fn measures(round: u32) -> impl Iterator<Item = Measure> {
     Measure::ALL.into_iter().filter(move |measure| measure.is_height() || round.is_multiple_of(4))
 }
 
-/// Zero cases prove nothing.
+/// A suite without cases proves nothing.
 fn check_counts(report: &Report) -> Result<(), Violation> {
     let counts = [
         ("scenes", report.scenes),

@@ -1,4 +1,4 @@
-//! A backend and the one that it is compared with.
+//! A backend and its reference.
 
 use super::scene::Scene;
 use super::{Place, Report, Slack, Violation};

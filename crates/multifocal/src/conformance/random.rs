@@ -1,8 +1,8 @@
-//! The suite's own source of chance: SplitMix64, the same on every machine.
+//! The suite's own random numbers: SplitMix64, the same on every machine.
 
 use sightlines_geometry::Random as Bits;
 
-/// Chance that makes things meet.
+/// Random numbers that make coincidences likely.
 #[derive(Debug, Clone)]
 pub(super) struct Random(Bits);
 
@@ -11,7 +11,7 @@ impl Random {
         Self(Bits::new(seed))
     }
 
-    /// Less than `n`, which is small, so that it does not matter that some are a little more likely.
+    /// Less than `n`, which is small, so that the bias does not matter.
     pub(super) fn below(&mut self, n: u32) -> u32 {
         (self.0.bits() % u64::from(n)) as u32
     }
@@ -24,7 +24,7 @@ impl Random {
         from[self.below(from.len() as u32) as usize]
     }
 
-    /// An eighth from `low` to `high`, both whole: so that things meet, line up and coincide.
+    /// A multiple of an eighth from `low` to `high`, both integers: so that things meet, line up and coincide.
     pub(super) fn eighth(&mut self, low: i32, high: i32) -> f64 {
         f64::from(low) + f64::from(self.below((high - low) as u32 * 8 + 1)) / 8.0
     }

@@ -42,13 +42,13 @@ struct Sketch {
     planes: Vec<f64>,
     offset: Point3,
     scale: f64,
-    /// Any, if not given.
+    /// Any grid, if `None`.
     grid: Option<Grid>,
-    /// Whether planes are always carried over, else in every other scene.
+    /// Whether planes are always carried over; otherwise in every other scene.
     sweeps: bool,
 }
 
-/// A scene: what a job needs, but for the measure.
+/// A scene: the input of a job without the measure.
 #[derive(Debug, Clone)]
 pub(super) struct Scene {
     pub(super) family: &'static str,
@@ -75,21 +75,21 @@ impl Scene {
                 shape = shape.turned();
             }
             shape.map(|p| frame.place(p));
-            // What has no area is no occluder, and may be drawn.
+            // A shape without area is not a valid occluder, and may be drawn.
             Occluder::patch(shape.outline, &shape.triangles).ok()
         });
         let occluders = occluders.collect();
         Self { family: family.name, seed, round, volume, planes, occluders, reproject }
     }
 
-    /// All of it; planes are carried over only if the measure allows.
+    /// The job of the whole scene; planes are carried over only if the measure allows it.
     pub(super) fn job(&self, measure: Measure) -> Job<'_> {
         let reproject = self.reproject && measure.is_height();
         Job::new(self.volume, self.planes.clone(), &self.occluders, measure, reproject).expect("scenes make jobs")
     }
 }
 
-/// Where the frame of shapes lies in space.
+/// The position of the shapes' frame in space.
 struct Frame {
     axis: usize,
     positive: bool,
@@ -244,8 +244,8 @@ fn touching(random: &mut Random) -> Sketch {
     sketch(random, vec![left, right, above])
 }
 
-/// Two walls with a slit between, through which some eyes look but no corner of the volume: each corner sees all of the
-/// middle blocked, by one wall or by the other.
+/// Two walls with a slit between, through which some eyes see but no corner of the volume does: each corner has all of
+/// the middle blocked, by one wall or by the other.
 fn slit(random: &mut Random) -> Sketch {
     let half = random.pick(&[0.25, 0.125]);
     let z = random.eighth(3, 5);
@@ -264,7 +264,7 @@ fn elsewhere(random: &mut Random) -> Sketch {
     scene
 }
 
-/// Several planes, and walls that overlap: together they block what none blocks alone.
+/// Several planes, and walls that overlap: together they block texels that none blocks alone.
 ///
 /// Let the walls overlap by `o`, eyes be `2 a` wide, texels `w`, and let a line to a plane cross a wall at a part `t` of its
 /// way. By one wall or the other all texels are blocked if `o >= 2 a t + w (1 - t)`, which holds for the first plane (`t` at

@@ -1,12 +1,12 @@
-//! Planes that are carried over to the next ones.
+//! Carried planes.
 
 use super::Violation;
 use super::pair::{Pair, render};
 use super::scene::Scene;
 use crate::{Buffer, Job, Plane};
 
-/// Clause 2 for what is carried: a backend is held to its own buffers. Where all that a texel's lines cross on the plane
-/// before is blocked there, the texel is, too.
+/// Clause 2 for carrying: a backend is compared with its own buffers. If everything that a texel's lines cross on the
+/// previous plane is blocked there, the texel must be blocked too.
 pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, job: &Job<'_>, got: &[Buffer]) -> Result<(), Violation> {
     let apart = Job::new(*job.volume(), job.planes().to_vec(), &scene.occluders, job.measure(), false)
         .expect("planes that are carried over can be left apart");
@@ -36,8 +36,8 @@ pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, job: &Job<'_>, got: &[
     Ok(())
 }
 
-/// For each texel of a plane along axis `k`, more than the texels of the nearer plane that lines to it cross: by the
-/// slack, and by 2^-20 texels for the rounding of doubles. None where they leave the window.
+/// For each texel of a plane along axis `k`, a superset of the texels of the nearer plane that lines to it cross:
+/// enlarged by the slack, and by 2^-20 texels for the rounding of doubles. `None` where they leave the window.
 fn footprints(job: &Job<'_>, [nearer, plane]: [&Plane; 2], k: usize, slack: f64) -> Vec<Option<[u32; 2]>> {
     let between = plane.height(nearer.corner(0, 0));
     let eyes = job.volume().corners();

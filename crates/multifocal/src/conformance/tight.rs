@@ -1,4 +1,4 @@
-//! Single occluders: what they block with room to spare has to be found.
+//! Single occluders: what they block with room to spare must be found.
 
 use super::pair::{Pair, render};
 use super::scene::Scene;
@@ -58,7 +58,7 @@ fn only(buffers: Vec<Buffer>) -> [Buffer; 1] {
     buffers.try_into().expect("a job with one plane has one buffer")
 }
 
-/// Which texels are blocked also when they are grown by the slack on all sides, and towards the viewers.
+/// Which texels are still blocked when they are enlarged by the slack on all sides, and moved towards the viewers.
 ///
 /// The points of space that one occluder hides are a convex set. So it contains the grown texel if it contains the
 /// texel moved by the slack in each of the four diagonal directions, on the plane and on one as much nearer; and a
@@ -80,8 +80,8 @@ fn spare(pair: &mut Pair<'_>, scene: &Scene, one: &[Occluder]) -> Result<Vec<boo
     Ok(spare)
 }
 
-/// The plane with its window moved by so many texels, and towards the viewers by so many of their longer sides. None if
-/// its grid would not be the same.
+/// The plane with its window moved by so many texels, and towards the viewers by so many of their longer sides. `None`
+/// if the grid would change.
 fn moved(plane: &Plane, by: [f64; 3]) -> Option<Plane> {
     let ([u, v], [a, b]) = (plane.origin(), plane.step());
     let low = [u + by[0] * a, v + by[1] * b];

@@ -1,22 +1,22 @@
-//! What a backend is found to do wrong.
+//! Faults that the suite finds in backends.
 
 use crate::{BackendError, Measure};
 use std::fmt;
 
-/// Where it happened: enough to draw the scene again.
+/// The position of a fault: enough to draw the scene again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
     /// Kind of scene.
     pub family: &'static str,
     /// Seed of the effort.
     pub seed: u64,
-    /// Which of the scenes of the family.
+    /// The index of the scene in its family.
     pub round: u32,
-    /// Of the job.
+    /// The measure of the job.
     pub measure: Measure,
     /// Index of the plane.
     pub plane: usize,
-    /// Of the plane.
+    /// The texel of the plane.
     pub texel: [u32; 2],
 }
 
@@ -28,7 +28,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// Which promise is broken.
+/// The clauses of the contract.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clause {
     /// 1.
@@ -39,9 +39,9 @@ pub enum Clause {
     Complete,
     /// 4.
     Repeatable,
-    /// A job is not done at all, or one that is not supported is.
+    /// A job is not done at all, or an unsupported one is done.
     Done,
-    /// No promise of the backend: the suite itself looked at nothing.
+    /// Not a clause of the backend: the suite itself examined nothing.
     Counted,
 }
 
@@ -49,7 +49,7 @@ pub enum Clause {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// More than what is exact.
+    /// More than the exact value.
     #[error("unsound: {place}: stored {got}, exact {exact}")]
     Unsound {
         /// Where.
@@ -59,7 +59,7 @@ pub enum Violation {
         /// What the reference stored.
         exact: u32,
     },
-    /// Less than what had to be found.
+    /// Less than required.
     #[error("not tight: {place}: stored {got}, at least {wanted} is known")]
     Loose {
         /// Where.
@@ -69,7 +69,7 @@ pub enum Violation {
         /// The least allowed.
         wanted: u32,
     },
-    /// Values above the lowest corner are less than they have to be, over all.
+    /// The total of values above the lowest corner is too small.
     #[error("not tight: {got:.3} of the heights above the lowest corners are kept, {wanted:.3} is stated")]
     LooseSections {
         /// Part that is kept.
@@ -77,7 +77,7 @@ pub enum Violation {
         /// Part that has to be.
         wanted: f64,
     },
-    /// What was in a buffer before shows.
+    /// Old content of a buffer shows.
     #[error("not complete: {place}: stored {got} in a used buffer, {fresh} in a new one")]
     Incomplete {
         /// Where.
@@ -87,7 +87,7 @@ pub enum Violation {
         /// In a new one.
         fresh: u32,
     },
-    /// Twice the same job, two answers.
+    /// The same job gives two answers.
     #[error("not repeatable: {place}: stored {first}, then {second}")]
     NotRepeatable {
         /// Where.
@@ -97,7 +97,7 @@ pub enum Violation {
         /// The second time.
         second: u32,
     },
-    /// A buffer for each plane, of as many texels, is not what came back.
+    /// The buffers do not match the planes, one for each, with as many texels.
     #[error("not complete: {place}: {got} values in {n_buffers} buffers")]
     Shape {
         /// Where; the texel means nothing.
@@ -112,10 +112,10 @@ pub enum Violation {
     Failed {
         /// Where; plane and texel mean nothing.
         place: Place,
-        /// What it says.
+        /// The error.
         error: BackendError,
     },
-    /// It says that it does not support a measure, and does not refuse it.
+    /// It reports a measure as unsupported, but does not refuse it.
     #[error("{place}: the measure is not supported, and not refused")]
     NotRefused {
         /// Where; plane and texel mean nothing.
@@ -124,13 +124,13 @@ pub enum Violation {
     /// There was nothing to compare.
     #[error("the suite proves nothing: no {what}")]
     NothingRan {
-        /// Of what there was none.
+        /// The missing kind of case.
         what: &'static str,
     },
 }
 
 impl Violation {
-    /// Which promise is broken.
+    /// The broken clause.
     pub const fn clause(&self) -> Clause {
         match self {
             Self::Unsound { .. } => Clause::Sound,

@@ -3,18 +3,18 @@
 use crate::Plane;
 use sightlines_geometry::Point3;
 
-/// A plane, and how coefficients are scaled on it.
+/// A plane with the scale of its coefficients.
 pub(super) struct Window<'a> {
     pub(super) plane: &'a Plane,
     /// Largest coefficient of an edge.
     largest: f64,
 }
 
-/// Magnitude that `A * x` must not exceed; see the module of forms.
+/// Largest magnitude of `A * x`; see the module of forms.
 const LARGEST_TERM: f64 = (1u32 << 28) as f64;
-/// Magnitude below which a constant coefficient is given up.
+/// A constant coefficient below minus this is abandoned.
 const LARGEST_CONSTANT: f64 = (1u32 << 30) as f64;
-/// Magnitude that a value's coefficients must not exceed across the bounds.
+/// Largest magnitude of a value's coefficients across the bounds.
 const LARGEST_VALUE: f64 = (1u32 << 29) as f64;
 
 /// A number known to lie within `error` of `about`.
@@ -25,12 +25,12 @@ pub(super) struct Around {
 }
 
 impl Around {
-    /// No more than the number: the difference is rounded, and its error taken off as well.
+    /// A lower bound of the number: the difference is rounded, and its error subtracted as well.
     pub(super) fn low(self) -> f64 {
         (self.about - self.error).next_down()
     }
 
-    /// No less than the number.
+    /// An upper bound of the number.
     pub(super) fn high(self) -> f64 {
         (self.about + self.error).next_up()
     }

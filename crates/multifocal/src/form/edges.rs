@@ -9,7 +9,7 @@ use sightlines_geometry::{Point3, orient3d};
 pub(crate) struct Side {
     point: Point3,
     normal: Point3,
-    /// By how much each coordinate of the normal may be wrong.
+    /// Bound of the error of each coordinate of the normal.
     error: Point3,
 }
 
@@ -48,17 +48,16 @@ impl Side {
     }
 }
 
-/// Appends the planes that bound the umbra of `occluder` for eyes in the box with `corners`: for each facet its own,
-/// and for each edge of the outline the one through the corner of the box from which it hides least there. False if
-/// it hides nothing. Which planes is decided exactly.
-///
+/// Appends the planes that bound the umbra of `occluder` for eyes in the box with `corners`: for each facet its own
+/// plane, and for each edge of the outline the one through the corner of the box from which it hides least there.
+/// `false` if it hides nothing. The choice of planes is exact.
 /// Around an edge, the planes through the corners of the box all contain it. Let its facet's plane have the box in
 /// front, and measure angles around the edge from the direction into the facet: eyes have angles from 0 to π, and what
 /// lies behind the facet from -π to 0. A line from an eye at α to a point at β passes inside if α - β is at most π. So
 /// the eye with the largest angle decides for all points behind the facet, and it is the one that has no other
 /// corner outside of its plane: a comparison by exact predicates.
 pub(crate) fn sides(occluder: &Occluder, corners: &[Point3; 8], out: &mut Vec<Side>) -> bool {
-    // From in front the outline goes round counter-clockwise, and what passes inside is below the planes.
+    // Seen from the front the outline runs counter-clockwise, and what passes inside is below the planes.
     let sign = match occluder.side_of(corners) {
         Some(true) => -1.0,
         Some(false) => 1.0,
@@ -76,8 +75,8 @@ pub(crate) fn sides(occluder: &Occluder, corners: &[Point3; 8], out: &mut Vec<Si
     true
 }
 
-/// The texels around the umbra, widened to whole ones; None if it is empty. May lose texels to rounding, never
-/// gain: what is within the bounds still has to pass all edges.
+/// The texels around the umbra, widened to whole ones; `None` if it is empty. Rounding may lose texels, never add any:
+/// what is within the bounds still has to pass all edges.
 pub(crate) fn bounds(sides: &[Side], window: &Window<'_>) -> Option<[i32; 4]> {
     let all = window.all();
     let (w, h) = (f64::from(all[2]), f64::from(all[3]));
@@ -116,7 +115,7 @@ fn clip(polygon: &[[f64; 2]], f: impl Fn([f64; 2]) -> f64, out: &mut Vec<[f64; 2
     }
 }
 
-/// Appends the integer forms of all sides. False if nothing passes them.
+/// Appends the integer forms of all sides. `false` if nothing passes them.
 pub(crate) fn push_edges(sides: &[Side], window: &Window<'_>, bounds: [i32; 4], out: &mut Vec<[i32; 3]>) -> bool {
     for side in sides {
         match window.edge(bounds, side.at_corners(window, bounds)) {

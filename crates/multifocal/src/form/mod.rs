@@ -80,7 +80,7 @@ impl Forms {
         }
     }
 
-    /// Forgets all forms, but keeps their memory.
+    /// Removes all forms, but keeps their memory.
     pub fn clear(&mut self) {
         self.forms.clear();
         self.edges.clear();
@@ -137,7 +137,7 @@ impl Outlines {
     }
 }
 
-/// What all occluders on a plane share.
+/// The data that all occluders on a plane share.
 struct FormBuilder<'a> {
     window: Window<'a>,
     corners: [Point3; 8],

@@ -6,8 +6,8 @@ use super::edges::Side;
 use crate::{Measure, Occluder};
 use sightlines_geometry::Point3;
 
-/// Part that quotients and products of a few rounded numbers are moved down by: far more than the ten roundings of
-/// 2^-53 that any of them goes through.
+/// Factor that lowers quotients and products of a few rounded numbers: far more than the ten roundings of 2^-53 that
+/// any of them accumulates.
 const DOWN: f64 = 1.0 - 64.0 * f64::EPSILON;
 
 /// Heights: returns the least value, and appends a slope if it can be larger.
@@ -37,7 +37,7 @@ fn extent(builder: &FormBuilder<'_>, occluder: &Occluder) -> [f64; 2] {
     [low.min(high), low.max(high)]
 }
 
-/// The code of a value: whole units, and one more. Nothing below 0, see [`heights`].
+/// The encoding of a value: whole units, plus one. Never below 0, see [`heights`].
 fn encode(units: f64) -> u32 {
     units.floor().max(0.0) as u32 + 1
 }
@@ -128,7 +128,7 @@ pub(super) fn distances(
     floor
 }
 
-/// From the nearest point of a flat convex occluder to `p`, roughly; any direction will do.
+/// The approximate direction from the nearest point of a flat convex occluder to `p`; any direction is valid.
 fn direction(p: Point3, occluder: &Occluder) -> Point3 {
     let outline = occluder.outline();
     let mut best = (f64::INFINITY, [0.0; 3]);

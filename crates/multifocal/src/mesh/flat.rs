@@ -1,15 +1,15 @@
 //! Convex polygons inside the union of triangles on one axis-parallel plane.
 //!
-//! A wall with doors and windows is concave, and cut into triangles that reach from corners of doors to corners of the wall:
-//! no union of some of them need be both large and convex. On a plane perpendicular to an axis any double is a
-//! coordinate, so polygons need not be made of triangles, and may overlap: a seam between two polygons would
-//! cost umbra, a common part does not.
+//! A wall with doors and windows is concave, and cut into triangles that reach from corners of doors to corners of the
+//! wall: no union of some of them need be both large and convex. On a plane perpendicular to an axis every double is a
+//! coordinate, so polygons need not consist of triangles, and may overlap: a seam between two polygons would lose
+//! umbra, a common part does not.
 //!
-//! From a seed inside, everything is cut off that is not covered, the nearest first, by that line of a few
-//! which leaves most. Nearest is measured in a square, a wide and a tall metric, so that the wide strip above the doors is found, and
-//! the tall one between two windows. All of that may go wrong by rounding; what comes out is checked
-//! exactly: no edge at which the covering changes meets the polygon's inside, and the seed is inside of it and of a
-//! triangle.
+//! Starting from a point inside, cuts remove everything that is not covered, the nearest first, each along the one of a
+//! few lines that keeps most. Nearest is measured in a square, a wide and a tall metric, so that the wide strip above
+//! the doors is found, and the tall one between two windows. All of that may be affected by rounding; the result is
+//! checked exactly: no edge at which the coverage changes meets the polygon's interior, and the starting point is
+//! inside it and inside a triangle.
 //!
 //! Source: the greedy cuts are those of Deits and Tedrake, "Computing Large Convex Regions of Obstacle-Free Space", WAFR 2014,
 //! without its ellipsoids.
@@ -22,10 +22,10 @@ use crate::Occluder;
 use sightlines_geometry::{Point2, Point3, orient2d};
 use std::collections::BTreeSet;
 
-/// Where two triangles, or none, cover differently: an edge, as ends.
+/// An edge, by its ends, at which the coverage by triangles changes.
 type Border = [Point2; 2];
 
-/// Triangles on one plane that hang together by edges.
+/// Triangles on one plane that are connected by edges.
 #[derive(Debug)]
 struct Piece {
     axis: usize,
@@ -34,7 +34,7 @@ struct Piece {
     borders: Vec<Border>,
 }
 
-/// What was found, and the triangles that need no patch any more.
+/// The polygons found, and the triangles that need no patch any more.
 #[derive(Debug, Default)]
 pub(super) struct Found {
     pub(super) occluders: Vec<Occluder>,
@@ -47,14 +47,14 @@ const METRICS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 16.0], [16.0, 1.0]];
 /// Polygons on all axis-parallel planes of a mesh, in a deterministic order.
 pub(super) fn convex_polygons(mesh: &Mesh, options: &PatchOptions) -> Found {
     let mut found = Found::default();
-    // Looks at borders; many more than this are not worth their time.
+    // Number of border tests; more are not worth their time.
     let mut work = 32 * mesh.triangles().len() as u64 + (1 << 23);
-    // The largest first, as long as there is time.
+    // The largest first, as long as work is left.
     let mut pieces: Vec<(f64, Piece)> = pieces(mesh).into_iter().map(|p| (p.twice_area(mesh), p)).collect();
     pieces.sort_by(|a, b| b.0.total_cmp(&a.0));
     for (twice_area, piece) in pieces {
         if twice_area >= 2.0 * options.min_area {
-            // No more than a share for one, so that a floor with a thousand holes does not take it all.
+            // No more than a share for one piece, so that a floor with a thousand holes does not use it all.
             let share = work.min(64 * piece.triangles.len() as u64 + (1 << 16));
             let mut left = share;
             piece.polygons(mesh, options, &mut found, &mut left);
@@ -81,7 +81,7 @@ fn pieces(mesh: &Mesh) -> Vec<Piece> {
     pieces
 }
 
-/// Divides the triangles of a plane by what hangs together.
+/// Divides the triangles of a plane into connected pieces.
 fn split(mesh: &Mesh, axis: usize, at: f64, triangles: &[u32], pieces: &mut Vec<Piece>) {
     // Which of the triangles, by edge, and whether it lies to the left of the edge from its lower to its upper end.
     let mut uses: Vec<(u32, u32, bool)> = Vec::new();
@@ -118,7 +118,7 @@ fn split(mesh: &Mesh, axis: usize, at: f64, triangles: &[u32], pieces: &mut Vec<
             pieces[first + numbers[r] as usize].borders.push(ends);
         }
     }
-    // A triangle alone is a patch already.
+    // A single triangle is a patch already.
     let mut i = 0;
     pieces.retain(|p| {
         i += 1;
@@ -165,13 +165,13 @@ impl Piece {
                 {
                     polygons.push(polygon);
                 }
-                // A convex piece has no other shapes to find.
+                // A convex piece contains no other shapes.
                 if polygons.first().is_some_and(|p| twice_area(p) >= whole * (1.0 - 1e-9)) {
                     break;
                 }
             }
             let largest = polygons.iter().map(|p| twice_area(p)).fold(area(seed), f64::max);
-            // Strips of another shape are worth having if they are not much smaller.
+            // Strips of another shape are kept if they are not much smaller.
             polygons.retain(|p| {
                 2.0 * twice_area(p) >= largest
                     && twice_area(p) >= 2.0 * options.min_area
@@ -189,7 +189,7 @@ impl Piece {
         found.covered.extend(covered);
     }
 
-    /// A convex polygon around `middle` that borders keep out of, or nearly so.
+    /// A convex polygon around `middle` whose interior borders do not enter, or hardly.
     fn around(&self, middle: Point2, metric: [f64; 2], work: &mut u64) -> Option<Vec<Point2>> {
         let all = || self.borders.iter().flatten();
         let (low, high) = all().fold((Point2::INFINITY, Point2::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
@@ -221,7 +221,8 @@ impl Piece {
         None
     }
 
-    /// The polygon, if it is inside of what the triangles cover; or one within it that is smaller by less than rounding hides.
+    /// The polygon, if it is inside the area covered by triangles; or one within it that is smaller by less than
+    /// rounding.
     fn checked(&self, polygon: Vec<Point2>, triangle: [Point2; 3], middle: Point2) -> Option<Vec<Point2>> {
         let polygon = simplified(polygon);
         let is_good = |p: &[Point2]| {
@@ -251,7 +252,7 @@ impl Piece {
     }
 }
 
-/// Cuts for one polygon.
+/// Most cuts for one polygon.
 const MAX_CUTS: usize = 256;
 
 fn centre([a, b, c]: [Point2; 3]) -> Point2 {
@@ -298,8 +299,8 @@ fn nearest_on([a, b]: Border, middle: Point2, stretch: Point2) -> Point2 {
     a + (b - a) * t
 }
 
-/// Lines that could cut off the nearest point of a border, with `middle` on their left: along the border, along the axes,
-/// and across the way there.
+/// Lines that could cut off the nearest point of a border, with `middle` on their left: along the border, along the
+/// axes, and perpendicular to the way there.
 fn cuts(point: Point2, [a, b]: Border, middle: Point2, stretch: Point2, slack: f64) -> Vec<[Point2; 2]> {
     let normal = (point - middle) * stretch * stretch;
     let across = Point2::new(-normal.y, normal.x);
@@ -312,7 +313,7 @@ fn cuts(point: Point2, [a, b]: Border, middle: Point2, stretch: Point2, slack: f
     turned.collect()
 }
 
-/// Without corners that are equal, or in line with their neighbours, exactly.
+/// Removes corners that are exactly equal to a neighbour or collinear with both.
 fn simplified(mut polygon: Vec<Point2>) -> Vec<Point2> {
     polygon.dedup();
     while polygon.len() > 1 && polygon.first() == polygon.last() {

@@ -1,12 +1,12 @@
 //! Patches of triangles that grow over shared edges.
 //!
-//! A patch is a disc: a set of triangles, turned alike, with one loop around them that passes no vertex twice. A triangle
-//! joins if it shares one chain of edges with the loop and no other vertex.
+//! A patch is a disc: a set of consistently oriented triangles, with one loop around them that visits no vertex twice.
+//! A triangle joins if it shares one chain of edges with the loop and no other vertex.
 //!
-//! What a patch is worth is the area of the kernel of its loop: an occluder hides on lines that pass all edges on the
-//! same side, so a notch costs all that lies beyond the lines of its edges. Growth goes on for a while after the kernel has
-//! shrunk, as the triangles of a convex polygon are rarely in an order in which all before are convex too, and
-//! then goes back to the best.
+//! The worth of a patch is the area of the kernel of its loop: an occluder hides on lines that pass all edges on the
+//! same side, so a notch loses all that lies beyond the lines of its edges. Growth continues for a while after the
+//! kernel has shrunk, as the triangles of a convex polygon are rarely in an order in which all prefixes are convex too,
+//! and then returns to the best state.
 
 use super::PatchOptions;
 use super::polygon::{is_inside, kernel_area};
@@ -23,7 +23,7 @@ pub(super) struct Grower<'a> {
     /// Twice the area of each triangle.
     normals: Vec<Point3>,
     epoch: u32,
-    /// When each triangle joined, or was refused for good.
+    /// When each triangle joined, or was rejected for good.
     joined: Vec<u32>,
     /// When each vertex came onto the outline.
     on_outline: Vec<u32>,
@@ -35,22 +35,22 @@ pub(super) struct Grower<'a> {
     triangles: Vec<(u32, bool)>,
     facets: Vec<u32>,
     normal: Point3,
-    /// How many neighbours were looked at, in all.
+    /// Number of neighbours examined so far.
     pub(super) work: u64,
     flat: Vec<Point2>,
     scratch: [Vec<Point2>; 2],
 }
 
-/// The best state that a patch was in.
+/// The best state of a patch.
 #[derive(Debug, Clone)]
 pub(super) struct Patch {
-    /// Its triangles, in the order in which they joined, and whether each is turned over.
+    /// Its triangles, in the order in which they joined, and whether each is reversed.
     pub(super) triangles: Vec<(u32, bool)>,
     outline: Vec<u32>,
     worth: f64,
 }
 
-/// The most vertices around a patch, also those that make no corner.
+/// Most vertices around a patch, including those that are not corners.
 const MAX_LOOP: usize = 128;
 
 /// A triangle that could join.
@@ -60,9 +60,10 @@ struct Candidate {
     /// Where on the outline, and where on its own loop, the shared edge starts.
     at: usize,
     there: usize,
-    /// Whether it has to be turned over.
+    /// Whether it has to be reversed.
     turned: bool,
-    /// Best what fills notches, by how much; then what makes none, by its area; then what makes the least.
+    /// Triangles that fill notches come first, by how much; then those that make none, by area; then those that make
+    /// the smallest.
     rank: (u8, f64),
 }
 
@@ -133,7 +134,7 @@ impl<'a> Grower<'a> {
         Patch { triangles: self.triangles.clone(), outline: self.outline.clone(), worth }
     }
 
-    /// How many corners an occluder would have.
+    /// Number of corners that an occluder would have.
     fn n_corners(&self) -> usize {
         let n = self.outline.len();
         if n <= self.options.max_corners {
@@ -218,7 +219,7 @@ impl<'a> Grower<'a> {
         Some(Candidate { triangle, at, there, turned, rank })
     }
 
-    /// Puts a triangle to the patch, if it stays a disc and within its limits.
+    /// Adds a triangle to the patch, if it stays a disc and within its limits.
     fn join(&mut self, c: Candidate) -> bool {
         let (mut ring, mut ring_edges) =
             (self.mesh.outline(c.triangle).to_vec(), self.mesh.outline_edges(c.triangle).to_vec());
@@ -278,7 +279,7 @@ impl<'a> Grower<'a> {
         true
     }
 
-    /// Notes the plane of a triangle that joins across some edges; false if there are too many.
+    /// Records the plane of a triangle that joins across some edges; `false` if there are too many.
     fn add_facet(&mut self, c: Candidate, edges: Vec<u32>) -> bool {
         let is_neighbour = |t: &u32| *t != c.triangle && self.joined[*t as usize] == self.epoch;
         let own = self.mesh.corners(c.triangle);
@@ -298,7 +299,7 @@ impl<'a> Grower<'a> {
         true
     }
 
-    /// The triangles of a patch that need no other: those whose middle is in the kernel.
+    /// The triangles of a patch that need no other patch: those whose middle is in the kernel.
     pub(super) fn covered(&self, patch: &Patch) -> Vec<u32> {
         let corner = |&i: &u32| self.mesh.vertices()[i as usize];
         let outline: Vec<Point3> = patch.outline.iter().map(corner).collect();
@@ -312,7 +313,7 @@ impl<'a> Grower<'a> {
         patch.triangles.iter().filter_map(covers).collect()
     }
 
-    /// The occluder that a patch is, without corners within straight lines.
+    /// The occluder of a patch, without corners within straight lines.
     pub(super) fn occluder(&self, patch: &Patch) -> Option<Occluder> {
         let outline: Vec<Point3> = patch.outline.iter().map(|&v| self.at(v)).collect();
         let corners = |&(t, turned): &(u32, bool)| {

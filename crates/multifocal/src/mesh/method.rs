@@ -1,11 +1,11 @@
-//! Sheets as a method of their own.
+//! Sheets as a from-region method.
 
 use super::{SheetTester, Sheets};
 use crate::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_geometry::{Aabb, Point3};
 use std::sync::Arc;
 
-/// Hidden is what one sheet of the mesh separates from the volume.
+/// Hides what one sheet of the mesh separates from the volume.
 #[derive(Debug)]
 pub struct SheetMethod {
     sheets: Arc<Sheets>,
@@ -13,7 +13,7 @@ pub struct SheetMethod {
 }
 
 impl SheetMethod {
-    /// How many sides of triangles are walked over for one target, unless said otherwise.
+    /// Default number of triangle sides that a walk visits for one target.
     pub const DEFAULT_LIMIT: usize = 1024;
 
     /// For a scene of triangles, with [`Self::DEFAULT_LIMIT`]. O(n log² n).
@@ -21,7 +21,7 @@ impl SheetMethod {
         Self::shared(Arc::new(Sheets::new(triangles)))
     }
 
-    /// For sheets that others use as well, with [`Self::DEFAULT_LIMIT`].
+    /// For shared sheets, with [`Self::DEFAULT_LIMIT`].
     pub const fn shared(sheets: Arc<Sheets>) -> Self {
         Self { sheets, limit: Self::DEFAULT_LIMIT }
     }

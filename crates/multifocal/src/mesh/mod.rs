@@ -1,12 +1,12 @@
-//! Meshes as occluders: triangles put together to patches, patches chosen for a volume, and sheets that
-//! hide without being flat or convex.
+//! Meshes as occluders: triangles merged into patches, patches selected for a volume, and sheets that hide without
+//! being flat or convex.
 //!
-//! * [`Mesh`]: corners that are equal made one, and the edges that triangles share
+//! * [`Mesh`]: merged equal corners, and the edges that triangles share
 //! * [`patches`]: as few and as large [`Occluder`](crate::Occluder)s as a heuristic finds
-//! * [`select`]: which of many are worth drawing into a buffer
+//! * [`select`]: the occluders that are worth drawing into a buffer
 //! * [`Sheets`]: whether a surface, however it is bent and cut into triangles, separates two boxes
 //!
-//! What is chosen is heuristic everywhere, what is claimed is checked by exact predicates.
+//! Every choice is heuristic; every claim is checked by exact predicates.
 
 mod flat;
 mod grow;

@@ -1,4 +1,4 @@
-//! Triangles put together to occluders.
+//! Triangles merged into occluders.
 
 use super::flat::convex_polygons;
 use super::grow::Grower;
@@ -11,12 +11,12 @@ use sightlines_geometry::Point3;
 /// As few and as large occluders as a heuristic finds in a soup of triangles; they may overlap. Sorted by the area of their
 /// outlines, largest first.
 ///
-/// Every triangle of at least `min_area` is in some patch, as far as one can be: on planes perpendicular to an axis convex
-/// polygons inside all that is coplanar, elsewhere what grows over edges. Neighbours may be turned differently; triangles
-/// that no predicate can take, and those without area, are left out.
+/// Every triangle of at least `min_area` is in some patch, as far as possible: on planes perpendicular to an axis,
+/// convex polygons inside coplanar areas; elsewhere, patches that grow over edges. Neighbours may have opposite
+/// orientations; triangles with coordinates that predicates do not accept, and those without area, are left out.
 ///
-/// The same triangles in the same order give the same patches. O(n log n), times what `patience` and
-/// `max_corners` ask for.
+/// The same triangles in the same order give the same patches. O(n log n), times factors that depend on `patience` and
+/// `max_corners`.
 pub fn patches(triangles: &[[Point3; 3]], options: &PatchOptions) -> Vec<Occluder> {
     patches_of(&Mesh::weld(triangles), options)
 }
@@ -31,7 +31,7 @@ fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
     let mut grower = Grower::new(mesh, options);
     let mut seeds: Vec<(f64, u32)> = (0..n as u32).map(|t| (grower.twice_area(t), t)).collect();
     seeds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    // Beyond this many looks at neighbours the small ones that are left stay as they are.
+    // After this many neighbours the remaining small patches stay as they are.
     let most_work = 100 * n as u64 + (1 << 16);
     for (_, seed) in seeds {
         if is_covered[seed as usize] {
@@ -44,7 +44,7 @@ fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
         let patch = grower.grow(seed);
         grower.covered(&patch).into_iter().for_each(|t| is_covered[t as usize] = true);
         occluders.extend(grower.occluder(&patch));
-        // What it grew from may have come to lie in a notch.
+        // The starting triangle may have ended up in a notch.
         if !is_covered[seed as usize] {
             occluders.extend(Occluder::triangle(mesh.corners(seed)));
         }

@@ -1,13 +1,13 @@
-//! How patches are made.
+//! Options for patches.
 
-/// How patches are made. Whatever is chosen, what comes out hides nothing that is visible.
+/// Options for patches. None of them can make a patch hide anything visible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PatchOptions {
     /// The most patches: the largest ones are kept.
     pub limit: usize,
     /// The least area, in square scene units.
     pub min_area: f64,
-    /// The least cosine between the normals of a triangle that joins and of its patch.
+    /// The least cosine between the normal of a joining triangle and that of its patch.
     pub least_cosine: f64,
     /// The most corners of an outline.
     pub max_corners: usize,
@@ -15,7 +15,7 @@ pub struct PatchOptions {
     pub max_facets: usize,
     /// The most triangles of a patch that grows over edges.
     pub max_triangles: usize,
-    /// After how many triangles that did not make a patch better it ends.
+    /// A patch is finished after this many triangles without improvement.
     pub patience: usize,
     /// The sine of a turn to the right that still counts as none when the next triangle is chosen; not negative.
     pub notch: f64,

@@ -1,4 +1,4 @@
-//! Convex polygons in the plane: cuts in doubles, and the exact test of what is cut.
+//! Convex polygons in the plane: cuts in doubles, and the exact test of the result.
 
 use sightlines_geometry::{Point2, orient2d};
 
@@ -8,8 +8,8 @@ pub(super) fn twice_area(polygon: &[Point2]) -> f64 {
     polygon.windows(2).map(|w| (w[0] - o).perp_dot(w[1] - o)).sum()
 }
 
-/// Replaces `polygon`, convex, by what is of it to the left of the line from `p` to `q`, roughly. Coordinates on
-/// axis-parallel lines stay as they are.
+/// Replaces a convex `polygon` by its part to the left of the line from `p` to `q`, approximately. Coordinates on
+/// axis-parallel lines do not change.
 pub(super) fn cut(polygon: &mut Vec<Point2>, out: &mut Vec<Point2>, p: Point2, q: Point2) {
     out.clear();
     let d = q - p;
@@ -54,7 +54,7 @@ pub(super) fn kernel_area(outline: &[Point2], polygon: &mut Vec<Point2>, out: &m
 pub(super) fn is_strictly_convex(polygon: &[Point2]) -> bool {
     let n = polygon.len();
     let turns_left = |i: usize| orient2d(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]) > 0.0;
-    // Once around: every corner is to the left of the first edge's line, and of its ends' other edges.
+    // Once around: every corner is to the left of the first edge's line, and of the other edges at its ends.
     n >= 3
         && (0..n).all(turns_left)
         && (0..n).all(|i| {

@@ -1,17 +1,17 @@
-//! Which occluders are worth drawing.
+//! Selection of the occluders that are worth drawing.
 
 use super::vector::{add, basis, cross, dot, length, scale, sub, unit, vector_area};
 use crate::{Occluder, Plane, Volume};
 use sightlines_geometry::Point3;
 use std::cmp::Ordering;
 
-/// What an occluder is, roughly.
+/// An approximate description of an occluder.
 #[derive(Debug, Clone, Copy)]
 struct Sketch {
     middle: Point3,
     /// Area, along the normal.
     area: Point3,
-    /// Directions of length 1 in its plane, and how far it reaches along each, in all.
+    /// Directions of length 1 in its plane, and its total extent along each.
     axes: [Point3; 2],
     widths: [f64; 2],
 }
@@ -23,7 +23,7 @@ pub struct Chooser {
 }
 
 impl Chooser {
-    /// Looks at each once. O(corners).
+    /// Examines each once. O(corners).
     pub fn new(occluders: &[Occluder]) -> Self {
         Self { sketches: occluders.iter().map(|o| Sketch::of(o.outline())).collect() }
     }
@@ -47,7 +47,7 @@ impl Chooser {
     }
 }
 
-/// Like [`Chooser::select`], for a single question.
+/// Like [`Chooser::select`], for a single query.
 pub fn select(volume: &Volume, plane: &Plane, occluders: &[Occluder], n: usize) -> Vec<u32> {
     Chooser::new(occluders).select(volume, plane, n)
 }
@@ -70,11 +70,12 @@ impl Sketch {
         Self { middle, area, axes, widths }
     }
 
-    /// Space behind it, up to the plane, that is hidden from the volume; none if the volume is not on one side of it.
+    /// The approximate space behind it, up to the plane, that is hidden from the volume; `None` if the volume is not on
+    /// one side of it.
     fn hidden_space(&self, volume: &Volume, plane: &Plane) -> Option<f64> {
         let b = volume.bounds();
         let eye: Point3 = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
-        // How far the volume reaches along a direction, both ways together.
+        // The total extent of the volume along a direction.
         let reach = |a: Point3| (0..3).map(|k| (b.max[k] - b.min[k]) * a[k].abs()).sum::<f64>();
         let way = sub(self.middle, eye);
         let facing = dot(unit(self.area), way).abs();
@@ -87,14 +88,14 @@ impl Sketch {
             return None;
         }
         let shift = behind / in_front;
-        // Seen from one eye the shadow grows with the distance; eyes that are apart take from it on both sides.
+        // From one eye the shadow grows with the distance; eyes apart from each other reduce it on both sides.
         let view = unit(way);
         let growth: [f64; 2] = std::array::from_fn(|i| {
             let across = sub(self.axes[i], scale(view, dot(self.axes[i], view)));
             let (width, spread) = (self.widths[i] * length(across), reach(unit(across)));
             if width > 0.0 { 1.0 - spread / width } else { f64::NEG_INFINITY }
         });
-        // Up to where it is empty, as a part of the way from the eye to it.
+        // Up to where it vanishes, as a multiple of the distance from the eye.
         let last = growth.iter().filter(|g| **g < 0.0).map(|g| -1.0 / g).fold(shift, f64::min);
         if last <= 0.0 {
             return None;
@@ -105,7 +106,7 @@ impl Sketch {
         Some(space * seen * length(way) * self.share_of_window(eye, last, plane))
     }
 
-    /// Which part of the shadow's end falls into the plane's window, by the middle and the widths of the shadow.
+    /// The share of the shadow's end that falls into the plane's window, by the middle and the widths of the shadow.
     fn share_of_window(&self, eye: Point3, last: f64, plane: &Plane) -> f64 {
         let end = add(self.middle, scale(sub(self.middle, eye), last));
         let (low, high) = (plane.origin(), plane.end());

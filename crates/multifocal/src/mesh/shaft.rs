@@ -1,4 +1,4 @@
-//! The convex hull of two boxes, as half-spaces, and what certainly stays out of it.
+//! The convex hull of two boxes, as half-spaces, and tests of what is certainly outside.
 //!
 //! Source: Haines and Wallace, "Shaft Culling for Efficient Ray-Traced Radiosity", 1991. The hull of two boxes is
 //! exactly the intersection of these half-spaces: a plane that is slanted to all three axes touches each box in one
@@ -28,7 +28,7 @@ fn flat(axes: [usize; 2], p: Point3) -> Point2 {
 }
 
 impl Shaft {
-    /// Of boxes with points.
+    /// Of non-empty boxes.
     pub(super) fn new(v: &Aabb<3>, e: &Aabb<3>) -> Self {
         let bounds = v.with(e.min).with(e.max);
         let mut tilts = Vec::with_capacity(6);
@@ -44,10 +44,10 @@ impl Shaft {
         Self { bounds, tilts }
     }
 
-    /// One bit for each half-space that `a` is outside of or on the border of. Two points with a bit in common are
-    /// joined by a segment that does not meet the relative interior of `K`.
+    /// One bit for each half-space that `a` is outside of or on the border of. The segment between two points with a
+    /// bit in common does not meet the relative interior of `K`.
     ///
-    /// Half-spaces whose border contains all of `K` would say nothing about that: of those only the outside counts.
+    /// Half-spaces whose border contains all of `K` would not imply that: for those only the outside counts.
     pub(super) fn code(&self, a: Point3) -> u32 {
         let mut code = 0;
         for (k, x) in a.into_iter().enumerate() {
@@ -62,8 +62,8 @@ impl Shaft {
         code
     }
 
-    /// Whether the segment from `a` to `b` certainly does not meet `K`: what the half-spaces leave of it, at
-    /// least, is nothing.
+    /// Whether the segment from `a` to `b` certainly does not meet `K`: a superset of its part inside all half-spaces
+    /// is empty.
     ///
     /// With `g` the affine function that is positive inside of a half-space, `g(a) <= ga` and `g(b) <= gb`, and `ga`
     /// positive, `gb` negative, what is inside lies within the first `ga / (ga - gb)` of the segment.
@@ -95,7 +95,7 @@ impl Shaft {
 
 impl Tilt {
     /// The half-space through corners `v` and `e` of the two boxes that are lowest or highest (`upper`) along both
-    /// axes; none if that is no face of the hull, or if the whole hull lies on it.
+    /// axes; `None` if that is not a face of the hull, or if the whole hull lies on it.
     fn new(axes: [usize; 2], upper: [bool; 2], v: Point2, e: Point2, boxes: [&Aabb<3>; 2]) -> Option<Self> {
         // Left of (p, q) is the direction (-dy, dx); it has to point inwards along both axes.
         let inwards = |p: Point2, q: Point2| {
@@ -127,7 +127,7 @@ impl Tilt {
     }
 }
 
-/// Whether a triangle certainly stays away from a box. Exact, by all axes that can separate the two.
+/// Whether a triangle certainly avoids a box. Exact, by all axes that can separate the two.
 ///
 /// * `touching`: whether it may touch the border of the box, so long as it does not meet its relative
 ///   interior
@@ -164,7 +164,7 @@ pub fn avoids(t: &[Point3; 3], b: &Aabb<3>, touching: bool) -> bool {
     })
 }
 
-/// How many corners of a box lie on each side of a line or plane.
+/// Number of corners of a box on each side of a line or plane.
 #[derive(Default)]
 struct Sides {
     n_positive: u32,
@@ -255,8 +255,8 @@ mod tests {
     }
 
     proptest! {
-        /// Invariant: a segment that passes a point of the hull between two inner points is never said to miss it,
-        /// and a triangle with a point of a box in it never to avoid that.
+        /// Invariant: a segment through a point of the hull between two inner points is never reported to miss it, and
+        /// a triangle that contains a point of a box is never reported to avoid the box.
         #[test]
         fn shaft_nothing_inside_is_said_to_miss(
             v in boxes(), e in boxes(), at in [any::<[u32; 3]>(), any::<[u32; 3]>()], a in point(), cut in 1u32..16,
@@ -274,9 +274,9 @@ mod tests {
             prop_assert!(!shaft.certainly_misses(a, b), "{:?} {:?}", a, b);
         }
 
-        /// Invariant: points on a grid are outside if and only if a half-space or box says so: by separation from the
-        /// hull of the sixteen corners along the directions of all pairs of edges. Of a hull that lies in a plane no
-        /// half-spaces are known, and fewer points are reported to miss it.
+        /// Invariant: points on a grid are outside if and only if a half-space or box proves it: by separation from the
+        /// hull of the sixteen corners along the directions of all pairs of edges. A hull that lies in a plane has no
+        /// half-spaces, and fewer points are reported to miss it.
         #[test]
         fn shaft_misses_what_is_clearly_outside(v in boxes(), e in boxes(), a in point(), b in point()) {
             let shaft = Shaft::new(&v, &e);

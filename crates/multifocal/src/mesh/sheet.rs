@@ -9,16 +9,17 @@
 //! Then every segment from a point of `V` to a point of `E` meets `F` before its end.
 //!
 //! # Why
-//! Segments between the relative interiors can be moved into each other, as these are convex; on the way all
-//! stay in the relative interior of `K`, as a point between relative interior points of two convex sets is in
-//! the relative interior of their hull. So they never pass the rim (2), their ends never pass `F` (1), and how often they cross
-//! `F` stays odd or even: it is the intersection number modulo 2 of a path and a chain, each of which ends where the other is not.
-//! So all of them meet `F` (3). A segment from or to a border is a limit of such segments, and meets `F` as `F` is closed; not at
-//! its end in `E` (1), so before. At its other end it may: an eye that touches a wall sees nothing through it.
+//! Segments between the relative interiors can be moved into each other, as these are convex; on the way all stay in
+//! the relative interior of `K`, as a point between relative interior points of two convex sets is in the relative
+//! interior of their hull. So they never pass the rim (2), their ends never pass `F` (1), and the number of times that
+//! they cross `F` stays odd or even: it is the intersection number modulo 2 of a path and a chain, each of which avoids
+//! the other's boundary. So all of them meet `F` (3). A segment from or to a border is a limit of such segments, and
+//! meets `F` as `F` is closed; not at its end in `E` (1), so before. It may meet `F` at its other end: an eye that
+//! touches a wall sees nothing through it.
 //!
-//! `F` is free. Here it is found by walking over the surface that the eyes see, from each triangle that a segment hits first,
-//! around edges where these are open or shared by many, to the next triangle on the same side; what is walked over on both
-//! sides is left out. Nothing depends on that: the three conditions are checked afterwards.
+//! `F` is arbitrary. Here it is found by walking over the surface that the eyes see, from each triangle that a segment
+//! hits first, around open or shared edges, to the next triangle on the same side; triangles visited on both sides are
+//! left out. Soundness does not depend on the walk: the three conditions are checked afterwards.
 //!
 //! Source: parity as for the ShieldTester of Navazo, Rossignac, Jou and Shariff, Computer Graphics Forum 22(3), 2003; the walk
 //! on sides and the treatment of borders were chosen here.
@@ -83,7 +84,7 @@ impl Sheets {
         }
     }
 
-    /// One question; see [`SheetTester::hides`]. O(n) besides, so ask many of one [`SheetTester`].
+    /// A single query; see [`SheetTester::hides`]. O(n) in addition, so use one [`SheetTester`] for many queries.
     pub fn hides(&self, v: &Aabb<3>, e: &Aabb<3>, limit: usize) -> bool {
         self.tester().hides(v, e, limit)
     }
@@ -93,14 +94,14 @@ impl Sheets {
         &self.around[start..end]
     }
 
-    /// Whether the triangle's loop runs along the edge from its lower end to its upper one.
+    /// Whether the triangle's loop traverses the edge from its lower end to its upper one.
     fn is_forward(&self, triangle: u32, at: usize) -> bool {
         let ring = self.mesh.outline(triangle);
         ring[at] < ring[(at + 1) % ring.len()]
     }
 
-    /// The side of a triangle that is next on the same side, around an edge: in a turn around the edge, what is next to
-    /// the upper side of a triangle is the lower side of the next one.
+    /// The next side on the same side of the surface, around an edge: in a turn around the edge, the upper side of a
+    /// triangle is followed by the lower side of the next one.
     fn next_side(&self, side: Side, at: usize) -> Side {
         let edge = self.mesh.outline_edges(side.triangle)[at];
         let up = side.front == self.is_forward(side.triangle, at);
@@ -132,13 +133,13 @@ impl Side {
     }
 }
 
-/// Sorts triangles by their angle around an edge, upwards as seen against the direction of the edge. Any order would do; the right one
-/// makes walks follow what is seen.
+/// Sorts triangles by their angle around an edge, upwards as seen against the direction of the edge. Any order is
+/// valid; this one makes walks follow the visible surface.
 fn sort_around(mesh: &Mesh, edge: u32, triangles: &mut [u32]) {
     let [a, b] = mesh.edges()[edge as usize].map(|v| mesh.vertices()[v as usize]);
     let [u, v] = basis(unit(sub(b, a)));
     let angle = |t: u32| {
-        // The corner farthest from the edge stands for the triangle.
+        // The corner farthest from the edge represents the triangle.
         let off = |p: Point3| [dot(sub(p, a), u), dot(sub(p, a), v)];
         let far = mesh.corners(t).map(off).into_iter();
         let [x, y] = far.max_by(|p, q| (p[0] * p[0] + p[1] * p[1]).total_cmp(&(q[0] * q[0] + q[1] * q[1])))?;
@@ -157,42 +158,42 @@ fn sort_around(mesh: &Mesh, edge: u32, triangles: &mut [u32]) {
     });
 }
 
-/// Asks a mesh about pairs of boxes, one after the other.
+/// Tests pairs of boxes against a mesh, one after the other.
 #[derive(Debug)]
 pub struct SheetTester<'a> {
     sheets: &'a Sheets,
-    /// Marks of earlier questions and walks have lower numbers.
+    /// Marks of earlier queries and walks have lower numbers.
     epoch: u32,
     /// When each side was walked over.
     walked: Vec<u32>,
-    /// For which question the code of each vertex was worked out, and the code.
+    /// For each vertex, the query for which its code was computed, and the code.
     codes: Vec<(u32, u32)>,
-    /// How many triangles of the chain end at each edge.
+    /// Parity of the triangles of the chain that end at each edge.
     odd: Vec<u32>,
     queue: Vec<Side>,
-    /// Whether the walk came by an edge that has not two triangles.
+    /// Whether the walk met an edge without exactly two triangles.
     forked: bool,
     chain: Vec<u32>,
 }
 
-/// A question.
+/// A query.
 struct Pair<'a> {
     v: &'a Aabb<3>,
     e: &'a Aabb<3>,
     shaft: Shaft,
-    /// The first mark of this question.
+    /// The first mark of this query.
     since: u32,
 }
 
 impl SheetTester<'_> {
-    /// Whether every segment from a point of `v` to a point of `e` certainly meets the mesh before its end. Errs towards
-    /// no.
+    /// Whether every segment from a point of `v` to a point of `e` certainly meets the mesh before its end. Errs
+    /// towards `false`.
     ///
-    /// * `v`: where eyes are; what touches its border may hide
-    /// * `e`: what is hidden or not; what touches it hides nothing
-    /// * `limit`: how many sides of triangles to walk over, in all
+    /// * `v`: the eyes; triangles that touch its border may hide
+    /// * `e`: the target; triangles that touch it hide nothing
+    /// * `limit`: number of triangle sides to visit, in all
     ///
-    /// Cost: a few lines through the tree where they pass freely, else the walk.
+    /// Cost: a few lines through the tree if they pass freely, otherwise the walk.
     pub fn hides(&mut self, v: &Aabb<3>, e: &Aabb<3>, limit: usize) -> bool {
         let usable = |b: &Aabb<3>| !b.is_empty() && b.min.iter().chain(&b.max).all(|&x| check_coordinate(x).is_ok());
         if !usable(v) || !usable(e) || (0..3).all(|k| v.min[k] <= e.max[k] && e.min[k] <= v.max[k]) {
@@ -231,7 +232,7 @@ impl SheetTester<'_> {
                 if left == 0 {
                     return false;
                 }
-                // Where every edge has two triangles both sides have the same way.
+                // If every edge has two triangles, the walks on both sides are the same.
                 if !self.forked {
                     break;
                 }
@@ -240,7 +241,7 @@ impl SheetTester<'_> {
         false
     }
 
-    /// Makes room for `n` marks that no question has used.
+    /// Makes room for `n` marks that no query has used.
     fn next_epoch(&mut self, n: u32) {
         if self.epoch > u32::MAX - n - 2 {
             self.walked.fill(0);
@@ -250,8 +251,8 @@ impl SheetTester<'_> {
         self.epoch += 1;
     }
 
-    /// Walks over the surface from a side on, within the hull; whether that came to an end. The chain is then what was walked over
-    /// on one side only.
+    /// Walks over the surface from a side, within the hull; returns whether the walk ended. The chain then has the
+    /// triangles visited on one side only.
     fn walk(&mut self, pair: &Pair<'_>, start: Side, left: &mut usize) -> bool {
         let sheets = self.sheets;
         self.queue.clear();
@@ -328,7 +329,8 @@ impl SheetTester<'_> {
 }
 
 impl Sheets {
-    /// Whether a segment meets a triangle, as doubles have it. Only used where a mistake leads to the answer no, or to a walk.
+    /// Whether a segment meets a triangle, in doubles. Only used where an error leads to the answer `false`, or to a
+    /// walk.
     fn blocks(&self, segment: [Point3; 2]) -> bool {
         let mut any = false;
         self.hits(segment, |_, _| {
@@ -338,7 +340,8 @@ impl Sheets {
         any
     }
 
-    /// Triangles that a segment meets, with the part of it before, while `each` asks for more; as doubles have it.
+    /// Passes the triangles that a segment meets to `each`, with the parameter of the hit, until it returns `false`; in
+    /// doubles.
     fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64) -> bool) {
         let d = sub(q, p);
         let inverse = d.map(|x| 1.0 / x);

@@ -1,4 +1,4 @@
-//! Corners that are equal made one, and the edges that triangles share.
+//! Merged equal corners, and the edges that triangles share.
 
 use super::vector::collinear;
 use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate};
@@ -10,8 +10,8 @@ use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate};
 /// is closed as a surface is closed as a mesh. Corners near an edge, but not on it, leave a crack, as they do
 /// for lines of sight.
 ///
-/// Without: triangles without area, triangles that predicates cannot take, and all but the first of triangles with
-/// the same three corners.
+/// Leaves out triangles without area, triangles with coordinates that predicates do not accept, and all but the first
+/// of triangles with the same three corners.
 ///
 /// The same triangles in the same order give the same mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -58,7 +58,7 @@ impl Mesh {
         self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 
-    /// Which of the given triangles a triangle is.
+    /// The index of the given triangle.
     pub fn source(&self, triangle: u32) -> u32 {
         self.sources[triangle as usize]
     }
@@ -122,7 +122,7 @@ impl Mesh {
         self.sources = kept.iter().map(|&i| good[i as usize].0).collect();
     }
 
-    /// Where sides with an odd number of triangles are to be cut: ends of the side in ascending order, and the vertex.
+    /// Where sides with an odd number of triangles are split: the ends of each side in ascending order, and the vertex.
     fn cuts(&self, sides: &[[u32; 2]]) -> Vec<([u32; 2], u32)> {
         let mut all: Vec<[u32; 2]> = sides.iter().map(|&s| ascending(s)).collect();
         all.sort_unstable();

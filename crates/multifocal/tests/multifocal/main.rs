@@ -1,4 +1,4 @@
-//! Occluders out of meshes.
+//! Occluders made from meshes.
 
 mod mesh_patches;
 mod mesh_real;

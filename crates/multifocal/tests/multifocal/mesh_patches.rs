@@ -1,4 +1,4 @@
-//! Patches against rays: where one says that it is in the way, triangles are; and patches of known walls.
+//! Patches against rays: where a patch blocks, triangles do; and patches of known walls.
 
 use proptest::prelude::*;
 use sightlines_geometry::{Point3, orient3d};
@@ -13,7 +13,7 @@ fn at(p: [f64; 3], q: [f64; 3], t: f64) -> Point3 {
     std::array::from_fn(|k| p[k] + (q[k] - p[k]) * t)
 }
 
-/// Whether the line from `v` to `p` is one on which the occluder promises to hide.
+/// Whether the occluder guarantees to hide on the line from `v` to `p`.
 fn promises(o: &Occluder, v: Point3, p: Point3) -> bool {
     let front = o.side_of(&[v]);
     front.is_some() && o.side_of(&[p]) == front.map(|f| !f) && surrounds(o, v, p)
@@ -26,13 +26,13 @@ fn surrounds(o: &Occluder, v: Point3, p: Point3) -> bool {
     (0..n).all(|i| side(i) > 0.0) || (0..n).all(|i| side(i) < 0.0)
 }
 
-/// How many lines through a patch were tried, were promised to be blocked, and are free.
+/// The numbers of lines through a patch that were tried, are guaranteed to be blocked, and are free.
 fn judged(o: &Occluder, rays: &RayScene, seed: u64, n: u64) -> [usize; 3] {
     let mut counts = [0; 3];
     let outline = o.outline();
     for i in 0..n {
         let mut random = Random::new(seed, i);
-        // Inside of a triangle of corners: a ray along an edge is the ray tracer's matter, not ours.
+        // Inside a triangle of corners: rays along edges test the ray tracer, not the patch.
         let (k, n) = (random.below(outline.len()), outline.len());
         let far = 1 + random.below(n - 2);
         let [a, b, c] = [k, (k + far) % n, (k + far + 1 + random.below(n - 1 - far)) % n].map(|i| outline[i]);
@@ -59,7 +59,8 @@ fn options() -> impl Strategy<Value = PatchOptions> {
 }
 
 proptest! {
-    /// Invariant: with any options, a line that passes an outline all on one side meets a triangle between the two sides.
+    /// Invariant: with any options, a line that passes an outline all on one side meets a triangle between the two
+    /// ends.
     #[test]
     fn patches_are_in_the_way_where_they_say(soup in soup(), options in options(), seed in any::<u64>()) {
         let rays = scene(&soup);
@@ -79,7 +80,7 @@ proptest! {
             // Not all of a triangle need be within one patch, and its very middle may lie on a border.
             let inner = |[a, b, c]: [Point3; 3]| at(at(a, b, 0.44), c, 0.31);
             let inner = [inner([a, b, c]), inner([b, c, a]), inner([c, a, b])];
-            // Patches of several planes are seen straight from in front at their own mean normal only.
+            // Patches of several planes are seen straight from in front only along their own mean normal.
             let passed = |o: &Occluder| inner.iter().any(|&middle| {
                 let normal = vector_area(o.outline());
                 let [v, p] = [-1.0, 1.0].map(|s| std::array::from_fn(|k| middle[k] + s * normal[k]));
@@ -93,7 +94,7 @@ proptest! {
         prop_assert_eq!(&few[..], &found[..limit.min(found.len())]);
     }
 
-    /// Invariant: welding finds the triangles of every edge that comparing all pairs of sides finds, and cuts
+    /// Invariant: welding finds the same triangles at every edge as a comparison of all pairs of sides, and splits
     /// edges only at corners that lie on them.
     #[test]
     fn weld_edges_are_the_shared_sides(soup in soup()) {
@@ -156,8 +157,8 @@ fn vector_area(outline: &[Point3]) -> Point3 {
     sum.map(|x| x / 2.0)
 }
 
-/// The twin of the first invariant: lines were promised, and through most of each patch; and the impostor: patches of a mesh
-/// of which triangles are taken away afterwards are found out.
+/// The twin of the first invariant: lines are guaranteed, and through most of each patch; and the impostor: patches of
+/// a mesh from which triangles are removed afterwards are detected.
 #[test]
 fn patches_promise_much_and_can_be_caught() {
     let (mut whole, mut open) = ([0; 3], [0; 3]);
@@ -175,7 +176,7 @@ fn patches_promise_much_and_can_be_caught() {
     assert!(open[2] * 20 > open[1], "{open:?}");
 }
 
-/// The areas of the patches of a wall that is not cut along what is convex in it.
+/// The areas of the patches of a wall that is not divided into its convex parts.
 fn areas(soup: &[[Point3; 3]]) -> Vec<f64> {
     let found = patches(soup, &PatchOptions::default());
     found.iter().map(|o| (area(o.outline()) * 100.0).round() / 100.0).collect()
@@ -188,7 +189,7 @@ fn flat_walls_are_one_patch() {
     let mut turned = uneven(&[9, 130, 77]);
     turned.iter_mut().step_by(2).for_each(|t| t.swap(0, 1));
     assert_eq!(areas(&turned), [100.0], "whichever way triangles turn");
-    // A slanted plane with whole coordinates: 4 by 3 rhombi, exactly flat.
+    // A slanted plane with integer coordinates: 4 by 3 rhombi, exactly flat.
     let p = |i: i32, k: i32| [f64::from(i + k), f64::from(2 * i), f64::from(3 * k)];
     let slanted = |(i, k): (i32, i32)| quad([p(i, k), p(i + 1, k), p(i + 1, k + 1), p(i, k + 1)], i == k);
     let all: Soup = (0..12).map(|n| (n % 4, n / 4)).flat_map(slanted).collect();
@@ -200,7 +201,7 @@ fn flat_walls_are_one_patch() {
     assert_eq!(areas(&nonsense), [0.0; 0]);
 }
 
-/// A wall 10 by 4 with a door from 4 to 5, 3 high: the strip above it, and what is on both sides up to the ceiling.
+/// A wall 10 by 4 with a door from 4 to 5, 3 high: the strip above it, and the parts on both sides up to the ceiling.
 #[test]
 fn walls_with_doors_give_strips_that_overlap() {
     let ring = [[0, 0], [4, 0], [4, 3], [5, 3], [5, 0], [10, 0], [10, 4], [0, 4]];
@@ -223,7 +224,7 @@ fn bent_walls_give_patches_of_several_planes() {
     assert!(area(found[0].outline()) > 40.0, "of 80: {:?}", area(found[0].outline()));
 }
 
-/// What is chosen hides nearly as much as the best that could be chosen, measured by points behind.
+/// The selected occluders hide nearly as much as the best possible selection, measured by points behind.
 #[test]
 fn the_chosen_hide_most() {
     let volume = Volume::new(sightlines_geometry::Aabb { min: [-0.5; 3], max: [0.5; 3] }).unwrap();

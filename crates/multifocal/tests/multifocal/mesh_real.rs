@@ -9,7 +9,7 @@ use sightlines_testkit::Random;
 use sightlines_testkit::RayScene;
 use std::time::Instant;
 
-/// The scenes of these names; says loudly that the test skips if there is no data.
+/// The scenes of these names; prints that the test is skipped if there is no data.
 fn scenes(names: &[&str], test: &str) -> Vec<(String, Scene)> {
     let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
         eprintln!("SKIPPED {test}: SIGHTLINES_DATA is not set");
@@ -115,7 +115,7 @@ fn patches_are_larger_than_triangles() {
     }
 }
 
-/// Something of each kind.
+/// Asserts that there is something of each kind.
 fn check_witness(found: &[Occluder]) {
     assert!(found.iter().any(|o| o.outline().len() > 3));
 }
@@ -153,7 +153,7 @@ fn sheets_hide_much_of_real_scenes() {
                 1e6 * seconds / hidden.len() as f64
             );
         }
-        // Rays from random places of volumes, whatever they are aimed at.
+        // Rays from random points of volumes, regardless of their target.
         let rays = RayScene::new(&scene);
         let pairs = volumes.iter().flat_map(|v| targets.iter().map(move |e| (v, e)));
         let mut n_hidden = 0;

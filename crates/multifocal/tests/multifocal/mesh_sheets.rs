@@ -1,5 +1,5 @@
-//! Sheets against rays: nothing that is called hidden is ever reached, and most of what is never reached is
-//! called hidden.
+//! Sheets against rays: nothing that is reported hidden is ever reached, and most of what is never reached is reported
+//! hidden.
 
 use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Point3, orient3d};
@@ -15,7 +15,7 @@ fn cube(middle: Point3, half: f64) -> Aabb<3> {
 }
 
 proptest! {
-    /// Invariant: a random segment from one box to the other meets the mesh if the sheets say so.
+    /// Invariant: a random segment from one box to the other meets the mesh if the sheets report it hidden.
     #[test]
     fn sheets_hide_nothing_that_a_ray_reaches(soup in soup(), pairs in prop::collection::vec(boxes(), 12), seed in any::<u64>()) {
         let (sheets, rays) = (Sheets::new(&soup), scene(&soup));
@@ -28,7 +28,7 @@ proptest! {
         }
     }
 
-    /// Invariant: an tester that was asked before says what a fresh one says.
+    /// Invariant: a tester that was used before gives the same answers as a fresh one.
     #[test]
     fn sheets_do_not_remember(soup in soup(), pairs in prop::collection::vec(boxes(), 6)) {
         let sheets = Sheets::new(&soup);
@@ -39,8 +39,8 @@ proptest! {
     }
 }
 
-/// How many pairs were tested, reported hidden, never reached by a ray, and both reached and reported hidden, with
-/// sheets of what `heard` makes of the meshes.
+/// The numbers of pairs that were tested, reported hidden, never reached by a ray, and both reached and reported
+/// hidden, with sheets of the meshes changed by `heard`.
 fn judged(heard: impl Fn(&Soup) -> Soup) -> [usize; 4] {
     let mut counts = [0; 4];
     for (i, (soup, pairs)) in draw(&(soup(), prop::collection::vec(boxes(), 12)), 400).iter().enumerate() {
@@ -65,10 +65,10 @@ fn sheets_hide_most_of_what_no_ray_reaches() {
     assert!(n_unreached > 500 && n_hidden * 100 > n_unreached * 60, "{n} {n_hidden} {n_unreached}");
 }
 
-/// The impostors: sheets that overlook a missing triangle, or a crack, are found out.
+/// The impostors: sheets that ignore a missing triangle, or a crack, are detected.
 #[test]
 fn sheets_that_overlook_open_edges_are_noticed() {
-    // Rays see the mesh without each third triangle, sheets see it whole.
+    // Rays use the mesh without each third triangle, sheets the whole mesh.
     let mut n_wrong = 0;
     for (i, (soup, pairs)) in draw(&(soup(), prop::collection::vec(boxes(), 12)), 150).iter().enumerate() {
         let open: Soup = soup.iter().enumerate().filter(|(k, _)| k % 3 != 0).map(|(_, t)| *t).collect();
@@ -78,14 +78,14 @@ fn sheets_that_overlook_open_edges_are_noticed() {
         n_wrong += pairs.iter().filter(wrong).count();
     }
     assert!(n_wrong > 50, "{n_wrong}");
-    // Corners rounded to halves close cracks that are there.
+    // Corners rounded to halves close real cracks.
     let rounded = |s: &Soup| s.iter().map(|t| t.map(|p| p.map(|x| (x / 2.0).round() * 2.0))).collect();
     let [.., n_wrong] = judged(rounded);
     assert!(n_wrong > 20, "{n_wrong}");
 }
 
-/// Whether the lines of all pairs of corners pass the outline on one side, and cross all planes: what a buffer
-/// could find at best.
+/// Whether the lines of all pairs of corners pass the outline on one side, and cross all planes: the best that a buffer
+/// could find.
 fn patch_hides(o: &Occluder, v: &Aabb<3>, e: &Aabb<3>) -> bool {
     let corners = |b: &Aabb<3>| -> Vec<Point3> {
         (0..8).map(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { b.min[k] } else { b.max[k] })).collect()
@@ -100,7 +100,7 @@ fn patch_hides(o: &Occluder, v: &Aabb<3>, e: &Aabb<3>) -> bool {
     (0..n).all(|i| eyes.iter().all(|&a| ends.iter().all(|&b| side(a, b, i) == side(eyes[0], ends[0], 0))))
 }
 
-/// A wall that is bent around what it hides: no patch of it does.
+/// A wall that is bent around its target: no patch of it hides the target.
 #[test]
 fn a_curved_wall_hides_what_no_patch_hides() {
     // A quarter of a cylinder of radius 6 around the z axis, in 16 strips of 6 squares.

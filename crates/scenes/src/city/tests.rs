@@ -1,11 +1,11 @@
-//! Cities: closed, apart, and as large as said.
+//! Cities: closed, disjoint houses, and the documented size.
 
 use super::*;
 use std::collections::BTreeSet;
 
 const SMALL: CityOptions = CityOptions { seed: 3, blocks_x: 3, blocks_z: 2, detail: 1 };
 
-/// What is wrong with an object: an edge without its partner, or a surface that does not face outwards.
+/// The defect of an object: an edge without its partner, or a surface that does not face outwards.
 fn fault(o: &SceneObject) -> Option<&'static str> {
     let mut edges = BTreeSet::new();
     for t in &o.triangles {
@@ -49,7 +49,7 @@ fn city_houses_are_closed_and_apart() {
     }
 }
 
-/// The impostor: a hole and a face turned round are noticed, and so are houses that overlap.
+/// The impostor: a hole and a reversed face are detected, and so are houses that overlap.
 #[test]
 fn city_faults_are_noticed() {
     let house = city(SMALL).unwrap().objects()[1].clone();

@@ -1,11 +1,11 @@
-//! The benchmark's rectangles and boxes. How much is hidden is measured where rays are: in the tests of `testkit`.
+//! The benchmark's rectangles and boxes. The hidden share is measured with rays in the tests of `testkit`.
 
 use super::*;
 use sightlines_geometry::orient3d;
 
 const SOME: OcclusionOptions = OcclusionOptions { seed: 5, occluders: 300, occludees: 300, tilt: 60 };
 
-/// How steep a rectangle is along each side.
+/// The slope of a rectangle along each side.
 fn slopes([a, b, c, _]: [Point3; 4]) -> [f64; 2] {
     [(c[2] - b[2]) / (c[0] - b[0]), (b[2] - a[2]) / (b[1] - a[1])]
 }

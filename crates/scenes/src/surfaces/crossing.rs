@@ -4,7 +4,7 @@ use super::{Steps, object, scene};
 use crate::error::{SceneError, check_range};
 use sightlines_cells::Scene;
 
-/// Strips in two parallel planes: those along x before those along y, each of which covers a part of each of the
+/// Strips in two parallel planes: those along x in front of those along y, each of which covers a part of each of the
 /// others, all in overlapping ranges of depth: for `n` triangles `n^2 / 4` overlaps, and yet an order without splits.
 ///
 /// * `triangles`: their number, from 2 to 2^14; half of them, rounded up, lie along x, and come first
@@ -14,7 +14,7 @@ use sightlines_cells::Scene;
 pub fn lattice(triangles: u32) -> Result<Scene, SceneError> {
     let n = check_range("triangles", triangles, 2, 1 << 14)?;
     let [along, across] = [n.div_ceil(2), n / 2].map(i64::from);
-    // Strips are half as wide at their base as they are apart, and reach beyond the last one that they cross.
+    // Strips are half as wide at their base as their pitch, and extend beyond the last one that they cross.
     let pitch = 16;
     let reach = (along / 2 + 2) * pitch;
     let strips = |count: i64, turned: bool| -> Vec<Steps> {
@@ -33,10 +33,10 @@ pub fn lattice(triangles: u32) -> Result<Scene, SceneError> {
     Ok(scene(objects.map(|(name, strips)| object(name.to_owned(), &strips, steps)).into()))
 }
 
-/// Triangles of which every BSP tree by their own planes has about `n^2 / 4` pieces more than triangles: each has an
-/// edge on a hyperbolic paraboloid, a line of one of its two families; those of one family hang below it in parallel
+/// Triangles for which every BSP tree along their own planes has about `n^2 / 4` more pieces than triangles: each has
+/// an edge on a hyperbolic paraboloid, a line of one of its two families; those of one family hang below it in parallel
 /// planes, those of the other stand above it in planes across the first. No two meet; but the plane of each cuts all of
-/// the other family, and no plane of any of them lies between two that come close.
+/// the other family, and no plane of any of them separates two that come close.
 ///
 /// Source: Paterson and Yao, Discrete & Computational Geometry 5, 1990: with thin triangles along these lines any BSP
 /// tree has that size.

@@ -1,10 +1,10 @@
-//! Faces close behind each other, near and far: what the precision of depths has to tell apart.
+//! Faces close behind each other, near and far, to test the precision of depths.
 
 use super::{FINE, Steps, Tile, object, scene};
 use crate::error::{SceneError, check_range};
 use sightlines_cells::Scene;
 
-/// What pairs of faces to generate.
+/// Options of [`depth_pairs`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DepthPairsOptions {
     /// Number of pairs, from 1 to 40.
@@ -26,9 +26,9 @@ impl Default for DepthPairsOptions {
 /// Places along the side of a tile.
 const SIDE: i64 = 32;
 
-/// Pairs of parallel faces with the same gap, each pair in a tile of its own, each about half as far again or a third
-/// as the one before. The faces are sloped: a quarter deeper on one side than on the other. Each is two triangles, an
-/// object `back_0`, `front_0`, `back_1` and so on. The one in front has the higher ids, so that depths that cannot be
+/// Pairs of parallel faces with the same gap, each pair in its own tile, with depths that grow alternately by about a
+/// half and a third. The faces are sloped: a quarter deeper on one side than on the other. Each is two triangles, an
+/// object `back_0`, `front_0`, `back_1` and so on. The front face has the higher id, so that depths that cannot be
 /// distinguished show the wrong one.
 ///
 /// # Errors

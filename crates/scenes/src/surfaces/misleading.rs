@@ -1,12 +1,12 @@
-//! Triangles whose depths mislead: in circles, and long beside short.
+//! Triangles whose depths mislead: cyclic overlaps, and long triangles next to short ones.
 
 use super::{Steps, Tile, object, scene};
 use crate::error::{SceneError, check_range};
 use sightlines_cells::Scene;
 
-/// Triangles in threes, each tile of the picture with three: the first lies over a part of the second, that over a part
-/// of the third, and that over a part of the first. No order of whole triangles is right. No two pass through each
-/// other. The last tile may have fewer.
+/// Triangles in threes, each tile of the picture with three: the first covers a part of the second, that a part of the
+/// third, and that a part of the first. No order of whole triangles is right. No two intersect. The last tile may have
+/// fewer.
 ///
 /// * `triangles`: their number, from 1 to 2^20
 ///
@@ -36,9 +36,9 @@ fn bar(tile: &Tile, turn: usize) -> Steps {
     })
 }
 
-/// Triangles in pairs, each tile of the picture with one: a long one that leads away from the eye, and a short one
-/// before its far part, of which the mid-point is farther than that of the long one. By mid-points each is drawn in the
-/// wrong order. The long one has the lower id. If the number is odd the last is a long one alone.
+/// Triangles in pairs, each tile of the picture with one pair: a long one that leads away from the eye, and a short one
+/// in front of its far part, whose midpoint is farther than that of the long one. Ordered by midpoints, each pair is
+/// drawn in the wrong order. The long one has the lower id. If the number is odd, the last is a long one alone.
 ///
 /// * `triangles`: their number, from 1 to 2^20
 ///
@@ -48,8 +48,8 @@ pub fn interleaved(triangles: u32) -> Result<Scene, SceneError> {
     check_range("triangles", triangles, 1, 1 << 20)?;
     let mut left = triangles as usize;
     let objects = Tile::all(triangles.div_ceil(2), 32).zip(0..).map(|(tile, k)| {
-        // The middle of the long one is at depth 80 / 3. Up in the picture the inverse of the depth is linear: at 20
-        // places, where the short one begins, the long one is at depth 29.
+        // The middle of the long one is at depth 80 / 3. Upwards in the picture the inverse of the depth is linear: at
+        // height 20, where the short one begins, the long one is at depth 29.
         let long = [([2, 2], 20), ([30, 2], 20), ([16, 30], 40)];
         let short = [([12, 20], 28), ([20, 20], 28), ([16, 28], 28)];
         let pair = [long, short].map(|corners| corners.map(|(place, depth)| tile.at(place, depth)));

@@ -1,9 +1,9 @@
-//! Triangles that are hard to draw in order: for each method of visible-surface determination a family that it does
-//! badly on.
+//! Triangles that are hard to draw in order: for each method of visible-surface determination a family on which it
+//! performs badly.
 //!
-//! All are made to be seen from [`EYE`] towards [`AT`] with [`UP`] up and [`ANGLE`] high: nothing is behind the eye,
-//! and what is not in the picture is little. Coordinates are whole numbers of steps until the last division, by a power
-//! of two.
+//! All are made to be seen from [`EYE`] towards [`AT`] with [`UP`] up and an angle of [`ANGLE`]: nothing is behind the
+//! eye, and little is outside the picture. Coordinates are integers of steps until the last division, by a power of
+//! two.
 
 mod crossing;
 mod depth;
@@ -17,14 +17,14 @@ pub use random::{SurfaceOptions, coplanar, slivers, soup};
 
 use sightlines_cells::{Point3, Scene, SceneObject};
 
-/// Where these scenes are seen from.
+/// The eye of these scenes.
 pub const EYE: Point3 = [0.0; 3];
-/// What is looked at.
+/// The point that the eye looks at.
 pub const AT: Point3 = [0.0, 0.0, 1.0];
-/// What is up.
+/// The upward direction.
 pub const UP: Point3 = [0.0, 1.0, 0.0];
-/// The angle from the lower to the upper edge of the picture, in degrees. Places in the picture reach half a unit to
-/// all sides at distance 1, for which 53.2 degrees are enough.
+/// The angle from the lower to the upper edge of the picture, in degrees. Positions in the picture extend half a unit
+/// to all sides at distance 1, for which 53.2 degrees are enough.
 pub const ANGLE: f64 = 60.0;
 
 /// Steps in a unit.
@@ -52,17 +52,17 @@ fn scene(objects: Vec<SceneObject>) -> Scene {
     Scene::new(objects).expect("whole numbers of steps make a scene")
 }
 
-/// A square part of the picture, and the places in it.
+/// A square part of the picture, with the positions in it.
 #[derive(Debug, Clone, Copy)]
 struct Tile {
     /// Its lower corner, in places.
     corner: [i64; 2],
-    /// How many places make a unit at distance 1: a power of two.
+    /// Number of positions in a unit at distance 1: a power of two.
     places: i64,
 }
 
 impl Tile {
-    /// The `n` tiles of `side` by `side` places that a picture is cut into, row by row.
+    /// The `n` tiles of `side` by `side` positions that a picture is divided into, row by row.
     fn all(n: u32, side: i64) -> impl Iterator<Item = Self> {
         let row = i64::from(n.saturating_sub(1).isqrt()) + 1;
         let places = (row * side).unsigned_abs().next_power_of_two().cast_signed();
@@ -72,8 +72,8 @@ impl Tile {
         })
     }
 
-    /// The point that is seen at a place of the tile, at a depth; in steps of which there are `places` times as many to
-    /// a unit as there are in the depth.
+    /// The point that is seen at a position of the tile, at a depth; in steps, `places` times as many in a unit as for
+    /// the depth.
     fn at(&self, place: [i64; 2], depth: i64) -> [i64; 3] {
         [(self.corner[0] + place[0]) * depth, (self.corner[1] + place[1]) * depth, self.places * depth]
     }

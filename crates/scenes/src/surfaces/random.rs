@@ -1,18 +1,18 @@
-//! Triangles at random: in space, in one plane, and almost without area.
+//! Random triangles: in space, in one plane, and almost without area.
 
 use super::{FINE, Steps, object, scene};
 use crate::error::{SceneError, check_range};
 use crate::rng::Rng;
 use sightlines_cells::Scene;
 
-/// How many triangles, and how dense.
+/// The number of triangles and their density.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SurfaceOptions {
-    /// Every choice follows from it.
+    /// Determines every random choice.
     pub seed: u64,
     /// From 1 to 2^20.
     pub triangles: u32,
-    /// About how many triangles lie over each other in the picture, whatever their number; from 1 to 64.
+    /// Approximate number of triangles that cover each point of the picture, whatever their number; from 1 to 64.
     pub layers: u32,
 }
 
@@ -23,7 +23,7 @@ impl Default for SurfaceOptions {
     }
 }
 
-/// The depth around which all is, in units. The picture is as wide there.
+/// The depth around which everything is, in units, and the width of the picture there.
 const DEPTH: i64 = 16;
 
 impl SurfaceOptions {
@@ -33,8 +33,8 @@ impl SurfaceOptions {
         Ok(self)
     }
 
-    /// Half of the side of a cube, in steps, at random corners in which so many triangles make so many layers over the
-    /// picture.
+    /// Half of the side of a cube, in steps, such that triangles with random corners in it cover the picture with the
+    /// requested number of layers.
     fn half(&self) -> i32 {
         // The mean area of a triangle in a square of side s is 11/144 s^2; with s = 2 half, 11/36 half^2.
         let picture = (DEPTH * FINE).unsigned_abs();
@@ -62,16 +62,16 @@ fn has_area([a, b, c]: &Steps) -> bool {
     [(1, 2), (2, 0), (0, 1)].iter().any(|&(i, j)| u[i] * v[j] != u[j] * v[i])
 }
 
-/// A place in the volume that is seen, from depth 8 to 24.
+/// A position in the visible volume, from depth 8 to 24.
 fn centre(rng: &mut Rng) -> [i64; 3] {
     let fine = i32::try_from(FINE).expect("a thousand");
     let z = rng.between(8 * fine, 24 * fine);
     [rng.between(-z / 2, z / 2), rng.between(-z / 2, z / 2), z].map(i64::from)
 }
 
-/// Triangles of any place, size and slope, which pass through each other. Fewer do so the more there are: since the
-/// layers stay the same, the size falls with the root of the number, and each meets about as many others as the root of
-/// what is left.
+/// Triangles of any position, size and slope, which intersect each other. The more there are, the fewer intersect:
+/// since the number of layers stays the same, the size falls with the root of the number, and so does the share of
+/// others that each meets.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`]
@@ -80,14 +80,14 @@ pub fn soup(options: SurfaceOptions) -> Result<Scene, SceneError> {
     let (mut rng, half) = (Rng::new(options.seed, 21), options.half());
     Ok(options.made("soup", || {
         let centre = centre(&mut rng);
-        // As large in the picture at any depth.
+        // Equally large in the picture at any depth.
         let half = i64::from(half) * centre[2] / (DEPTH * FINE);
         let half = i32::try_from(half).expect("no larger than twice the half at the mean depth");
         [0; 3].map(|_| centre.map(|x| x + i64::from(rng.between(-half, half))))
     }))
 }
 
-/// Triangles that overlap in one plane, which is sloped: only a rule says which of them is seen.
+/// Triangles that overlap in one sloped plane: only a rule decides which of them is visible.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`]
@@ -105,7 +105,7 @@ pub fn coplanar(options: SurfaceOptions) -> Result<Scene, SceneError> {
     }))
 }
 
-/// Triangles as long as some part of the picture and from one to 64 steps wide, in all directions.
+/// Triangles as long as a part of the picture and from one to 64 steps wide, in all directions.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`]
@@ -123,7 +123,7 @@ pub fn slivers(options: SurfaceOptions) -> Result<Scene, SceneError> {
         let along = i64::from(rng.between(-8, 8));
         let [from, to] = [-1, 1].map(|s| [0, 1, 2].map(|k| centre[k] + s * way[k]));
         let third = [0, 1, 2].map(|k| centre[k] + way[k] * along / 8 + i64::from(rng.between(-wide, wide)));
-        // What reaches behind depth 1 is turned round.
+        // Corners behind depth 1 are reflected.
         [from, to, third].map(|[x, y, z]| [x, y, if z < FINE { 2 * FINE - z } else { z }])
     }))
 }

@@ -20,7 +20,7 @@ fn sign(x: f64) -> i32 {
     i32::from(x > 0.0) - i32::from(x < 0.0)
 }
 
-/// On which side of a triangle's plane a point lies: 1 for the eye's.
+/// The side of a triangle's plane on which a point lies: 1 for that of the eye.
 fn side([a, b, c]: Triangle, p: Point3) -> i32 {
     sign(orient3d(a, b, c, p)) * sign(orient3d(a, b, c, EYE))
 }
@@ -33,8 +33,8 @@ fn spine([a, b, c]: Triangle) -> [Point3; 2] {
 /// Whether two segments cross as seen from the eye, and if so whether the first is in front there.
 fn crosses_before([p, q]: [Point3; 2], [r, s]: [Point3; 2]) -> Option<bool> {
     let apart = |a, b, c, d| sign(orient3d(EYE, a, b, c)) * sign(orient3d(EYE, a, b, d)) < 0;
-    // The plane through the first segment that holds a parallel of the second one: both lie on opposite sides of planes
-    // between.
+    // The plane through the first segment that contains a parallel of the second one: both lie on opposite sides of
+    // planes between.
     (apart(p, q, r, s) && apart(r, s, p, q)).then(|| {
         // p, q and r span a plane. If s is on the eye's side of it, the second passes before the first.
         sign(orient3d(p, q, r, s)) * sign(orient3d(p, q, r, EYE)) < 0
@@ -128,7 +128,7 @@ fn soup_meets_itself() {
     assert!(n_met > 250, "{n_met}");
 }
 
-/// The layers are about as many as were asked for, however many triangles there are.
+/// The number of layers is about the requested one, however many triangles there are.
 #[test]
 fn soup_has_its_layers() {
     for (triangles_, layers) in [(100, 2), (1000, 4), (10_000, 4), (100_000, 16)] {
@@ -186,7 +186,8 @@ fn interleaved_mid_points_mislead() {
     for pair in interleaved(200).unwrap().objects() {
         let [long, short] = pair.corners().collect::<Vec<_>>().try_into().unwrap();
         assert!(mean_depth(short) > mean_depth(long));
-        // Nevertheless all of the short one is before the plane of the long one, and inside of it as seen from the eye.
+        // Nevertheless all of the short one is in front of the plane of the long one, and within its outline as seen
+        // from the eye.
         assert!(short.iter().all(|&p| side(long, p) > 0));
         let within = |p: Point3| {
             let turns = [0, 1, 2].map(|k| sign(orient3d(EYE, long[k], long[(k + 1) % 3], p)));
@@ -231,7 +232,7 @@ fn split_worst_planes_cut_the_others_and_nothing_meets() {
         assert!(standing.iter().all(|&b| cuts(a, b) && cuts(b, a) && !meet(a, b)));
         assert!(hanging.iter().all(|&b| !cuts(a, b)));
         for &b in &standing {
-            // Where the two come close no other plane tells them apart, so that one of them has to be cut there.
+            // Where the two come close no other plane separates them, so that one of them has to be split there.
             let (on_a, on_b) = (cut(b, a), cut(a, b));
             let others = hanging.iter().chain(&standing).filter(|&&t| t != a && t != b);
             assert!(others.into_iter().all(|&t| side(t, on_a) == side(t, on_b) && side(t, on_a) != 0));

@@ -1,7 +1,7 @@
 //! Furniture as closed meshes: desks, chairs, tables, shelves, plants and lamps.
 //!
-//! Sizes are in mesh steps (64 to a unit). `sides` is the level of detail: round parts have at most so
-//! many sides, and shelves and plants have parts in proportion.
+//! Sizes are in mesh steps (64 to a unit). `sides` is the level of detail: round parts have at most that many sides,
+//! and shelves and plants have parts in proportion.
 
 use super::STEP;
 use super::mesh::{Mesh, direction};
@@ -12,7 +12,7 @@ use crate::stroke::Rect;
 /// Height of desks and tables.
 const TOP: i32 = 48;
 
-/// Where a piece stands: the middle of its front edge, and whether its front faces larger z.
+/// The position of a piece: the middle of its front edge, and whether its front faces larger z.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) at: [i32; 2],
@@ -61,7 +61,7 @@ pub(super) fn desk(place: Place, sides: usize) -> Mesh {
     mesh
 }
 
-/// A chair with slanted legs and a slanted back, half a unit wide; who sits on it looks to the front.
+/// A chair with slanted legs and a slanted back, half a unit wide; a person on it faces the front.
 pub(super) fn chair(place: Place, sides: usize) -> Mesh {
     let mut mesh = Mesh::new(true);
     place.block(&mut mesh, [-15, 15], [0, 28], [26, 30]);
@@ -88,8 +88,8 @@ pub(super) fn table(rect: Rect, sides: usize) -> Mesh {
     mesh
 }
 
-/// A shelf against a wall at `x`, three quarters of a unit wide and as deep as `depth` says (to larger
-/// x if positive), with books.
+/// A shelf against a wall at `x`, three quarters of a unit wide and `depth` deep (towards larger x if positive), with
+/// books.
 pub(super) fn shelf(x: i32, z: i32, depth: i32, sides: usize, rng: &mut Rng) -> Mesh {
     let mut mesh = Mesh::new(true);
     let mut block = |[a, b]: [i32; 2], heights: [i32; 2], [za, zb]: [i32; 2], lean: i32| {

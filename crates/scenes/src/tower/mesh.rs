@@ -1,7 +1,7 @@
-//! Closed meshes on a grid of 64ths of a unit: what walls, slabs and furniture are made of.
+//! Closed meshes on a grid of 64ths of a unit, for walls, slabs and furniture.
 //!
-//! All is built from lofts: horizontal polygons, one above the other, joined by triangles and closed
-//! at both ends. Corners are integers until the last step, so nothing rounds.
+//! Everything is built from lofts: horizontal polygons, one above the other, joined by triangles and closed at both
+//! ends. Corners are integers until the last step, so nothing rounds.
 
 use crate::stroke::Rect;
 use sightlines_cells::SceneObject;
@@ -26,7 +26,7 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
-    /// No triangles; `flip` chooses the diagonal of its first quadrilateral, and they alternate.
+    /// No triangles; `flip` chooses the diagonal of the first quadrilateral, and they alternate.
     pub(super) fn new(flip: bool) -> Self {
         Self { flip, ..Self::default() }
     }
@@ -81,7 +81,7 @@ impl Mesh {
         self.loft(&[rectangle([x0, y0, z0], [x1, z1]), rectangle([x0, y1, z0], [x1, z1])]);
     }
 
-    /// A box whose top is moved by `shift` along x and z: a leg that stands out, a back that leans.
+    /// A box whose top is moved by `shift` along x and z: a slanted leg, a leaning back.
     pub(super) fn leaning(&mut self, [x0, y0, z0]: Corner, [x1, y1, z1]: Corner, [dx, dz]: [i32; 2]) {
         let top = rectangle([x0 + dx, y1, z0 + dz], [x1 + dx, z1 + dz]);
         self.loft(&[rectangle([x0, y0, z0], [x1, z1]), top]);
@@ -101,7 +101,7 @@ impl Mesh {
     pub(super) fn sheet(&mut self, [ax, az]: [i32; 2], [bx, bz]: [i32; 2], [y0, y1]: [i32; 2]) {
         let first = self.push([[ax, y0, az], [bx, y0, bz], [bx, y1, bz], [ax, y1, az]]);
         self.quad([first, first + 1, first + 2, first + 3]);
-        // The same triangles from behind.
+        // The same triangles with the opposite orientation.
         let front = self.triangles[self.triangles.len() - 2..].to_vec();
         self.triangles.extend(front.iter().map(|&[a, b, c]| [a, c, b]));
     }
@@ -142,7 +142,7 @@ fn rectangle([x0, y, z0]: Corner, [x1, z1]: [i32; 2]) -> Vec<Corner> {
     vec![[x0, y, z0], [x1, y, z0], [x1, y, z1], [x0, y, z1]]
 }
 
-/// How many sides a polygon of radius `r` can have without three of its corners on a line.
+/// Number of sides that a polygon of radius `r` can have without three collinear corners.
 fn round_sides(wanted: usize, r: i32) -> usize {
     wanted.min(if r < 3 {
         4

@@ -1,7 +1,7 @@
 //! Furnished office towers: floors of offices one above the other, joined by stairwells.
 //!
-//! The setting that cell-and-portal visibility was invented for (Teller and Séquin, SIGGRAPH 1991). The
-//! floors share their corridors, outer walls and stairwells; rooms, doors and furniture differ.
+//! The setting for which cell-and-portal visibility was invented (Teller and Séquin, SIGGRAPH 1991). The floors share
+//! their corridors, outer walls and stairwells; rooms, doors and furniture differ.
 
 mod furniture;
 mod mesh;
@@ -21,10 +21,10 @@ use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::Aabb;
 use walls::{CEILING, WallPart, wall_parts};
 
-/// What tower to generate.
+/// Options of [`tower`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TowerOptions {
-    /// Every choice follows from it. The lower floors of a higher tower are the same.
+    /// Determines every random choice. The lower floors of a higher tower are the same.
     pub seed: u64,
     /// Floors, from 1 to 256.
     pub floors: u32,
@@ -49,10 +49,10 @@ impl Default for TowerOptions {
     }
 }
 
-/// A room of a tower: where a viewer can be.
+/// A room of a tower, where a viewer can be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TowerRoom {
-    /// As in the names of the objects that stand in it, such as `floor3/room_07`.
+    /// Its name, as in the names of the objects in it, such as `floor3/room_07`.
     pub name: String,
     /// Its clear space, from wall to wall and from floor to ceiling.
     pub bounds: Aabb<3>,
@@ -121,7 +121,7 @@ fn room_name(floor: usize, room: usize) -> String {
     format!("floor{floor}/room_{room:02}")
 }
 
-/// A floor, and where the choices about its furniture come from.
+/// A floor, with the random numbers of its furniture.
 #[derive(Debug)]
 struct Floor {
     layout: Layout,
@@ -132,7 +132,7 @@ struct Floor {
 #[derive(Debug)]
 struct TowerPlan {
     floors: Vec<Floor>,
-    /// What the slabs leave open for stairs, the same on every floor, ascending in z.
+    /// The holes in the slabs for stairs, the same on every floor, ascending in z.
     holes: Vec<Rect>,
     half: i32,
     windows: bool,

@@ -1,4 +1,4 @@
-//! What stands in each room of a tower.
+//! The furniture of each room of a tower.
 
 use super::STEP;
 use super::furniture::{Place, ceiling_lamp, chair, desk, desk_lamp, plant, shelf, table};
@@ -33,8 +33,8 @@ pub(super) fn furnish(floor: &Layout, room: usize, half: i32, sides: usize, rng:
 }
 
 impl Furniture {
-    /// Chance for the shape of one piece: how much of it is drawn depends on the level of detail, and
-    /// must not change what else stands in the room.
+    /// Random numbers for the shape of one piece: how many are drawn depends on the level of detail, and must not
+    /// affect the other furniture of the room.
     fn own_rng(&mut self) -> Rng {
         Rng::new(self.rng.next(), 0)
     }
@@ -52,7 +52,7 @@ impl Furniture {
         let middle = (r.x0 + r.x1) * STEP / 2;
         let place = Place { at: [middle, STEP * if towards_z { r.y1 } else { r.y0 }], towards_z };
         self.add("desk", desk(place, self.sides));
-        // The chair looks at the desk, from a little to the side.
+        // The chair faces the desk, slightly to one side.
         let gap = if towards_z { 4 } else { -4 };
         let seat = Place { at: [middle + self.rng.between(-8, 8), place.at[1] + gap], towards_z: !towards_z };
         self.add("chair", chair(seat, self.sides));

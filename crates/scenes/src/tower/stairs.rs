@@ -14,11 +14,10 @@ const TREAD: i32 = 2;
 const WIDTH: i32 = 12;
 /// Depth of the landing between the flights, in layout steps.
 const LANDING: i32 = 10;
-/// From the middle line of a wall to the hole: thicker than half of any wall.
+/// Distance from the middle line of a wall to the hole: more than half the thickness of any wall.
 const MARGIN: i32 = 2;
 
-/// The hole in the floor of a stairwell, in layout steps. In front of it a landing stays, where the
-/// door is.
+/// The hole in the floor of a stairwell, in layout steps. In front of it, at the door, there is a landing.
 pub(super) fn hole(stairwell: &Room) -> Rect {
     let Rect { x0, y0, x1, .. } = stairwell.rect;
     let depth = LANDING + FLIGHT * TREAD;
@@ -34,7 +33,7 @@ pub(super) fn stairs(stairwell: &Room) -> Mesh {
     };
     let middle = back + LANDING;
     for i in 0..FLIGHT {
-        // Each step is two rises thick, so that it touches the next along a face.
+        // Each step is two rises thick, so that it touches the next one along a face.
         let top = RISE * (i + 1);
         block([x0, x0 + WIDTH], [front - TREAD * (i + 1), front - TREAD * i], [(top - 2 * RISE).max(0), top]);
         let above = RISE * FLIGHT;

@@ -18,8 +18,8 @@ fn cross([a, b, c]: &Corners) -> [i64; 3] {
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 
-/// What is wrong with a mesh: a triangle without area, an edge that its two triangles run along in the
-/// same direction or that has but one, a part that faces inwards. Flat parts face both ways.
+/// The defect of a mesh: a triangle without area, an edge that its two triangles traverse in the same direction or that
+/// has only one, a part that faces inwards. Flat parts face both ways.
 fn fault(object: &SceneObject) -> Option<&'static str> {
     let triangles = corners(object);
     let mut edges: BTreeMap<[[i64; 3]; 2], i64> = BTreeMap::new();
@@ -105,7 +105,7 @@ fn tower_objects_are_closed_and_face_outwards() {
     }
 }
 
-/// The impostors: a hole, a triangle turned over, a box turned inside out, a sliver.
+/// The impostors: a hole, a reversed triangle, a box turned inside out, a sliver.
 #[test]
 fn tower_faults_are_found() {
     let mut mesh = Mesh::new(false);
@@ -130,7 +130,7 @@ fn tower_faults_are_found() {
 fn tower_walls_are_axial_rectangles_of_two_triangles() {
     for thickness in THICKNESSES {
         let scene = tower(small(4, thickness)).unwrap();
-        // Which of the two diagonals rectangles are cut along, recognized by the slope of the longest edge.
+        // The diagonal along which rectangles are cut, recognized by the slope of the longest edge.
         let mut diagonals = [0, 0];
         for object in scene.objects().iter().filter(|o| is_structure(&o.name)) {
             let flat = thickness == 0.0 && !object.name.contains("pillar");
@@ -151,7 +151,7 @@ fn tower_walls_are_axial_rectangles_of_two_triangles() {
     assert!(n > 100, "only {n} pieces of furniture are not axial");
 }
 
-/// How often each square of the layout's grid is covered, in a box that holds the whole floor.
+/// How often each square of the layout's grid is covered, in a box that contains the whole floor.
 fn cover(outer: Rect, rects: impl Iterator<Item = Rect>) -> Vec<u8> {
     let width = (outer.x1 + 16) as usize;
     let mut covered = vec![0; width * (outer.y1 + 16) as usize];
@@ -164,7 +164,7 @@ fn cover(outer: Rect, rects: impl Iterator<Item = Rect>) -> Vec<u8> {
     covered
 }
 
-/// The parts of walls cover what thick walls cover, once each; windows leave gaps at their height.
+/// The parts of walls cover the area of thick walls exactly once; windows leave gaps at their height.
 #[test]
 fn tower_walls_tile() {
     for (seed, thickness) in [(1, 0.25), (2, 0.5), (3, 0.5), (4, 0.25)] {
@@ -326,7 +326,7 @@ fn tower_sizes_scale() {
     assert!((1.8..2.2).contains(&(t16 / t8)) && (1.8..2.2).contains(&(o16 / o8)));
     let by_level = [0, 1, 2, 3].map(|level| n(4, level).0);
     assert!(by_level.is_sorted() && by_level[2] > 2.0 * by_level[0], "{by_level:?}");
-    // What stands in a room does not depend on how much of it is drawn.
+    // The furniture of a room does not depend on the level of detail.
     assert_eq!(n(4, 1).1, n(4, 3).1);
     let least = TowerOptions { floors: 1, rooms_x: 1, rooms_y: 1, ..Default::default() };
     assert!(tower(least).unwrap().objects().len() > 10);

@@ -21,9 +21,9 @@ const WINDOW_MARGIN: i32 = 3;
 pub(super) struct WallPart {
     /// `"wall"`, `"lintel"` or `"sill"`.
     pub(super) kind: &'static str,
-    /// What it covers in plan.
+    /// The area that it covers in plan.
     pub(super) rect: Rect,
-    /// From where to where it reaches above the floor.
+    /// Its lower and upper end above the floor.
     pub(super) heights: [i32; 2],
 }
 
@@ -54,16 +54,15 @@ fn is_outer(wall: &Stroke, outer: Rect) -> bool {
     if wall.horizontal { [outer.y0, outer.y1].contains(&wall.at) } else { [outer.x0, outer.x1].contains(&wall.at) }
 }
 
-/// Lets walls meet without overlap: at a crossing the wall along x passes and the other is cut; at a
-/// T the one that passes is whole and the other ends at its face; at a corner the wall along x
-/// fills the corner.
+/// Makes walls meet without overlap: at a crossing the wall along x passes and the other is cut; at a T the passing
+/// wall is whole and the other ends at its face; at a corner the wall along x fills the corner.
 fn fitted(walls: &[Stroke], half: i32) -> Vec<Stroke> {
     let (along_x, along_y): (Vec<Stroke>, Vec<Stroke>) = walls.iter().partition(|w| w.horizontal);
     let passes = |w: &Stroke, at: i32| w.lo < at && at < w.hi;
     let reaches = |w: &Stroke, at: i32| w.lo <= at && at <= w.hi;
     let mut out = Vec::new();
     for h in &along_x {
-        // How far the wall grows beyond its end at `x`.
+        // The growth of the wall beyond its end at `x`.
         let growth = |x: i32| {
             let met = || along_y.iter().filter(|v| v.at == x && reaches(v, h.at));
             if met().any(|v| passes(v, h.at)) {
@@ -78,7 +77,7 @@ fn fitted(walls: &[Stroke], half: i32) -> Vec<Stroke> {
     }
     for v in &along_y {
         let mut met: Vec<i32> = along_x.iter().filter(|h| reaches(h, v.at) && reaches(v, h.at)).map(|h| h.at).collect();
-        // Only walls that pass, or that it ends at, cut it.
+        // Only walls that pass, or at which it ends, cut it.
         met.retain(|&y| !passes(v, y) || along_x.iter().any(|h| h.at == y && passes(h, v.at)));
         let mut ends: Vec<i32> = met.iter().copied().chain([v.lo, v.hi]).collect();
         ends.sort_unstable();
@@ -99,7 +98,7 @@ fn doors_of(wall: &Stroke, doors: &[Stroke]) -> Vec<Opening> {
     found
 }
 
-/// The windows of an outer wall: at even distances, except where a wall meets it from inside.
+/// The windows of an outer wall: at regular distances, except where a wall meets it from inside.
 fn windows_of(wall: &Stroke, walls: &[Stroke]) -> Vec<Opening> {
     let meets = |w: &&Stroke| w.horizontal != wall.horizontal && w.lo <= wall.at && wall.at <= w.hi;
     let mut met: Vec<i32> = walls.iter().filter(meets).map(|w| w.at).collect();

@@ -1,4 +1,4 @@
-//! Worlds out of brushes: convex pieces that are put or cut away, one after the other, as in level editors.
+//! Worlds made from brushes: convex pieces that are added or cut away, one after the other, as in level editors.
 
 use super::build::{Builder, Decision, EPSILON};
 use super::plane::WorldPlane;
@@ -6,12 +6,12 @@ use super::polytope::Polytope;
 use super::{World, build};
 use sightlines_geometry::Point3;
 
-/// A convex piece that is solid, or that is empty: what is in it stays so unless a later brush says otherwise.
+/// A convex piece that is solid or empty; a later brush overrides it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Brush {
     /// The planes around it; they face outwards.
     pub planes: Vec<WorldPlane>,
-    /// Whether it fills or cuts away.
+    /// Whether it adds or cuts away.
     pub is_solid: bool,
 }
 
@@ -28,7 +28,7 @@ impl Brush {
         Self { is_solid: false, ..Self::solid(min, max) }
     }
 
-    /// The same without what is in front of the plane through a point.
+    /// The same without the part in front of the plane through a point.
     #[must_use]
     pub fn cut(mut self, normal: [i32; 3], through: [i32; 3]) -> Self {
         let offset = (0..3).map(|k| f64::from(normal[k]) * f64::from(through[k])).sum();
@@ -44,18 +44,18 @@ struct Placed {
     is_solid: bool,
 }
 
-/// How a piece of the world lies to a brush.
+/// The position of a piece of the world relative to a brush.
 enum Place {
     Outside,
     Inside,
     Across,
 }
 
-/// What of the best plane for a cut is looked at before: cuts near the root would otherwise take all the time.
+/// Most candidates for the best plane of a cut; otherwise cuts near the root would take all the time.
 const MAX_CANDIDATES: usize = 40;
 
-/// A box full of brushes, in which everything is solid that no brush says is empty. Pieces are cut along the planes
-/// of brushes until none is partly solid.
+/// A box full of brushes, in which everything is solid unless a brush empties it. Pieces are cut along the planes of
+/// brushes until none is partly solid.
 pub fn world_of_brushes(min: [i32; 3], max: [i32; 3], brushes: &[Brush]) -> World {
     let [min, max] = [min, max].map(|corner| corner.map(f64::from));
     let region = Polytope::cuboid(min, max);
@@ -63,7 +63,7 @@ pub fn world_of_brushes(min: [i32; 3], max: [i32; 3], brushes: &[Brush]) -> Worl
     Builder::grow(region, (0..placed.len()).collect(), |piece, told: Vec<usize>| decide(piece, &told, &placed))
 }
 
-/// The brush inside the region; `None` if nothing of it is.
+/// The brush inside the region; `None` if it is outside.
 fn place(region: &Polytope, brush: &Brush) -> Option<Placed> {
     let mut inside = region.clone();
     for plane in &brush.planes {
@@ -96,7 +96,7 @@ fn lie(piece: &Polytope, brush: &Placed) -> Place {
 }
 
 fn decide(piece: &Polytope, told: &[usize], placed: &[Placed]) -> Decision<Vec<usize>> {
-    // From the last brush, which has the last word, to the first that the piece is inside of.
+    // From the last brush, which takes precedence, to the first that contains the piece.
     let mut across = Vec::new();
     let mut is_solid = true;
     let mut base = None;
@@ -111,7 +111,7 @@ fn decide(piece: &Polytope, told: &[usize], placed: &[Placed]) -> Decision<Vec<u
             }
         }
     }
-    // What says the same as what is below it says nothing.
+    // A brush of the same kind as the next one below it has no effect.
     while across.last().is_some_and(|&b| placed[b].is_solid == is_solid) {
         across.pop();
     }

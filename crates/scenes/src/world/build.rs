@@ -6,27 +6,27 @@ use super::{World, WorldChild, WorldLeaf, WorldNode};
 use sightlines_cells::{CellGraph, CellId, Portal3};
 use sightlines_geometry::Point3;
 
-/// Up to this distance a corner counts as on a plane, in scene units: far above the rounding errors of
-/// coordinates of some thousand units (about 1e-12), far below anything that the generators build on purpose. It
-/// decides only which slivers exist.
+/// A corner within this distance counts as on a plane, in scene units: far above the rounding errors of coordinates of
+/// some thousand units (about 1e-12), far below anything that the generators build on purpose. It decides only which
+/// slivers exist.
 pub(super) const EPSILON: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// A tree of cuts that grows.
+/// A growing tree of cuts.
 #[derive(Debug)]
 pub(super) struct Builder {
     planes: Vec<WorldPlane>,
     nodes: Vec<WorldNode>,
-    /// What of each node's plane is inside the node.
+    /// The part of each node's plane inside the node.
     sections: Vec<Vec<Point3>>,
     leafs: Vec<(Polytope, bool)>,
 }
 
 impl Builder {
-    /// Grows a whole tree from a convex region. `decide` decides what to do with a piece and the data that came with
-    /// it; a cut has to leave something on both sides.
+    /// Grows a whole tree from a convex region. `decide` determines what happens to a piece, given its data; a cut has
+    /// to leave something on both sides.
     pub(super) fn grow<T>(region: Polytope, told: T, mut decide: impl FnMut(&Polytope, T) -> Decision<T>) -> World {
         let mut builder = Self { planes: Vec::new(), nodes: Vec::new(), sections: Vec::new(), leafs: Vec::new() };
-        // Pieces wait with the place that has to name them.
+        // Pieces wait with the child slot that will refer to them.
         let mut waiting = vec![(region, told, None)];
         while let Some((piece, told, parent)) = waiting.pop() {
             let child = match decide(&piece, told) {
@@ -40,7 +40,7 @@ impl Builder {
                     if index == builder.planes.len() {
                         builder.planes.push(plane);
                     }
-                    // Both children are named when they are made.
+                    // The children are filled in when they are made.
                     builder.nodes.push(WorldNode { plane: index, children: [WorldChild::Leaf(0); 2] });
                     let section = piece.section(&plane, EPSILON).expect("a plane that cuts has a section");
                     builder.sections.push(section);
@@ -86,7 +86,7 @@ impl Builder {
         World { graph, planes: self.planes, nodes: self.nodes, leafs }
     }
 
-    /// Cuts a polygon by all below `child`, into pieces with the leaf that each lies on.
+    /// Cuts a polygon along the tree below `child`, into pieces with the leaf that contains each.
     fn sink(&self, child: WorldChild, polygon: Vec<Point3>, out: &mut Vec<(usize, Vec<Point3>)>) {
         let mut waiting = vec![(child, polygon)];
         while let Some((child, polygon)) = waiting.pop() {
@@ -105,18 +105,18 @@ impl Builder {
 
 /// What to do with a piece of the world.
 pub(super) enum Decision<T> {
-    /// It stays as it is.
+    /// It becomes a leaf.
     Leaf {
-        /// Whether nothing can be inside.
+        /// Whether it is solid.
         is_solid: bool,
     },
     /// It is cut.
     Cut {
-        /// By this plane,
+        /// The plane of the cut.
         plane: WorldPlane,
-        /// into what is in front and what is behind,
+        /// The parts in front and behind.
         halves: [Polytope; 2],
-        /// and this is known of them.
+        /// The data of each part.
         told: [T; 2],
     },
 }

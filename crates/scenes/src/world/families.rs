@@ -1,5 +1,5 @@
-//! Small worlds of what is hard: portals in a long row, portals that only touch, portals thinner than a hair, ways
-//! round a pillar, stairs that wind, parts that do not hang together.
+//! Small worlds of hard cases: portals in a long row, portals that only touch, extremely thin portals, paths around a
+//! pillar, winding stairs, disconnected parts.
 
 use super::brushes::{Brush, world_of_brushes};
 use super::plane::WorldPlane;
@@ -12,8 +12,8 @@ const LENGTH: i32 = 32;
 /// Boxes in a row along the first axis; portal `k` (from 0), at `x = 32 k`, has `y` from `bend_y k²` to
 /// `bend_y k² + width`, and `z` alike. Box `k` lies before portal `k`; there is one more behind the last.
 ///
-/// The answer is known: boxes `i < j` are joined by the portals `i..j`. Of these the first and the last are `m = j -
-/// i - 1` apart, and a line that is best for all of them leaves a parabola by `bend ⌊m² / 4⌋`. So the boxes see each
+/// The answer is known: boxes `i < j` are joined by the portals `i..j`. The first and the last of these are `m = j - i
+/// - 1` apart, and the best line for all of them deviates from a parabola by `bend ⌊m² / 4⌋`. So the boxes see each
 /// other if and only if that is below `width` for both bends; if it is equal, lines graze ([`corridor_sees`]).
 ///
 /// # Errors
@@ -55,14 +55,14 @@ fn windows(ranges: &[[[f64; 2]; 2]]) -> World {
     world_of_brushes([-8, -8, -8], [(n + 1) * LENGTH + 8, 72, 72], &brushes)
 }
 
-/// Rooms in a row whose windows share an edge or only a corner with the next ones: through three of them only lines
-/// pass that graze. Neighbours, and rooms with one room between them, do see each other.
+/// Rooms in a row whose windows share an edge or only a corner with the next ones: only grazing lines pass three of
+/// them. Neighbours, and rooms with one room between them, do see each other.
 pub fn grazing() -> World {
     let (a, b) = ([16.0, 32.0], [32.0, 48.0]);
     windows(&[[a, a], [b, b], [a, a], [b, a], [a, a], [a, b], [b, b]])
 }
 
-/// Rooms in a row, with windows that are thinner and thinner: 2^-10 to 2^-27 of a unit.
+/// Rooms in a row, with ever thinner windows: 2^-10 to 2^-27 of a unit.
 pub fn slivers() -> World {
     let thin = |k: i32| [32.0, 32.0 + 2f64.powi(-k)];
     let wide = [16.0, 48.0];
@@ -77,7 +77,7 @@ pub fn pillar_ring() -> World {
     world_of_brushes([-136, -136, -8], [136, 136, 104], &[Brush::empty([-128, -128, 0], [128, 128, 96]), pillar])
 }
 
-/// Stairs that wind `turns` times round a pillar, 8 steps each time.
+/// Stairs that wind `turns` times around a pillar, 8 steps in each turn.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`] unless there are 1 to 8 turns.
@@ -109,8 +109,8 @@ pub fn separate_rooms() -> World {
     world_of_brushes([-8, -8, -8], [300, 300, 72], &brushes)
 }
 
-/// All of them, by name, each small enough to be looked at in full; and some of them elsewhere, in another size,
-/// sheared, and with noise.
+/// All of them, by name, each small enough for complete tests; and some of them translated, scaled, sheared, and with
+/// noise.
 pub fn world_families() -> Vec<(&'static str, World)> {
     let fits = "the options are within their ranges";
     let random = |seed, leafs| bsp_world(BspWorldOptions { seed, leafs, ..BspWorldOptions::default() }).expect(fits);

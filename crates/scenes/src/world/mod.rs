@@ -1,5 +1,5 @@
-//! Worlds of convex cells, cut as the compilers of maps cut them: by planes, into a tree whose leafs are empty or
-//! solid. The empty leafs are the cells; what two of them share of a cut is a portal.
+//! Worlds of convex cells, cut as map compilers cut them: by planes, into a tree whose leafs are empty or solid. The
+//! empty leafs are the cells; the common part of two of them on a cut is a portal.
 //!
 //! Planes have integer normals, and all decisions are made in an order that does not depend on the machine.
 //! Corners come from clipping in doubles, so that they carry the rounding errors that those of real maps carry.
@@ -30,13 +30,13 @@ use sightlines_geometry::{Aabb, Point3};
 /// A node of the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorldNode {
-    /// What it is cut by, as an index of planes.
+    /// The index of its plane.
     pub plane: usize,
-    /// What is in front of the plane, and what is behind.
+    /// The parts in front of the plane, and behind it.
     pub children: [WorldChild; 2],
 }
 
-/// What a side of a cut is.
+/// One side of a cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WorldChild {
     /// A node, by index.
@@ -52,18 +52,18 @@ pub struct WorldLeaf {
     pub cell: Option<CellId>,
     /// The planes around it; they face outwards.
     pub planes: Vec<WorldPlane>,
-    /// For each plane the face in it: its corners in turn, counter-clockwise seen from outside.
+    /// For each plane the face in it: its corners in order, counter-clockwise as seen from outside.
     pub faces: Vec<Vec<Point3>>,
 }
 
-/// Cells and portals, and what they are the empty part of. Around the outermost leafs everything is solid.
+/// Cells and portals, and the tree whose empty leafs they are. Outside the outermost leafs everything is solid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct World {
     /// Cells are the empty leafs, in the order of leafs.
     pub graph: CellGraph<Convex>,
     /// The planes of the cuts.
     pub planes: Vec<WorldPlane>,
-    /// The cuts, parents before children; none if there is but one leaf.
+    /// The cuts, parents before children; none if there is only one leaf.
     pub nodes: Vec<WorldNode>,
     /// All leafs, at least one.
     pub leafs: Vec<WorldLeaf>,
@@ -75,7 +75,7 @@ impl WorldLeaf {
         self.faces.iter().flatten().fold(Aabb::EMPTY, |b, &p| b.with(p))
     }
 
-    /// How far a point is inside: its distance from the nearest plane around the leaf, negative outside.
+    /// The depth of a point inside: its distance from the nearest plane around the leaf, negative outside.
     pub fn depth(&self, p: Point3) -> f64 {
         self.planes.iter().map(|plane| -plane.distance(p)).fold(f64::INFINITY, f64::min)
     }
@@ -111,7 +111,7 @@ impl World {
         }
     }
 
-    /// The same world elsewhere. Corners are rounded where the sum has no double.
+    /// The same world, translated. Corners are rounded where no double is the sum.
     #[must_use]
     pub fn moved(&self, by: Point3) -> Self {
         let plane = |p: &WorldPlane| {
@@ -121,7 +121,7 @@ impl World {
         self.transformed(plane, |p| [0, 1, 2].map(|k| p[k] + by[k]))
     }
 
-    /// The same world in another size: exact for powers of two.
+    /// The same world, scaled: exact for powers of two.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let plane = |p: &WorldPlane| WorldPlane { offset: p.offset * factor, ..*p };
@@ -129,7 +129,7 @@ impl World {
     }
 
     /// The world under a linear map with the rows of `matrix`: visibility stays the same. Exact for coordinates that
-    /// are whole numbers or fractions of a power of two, as far as doubles hold the result.
+    /// are integers or fractions of a power of two, as far as doubles represent the result.
     ///
     /// # Panics
     /// If the determinant is not 1: normals would not stay integers, or outside would become inside.
@@ -142,7 +142,7 @@ impl World {
         };
         let determinant: i32 = (0..3).map(|j| m[0][j] * minor(0, j)).sum();
         assert!(determinant == 1, "the determinant of {m:?} is {determinant}, not 1");
-        // Normals go with the cofactors, which are the inverse's transpose.
+        // Normals transform with the cofactors, which are the inverse's transpose.
         let plane = |p: &WorldPlane| {
             let normal = std::array::from_fn(|i| (0..3).map(|j| minor(i, j) * p.normal[j]).sum());
             WorldPlane { normal, offset: p.offset }
@@ -151,8 +151,8 @@ impl World {
         self.transformed(plane, point)
     }
 
-    /// The same world with portals whose corners have moved by up to `amount` along each axis, each on its own:
-    /// what rounding does in a long chain of tools.
+    /// The same world with portals whose corners have moved independently by up to `amount` along each axis: the effect
+    /// of rounding in a long chain of tools.
     #[must_use]
     pub fn jittered(&self, seed: u64, amount: f64) -> Self {
         let mut rng = Rng::new(seed, 0x6A17);
@@ -176,7 +176,7 @@ impl World {
     }
 }
 
-/// The same cells, with portals that have other corners; portals that have no area any more are left out.
+/// The same cells, with portals that have other corners; portals that no longer have an area are left out.
 fn with_corners(graph: &CellGraph<Convex>, mut point: impl FnMut(Point3) -> Point3) -> CellGraph<Convex> {
     let mut portals = Vec::with_capacity(graph.portals().len());
     for portal in graph.portals() {

@@ -7,11 +7,11 @@ use sightlines_geometry::Point3;
 pub struct WorldPlane {
     /// Points to the front; not zero.
     pub normal: [i32; 3],
-    /// Times the length of the normal, the distance from the origin.
+    /// The distance from the origin, times the length of the normal.
     pub offset: f64,
 }
 
-/// Polygons cut in two: what is in front, what is behind.
+/// The parts in front and behind.
 pub(super) type Halves<T> = [Option<T>; 2];
 
 impl WorldPlane {
@@ -64,8 +64,8 @@ impl WorldPlane {
         corners
     }
 
-    /// Cuts a convex polygon. Corners at most `epsilon` away count as on the plane and belong to both halves; a
-    /// half without a corner beyond that is none.
+    /// Cuts a convex polygon. Corners at most `epsilon` away count as on the plane and belong to both halves; a half
+    /// without a corner beyond that is `None`.
     pub(super) fn split(&self, polygon: &[Point3], epsilon: f64) -> Halves<Vec<Point3>> {
         let distances: Vec<f64> = polygon.iter().map(|&p| self.distance(p)).collect();
         let mut halves = [Vec::new(), Vec::new()];
@@ -87,8 +87,8 @@ impl WorldPlane {
         [beyond[0].then_some(front), beyond[1].then_some(back)].map(|half| half.filter(|h| h.len() >= 3))
     }
 
-    /// Where an edge crosses, from a point in front to one behind: every call gives the same bits. On an axial plane it
-    /// lies exactly.
+    /// The point at which an edge crosses, from a point in front to one behind: every call gives the same bits. Exactly
+    /// on the plane if that is axial.
     fn crossing(&self, [p, q]: [Point3; 2], [d, e]: [f64; 2]) -> Point3 {
         let t = d / (d - e);
         let mut cut = [0, 1, 2].map(|k| p[k] + t * (q[k] - p[k]));

@@ -3,7 +3,7 @@
 use super::plane::{Halves, WorldPlane};
 use sightlines_geometry::Point3;
 
-/// A convex polyhedron: planes that face outwards, and what of each is its surface.
+/// A convex polyhedron: planes that face outwards, each with the part of it that is surface.
 #[derive(Debug, Clone)]
 pub(super) struct Polytope {
     pub(super) faces: Vec<(WorldPlane, Vec<Point3>)>,
@@ -36,13 +36,13 @@ impl Polytope {
         self.corners().fold([f64::INFINITY, f64::NEG_INFINITY], widen)
     }
 
-    /// What of a plane is inside.
+    /// The part of a plane inside.
     pub(super) fn section(&self, plane: &WorldPlane, epsilon: f64) -> Option<Vec<Point3>> {
         let reach = self.corners().flatten().fold(1.0f64, |r, x| r.max(2.0 * x.abs()));
         clip_behind(plane.square(reach), self.faces.iter().map(|(p, _)| p), epsilon)
     }
 
-    /// Cuts in two; `None` if there is nothing on one of the sides, or nothing between them.
+    /// Cuts in two; `None` if a side, or the section between them, is empty.
     pub(super) fn split(&self, plane: &WorldPlane, epsilon: f64) -> Option<[Self; 2]> {
         let [low, high] = self.range(plane);
         if low >= -epsilon || high <= epsilon {
@@ -71,7 +71,7 @@ impl Polytope {
     }
 }
 
-/// What of a polygon is behind all planes, or on them.
+/// The part of a polygon behind all planes, or on them.
 fn clip_behind<'p>(
     polygon: Vec<Point3>,
     planes: impl IntoIterator<Item = &'p WorldPlane>,

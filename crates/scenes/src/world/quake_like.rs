@@ -6,7 +6,7 @@ use crate::error::{SceneError, check_range};
 use crate::rng::Rng;
 use crate::spanning::Passages;
 
-/// What [`quake_like`] makes.
+/// Options of [`quake_like`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QuakeLikeOptions {
     /// Different seeds give different levels.
@@ -27,14 +27,14 @@ impl Default for QuakeLikeOptions {
 
 /// Distance between neighbouring rooms' places, in scene units: a player is 56 high.
 const PLACE: i32 = 512;
-/// Height of a floor with all that is above it.
+/// Height of a floor with everything above it.
 const FLOOR: i32 = 320;
 /// Height of a stair's step.
 const STEP: i32 = 16;
 /// Half the width of a corridor.
 const CORRIDOR: i32 = 32;
 
-/// A room, without what is put into it.
+/// A room, without its content.
 #[derive(Debug, Clone, Copy)]
 struct Room {
     min: [i32; 3],
@@ -100,7 +100,7 @@ fn room(rng: &mut Rng, place: [i32; 3]) -> Room {
     Room { min: [min[0], min[1], min[2]], max: [max[0], max[1], max[2]] }
 }
 
-/// Brushes in the order in which they count.
+/// Brushes in order of precedence.
 #[derive(Debug, Default)]
 struct Level {
     carved: Vec<Brush>,
@@ -151,14 +151,14 @@ impl Level {
             }
         }
         if rng.one_in(6) {
-            // A pocket in the corner of the place, where nothing leads.
+            // A pocket in the corner of the place, which nothing leads to.
             let corner = [min[0] / PLACE * PLACE + 8, min[1] / PLACE * PLACE + 8];
             self.carved
                 .push(Brush::empty([corner[0], corner[1], min[2]], [corner[0] + 24, corner[1] + 24, min[2] + 64]));
         }
     }
 
-    /// A corridor from one room to the next along an axis, with stairs or a ramp if they are not equally high.
+    /// A corridor from one room to the next along an axis, with stairs or a ramp if their heights differ.
     fn add_corridor(&mut self, rng: &mut Rng, axis: usize, from: Room, to: Room) {
         let across = 1 - axis;
         let middle = from.min[across] / PLACE * PLACE + PLACE / 2 + 16 * rng.between(-4, 4);

@@ -1,4 +1,4 @@
-//! Worlds cut at random.
+//! Randomly cut worlds.
 
 use super::World;
 use super::build::{Builder, Decision, EPSILON};
@@ -7,16 +7,16 @@ use super::polytope::Polytope;
 use crate::error::{SceneError, check_range};
 use crate::rng::Rng;
 
-/// What [`bsp_world`] makes.
+/// Options of [`bsp_world`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BspWorldOptions {
     /// Different seeds give different worlds.
     pub seed: u64,
-    /// About how many leafs, 1 to 20000: fewer where a piece has become too small to cut.
+    /// Approximate number of leafs, 1 to 20000: fewer if pieces become too small to cut.
     pub leafs: u32,
-    /// How many of a hundred leafs are solid, 0 to 90.
+    /// Percentage of solid leafs, 0 to 90.
     pub solid_percent: u32,
-    /// How many of a hundred cuts are not axial, 0 to 100.
+    /// Percentage of cuts that are not axial, 0 to 100.
     pub tilted_percent: u32,
 }
 
@@ -28,7 +28,7 @@ impl Default for BspWorldOptions {
 
 /// Half the side of the world, in scene units.
 const HALF: f64 = 256.0;
-/// Nothing thinner is cut off, in scene units.
+/// Smallest thickness of a piece, in scene units.
 const THICKNESS: f64 = 4.0;
 
 /// A cube of 512 units, cut by random planes, axial or with normals of small integers; leafs are solid at random.

@@ -1,9 +1,9 @@
-//! What holds of every world.
+//! Properties of every world.
 
 use super::*;
 use crate::SceneError;
 
-/// FNV-1a over everything that a world holds.
+/// FNV-1a over the whole content of a world.
 fn checksum(world: &World) -> u64 {
     let mut hash = 0xCBF2_9CE4_8422_2325_u64;
     let mut eat =
@@ -23,12 +23,12 @@ fn checksum(world: &World) -> u64 {
     hash
 }
 
-/// How many points were looked at; panics where the world contradicts itself.
+/// Number of points examined; panics if the world contradicts itself.
 fn check(name: &str, world: &World) -> usize {
     let size = world.bounds();
     let scale = (0..3).map(|k| size.max[k] - size.min[k]).fold(0.0, f64::max);
     let magnitude = size.min.iter().chain(&size.max).fold(0.0f64, |m, x| m.max(x.abs()));
-    // What doubles of that size can be off by, with some to spare; it only excuses points, never portals.
+    // The possible error of doubles of that size, with a margin; it only excuses points, never portals.
     let near = 1e-12 * magnitude + 1e-9 * scale;
     let cells = world.cells();
     assert_eq!(cells.len(), world.graph.n_cells());
@@ -55,7 +55,7 @@ fn check(name: &str, world: &World) -> usize {
             n_points += 1;
         }
     }
-    // Points of a leaf are located in it, and those next to its faces in what the portals say.
+    // Points of a leaf are located in it, and those next to its faces are located according to the portals.
     for (index, leaf) in world.leafs.iter().enumerate() {
         let n = leaf.faces.iter().flatten().count() as f64;
         let middle = [0, 1, 2].map(|k| leaf.faces.iter().flatten().map(|p| p[k]).sum::<f64>() / n);
@@ -75,8 +75,8 @@ fn distance_from_line(p: Point3, a: Point3, b: Point3) -> f64 {
     length(cross) / length(u)
 }
 
-/// From every point of a face of a cell, one step outwards, lies what the portals say: another cell exactly if a
-/// portal is there. Portals are neither lost nor invented.
+/// One step outwards from every point of a face of a cell lies another cell exactly if a portal is there. Portals are
+/// neither lost nor invented.
 fn faces_are_explained(world: &World) -> usize {
     let mut n_points = 0;
     let mut rng = Rng::new(5, 5);
@@ -159,7 +159,7 @@ fn levels_do_not_contradict_themselves() {
     assert!(n_face_points > 5_000, "{n_face_points}");
 }
 
-/// The impostors: a world with a portal less, with one turned round, and with one between the wrong cells.
+/// The impostors: a world with one portal less, with one reversed, and with one between the wrong cells.
 #[test]
 fn checks_of_worlds_can_fail() {
     let world = bsp_world(BspWorldOptions::default()).unwrap();

@@ -1,19 +1,19 @@
-//! Methods with one fault each. The suite refuses every one of them, or it proves nothing.
+//! Methods with one fault each. The suite must refuse every one of them, or it proves nothing.
 
 use super::{Clause, RegionScene};
 use crate::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
-/// What an [`Impostor`] does wrong.
+/// The fault of an [`Impostor`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// What cannot be seen from the middle of the volume, towards the middle of the target, is hidden.
+    /// Hides what cannot be seen from the middle of the volume, towards the middle of the target.
     OneEye,
-    /// Of points only the first is looked at, from the middle of the volume.
+    /// Tests only the first of several points, from the middle of the volume.
     OnePoint,
-    /// What meets the volume is hidden.
+    /// Hides what meets the volume.
     HidesWhatIsNear,
-    /// Nothing is hidden.
+    /// Hides nothing.
     HidesNothing,
     /// Every other umbra hides nothing.
     NotRepeatable,
@@ -24,7 +24,7 @@ impl Fault {
     pub const ALL: [Self; 5] =
         [Self::OneEye, Self::OnePoint, Self::HidesWhatIsNear, Self::HidesNothing, Self::NotRepeatable];
 
-    /// The clauses that it may break. What hides nothing leaves nothing to compare.
+    /// The clauses that it may break. A method that hides nothing leaves nothing to compare.
     pub const fn clauses(self) -> &'static [Clause] {
         match self {
             Self::OneEye => &[Clause::Conservative],

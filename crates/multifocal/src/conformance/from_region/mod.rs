@@ -1,15 +1,15 @@
 //! The contract of [`FromRegion`] methods, as code that anyone can run against their own.
 //!
-//! [`run`] draws scenes of closed boxes, asks a method what is hidden from a volume, and checks:
+//! [`run`] draws scenes of closed boxes, queries a method for what is hidden from a volume, and checks:
 //! 1. conservative: no box is hidden that a free segment reaches from the volume;
 //! 2. points: the same of [`Umbra::hides_points`](crate::Umbra::hides_points) and of hulls of points;
 //! 3. near: no box is hidden that meets the volume;
 //! 4. tight: of the boxes behind one large wall, the share of [`Effort::tight`] is hidden;
 //! 5. repeatable: another umbra of the same volume gives the same answers.
 //!
-//! Segments are checked against boxes that are made a little larger, so that what counts as free is free. They are
-//! samples: the suite finds faults, it does not prove that there are none. [`impostors`] are methods with one fault
-//! each, which the suite has to refuse.
+//! Segments are checked against slightly enlarged boxes, so that a free segment is certainly free. They are samples:
+//! the suite finds faults, but does not prove that there are none. [`impostors`] are methods with one fault each, which
+//! the suite must refuse.
 
 pub mod impostors;
 
@@ -17,15 +17,15 @@ use super::random::Random;
 use crate::{BackendError, FromRegion, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
-/// How far boxes reach beyond their sides when a segment has to miss them, in scene units.
+/// How much boxes are enlarged when a segment has to miss them, in scene units.
 const CLEAR: f64 = 1e-6;
 
-/// Closed boxes that hide, all of them beside the volume.
+/// Closed boxes as occluders, none of which meets the volume.
 #[derive(Debug, Clone)]
 pub struct RegionScene {
-    /// Where eyes are.
+    /// The volume of the eyes.
     pub volume: Aabb<3>,
-    /// What hides.
+    /// The occluders.
     pub boxes: Vec<Aabb<3>>,
     /// The box around everything that may be queried.
     pub bounds: Aabb<3>,
@@ -42,7 +42,7 @@ impl RegionScene {
         self.boxes.iter().flat_map(faces).flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
     }
 
-    /// Whether nothing is between an eye and a point, with room to spare.
+    /// Whether nothing is between an eye and a point, with a margin.
     pub(super) fn is_free(&self, eye: Point3, point: Point3) -> bool {
         self.boxes.iter().all(|b| {
             let (mut enter, mut leave) = (0.0f64, 1.0f64);
@@ -77,12 +77,12 @@ fn faces(b: &Aabb<3>) -> [[Point3; 4]; 6] {
     ]
 }
 
-/// How much is looked at, and how much has to be found.
+/// The effort of the suite, and the required tightness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
-    /// Of the scenes.
+    /// The seed of the scenes.
     pub seed: u64,
-    /// Scenes.
+    /// Number of scenes.
     pub rounds: u32,
     /// Segments to each target.
     pub segments: u32,
@@ -91,13 +91,13 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// For methods that find all of what one occluder hides; a second for quick methods.
+    /// For methods that find all that one occluder hides; takes about a second with quick methods.
     pub const fn quick() -> Self {
         Self { seed: 1, rounds: 60, segments: 400, tight: 1.0 }
     }
 }
 
-/// What was compared, without a violation.
+/// Counts of a run without a violation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Report {
     /// Scenes.
@@ -110,11 +110,11 @@ pub struct Report {
     pub near: u32,
     /// Boxes behind one large wall.
     pub walled: u32,
-    /// Of these, how many the method hides.
+    /// Those of them that the method hides.
     pub found: u32,
 }
 
-/// Which clause is broken.
+/// The clauses of the contract.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Clause {
     /// 1.
@@ -129,7 +129,7 @@ pub enum Clause {
     Repeatable,
     /// An umbra was refused.
     Done,
-    /// No fault of the method: the suite compared nothing.
+    /// Not a fault of the method: the suite compared nothing.
     Counted,
 }
 
@@ -146,7 +146,7 @@ pub enum Violation {
         round: u32,
         /// The box, or the one around the points.
         target: Aabb<3>,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// Too little is hidden.
@@ -162,13 +162,13 @@ pub enum Violation {
     Failed {
         /// The scene.
         round: u32,
-        /// What the method says.
+        /// The error of the method.
         error: BackendError,
     },
     /// There was nothing to compare.
     #[error("the suite proves nothing: no {what}")]
     NothingRan {
-        /// What there was none of.
+        /// The missing kind of case.
         what: &'static str,
     },
 }
@@ -289,7 +289,7 @@ fn check(
     Ok(())
 }
 
-/// A box behind the walls; close to the middle axis if it has to be hidden by one of them.
+/// A box behind the walls; close to the middle axis if one of them has to hide it.
 fn target(random: &mut Random, is_walled: bool) -> Aabb<3> {
     let reach = if is_walled { 1 } else { 4 };
     let min = [random.eighth(6, 8), random.eighth(-reach, reach), random.eighth(-reach, reach)];
