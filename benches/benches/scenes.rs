@@ -169,7 +169,7 @@ fn one_scene(
     for &tau in &args.taus {
         for &portals in &args.portals {
             let (outcome, table) = bake(args, spec, folder, tau, portals, false)?;
-            eprintln!("  tau {tau}, {}: {}", portals_name(portals), told(&outcome));
+            eprintln!("  tau {tau}, {}: {}", portals_name(portals), outcome_name(&outcome));
             if let Some(table) = table {
                 with_table.push(rows.len());
                 tables.push(table);
@@ -299,7 +299,7 @@ fn impostor(scene: &Scene, tables: &[Table], options: &RayOptions) {
     assert!(!verdicts.tables[0].missing.is_empty(), "a table without what is seen from afar is found out");
 }
 
-fn told(outcome: &Outcome) -> String {
+fn outcome_name(outcome: &Outcome) -> String {
     match outcome {
         Outcome::Done(m) => format!("{} cells in {:.2} s", m.n_cells, m.cut + m.see),
         Outcome::TimedOut(limit) => format!("stopped after {:.0} s", limit.as_secs_f64()),
@@ -337,7 +337,7 @@ fn fields(row: &Row, exact: bool) -> Vec<String> {
     let head = [row.scene.clone(), row.tau.to_string(), row.portals.to_owned()];
     let mut out = head.to_vec();
     let Outcome::Done(m) = row.outcome else {
-        out.push(told(&row.outcome));
+        out.push(outcome_name(&row.outcome));
         out.resize(COLUMNS.len(), String::new());
         return out;
     };

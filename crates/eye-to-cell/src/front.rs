@@ -6,7 +6,7 @@ use sightlines_geometry::{Point2, orient2d, orient3d};
 /// What a sum of a few products may be off by, as a share of their sizes: 32 times the unit roundoff, 2^-53.
 const SMALL: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// What tells on which side of a portal a point is.
+/// Determines the side of a portal on which a point is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Front {
     /// In the plane: the line through the two corners, left end first.
@@ -52,8 +52,8 @@ impl Front {
         let tilt = corners.len() as f64 * size * size / length * SMALL;
         let uneven = off + size * SMALL;
         // Where sizes are not numbers, nothing is known.
-        let told = uneven.is_finite() && tilt.is_finite();
-        let (uneven, tilt) = if told { (uneven, tilt) } else { (f64::INFINITY, 0.0) };
+        let is_known = uneven.is_finite() && tilt.is_finite();
+        let (uneven, tilt) = if is_known { (uneven, tilt) } else { (f64::INFINITY, 0.0) };
         Self::Plane { point, normal, uneven, tilt }
     }
 
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sides_are_told() {
+    fn sides_are_reported() {
         // A door at x = 2, crossed towards larger x: the left end has the larger y.
         let line = Front::of(&[[2.0, 1.0, 0.0], [2.0, 0.0, 0.0]], true);
         for slack in [0.0, 1e-12] {
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_of_nonsense_are_not_told() {
+    fn sides_of_nonsense_are_unknown() {
         assert_eq!(Front::of(&[[f64::NAN; 3]; 3], false).facing(&[], [0.0; 3], 1e-9), Facing::Level);
         assert_eq!(Front::of(&[], false).facing(&[], [0.0; 3], 1e-9), Facing::Level);
     }

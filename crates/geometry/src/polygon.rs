@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn convexity_is_told() {
+    fn convexity_is_decided() {
         assert!(is_convex_ccw(&p(&[(0., 0.), (2., 0.), (2., 2.), (0., 2.)])));
         assert!(is_convex_ccw(&p(&[(0., 0.), (1., 0.), (2., 0.), (2., 2.)])));
         assert!(!is_convex_ccw(&p(&[(0., 0.), (0., 2.), (2., 2.), (2., 0.)])), "clockwise");

@@ -151,18 +151,18 @@ fn compare(cells: &Cells, frames: &[Kept], how: MoverOptions, kind: Kind, things
         let now = k as f64 / RATE;
         let frame = Frame { seen: &kept.seen, at: &[], answer: kept.answer, images: &[], ahead: &[] };
         let start = Instant::now();
-        let told = movers.frame(now, &frame, &mut |id: MoverId| things[id.slot()].0.at(now)).expect("time goes on");
+        let reported = movers.frame(now, &frame, &mut |id: MoverId| things[id.slot()].0.at(now)).expect("time goes on");
         ours.push(start.elapsed());
-        let told: Vec<usize> = told.iter().map(|id| id.slot()).collect();
+        let reported: Vec<usize> = reported.iter().map(|id| id.slot()).collect();
         // The plain method is slow with many movers: a sample of the frames measures its time and checks that the
         // answers are equal.
         if k % 20 == 1 {
             let start = Instant::now();
             let all: Vec<usize> = (0..n).filter(|&i| twin.sees(&frame, &things[i].0.at(now))).collect();
             plain.push(start.elapsed());
-            assert_eq!(told, all, "frame {k}");
+            assert_eq!(reported, all, "frame {k}");
         }
-        n_seen += told.len();
+        n_seen += reported.len();
     }
     let n_frames = frames.len() as f64;
     // In the first quarter all movers fall asleep for the first time.

@@ -345,10 +345,10 @@ fn coarse(resident: &impl CoarseVisibility, cell: CellId, seen: &mut VisibleSet)
     resident.coarse(cell, &mut |cell| {
         seen.add_cell(cell);
     });
-    let told = resident.coarse_objects(cell, &mut |object| {
+    let are_known = resident.coarse_objects(cell, &mut |object| {
         seen.add_object(object);
     });
-    if !told {
+    if !are_known {
         seen.add_objects((0..resident.n_objects() as u32).map(ObjectId));
     }
 }

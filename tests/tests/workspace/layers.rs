@@ -366,7 +366,7 @@ fn impostor_a_file_access_is_caught_in_code_and_only_there() {
 }
 
 #[test]
-fn modules_of_tests_are_told_from_code() {
+fn modules_of_tests_are_distinguished_from_code() {
     let declared = |path: &str| test_modules(Path::new(path), "mod a;\n#[cfg(test)]\nmod check;\nmod b;\n");
     assert_eq!(declared("x/src/lib.rs"), [Path::new("x/src/check")]);
     assert_eq!(declared("x/src/tree.rs"), [Path::new("x/src/tree/check")]);

@@ -106,8 +106,8 @@ fn a_real_building_shows_what_was_seen() {
         let eye = Aabb { min: witness.min, max: witness.max };
         let shown = shown(&table, &eye);
         // A sum of a few hundred products rounds by less than 2^-40; 2^-30 is far from both sides.
-        let told = if covered(&table, &eye) > 1.0 - 2f64.powi(-30) { witness.objects } else { Vec::new() };
-        for object in rays.witness_objects(eye, seed, RAYS).into_iter().chain(told) {
+        let sampled = if covered(&table, &eye) > 1.0 - 2f64.powi(-30) { witness.objects } else { Vec::new() };
+        for object in rays.witness_objects(eye, seed, RAYS).into_iter().chain(sampled) {
             assert!(shown[object as usize], "{} sees {}", witness.id, table.objects()[object as usize].name);
             n_seen += 1;
         }

@@ -160,7 +160,7 @@ proptest! {
 
 /// Whatever the limit on pieces: who says that all was found has found all.
 #[test]
-fn limits_are_told() {
+fn limits_are_reported() {
     let table = plan(&[[0, 0, 0, 0], [2, 6, 1, 5], [0, 0, 0, 0], [3, 8, 0, 4]], 5);
     let view = View::all_round([2.3, 2.6, 0.0]).unwrap();
     let root = table.in_dimension().unwrap().at([2.3, 2.6]).cells()[0];

@@ -197,17 +197,17 @@ fn hostile_beginnings_and_ends() {
 }
 
 #[test]
-fn degenerate_windings_are_kept_and_told() {
-    let told = |points: &str| {
+fn degenerate_windings_are_kept_and_reported() {
+    let is_reported = |points: &str| {
         let prt = parse_prt(format!("PRT1 2 1 {} 0 1 {points}", points.matches('(').count()).as_bytes()).unwrap();
         assert_eq!(write_prt(&prt).matches('(').count(), points.matches('(').count());
         prt.portal(0).is_degenerate()
     };
-    assert!(told("(1 2 3) (1 2 3) (1 2 3)"));
-    assert!(told("(0 0 0) (1 1 1) (3 3 3) (2 2 2)"));
-    assert!(told("(5 5 5) (5 5 5) (6 5 5) (9 5 5)"));
-    assert!(!told("(5 5 5) (5 5 5) (6 5 5) (9 5 5.000000001)"));
-    assert!(!told("(10000000 0 0) (10000000 0 5) (10000000.000000002 0 9)"));
+    assert!(is_reported("(1 2 3) (1 2 3) (1 2 3)"));
+    assert!(is_reported("(0 0 0) (1 1 1) (3 3 3) (2 2 2)"));
+    assert!(is_reported("(5 5 5) (5 5 5) (6 5 5) (9 5 5)"));
+    assert!(!is_reported("(5 5 5) (5 5 5) (6 5 5) (9 5 5.000000001)"));
+    assert!(!is_reported("(10000000 0 0) (10000000 0 5) (10000000.000000002 0 9)"));
 }
 
 /// What rounding explains is read, as compilers round: to 17 digits, to six decimals, to whole numbers nearby. More

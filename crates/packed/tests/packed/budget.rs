@@ -40,8 +40,8 @@ fn merged_pairs(recipe: crate::common::Recipe, share: u64) -> Result<(usize, usi
             prop_assert_eq!(&parts, table.parts());
             Ok((merged.n_merges, added))
         }
-        Err(PackError::Budget { budget: told, smallest }) => {
-            prop_assert!(told == budget && smallest > budget);
+        Err(PackError::Budget { budget: reported, smallest }) => {
+            prop_assert!(reported == budget && smallest > budget);
             Ok((0, 0))
         }
         Err(error) => Err(TestCaseError::fail(error.to_string())),

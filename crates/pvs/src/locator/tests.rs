@@ -77,11 +77,11 @@ proptest! {
         let LocatorNode::Leaf { cells } = &mut nodes[i] else { unreachable!("entries are of leaves") };
         let cell = cells.remove(k);
         let impostor = Locator::from_nodes(&nodes).unwrap();
-        let told = match impostor.check(&boxes, dimension) {
+        let reported = match impostor.check(&boxes, dimension) {
             Err(LocatorError::Misses { cell, .. }) => Some(cell),
             _ => None,
         };
-        prop_assert_eq!(told, Some(cell));
+        prop_assert_eq!(reported, Some(cell));
         // Brute force agrees, unless the piece of the box in that leaf is too thin for the grid of points.
         let (min, max) = boxes[cell.idx()];
         if dimension == 2 && (nodes.len() == 1 || (0..2).all(|axis| max[axis] > min[axis])) {
@@ -144,7 +144,7 @@ fn locator_of_a_kd_tree_lists_each_cell_once() {
 }
 
 #[test]
-fn locator_defects_are_told() {
+fn locator_defects_are_reported() {
     let inner = |low, high| LocatorNode::Inner { axis: 0, split: 0.0, low, high };
     let leaf = |cells: &[u32]| LocatorNode::Leaf { cells: cells.iter().copied().map(CellId).collect() };
     let error = |nodes: &[LocatorNode]| Locator::from_nodes(nodes).unwrap_err();

@@ -199,7 +199,7 @@ fn optional_sections_may_go_and_others_not() {
 }
 
 #[test]
-fn versions_are_told() {
+fn versions_are_reported() {
     let mut file = File::parse(&house().to_bytes());
     for major in [0, 2, u16::MAX] {
         file.major = major;

@@ -118,12 +118,12 @@ proptest! {
             cells
         };
         let tree = PlaneTree::new(nodes.clone(), 0.0).unwrap();
-        let told = of_box(&tree, p, far);
+        let cells = of_box(&tree, p, far);
         let corners = (0..8).map(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { p[k] } else { far[k] }));
         let at_corners = |tree: &PlaneTree| corners.clone().flat_map(|c: [i64; 3]| found(tree, at(c))).collect::<Vec<_>>();
-        prop_assert!(at_corners(&tree).iter().all(|cell| told.contains(cell)));
+        prop_assert!(at_corners(&tree).iter().all(|cell| cells.contains(cell)));
         let larger = of_box(&tree, p.map(|x| x - 1), far.map(|x| x + 2));
-        prop_assert!(told.iter().all(|cell| larger.contains(cell)));
+        prop_assert!(cells.iter().all(|cell| larger.contains(cell)));
         let children = [PlaneChild::Cell(CellId(0)), PlaneChild::Cell(CellId(1))];
         let one = PlaneTree::new(vec![PlaneNode { children, ..nodes[0] }], 0.0).unwrap();
         let mut cells = at_corners(&one);

@@ -78,9 +78,9 @@ proptest! {
             let cell = &table.cells()[cell.idx()];
             prop_assert!((0..3).all(|k| cell.min[k] <= max[k] && min[k] <= cell.max[k]));
         }
-        let mut n_told = 0;
-        table.for_each_touching(min, max, &mut Vec::new(), |_| { n_told += 1; false });
-        prop_assert_eq!(n_told, usize::from(!touched.is_empty()));
+        let mut n_visited = 0;
+        table.for_each_touching(min, max, &mut Vec::new(), |_| { n_visited += 1; false });
+        prop_assert_eq!(n_visited, usize::from(!touched.is_empty()));
     }
 
     /// Invariant: a stripped table has the same rows and finds a point in no fewer cells.

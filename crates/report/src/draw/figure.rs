@@ -64,9 +64,9 @@ impl Figure {
         for (portal, door) in &self.doors {
             table.portals()[*portal].cells.iter().for_each(|cell| outlines[cell.idx()].doors.push(*door));
         }
-        // A table whose portals were stripped says nothing about walls.
-        let told = table.n_cells() < 2 || !table.portals().is_empty();
-        let walls = if told { walls(&outlines) } else { Vec::new() };
+        // In a table whose portals were stripped the walls are unknown.
+        let are_walls_known = table.n_cells() < 2 || !table.portals().is_empty();
+        let walls = if are_walls_known { walls(&outlines) } else { Vec::new() };
         Self { walls, ..self }
     }
 

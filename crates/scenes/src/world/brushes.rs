@@ -60,7 +60,7 @@ pub fn world_of_brushes(min: [i32; 3], max: [i32; 3], brushes: &[Brush]) -> Worl
     let [min, max] = [min, max].map(|corner| corner.map(f64::from));
     let region = Polytope::cuboid(min, max);
     let placed: Vec<Placed> = brushes.iter().filter_map(|brush| place(&region, brush)).collect();
-    Builder::grow(region, (0..placed.len()).collect(), |piece, told: Vec<usize>| decide(piece, &told, &placed))
+    Builder::grow(region, (0..placed.len()).collect(), |piece, near: Vec<usize>| decide(piece, &near, &placed))
 }
 
 /// The brush inside the region; `None` if it is outside.
@@ -95,12 +95,12 @@ fn lie(piece: &Polytope, brush: &Placed) -> Place {
     if piece.faces.iter().any(|(plane, _)| beyond(plane)) { Place::Outside } else { place }
 }
 
-fn decide(piece: &Polytope, told: &[usize], placed: &[Placed]) -> Decision<Vec<usize>> {
+fn decide(piece: &Polytope, near: &[usize], placed: &[Placed]) -> Decision<Vec<usize>> {
     // From the last brush, which takes precedence, to the first that contains the piece.
     let mut across = Vec::new();
     let mut is_solid = true;
     let mut base = None;
-    for &brush in told.iter().rev() {
+    for &brush in near.iter().rev() {
         match lie(piece, &placed[brush]) {
             Place::Outside => {}
             Place::Across => across.push(brush),
@@ -116,8 +116,8 @@ fn decide(piece: &Polytope, told: &[usize], placed: &[Placed]) -> Decision<Vec<u
         across.pop();
     }
     let Some((plane, halves)) = best_cut(piece, &across, placed) else { return Decision::Leaf { is_solid } };
-    let told: Vec<usize> = base.into_iter().chain(across.into_iter().rev()).collect();
-    Decision::Cut { plane, halves, told: [told.clone(), told] }
+    let relevant: Vec<usize> = base.into_iter().chain(across.into_iter().rev()).collect();
+    Decision::Cut { plane, halves, data: [relevant.clone(), relevant] }
 }
 
 /// The plane that cuts few brushes and leaves as many on either side, axial if possible.

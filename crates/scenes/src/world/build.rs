@@ -24,17 +24,17 @@ pub(super) struct Builder {
 impl Builder {
     /// Grows a whole tree from a convex region. `decide` determines what happens to a piece, given its data; a cut has
     /// to leave something on both sides.
-    pub(super) fn grow<T>(region: Polytope, told: T, mut decide: impl FnMut(&Polytope, T) -> Decision<T>) -> World {
+    pub(super) fn grow<T>(region: Polytope, data: T, mut decide: impl FnMut(&Polytope, T) -> Decision<T>) -> World {
         let mut builder = Self { planes: Vec::new(), nodes: Vec::new(), sections: Vec::new(), leafs: Vec::new() };
         // Pieces wait with the child slot that will refer to them.
-        let mut waiting = vec![(region, told, None)];
-        while let Some((piece, told, parent)) = waiting.pop() {
-            let child = match decide(&piece, told) {
+        let mut waiting = vec![(region, data, None)];
+        while let Some((piece, data, parent)) = waiting.pop() {
+            let child = match decide(&piece, data) {
                 Decision::Leaf { is_solid } => {
                     builder.leafs.push((piece, is_solid));
                     WorldChild::Leaf(builder.leafs.len() - 1)
                 }
-                Decision::Cut { plane, halves: [front, back], told: [told_front, told_back] } => {
+                Decision::Cut { plane, halves: [front, back], data: [front_data, back_data] } => {
                     let node = builder.nodes.len();
                     let index = builder.planes.iter().position(|p| *p == plane).unwrap_or(builder.planes.len());
                     if index == builder.planes.len() {
@@ -44,8 +44,8 @@ impl Builder {
                     builder.nodes.push(WorldNode { plane: index, children: [WorldChild::Leaf(0); 2] });
                     let section = piece.section(&plane, EPSILON).expect("a plane that cuts has a section");
                     builder.sections.push(section);
-                    waiting.push((back, told_back, Some((node, 1))));
-                    waiting.push((front, told_front, Some((node, 0))));
+                    waiting.push((back, back_data, Some((node, 1))));
+                    waiting.push((front, front_data, Some((node, 0))));
                     WorldChild::Node(node)
                 }
             };
@@ -117,6 +117,6 @@ pub(super) enum Decision<T> {
         /// The parts in front and behind.
         halves: [Polytope; 2],
         /// The data of each part.
-        told: [T; 2],
+        data: [T; 2],
     },
 }

@@ -55,7 +55,7 @@ pub fn bsp_world(options: BspWorldOptions) -> Result<World, SceneError> {
             Some((plane, halves)) => {
                 // From a third to two thirds to either side.
                 let front = (wanted / 3 + rng.below(wanted as usize / 3 + 1) as u32).clamp(1, wanted - 1);
-                Decision::Cut { plane, halves, told: [front, wanted - front] }
+                Decision::Cut { plane, halves, data: [front, wanted - front] }
             }
         }
     }))

@@ -256,11 +256,11 @@ fn a_broken_promise_is_measured() {
     let scene = Scene::new(vec![terrain(16, 9.0, 1.0, 3)]).unwrap();
     let views = views([4.0, 4.0, 0.0], [8.0, 8.0, 2.0]);
     let options = MeasureOptions { n_eyes: 20, n_rays: 2000, ..MeasureOptions::default() };
-    let told = |left: &Simplified, bound: f64| {
+    let is_refused = |left: &Simplified, bound: f64| {
         check(&measure(&scene, left, &views, &options).unwrap(), bound, 2000, 20).is_err()
     };
     let good = simplified(&scene, &views, &SimplifyOptions::default().with_budget(0.05));
-    assert!(!told(&good, good.bound));
+    assert!(!is_refused(&good, good.bound));
     // Made for another place; by shape alone; for a budget ten times as large.
     let elsewhere = self::views([4.0, 4.0, 200.0], [8.0, 8.0, 220.0]);
     let other = simplified(&scene, &elsewhere, &SimplifyOptions::default().with_budget(0.05));
@@ -268,7 +268,7 @@ fn a_broken_promise_is_measured() {
     let tenfold =
         simplified(&scene, &views, &SimplifyOptions { collapse: 0.0, ..SimplifyOptions::default() }.with_budget(0.5));
     for (name, wrong) in [("elsewhere", other), ("shape", shape), ("tenfold", tenfold)] {
-        assert!(told(&wrong, good.bound), "{name}");
+        assert!(is_refused(&wrong, good.bound), "{name}");
     }
 }
 

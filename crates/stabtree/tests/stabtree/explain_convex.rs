@@ -206,7 +206,7 @@ fn damaged_explanations_are_refused() {
 /// Two portals of a cell side by side: no line comes in by one and goes out by the other. The impostors: of a portal
 /// that is tilted, or ahead, that is not believed.
 #[test]
-fn portals_side_by_side_are_told() {
+fn portals_side_by_side_block() {
     let door = |y: f64, tilt: f64| {
         Portal3::around(&[[0.0, y, 0.0], [tilt, y + 1.0, 0.0], [tilt, y + 1.0, 1.0], [0.0, y, 1.0]]).expect("a door")
     };
@@ -227,7 +227,7 @@ fn portals_side_by_side_are_told() {
 }
 
 #[test]
-fn limits_are_told() {
+fn limits_are_reported() {
     let world = random(2, 40, 60);
     let graph = &world.graph;
     let mut n_given_up = 0;

@@ -106,9 +106,9 @@ mod tests {
                 lists.enter(slot, &cells.iter().map(|&c| CellId(c)).collect::<Vec<_>>());
                 pairs.retain(|pair| pair.1 != slot);
                 pairs.extend(cells.iter().map(|&c| (c, slot)));
-                let told: Vec<(u32, u32)> = (0..7).flat_map(|c| lists.of(c).map(move |s| (c, s))).collect();
-                prop_assert_eq!(told.len(), pairs.len());
-                prop_assert_eq!(told.into_iter().collect::<BTreeSet<_>>(), pairs.clone());
+                let pairs_of_lists: Vec<(u32, u32)> = (0..7).flat_map(|c| lists.of(c).map(move |s| (c, s))).collect();
+                prop_assert_eq!(pairs_of_lists.len(), pairs.len());
+                prop_assert_eq!(pairs_of_lists.into_iter().collect::<BTreeSet<_>>(), pairs.clone());
                 prop_assert_eq!(lists.n_entries(), pairs.len());
                 let occupied: BTreeSet<u32> = lists.occupied().iter().copied().collect();
                 prop_assert_eq!(occupied.len(), lists.occupied().len());

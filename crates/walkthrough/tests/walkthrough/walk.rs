@@ -240,7 +240,7 @@ fn outside_sees_everything() {
 }
 
 #[test]
-fn failures_are_told_and_frames_stay_right() {
+fn failures_are_reported_and_frames_stay_right() {
     let table = rooms(4);
     let (source, gate) = slow(&table, Some(CellId(0)));
     gate.open();

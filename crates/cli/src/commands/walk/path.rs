@@ -56,11 +56,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn walks_are_read_and_slips_told_with_their_frame() {
+    fn walks_are_read_and_mistakes_reported_with_their_frame() {
         let good = br#"{"frames": [{"eye": [1, 2], "dir": [0, 1]}, {"eye": [1.5, 2], "dir": [1, 1]}], "by": "hand"}"#;
         let stands = parse(good, 2).unwrap();
         assert_eq!((stands.len(), stands[1]), (2, CameraPose { eye: [1.5, 2.0, 0.0], dir: [1.0, 1.0, 0.0] }));
-        for (text, told) in [
+        for (text, message) in [
             ("", "EOF while parsing"),
             ("[]", "line 1 column "),
             ("{}", "missing field `frames`"),
@@ -73,7 +73,7 @@ mod tests {
             (r#"{"frames": [{"eye": [1, null], "dir": [0, 1]}]}"#, "frame 0: invalid type: null"),
         ] {
             let error = parse(text.as_bytes(), 2).unwrap_err().to_string();
-            assert!(error.contains(told), "{text}: {error}");
+            assert!(error.contains(message), "{text}: {error}");
         }
     }
 }

@@ -106,7 +106,7 @@ fn budget_of_levels_is_kept() {
 }
 
 #[test]
-fn failures_are_told_and_the_original_is_drawn() {
+fn failures_are_reported_and_the_original_is_drawn() {
     let mut levels = Levels::new(index(), Loader { fails: Some(1), ..Loader::default() }, 1000);
     let error = loop {
         assert_eq!(levels.frame(&cells(&[3]), &[]), Draw::Original);

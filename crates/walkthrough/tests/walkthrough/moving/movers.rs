@@ -159,14 +159,14 @@ impl Game {
         }
         let now = self.time();
         let (grid, things) = (&self.grid, &self.things);
-        let told = self.movers.frame(now, &frame(&self.seen, answer), &mut |id| float(&things[&id].at)).unwrap();
-        let told = told.to_vec();
+        let reported = self.movers.frame(now, &frame(&self.seen, answer), &mut |id| float(&things[&id].at)).unwrap();
+        let reported = reported.to_vec();
         let outside = answer == Answer::Outside;
         let plain = things.iter().filter(|(_, thing)| outside || grid.sees(&self.seen, &thing.at));
         let plain: Vec<MoverId> = plain.map(|(&id, _)| id).collect();
-        self.n_reported += told.len();
+        self.n_reported += reported.len();
         self.n_hidden += things.len() - plain.len();
-        (told, plain)
+        (reported, plain)
     }
 }
 
@@ -179,8 +179,8 @@ proptest! {
         (0..n).for_each(|_| game.add());
         game.look();
         for k in 0..40 {
-            let (told, plain) = game.frame();
-            prop_assert_eq!(&told, &plain, "frame {}", k);
+            let (reported, plain) = game.frame();
+            prop_assert_eq!(&reported, &plain, "frame {}", k);
             prop_assert_eq!(game.movers.broken(), &[]);
             prop_assert_eq!(game.movers.len(), game.things.len());
             game.happen();
@@ -205,11 +205,11 @@ proptest! {
             for turn in 0..3u32 {
                 let n = game.grid.n_cells() as u32;
                 let cells: Vec<CellId> = (0..n).filter(|cell| (cell + turn) % 3 == 0).map(CellId).collect();
-                let told = game.movers.also(&cells, &mut place).to_vec();
+                let reported = game.movers.also(&cells, &mut place).to_vec();
                 let mut seen = VisibleSet::new();
                 see(&mut seen, n as usize, cells.iter().map(|cell| cell.0));
                 let plain = things.iter().filter(|(_, thing)| game.grid.sees(&seen, &thing.at)).map(|(&id, _)| id);
-                prop_assert_eq!(told, plain.collect::<Vec<_>>());
+                prop_assert_eq!(reported, plain.collect::<Vec<_>>());
             }
             let n_asked = asked.len();
             asked.sort_unstable();
@@ -237,11 +237,11 @@ proptest! {
                 found.dedup();
                 found
             };
-            let told = collect(&cells);
+            let touched = collect(&cells);
             let loose = collect(&boxes);
             let oracle: Vec<u32> =
                 (0u32..).zip(&grid.shapes).filter(|(_, s)| s.touches(&b, grid.dimension())).map(|(i, _)| i).collect();
-            prop_assert_eq!(&told, &oracle);
+            prop_assert_eq!(&touched, &oracle);
             prop_assert!(oracle.iter().all(|cell| loose.binary_search(cell).is_ok()));
             // The first `false` ends the search.
             for places in [&cells as &dyn sightlines_walkthrough::CellLocator, &boxes] {
@@ -279,8 +279,8 @@ fn asked_in_frames(n_movers: usize, n_frames: usize, motion: impl Fn(usize) -> M
     for k in 0..n_frames {
         let before = movers.counters();
         let place = &mut |id: MoverId| if id == seen_by { in_room(1) } else { in_room(8 + id.slot() % 56) };
-        let told = movers.frame(k as f64 / 60.0, &frame(&seen, Answer::Full), place).unwrap();
-        assert_eq!(told, [seen_by]);
+        let reported = movers.frame(k as f64 / 60.0, &frame(&seen, Answer::Full), place).unwrap();
+        assert_eq!(reported, [seen_by]);
         let after = movers.counters();
         asked.push(after.asked - before.asked);
         assert!(after.cells - before.cells <= 2, "only cells in view are looked at");
@@ -332,8 +332,8 @@ fn volumes_shrink_when_they_come_into_view_for_nothing() {
     for k in 0..2400 {
         let at = (k / 120).min(17) as u32;
         see(&mut seen, 64, [at, at + 1]);
-        let told = movers.frame(f64::from(k) / 60.0, &frame(&seen, Answer::Full), &mut |_| in_room(20)).unwrap();
-        assert!(told.is_empty());
+        let reported = movers.frame(f64::from(k) / 60.0, &frame(&seen, Answer::Full), &mut |_| in_room(20)).unwrap();
+        assert!(reported.is_empty());
         let volume = movers.sleeps_in(id);
         widths.push(volume.map_or(0.0, |v| v.max[0] - v.min[0]));
         assert!(volume.is_none_or(|v| v.min[0] > f64::from(at) + 2.0), "what is in view is not slept in");

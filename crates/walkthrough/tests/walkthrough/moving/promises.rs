@@ -23,8 +23,8 @@ fn missed(promised: f64) -> (usize, Vec<Broken>) {
     for k in 0..6000 {
         let now = f64::from(k) / 60.0;
         let here = at((30.0 - now).max(0.5));
-        let told = movers.frame(now, &frame(&seen, Answer::Full), &mut |_| here).unwrap();
-        n_missed += usize::from(here.min[0] <= 4.0 && told.is_empty());
+        let reported = movers.frame(now, &frame(&seen, Answer::Full), &mut |_| here).unwrap();
+        n_missed += usize::from(here.min[0] <= 4.0 && reported.is_empty());
         broken.extend_from_slice(movers.broken());
     }
     (n_missed, broken)
@@ -44,7 +44,7 @@ fn volumes_that_hold_too_long_are_caught() {
 }
 
 #[test]
-fn broken_promises_are_told_and_survived() {
+fn broken_promises_are_reported_and_survived() {
     let grid = row(8);
     let mut movers = Movers::new(grid.cells(), MoverOptions::default());
     let room = Aabb { min: [5.0, 0.0, 0.0], max: [6.0, 1.0, 1.0] };
@@ -53,8 +53,8 @@ fn broken_promises_are_told_and_survived() {
     see(&mut seen, 8, [0]);
     let step =
         |movers: &mut Movers<_>, now: f64, seen: &VisibleSet, here: Aabb<3>| -> (Vec<MoverId>, Vec<BrokenPromise>) {
-            let told = movers.frame(now, &frame(seen, Answer::Full), &mut |_| here).unwrap().to_vec();
-            (told, movers.broken().iter().map(|b| b.promise).collect())
+            let reported = movers.frame(now, &frame(seen, Answer::Full), &mut |_| here).unwrap().to_vec();
+            (reported, movers.broken().iter().map(|b| b.promise).collect())
         };
     assert_eq!(step(&mut movers, 1.0, &seen, at(5.25)), (vec![], vec![]));
     assert_eq!(movers.sleeps_in(id), Some(room));
