@@ -9,7 +9,7 @@ use sightlines::cells::{CellGraph, CellId, PortalId, Scene, SceneObject};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::scenes::{TowerOptions, tower};
-use sightlines::stabtree::{SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
+use sightlines::stabtree::{SearchOptions, SpaceVisibility, space_visibility};
 use sightlines_benches::chart::{Panel, Series, svg};
 use sightlines_benches::program::{Common, exit, read_file};
 use std::error::Error;
@@ -213,8 +213,7 @@ fn see_closed(live: &LiveScene, threads: usize) -> Result<SpaceVisibility, Box<d
     let boxes = live.scene().objects().iter().map(|o| Aabb::around(o.corners().flatten()));
     let boxes: Vec<Aabb<3>> = boxes.collect();
     let search = SearchOptions { threads, ..SearchOptions::default() };
-    Ok(space_visibility(&graph, &cut.left_out(), &boxes, &VisibilityBounds::nothing(graph.n_cells()), &search)
-        .expect("nobody cancels"))
+    Ok(space_visibility(&graph, &cut.left_out(), &boxes, &search).expect("nobody cancels"))
 }
 
 /// Whether a table says what was found.

@@ -12,7 +12,7 @@ use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
 use sightlines_progress::Observer;
 use sightlines_pvs::{CellRecord, Locator, MirrorRecord, SceneMethods, Table, TableKind, TableParts};
-use sightlines_stabtree::{SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
+use sightlines_stabtree::{SearchOptions, SpaceVisibility, space_visibility};
 use std::time::Instant;
 
 /// Which portals the search goes through.
@@ -89,12 +89,11 @@ pub(crate) fn see_scene(
     let boxes: Vec<Aabb<3>> = scene.objects().iter().map(drawn_box).collect();
     let solid = cut.left_out();
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
-    let nothing = VisibilityBounds::nothing(cut.graph.n_cells());
     let graph = match options.portals {
         PortalMode::Bounding => merge_portals(&cut.graph),
         PortalMode::Exact => cut.graph,
     };
-    let seen = space_visibility(&graph, &solid, &boxes, &nothing, &search)?;
+    let seen = space_visibility(&graph, &solid, &boxes, &search)?;
     let see_time = start.elapsed();
     let found = mirrors::of_scene(&graph, scene);
     let report = SceneReport {

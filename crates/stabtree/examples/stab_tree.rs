@@ -6,10 +6,12 @@ use sightlines_cells::{CellGraph, CellId, Planar};
 use sightlines_geometry::Adaptive;
 use sightlines_pvs::BitMatrix;
 use sightlines_scenes::{OfficeOptions, office};
-use sightlines_sightline::Funnel;
-use sightlines_stabtree::{Explanation, SearchOptions, StabTree, Zones, explain, plan_visibility};
+use sightlines_sightline::{Funnel, Verdict};
+use sightlines_stabtree::{
+    Barrier, PlanPath, PlanProof, SearchLimit, SearchOptions, Sight, StabTree, Zones, explain, plan_visibility,
+};
 
-/// Where a cell is.
+/// A cell and its position.
 fn place(graph: &CellGraph<Planar>, cell: CellId) -> String {
     let bounds = graph.cell(cell).bounds();
     format!("cell {cell} from {:?} to {:?}", bounds.min, bounds.max)
@@ -30,21 +32,22 @@ fn print_tree(graph: &CellGraph<Planar>, root: CellId, seen: &BitMatrix) -> Resu
 fn print_explanation(graph: &CellGraph<Planar>, from: CellId, to: CellId) {
     println!("does cell {from} see {}?", place(graph, to));
     match explain(graph, from, to, 1, 1_000_000) {
-        Explanation::Same => println!("  it is the same cell"),
-        Explanation::Visible { portals, doors, witness } => {
+        Verdict::Visible(Sight::SameCell) => println!("  it is the same cell"),
+        Verdict::Visible(Sight::Along(PlanPath { portals, doors, witness })) => {
             println!("  yes, through {} portals", portals.len());
             if let Some([p, q]) = witness.rounded(&doors) {
                 println!("  along the line from {p} to {q}");
             }
         }
-        Explanation::Hidden { n_blocked, blocked, connected } => {
-            println!("  no: {n_blocked} sequences of portals are blocked (is there a way at all: {connected})");
+        Verdict::Hidden(Barrier::NotConnected) => println!("  no: no portals lead there"),
+        Verdict::Hidden(Barrier::Blocked(PlanProof { n_blocked, blocked })) => {
+            println!("  no: {n_blocked} sequences of portals are blocked");
             for sequence in blocked {
                 let cause = sequence.certificate.portals();
                 println!("  for example {} portals, of which {cause:?} let no line pass", sequence.portals.len());
             }
         }
-        Explanation::TooMany { limit } => println!("  not known after {limit} cells"),
+        Verdict::Undecided(SearchLimit(limit)) => println!("  undecided after {limit} cells"),
     }
 }
 

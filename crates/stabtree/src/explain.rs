@@ -1,8 +1,9 @@
-//! Why one cell sees another, or why it does not.
+//! Why one cell of a plan sees another, or why it does not.
 
+use crate::explanation::{Barrier, Explanation, SearchLimit, Sight};
 use sightlines_cells::{CellGraph, CellId, Exit, Planar, PortalId, Space};
 use sightlines_geometry::{Adaptive, Portal2};
-use sightlines_sightline::{Funnel, PlanarCertificate, PlanarWitness};
+use sightlines_sightline::{Funnel, PlanarCertificate, PlanarWitness, Verdict};
 
 /// A sequence of portals that no open set of lines passes, though one passes all but the last.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,43 +14,45 @@ pub struct BlockedSequence {
     pub certificate: PlanarCertificate,
 }
 
-/// The answer for two cells.
+/// The explanation for two cells of a plan.
+pub type PlanExplanation = Explanation<PlanPath, PlanProof>;
+
+/// How one cell of a plan sees another.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Explanation {
-    /// They are one cell.
-    Same,
-    /// They see each other.
-    Visible {
-        /// The portals between them, in order; none if they are one cell.
-        portals: Vec<PortalId>,
-        /// The same portals as who walks through them sees them.
-        doors: Vec<Portal2>,
-        /// A line through all of them.
-        witness: Box<PlanarWitness>,
-    },
-    /// They do not: every sequence of portals towards the target ends at a blocked one.
-    Hidden {
-        /// Number of blocked sequences.
-        n_blocked: u64,
-        /// The first of them, as many as asked for.
-        blocked: Vec<BlockedSequence>,
-        /// Whether any chain of portals joins the two cells at all.
-        connected: bool,
-    },
-    /// The search met more sequences than allowed.
-    TooMany {
-        /// How many were allowed.
-        limit: u64,
-    },
+pub struct PlanPath {
+    /// The portals between them, in order.
+    pub portals: Vec<PortalId>,
+    /// The same portals, oriented for crossing them in this order.
+    pub doors: Vec<Portal2>,
+    /// A line through all of them.
+    pub witness: Box<PlanarWitness>,
+}
+
+/// Why one cell of a plan does not see another: every sequence of portals towards the target ends at a blocked one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlanProof {
+    /// Number of blocked sequences.
+    pub n_blocked: u64,
+    /// The first of them, as many as requested.
+    pub blocked: Vec<BlockedSequence>,
 }
 
 /// Searches for a line from `from` to `to`, with at most `max_visits` cells entered; keeps the proofs of
 /// the first `max_proofs` blocked sequences. Exact.
-pub fn explain(graph: &CellGraph<Planar>, from: CellId, to: CellId, max_proofs: usize, max_visits: u64) -> Explanation {
+pub fn explain(
+    graph: &CellGraph<Planar>,
+    from: CellId,
+    to: CellId,
+    max_proofs: usize,
+    max_visits: u64,
+) -> PlanExplanation {
     if from == to {
-        return Explanation::Same;
+        return Verdict::Visible(Sight::SameCell);
     }
     let useful = reaching(graph, to);
+    if !useful[from.idx()] {
+        return Verdict::Hidden(Barrier::NotConnected);
+    }
     let mut search = Search { graph, useful, to, max_proofs, path: Vec::new(), n_blocked: 0, blocked: Vec::new() };
     let mut funnel = Funnel::new(Adaptive);
     let mut visits = 0u64;
@@ -82,7 +85,7 @@ pub fn explain(graph: &CellGraph<Planar>, from: CellId, to: CellId, max_proofs: 
                 stack.push((0, Some(undo)));
                 visits += 1;
                 if visits > max_visits {
-                    return Explanation::TooMany { limit: max_visits };
+                    return Verdict::Undecided(SearchLimit(max_visits));
                 }
             } else {
                 search.note_blocked();
@@ -90,8 +93,7 @@ pub fn explain(graph: &CellGraph<Planar>, from: CellId, to: CellId, max_proofs: 
             }
         }
     }
-    let connected = search.useful[from.idx()];
-    Explanation::Hidden { n_blocked: search.n_blocked, blocked: search.blocked, connected }
+    Verdict::Hidden(Barrier::Blocked(PlanProof { n_blocked: search.n_blocked, blocked: search.blocked }))
 }
 
 struct Search<'a> {
@@ -113,9 +115,10 @@ impl Search<'_> {
         self.path.iter().map(|e| e.portal).collect()
     }
 
-    fn visible(&self, funnel: &Funnel<Adaptive>) -> Explanation {
+    fn visible(&self, funnel: &Funnel<Adaptive>) -> PlanExplanation {
         debug_assert!(self.path.last().is_some_and(|e| e.to == self.to));
-        Explanation::Visible { portals: self.portals(), doors: self.doors(), witness: Box::new(funnel.witness()) }
+        let (portals, doors) = (self.portals(), self.doors());
+        Verdict::Visible(Sight::Along(PlanPath { portals, doors, witness: Box::new(funnel.witness()) }))
     }
 
     fn note_blocked(&mut self) {

@@ -19,6 +19,7 @@ mod certify;
 mod chords;
 mod convex;
 mod explain;
+mod explanation;
 mod network;
 mod search;
 mod space;
@@ -28,15 +29,17 @@ mod zones;
 pub use certify::{CertifyOptions, certify_plan, certify_space, plan_network, space_network};
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
-    BlockedConvex, Blocking, ConvexCounters, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions,
-    ConvexSearch, ConvexState, ConvexVisibility, MOST_EXPLAINED, certify_convex, convex_network, explain_convex,
+    BlockedConvex, Blocking, ConvexCounters, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate,
+    ConvexOptions, ConvexPath, ConvexProof, ConvexSearch, ConvexState, ConvexVisibility, MOST_EXPLAINED,
+    certify_convex, check_convex, convex_network, explain_convex,
 };
-pub use explain::{BlockedSequence, Explanation, explain};
+pub use explain::{BlockedSequence, PlanExplanation, PlanPath, PlanProof, explain};
+pub use explanation::{Barrier, Explanation, SearchLimit, Sight};
 pub use network::Network;
-pub use search::{SearchOptions, SearchSummary, VisibilityBounds, ZoneVisibility, visible_zones};
+pub use search::{SearchOptions, SearchSummary, ZoneVisibility, visible_zones};
 pub use space::{
-    BoxVisibility, LiveSpace, PairMask, SpaceExplanation, SpaceUpdate, SpaceVisibility, box_visibility, explain_space,
-    space_visibility,
+    BoxVisibility, LiveSpace, PairMask, SpaceExplanation, SpacePath, SpaceProof, SpaceUpdate, SpaceVisibility,
+    box_visibility, explain_space, space_visibility,
 };
 pub use tree::{
     ByPolygons, ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of,
@@ -65,7 +68,7 @@ pub fn plan_visibility(
     zones: &Zones,
     options: &SearchOptions<'_>,
 ) -> Result<(BitMatrix, SearchSummary), Cancelled> {
-    let known = VisibilityBounds { visible: shoot_chords(graph, zones, options.chords), possible: None };
+    let known = shoot_chords(graph, zones, options.chords);
     let network = Network::planar(graph, zones);
     let seen = match graph.small_grid() {
         Some(grid) => visible_zones(&network, &Funnel::new(grid), &known, options),

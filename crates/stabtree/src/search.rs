@@ -61,23 +61,6 @@ const FEW: u32 = 16;
 /// Largest table of "what lies in front of which exit", in words: 64 MiB.
 const MAX_FRONT_WORDS: usize = 8 << 20;
 
-/// What is known before a search. It changes no answer, only the cost.
-#[derive(Debug, Clone)]
-pub struct VisibilityBounds {
-    /// Zones by zones: pairs that see each other; a subset of the truth, at least the diagonal.
-    pub visible: BitMatrix,
-    /// Zones by zones, and zones by objects: all pairs but some that do not see each other; supersets of
-    /// the truth, such as the answer for larger portals.
-    pub possible: Option<(BitMatrix, BitMatrix)>,
-}
-
-impl VisibilityBounds {
-    /// Nothing but that every zone sees itself.
-    pub fn nothing(n_zones: usize) -> Self {
-        Self { visible: BitMatrix::identity(n_zones), possible: None }
-    }
-}
-
 /// The answer of a search.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ZoneVisibility {
@@ -93,6 +76,8 @@ pub struct ZoneVisibility {
 ///
 /// * `network`: cells, exits, zones, objects.
 /// * `stabber`: cloned for each thread; its state does not matter.
+/// * `known`: zones by zones, pairs known to see each other, at least the diagonal: a symmetric subset of the answer. It
+///   affects only the cost; [`BitMatrix::identity`] if nothing is known.
 ///
 /// Exact if the stabber is. Cost: output-sensitive in practice and exponential in the worst case, as for every
 /// search over portal sequences; memory is a few bit matrices.
@@ -101,11 +86,11 @@ pub struct ZoneVisibility {
 /// [`Cancelled`] by the observer.
 ///
 /// # Panics
-/// If a matrix of `known` is not about as many zones and objects as the network.
+/// If `known` has the wrong size.
 pub fn visible_zones<S>(
     network: &Network<S::Portal, S::Bounds>,
     stabber: &S,
-    known: &VisibilityBounds,
+    known: &BitMatrix,
     options: &SearchOptions<'_>,
 ) -> Result<ZoneVisibility, Cancelled>
 where
@@ -114,12 +99,10 @@ where
     S::Bounds: Sync,
 {
     let n = network.n_zones();
-    let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == n && m.n_cols() == n_cols;
-    let possible_fits = known.possible.iter().all(|(z, o)| fits(z, n) && fits(o, network.n_objects()));
-    assert!(fits(&known.visible, n) && possible_fits, "what is known is about these zones and objects");
+    assert!(known.n_rows() == n && known.n_cols() == n, "the known pairs are pairs of the network's zones");
     let mut order: Vec<u32> = (0..n as u32).collect();
     // Zones that see little are finished quickly and then prune the searches of those that see much.
-    order.sort_by_key(|&z| (known.visible.count_row(z as usize), z));
+    order.sort_by_key(|&z| (known.count_row(z as usize), z));
     let shared = Shared::new(network, stabber, known);
     let counter = Counter::new(options.progress, "zones", n);
     let work = |stabber: S| {
@@ -213,7 +196,7 @@ struct Shared<'a, P, B> {
 }
 
 impl<'a, P: Clone, B> Shared<'a, P, B> {
-    fn new<S>(network: &'a Network<P, B>, stabber: &S, known: &VisibilityBounds) -> Self
+    fn new<S>(network: &'a Network<P, B>, stabber: &S, known: &BitMatrix) -> Self
     where
         S: Stabber<Portal = P, Bounds = B>,
     {
@@ -221,15 +204,9 @@ impl<'a, P: Clone, B> Shared<'a, P, B> {
         let (width, zone_width) = (network.row_width(), n.div_ceil(64));
         let (mut seen, mut might) = (Vec::with_capacity(n * width), Vec::with_capacity(n * width));
         for zone in 0..n {
-            seen.extend(known.visible.row(zone).iter().map(|&w| AtomicU64::new(w)));
+            seen.extend(known.row(zone).iter().map(|&w| AtomicU64::new(w)));
             seen.extend((zone_width..width).map(|_| AtomicU64::new(0)));
-            match &known.possible {
-                Some((zones, objects)) => {
-                    let words = zones.row(zone).iter().chain(objects.row(zone));
-                    might.extend(words.map(|&w| AtomicU64::new(w)));
-                }
-                None => might.extend(all_ones(n).chain(all_ones(n_objects)).map(AtomicU64::new)),
-            }
+            might.extend(all_ones(n).chain(all_ones(n_objects)).map(AtomicU64::new));
         }
         let front = Front::build(network, stabber);
         Self { network, width, zone_width, front, seen, might, next: AtomicUsize::new(0) }

@@ -19,9 +19,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::BitMatrix;
 use sightlines::scenes::{OfficeOptions, doom_like, maze, office};
 use sightlines::sightline::{AxialStabber, Funnel, Stabber};
-use sightlines::stabtree::{
-    Network, SearchOptions, VisibilityBounds, Zones, plan_visibility, space_visibility, visible_zones,
-};
+use sightlines::stabtree::{Network, SearchOptions, Zones, plan_visibility, space_visibility, visible_zones};
 use sightlines_benches::quake::MapSpec;
 use sightlines_benches::quake::job::{self, Method};
 use sightlines_benches::spec::SceneSpec;
@@ -206,8 +204,8 @@ impl Case<'_> {
         let limit = self.settings.pick(LIMIT[0], LIMIT[1]);
         let ((answer, is_over), seconds, repeats) = self.settings.best_of(|| {
             let limited = Limited::new(stabber.clone(), Duration::from_secs_f64(limit));
-            let nothing = VisibilityBounds::nothing(network.n_zones());
-            let seen = visible_zones(network, &limited, &nothing, &one_thread()).expect("nobody cancels");
+            let known = BitMatrix::identity(network.n_zones());
+            let seen = visible_zones(network, &limited, &known, &one_thread()).expect("nobody cancels");
             (seen.zones, limited.is_over())
         });
         if is_over {
@@ -272,9 +270,8 @@ fn among_boxes(
     say(settings, name);
     let cut = subdivide_scene(scene, &SceneOptions::default()).map_err(|e| failed(name)(e.into()))?;
     let (graph, solid) = (&cut.graph, cut.left_out());
-    let nothing = VisibilityBounds::nothing(graph.n_cells());
     let see = |graph: &CellGraph<Axial>| {
-        settings.best_of(|| space_visibility(graph, &solid, &[], &nothing, &one_thread()).expect("nobody cancels"))
+        settings.best_of(|| space_visibility(graph, &solid, &[], &one_thread()).expect("nobody cancels"))
     };
     let (seen, seconds, repeats) = see(graph);
     let options = SceneBakeOptions { portals: PortalMode::Bounding, ..SceneBakeOptions::default() };
@@ -364,11 +361,11 @@ mod tests {
         let graph = sightlines::triangulation::subdivide(&maze(1, 6, 6).unwrap()).unwrap().0;
         let network: Network<Portal2, _> = Network::planar(&graph, &Zones::cells(&graph));
         let stabber = Limited::new(Funnel::new(Adaptive), Duration::ZERO);
-        visible_zones(&network, &stabber, &VisibilityBounds::nothing(network.n_zones()), &one_thread())
+        visible_zones(&network, &stabber, &BitMatrix::identity(network.n_zones()), &one_thread())
             .expect("nobody cancels");
         assert!(stabber.is_over());
         let patient = Limited::new(Funnel::new(Adaptive), Duration::from_secs(3600));
-        visible_zones(&network, &patient, &VisibilityBounds::nothing(network.n_zones()), &one_thread())
+        visible_zones(&network, &patient, &BitMatrix::identity(network.n_zones()), &one_thread())
             .expect("nobody cancels");
         assert!(!patient.is_over());
     }

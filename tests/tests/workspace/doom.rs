@@ -90,7 +90,7 @@ fn freedoom_maps_reject_nothing_that_chords_join() {
     eprintln!("{n_maps} maps: {n_seen} entries seen");
 }
 
-/// VisibilityBounds traps: a sector all of whose lines have it on both sides, and a slit of 0.06 units.
+/// Known traps: a sector all of whose lines have it on both sides, and a slit of 0.06 units.
 #[test]
 fn real_maps_known_traps_are_avoided() {
     let Some(folder) = data_folder("SIGHTLINES_DATA") else { return };

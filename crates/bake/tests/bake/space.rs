@@ -6,8 +6,8 @@ use sightlines_cells::{Axial, CellGraph, CellId};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use sightlines_scenes::{TowerOptions, tower};
-use sightlines_sightline::Target;
-use sightlines_stabtree::{SpaceExplanation, explain_space};
+use sightlines_sightline::{Target, Verdict};
+use sightlines_stabtree::{Barrier, Sight, SpacePath, SpaceProof, explain_space};
 use std::collections::BTreeSet;
 
 const MODES: [PortalMode; 2] = [PortalMode::Exact, PortalMode::Bounding];
@@ -53,8 +53,8 @@ fn with(table: &Table, portals: Vec<PortalRecord>, rows: BitMatrix) -> Table {
     .expect("the parts fit together")
 }
 
-/// Invariant: what is explained is what the table says, for portals of both kinds; a line begins and ends
-/// in the two cells, and a proof is one about the walls that it comes with.
+/// Invariant: explanations agree with the table, for portals of both kinds; a line begins and ends in the two cells, and
+/// a proof holds for the walls that it comes with.
 #[test]
 fn explanations_agree_with_tables() {
     for mode in MODES {
@@ -65,8 +65,8 @@ fn explanations_agree_with_tables() {
         for (a, b) in ids().flat_map(|a| ids().map(move |b| (a, b))) {
             let [from, to] = [a, b].map(|cell| graph.cell(cell).bounds);
             match explain_space(&graph, &[], a, b, 20_000) {
-                SpaceExplanation::Same => assert_eq!(a, b),
-                SpaceExplanation::Visible { portals, cells, doors, witness, ends } => {
+                Verdict::Visible(Sight::SameCell) => assert_eq!(a, b),
+                Verdict::Visible(Sight::Along(SpacePath { portals, cells, doors, witness, ends })) => {
                     assert!(table.sees(a, b), "{a} {b}");
                     n_seen += 1;
                     n_ends += u32::from(ends.is_some());
@@ -82,15 +82,15 @@ fn explanations_agree_with_tables() {
                         assert!(cell.contains(end), "{a} {b} {end:?}");
                     }
                 }
-                SpaceExplanation::Hidden { proof, walls, n_blockers } => {
+                Verdict::Hidden(Barrier::Blocked(SpaceProof { proof, walls, n_blockers })) => {
                     assert!(!table.sees(a, b), "{a} {b}");
                     n_hidden += 1;
                     assert!(proof.holds(&from, &to, Target::Inside, &walls) && walls.len() <= n_blockers);
                     assert!(!proof.holds(&from, &to, Target::Inside, &walls[1..]), "{a} {b}");
                     most_nodes = most_nodes.max(proof.size().n_nodes);
                 }
-                SpaceExplanation::NotConnected => assert!(!table.sees(a, b), "{a} {b}"),
-                SpaceExplanation::Undecided { .. } => panic!("{a} {b}: undecided"),
+                Verdict::Hidden(Barrier::NotConnected) => assert!(!table.sees(a, b), "{a} {b}"),
+                Verdict::Undecided(_) => panic!("{a} {b}: undecided"),
             }
         }
         eprintln!("{mode:?}: {n_seen} seen, {n_ends} with ends, {n_hidden} hidden by at most {most_nodes} nodes");
@@ -106,8 +106,7 @@ fn a_closed_portal_is_explained() {
         let mut portals = table.portals().to_vec();
         let [a, b] = portals.remove(*closed).cells;
         let graph = graph(&with(&table, portals, BitMatrix::identity(table.n_cells())));
-        let explained = explain_space(&graph, &[], a, b, 20_000);
-        matches!(explained, SpaceExplanation::Hidden { .. } | SpaceExplanation::NotConnected)
+        explain_space(&graph, &[], a, b, 20_000).is_hidden()
     });
     assert!(closed.take(3).count() == 3);
 }
@@ -134,5 +133,6 @@ fn graphs_come_back_from_tables_that_have_them() {
     assert!(changed(&|p| p.points.truncate(3)).is_none());
     // Cells that nothing joins are no stripped table.
     let apart = with(&table, Vec::new(), BitMatrix::identity(table.n_cells()));
-    assert_eq!(explain_space(&graph(&apart), &[], CellId(0), CellId(1), 1), SpaceExplanation::NotConnected);
+    let explained = explain_space(&graph(&apart), &[], CellId(0), CellId(1), 1);
+    assert_eq!(explained, Verdict::Hidden(Barrier::NotConnected));
 }

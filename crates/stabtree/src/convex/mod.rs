@@ -30,7 +30,8 @@ mod vector;
 
 pub use certify::{certify_convex, convex_network};
 pub use explain::{
-    BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexGate, MOST_EXPLAINED, explain_convex,
+    BlockedConvex, Blocking, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexPath, ConvexProof,
+    MOST_EXPLAINED, check_convex, explain_convex,
 };
 pub use state::{ConvexCounters, ConvexOptions, ConvexState, ConvexVisibility};
 

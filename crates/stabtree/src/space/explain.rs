@@ -1,61 +1,55 @@
 //! Why one cell in space sees another, or why it does not.
 
 use super::opaque::opaque_rectangles;
+use crate::explanation::{Barrier, Explanation, SearchLimit, Sight};
 use sightlines_cells::{Axial, CellGraph, CellId, Exit, PortalId};
 use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_sightline::{
     AxialStabber, AxialWitness, BlockedProof, Blockers, FreeLine, Shaft, Stabber, Target, Verdict,
 };
 
-/// The answer for two cells in space.
+/// The explanation for two cells in space.
+pub type SpaceExplanation = Explanation<SpacePath, SpaceProof>;
+
+/// How one cell in space sees another.
 #[derive(Debug, Clone, PartialEq)]
-pub enum SpaceExplanation {
-    /// They are one cell.
-    Same,
-    /// They see each other.
-    Visible {
-        /// The portals between them, in order.
-        portals: Vec<PortalId>,
-        /// The cells entered, one for each portal; the last is the target.
-        cells: Vec<CellId>,
-        /// The same portals as who walks through them sees them.
-        doors: Vec<AxialDoor>,
-        /// A line through all of them, which is checked exactly.
-        witness: Box<AxialWitness>,
-        /// Two points of that line, one inside each of the two cells; `None` if the line was found by way
-        /// of the portals and may have no such points in doubles.
-        ends: Option<[[f64; 3]; 2]>,
-    },
-    /// They do not, though portals lead from one to the other.
-    Hidden {
-        /// Why, by the indices of `walls`.
-        proof: Box<BlockedProof>,
-        /// The rectangles of walls in the way.
-        walls: Vec<Aabb<3>>,
-        /// Number of rectangles that all walls were put together to.
-        n_blockers: usize,
-    },
-    /// No chain of portals leads from one to the other.
-    NotConnected,
-    /// Neither a line nor a proof was found: the budget was not enough, or the digits of doubles were not. A
-    /// table counts such cells as visible.
-    Undecided {
-        /// Linear programs that were allowed.
-        budget: u32,
-    },
+pub struct SpacePath {
+    /// The portals between them, in order.
+    pub portals: Vec<PortalId>,
+    /// The cells entered, one for each portal; the last is the target.
+    pub cells: Vec<CellId>,
+    /// The same portals, oriented for crossing them in this order.
+    pub doors: Vec<AxialDoor>,
+    /// A line through all of them, which is checked exactly.
+    pub witness: Box<AxialWitness>,
+    /// Two points of that line, one inside each of the two cells; `None` if the line was found by way of the portals
+    /// and may have no such points in doubles.
+    pub ends: Option<[[f64; 3]; 2]>,
 }
 
-/// Sequences of portals that a line touches in their edges which are tried before it is given up.
+/// Why one cell in space does not see another: walls block all lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpaceProof {
+    /// The proof, in terms of the indices of `walls`.
+    pub proof: Box<BlockedProof>,
+    /// The rectangles of walls in the way.
+    pub walls: Vec<Aabb<3>>,
+    /// Number of rectangles that all walls were merged into.
+    pub n_blockers: usize,
+}
+
+/// Most sequences of portals that are tried for a line that touches their edges.
 const MAX_TRIES: u32 = 10_000;
 
 /// Searches for a line from inside of `from` to inside of `to`, or for a proof that no open set of lines
 /// leads there.
 ///
-/// * `solid`: boxes beside the cells, that no line from a cell gets into, as for
-///   [`space_visibility`](super::space_visibility); none will do.
+/// * `solid`: boxes beside the cells that no line from a cell enters, as for
+///   [`space_visibility`](super::space_visibility); may be empty.
 /// * `budget`: linear programs after which it gives up.
 ///
-/// Exact. Both a line and a proof were checked by code that shares nothing with what found them.
+/// Exact. Both a line and a proof were checked by code that shares nothing with the code that found them. Undecided
+/// means that the budget, or the digits of doubles, were not enough.
 ///
 /// # Panics
 /// If there are no such cells.
@@ -67,33 +61,32 @@ pub fn explain_space(
     budget: u32,
 ) -> SpaceExplanation {
     if from == to {
-        return SpaceExplanation::Same;
+        return Verdict::Visible(Sight::SameCell);
     }
     let useful = crate::explain::reaching(graph, to);
     if !useful[from.idx()] {
-        return SpaceExplanation::NotConnected;
+        return Verdict::Hidden(Barrier::NotConnected);
     }
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
     let [a, b] = [from, to].map(|cell| &graph.cell(cell).bounds);
     let mut shaft = Shaft::new(&blockers);
     let explanation = match shaft.decide(a, b, Target::Inside, budget) {
         Verdict::Visible(line) => Walk::new(graph, &useful, &line, to).explain(from),
-        // What doubles leave open is often decided by the fractions of a proof.
+        // Cases that doubles leave open are often decided by the fractions of a proof.
         Verdict::Hidden(()) | Verdict::Undecided(_) => shaft
             .certify(a, b, Target::Inside, budget)
             .and_then(|proof| proof.narrowed(blockers.rectangles()))
             .filter(|(proof, walls)| proof.holds(a, b, Target::Inside, walls))
-            .map(|(proof, walls)| SpaceExplanation::Hidden {
-                proof: Box::new(proof),
-                walls,
-                n_blockers: blockers.len(),
+            .map(|(proof, walls)| {
+                let proof = SpaceProof { proof: Box::new(proof), walls, n_blockers: blockers.len() };
+                Verdict::Hidden(Barrier::Blocked(proof))
             }),
     };
-    explanation.unwrap_or(SpaceExplanation::Undecided { budget })
+    explanation.unwrap_or(Verdict::Undecided(SearchLimit(budget.into())))
 }
 
-/// Follows a free line through portals. Where it passes the common edge of portals, lines next to it go
-/// through one or the other, so all that it touches are tried.
+/// Follows a free line through portals. Where it passes the common edge of portals, nearby lines pass one or the other,
+/// so all that it touches are tried.
 struct Walk<'a> {
     graph: &'a CellGraph<Axial>,
     useful: &'a [bool],
@@ -118,17 +111,17 @@ impl<'a> Walk<'a> {
         let free = Some(self.line.witness()).filter(passes);
         let ends = free.is_some().then(|| self.line.points());
         let witness = free.or_else(|| Some(self.stabber.witness()).filter(passes))?;
-        Some(SpaceExplanation::Visible {
+        Some(Verdict::Visible(Sight::Along(SpacePath {
             portals: self.path.iter().map(|exit| exit.portal).collect(),
             cells: self.path.iter().map(|exit| exit.to).collect(),
             doors,
             witness: Box::new(witness),
             ends,
-        })
+        })))
     }
 
-    /// Goes on from a cell; the path that leads to the target is left behind. A line with a direction along
-    /// every axis comes into no cell twice, so this ends.
+    /// Continues from a cell; afterwards `path` leads to the target. A line with a direction along every axis enters no
+    /// cell twice, so this ends.
     fn reaches(&mut self, here: CellId) -> bool {
         if here == self.to {
             return true;

@@ -19,11 +19,11 @@ mod pairs;
 mod slivers;
 mod witness_log;
 
-pub use explain::{SpaceExplanation, explain_space};
+pub use explain::{SpaceExplanation, SpacePath, SpaceProof, explain_space};
 pub use from_boxes::{BoxVisibility, PairMask, box_visibility};
 pub use live::{LiveSpace, SpaceUpdate};
 
-use crate::search::{SearchOptions, VisibilityBounds};
+use crate::search::SearchOptions;
 pub(crate) use atomic_bits::AtomicBitMatrix;
 use opaque::opaque_rectangles;
 pub(crate) use opaque::opaque_without_solid;
@@ -76,7 +76,6 @@ struct SpaceSearch<'a> {
     graph: &'a CellGraph<Axial>,
     boxes: &'a [Aabb<3>],
     blockers: &'a Blockers,
-    possible: Option<&'a (BitMatrix, BitMatrix)>,
     tree: BoxTree<3>,
     object_tree: BoxTree<3>,
     /// The cells that are not slivers, which the tree contains.
@@ -138,8 +137,6 @@ const FEW_TASKS_PER_THREAD: usize = 16;
 /// * `objects`: closed boxes, in scene units. A cell sees those that touch it, and those that an open set of lines from
 ///   inside the cell reaches before meeting a wall. Flat boxes can be seen; boxes that are flat along two axes are seen
 ///   only where they touch. Empty ones are never seen.
-/// * `known`: pairs known to see each other, and pairs that may (subsets and supersets of the answer, by cells and by
-///   cells and objects).
 ///
 /// Exact, unless a pair takes thousands of linear programs: such pairs count as visible, and are counted
 /// in [`SpaceVisibility::n_assumed`].
@@ -149,22 +146,14 @@ const FEW_TASKS_PER_THREAD: usize = 16;
 ///
 /// # Errors
 /// [`Cancelled`] by the observer.
-///
-/// # Panics
-/// If a matrix of `known` has the wrong size.
 pub fn space_visibility(
     graph: &CellGraph<Axial>,
     solid: &[Aabb<3>],
     objects: &[Aabb<3>],
-    known: &VisibilityBounds,
     options: &SearchOptions<'_>,
 ) -> Result<SpaceVisibility, Cancelled> {
-    let n = graph.n_cells();
-    let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == n && m.n_cols() == n_cols;
-    let possible_fits = known.possible.iter().all(|(c, o)| fits(c, n) && fits(o, objects.len()));
-    assert!(fits(&known.visible, n) && possible_fits, "what is known is about these cells and objects");
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
-    let search = SpaceSearch::new(graph, objects, &blockers, known);
+    let search = SpaceSearch::new(graph, objects, &blockers);
     let (counters, _) = on_threads(options.threads, |threads| search.answer(threads, options))?;
     Ok(search.into_seen(counters))
 }
@@ -183,12 +172,7 @@ pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T +
 }
 
 impl<'a> SpaceSearch<'a> {
-    fn new(
-        graph: &'a CellGraph<Axial>,
-        boxes: &'a [Aabb<3>],
-        blockers: &'a Blockers,
-        known: &'a VisibilityBounds,
-    ) -> Self {
+    fn new(graph: &'a CellGraph<Axial>, boxes: &'a [Aabb<3>], blockers: &'a Blockers) -> Self {
         let extents: Vec<Aabb<3>> = graph.cells().iter().map(|c| c.bounds).collect();
         let slivers = slivers::find(&extents);
         let regular: Vec<u32> = (0u32..).zip(&slivers).filter(|(_, sliver)| !**sliver).map(|(cell, _)| cell).collect();
@@ -220,19 +204,14 @@ impl<'a> SpaceSearch<'a> {
         let around: Vec<Vec<u32>> = extents.iter().zip(&within_reach).map(lies_in).collect();
         let inner = (0..cell_at.len()).filter(|&at| !around[cell_at[at] as usize].is_empty()).collect();
         let cells = AtomicBitMatrix::new(cell_at.len(), cell_at.len());
-        for (row, &cell) in cell_at.iter().enumerate() {
-            let places = known.visible.iter_ones(cell as usize).map(|col| place[col]).filter(|p| *p != SLIVER);
-            for col in places {
-                cells.set(row, col as usize);
-            }
+        for at in 0..cell_at.len() {
+            cells.set(at, at);
         }
         let [objects, maybe] = [(); 2].map(|()| AtomicBitMatrix::new(boxes.len(), cell_at.len()));
-        let possible = known.possible.as_ref();
         Self {
             graph,
             boxes,
             blockers,
-            possible,
             tree,
             object_tree,
             regular,
@@ -255,12 +234,10 @@ impl<'a> SpaceSearch<'a> {
     fn may_see_cell(&self, a: usize, b: usize) -> bool {
         let cell = |place: usize| self.cell_at[place] as usize;
         self.component[cell(a)] == self.component[cell(b)]
-            && self.possible.is_none_or(|(cells, _)| cells.get(cell(a), cell(b)))
     }
 
     fn may_see_object(&self, place: usize, object: usize) -> bool {
-        self.possible.is_none_or(|(_, objects)| objects.get(self.cell_at[place] as usize, object))
-            && self.doubt.as_ref().is_none_or(|doubt| doubt.objects.get(object, place))
+        self.doubt.as_ref().is_none_or(|doubt| doubt.objects.get(object, place))
     }
 
     fn worker(&self) -> Worker<'a> {

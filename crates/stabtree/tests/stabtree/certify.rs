@@ -14,9 +14,8 @@ use sightlines_scenes::world::{
 };
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_stabtree::{
-    CertifyOptions, ConvexOptions, ConvexSearch, ConvexVisibility, SearchOptions, VisibilityBounds, Zones,
-    certify_convex, certify_plan, certify_space, convex_network, plan_network, plan_visibility, space_network,
-    space_visibility,
+    CertifyOptions, ConvexOptions, ConvexSearch, ConvexVisibility, SearchOptions, Zones, certify_convex, certify_plan,
+    certify_space, convex_network, plan_network, plan_visibility, space_network, space_visibility,
 };
 use sightlines_testkit::convex::seen_by_rays;
 use sightlines_testkit::{axial_plan, small_grid_plan};
@@ -107,7 +106,7 @@ proptest! {
         out in prop::collection::vec(prop::bool::weighted(0.25), 1..7),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = space_visibility(&graph, &solid, &objects, &VisibilityBounds::nothing(graph.n_cells()), &search()).expect("nobody cancels");
+        let seen = space_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
         prop_assert_eq!(seen.n_assumed, 0);
         assert_proven(&seen.cells, &proven_space(&graph, &seen.cells));
     }
@@ -119,7 +118,7 @@ proptest! {
         pick in any::<prop::sample::Index>(),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = space_visibility(&graph, &solid, &[], &VisibilityBounds::nothing(graph.n_cells()), &search()).expect("nobody cancels");
+        let seen = space_visibility(&graph, &solid, &[], &search()).expect("nobody cancels");
         if graph.n_cells() > 1 {
             let (a, b) = pair(pick, graph.n_cells());
             assert_nothing_wrong(&seen.cells, &proven_space(&graph, &flipped(&seen.cells, a, b)));

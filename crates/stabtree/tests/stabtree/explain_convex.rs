@@ -1,13 +1,13 @@
-//! Explanations for convex cells: they say what the search says, the checker believes them, and no damaged ones.
+//! Explanations for convex cells: they agree with the search, and the checker accepts them, but no damaged ones.
 
 use sightlines_cells::{CellGraph, CellId, Convex, Portal3};
 use sightlines_scenes::world::{
     BspWorldOptions, QuakeLikeOptions, World, bsp_world, corridor, corridor_sees, quake_like, world_families,
 };
-use sightlines_sightline::{BoxProof, ConvexCertificate, ConvexNode, Line3};
+use sightlines_sightline::{BoxProof, ConvexCertificate, ConvexNode, Line3, Verdict};
 use sightlines_stabtree::{
-    BlockedConvex, Blocking, ConvexExplainer, ConvexExplanation, ConvexOptions, ConvexSearch, ConvexVisibility,
-    MOST_EXPLAINED, explain_convex,
+    Barrier, BlockedConvex, Blocking, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexOptions, ConvexPath,
+    ConvexProof, ConvexSearch, ConvexVisibility, MOST_EXPLAINED, SearchLimit, Sight, check_convex, explain_convex,
 };
 use sightlines_testkit::convex::seen_by_rays;
 
@@ -26,7 +26,7 @@ fn pairs(n: usize) -> impl Iterator<Item = [CellId; 2]> {
     (0..n).flat_map(move |a| (0..n).filter(move |&b| a != b).map(move |b| [CellId(a), CellId(b)]))
 }
 
-/// What was looked at.
+/// Counts of the explanations.
 #[derive(Debug, Default)]
 struct Counts {
     visible: usize,
@@ -43,19 +43,21 @@ fn explain_all(name: &str, graph: &CellGraph<Convex>, counts: &mut Counts) {
         let listed = seen.cells.get(a.idx(), b.idx());
         let open = seen.undecided.contains(&[a.0.min(b.0), a.0.max(b.0)]);
         let explanation = explainer.explain(a, b, MOST_EXPLAINED);
-        let holds = explanation.check(graph, a, b);
+        let holds = check_convex(graph, a, b, &explanation);
         match &explanation {
-            ConvexExplanation::Visible { gates, .. } => {
+            Verdict::Visible(Sight::Along(ConvexPath { gates, .. })) => {
                 assert!(listed && holds, "{name}: {a} {b}, {listed} {open} {holds}: {explanation:?}");
                 assert_eq!((gates[0].cells(graph)[0], gates[gates.len() - 1].cells(graph)[1]), (a, b), "{name}");
                 counts.visible += 1;
             }
-            ConvexExplanation::Hidden { blocked, .. } => {
+            Verdict::Hidden(barrier) => {
                 assert!((!listed || open) && holds, "{name}: {a} {b}, {listed} {open} {holds}: {explanation:?}");
                 counts.hidden += 1;
-                counts.lists += blocked.len();
+                if let Barrier::Blocked(ConvexProof { blocked, .. }) = barrier {
+                    counts.lists += blocked.len();
+                }
             }
-            ConvexExplanation::Undecided { .. } => {
+            Verdict::Undecided(ConvexDoubt::Chain(_)) => {
                 assert!(listed && !holds, "{name}: {a} {b}, {listed} {open}: {explanation:?}");
                 counts.undecided += 1;
             }
@@ -78,11 +80,11 @@ fn explanations_say_what_the_search_says() {
     let level = quake_like(QuakeLikeOptions { seed: 1, rooms_x: 2, rooms_y: 1, floors: 1 }).expect("few rooms");
     explain_all("level", &level.graph, &mut counts);
     assert!(counts.visible > 2000 && counts.hidden > 1000 && counts.lists > 1000, "{counts:?}");
-    // Where lines graze it may say that it does not know.
+    // Where lines graze, pairs may stay undecided.
     assert!(counts.undecided * 50 < counts.visible + counts.hidden, "{counts:?}");
 }
 
-/// Corridors have an answer that is known without any search.
+/// The answer for corridors is known without any search.
 #[test]
 fn corridors_are_explained_as_is_known() {
     let (mut n_hidden, mut n_visible) = (0, 0);
@@ -92,8 +94,8 @@ fn corridors_are_explained_as_is_known() {
         for [a, b] in pairs(places.len()) {
             let known = corridor_sees(bends, width, [a, b].map(|cell| places[cell.idx()]));
             let explanation = explain_convex(&world.graph, a, b, 1000);
-            assert!(explanation.check(&world.graph, a, b), "{bends:?} {width}: {explanation:?}");
-            assert_eq!(matches!(explanation, ConvexExplanation::Visible { .. }), known, "{bends:?} {width}");
+            assert!(check_convex(&world.graph, a, b, &explanation), "{bends:?} {width}: {explanation:?}");
+            assert_eq!(explanation.is_visible(), known, "{bends:?} {width}");
             n_visible += usize::from(known);
             n_hidden += usize::from(!known);
         }
@@ -101,7 +103,7 @@ fn corridors_are_explained_as_is_known() {
     assert!(n_hidden > 30 && n_visible > 60, "{n_hidden} {n_visible}");
 }
 
-/// Lines shot through solid leafs follow no portals: what they show is never explained away.
+/// Lines shot through solid leafs follow no portals: what they prove visible is never explained as hidden.
 #[test]
 fn nothing_that_lines_show_is_explained_away() {
     let mut n_seen = 0;
@@ -109,14 +111,14 @@ fn nothing_that_lines_show_is_explained_away() {
         let world = random(seed, 30, 60);
         for [a, b] in seen_by_rays(&world, 2000, seed).pairs {
             let explanation = explain_convex(&world.graph, CellId(a), CellId(b), MOST_EXPLAINED);
-            assert!(matches!(explanation, ConvexExplanation::Visible { .. }), "seed {seed}: {a} {b}");
+            assert!(explanation.is_visible(), "seed {seed}: {a} {b}");
             n_seen += 1;
         }
     }
     assert!(n_seen > 200, "{n_seen}");
 }
 
-/// The impostors: whatever is taken away from an explanation or changed in it, it is not believed any more.
+/// The impostors: an explanation with any part removed or changed is refused.
 #[test]
 fn damaged_explanations_are_refused() {
     let bent = |bends, width| corridor(9, bends, width).expect("a short corridor");
@@ -125,10 +127,13 @@ fn damaged_explanations_are_refused() {
     let pairs = worlds.iter().flat_map(|world| pairs(world.graph.n_cells()).map(move |pair| (&world.graph, pair)));
     for (graph, [a, b]) in pairs {
         let explanation = explain_convex(graph, a, b, MOST_EXPLAINED);
-        let refused = |damaged: &ConvexExplanation| !damaged.check(graph, a, b);
+        let refused = |damaged: &ConvexExplanation| !check_convex(graph, a, b, damaged);
+        let proof = |start, blocked| Verdict::Hidden(Barrier::Blocked(ConvexProof { start, blocked }));
         match &explanation {
-            ConvexExplanation::Visible { gates, line } => {
-                let with = |gates: &[_], line: Line3| ConvexExplanation::Visible { gates: gates.to_vec(), line };
+            Verdict::Visible(Sight::Along(ConvexPath { gates, line })) => {
+                let with = |gates: &[_], line: Line3| {
+                    Verdict::Visible(Sight::Along(ConvexPath { gates: gates.to_vec(), line }))
+                };
                 assert!(refused(&with(gates, line.reversed())));
                 let far = [line.a, line.b].map(|p| [p[0] + 1e4, p[1] - 1e4, p[2] + 3e4]);
                 assert!(refused(&with(gates, Line3 { a: far[0], b: far[1] })), "a line moved");
@@ -140,12 +145,13 @@ fn damaged_explanations_are_refused() {
                 assert!(refused(&with(&other, *line)), "a portal that is not there");
                 let there_and_back = [&gates[..], &[other[0]], &gates[..]].concat();
                 assert!(refused(&with(&there_and_back, *line)));
-                assert!(!explanation.check(graph, a, a) && !explanation.check(graph, b, a));
+                assert!(!check_convex(graph, a, a, &explanation) && !check_convex(graph, b, a, &explanation));
                 n_lines += 1;
             }
-            ConvexExplanation::Hidden { start, blocked } if !blocked.is_empty() => {
-                let with = |blocked: Vec<BlockedConvex>| ConvexExplanation::Hidden { start: *start, blocked };
+            Verdict::Hidden(Barrier::Blocked(ConvexProof { start, blocked })) => {
+                let with = |blocked: Vec<BlockedConvex>| proof(*start, blocked);
                 assert!(refused(&with(Vec::new())), "all lists dropped");
+                assert!(refused(&Verdict::Hidden(Barrier::NotConnected)), "portals join them");
                 let mut less = blocked.clone();
                 while !refused(&with(less.clone())) {
                     less.pop();
@@ -157,7 +163,7 @@ fn damaged_explanations_are_refused() {
                     changed[k].gates[0].forward = !changed[k].gates[0].forward;
                     let mut without = blocked.clone();
                     without.remove(k);
-                    // A plane stops lines both ways; but the chains that the list was for are not stopped any more.
+                    // A plane stops lines both ways, but the chains of this list are no longer stopped.
                     let is_spare = !refused(&with(without));
                     assert!(is_spare || refused(&with(changed)), "a list of other gates");
                     n_needed += usize::from(!is_spare);
@@ -186,25 +192,25 @@ fn damaged_explanations_are_refused() {
                         n_lazy += 1;
                     }
                 }
-                let nowhere = ConvexExplanation::Hidden { start: CellId(u32::MAX), blocked: blocked.clone() };
-                assert!(refused(&nowhere) && !explanation.check(graph, a, CellId(u32::MAX)));
+                let nowhere = proof(CellId(u32::MAX), blocked.clone());
+                assert!(refused(&nowhere) && !check_convex(graph, a, CellId(u32::MAX), &explanation));
             }
-            ConvexExplanation::Hidden { .. } => {}
+            Verdict::Hidden(Barrier::NotConnected) => {}
             other => panic!("{other:?}"),
         }
-        // A hidden pair is not explained by what explains another, nor a visible one by that it is hidden.
-        if matches!(explanation, ConvexExplanation::Visible { .. }) {
-            assert!(refused(&ConvexExplanation::Hidden { start: a, blocked: Vec::new() }));
+        // No empty proof explains a visible pair as hidden.
+        if explanation.is_visible() {
+            assert!(refused(&proof(a, Vec::new())) && refused(&Verdict::Hidden(Barrier::NotConnected)));
         }
     }
     let counts = format!("{n_lines} {n_lists} {n_certificates} {n_lazy} {n_spare} {n_needed}");
     assert!(n_lines > 100 && n_lists > 500 && n_certificates > 100 && n_lazy > 50 && n_needed > 200, "{counts}");
-    // Lists that others make superfluous are few.
+    // Few lists are superfluous.
     assert!(n_spare * 2 < n_lists, "{counts}");
 }
 
-/// Two portals of a cell side by side: no line comes in by one and goes out by the other. The impostors: of a portal
-/// that is tilted, or ahead, that is not believed.
+/// Two portals of a cell side by side: no line enters by one and leaves by the other. The impostors: for a portal that is
+/// tilted, or ahead, this is refused.
 #[test]
 fn portals_side_by_side_block() {
     let door = |y: f64, tilt: f64| {
@@ -216,14 +222,16 @@ fn portals_side_by_side_block() {
     };
     let flat = graph(0.0);
     let explanation = explain_convex(&flat, CellId(0), CellId(2), 100);
-    let ConvexExplanation::Hidden { blocked, .. } = &explanation else { panic!("{explanation:?}") };
+    let Verdict::Hidden(Barrier::Blocked(ConvexProof { blocked, .. })) = &explanation else {
+        panic!("{explanation:?}")
+    };
     assert!(blocked.len() == 1 && blocked[0].reason == Blocking::Behind, "{blocked:?}");
-    assert!(explanation.check(&flat, CellId(0), CellId(2)));
-    // Rounding is no tilt; what is more than rounding is.
-    let checks = [1e-14, 1e-9, 0.5].map(|tilt| explanation.check(&graph(tilt), CellId(0), CellId(2)));
+    assert!(check_convex(&flat, CellId(0), CellId(2), &explanation));
+    // A tilt within rounding is accepted; a larger one is not.
+    let checks = [1e-14, 1e-9, 0.5].map(|tilt| check_convex(&graph(tilt), CellId(0), CellId(2), &explanation));
     assert_eq!(checks, [true, false, false]);
     let other = explain_convex(&graph(0.5), CellId(0), CellId(2), 100);
-    assert!(other.check(&graph(0.5), CellId(0), CellId(2)), "{other:?}");
+    assert!(check_convex(&graph(0.5), CellId(0), CellId(2), &other), "{other:?}");
 }
 
 #[test]
@@ -235,23 +243,24 @@ fn limits_are_reported() {
         let full = explain_convex(graph, a, b, MOST_EXPLAINED);
         for limit in [0, 3, 80] {
             match explain_convex(graph, a, b, limit) {
-                ConvexExplanation::TooMany { limit: reported } => {
+                Verdict::Undecided(ConvexDoubt::Limit(SearchLimit(reported))) => {
                     assert_eq!(reported, limit);
                     n_given_up += 1;
                 }
-                // Less to ask is no other answer.
+                // A lower limit gives no other answer.
                 other => assert_eq!(std::mem::discriminant(&other), std::mem::discriminant(&full)),
             }
         }
-        assert!(!ConvexExplanation::TooMany { limit: 3 }.check(graph, a, b));
+        assert!(!check_convex(graph, a, b, &Verdict::Undecided(ConvexDoubt::Limit(SearchLimit(3)))));
     }
     assert!(n_given_up > 100, "{n_given_up}");
-    assert_eq!(explain_convex(graph, CellId(1), CellId(1), 0), ConvexExplanation::Same);
-    assert!(ConvexExplanation::Same.check(graph, CellId(1), CellId(1)));
-    assert!(!ConvexExplanation::Same.check(graph, CellId(1), CellId(2)));
+    let same: ConvexExplanation = Verdict::Visible(Sight::SameCell);
+    assert_eq!(explain_convex(graph, CellId(1), CellId(1), 0), same);
+    assert!(check_convex(graph, CellId(1), CellId(1), &same));
+    assert!(!check_convex(graph, CellId(1), CellId(2), &same));
 }
 
-/// A row of ten thousand cells: depth is no stack.
+/// A row of ten thousand cells: the depth of the search uses no stack.
 #[test]
 fn long_chains_need_no_stack() {
     let n = 10_000u32;
@@ -262,6 +271,7 @@ fn long_chains_need_no_stack() {
     let doors = (1..n).map(|k| ([CellId(k - 1), CellId(k)], square(k))).collect();
     let graph = CellGraph::of_portals(n as usize, doors);
     let explanation = explain_convex(&graph, CellId(0), CellId(n - 1), 100_000);
-    assert!(matches!(&explanation, ConvexExplanation::Visible { gates, .. } if gates.len() == n as usize - 1));
-    assert!(explanation.check(&graph, CellId(0), CellId(n - 1)));
+    assert!(check_convex(&graph, CellId(0), CellId(n - 1), &explanation));
+    let Verdict::Visible(Sight::Along(ConvexPath { gates, .. })) = explanation else { panic!("{explanation:?}") };
+    assert_eq!(gates.len(), n as usize - 1);
 }

@@ -4,8 +4,10 @@
 use sightlines_cells::{Axial, BoxCell, CellGraph, CellId, Portal};
 use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
-use sightlines_sightline::Target;
-use sightlines_stabtree::{SearchOptions, SpaceExplanation, VisibilityBounds, explain_space, space_visibility};
+use sightlines_sightline::{Target, Verdict};
+use sightlines_stabtree::{
+    Barrier, SearchLimit, SearchOptions, Sight, SpacePath, SpaceProof, explain_space, space_visibility,
+};
 use sightlines_testkit::draw;
 
 use proptest::prelude::*;
@@ -37,23 +39,21 @@ fn cut(faces: &[AxialFace<3>]) -> CellGraph<Axial> {
     graph
 }
 
-/// Invariant: every pair is explained, and as it is answered; doors lead from cell to cell along the line.
+/// Invariant: every pair is explained in agreement with the search; doors lead from cell to cell along the line.
 #[test]
 fn every_pair_is_explained() {
     let (mut n_ends, mut n_edges, mut n_hidden, mut n_apart) = (0u32, 0u32, 0u32, 0u32);
     for faces in draw(&faces(), 150) {
         let graph = cut(&faces);
         let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-        let seen = space_visibility(&graph, &[], &[], &VisibilityBounds::nothing(graph.n_cells()), &options)
-            .expect("nobody cancels")
-            .cells;
+        let seen = space_visibility(&graph, &[], &[], &options).expect("nobody cancels").cells;
         for (a, b) in graph.cell_ids().flat_map(|a| graph.cell_ids().map(move |b| (a, b))) {
             let explanation = explain_space(&graph, &[], a, b, 2_000);
-            let visible = matches!(explanation, SpaceExplanation::Same | SpaceExplanation::Visible { .. });
+            let visible = explanation.is_visible();
             assert_eq!(visible, seen.get(a.idx(), b.idx()), "{a} {b}: {explanation:?} in {faces:?}");
             match explanation {
-                SpaceExplanation::Same => assert_eq!(a, b),
-                SpaceExplanation::Visible { portals, cells, doors, witness, ends } => {
+                Verdict::Visible(Sight::SameCell) => assert_eq!(a, b),
+                Verdict::Visible(Sight::Along(SpacePath { portals, cells, doors, witness, ends })) => {
                     let mut here = a;
                     assert!(portals.len() == cells.len() && cells.len() == doors.len());
                     for ((portal, cell), door) in portals.into_iter().zip(cells).zip(&doors) {
@@ -70,13 +70,13 @@ fn every_pair_is_explained() {
                     }
                     n_ends += u32::from(ends.is_some());
                 }
-                SpaceExplanation::Hidden { proof, walls, .. } => {
+                Verdict::Hidden(Barrier::Blocked(SpaceProof { proof, walls, .. })) => {
                     let [from, to] = [a, b].map(|cell| graph.cell(cell).bounds);
                     assert!(proof.holds(&from, &to, Target::Inside, &walls), "{a} {b} in {faces:?}");
                     n_hidden += 1;
                 }
-                SpaceExplanation::NotConnected => n_apart += 1,
-                SpaceExplanation::Undecided { .. } => panic!("{a} {b} in {faces:?}"),
+                Verdict::Hidden(Barrier::NotConnected) => n_apart += 1,
+                Verdict::Undecided(_) => panic!("{a} {b} in {faces:?}"),
             }
         }
     }
@@ -84,13 +84,13 @@ fn every_pair_is_explained() {
     assert!(n_ends > 1000 && n_edges > 0 && n_hidden > 500 && n_apart > 0, "{n_ends} {n_edges} {n_hidden} {n_apart}");
 }
 
-/// Without a budget, the result is unknown.
+/// Without a budget, the pair stays undecided.
 #[test]
 fn a_budget_is_kept_to() {
     let wall = AxialFace::new(0, [2.0, 0.0, 0.0], [2.0, 2.0, 4.0]);
     let graph = cut(&[wall]);
     let ids = [CellId(0), CellId(1)];
     let explain = |budget| explain_space(&graph, &[], ids[0], ids[1], budget);
-    assert_eq!(explain(0), SpaceExplanation::Undecided { budget: 0 });
-    assert!(matches!(explain(100), SpaceExplanation::Visible { .. }));
+    assert_eq!(explain(0), Verdict::Undecided(SearchLimit(0)));
+    assert!(explain(100).is_visible());
 }

@@ -8,9 +8,7 @@ use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_kdtree::AxialFace;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::AxialStabber;
-use sightlines_stabtree::{
-    BoxVisibility, Network, PairMask, SearchOptions, VisibilityBounds, Zones, box_visibility, visible_zones,
-};
+use sightlines_stabtree::{BoxVisibility, Network, PairMask, SearchOptions, Zones, box_visibility, visible_zones};
 use std::cell::Cell;
 
 fn all(n_rows: usize, n_cols: usize) -> BitMatrix {
@@ -101,7 +99,7 @@ fn by_cells(graph: &CellGraph<Axial>, eyes: &[Aabb<3>], things: &[Aabb<3>]) -> [
     let fine = cut_along(graph, eyes);
     let network = Network::axial(&fine, &Zones::cells(&fine), things);
     let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-    let found = visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(fine.n_cells()), &options)
+    let found = visible_zones(&network, &AxialStabber::new(), &BitMatrix::identity(fine.n_cells()), &options)
         .expect("nobody cancels");
     let within: Vec<Vec<usize>> = eyes
         .iter()

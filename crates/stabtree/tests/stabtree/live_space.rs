@@ -6,7 +6,7 @@ use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::AxialFace;
 use sightlines_pvs::BitMatrix;
-use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceVisibility, VisibilityBounds, space_visibility};
+use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceVisibility, space_visibility};
 use std::cell::Cell;
 
 /// The scene at one time.
@@ -112,14 +112,7 @@ fn options(threads: usize) -> SearchOptions<'static> {
 }
 
 fn anew(state: &State) -> SpaceVisibility {
-    space_visibility(
-        &state.graph,
-        &state.solid,
-        &state.objects,
-        &VisibilityBounds::nothing(state.graph.n_cells()),
-        &options(1),
-    )
-    .expect("nobody cancels")
+    space_visibility(&state.graph, &state.solid, &state.objects, &options(1)).expect("nobody cancels")
 }
 
 fn same(a: &SpaceVisibility, b: &SpaceVisibility) -> bool {

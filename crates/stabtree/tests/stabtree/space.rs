@@ -8,21 +8,18 @@ use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_kdtree::AxialFace;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::AxialStabber;
-use sightlines_stabtree::{
-    Network, SearchOptions, SpaceVisibility, VisibilityBounds, Zones, space_visibility, visible_zones,
-};
+use sightlines_stabtree::{Network, SearchOptions, SpaceVisibility, Zones, space_visibility, visible_zones};
 use std::cell::Cell;
 
 fn by_pairs(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> SpaceVisibility {
     let options = SearchOptions { threads, ..SearchOptions::default() };
-    space_visibility(graph, solid, objects, &VisibilityBounds::nothing(graph.n_cells()), &options)
-        .expect("nobody cancels")
+    space_visibility(graph, solid, objects, &options).expect("nobody cancels")
 }
 
 fn by_sequences(graph: &CellGraph<Axial>, objects: &[Aabb<3>]) -> (BitMatrix, BitMatrix) {
     let network = Network::axial(graph, &Zones::cells(graph), objects);
     let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-    let seen = visible_zones(&network, &AxialStabber::new(), &VisibilityBounds::nothing(graph.n_cells()), &options)
+    let seen = visible_zones(&network, &AxialStabber::new(), &BitMatrix::identity(graph.n_cells()), &options)
         .expect("nobody cancels");
     (seen.zones, seen.objects)
 }

@@ -8,8 +8,11 @@ use crate::place::Place;
 use serde::Serialize;
 use serde_json::{Value, json};
 use sightlines::cells::{CellGraph, CellId, Convex};
-use sightlines::sightline::{ConvexCertificate, ConvexNode, Line3};
-use sightlines::stabtree::{BlockedConvex, Blocking, ConvexExplanation, ConvexGate, explain_convex};
+use sightlines::sightline::{ConvexCertificate, ConvexNode, Line3, Verdict};
+use sightlines::stabtree::{
+    Barrier, BlockedConvex, Blocking, ConvexDoubt, ConvexExplanation, ConvexGate, ConvexPath, ConvexProof, SearchLimit,
+    Sight, check_convex, explain_convex,
+};
 use std::fmt;
 use std::path::Path;
 
@@ -40,8 +43,8 @@ impl Asked<'_> {
             from: from.0,
             to: to.0,
             listed: listed(from, to),
-            checked: Some(explanation.check(self.graph, from, to)),
-            reason: reason(self.graph, &explanation),
+            checked: Some(check_convex(self.graph, from, to, &explanation)),
+            reason: reason(self.graph, from, &explanation),
             n_shown: self.n_shown,
         };
         Ok(report.print(self.json)?)
@@ -97,20 +100,23 @@ fn passed(graph: &CellGraph<Convex>, gate: ConvexGate, line: Option<&Line3>) -> 
     Passed { portal: gate.portal.0, cell: gate.cells(graph)[1].0, at }
 }
 
-fn reason(graph: &CellGraph<Convex>, explanation: &ConvexExplanation) -> ConvexReason {
+fn reason(graph: &CellGraph<Convex>, from: CellId, explanation: &ConvexExplanation) -> ConvexReason {
     match explanation {
-        ConvexExplanation::Same => ConvexReason::Same,
-        ConvexExplanation::Visible { gates, line } => ConvexReason::Visible {
+        Verdict::Visible(Sight::SameCell) => ConvexReason::Same,
+        Verdict::Visible(Sight::Along(ConvexPath { gates, line })) => ConvexReason::Visible {
             portals: gates.iter().map(|&gate| passed(graph, gate, Some(line))).collect(),
             line: [line.a, line.b],
         },
-        ConvexExplanation::Hidden { start, blocked } => ConvexReason::Hidden {
+        Verdict::Hidden(Barrier::NotConnected) => {
+            ConvexReason::Hidden { start: from.0, n_blocked: 0, blocked: Vec::new() }
+        }
+        Verdict::Hidden(Barrier::Blocked(ConvexProof { start, blocked })) => ConvexReason::Hidden {
             start: start.0,
             n_blocked: blocked.len(),
             blocked: blocked.iter().map(|b| blocked_way(graph, b)).collect(),
         },
-        ConvexExplanation::TooMany { limit } => ConvexReason::Unknown { max_questions: *limit },
-        ConvexExplanation::Undecided { gates } => {
+        Verdict::Undecided(ConvexDoubt::Limit(SearchLimit(limit))) => ConvexReason::Unknown { max_questions: *limit },
+        Verdict::Undecided(ConvexDoubt::Chain(gates)) => {
             ConvexReason::Undecided { portals: gates.iter().map(|&gate| passed(graph, gate, None)).collect() }
         }
     }

@@ -22,7 +22,8 @@ use sightlines::formats::InputKind;
 use sightlines::formats::quake::{graph_of_prt, read_prt};
 use sightlines::pvs::{CellId, Table, TableKind};
 use sightlines::report::{DrawOptions, View};
-use sightlines::stabtree::{Explanation, MOST_EXPLAINED, explain, explain_space};
+use sightlines::sightline::Verdict;
+use sightlines::stabtree::{Barrier, MOST_EXPLAINED, PlanExplanation, Sight, explain, explain_space};
 use space::SpaceReason;
 use std::path::PathBuf;
 
@@ -192,15 +193,15 @@ fn choose(table: &Table, from: &[CellId], to: &[CellId]) -> (CellId, CellId) {
 }
 
 /// The picture of an explanation: what A sees, B, the line through the portals or the first blocked way.
-fn options(graph: &CellGraph<Planar>, [a, b]: [CellId; 2], explanation: &Explanation) -> DrawOptions {
+fn options(graph: &CellGraph<Planar>, [a, b]: [CellId; 2], explanation: &PlanExplanation) -> DrawOptions {
     let mut options = DrawOptions { view: View::Cell(a), target: Some(b), ..DrawOptions::default() };
     match explanation {
-        Explanation::Visible { portals, doors, witness } => {
-            options.marked_portals = portals.iter().map(|p| p.idx()).collect();
-            options.line = line::between(&graph.cell(a).polygon, &graph.cell(b).polygon, doors, witness);
+        Verdict::Visible(Sight::Along(path)) => {
+            options.marked_portals = path.portals.iter().map(|p| p.idx()).collect();
+            options.line = line::between(&graph.cell(a).polygon, &graph.cell(b).polygon, &path.doors, &path.witness);
         }
-        Explanation::Hidden { blocked, .. } => {
-            let first = blocked.first().map_or(&[][..], |way| &way.portals);
+        Verdict::Hidden(Barrier::Blocked(proof)) => {
+            let first = proof.blocked.first().map_or(&[][..], |way| &way.portals);
             options.marked_portals = first.iter().map(|p| p.idx()).collect();
         }
         _ => {}

@@ -5,8 +5,8 @@ use crate::output::count;
 use serde::Serialize;
 use sightlines::cells::{CellGraph, CellId, Planar, PortalId};
 use sightlines::geometry::{Point2, Portal2};
-use sightlines::sightline::{End, PlanarCertificate, PlanarWitness};
-use sightlines::stabtree::{BlockedSequence, Explanation};
+use sightlines::sightline::{End, PlanarCertificate, Verdict};
+use sightlines::stabtree::{Barrier, BlockedSequence, PlanExplanation, PlanPath, SearchLimit, Sight};
 use std::fmt;
 
 /// What was found about two cells of a plan.
@@ -58,16 +58,19 @@ pub(super) struct Corner {
 }
 
 impl PlanReason {
-    pub(super) fn new(graph: &CellGraph<Planar>, from: CellId, explanation: &Explanation) -> Self {
+    pub(super) fn new(graph: &CellGraph<Planar>, from: CellId, explanation: &PlanExplanation) -> Self {
         match explanation {
-            Explanation::Same => Self::Same,
-            Explanation::Visible { portals, doors, witness } => visible(graph, from, portals, doors, witness),
-            Explanation::Hidden { n_blocked, blocked, connected } => Self::Hidden {
-                connected: *connected,
-                n_blocked: *n_blocked,
-                blocked: blocked.iter().map(|way| blocked_way(graph, from, way)).collect(),
+            Verdict::Visible(Sight::SameCell) => Self::Same,
+            Verdict::Visible(Sight::Along(path)) => visible(graph, from, path),
+            Verdict::Hidden(Barrier::NotConnected) => {
+                Self::Hidden { connected: false, n_blocked: 0, blocked: Vec::new() }
+            }
+            Verdict::Hidden(Barrier::Blocked(proof)) => Self::Hidden {
+                connected: true,
+                n_blocked: proof.n_blocked,
+                blocked: proof.blocked.iter().map(|way| blocked_way(graph, from, way)).collect(),
             },
-            Explanation::TooMany { limit } => Self::Unknown { max_visits: *limit },
+            Verdict::Undecided(SearchLimit(limit)) => Self::Unknown { max_visits: *limit },
         }
     }
 }
@@ -88,13 +91,8 @@ fn walk(graph: &CellGraph<Planar>, from: CellId, portals: &[PortalId]) -> Vec<(C
     portals.iter().map(step).collect()
 }
 
-fn visible(
-    graph: &CellGraph<Planar>,
-    from: CellId,
-    portals: &[PortalId],
-    doors: &[Portal2],
-    witness: &PlanarWitness,
-) -> PlanReason {
+fn visible(graph: &CellGraph<Planar>, from: CellId, path: &PlanPath) -> PlanReason {
+    let PlanPath { portals, doors, witness } = path;
     let [a, b, c] = witness.coefficients().map(ToString::to_string);
     PlanReason::Visible {
         portals: portals.iter().map(|p| p.0).collect(),

@@ -5,8 +5,8 @@ use crate::output::count;
 use serde::Serialize;
 use serde_json::{Value, json};
 use sightlines::geometry::{Aabb, AxialDoor};
-use sightlines::sightline::{AxialWitness, BlockedProof, Branch, BranchRow, Bypass, Contradiction, ProofSize};
-use sightlines::stabtree::SpaceExplanation;
+use sightlines::sightline::{AxialWitness, BlockedProof, Branch, BranchRow, Bypass, Contradiction, ProofSize, Verdict};
+use sightlines::stabtree::{Barrier, SearchLimit, Sight, SpaceExplanation, SpacePath, SpaceProof};
 use std::fmt;
 
 /// What was found about two cells in space.
@@ -32,7 +32,7 @@ pub(super) enum SpaceReason {
         walls: Option<Box<Walls>>,
     },
     /// The search was given up.
-    Unknown { max_programs: u32 },
+    Unknown { max_programs: u64 },
 }
 
 /// A point of a line and its direction, exactly, as fractions.
@@ -69,8 +69,8 @@ pub(super) struct Wall {
 impl SpaceReason {
     pub(super) fn new(explanation: SpaceExplanation) -> Self {
         match explanation {
-            SpaceExplanation::Same => Self::Same,
-            SpaceExplanation::Visible { portals, cells, doors, witness, ends } => Self::Visible {
+            Verdict::Visible(Sight::SameCell) => Self::Same,
+            Verdict::Visible(Sight::Along(SpacePath { portals, cells, doors, witness, ends })) => Self::Visible {
                 portals: portals.iter().map(|p| p.0).collect(),
                 cells: cells.iter().map(|c| c.0).collect(),
                 points: crossings(&witness, &doors),
@@ -80,11 +80,11 @@ impl SpaceReason {
                     direction: witness.direction().each_ref().map(ToString::to_string),
                 }),
             },
-            SpaceExplanation::Hidden { proof, walls, n_blockers } => {
+            Verdict::Hidden(Barrier::Blocked(SpaceProof { proof, walls, n_blockers })) => {
                 Self::Hidden { connected: true, walls: Some(Box::new(Walls::new(&proof, &walls, n_blockers))) }
             }
-            SpaceExplanation::NotConnected => Self::Hidden { connected: false, walls: None },
-            SpaceExplanation::Undecided { budget } => Self::Unknown { max_programs: budget },
+            Verdict::Hidden(Barrier::NotConnected) => Self::Hidden { connected: false, walls: None },
+            Verdict::Undecided(SearchLimit(limit)) => Self::Unknown { max_programs: limit },
         }
     }
 }

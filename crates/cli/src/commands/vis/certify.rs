@@ -5,7 +5,8 @@ use crate::output::count;
 use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::cells::{CellGraph, CellId, Convex};
-use sightlines::stabtree::{ConvexExplainer, ConvexExplanation, ConvexVisibility, MOST_EXPLAINED};
+use sightlines::sightline::Verdict;
+use sightlines::stabtree::{ConvexDoubt, ConvexExplainer, ConvexVisibility, MOST_EXPLAINED, check_convex};
 use std::fmt;
 use std::path::Path;
 
@@ -59,18 +60,18 @@ pub(super) fn certify(
             Err(Error::Contradiction { path: path.to_owned(), pair, listed, found })
         };
         let shown = match explanation {
-            ConvexExplanation::TooMany { .. } => {
+            Verdict::Undecided(ConvexDoubt::Limit(_)) => {
                 proven.n_too_many += 1;
                 continue;
             }
-            ConvexExplanation::Undecided { .. } => {
+            Verdict::Undecided(ConvexDoubt::Chain(_)) => {
                 proven.n_undecided += 1;
                 continue;
             }
-            ConvexExplanation::Hidden { .. } => false,
-            ConvexExplanation::Visible { .. } | ConvexExplanation::Same => true,
+            Verdict::Hidden(_) => false,
+            Verdict::Visible(_) => true,
         };
-        match (explanation.check(graph, a, b), listed, shown) {
+        match (check_convex(graph, a, b, &explanation), listed, shown) {
             (false, _, _) => return wrong("the proof that was found does not hold"),
             (true, false, true) => return wrong("a line joins them"),
             (true, true, false) if !fast && !seen.undecided.contains(&pair) => {

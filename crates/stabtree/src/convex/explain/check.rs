@@ -1,32 +1,35 @@
-//! The checker of explanations: it knows the graph, certificates and lines, and nothing of the search.
+//! The checker of explanations: it uses the graph, certificates and lines, and no part of the search.
 
-use super::{BlockedConvex, Blocking, ConvexExplanation, ConvexGate};
+use super::{BlockedConvex, Blocking, ConvexExplanation, ConvexGate, ConvexPath, ConvexProof};
+use crate::explanation::{Barrier, Sight};
 use sightlines_cells::{CellGraph, CellId, Convex, Point3, Portal3};
+use sightlines_sightline::Verdict;
 use std::collections::HashMap;
 
-/// Gates followed before it is given up: enough for any explanation that the search finds.
+/// Most gates followed: enough for any explanation that the search finds.
 const MOST_FOLLOWED: u64 = 10_000_000;
 
-pub(super) fn proves(explanation: &ConvexExplanation, graph: &CellGraph<Convex>, from: CellId, to: CellId) -> bool {
+pub(super) fn holds(explanation: &ConvexExplanation, graph: &CellGraph<Convex>, from: CellId, to: CellId) -> bool {
     let exists = |cell: CellId| cell.idx() < graph.n_cells();
     if !exists(from) || !exists(to) {
         return false;
     }
     match explanation {
-        ConvexExplanation::Same => from == to,
-        ConvexExplanation::Visible { gates, line } => {
+        Verdict::Visible(Sight::SameCell) => from == to,
+        Verdict::Visible(Sight::Along(ConvexPath { gates, line })) => {
             are_there(gates, graph)
                 && is_chain(gates, graph, from, to)
                 && gates.iter().all(|gate| line.passes(&gate.shape(graph)))
         }
-        ConvexExplanation::Hidden { start, blocked } => {
+        Verdict::Hidden(Barrier::NotConnected) => from != to && are_all_stopped(graph, from, to, &[]),
+        Verdict::Hidden(Barrier::Blocked(ConvexProof { start, blocked })) => {
             let goal = if *start == from { to } else { from };
             from != to
                 && (*start == from || *start == to)
-                && blocked.iter().all(|b| holds(b, graph))
+                && blocked.iter().all(|b| is_blocked(b, graph))
                 && are_all_stopped(graph, *start, goal, blocked)
         }
-        ConvexExplanation::TooMany { .. } | ConvexExplanation::Undecided { .. } => false,
+        Verdict::Undecided(_) => false,
     }
 }
 
@@ -48,7 +51,7 @@ fn is_chain(gates: &[ConvexGate], graph: &CellGraph<Convex>, from: CellId, to: C
 }
 
 /// Whether no line passes the gates in order.
-fn holds(blocked: &BlockedConvex, graph: &CellGraph<Convex>) -> bool {
+fn is_blocked(blocked: &BlockedConvex, graph: &CellGraph<Convex>) -> bool {
     if blocked.gates.is_empty() || !are_there(&blocked.gates, graph) {
         return false;
     }
@@ -57,7 +60,7 @@ fn holds(blocked: &BlockedConvex, graph: &CellGraph<Convex>) -> bool {
         (Blocking::Certificate(certificate), shapes) => certificate.holds(&shapes.iter().collect::<Vec<_>>()),
         (Blocking::Behind, [first, second]) => {
             let corners = first.corners().iter().chain(second.corners()).flatten();
-            // Twice what the search has: rounding may let one call near what the other calls far.
+            // Twice the tolerance of the search, as rounding may make the two disagree.
             let near = 2f64.powi(-43) * corners.fold(0.0, |m: f64, x| m.max(x.abs()));
             highest(second, first, 1.0) <= near || highest(first, second, -1.0) <= near
         }
@@ -65,8 +68,8 @@ fn holds(blocked: &BlockedConvex, graph: &CellGraph<Convex>) -> bool {
     }
 }
 
-/// The height of the highest corner of a polygon over the plane through the middle of another's corners, or with the
-/// sign -1 the depth of the deepest.
+/// The height of the highest corner of a polygon over the plane through the middle of another's corners, or, with the
+/// sign -1, the depth of the deepest.
 fn highest(polygon: &Portal3, plane: &Portal3, sign: f64) -> f64 {
     let normal = plane.normal();
     let dot = |a: Point3| (0..3).map(|k| a[k] * normal[k]).sum::<f64>();
@@ -75,7 +78,7 @@ fn highest(polygon: &Portal3, plane: &Portal3, sign: f64) -> f64 {
     let middle: Point3 = [0, 1, 2].map(|k| plane.corners().iter().map(|p| p[k]).sum::<f64>() / n);
     let height = |p: &Point3| sign * dot([0, 1, 2].map(|k| p[k] - middle[k])) / length;
     let heights = polygon.corners().iter().map(height);
-    // Of a plane without a direction nothing is known.
+    // A plane without a direction decides nothing.
     heights.fold(f64::NEG_INFINITY, |m, h| if h.is_nan() { f64::INFINITY } else { m.max(h) })
 }
 
@@ -83,7 +86,7 @@ fn highest(polygon: &Portal3, plane: &Portal3, sign: f64) -> f64 {
 fn are_all_stopped(graph: &CellGraph<Convex>, start: CellId, goal: CellId, lists: &[BlockedConvex]) -> bool {
     let mut walk = Walk::new(graph, goal, lists);
     let mut n_followed = 0u64;
-    // For each cell on the way: which exit is next, and how many notes there were on entering it.
+    // For each cell on the way: the next exit, and the number of notes on entering it.
     let mut way = vec![(start, 0usize, 0usize)];
     walk.is_met[start.idx()] = true;
     if !walk.reaches(start) {
@@ -132,10 +135,10 @@ struct Walk<'a> {
     n_contained: Vec<usize>,
     /// How many lists lack only this gate.
     n_lacking: HashMap<ConvexGate, usize>,
-    /// Lists of which one gate more was contained.
+    /// Lists that gained a contained gate, in order.
     notes: Vec<usize>,
     is_met: Vec<bool>,
-    /// The last search for a way that came to a cell.
+    /// The last search for a path that reached each cell.
     seen: Vec<u64>,
     n_searches: u64,
 }
@@ -200,7 +203,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Whether any way leads from a cell to the goal, through cells that are not met and gates that complete nothing.
+    /// Whether any path leads from a cell to the goal, through unvisited cells and gates that complete no list.
     fn reaches(&mut self, from: CellId) -> bool {
         self.n_searches += 1;
         let mut waiting = vec![from];

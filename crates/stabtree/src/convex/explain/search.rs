@@ -2,8 +2,9 @@
 
 use super::super::gates::Gates;
 use super::super::vector::{dot, sub, unit};
-use super::{BlockedConvex, Blocking, ConvexExplanation, ConvexGate};
-use sightlines_cells::{Portal3, PortalId};
+use super::{BlockedConvex, Blocking, ConvexDoubt, ConvexExplanation, ConvexGate, ConvexPath, ConvexProof};
+use crate::explanation::{Barrier, SearchLimit, Sight};
+use sightlines_cells::{CellId, Portal3, PortalId};
 use sightlines_sightline::{
     BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexTerm, ConvexVerdict, Line3, PlaneProof, StabLimits,
     Verdict,
@@ -13,7 +14,7 @@ use sightlines_sightline::{
 #[derive(Debug, Clone, Copy)]
 struct Aim {
     gate: u32,
-    /// `None` if none is known, but it is not known either that there is none.
+    /// `None` if no line is known, nor that there is none.
     line: Option<Line3>,
 }
 
@@ -21,7 +22,7 @@ struct Aim {
 #[derive(Debug)]
 struct Level {
     cell: u32,
-    /// Exits not tried yet, the best last.
+    /// Exits still to try, the best last.
     exits: Vec<u32>,
     aims: Vec<Aim>,
 }
@@ -36,15 +37,15 @@ pub(super) struct Search<'g> {
     asked: u64,
     limit: u64,
     chain: Vec<u32>,
-    /// The place of each gate in the chain, from 1; 0 for gates that are not in it.
+    /// The position of each gate in the chain, from 1; 0 for gates that are not in it.
     place: Vec<u32>,
     is_met: Vec<bool>,
     blocked: Vec<BlockedConvex>,
-    /// For each gate, lists that no line passes before it.
+    /// For each gate, lists of gates after which no line passes it.
     learnt: Vec<Vec<Vec<u32>>>,
     visible: Option<(Vec<u32>, Line3)>,
     undecided: Option<Vec<u32>>,
-    /// The last walk that came to each cell.
+    /// The last walk that reached each cell.
     seen: Vec<u32>,
     n_walks: u32,
 }
@@ -74,10 +75,10 @@ impl<'g> Search<'g> {
         self.is_met[self.start as usize] = true;
         let entries = self.gates.exits(self.goal).iter().map(|gate| gate ^ 1);
         let aims: Vec<Aim> = entries.map(|gate| Aim { gate, line: None }).collect();
-        let mut levels = Vec::new();
-        if self.reaches(self.start) {
-            levels.push(Level { cell: self.start, exits: self.gates.exits(self.start).to_vec(), aims });
+        if !self.reaches(self.start) {
+            return Verdict::Hidden(Barrier::NotConnected);
         }
+        let mut levels = vec![Level { cell: self.start, exits: self.gates.exits(self.start).to_vec(), aims }];
         while let Some(level) = levels.last_mut() {
             let Some(exit) = level.exits.pop() else {
                 self.is_met[level.cell as usize] = false;
@@ -88,7 +89,7 @@ impl<'g> Search<'g> {
                 continue;
             };
             if self.asked >= self.limit {
-                return ConvexExplanation::TooMany { limit: self.limit };
+                return Verdict::Undecided(ConvexDoubt::Limit(SearchLimit(self.limit)));
             }
             let to = self.gates.get(exit).to;
             if self.is_met[to as usize] || self.is_learnt(exit) {
@@ -104,12 +105,15 @@ impl<'g> Search<'g> {
                 levels.extend(next);
             }
             if let Some((chain, line)) = self.visible.take() {
-                return ConvexExplanation::Visible { gates: named(&chain), line };
+                return Verdict::Visible(Sight::Along(ConvexPath { gates: named(&chain), line }));
             }
         }
         match self.undecided {
-            Some(chain) => ConvexExplanation::Undecided { gates: named(&chain) },
-            None => ConvexExplanation::Hidden { start: sightlines_cells::CellId(self.start), blocked: self.blocked },
+            Some(chain) => Verdict::Undecided(ConvexDoubt::Chain(named(&chain))),
+            None => {
+                let proof = ConvexProof { start: CellId(self.start), blocked: self.blocked };
+                Verdict::Hidden(Barrier::Blocked(proof))
+            }
         }
     }
 
@@ -127,9 +131,9 @@ impl<'g> Search<'g> {
         }
     }
 
-    /// Lengthens the chain by `exit`, if lines may go on from there to the goal.
+    /// Extends the chain by `exit`, if lines may continue from there to the goal.
     fn enter(&mut self, exit: u32, aims: &[Aim]) -> Option<Level> {
-        // Steps count too, so that the time is bounded where no questions are left to ask.
+        // Steps count too, so that the time is bounded even without queries.
         self.asked += 1;
         if let Some(&behind) = self.chain.iter().find(|&&gate| !self.gates.may_follow(gate, exit)) {
             self.block_pair(behind, exit);
@@ -161,7 +165,7 @@ impl<'g> Search<'g> {
         None
     }
 
-    /// The gates into the goal that lines through the chain may reach, of those that they might before its last gate.
+    /// The gates into the goal that lines through the chain may reach, among those of the chain without its last gate.
     fn aim(&mut self, last: u32, aims: &[Aim]) -> Vec<Aim> {
         let mut left = Vec::new();
         for aim in aims {
@@ -191,7 +195,7 @@ impl<'g> Search<'g> {
         left
     }
 
-    /// Whether a line crosses gates one after the other, as far as rounding lets one tell.
+    /// Whether a line crosses gates one after the other, up to rounding.
     fn is_in_order(&self, line: &Line3, sequence: &[u32]) -> bool {
         let direction = unit(sub(line.b, line.a));
         let at = |&gate: &u32| {
@@ -214,7 +218,7 @@ impl<'g> Search<'g> {
         }
     }
 
-    /// Asks whether a line passes gates in order, and learns why not.
+    /// Queries whether a line passes gates in order, and learns the reason if not.
     fn ask(&mut self, sequence: &[u32], hint: Option<&Line3>) -> ConvexVerdict {
         self.asked += 1;
         let shapes: Vec<&Portal3> = sequence.iter().map(|&gate| self.gates.shape(gate)).collect();
@@ -231,7 +235,7 @@ impl<'g> Search<'g> {
         answer
     }
 
-    /// Learns that no line passes two gates one after the other, of which planes say so.
+    /// Learns that no line passes two gates one after the other, because of their planes.
     fn block_pair(&mut self, first: u32, second: u32) {
         if !matches!(self.ask(&[first, second], None), Verdict::Hidden(_)) {
             self.learnt[second as usize].push(vec![first]);
@@ -239,7 +243,7 @@ impl<'g> Search<'g> {
         }
     }
 
-    /// Whether it was learnt that no line passes the chain and then this gate.
+    /// Whether a learnt list shows that no line passes the chain and then this gate.
     fn is_learnt(&self, gate: u32) -> bool {
         let is_on_way = |list: &[u32]| {
             let mut last = 0;
@@ -251,7 +255,7 @@ impl<'g> Search<'g> {
         self.learnt[gate as usize].iter().any(|list| is_on_way(list))
     }
 
-    /// Whether the graph leads from a cell to the goal, past the cells on the way and what was learnt.
+    /// Whether the graph leads from a cell to the goal, avoiding the cells of the chain and learnt lists.
     fn reaches(&mut self, from: u32) -> bool {
         self.n_walks += 1;
         let mut waiting = vec![from];
@@ -273,12 +277,12 @@ impl<'g> Search<'g> {
     }
 }
 
-/// Gates as others know them.
+/// Gates in their public form.
 fn named(gates: &[u32]) -> Vec<ConvexGate> {
     gates.iter().map(|&gate| ConvexGate { portal: PortalId(gate / 2), forward: gate % 2 == 0 }).collect()
 }
 
-/// The places in a sequence that a certificate needs, and the certificate for these alone.
+/// The positions in a sequence that a certificate needs, and the certificate for these alone.
 fn narrowed(proof: &ConvexCertificate) -> (Vec<usize>, ConvexCertificate) {
     let places = proof.named();
     let rank = |place: usize| places.partition_point(|&p| p < place);
@@ -296,7 +300,7 @@ fn narrowed(proof: &ConvexCertificate) -> (Vec<usize>, ConvexCertificate) {
             let at = |(portal, k): (usize, usize)| (rank(portal), k);
             ConvexCertificate::Plane(PlaneProof { edge: at(*edge), corner: at(*corner), stops: stops.map(rank) })
         }
-        // Of another kind nothing is known but that it is of the sequence up to the last place.
+        // A certificate of another kind is for the sequence up to its last position.
         other => return ((0..=places.last().copied().unwrap_or(0)).collect(), other.clone()),
     };
     (places, narrow)

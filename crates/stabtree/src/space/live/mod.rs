@@ -22,7 +22,7 @@ use super::atomic_bits::AtomicBitMatrix;
 use super::opaque::Walls;
 use super::witness_log::{FoundFor, Line, Proof, WitnessLog, Worker};
 use super::{PairsInDoubt, SpaceSearch, SpaceVisibility, on_threads, slivers};
-use crate::search::{SearchOptions, VisibilityBounds};
+use crate::search::SearchOptions;
 use change::Change;
 use matching::{Matching, heirs, same_boxes};
 use rayon::prelude::*;
@@ -163,8 +163,7 @@ impl LiveSpace {
             return Ok((seen, walls, log, update));
         }
         let blockers = Blockers::new(walls.rectangles());
-        let nothing = VisibilityBounds::nothing(graph.n_cells());
-        let mut search = SpaceSearch::new(graph, boxes, &blockers, &nothing);
+        let mut search = SpaceSearch::new(graph, boxes, &blockers);
         search.logging = true;
         let step = Step { search: &search, old: self, cells: &cells, heirs: heirs(&same_objects, self.objects.len()) };
         let (doubt, mut kept, n_cut) = step.prepare(log, &change, &same_objects);
@@ -194,8 +193,7 @@ fn anew(
     options: &SearchOptions<'_>,
 ) -> Result<(SpaceVisibility, WitnessLog), Cancelled> {
     let blockers = Blockers::new(walls.rectangles());
-    let nothing = VisibilityBounds::nothing(graph.n_cells());
-    let mut search = SpaceSearch::new(graph, objects, &blockers, &nothing);
+    let mut search = SpaceSearch::new(graph, objects, &blockers);
     search.logging = true;
     let (counters, log) = search.answer(threads, options)?;
     Ok((search.into_seen(counters), log))
