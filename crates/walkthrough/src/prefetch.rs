@@ -1,4 +1,4 @@
-//! A thread that prepares data for the viewers of a cell.
+//! Data for the viewers of a cell, prepared in advance: on another thread, or in that of the caller.
 //!
 //! The data can be of any kind: [`crate::Walkthrough`] prepares subgraphs, and other data for the viewers of a cell,
 //! such as an occlusion buffer, can be prepared in the same way.
@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 
-/// Makes the data for the viewers of a cell. May be slow: it is called on a thread of its own.
+/// Makes the data for the viewers of a cell. May be slow: by default it is called on another thread.
 pub trait Prepare: Send + 'static {
     /// What is made.
     type Prepared: Send + Sync + 'static;
@@ -30,14 +30,24 @@ pub trait Prepare: Send + 'static {
 /// The data of a cell, with its size in bytes.
 type Made<P> = (CellId, Result<(<P as Prepare>::Prepared, usize), <P as Prepare>::Error>);
 
+/// Where data is made.
+enum Maker<P: Prepare> {
+    /// On another thread.
+    Thread {
+        /// Lists of cells, the most urgent first; a list replaces the one before. `None` once the thread is gone.
+        wishes: Option<Sender<Vec<CellId>>>,
+        made: Receiver<Made<P>>,
+    },
+    /// On the thread that requests it.
+    Caller(P),
+}
+
 /// Makes data for cells on another thread, and keeps it within a byte budget.
 ///
-/// No method waits, neither for the thread nor for a lock.
+/// No method waits, neither for the thread nor for a lock, unless there is no thread ([`Prefetcher::without_thread`]).
 pub struct Prefetcher<P: Prepare> {
     cache: Cache<P::Prepared>,
-    /// Lists of cells, the most urgent first; a list replaces the one before. `None` once the thread is gone.
-    wishes: Option<Sender<Vec<CellId>>>,
-    made: Receiver<Made<P>>,
+    maker: Maker<P>,
     /// The last list, so that no list is sent twice.
     last: Vec<CellId>,
     /// Cells of the last list that have not arrived yet.
@@ -54,38 +64,45 @@ impl<P: Prepare> Prefetcher<P> {
         let (wishes, wished) = channel();
         let (done, made) = channel();
         thread::spawn(move || work(maker, &wished, &done));
-        Self {
-            cache: Cache::new(budget),
-            wishes: Some(wishes),
-            made,
-            last: Vec::new(),
-            awaited: BTreeSet::new(),
-            error: None,
-            n_made: 0,
-        }
+        Self::of(Maker::Thread { wishes: Some(wishes), made }, budget)
+    }
+
+    /// Makes data on the thread of the caller: [`Prefetcher::wish`] returns when all of it is made. For measurements that
+    /// have to be repeatable, and for targets without threads.
+    pub fn without_thread(maker: P, budget: usize) -> Self {
+        Self::of(Maker::Caller(maker), budget)
+    }
+
+    fn of(maker: Maker<P>, budget: usize) -> Self {
+        Self { cache: Cache::new(budget), maker, last: Vec::new(), awaited: BTreeSet::new(), error: None, n_made: 0 }
     }
 
     /// Receives what was made in the meantime.
     pub fn poll(&mut self) {
-        loop {
-            match self.made.try_recv() {
-                Ok((cell, Ok((thing, n_bytes)))) => {
-                    self.awaited.remove(&cell);
-                    self.n_made += 1;
-                    self.cache.add(cell, thing, n_bytes);
-                }
-                Ok((cell, Err(error))) => {
-                    self.awaited.remove(&cell);
-                    // It may be requested again.
-                    self.last.clear();
-                    self.error = Some((cell, error));
-                }
+        while let Maker::Thread { wishes, made } = &mut self.maker {
+            match made.try_recv() {
+                Ok(made) => self.receive(made),
                 Err(TryRecvError::Empty) => return,
                 Err(TryRecvError::Disconnected) => {
-                    self.wishes = None;
+                    *wishes = None;
                     self.awaited.clear();
                     return;
                 }
+            }
+        }
+    }
+
+    fn receive(&mut self, (cell, made): Made<P>) {
+        self.awaited.remove(&cell);
+        match made {
+            Ok((thing, n_bytes)) => {
+                self.n_made += 1;
+                self.cache.add(cell, thing, n_bytes);
+            }
+            Err(error) => {
+                // It may be requested again.
+                self.last.clear();
+                self.error = Some((cell, error));
             }
         }
     }
@@ -117,8 +134,17 @@ impl<P: Prepare> Prefetcher<P> {
         let list: Vec<CellId> = wanted().collect();
         self.last.clone_from(&list);
         self.awaited = list.iter().copied().collect();
-        if self.wishes.as_ref().is_some_and(|wishes| wishes.send(list).is_err()) {
-            self.wishes = None;
+        if let Maker::Thread { wishes, .. } = &mut self.maker {
+            if wishes.as_ref().is_some_and(|wishes| wishes.send(list).is_err()) {
+                *wishes = None;
+            }
+            return;
+        }
+        for cell in list {
+            if let Maker::Caller(maker) = &mut self.maker {
+                let made = make(maker, cell);
+                self.receive(made);
+            }
         }
     }
 
@@ -133,9 +159,9 @@ impl<P: Prepare> Prefetcher<P> {
         self.error.take()
     }
 
-    /// Whether the thread is still running. It ends early only if making an item panics.
+    /// Whether items can still be made. The thread ends early only if making an item panics.
     pub fn is_working(&self) -> bool {
-        self.wishes.is_some()
+        !matches!(self.maker, Maker::Thread { wishes: None, .. })
     }
 
     /// Bytes in memory.
@@ -177,12 +203,16 @@ fn work<P: Prepare>(mut maker: P, wished: &Receiver<Vec<CellId>>, done: &Sender<
             Err(TryRecvError::Empty) => {}
         }
         let Some(cell) = list.pop_front() else { continue };
-        let made = maker.prepare(cell).map(|thing| {
-            let n_bytes = P::n_bytes(&thing);
-            (thing, n_bytes)
-        });
-        if done.send((cell, made)).is_err() {
+        if done.send(make(&mut maker, cell)).is_err() {
             return;
         }
     }
+}
+
+fn make<P: Prepare>(maker: &mut P, cell: CellId) -> Made<P> {
+    let made = maker.prepare(cell).map(|thing| {
+        let n_bytes = P::n_bytes(&thing);
+        (thing, n_bytes)
+    });
+    (cell, made)
 }

@@ -21,11 +21,14 @@ pub struct WalkOptions {
     pub places_per_frame: u32,
     /// Maximum number of reflections in a row; 0 for no mirrors.
     pub bounces: usize,
+    /// Whether subgraphs are prepared on another thread. Otherwise each frame prepares those that it requests before it
+    /// returns: such a frame waits. For measurements that have to be repeatable, and for targets without threads.
+    pub has_thread: bool,
 }
 
 impl Default for WalkOptions {
     fn default() -> Self {
-        Self { budget: 64 << 20, frames_ahead: 60, places_per_frame: 4, bounces: 0 }
+        Self { budget: 64 << 20, frames_ahead: 60, places_per_frame: 4, bounces: 0, has_thread: true }
     }
 }
 
@@ -92,7 +95,7 @@ impl<S: CellSource<Error: Send + 'static> + Send + 'static> Prepare for VisibleS
 /// `R` answers at once (point location, and a superset of what a cell sees). `S` is a source that may be slow; only
 /// another thread reads it. Both may be the same table.
 ///
-/// A frame never waits. If the subgraph of the eye's cell has not arrived yet, the frame gets a superset. Subgraphs of
+/// A frame never waits, except without a thread ([`WalkOptions::has_thread`]). If the subgraph of the eye's cell has not arrived yet, the frame gets a superset. Subgraphs of
 /// the cells ahead are prepared in advance.
 pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static> {
     resident: R,
@@ -127,7 +130,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         Self {
             resident,
             options,
-            subgraphs: Prefetcher::new(VisibleSubgraphs(source), options.budget),
+            subgraphs: prefetcher(source, &options),
             path: Path::default(),
             doors: Doors::all_open(),
             scratch: Scratch::new(),
@@ -293,7 +296,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         });
         self.doors = doors;
         self.resident = resident;
-        self.subgraphs = Prefetcher::new(VisibleSubgraphs(source), self.options.budget);
+        self.subgraphs = prefetcher(source, &self.options);
         self.seen.clear(0, 0);
         self.images.clear();
         self.at.clear();
@@ -337,6 +340,17 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
     /// Numbers of subgraphs prepared so far, and evicted to stay within the budget.
     pub fn prepared(&self) -> (u64, u64) {
         (self.subgraphs.n_made(), self.subgraphs.n_dropped())
+    }
+}
+
+fn prefetcher<S>(source: S, options: &WalkOptions) -> Prefetcher<VisibleSubgraphs<S>>
+where
+    S: CellSource<Error: Send + 'static> + Send + 'static,
+{
+    let maker = VisibleSubgraphs(source);
+    match options.has_thread {
+        true => Prefetcher::new(maker, options.budget),
+        false => Prefetcher::without_thread(maker, options.budget),
     }
 }
 

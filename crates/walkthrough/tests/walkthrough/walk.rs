@@ -346,3 +346,37 @@ fn cells_on_a_border_do_not_drop_each_other() {
     let (cells, _) = until_full(&mut walk, &looking_right(3.0), Method::CellToCell);
     assert_eq!(cells, BTreeSet::from([0, 1, 2, 3, 4, 5]));
 }
+
+/// Without a thread, only a frame in a cell that nothing predicted is late, the answers are those with a thread, and a
+/// walk repeats exactly.
+#[test]
+fn frames_without_a_thread_prepare_what_they_request() {
+    let table = rooms(12);
+    let options = WalkOptions { has_thread: false, ..WalkOptions::default() };
+    let run = || {
+        let (source, gate) = slow(&table, Some(CellId(9)));
+        gate.open();
+        let mut walk = walk(&table, source, options);
+        let mut answers = Vec::new();
+        for k in 0..100 {
+            let view = looking_right(0.5 + 0.08 * f64::from(k));
+            let frame = walk.frame(&view, Method::Exact);
+            let cells: Vec<u32> = frame.seen.cells().iter().map(|c| c.0).collect();
+            answers.push((frame.answer, cells));
+            assert!(walk.is_idle(), "frame {k}");
+        }
+        let error = walk.take_error().map(|(cell, _)| cell);
+        (answers, walk.counters(), walk.prepared(), error)
+    };
+    let (answers, counters, prepared, error) = run();
+    assert_eq!((answers.clone(), counters, prepared, error), run());
+    assert_eq!((error, answers[0].0), (Some(CellId(9)), Answer::Late));
+    let (source, gate) = slow(&table, None);
+    gate.open();
+    let mut twin = walk(&table, source, WalkOptions::default());
+    for (k, (answer, cells)) in (0..100).zip(&answers).skip(1).take_while(|(k, _)| 0.5 + 0.08 * f64::from(*k) < 9.0) {
+        assert_eq!(*answer, Answer::Full, "frame {k}");
+        let full = until_full(&mut twin, &looking_right(0.5 + 0.08 * f64::from(k)), Method::Exact);
+        assert_eq!(cells.iter().copied().collect::<BTreeSet<u32>>(), full.0, "frame {k}");
+    }
+}
