@@ -114,14 +114,14 @@ fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instan
     let shared = method.map(|(planes, texels, sheets)| {
         let triangles = triangles();
         let occluders = if planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
-        let layout = Layout { n_levels: planes, texels, ..Layout::default() };
+        let layout = Layout { planes, texels, ..Layout::default() };
         (Arc::new(OccluderSelection::new(occluders, 500)), layout, sheets.then(|| Arc::new(Sheets::new(&triangles))))
     });
     let bounds = case.scene.bounds();
     let make = || -> Box<dyn FromRegion + Send> {
         let (chosen, layout, sheets) = shared.as_ref().expect("only asked if there is a method");
         let mut methods: Vec<Box<dyn FromRegion + Send>> = Vec::new();
-        if layout.n_levels > 0 {
+        if layout.planes > 0 {
             methods.push(Box::new(Multifocal::new(Fast::new(), Arc::clone(chosen), bounds, *layout)));
         }
         methods.extend(
@@ -148,7 +148,7 @@ fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instan
 /// Prints the rows of a case; whether the choice is no looser than the default.
 fn rows(case: &Case) -> bool {
     let standard = Layout::default();
-    let full = Some((standard.n_levels, standard.texels, true));
+    let full = Some((standard.planes, standard.texels, true));
     let sheets = Some((0, standard.texels, true));
     let mut fixed: Vec<(&str, bool, Method)> =
         vec![("sightlines (default)", true, None), ("sheets", false, sheets), ("sightlines and sheets", true, sheets)];

@@ -167,15 +167,15 @@ fn contenders(args: &Args) -> Vec<Contender> {
     let mut add = |name: String, depth: u32, make: Make| {
         contenders.push(Contender { name, make, depth });
     };
-    for &n_levels in &args.planes {
+    for &planes in &args.planes {
         for measure in [Measure::Euclid, Measure::VertexHeight, Measure::SectionHeight] {
-            for reproject in [false, true] {
-                if reproject && (n_levels == 1 || measure != Measure::SectionHeight) {
+            for carry in [false, true] {
+                if carry && (planes == 1 || measure != Measure::SectionHeight) {
                     continue;
                 }
-                let layout = Layout { n_levels, measure, reproject, ..Layout::default() };
-                let carried = if reproject { ", carried" } else { "" };
-                let name = format!("{}, {n_levels} planes{carried}", measure.name());
+                let layout = Layout { planes, measure, carry, ..Layout::default() };
+                let carried = if carry { ", carried" } else { "" };
+                let name = format!("{}, {planes} planes{carried}", measure.name());
                 add(name, 0, Box::new(move |case| Box::new(buffers(case, layout))));
             }
         }

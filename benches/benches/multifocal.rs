@@ -73,11 +73,10 @@ impl Found {
 /// The ways to ask: every measure on its own planes, and heights carried from plane to plane.
 fn layouts(args: &Args) -> Vec<Layout> {
     let mut layouts = Vec::new();
-    for &n_levels in &args.planes {
-        let layout =
-            |measure, reproject| Layout { n_levels, texels: args.texels, measure, reproject, ..Layout::default() };
+    for &planes in &args.planes {
+        let layout = |measure, carry| Layout { planes, texels: args.texels, measure, carry, ..Layout::default() };
         layouts.extend(Measure::ALL.map(|measure| layout(measure, false)));
-        if n_levels > 1 {
+        if planes > 1 {
             layouts.extend(Measure::ALL.into_iter().filter(|m| m.is_height()).map(|measure| layout(measure, true)));
         }
     }
@@ -124,7 +123,7 @@ fn ask(case: &Case, layout: Layout, found: &mut Found) {
 
 /// Whether a layout can be afforded: the measure of the reference is for one plane, and few texels.
 fn is_affordable(layout: &Layout) -> bool {
-    layout.measure != Measure::ClippedEuclid || layout.n_levels == 1 && layout.texels <= 32
+    layout.measure != Measure::ClippedEuclid || layout.planes == 1 && layout.texels <= 32
 }
 
 /// Prints the table; how many boxes were wrongly called hidden.
@@ -143,8 +142,8 @@ fn table(args: &Args) -> usize {
                 f64::from(tilt) / 100.0,
                 100.0 * found.n_unseen as f64 / n as f64,
                 layout.measure.name(),
-                layout.n_levels,
-                if layout.reproject { "yes" } else { "no" },
+                layout.planes,
+                if layout.carry { "yes" } else { "no" },
                 100.0 * found.share(),
                 found.time.as_secs_f64() * 1e3 / cases.len() as f64,
             );
@@ -158,9 +157,9 @@ fn table(args: &Args) -> usize {
 fn check(args: &Args) {
     let args = Args { seeds: vec![1], rays: 100_000, ..args.clone() };
     let cases = cases(&args, 30, 0.25);
-    let find = |n_levels, measure, reproject| {
+    let find = |planes, measure, carry| {
         let mut found = Found::default();
-        let layout = Layout { n_levels, texels: 64, measure, reproject, ..Layout::default() };
+        let layout = Layout { planes, texels: 64, measure, carry, ..Layout::default() };
         cases.iter().for_each(|case| ask(case, layout, &mut found));
         assert_eq!(found.n_wrong, 0, "{measure:?}: what is seen is called hidden");
         found

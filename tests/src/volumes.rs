@@ -65,7 +65,7 @@ impl SmallWorld {
         let ends = self.targets.iter().flat_map(|b| [b.min, b.max]);
         let around = Aabb::around(ends.chain([self.scene.bounds().min, self.scene.bounds().max]));
         let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 100));
-        let layout = Layout { texels: 16, n_levels: 3, ..Layout::default() };
+        let layout = Layout { texels: 16, planes: 3, ..Layout::default() };
         let buffers = Multifocal::new(Fast::new(), chosen, around, layout);
         let mut method = UnionMethod::new(vec![Box::new(buffers), Box::new(SheetMethod::new(&triangles))]);
         let volume = Volume::new(self.volume).expect("a box");

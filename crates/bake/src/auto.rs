@@ -185,7 +185,7 @@ impl SceneChoice {
             choice.reasons.push(format!("{loose} of the area stands alone, {open} of rays leave: no buffers"));
             return Ok(choice);
         }
-        choice.planes = standard.n_levels;
+        choice.planes = standard.planes;
         choice.texels = texels(facts.object_size);
         let texels = choice.texels;
         choice

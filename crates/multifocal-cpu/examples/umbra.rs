@@ -13,12 +13,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let walls = [wall(-2.5, 0.3125, 4.0)?, wall(-0.0625, 2.5, 4.25)?];
     let volume = Volume::new(Aabb { min: [-0.5, -0.5, -0.5], max: [0.5, 0.5, 0.5] })?;
     let plane = |z: f64| Plane::new(2, true, z, [-6.0, -4.0], [6.0, 4.0], [48, 16]);
-    for reproject in [false, true] {
+    for carry in [false, true] {
         let planes = vec![plane(4.5)?, plane(6.0)?, plane(8.0)?];
-        let job = Job::new(volume, planes, &walls, Measure::SectionHeight, reproject)?;
+        let job = Job::new(volume, planes, &walls, Measure::SectionHeight, carry)?;
         let mut buffers = Vec::new();
         Reference.render(&job, &mut buffers)?;
-        println!("the farthest of three planes, {}", if reproject { "carried over" } else { "each by itself" });
+        println!("the farthest of three planes, {}", if carry { "carried over" } else { "each by itself" });
         draw(&buffers[2], job.unit());
     }
     Ok(())

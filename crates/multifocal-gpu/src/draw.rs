@@ -55,7 +55,7 @@ pub(crate) fn draw(gpu: &Gpu, path: GpuPath, input: &Input<'_, '_>) -> Result<Va
             }
             gpu.guarded(name, largest, || {
                 let carries: Vec<_> =
-                    (0..job.planes().len()).map(|i| (job.reproject() && i > 0).then(|| Carry::of(job, i))).collect();
+                    (0..job.planes().len()).map(|i| (job.carry() && i > 0).then(|| Carry::of(job, i))).collect();
                 let carries: Vec<_> = carries.iter().map(Option::as_ref).collect();
                 Recording::new(gpu, sizes)
                     .run(&carries, |recording, plane| float::record(gpu, recording, &scenes, plane))

@@ -22,7 +22,7 @@ impl PlaneForms {
         let one = |(i, plane): (usize, &Plane)| {
             let mut forms = Forms::default();
             forms.extend(job, &outlines, i);
-            let carry = (job.reproject() && i > 0).then(|| Carry::of(job, i));
+            let carry = (job.carry() && i > 0).then(|| Carry::of(job, i));
             Self { texels: plane.texels(), forms, carry }
         };
         job.planes().iter().enumerate().map(one).collect()

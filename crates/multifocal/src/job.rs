@@ -21,9 +21,9 @@ pub enum JobError {
     /// Planes of one job look the same way, each farther away than the one before.
     #[error("plane {0} does not look the same way as the one before, or is no farther away")]
     Order(usize),
-    /// Re-projection carries heights; distances cannot be carried from plane to plane.
-    #[error("planes are re-projected for heights only, not for {}", .0.name())]
-    Reproject(Measure),
+    /// Heights can be carried from plane to plane; distances cannot.
+    #[error("planes are carried over for heights only, not for {}", .0.name())]
+    Carry(Measure),
 }
 
 /// One whole job: the buffers of one or several planes in one direction, for one volume.
@@ -33,7 +33,7 @@ pub struct Job<'a> {
     planes: Vec<Plane>,
     occluders: Vec<&'a Occluder>,
     measure: Measure,
-    reproject: bool,
+    carry: bool,
     unit: f64,
 }
 
@@ -44,8 +44,8 @@ impl<'a> Job<'a> {
     /// Checks a job.
     ///
     /// * `planes`: looking the same way, from the nearest to the farthest
-    /// * `reproject`: whether what is known on a plane is carried over to the next one: a texel is blocked also
-    ///   where all lines from it to the volume cross blocked texels of the plane before
+    /// * `carry`: whether the values of each plane are carried to the next one (re-projection): a texel is also blocked if
+    ///   all lines from it to the volume cross blocked texels of the previous plane
     ///
     /// # Errors
     /// [`JobError`]
@@ -54,13 +54,13 @@ impl<'a> Job<'a> {
         planes: Vec<Plane>,
         occluders: impl IntoIterator<Item = &'a Occluder>,
         measure: Measure,
-        reproject: bool,
+        carry: bool,
     ) -> Result<Self, JobError> {
         if planes.is_empty() {
             return Err(JobError::NoPlane);
         }
-        if reproject && planes.len() > 1 && !measure.is_height() {
-            return Err(JobError::Reproject(measure));
+        if carry && planes.len() > 1 && !measure.is_height() {
+            return Err(JobError::Carry(measure));
         }
         for (idx, plane) in planes.iter().enumerate() {
             plane.check_in_front_of(&volume).map_err(|error| JobError::Plane { idx, error })?;
@@ -74,7 +74,7 @@ impl<'a> Job<'a> {
         }
         let unit = unit(&volume, &planes, measure);
         let occluders = occluders.into_iter().collect();
-        Ok(Self { volume, planes, occluders, measure, reproject, unit })
+        Ok(Self { volume, planes, occluders, measure, carry, unit })
     }
 
     /// Where the eyes are.
@@ -97,9 +97,9 @@ impl<'a> Job<'a> {
         self.measure
     }
 
-    /// Whether planes are carried over to the next ones.
-    pub const fn reproject(&self) -> bool {
-        self.reproject
+    /// Whether the values of each plane are carried to the next one.
+    pub const fn carry(&self) -> bool {
+        self.carry
     }
 
     /// Scene units in one unit of the values: a power of two, the same for all planes of a job.

@@ -29,8 +29,8 @@ impl<B: MultifocalBackend> Multifocal<B> {
 
 impl<B: MultifocalBackend> FromRegion for Multifocal<B> {
     fn name(&self) -> String {
-        let carried = if self.layout.reproject { "-sweep" } else { "" };
-        format!("multifocal-{}{carried}-{}", self.layout.measure.name(), self.layout.n_levels)
+        let carried = if self.layout.carry { "-sweep" } else { "" };
+        format!("multifocal-{}{carried}-{}", self.layout.measure.name(), self.layout.planes)
     }
 
     fn guarantee(&self) -> Guarantee {

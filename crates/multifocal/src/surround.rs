@@ -12,8 +12,8 @@ use sightlines_geometry::{Aabb, Point3};
 /// The number, positions and resolution of planes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layout {
-    /// Number of boxes, one inside the other; at least 1.
-    pub n_levels: u32,
+    /// Number of planes on each side of the volume, which is the number of nested boxes; at least 1.
+    pub planes: u32,
     /// Texels along the longer side of each plane, 1 to [`MAX_TEXELS`](crate::MAX_TEXELS).
     pub texels: u32,
     /// Exponent of the distances of the boxes: 1 for even spacing. Positive; other values place no planes.
@@ -23,13 +23,13 @@ pub struct Layout {
     pub spread: f64,
     /// The measure of the buffers.
     pub measure: Measure,
-    /// Whether values are carried over from plane to plane.
-    pub reproject: bool,
+    /// Whether values are carried from each plane to the next one.
+    pub carry: bool,
 }
 
 impl Default for Layout {
     fn default() -> Self {
-        Self { n_levels: 9, texels: 128, growth: 1.5, spread: 1.25, measure: Measure::default(), reproject: true }
+        Self { planes: 9, texels: 128, growth: 1.5, spread: 1.25, measure: Measure::default(), carry: true }
     }
 }
 
@@ -38,9 +38,9 @@ impl Default for Layout {
 pub struct Direction {
     /// Nearest first.
     pub planes: Vec<Plane>,
-    /// For each level its plane; none if it rounds to that of the level before, or is out of order.
-    pub level: Vec<Option<usize>>,
-    /// For each level the side of its box, along the plane's axes across.
+    /// For each box the plane on this side; `None` if it rounds to that of the box before, or is out of order.
+    pub plane_of_box: Vec<Option<usize>>,
+    /// For each box its side, along the plane's axes across.
     faces: Vec<[[f64; 2]; 2]>,
 }
 
@@ -49,7 +49,7 @@ pub struct Direction {
 pub struct Surround {
     volume: Volume,
     measure: Measure,
-    reproject: bool,
+    carry: bool,
     /// Along each axis downwards, then upwards.
     directions: [Direction; 6],
 }
@@ -68,7 +68,7 @@ impl Surround {
             }
         }
         let directions = directions.try_into().expect("there are six sides");
-        Ok(Self { volume: *volume, measure: layout.measure, reproject: layout.reproject, directions })
+        Ok(Self { volume: *volume, measure: layout.measure, carry: layout.carry, directions })
     }
 
     /// Where the eyes are.
@@ -86,7 +86,7 @@ impl Surround {
     /// # Errors
     /// [`JobError`], if the measure cannot be carried over.
     pub fn job<'a>(&self, side: usize, occluders: impl IntoIterator<Item = &'a Occluder>) -> Result<Job<'a>, JobError> {
-        Job::new(self.volume, self.directions[side].planes.clone(), occluders, self.measure, self.reproject)
+        Job::new(self.volume, self.directions[side].planes.clone(), occluders, self.measure, self.carry)
     }
 }
 
@@ -96,7 +96,7 @@ fn boxes(volume: &Volume, scene: &Aabb<3>, layout: &Layout) -> Vec<Aabb<3>> {
     let size = (0..3).map(|k| scene.max[k].max(v.max[k]) - scene.min[k].min(v.min[k])).fold(0.0, f64::max);
     // Where the scene ends at the volume, or before it, there has to be a plane as well.
     let least = if size > 0.0 { size / 1024.0 } else { 1.0 };
-    let n = layout.n_levels.max(1);
+    let n = layout.planes.max(1);
     let part = |k: u32| (f64::from(k + 1) / f64::from(n)).powf(layout.growth);
     let one = |k: u32| Aabb {
         min: std::array::from_fn(|a| v.min[a] - (v.min[a] - scene.min[a] + least).max(least) * part(k)),
@@ -112,7 +112,7 @@ fn direction(
     positive: bool,
     layout: &Layout,
 ) -> Result<Direction, PlaneError> {
-    let (mut planes, mut level, mut faces) = (Vec::<Plane>::new(), Vec::new(), Vec::new());
+    let (mut planes, mut plane_of_box, mut faces) = (Vec::<Plane>::new(), Vec::new(), Vec::new());
     let v = volume.bounds();
     for b in boxes {
         let at = if positive { b.max[axis] } else { b.min[axis] };
@@ -133,10 +133,10 @@ fn direction(
         if is_farther {
             planes.push(plane);
         }
-        level.push(is_farther.then(|| planes.len() - 1));
+        plane_of_box.push(is_farther.then(|| planes.len() - 1));
         faces.push(across.map(|a| [b.min[a], b.max[a]]));
     }
-    Ok(Direction { planes, level, faces })
+    Ok(Direction { planes, plane_of_box, faces })
 }
 
 /// What is hidden from a volume, according to the buffers around it.
@@ -181,11 +181,11 @@ impl<'a> Surrounded<'a> {
             return false;
         }
         (0..6).any(|side| self.one_plane_hides(side, points, target))
-            || self.surround.measure.is_height() && (0..self.n_levels()).any(|level| self.box_hides(level, target))
+            || self.surround.measure.is_height() && (0..self.n_boxes()).any(|k| self.box_hides(k, target))
     }
 
-    fn n_levels(&self) -> usize {
-        self.surround.directions[0].level.len()
+    fn n_boxes(&self) -> usize {
+        self.surround.directions[0].plane_of_box.len()
     }
 
     /// Whether one of the planes of a side hides the target alone.
@@ -218,12 +218,12 @@ impl<'a> Surrounded<'a> {
     }
 
     /// Whether the six sides of one box hide the target together: each line leaves through one of them.
-    fn box_hides(&self, level: usize, target: &Aabb<3>) -> bool {
+    fn box_hides(&self, at: usize, target: &Aabb<3>) -> bool {
         (0..6).all(|side| {
             let direction = &self.surround.directions[side];
-            let Some(k) = direction.level[level] else { return false };
+            let Some(k) = direction.plane_of_box[at] else { return false };
             let (plane, buffer) = (&direction.planes[k], &self.buffers[side][k]);
-            match exits(&self.surround.volume, plane, &direction.faces[level], target) {
+            match exits(&self.surround.volume, plane, &direction.faces[at], target) {
                 Exits::None => true,
                 Exits::Unknown => false,
                 Exits::Texels([x0, y0, x1, y1]) => {
@@ -322,17 +322,17 @@ mod tests {
         assert_eq!(exits(&volume, &plane(9.0), &[[-9.0, 2.0]; 2], &target), Exits::None);
     }
 
-    /// A box so far away that levels round to one place has no level of its own.
+    /// Boxes so far away that their planes round to one coordinate have one plane.
     #[test]
-    fn levels_that_round_to_one_place_are_left_out() {
+    fn planes_that_round_to_one_coordinate_are_left_out() {
         let far = (1u64 << 53) as f64;
         let volume = Volume::new(Aabb { min: [far - 8_388_672.0, -1.0, -1.0], max: [far, 1.0, 1.0] }).unwrap();
         let wide = 4_194_304.0;
         let scene = Aabb { min: [far - 8_388_672.0, -wide, -wide], max: [far + 40.0, wide, wide] };
-        let layout = Layout { n_levels: 400, texels: 1, growth: 1.5, ..Layout::default() };
+        let layout = Layout { planes: 400, texels: 1, growth: 1.5, ..Layout::default() };
         let surround = Surround::new(&volume, &scene, &layout).unwrap();
         let up = &surround.directions()[1];
-        assert!(up.level.contains(&None) && up.level.iter().flatten().count() == up.planes.len());
+        assert!(up.plane_of_box.contains(&None) && up.plane_of_box.iter().flatten().count() == up.planes.len());
         for growth in [-1.0, f64::NAN, f64::INFINITY, 0.0] {
             // Whatever comes out, planes are in order.
             if let Ok(surround) = Surround::new(&volume, &scene, &Layout { growth, ..layout }) {

@@ -143,14 +143,14 @@ fn contenders<'a>(settings: &Settings, case: &'a Case) -> Vec<Contender<'a>> {
     };
     let planes: &[u32] = settings.pick(&[1, 4], &[1, 4, 9, 17]);
     for measure in [Measure::Euclid, Measure::VertexHeight, Measure::SectionHeight] {
-        for &n_levels in planes {
-            let layout = Layout { n_levels, measure, reproject: false, ..Layout::default() };
-            add(format!("{}: {n_levels} planes", measure.name()), 0, fast(layout));
+        for &planes in planes {
+            let layout = Layout { planes, measure, carry: false, ..Layout::default() };
+            add(format!("{}: {planes} planes", measure.name()), 0, fast(layout));
         }
     }
-    for &n_levels in planes.iter().filter(|n| **n > 1) {
-        let layout = Layout { n_levels, measure: Measure::SectionHeight, reproject: true, ..Layout::default() };
-        add(format!("height (carried): {n_levels} planes"), 0, fast(layout));
+    for &planes in planes.iter().filter(|n| **n > 1) {
+        let layout = Layout { planes, measure: Measure::SectionHeight, carry: true, ..Layout::default() };
+        add(format!("height (carried): {planes} planes"), 0, fast(layout));
     }
     let texels: &[u32] = settings.pick(&[32, 64], &[32, 64, 128, 256, 512]);
     for &texels in texels {

@@ -39,10 +39,10 @@ impl Default for BufferOptions {
         let layout = Layout::default();
         Self {
             measure: layout.measure,
-            planes: layout.n_levels,
+            planes: layout.planes,
             texels: layout.texels,
             occluders: 500,
-            carry: layout.reproject,
+            carry: layout.carry,
             sheets: SheetMethod::DEFAULT_LIMIT as u32,
             backend: Backend::Cpu,
             warn: |_| {},
@@ -80,8 +80,8 @@ impl BufferOptions {
     }
 
     fn layout(&self) -> Layout {
-        let reproject = self.carry && self.measure.is_height();
-        Layout { n_levels: self.planes, texels: self.texels, measure: self.measure, reproject, ..Layout::default() }
+        let carry = self.carry && self.measure.is_height();
+        Layout { planes: self.planes, texels: self.texels, measure: self.measure, carry, ..Layout::default() }
     }
 }
 
@@ -113,7 +113,7 @@ impl Buffers {
 impl Prepared for Buffers {
     fn instance(&self) -> Box<dyn FromRegion + Send> {
         let mut methods: Vec<Box<dyn FromRegion + Send>> = Vec::new();
-        if self.layout.n_levels > 0 {
+        if self.layout.planes > 0 {
             let chosen = Arc::clone(&self.chosen);
             methods.push(Box::new(Multifocal::new(self.backend.instance(), chosen, self.scene, self.layout)));
         }

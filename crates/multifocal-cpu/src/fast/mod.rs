@@ -47,7 +47,7 @@ impl MultifocalBackend for Fast {
             let (before, rest) = out.split_at_mut(k);
             let buffer = &mut rest[0];
             buffer.reset(plane.texels());
-            if let Some(before) = before.last().filter(|_| job.reproject()) {
+            if let Some(before) = before.last().filter(|_| job.carry()) {
                 carry::carry(&Carry::of(job, k), before, buffer, &mut self.lines);
             }
             self.forms.clear();

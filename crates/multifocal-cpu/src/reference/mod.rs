@@ -38,7 +38,7 @@ impl MultifocalBackend for Reference {
         for (idx, plane) in job.planes().iter().enumerate() {
             let (before, rest) = out.split_at_mut(idx);
             draw(job, grid, plane, &mut rest[0]);
-            if job.reproject()
+            if job.carry()
                 && let (Some(buffer), Some(nearer)) = (before.last(), idx.checked_sub(1).map(|i| &job.planes()[i]))
             {
                 sweep::carry(job, [nearer, plane], buffer, &mut rest[0]);

@@ -28,7 +28,7 @@ fn plain(job: &Job<'_>) -> Vec<Buffer> {
                     along.chain([form.floor as i32]).max().expect("there is the least one") as u32
                 };
                 let direct = blocked.map(value).max().unwrap_or(0);
-                let carried = if job.reproject() && k > 0 { carried(&Carry::of(job, k), &out[k - 1], x, y) } else { 0 };
+                let carried = if job.carry() && k > 0 { carried(&Carry::of(job, k), &out[k - 1], x, y) } else { 0 };
                 buffer.values_mut()[(y * w + x) as usize] = direct.max(carried);
             }
         }

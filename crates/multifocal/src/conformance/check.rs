@@ -51,7 +51,7 @@ pub(super) fn compare(pair: &mut Pair<'_>, scene: &Scene, measure: Measure, roun
     pair.report.texels += count(&got, |b| b.values().len());
     pair.report.blocked += count(&exact, Buffer::n_blocked);
     pair.report.found += count(&got, Buffer::n_blocked);
-    if job.reproject() { sweep::compare(pair, scene, &job, &got) } else { Ok(()) }
+    if job.carry() { sweep::compare(pair, scene, &job, &got) } else { Ok(()) }
 }
 
 /// A measure that is not supported must be refused.

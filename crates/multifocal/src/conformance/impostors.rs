@@ -84,7 +84,7 @@ impl<B: MultifocalBackend> Impostor<B> {
     fn corners(&mut self, job: &Job<'_>, out: &mut [Buffer]) -> Result<(), BackendError> {
         let mut least: Option<Vec<Vec<u32>>> = None;
         for corner in job.volume().corners() {
-            let part = with(job, point(corner), job.reproject());
+            let part = with(job, point(corner), job.carry());
             let mut buffers = Vec::new();
             self.inner.render(&part, &mut buffers)?;
             // Units are powers of two.
@@ -111,8 +111,8 @@ fn point(p: Point3) -> Volume {
     Volume::new(Aabb { min: p, max: p }).expect("a corner of a volume is a volume")
 }
 
-fn with<'a>(job: &Job<'a>, volume: Volume, reproject: bool) -> Job<'a> {
-    Job::new(volume, job.planes().to_vec(), job.occluders().iter().copied(), job.measure(), reproject)
+fn with<'a>(job: &Job<'a>, volume: Volume, carry: bool) -> Job<'a> {
+    Job::new(volume, job.planes().to_vec(), job.occluders().iter().copied(), job.measure(), carry)
         .expect("a part of the volume makes a job, too")
 }
 
@@ -136,7 +136,7 @@ impl<B: MultifocalBackend> MultifocalBackend for Impostor<B> {
         if self.fault == Fault::UnionOfCorners {
             return self.corners(job, out);
         }
-        if self.fault == Fault::NoErosion && job.reproject() {
+        if self.fault == Fault::NoErosion && job.carry() {
             for idx in 1..out.len() {
                 let (known, stored) = out.split_at_mut(idx);
                 carry_middles(job, [&job.planes()[idx - 1], &job.planes()[idx]], &known[idx - 1], &mut stored[0]);

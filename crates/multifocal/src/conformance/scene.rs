@@ -57,7 +57,7 @@ pub(super) struct Scene {
     pub(super) volume: Volume,
     pub(super) planes: Vec<Plane>,
     pub(super) occluders: Vec<Occluder>,
-    reproject: bool,
+    carry: bool,
 }
 
 impl Scene {
@@ -69,7 +69,7 @@ impl Scene {
         let grid = sketch.grid.unwrap_or_else(|| Grid::draw(&mut random, round));
         let volume = Volume::new(frame.place_box(&sketch.eyes)).expect("eyes are in a box");
         let planes = sketch.planes.iter().map(|&z| frame.plane(z, grid)).collect();
-        let reproject = sketch.sweeps || round.is_multiple_of(2);
+        let carry = sketch.sweeps || round.is_multiple_of(2);
         let occluders = sketch.shapes.into_iter().filter_map(|mut shape| {
             if random.coin() {
                 shape = shape.turned();
@@ -79,13 +79,13 @@ impl Scene {
             Occluder::patch(shape.outline, &shape.triangles).ok()
         });
         let occluders = occluders.collect();
-        Self { family: family.name, seed, round, volume, planes, occluders, reproject }
+        Self { family: family.name, seed, round, volume, planes, occluders, carry }
     }
 
     /// The job of the whole scene; planes are carried over only if the measure allows it.
     pub(super) fn job(&self, measure: Measure) -> Job<'_> {
-        let reproject = self.reproject && measure.is_height();
-        Job::new(self.volume, self.planes.clone(), &self.occluders, measure, reproject).expect("scenes make jobs")
+        let carry = self.carry && measure.is_height();
+        Job::new(self.volume, self.planes.clone(), &self.occluders, measure, carry).expect("scenes make jobs")
     }
 }
 

@@ -35,11 +35,11 @@ fn benchmark_default_finds_most_of_what_is_hidden() {
 /// The reasons for what is shipped: each step finds more.
 #[test]
 fn benchmark_heights_and_planes_find_more() {
-    let one = |measure| Layout { n_levels: 1, reproject: false, measure, ..Layout::default() };
+    let one = |measure| Layout { planes: 1, carry: false, measure, ..Layout::default() };
     let [euclid, vertex, section] =
         [Measure::Euclid, Measure::VertexHeight, Measure::SectionHeight].map(|m| share(0.25, 60, one(m)));
     assert!(section >= vertex && section >= euclid);
-    let many = share(0.25, 60, Layout { reproject: false, ..Layout::default() });
+    let many = share(0.25, 60, Layout { carry: false, ..Layout::default() });
     assert!(many > section);
     assert!(share(0.25, 60, Layout::default()) >= many);
 }

@@ -73,10 +73,10 @@ fn methods(scene: &Scene, around: Aabb<3>) -> Vec<Box<dyn FromRegion>> {
     let all = triangles(scene);
     let mut methods: Vec<Box<dyn FromRegion>> = Vec::new();
     for measure in [Measure::Euclid, Measure::VertexHeight, Measure::SectionHeight] {
-        for n_levels in [1, 4] {
-            for reproject in [false, true] {
-                if measure.is_height() || !reproject {
-                    let layout = Layout { n_levels, texels: 24, measure, reproject, ..Layout::default() };
+        for planes in [1, 4] {
+            for carry in [false, true] {
+                if measure.is_height() || !carry {
+                    let layout = Layout { planes, texels: 24, measure, carry, ..Layout::default() };
                     methods.push(Box::new(buffers(&all, around, layout)));
                 }
             }

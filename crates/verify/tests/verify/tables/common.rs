@@ -104,7 +104,7 @@ fn grid_case(name: &'static str, sightlines: bool) -> Case {
     let cells = CellsFrom::Boxes(ViewCells { cells: (0..nx * nz).map(cell).collect() });
     let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|o| o.corners()).collect();
     let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 40));
-    let layout = Layout { n_levels: 3, texels: 48, ..Layout::default() };
+    let layout = Layout { planes: 3, texels: 48, ..Layout::default() };
     let make = || -> Box<dyn FromRegion + Send> {
         Box::new(Multifocal::new(Fast::new(), Arc::clone(&chosen), bounds, layout))
     };
