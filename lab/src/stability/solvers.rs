@@ -26,6 +26,24 @@ pub struct Program {
     pub rows: Vec<Vec<f64>>,
 }
 
+/// The program as a `Problem` of a solver, with the variable of its margin. The two solvers have types of the same names,
+/// as one descends from the other.
+macro_rules! problem {
+    ($solver:ident, $program:expr) => {{
+        let program: &Program = $program;
+        let mut problem = $solver::Problem::new($solver::OptimizationDirection::Maximize);
+        let last = program.bounds.len() - 1;
+        let objective = |k: usize| f64::from(u8::from(k == last));
+        let unknowns: Vec<_> =
+            program.bounds.iter().enumerate().map(|(k, b)| problem.add_var(objective(k), (b[0], b[1]))).collect();
+        for row in &program.rows {
+            let terms: Vec<_> = unknowns.iter().copied().zip(row.iter().copied()).collect();
+            problem.add_constraint(terms.as_slice(), $solver::ComparisonOp::Ge, 0.0);
+        }
+        (problem, unknowns[last])
+    }};
+}
+
 impl Program {
     /// Whether a solver finds a margin: [`Answer::Seen`] with one, [`Answer::Hidden`] without or where it says that
     /// nothing obeys the rows (zero always does), [`Answer::Failed`] for any other error. May panic, for minilp does.
@@ -60,34 +78,18 @@ impl Program {
     }
 
     fn by_minilp(&self) -> Result<Option<f64>, ()> {
-        let mut problem = minilp::Problem::new(minilp::OptimizationDirection::Maximize);
-        let last = self.bounds.len() - 1;
-        let objective = |k: usize| f64::from(u8::from(k == last));
-        let unknowns: Vec<_> =
-            self.bounds.iter().enumerate().map(|(k, b)| problem.add_var(objective(k), (b[0], b[1]))).collect();
-        for row in &self.rows {
-            let terms: Vec<_> = unknowns.iter().copied().zip(row.iter().copied()).collect();
-            problem.add_constraint(terms.as_slice(), minilp::ComparisonOp::Ge, 0.0);
-        }
+        let (problem, margin) = problem!(minilp, self);
         match problem.solve() {
-            Ok(solution) => Ok(Some(solution[unknowns[last]])),
+            Ok(solution) => Ok(Some(solution[margin])),
             Err(minilp::Error::Infeasible) => Ok(None),
             Err(minilp::Error::Unbounded) => Err(()),
         }
     }
 
     fn by_microlp(&self) -> Result<Option<f64>, ()> {
-        let mut problem = microlp::Problem::new(microlp::OptimizationDirection::Maximize);
-        let last = self.bounds.len() - 1;
-        let objective = |k: usize| f64::from(u8::from(k == last));
-        let unknowns: Vec<_> =
-            self.bounds.iter().enumerate().map(|(k, b)| problem.add_var(objective(k), (b[0], b[1]))).collect();
-        for row in &self.rows {
-            let terms: Vec<_> = unknowns.iter().copied().zip(row.iter().copied()).collect();
-            problem.add_constraint(terms.as_slice(), microlp::ComparisonOp::Ge, 0.0);
-        }
+        let (problem, margin) = problem!(microlp, self);
         match problem.solve() {
-            Ok(outcome) => Ok(Some(outcome.solution().ok_or(())?.var_value(unknowns[last]))),
+            Ok(outcome) => Ok(Some(outcome.solution().ok_or(())?.var_value(margin))),
             Err(microlp::Error::Infeasible) => Ok(None),
             Err(_) => Err(()),
         }

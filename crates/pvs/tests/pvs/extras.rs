@@ -1,7 +1,10 @@
 //! The optional parts of a table in files: mirrors, numbers of polygons, planes, stab trees and names of cells.
 
 use crate::common::assert_well_formed;
-use crate::common::file::{File, Part, assert_damage_is_noticed};
+use crate::common::file::{
+    File, Part, assert_damage_is_noticed, assert_every_changed_byte_is_an_error, assert_every_prefix_is_an_error,
+    changes, forged,
+};
 use crate::common::full::{any_full_parts, named_villa, villa, wedges};
 use crate::common::rooms;
 use proptest::prelude::*;
@@ -40,22 +43,14 @@ proptest! {
     #[test]
     fn extras_forgeries_are_errors_or_tables(
         parts in any_full_parts(),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0u8..6, any::<u8>()), 1..4),
+        changes in changes(),
     ) {
         let mut file = File::parse(&Table::new(parts).unwrap().to_bytes());
         let new: Vec<usize> = (0..file.parts.len()).filter(|&i| is_new(&file.parts[i])).collect();
         // Most have a new section; the others pass unchanged.
-        for (which, place, action, value) in changes.into_iter().filter(|_| !new.is_empty()) {
-            let bytes = &mut file.parts[new[which.index(new.len())]].bytes;
-            let at = place.index(bytes.len() + 1);
-            match action {
-                0 => bytes.truncate(at),
-                1 => bytes.insert(at, value),
-                2 if at < bytes.len() => drop(bytes.remove(at)),
-                3 if at < bytes.len() => bytes[at] ^= 1 << (value % 8),
-                _ if at < bytes.len() => bytes[at] = value,
-                _ => {}
-            }
+        for change in changes.into_iter().filter(|_| !new.is_empty()) {
+            let bytes = &mut file.parts[new[change.part.index(new.len())]].bytes;
+            change.apply(bytes);
         }
         if let Ok(table) = Table::from_bytes(&file.write()) {
             assert_well_formed(&table);
@@ -78,18 +73,8 @@ fn full() -> [Table; 3] {
 #[test]
 fn every_prefix_and_changed_byte_of_extras_is_an_error() {
     for table in full() {
-        let mut bytes = table.to_bytes();
-        assert!((0..bytes.len()).all(|n| Table::from_bytes(&bytes[..n]).is_err()));
-        let mut n_tried = 0;
-        for at in 0..bytes.len() {
-            for flip in 1..=255 {
-                bytes[at] ^= flip;
-                assert!(Table::from_bytes(&bytes).is_err(), "byte {at} xor {flip}");
-                bytes[at] ^= flip;
-                n_tried += 1;
-            }
-        }
-        assert_eq!((n_tried, Table::from_bytes(&bytes)), (255 * bytes.len(), Ok(table)));
+        assert_every_prefix_is_an_error(&table);
+        assert_every_changed_byte_is_an_error(&table);
     }
 }
 
@@ -256,11 +241,7 @@ fn defects_of_extras_are_refused() {
 
 /// Overwrites or replaces a section of the villa with names and returns the error, which must name the section.
 fn forge(id: &[u8; 4], change: impl Fn(&mut Vec<u8>)) -> Kind {
-    let mut file = File::parse(&Table::new(named_villa()).unwrap().to_bytes());
-    change(&mut file.part(id).bytes);
-    let error = Table::from_bytes(&file.write()).unwrap_err();
-    assert_eq!(error.section.unwrap().0, *id);
-    error.kind
+    forged(&Table::new(named_villa()).unwrap(), id, change)
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! The byte format: what is written can be read, and nothing else can.
 
-use crate::common::file::{File, Part, assert_damage_is_noticed, fix_header};
+use crate::common::file::{
+    File, Part, assert_damage_is_noticed, assert_every_changed_byte_is_an_error, assert_every_prefix_is_an_error,
+    changes, fix_header, forged,
+};
 use crate::common::{any_parts, assert_well_formed, rooms};
 use proptest::prelude::*;
 use sightlines_pvs::{CellId, DecodeErrorKind as Kind, LocatorError, Table, TableError};
@@ -61,21 +64,13 @@ proptest! {
     #[test]
     fn format_forgeries_are_errors_or_tables(
         parts in any_parts(),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0u8..6, any::<u8>()), 1..4),
+        changes in changes(),
     ) {
         let mut file = File::parse(&Table::new(parts).unwrap().to_bytes());
-        for (which, place, action, value) in changes {
+        for change in changes {
             let n = file.parts.len();
-            let bytes = &mut file.parts[which.index(n)].bytes;
-            let at = place.index(bytes.len() + 1);
-            match action {
-                0 => bytes.truncate(at),
-                1 => bytes.insert(at, value),
-                2 if at < bytes.len() => drop(bytes.remove(at)),
-                3 if at < bytes.len() => bytes[at] ^= 1 << (value % 8),
-                _ if at < bytes.len() => bytes[at] = value,
-                _ => {}
-            }
+            let bytes = &mut file.parts[change.part.index(n)].bytes;
+            change.apply(bytes);
         }
         assert_error_or_well_formed(&file.write());
     }
@@ -98,8 +93,8 @@ proptest! {
 /// Every strict prefix, and whatever follows the end.
 #[test]
 fn every_prefix_is_an_error() {
+    assert_every_prefix_is_an_error(&house());
     let bytes = house().to_bytes();
-    assert!((0..bytes.len()).all(|n| Table::from_bytes(&bytes[..n]).is_err()));
     for surplus in 1..20 {
         let longer = [&bytes[..], &vec![0; surplus]].concat();
         assert!(Table::from_bytes(&longer).is_err());
@@ -110,17 +105,7 @@ fn every_prefix_is_an_error() {
 /// Every byte, changed into every other value.
 #[test]
 fn every_changed_byte_is_an_error() {
-    let mut bytes = house().to_bytes();
-    let mut n_tried = 0;
-    for at in 0..bytes.len() {
-        for flip in 1..=255 {
-            bytes[at] ^= flip;
-            assert!(Table::from_bytes(&bytes).is_err(), "byte {at} xor {flip}");
-            bytes[at] ^= flip;
-            n_tried += 1;
-        }
-    }
-    assert_eq!((n_tried, Table::from_bytes(&bytes)), (255 * bytes.len(), Ok(house())));
+    assert_every_changed_byte_is_an_error(&house());
 }
 
 /// Every byte of every section, changed in every bit and into a few other values, with correct checksums.
@@ -223,11 +208,7 @@ fn padding_is_checked() {
 
 /// Writes `value` at `at` of a section and returns the error, which must name the section.
 fn forge(id: &[u8; 4], at: usize, value: &[u8]) -> Kind {
-    let mut file = File::parse(&house().to_bytes());
-    file.part(id).bytes[at..at + value.len()].copy_from_slice(value);
-    let error = Table::from_bytes(&file.write()).unwrap_err();
-    assert_eq!(error.section.unwrap().0, *id);
-    error.kind
+    forged(&house(), id, |bytes| bytes[at..at + value.len()].copy_from_slice(value))
 }
 
 /// Counts that exceed the content are refused before any memory is allocated for them.

@@ -1,6 +1,6 @@
 //! Trees of planes against rays shot at every face.
 
-use crate::oracle::look;
+use crate::oracle::{Swapped, look};
 use crate::soups::{cameras, cube, cycle, triangles};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -22,23 +22,6 @@ fn options() -> impl Strategy<Value = BspOptions> {
     ];
     (heuristic, 1..20usize, prop_oneof![Just(0), Just(4), Just(usize::MAX)])
         .prop_map(|(heuristic, candidates, axis_above)| BspOptions { heuristic, candidates, axis_above })
-}
-
-/// A tree whose walk sends the nearer child first, and says that it was the farther.
-#[derive(Debug)]
-struct Swapped(Bsp);
-
-impl VisibleSurface for Swapped {
-    fn name(&self) -> &'static str {
-        "swapped"
-    }
-
-    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
-        match self.0.see(input, counters) {
-            RenderOutput::FrontToBack(fragments) => RenderOutput::BackToFront(fragments),
-            other => other,
-        }
-    }
 }
 
 /// Straight ahead from far away, down the z axis.

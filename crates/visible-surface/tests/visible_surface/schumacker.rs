@@ -1,31 +1,14 @@
 //! Clusters with fixed orders against rays shot at every face.
 
-use crate::oracle::look;
+use crate::oracle::{Swapped, look};
 use crate::soups::{Triangle, cameras, cube, cycle, objects, triangles};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sightlines_visible_surface::schumacker::{Schumacker, SchumackerOptions};
-use sightlines_visible_surface::{Camera, Counters, FaceMask, Faces, RenderInput, RenderOutput, VisibleSurface};
+use sightlines_visible_surface::{Camera, FaceMask, Faces, RenderInput, VisibleSurface};
 
 const SIDE: u32 = 16;
-
-/// Clusters that are drawn with the nearest first where the farthest should be.
-#[derive(Debug)]
-struct Swapped(Schumacker);
-
-impl VisibleSurface for Swapped {
-    fn name(&self) -> &'static str {
-        "swapped"
-    }
-
-    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
-        match self.0.see(input, counters) {
-            RenderOutput::FrontToBack(fragments) => RenderOutput::BackToFront(fragments),
-            other => other,
-        }
-    }
-}
 
 proptest! {
     /// Invariant: every pixel shows what the ray through its centre meets first, either way, for any objects and any of the faces.

@@ -61,21 +61,14 @@ pub(super) fn back_methods() -> Vec<Decide<Face>> {
     ]
 }
 
-fn backs(
-    name: &'static str,
-    about: &'static str,
-    parameter: &'static str,
-    levels: Vec<f64>,
-    n: usize,
-    place: fn(f64) -> Place,
-) -> Sweep {
+fn backs(texts: [&'static str; 3], levels: Vec<f64>, n: usize, place: fn(f64) -> Place) -> Sweep {
     let methods = back_methods();
     let make = move |level: f64, random: &mut Random| {
         let case = cases::plane(place(level), random);
         let open = is_front(&case);
         Some((case, open))
     };
-    Sweep::of_cases([name, about, parameter], levels, n, methods, make)
+    Sweep::of_cases(texts, levels, n, methods, make)
 }
 
 /// A camera and a small face near the edge of its picture.
@@ -192,17 +185,8 @@ pub(super) fn edge_methods() -> Vec<Decide<Edge>> {
     ]
 }
 
-fn edges(
-    name: &'static str,
-    about: &'static str,
-    parameter: &'static str,
-    levels: Vec<f64>,
-    n: usize,
-    place: fn(f64) -> Place,
-) -> Sweep {
-    Sweep::of_cases([name, about, parameter], levels, n, edge_methods(), move |level, random| {
-        edge(place(level), random)
-    })
+fn edges(texts: [&'static str; 3], levels: Vec<f64>, n: usize, place: fn(f64) -> Place) -> Sweep {
+    Sweep::of_cases(texts, levels, n, edge_methods(), move |level, random| edge(place(level), random))
 }
 
 /// All sweeps of culling.
@@ -213,35 +197,43 @@ pub(super) fn sweeps(quick: bool) -> Vec<Sweep> {
     let near = |level: f64| Place { far: 0.0, scale: 1.0, apart: Apart::Ulps(level as i64) };
     vec![
         backs(
-            "surface-backface-distance",
-            "A face and an eye a thousandth of the face's size in front of its plane or behind, far from the origin. Hidden is what is culled: \
-             a front that the eye sees is open. The truth is in whole numbers.",
-            "distance from the origin (sizes)",
+            [
+                "surface-backface-distance",
+                "A face and an eye a thousandth of the face's size in front of its plane or behind, far from the origin. Hidden is what is culled: \
+                 a front that the eye sees is open. The truth is in whole numbers.",
+                "distance from the origin (sizes)",
+            ],
             powers_of_ten(0, 9, step),
             n,
             far,
         ),
         backs(
-            "surface-backface-ulps",
-            "The same at the origin, with the eye some units in the last place from the plane.",
-            "moved by (units in the last place)",
+            [
+                "surface-backface-ulps",
+                "The same at the origin, with the eye some units in the last place from the plane.",
+                "moved by (units in the last place)",
+            ],
             ulps(),
             n,
             near,
         ),
         edges(
-            "surface-frustum-distance",
-            "A face of which one corner lies a thousandth of a unit inside of a side of the view volume, or all of it outside, far from the \
-             origin. Hidden is what is culled. The truth is in whole numbers.",
-            "distance from the origin (units)",
+            [
+                "surface-frustum-distance",
+                "A face of which one corner lies a thousandth of a unit inside of a side of the view volume, or all of it outside, far from the \
+                 origin. Hidden is what is culled. The truth is in whole numbers.",
+                "distance from the origin (units)",
+            ],
             powers_of_ten(0, 9, step),
             n,
             far,
         ),
         edges(
-            "surface-frustum-ulps",
-            "The same at the origin, with that corner some units in the last place from the side.",
-            "moved by (units in the last place)",
+            [
+                "surface-frustum-ulps",
+                "The same at the origin, with that corner some units in the last place from the side.",
+                "moved by (units in the last place)",
+            ],
             ulps(),
             n,
             |level| Place { far: 0.37, scale: 1.0, apart: Apart::Ulps(level as i64) },

@@ -2,8 +2,9 @@
 //!
 //! Written from the description of the format, independently of the code under test.
 
+use prop::sample::Index;
 use proptest::prelude::*;
-use sightlines_pvs::Table;
+use sightlines_pvs::{DecodeErrorKind, Table};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Part {
@@ -76,11 +77,72 @@ pub(crate) fn fix_header(bytes: &mut [u8]) {
 }
 
 /// Panics unless the table's bytes are refused when they are truncated at a position, and with the byte there changed.
-pub(crate) fn assert_damage_is_noticed(table: &Table, at: prop::sample::Index, flip: u8) {
+pub(crate) fn assert_damage_is_noticed(table: &Table, at: Index, flip: u8) {
     let bytes = table.to_bytes();
     let at = at.index(bytes.len());
     assert!(Table::from_bytes(&bytes[..at]).is_err(), "cut to {at} bytes");
     let mut changed = bytes;
     changed[at] ^= flip;
     assert!(Table::from_bytes(&changed).is_err(), "byte {at} changed");
+}
+
+/// Panics unless every strict prefix of the table's bytes is refused.
+pub(crate) fn assert_every_prefix_is_an_error(table: &Table) {
+    let bytes = table.to_bytes();
+    assert!((0..bytes.len()).all(|n| Table::from_bytes(&bytes[..n]).is_err()));
+}
+
+/// Panics unless the table's bytes are refused with any byte changed into any other value.
+pub(crate) fn assert_every_changed_byte_is_an_error(table: &Table) {
+    let mut bytes = table.to_bytes();
+    let mut n_tried = 0;
+    for at in 0..bytes.len() {
+        for flip in 1..=255 {
+            bytes[at] ^= flip;
+            assert!(Table::from_bytes(&bytes).is_err(), "byte {at} xor {flip}");
+            bytes[at] ^= flip;
+            n_tried += 1;
+        }
+    }
+    assert_eq!((n_tried, &Table::from_bytes(&bytes).unwrap()), (255 * bytes.len(), table));
+}
+
+/// A random change of the bytes of a section.
+#[derive(Debug)]
+pub(crate) struct Change {
+    /// Selects the section.
+    pub(crate) part: Index,
+    place: Index,
+    action: u8,
+    value: u8,
+}
+
+/// One to three changes.
+pub(crate) fn changes() -> impl Strategy<Value = Vec<Change>> {
+    let change = (any::<Index>(), any::<Index>(), 0u8..6, any::<u8>());
+    prop::collection::vec(change.prop_map(|(part, place, action, value)| Change { part, place, action, value }), 1..4)
+}
+
+impl Change {
+    /// Truncates the bytes, inserts or removes one, or changes one.
+    pub(crate) fn apply(&self, bytes: &mut Vec<u8>) {
+        let at = self.place.index(bytes.len() + 1);
+        match self.action {
+            0 => bytes.truncate(at),
+            1 => bytes.insert(at, self.value),
+            2 if at < bytes.len() => drop(bytes.remove(at)),
+            3 if at < bytes.len() => bytes[at] ^= 1 << (self.value % 8),
+            _ if at < bytes.len() => bytes[at] = self.value,
+            _ => {}
+        }
+    }
+}
+
+/// The error for the table's file with a section changed, which must name the section.
+pub(crate) fn forged(table: &Table, id: &[u8; 4], change: impl FnOnce(&mut Vec<u8>)) -> DecodeErrorKind {
+    let mut file = File::parse(&table.to_bytes());
+    change(&mut file.part(id).bytes);
+    let error = Table::from_bytes(&file.write()).unwrap_err();
+    assert_eq!(error.section.unwrap().0, *id);
+    error.kind
 }

@@ -4,7 +4,26 @@
 //! one depth. Positions and rays are scaled by powers of two until they are whole numbers, so nothing is rounded.
 use num_bigint::{BigInt, Sign};
 use sightlines_geometry::Point3;
-use sightlines_visible_surface::{Camera, FaceMask, Faces, Image, NOTHING, RenderInput, VisibleSurface};
+use sightlines_visible_surface::{
+    Camera, Counters, FaceMask, Faces, Image, NOTHING, RenderInput, RenderOutput, VisibleSurface,
+};
+
+/// The impostor of a method that draws front to back: its order is taken for back to front.
+#[derive(Debug)]
+pub(crate) struct Swapped<M>(pub(crate) M);
+
+impl<M: VisibleSurface> VisibleSurface for Swapped<M> {
+    fn name(&self) -> &'static str {
+        "swapped"
+    }
+
+    fn see(&self, input: &RenderInput<'_>, counters: &mut Counters) -> RenderOutput {
+        match self.0.see(input, counters) {
+            RenderOutput::FrontToBack(fragments) => RenderOutput::BackToFront(fragments),
+            other => other,
+        }
+    }
+}
 
 /// What is seen, and where that is a matter of rules.
 #[derive(Debug, Clone, PartialEq, Eq)]
