@@ -1,4 +1,4 @@
-//! An adversary that tries to prove as much as the checker accepts, true or not: no line refutes what is accepted.
+//! An adversary that proves as much as the checker accepts, true or not: no line refutes what is accepted.
 
 use proptest::prelude::*;
 use sightlines_certificates::plan::{PlanBlock, PlanLine, PlanNetwork, PlanPortal, PlanProofs, PlanWalk};
@@ -11,8 +11,7 @@ fn corner(cell: u32) -> [f64; 2] {
     [4.0 * f64::from(cell % WIDE), 4.0 * f64::from(cell / WIDE)]
 }
 
-/// A door between a cell and the one to the right of it, or above it: from one place of the common side to a later one. Doors may overlap
-/// or be there twice.
+/// A door between a cell and its right or upper neighbour: an interval of the common side. Doors may overlap or repeat.
 #[derive(Debug, Clone, Copy)]
 struct Door {
     cell: u32,
@@ -48,7 +47,7 @@ fn network(n_rows: u32, doors: &[Door]) -> PlanNetwork {
     PlanNetwork::new(&cells, &portals).expect("doors on sides")
 }
 
-/// All pairs that lines next to two ends of doors join.
+/// All pairs that are joined by lines next to two ends of doors.
 fn joined(network: &PlanNetwork) -> Pairs {
     const NEAR: f64 = 1.0 / 64.0;
     let mut pairs = Pairs::none(network.n_cells());
@@ -71,7 +70,8 @@ fn joined(network: &PlanNetwork) -> Pairs {
     pairs
 }
 
-/// Makes the walk of the last source longer, one decision after the other: blocked, for the first reason that is taken, else open.
+/// Extends the walk of the last source by one decision after the other: blocked by the first reason that is accepted,
+/// else open.
 fn grow(proofs: &mut PlanProofs, network: &PlanNetwork, source: u32, reasons: &[PlanBlock]) -> bool {
     let mut decisions: Vec<usize> = Vec::new();
     for _ in 0..4000 {
@@ -114,8 +114,8 @@ fn reason() -> impl Strategy<Value = PlanBlock> {
 }
 
 proptest! {
-    /// Doors of any kind, reasons at random, and pairs left open at random: so chains are followed that lead anywhere, and reasons
-    /// are used again for other chains.
+    /// Doors of any kind, random reasons, and pairs left open at random, so that chains lead anywhere, and reasons are
+    /// used again for other chains.
     #[test]
     fn no_line_refutes_what_is_accepted(
         doors in prop::collection::vec(door(), 10..26),
@@ -124,13 +124,13 @@ proptest! {
     ) {
         let network = network(3, &doors);
         let truth = joined(&network);
-        // Some of what is joined is not owned up to.
+        // A few joined pairs are not left open, so the adversary tries to prove them hidden.
         let unproven = truth.iter().zip(left_out).filter(|(_, k)| *k > 0).map(|(pair, _)| pair).collect();
         let mut proofs = PlanProofs { checksum: network.checksum(), unproven, ..PlanProofs::default() };
         for source in 0..9 {
             let _ = grow(&mut proofs, &network, source, &reasons);
         }
-        let proven = proofs.check(&network).expect("each walk was taken");
+        let proven = proofs.check(&network).expect("each walk was accepted");
         for [a, b] in truth.iter() {
             prop_assert!(!proven.hidden.has(a, b), "{a} and {b} are joined: {proofs:?}");
         }

@@ -1,5 +1,4 @@
-//! An adversary that tries to prove as much of a map as the checker accepts, true or not: no line refutes what is
-//! accepted.
+//! An adversary that proves as much of a map as the checker accepts, true or not: no line refutes what is accepted.
 
 use proptest::prelude::*;
 use sightlines_certificates::convex::{
@@ -11,8 +10,8 @@ use sightlines_certificates::{Pairs, Refusal};
 /// Cells of a grid of cubes of 4 units, three in a row.
 const WIDE: u32 = 3;
 
-/// A door between a cell and the one to the right of it, or behind it: a rectangle of their common side. Doors may overlap or be there
-/// twice.
+/// A door between a cell and its neighbour to the right or behind: a rectangle of their common side. Doors may overlap
+/// or repeat.
 #[derive(Debug, Clone, Copy)]
 struct Door {
     cell: u32,
@@ -48,14 +47,14 @@ fn network(doors: &[Door]) -> ConvexNetwork {
     ConvexNetwork::new((WIDE * WIDE) as usize, &portals, 0.0).expect("doors on sides")
 }
 
-/// A point of a gate, nearer to some corners than to others.
+/// A point of a gate, with random weights of its corners.
 fn point(network: &ConvexNetwork, gate: u32, weights: [f64; 4]) -> Point {
     let sum: f64 = weights.iter().sum();
     let corners = network.corners(gate);
     [0, 1, 2].map(|k| corners.iter().zip(weights).map(|(p, w)| p[k] * w).sum::<f64>() / sum)
 }
 
-/// All pairs that lines through points of two gates join: points in the middle and near corners.
+/// All pairs that are joined by lines through points of two gates, in the middle and near corners.
 fn joined(network: &ConvexNetwork) -> Pairs {
     const CHOICES: [[f64; 4]; 5] =
         [[1., 1., 1., 1.], [60., 1., 2., 1.], [1., 60., 1., 2.], [2., 1., 60., 1.], [1., 2., 1., 60.]];
@@ -64,7 +63,7 @@ fn joined(network: &ConvexNetwork) -> Pairs {
     for s in 0..n_gates {
         for t in (0..n_gates).filter(|&t| t / 2 != s / 2) {
             for (i, &v) in CHOICES.iter().enumerate() {
-                // Every other choice, so that it does not take long.
+                // Every other choice, to limit the time.
                 for &w in CHOICES.iter().skip(i % 2).step_by(2) {
                     let line = ConvexLine::through(s, point(network, s, v), point(network, t, w));
                     pairs.add_all(&network.follow(&line));
@@ -75,13 +74,14 @@ fn joined(network: &ConvexNetwork) -> Pairs {
     pairs
 }
 
-/// Makes the walk of the last source longer, one decision after the other: blocked, for the first reason that is taken, else open.
+/// Extends the walk of the last source by one decision after the other: blocked by the first reason that is accepted,
+/// else open.
 fn grow(proofs: &mut ConvexProofs, network: &ConvexNetwork, source: u32, reasons: &[ConvexBlock]) -> usize {
     let mut decisions: Vec<usize> = Vec::new();
     for _ in 0..400 {
         let open: Vec<bool> = decisions.iter().map(|&k| k == reasons.len()).collect();
         let used = decisions.iter().filter(|&&k| k < reasons.len()).map(|&k| reasons[k].clone()).collect();
-        // Only of himself: what others prove is known by now.
+        // Without targets: the walk proves all pairs of its source that earlier walks left.
         let mut tried = proofs.clone();
         tried.walks.push(ConvexWalk::new(source, vec![], &open, used));
         match tried.check(network) {
@@ -122,15 +122,15 @@ fn input() -> impl Strategy<Value = (Vec<Door>, Vec<ConvexBlock>, Vec<u8>)> {
     (doors, prop::collection::vec(reason(), 32), prop::collection::vec(0u8..8, 36))
 }
 
-/// Returns how many pairs are proven hidden, and how many reasons were taken.
+/// Returns the number of pairs proven hidden, and the number of reasons accepted.
 fn try_to_prove(doors: &[Door], reasons: &[ConvexBlock], left_out: &[u8]) -> [usize; 2] {
     let network = network(doors);
     let truth = joined(&network);
-    // Some of what is joined is not owned up to.
+    // A few joined pairs are not left open, so the adversary tries to prove them hidden.
     let unproven = truth.iter().zip(left_out).filter(|(_, k)| **k > 0).map(|(pair, _)| pair).collect();
     let mut proofs = ConvexProofs { checksum: network.checksum(), unproven, ..ConvexProofs::default() };
     let n_reasons = (0..9).map(|source| grow(&mut proofs, &network, source, reasons)).sum();
-    let proven = proofs.check(&network).expect("each walk was taken");
+    let proven = proofs.check(&network).expect("each walk was accepted");
     for [a, b] in truth.iter() {
         assert!(!proven.hidden.has(a, b), "{a} and {b} are joined: {doors:?} {proofs:?}");
     }
@@ -139,8 +139,8 @@ fn try_to_prove(doors: &[Door], reasons: &[ConvexBlock], left_out: &[u8]) -> [us
 }
 
 proptest! {
-    /// Doors of any kind, reasons at random, and pairs left open at random: so chains are followed that lead anywhere, and reasons
-    /// are used again for other chains.
+    /// Doors of any kind, random reasons, and pairs left open at random, so that chains lead anywhere, and reasons are
+    /// used again for other chains.
     #[test]
     fn no_line_refutes_what_is_accepted((doors, reasons, left_out) in input()) {
         let _ = try_to_prove(&doors, &reasons, &left_out);

@@ -1,4 +1,4 @@
-//! Proofs of maps, by hand: good ones are taken, impostors are refused, and whatever is taken is true.
+//! Proofs of maps written by hand: good ones are accepted, impostors are refused, and whatever is accepted is true.
 
 use proptest::prelude::*;
 use sightlines_certificates::convex::{
@@ -181,7 +181,7 @@ fn networks_are_checked() {
     assert!(others.iter().all(|n| n.as_ref().unwrap().checksum() != network().checksum()));
 }
 
-/// What is on a plane is decided by signs, or by the given flatness.
+/// What counts as on a plane is decided by signs, or by the given flatness.
 #[test]
 fn gates_follow_each_other_as_planes_tell() {
     // Both doors face each other; the second leans forward by a little, over the lower edge of which the first one reaches.
@@ -202,7 +202,7 @@ fn gates_follow_each_other_as_planes_tell() {
     assert!(!network.may_follow(2, 0) && !network.may_follow(0, 0) && !network.may_follow(0, 3));
 }
 
-/// Bytes that are cut or changed are refused, or true, under a right checksum too.
+/// Bytes that are cut or changed, even with a right checksum, are refused or prove only what is true.
 #[test]
 fn damaged_bytes_prove_nothing_wrong() {
     let mut n_read = 0;
@@ -298,7 +298,7 @@ fn all_planes() -> impl Iterator<Item = ConvexBlock> {
         .flat_map(move |edge| each().map(move |corner| ConvexBlock::Plane(ConvexPlane { stops: [2, 1], edge, corner })))
 }
 
-/// Whether some reason is taken, and some line passes.
+/// Whether some reason is accepted, and whether some line passes.
 fn try_all(triangles: &[[Whole; 3]], sums: &[ConvexBlock], lines: &[[[i128; 3]; 2]]) -> Option<[bool; 2]> {
     let network = network_of(triangles)?;
     let blocks = all_planes().chain(sums.iter().cloned());
@@ -310,7 +310,7 @@ fn try_all(triangles: &[[Whole; 3]], sums: &[ConvexBlock], lines: &[[[i128; 3]; 
 }
 
 proptest! {
-    /// Whatever is taken as a reason, no line of many passes.
+    /// No line of many refutes a reason that is accepted.
     #[test]
     fn no_line_passes_what_is_blocked(
         triangles in triangles(3),
@@ -341,8 +341,8 @@ proptest! {
     }
 }
 
-/// The test above would not be worth much if it did not happen that something is blocked, or that lines pass; of most triangles one of
-/// the two is known.
+/// The twin of the test above: some triangles are blocked, and lines pass some; for most triangles one of the two is
+/// found.
 #[test]
 fn much_is_blocked_and_much_is_passed() {
     use proptest::strategy::ValueTree;
@@ -383,7 +383,7 @@ fn square(x: f64, cells: [u32; 2], half: f64) -> ConvexPortal {
     ConvexPortal { cells, corners }
 }
 
-/// However long a portal is along its plane: what lies clearly behind it follows it, and no walk leaves that out.
+/// However long a portal is along its plane: what lies clearly behind it may follow it, and no walk leaves that out.
 #[test]
 fn long_portals_are_no_thicker() {
     for (x, half) in [(40.0, 2f64.powi(50)), (1e-7, 1e7)] {
@@ -397,7 +397,7 @@ fn long_portals_are_no_thicker() {
         let hidden = ConvexProofs { checksum, walks, ..ConvexProofs::default() };
         assert!(hidden.check(&network).is_err(), "{x} {half}");
     }
-    // What is taken for granted: 2^-50 of the coordinates is rounding.
+    // What is assumed: 2^-50 of the coordinates is rounding.
     let portals = [square(1.0, [0, 1], 1.0), square(1.0 + 2f64.powi(-50), [1, 2], 1.0)];
     let network = ConvexNetwork::new(3, &portals, ConvexNetwork::OF_FILES).unwrap();
     assert!(!network.may_follow(0, 2) && ConvexNetwork::new(3, &portals, 0.0).unwrap().may_follow(0, 2));
@@ -411,8 +411,8 @@ fn edges_have_lengths() {
     assert_eq!(ConvexNetwork::new(2, &[portal], 0.0).unwrap_err(), ConvexNetworkError::NoPolygon(0));
 }
 
-/// Cuts through corners that come of cuts, again and again, each of which nearly doubles the digits: a proof of a kilobyte is refused
-/// before that takes long.
+/// Repeated cuts through corners that are made by cuts, each of which nearly doubles the digits: a proof of a kilobyte
+/// is refused before that takes long.
 #[test]
 fn corners_of_very_many_digits_are_refused() {
     let triangle = |x: f64, cells| ConvexPortal { cells, corners: vec![[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]] };

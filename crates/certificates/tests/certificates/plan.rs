@@ -1,4 +1,4 @@
-//! Proofs of plans, by hand: good ones are taken, impostors are refused, and whatever is taken is true.
+//! Proofs of plans written by hand: good ones are accepted, impostors are refused, and whatever is accepted is true.
 
 use proptest::prelude::*;
 use sightlines_certificates::plan::{
@@ -85,7 +85,7 @@ fn impostors_are_refused() {
     assert_eq!(refused(&long), Refusal::Unused { walk: 0, from: 0 });
     let more = |p: &mut PlanProofs| p.walks[0].decisions.blocks.push(block());
     assert_eq!(refused(&more), Refusal::Unused { walk: 0, from: 0 });
-    // A second walk from there has nothing left to prove.
+    // A second walk from the same source has nothing left to prove.
     let twice = |p: &mut PlanProofs| p.walks.push(p.walks[0].clone());
     assert_eq!(refused(&twice), Refusal::Unused { walk: 1, from: 0 });
     let elsewhere = |p: &mut PlanProofs| p.walks[0].source = 4;
@@ -94,7 +94,7 @@ fn impostors_are_refused() {
     assert_eq!(refused(&other), Refusal::OtherTable);
     let pair = |p: &mut PlanProofs| p.unproven.push([2, 2]);
     assert_eq!(refused(&pair), Refusal::Pair { index: 0 });
-    // The first two doors are not blocked, by whatever ends of them.
+    // No ends of the first two doors are a reason to block them.
     let mut n_tried = 0;
     for lefts in [vec![0], vec![1], vec![0, 1]] {
         for rights in [vec![0], vec![1], vec![0, 1]] {
@@ -197,7 +197,7 @@ proptest! {
         prop_assert_eq!(PlanProofs::from_bytes(&proofs.to_bytes()).map(|read| is_true(&read)), Ok(true));
     }
 
-    /// Whatever bytes are changed under a right checksum, they are refused, or what they prove is true.
+    /// Bytes that are changed, with a right checksum, are refused or prove only what is true.
     #[test]
     fn nothing_wrong_is_proven_by_changed_bytes(changes in prop::collection::vec((13usize..200, any::<u8>()), 1..4)) {
         let bytes = with_body(&proofs().to_bytes(), |body| {

@@ -1,4 +1,4 @@
-//! Proofs of boxes, by hand: good ones are taken, impostors are refused, and whatever is taken is true.
+//! Proofs of boxes written by hand: good ones are accepted, impostors are refused, and whatever is accepted is true.
 
 use proptest::prelude::*;
 use sightlines_certificates::space::{
@@ -42,7 +42,7 @@ fn beside(axis: u8, before: bool) -> (Bypass, Branch) {
     (Bypass::Beside { axis, before }, Branch::Empty(vec![taken, (reason, 1.into())]))
 }
 
-/// Nothing gets past the wall, whatever the octant.
+/// No line gets past the wall, in any octant.
 fn past(blocker: u32) -> Branch {
     Branch::Past {
         blocker,
@@ -149,11 +149,11 @@ fn impostors_are_refused() {
             assert_eq!(refused(|p| sum(p, &|sum| sum[0].0 = Claim::Taken { depth: 1, part: 0 })), wrong);
             assert_eq!(refused(|p| sum(p, &|sum| sum[0].0 = Claim::Taken { depth: 0, part: 1 })), wrong);
             assert_eq!(refused(|p| sum(p, &|sum| sum[1].0 = Claim::Box { second: true, enter: 0, leave: 0 })), wrong);
-            // The reverse of a way that was not dealt with.
+            // The reverse of a way that no earlier branch takes.
             let (other, _) = beside(1, true);
             assert_eq!(refused(|p| sum(p, &|sum| sum[0].0 = Claim::Reversed { depth: 0, way: other })), wrong);
         }
-        // A rest has to be shown.
+        // A rest needs a proof.
         assert_eq!(refused(|p| ways(p, &|_, rest| *rest = Some(Vec::new()))), wrong);
     }
 }
@@ -173,7 +173,7 @@ fn makers_take_nothing_wrong() {
 
 type Ways = Vec<(Bypass, Branch)>;
 
-/// What is taken comes back from bytes: nothing else is taken, true or not.
+/// The maker accepts only what comes back from bytes unchanged, true or not.
 #[test]
 fn makers_take_nothing_that_bytes_cannot_hold() {
     let network = network();
@@ -188,10 +188,10 @@ fn makers_take_nothing_that_bytes_cannot_hold() {
         taken
     };
     assert!(taken(all()));
-    // Two branches for one octant, of which the second holds; an octant that is none.
+    // Two branches for one octant, of which the second holds; an octant that does not exist.
     assert!(!taken([vec![(1, Branch::Empty(Vec::new()))], all()].concat()));
     assert!(!taken([vec![(8, past(0))], all()].concat()));
-    // Ways and claims that are too many, and a tree that is too deep.
+    // Too many ways, too many claims, too deep a tree.
     let with = |change: &dyn Fn(&mut Ways)| {
         let mut octants = all();
         if let Branch::Past { ways, .. } = &mut octants[0].1 {
@@ -266,7 +266,7 @@ fn with_body(bytes: &[u8], change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
 }
 
 proptest! {
-    /// Whatever bytes are changed under a right checksum, they are refused, or what they prove is true.
+    /// Bytes that are changed, with a right checksum, are refused or prove only what is true.
     #[test]
     fn nothing_wrong_is_proven_by_changed_bytes(changes in prop::collection::vec((13usize..400, any::<u8>()), 1..4)) {
         let bytes = with_body(&proofs().to_bytes(), |body| {
