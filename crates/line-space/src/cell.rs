@@ -1,8 +1,9 @@
 //! Cells of line space: all lines from one end to another, and how an edge passes them.
 
 use crate::end::End;
+use crate::orient::orient;
+use sightlines_geometry::Point3;
 use sightlines_geometry::vector::{cross, dot, sub};
-use sightlines_geometry::{Point3, orient3d};
 
 /// The lines from every point of `from` to every point of `to`.
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +63,7 @@ impl Cell {
                 let sign = if value.abs() > bound + slack {
                     value
                 } else if is_exact {
-                    orient3d(a, b, x, y)
+                    orient(a, b, x, y)
                 } else {
                     return Passing::Both;
                 };

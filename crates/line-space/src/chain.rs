@@ -17,10 +17,11 @@
 
 use crate::cell::{Cell, Passing};
 use crate::hull::{Code, Hull};
+use crate::orient::orient;
 use crate::surface::Surface;
 use crate::touch::{Start, Target};
+use sightlines_geometry::Point3;
 use sightlines_geometry::vector::{cross, dot, sub};
-use sightlines_geometry::{Point3, orient3d};
 
 /// Why a chain does not block a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -272,6 +273,6 @@ fn sign(a: Point3, b: Point3, c: Point3, d: Point3, radius: Point3) -> i8 {
     if radius != [0.0; 3] {
         return 0;
     }
-    let exact = orient3d(a, b, c, d);
+    let exact = orient(a, b, c, d);
     i8::from(exact > 0.0) - i8::from(exact < 0.0)
 }

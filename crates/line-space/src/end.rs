@@ -11,6 +11,8 @@ pub(crate) struct End {
     corners: [Point3; 4],
     n: u8,
     radius: Point3,
+    /// Around the true corners.
+    bounds: Aabb<3>,
 }
 
 /// What rounding a point `a + (b - a) t` costs at most, as a share of `|a| + |b|`: three roundings of 2^-53 each, of
@@ -30,12 +32,23 @@ impl End {
             p
         };
         let ([x, y], [x1, y1]) = ([b.min[u], b.min[v]], [b.max[u], b.max[v]]);
-        Some(Self { corners: [corner(x, y), corner(x1, y), corner(x1, y1), corner(x, y1)], n: 4, radius: [0.0; 3] })
+        let corners = [corner(x, y), corner(x1, y), corner(x1, y1), corner(x, y1)];
+        Some(Self { corners, n: 4, radius: [0.0; 3], bounds: *b })
     }
 
     /// A triangle of the input.
-    pub(crate) fn triangle([a, b, c]: [Point3; 3]) -> Self {
-        Self { corners: [a, b, c, c], n: 3, radius: [0.0; 3] }
+    pub(crate) fn triangle(corners: [Point3; 3]) -> Self {
+        Self::rounded(corners, [0.0; 3])
+    }
+
+    /// A triangle whose true corners are within `radius` along each axis.
+    fn rounded([a, b, c]: [Point3; 3], radius: Point3) -> Self {
+        let mut bounds = Aabb::around([a, b, c]);
+        for k in (0..3).filter(|&k| radius[k] > 0.0) {
+            bounds.min[k] = (bounds.min[k] - radius[k]).next_down();
+            bounds.max[k] = (bounds.max[k] + radius[k]).next_up();
+        }
+        Self { corners: [a, b, c, c], n: 3, radius, bounds }
     }
 
     /// The parts of a triangle where coordinate `k` is above `at`, or with `upward` false below: none, the whole, or one or two pieces whose
@@ -66,7 +79,7 @@ impl End {
                 }
             }
         }
-        let piece = |a: usize, b: usize, c: usize| Self { radius, ..Self::triangle([ring[a], ring[b], ring[c]]) };
+        let piece = |a: usize, b: usize, c: usize| Self::rounded([ring[a], ring[b], ring[c]], radius);
         if n >= 3 && ring[..n].iter().any(inside) {
             pieces = [Some(piece(0, 1, 2)), (n == 4).then(|| piece(0, 2, 3))];
         }
@@ -89,12 +102,8 @@ impl End {
     }
 
     /// A box around the true corners.
-    pub(crate) fn bounds(&self) -> Aabb<3> {
-        let mut b = Aabb::around(self.corners().iter().copied());
-        for k in (0..3).filter(|&k| self.radius[k] > 0.0) {
-            (b.min[k], b.max[k]) = ((b.min[k] - self.radius[k]).next_down(), (b.max[k] + self.radius[k]).next_up());
-        }
-        b
+    pub(crate) fn bounds(&self) -> &Aabb<3> {
+        &self.bounds
     }
 
     /// How many directions it can be cut across: the sides of a triangle, two adjacent sides of a rectangle. Side `i` runs from
@@ -164,13 +173,8 @@ impl End {
             return None;
         }
         let (j, l) = ((i + 1) % 3, (i + 2) % 3);
-        let mut halves = [*self, *self];
-        (halves[0].corners[j], halves[1].corners[i]) = (middle, middle);
-        for half in &mut halves {
-            half.radius = radius;
-            half.corners[3] = half.corners[l];
-        }
-        Some(halves)
+        let [p, q, r] = [i, j, l].map(|c| self.corners[c]);
+        Some([Self::rounded([p, middle, r], radius), Self::rounded([middle, q, r], radius)])
     }
 
     /// Cuts a rectangle where coordinate `k` is `at`; none if that is not inside.
@@ -186,6 +190,9 @@ impl End {
             // The first half keeps its corners there, and has the others moved; so the other way round.
             let is_first = self.corners[c][k] == first;
             halves[usize::from(is_first)].corners[c][k] = at;
+        }
+        for half in &mut halves {
+            half.bounds = Aabb::around(half.corners);
         }
         halves
     }
@@ -213,10 +220,10 @@ mod tests {
     fn halves_of_rectangles_cover_them() {
         let b = Aabb { min: [1.0, -2.0, 5.0], max: [4.0, 2.0, 5.0] };
         let end = End::rectangle(&b, 2).expect("it has an area");
-        assert_eq!(end.bounds(), b);
+        assert_eq!(*end.bounds(), b);
         for side in 0..2 {
             let [p, q] = end.cut(side, 0.25).expect("there is room");
-            let (p, q) = (p.bounds(), q.bounds());
+            let (p, q) = (*p.bounds(), *q.bounds());
             let k = if p.max[0] == q.min[0] { 0 } else { 1 };
             assert_eq!((p.max[k], p.with(q.max), p.with(q.min)), (q.min[k], b, p), "{side}");
             assert!(((p.max[k] - b.min[k]) / (b.max[k] - b.min[k]) - 0.25).abs() < 1e-15);

@@ -4,8 +4,9 @@
 //! half-space found here. An edge with both ends outside or on the border of the same half-space is therefore never met by such a line.
 
 use crate::cell::Cell;
+use crate::orient::orient;
+use sightlines_geometry::Point3;
 use sightlines_geometry::vector::{cross, dot, sub};
-use sightlines_geometry::{Point3, orient3d};
 
 /// The most half-spaces: one for each end, one for each side of each end.
 const MOST: usize = 10;
@@ -60,7 +61,7 @@ impl HalfSpace {
         if self.margin > 0.0 {
             return 1;
         }
-        let exact = self.sign * orient3d(a, b, c, p);
+        let exact = self.sign * orient(a, b, c, p);
         i8::from(exact > 0.0) - i8::from(exact < 0.0)
     }
 }
@@ -95,8 +96,8 @@ impl Hull {
                 // Turned about the side until it supports the other end, too.
                 let mut best = other[0];
                 for &p in &other[1..] {
-                    let inner = orient3d(a, b, best, third);
-                    if orient3d(a, b, best, p) * inner < 0.0 {
+                    let inner = orient(a, b, best, third);
+                    if orient(a, b, best, p) * inner < 0.0 {
                         best = p;
                     }
                 }
@@ -114,7 +115,7 @@ impl Hull {
             if through.contains(&p) {
                 continue;
             }
-            let side = orient3d(a, b, c, p);
+            let side = orient(a, b, c, p);
             positive |= side > 0.0;
             negative |= side < 0.0;
         }

@@ -18,6 +18,7 @@ mod chain;
 mod end;
 mod hull;
 mod method;
+mod orient;
 mod search;
 mod split;
 mod surface;

@@ -1,7 +1,8 @@
 //! Whether a triangle of a chain stays away from an end of the lines. Exact.
 
 use crate::end::End;
-use sightlines_geometry::{Aabb, Point2, Point3, orient2d, orient3d};
+use crate::orient::orient;
+use sightlines_geometry::{Aabb, Point2, Point3, orient2d};
 
 /// What the lines of a search end at.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +17,7 @@ impl Target {
     /// Whether a triangle stays away from the end of the lines of a cell at this target.
     pub(crate) fn is_clear_of(&self, triangle: &[Point3; 3], bounds: &Aabb<3>, end: &End) -> bool {
         let around = end.bounds();
-        if apart(bounds, &around) {
+        if apart(bounds, around) {
             return true;
         }
         match self {
@@ -25,7 +26,7 @@ impl Target {
                 let inside_of = |piece: &[Point3; 3]| avoids_inside(triangle, piece);
                 inside_of(whole)
                     || end.is_exact() && inside_of(&[end.corners()[0], end.corners()[1], end.corners()[2]])
-                    || avoids_box(triangle, &around)
+                    || avoids_box(triangle, around)
             }
         }
     }
@@ -52,7 +53,7 @@ impl Start {
     pub(crate) fn is_clear_of(&self, triangle: &[Point3; 3], bounds: &Aabb<3>, end: &End) -> bool {
         let at = end.corners()[0][self.axis];
         let is_beyond = if self.upward { bounds.min[self.axis] >= at } else { bounds.max[self.axis] <= at };
-        self.from_behind && is_beyond || apart(bounds, &end.bounds()) || avoids(triangle, end, true)
+        self.from_behind && is_beyond || apart(bounds, end.bounds()) || avoids(triangle, end, true)
     }
 }
 
@@ -97,7 +98,7 @@ fn avoids_box(t: &[Point3; 3], b: &Aabb<3>) -> bool {
 fn plane_separates(a: Point3, b: Point3, c: Point3, _on: &[Point3], points: &[Point3], touching: bool) -> bool {
     let [mut positive, mut negative, mut zero] = [false; 3];
     for &p in points {
-        let side = orient3d(a, b, c, p);
+        let side = orient(a, b, c, p);
         positive |= side > 0.0;
         negative |= side < 0.0;
         zero |= side == 0.0;
@@ -111,7 +112,7 @@ fn plane_splits(a: Point3, b: Point3, c: Point3, t: &[Point3; 3], end: &[Point3]
     let sides = |points: &[Point3]| {
         let mut has = [false; 3];
         for &p in points {
-            let side = orient3d(a, b, c, p);
+            let side = orient(a, b, c, p);
             has[if side > 0.0 {
                 0
             } else if side < 0.0 {
@@ -132,7 +133,7 @@ fn plane_splits(a: Point3, b: Point3, c: Point3, t: &[Point3; 3], end: &[Point3]
 
 /// Whether a triangle and an end in one plane have a line between them there.
 fn coplanar_apart(t: &[Point3; 3], end: &[Point3], touching: bool) -> bool {
-    if !end.iter().all(|&p| orient3d(t[0], t[1], t[2], p) == 0.0) {
+    if !end.iter().all(|&p| orient(t[0], t[1], t[2], p) == 0.0) {
         return false;
     }
     (0..3).any(|k| {
