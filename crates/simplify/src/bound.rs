@@ -6,6 +6,7 @@
 //! distance `h` from its plane; and at most half of the sphere, as all of it lies on one side of a plane through the
 //! eye. A triangle that is large compared with its distance is split in four at the midpoints of its sides, and the
 //! bounds of its parts are added.
+//!
 //! # Rounding
 //! Every step is rounded so that the result can only grow. Parts have exactly a quarter of the area and the same plane,
 //! so only their bounding boxes are constructed; their corners are widened by the rounding of the midpoints.

@@ -51,6 +51,7 @@ impl Side {
 /// Appends the planes that bound the umbra of `occluder` for eyes in the box with `corners`: for each facet its own
 /// plane, and for each edge of the outline the one through the corner of the box from which it hides least there.
 /// `false` if it hides nothing. The choice of planes is exact.
+///
 /// Around an edge, the planes through the corners of the box all contain it. Let its facet's plane have the box in
 /// front, and measure angles around the edge from the direction into the facet: eyes have angles from 0 to π, and what
 /// lies behind the facet from -π to 0. A line from an eye at α to a point at β passes inside if α - β is at most π. So

@@ -89,6 +89,7 @@ pub use error::{DecodeError, DecodeErrorKind, SectionId};
 pub use kind::{KIND_LEN, kind_from_bytes, kind_from_info, kind_section, kind_to_bytes};
 
 /// The first bytes of every file.
+///
 /// The first byte is not ASCII, and two kinds of line ends follow the name, so that programs that treat the file as
 /// text corrupt the magic.
 pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";

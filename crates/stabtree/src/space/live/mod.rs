@@ -6,10 +6,11 @@
 //!   blocked there;
 //! * a new cell sees at most what the old cells that it overlaps saw, what opened rectangles reveal, and what lies with
 //!   it where no cells were. Uncut lines through it prove part of what it sees.
-//! All other pairs are decided as usual, groups first; groups without such pairs are skipped. Lines that are cut are
+//!
 //! All other pairs are decided as usual, groups first; groups without such pairs are skipped. Lines that are cut are
 //! followed once more on both sides of the cut, and lines that ended at a removed wall are followed further; lines that
 //! proved what removed cells saw prove much of what the cells in their place see.
+//!
 //! The answer is that of [`space_visibility`](super::space_visibility): both are exact, but for pairs that are given up
 //! ([`SpaceVisibility::n_assumed`]). Such a pair is decided again with every update, but a pair that was proven to be
 //! hidden stays hidden, though a new search, which meets other groups and rectangles, might give it up.
