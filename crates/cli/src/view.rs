@@ -1,4 +1,4 @@
-//! How a viewer looks, as arguments: by which method, and through which lens.
+//! The view of a viewer as arguments: the method and the lens.
 
 use crate::error::InputError;
 use crate::input::refuse;
@@ -25,7 +25,7 @@ pub(crate) enum Methods {
 }
 
 impl Methods {
-    /// The methods that are meant, each no more than the one before.
+    /// The methods; the answer of each lies within that of the one before.
     pub(crate) fn list(self) -> Vec<Method> {
         match self {
             Self::All => Method::ALL.to_vec(),
@@ -40,6 +40,14 @@ impl FromStr for Methods {
     fn from_str(text: &str) -> Result<Self, UnknownMethods> {
         if text == "all" { Ok(Self::All) } else { Ok(Self::One(text.parse()?)) }
     }
+}
+
+/// The help on `--method`: the names of all methods, and what `more` adds.
+pub(crate) fn method_help(more: &str) -> String {
+    format!(
+        "Eye-to-cell method: {} (each within the one before), or all{more}",
+        Method::ALL.map(Method::name).join(", ")
+    )
 }
 
 /// Neither `all` nor the name of a method.
@@ -153,7 +161,7 @@ fn aspect(text: &str) -> Result<f64, String> {
         Some((w, h)) => number(w).zip(number(h)).map(|(w, h)| w / h),
         None => number(text),
     };
-    // Beyond, a picture is a line, and the numbers are slips.
+    // Beyond these, the picture is a line, and the numbers are slips.
     match quotient {
         Some(x) if (1e-3..=1e3).contains(&x) => Ok(x),
         _ => Err("not W/H or a number from 0.001 to 1000".to_owned()),

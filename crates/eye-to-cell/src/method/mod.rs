@@ -150,7 +150,7 @@ impl fmt::Display for Method {
 
 /// Not the name of a [`Method`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("'{0}' is none of cell-to-cell, disjoint-cell, connected-component, incident-portals, exact")]
+#[error("'{0}' is none of {names}", names = Method::ALL.map(Method::name).join(", "))]
 pub struct UnknownMethod(String);
 
 impl FromStr for Method {
@@ -174,6 +174,7 @@ mod tests {
             assert_eq!(method.to_string().parse(), Ok(method));
         }
         assert!(Method::Exact > Method::IncidentPortals);
-        assert!("best".parse::<Method>().unwrap_err().to_string().contains("'best' is none of cell-to-cell"));
+        let names = "cell-to-cell, disjoint-cell, connected-component, incident-portals, exact";
+        assert_eq!("best".parse::<Method>().unwrap_err().to_string(), format!("'best' is none of {names}"));
     }
 }

@@ -5,7 +5,7 @@ use super::{Object, Place, ids, named, write_seen};
 use crate::output::count;
 use crate::place::Point;
 use crate::tables::Cells;
-use crate::view::{LensArgs, Methods, lifted};
+use crate::view::{LensArgs, Methods, lifted, method_help};
 use serde::Serialize;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections};
 use sightlines::pvs::{CellId, ObjectId, PortalId};
@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 /// A query is timed this many times, and the median is reported.
 const RUNS: usize = 9;
 
-/// How the viewer looks.
+/// The view, as arguments.
 #[derive(Debug, clap::Args)]
 pub(super) struct SightArgs {
     /// Direction of view [default: all directions]
@@ -28,9 +28,8 @@ pub(super) struct SightArgs {
     dir: Option<Point>,
     #[command(flatten)]
     lens: LensArgs,
-    /// Eye-to-cell method: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each within the
-    /// one before), or all [default: exact if an option describes the view, else the visible set of the eye's cell]
     #[arg(long, help_heading = "Method", value_name = "NAME")]
+    #[arg(help = method_help(" [default: exact if an option describes the view, else the visible set of the eye's cell]"))]
     method: Option<Methods>,
     /// Closed portals, by number, separated by commas
     #[arg(long, help_heading = "Method", value_name = "P,P,...", value_delimiter = ',')]
@@ -41,7 +40,7 @@ pub(super) struct SightArgs {
 }
 
 impl SightArgs {
-    /// Whether anything says how the viewer looks.
+    /// Whether any option describes the view.
     pub(super) fn is_given(&self) -> bool {
         let Self { dir, lens, method, closed, bounces } = self;
         dir.is_some() || lens.is_given() || method.is_some() || !closed.is_empty() || bounces.is_some()
@@ -129,7 +128,7 @@ impl<C: Cells> Viewer<'_, C> {
             }
             times.push(start.elapsed());
         }
-        // The first run had nothing warm.
+        // The first run was not warm.
         times.remove(0);
         times.sort_unstable();
         if roots.is_empty() {
@@ -171,7 +170,7 @@ pub(super) struct Sight {
     dir: Option<Vec<f64>>,
     /// In degrees.
     fov: Option<f64>,
-    /// The answer, if one method was asked for.
+    /// The answer, if one method was requested.
     #[serde(flatten)]
     one: Option<Answered>,
     /// The answers, if all methods were.
@@ -189,7 +188,7 @@ struct Answered {
     visible: Vec<u32>,
     objects: Vec<Object>,
     images: Vec<ImageSeen>,
-    /// Of a query with everything at hand and warm: the median of some.
+    /// The median of several queries, with everything prepared and warm.
     microseconds: f64,
 }
 

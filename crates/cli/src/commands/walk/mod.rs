@@ -11,7 +11,7 @@ use crate::Answer;
 use crate::output;
 use crate::progress::Bar;
 use crate::tables::{self, Cells, Opened};
-use crate::view::{LensArgs, Methods};
+use crate::view::{LensArgs, Methods, method_help};
 use error::{Error, PathError};
 use measure::Walk;
 use outcome::Outcome;
@@ -46,9 +46,8 @@ pub(crate) struct WalkArgs {
     step: Option<f64>,
     #[command(flatten)]
     lens: LensArgs,
-    /// Eye-to-cell method: cell-to-cell, disjoint-cell, connected-component, incident-portals, exact (each within the
-    /// one before), or all; cell-to-cell always runs for comparison
     #[arg(long, help_heading = "Method", value_name = "NAME", default_value = "all")]
+    #[arg(help = method_help("; cell-to-cell always runs for comparison"))]
     method: Methods,
     /// Memory budget for prepared data, in bytes; the blocks of a packed table get the same again
     #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = WalkOptions::default().budget)]
@@ -135,7 +134,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
     Ok(Answer::Yes)
 }
 
-/// A view that is none, in a frame.
+/// The error of an invalid view in a frame.
 fn refused(path: &Path, frame: usize, source: sightlines::eye_to_cell::ViewError) -> Error {
     Error::Path { path: path.to_owned(), source: PathError::View { frame, source } }
 }
@@ -152,6 +151,6 @@ fn usual_step<C: Cells>(cells: &C) -> Result<f64, C::Error> {
         }
     }
     let diagonal = (0..3).map(|k| (max[k] - min[k]).powi(2)).sum::<f64>().sqrt();
-    // Without cells there is no walk, whatever the step.
+    // Without cells there is no walk, whatever the step is.
     Ok(if diagonal.is_finite() && diagonal > 0.0 { diagonal / 400.0 } else { 1.0 })
 }
