@@ -5,15 +5,17 @@ use crate::graph::{GraphRef, OtherGraph, TableGraph};
 use sightlines_certificates::convex::{ConvexNetworkError, ConvexProofs};
 use sightlines_certificates::plan::{NetworkError, PlanProofs};
 use sightlines_certificates::space::{BoxNetworkError, BoxProofs};
+use sightlines_progress::Cancelled;
 use sightlines_pvs::Table;
-use sightlines_stabtree::{CertifyOptions, certify_convex, certify_plan, certify_space};
+use sightlines_stabtree::{CertifyError as SearchError, CertifyOptions, certify_convex, certify_plan, certify_space};
+use std::error::Error;
 use std::time::{Duration, Instant};
 
 /// Why a table cannot have proofs.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CertifyError {
-    /// Nothing is known of portals: the cells are boxes that were given, or the portals were stripped.
+    /// There are no portals: the cells are boxes that were given, or the portals were stripped.
     #[error("proofs need the cells and portals that the table was made from, and it does not have them")]
     NoGraph,
     /// The graph of another table.
@@ -28,6 +30,18 @@ pub enum CertifyError {
     /// Cells or portals of a Quake map that nothing can be proven about.
     #[error(transparent)]
     Convex(#[from] ConvexNetworkError),
+    /// The observer cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl CertifyError {
+    fn of<N: Error + Into<Self>>(error: SearchError<N>) -> Self {
+        match error {
+            SearchError::Network(error) => error.into(),
+            _ => Cancelled.into(),
+        }
+    }
 }
 
 /// Proofs of a table, of the kind that it is.
@@ -53,7 +67,7 @@ impl Proofs {
     }
 }
 
-/// Proofs, and how they came about.
+/// Proofs, and the time that they took.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certified {
     /// The proofs.
@@ -62,28 +76,28 @@ pub struct Certified {
     pub time: Duration,
 }
 
-/// Finds proofs for the pairs of a table. A pair without one is left open, so this needs no trust: whether all pairs have a
-/// proof is for the checker to say.
+/// Finds proofs for the pairs of a table. A pair without one is left open, so nothing here has to be trusted: the checker decides
+/// which pairs are proven.
 ///
 /// * `graph`: the one that the table was made from: [`Baked::graph`], or
 ///   [`from_table::graph`](fn@crate::from_table::graph) of a table from a file
 ///
 /// # Errors
 /// [`CertifyError::NoGraph`] for boxes without portals; [`CertifyError::OtherGraph`] for the graph of another table;
-/// others for cells and portals that nothing can be proven about.
+/// [`CertifyError::Cancelled`] if the observer cancels; others for cells and portals that nothing can be proven about.
 pub fn certify_table<'g>(
     table: &Table,
     graph: impl Into<GraphRef<'g>>,
-    options: &CertifyOptions,
+    options: &CertifyOptions<'_>,
 ) -> Result<Certified, CertifyError> {
     let start = Instant::now();
     let graph = graph.into();
     graph.check_size(table)?;
     let rows = &table.parts().rows;
     let proofs = match graph {
-        GraphRef::Planar(graph) => Proofs::Plan(certify_plan(graph, rows, options)?),
-        GraphRef::Axial(graph) => Proofs::Space(certify_space(graph, rows, options)?),
-        GraphRef::Convex(graph) => Proofs::Convex(certify_convex(graph, rows, options)?),
+        GraphRef::Planar(graph) => Proofs::Plan(certify_plan(graph, rows, options).map_err(CertifyError::of)?),
+        GraphRef::Axial(graph) => Proofs::Space(certify_space(graph, rows, options).map_err(CertifyError::of)?),
+        GraphRef::Convex(graph) => Proofs::Convex(certify_convex(graph, rows, options).map_err(CertifyError::of)?),
         GraphRef::Boxes(_) => return Err(CertifyError::NoGraph),
     };
     Ok(Certified { proofs, time: start.elapsed() })
@@ -94,7 +108,7 @@ impl<R> Baked<TableGraph, R> {
     ///
     /// # Errors
     /// As [`certify_table`].
-    pub fn certify(&self, options: &CertifyOptions) -> Result<Certified, CertifyError> {
+    pub fn certify(&self, options: &CertifyOptions<'_>) -> Result<Certified, CertifyError> {
         certify_table(&self.table, &self.graph, options)
     }
 }

@@ -44,13 +44,14 @@ use sightlines_pvs::Table;
 /// first [`VerifyOptions::MOST_VIOLATIONS`] violations of each kind, and stops shooting rays once there are that many.
 ///
 /// # Errors
-/// [`VerifyError`] for a table that cannot be of such a scene: of another dimension, or another kind.
+/// [`VerifyError`] for a table that cannot be of such a scene, because it is of another dimension or another kind; or if the observer
+/// cancels.
 ///
 /// Cost: O(size of table and scene * log) for the structure; each ray visits what is near it.
-pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions) -> Result<Findings, VerifyError> {
+pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> Result<Findings, VerifyError> {
     truth.check_kind(table)?;
     let mut findings = structure::check(table, truth);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
-    pool.install(|| rays::check(table, truth, options, &mut findings));
+    pool.install(|| rays::check(table, truth, options, &mut findings))?;
     Ok(findings)
 }

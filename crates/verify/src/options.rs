@@ -1,8 +1,10 @@
 //! How much to look at.
 
+use sightlines_progress::Observer;
+
 /// How much to look at, and with which rays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct VerifyOptions {
+#[derive(Clone, Copy)]
+pub struct VerifyOptions<'a> {
     /// Rays in random directions from random places.
     pub rays: u64,
     /// Hidden pairs, of cells or of a cell and an object, that rays are aimed at; all of them if there are no more.
@@ -13,15 +15,29 @@ pub struct VerifyOptions {
     pub seed: u64,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
+    /// Receives reports on rays, and may cancel.
+    pub progress: Option<&'a dyn Observer>,
 }
 
-impl VerifyOptions {
+impl VerifyOptions<'_> {
     /// Maximum number of listed violations of one kind; further ones are counted, and no more rays are shot.
     pub const MOST_VIOLATIONS: usize = 1000;
 }
 
-impl Default for VerifyOptions {
+impl Default for VerifyOptions<'_> {
     fn default() -> Self {
-        Self { rays: 100_000, pairs: 10_000, tries: 32, seed: 1, threads: 0 }
+        Self { rays: 100_000, pairs: 10_000, tries: 32, seed: 1, threads: 0, progress: None }
+    }
+}
+
+impl std::fmt::Debug for VerifyOptions<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("VerifyOptions")
+            .field("rays", &self.rays)
+            .field("pairs", &self.pairs)
+            .field("tries", &self.tries)
+            .field("seed", &self.seed)
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
     }
 }

@@ -2,6 +2,7 @@
 
 use sightlines_cells::{CellGraph, Convex, Plan, Scene};
 use sightlines_geometry::Point3;
+use sightlines_progress::Cancelled;
 use sightlines_pvs::{Table, TableKind};
 
 /// The scene that a table is to be true to.
@@ -61,7 +62,7 @@ pub struct WorldTree {
     pub listed: Vec<Vec<u32>>,
 }
 
-/// Why a table cannot be of a scene.
+/// Why a table was not checked: it cannot be of the scene, or the observer cancelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VerifyError {
@@ -84,6 +85,9 @@ pub enum VerifyError {
     /// A table of a map of which only the portals were given, or the reverse.
     #[error("the table {0}")]
     Places(&'static str),
+    /// The observer cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl Truth<'_> {

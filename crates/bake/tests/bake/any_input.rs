@@ -2,11 +2,15 @@
 
 use sightlines_bake::methods::{Backend, BufferOptions, OcclusionMethod};
 use sightlines_bake::{
-    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, PlanBakeOptions, PrtOptions, Report, SceneBakeOptions,
+    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, CertifyError, PlanBakeOptions, PrtOptions, Report, SceneBakeOptions,
     SceneMethod, TableGraph, bake, bake_plan, bake_prt, bake_scene, from_table,
 };
 use sightlines_formats::quake::prt::parse_prt;
+use sightlines_progress::Progress;
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
+use sightlines_stabtree::CertifyOptions;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
 
 /// Three rooms in a row.
 const ROOMS: &[u8] = b"PRT1\n3\n2\n4 0 1 (8 0 0) (8 2 0) (8 2 2) (8 0 2)\n4 1 2 (16 0 0) (16 2 0) (16 2 2) (16 0 2)\n";
@@ -95,5 +99,33 @@ fn what_cannot_be_prepared_is_refused() {
             let text = "the backend gpu is not part of this build: it needs the feature multifocal-gpu";
             assert_eq!(error.to_string(), text);
         }
+    }
+}
+
+/// Proofs are reported unit by unit and can be cancelled; an observer changes nothing.
+#[test]
+fn proofs_are_observed() {
+    let floor = office(OfficeOptions { rooms_x: 3, rooms_y: 2, ..OfficeOptions::default() }).unwrap();
+    let scene = tower(TowerOptions { floors: 1, rooms_x: 1, rooms_y: 1, ..TowerOptions::default() }).unwrap();
+    let rooms = parse_prt(ROOMS).unwrap();
+    let inputs: [BakeInput<'_>; 3] = [(&floor).into(), (&scene).into(), (&rooms).into()];
+    for input in inputs {
+        let baked = bake(input, &BakeOptions::default()).unwrap();
+        let reports = Mutex::new(Vec::new());
+        let watch = |progress: Progress| {
+            reports.lock().unwrap().push((progress.done, progress.total, progress.share));
+            ControlFlow::Continue(())
+        };
+        let watched = baked.certify(&CertifyOptions { threads: 2, progress: Some(&watch), ..CertifyOptions::default() });
+        let alone = baked.certify(&CertifyOptions::default()).unwrap();
+        assert_eq!(watched.unwrap().proofs.to_bytes(), alone.proofs.to_bytes());
+        let mut reports = reports.into_inner().unwrap();
+        reports.sort_by_key(|report| report.0);
+        let total = reports[0].1;
+        assert!(reports.iter().map(|report| report.0).eq(1..=total), "{reports:?}");
+        assert!(reports.iter().all(|report| report.1 == total) && reports.last().unwrap().2 == 1.0, "{reports:?}");
+        let stop = |_: Progress| ControlFlow::Break(());
+        let stopped = baked.certify(&CertifyOptions { progress: Some(&stop), ..CertifyOptions::default() });
+        assert!(matches!(stopped, Err(CertifyError::Cancelled(_))), "{stopped:?}");
     }
 }

@@ -9,9 +9,12 @@ mod space;
 pub use plan::{certify_plan, plan_network};
 pub use space::{certify_space, space_network};
 
+use sightlines_progress::{Cancelled, Observer};
+use std::error::Error;
+
 /// How much effort goes into proofs. More effort proves more pairs and never changes what is proven.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CertifyOptions {
+#[derive(Clone, Copy)]
+pub struct CertifyOptions<'a> {
     /// Lines shot through each portal, before lines are searched for single pairs.
     pub chords: u32,
     /// Gates tried from one cell before the cell is left as it is; for boxes in space, linear programs for a pair of
@@ -22,10 +25,35 @@ pub struct CertifyOptions {
     pub most_steps_in_all: u64,
     /// Number of threads; 0 for one per core. Affects only the time; plans and convex cells are proven on one thread.
     pub threads: usize,
+    /// Receives a report for each finished unit (cell, gate or pair of groups), and may cancel.
+    pub progress: Option<&'a dyn Observer>,
 }
 
-impl Default for CertifyOptions {
+impl Default for CertifyOptions<'_> {
     fn default() -> Self {
-        Self { chords: 12, most_steps: 20_000_000, most_steps_in_all: 2_000_000_000, threads: 0 }
+        Self { chords: 12, most_steps: 20_000_000, most_steps_in_all: 2_000_000_000, threads: 0, progress: None }
     }
+}
+
+impl std::fmt::Debug for CertifyOptions<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CertifyOptions")
+            .field("chords", &self.chords)
+            .field("most_steps", &self.most_steps)
+            .field("most_steps_in_all", &self.most_steps_in_all)
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Why there are no proofs; `N` is the error of a graph that is not well formed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CertifyError<N: Error + 'static> {
+    /// Nothing can be proven about the cells and portals.
+    #[error(transparent)]
+    Network(N),
+    /// The observer cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }

@@ -1,6 +1,6 @@
 //! Proofs of tables of plans: lines for what is visible, walks for what is hidden.
 
-use super::CertifyOptions;
+use super::{CertifyError, CertifyOptions};
 use crate::search::ones;
 use sightlines_cells::{CellGraph, CellId, Exit, Planar};
 use sightlines_certificates::plan::{
@@ -9,6 +9,7 @@ use sightlines_certificates::plan::{
 use sightlines_certificates::{ChainSolver, ChainStep, Pairs};
 use sightlines_geometry::Random;
 use sightlines_geometry::{Adaptive, Point2, Portal2, check_coordinate};
+use sightlines_progress::Counter;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, PlanarWitness};
 
@@ -25,21 +26,25 @@ const MOST_DOORS: usize = 1500;
 /// Cost: about that of the search for the rows, and some more for each pair that few lines join.
 ///
 /// # Errors
-/// [`NetworkError`] for a graph that is not well formed, or one of too large coordinates.
+/// [`CertifyError`] with a [`NetworkError`] for a graph that is not well formed, or one of too large coordinates; or if the observer
+/// cancels.
 ///
 /// # Panics
 /// If there is not a row for each cell.
 pub fn certify_plan(
     graph: &CellGraph<Planar>,
     rows: &BitMatrix,
-    options: &CertifyOptions,
-) -> Result<PlanProofs, NetworkError> {
+    options: &CertifyOptions<'_>,
+) -> Result<PlanProofs, CertifyError<NetworkError>> {
     assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
-    let network = plan_network(graph)?;
+    let network = plan_network(graph).map_err(CertifyError::Network)?;
+    // Each cell is visited twice: for lines to what it sees, and for a walk to what it does not see.
+    let counter = Counter::new(options.progress, "proofs", 2 * graph.n_cells());
     let mut maker = PlanMaker::new(&network);
     shoot(graph, &mut maker, options.chords);
     for cell in graph.cell_ids() {
         Seeker::new(graph, rows, &mut maker, options.most_steps).seek(cell);
+        counter.step()?;
     }
     for a in 0..graph.n_cells() {
         for b in rows.iter_ones(a).filter(|&b| b > a) {
@@ -53,6 +58,7 @@ pub fn certify_plan(
         let mut guide = Guide::new(graph, options.most_steps.min(left));
         maker.prove_hidden(cell, &mut guide, options.most_steps.min(left));
         left -= guide.n_steps.min(left);
+        counter.step()?;
     }
     Ok(maker.finish())
 }

@@ -1,6 +1,6 @@
 //! Proofs of tables of scenes in space: lines for what is visible, pairs of boxes for what is hidden.
 
-use super::CertifyOptions;
+use super::{CertifyError, CertifyOptions};
 use crate::space::{AtomicBitMatrix, halves_first, on_threads, opaque_without_solid};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
@@ -10,6 +10,7 @@ use sightlines_certificates::space::{
 };
 use sightlines_geometry::Random;
 use sightlines_geometry::{Aabb, BoxTree, check_coordinate};
+use sightlines_progress::{Cancelled, Counter};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, Target, Verdict};
 
@@ -36,17 +37,17 @@ const MOST_TRIED: u32 = 24;
 /// pair needs a line, its own or a shared one.
 ///
 /// # Errors
-/// [`BoxNetworkError`] for a graph that is not well formed.
+/// [`CertifyError`] with a [`BoxNetworkError`] for a graph that is not well formed; or if the observer cancels.
 ///
 /// # Panics
 /// If there is not a row for each cell.
 pub fn certify_space(
     graph: &CellGraph<Axial>,
     rows: &BitMatrix,
-    options: &CertifyOptions,
-) -> Result<BoxProofs, BoxNetworkError> {
+    options: &CertifyOptions<'_>,
+) -> Result<BoxProofs, CertifyError<BoxNetworkError>> {
     assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
-    let network = space_network(graph)?;
+    let network = space_network(graph).map_err(CertifyError::Network)?;
     let blockers = Blockers::new(opaque_without_solid(graph));
     let rectangles: Vec<Box3> = blockers.rectangles().iter().map(corners).collect();
     let mut maker = BoxMaker::new(&network, &rectangles);
@@ -55,7 +56,7 @@ pub fn certify_space(
         return Ok(maker.finish());
     }
     let search = Search::new(graph, rows, &blockers, options);
-    Ok(search.run(maker, options.threads, options.most_steps_in_all))
+    Ok(search.run(maker, options)?)
 }
 
 /// The graph in the form that proofs use.
@@ -143,7 +144,12 @@ type Found = ([Aabb<3>; 2], BlockedProof);
 const N_TASKS: usize = 2048;
 
 impl<'a> Search<'a> {
-    fn new(graph: &'a CellGraph<Axial>, rows: &BitMatrix, blockers: &'a Blockers, options: &CertifyOptions) -> Self {
+    fn new(
+        graph: &'a CellGraph<Axial>,
+        rows: &BitMatrix,
+        blockers: &'a Blockers,
+        options: &CertifyOptions<'_>,
+    ) -> Self {
         let boxes: Vec<Aabb<3>> = graph.cells().iter().map(|cell| cell.bounds).collect();
         let tree = BoxTree::build(&boxes, 1);
         let cell_at = tree.order().to_vec();
@@ -159,7 +165,7 @@ impl<'a> Search<'a> {
         Self { graph, blockers, tree, cell_at, sees, budgets }
     }
 
-    fn run(&self, mut maker: BoxMaker<'_>, threads: usize, most_programs: u64) -> BoxProofs {
+    fn run(&self, mut maker: BoxMaker<'_>, options: &CertifyOptions<'_>) -> Result<BoxProofs, Cancelled> {
         let (mut tasks, mut found) = (vec![[0u32, 0u32]], Vec::new());
         let mut shaft = Shaft::new(self.blockers);
         while !tasks.is_empty() && tasks.len() < N_TASKS {
@@ -167,26 +173,31 @@ impl<'a> Search<'a> {
             tasks.iter().for_each(|&pair| self.hide(pair, &mut shaft, &mut found, &mut smaller));
             tasks = smaller;
         }
-        let share = most_programs / tasks.len().max(1) as u64;
+        let share = options.most_steps_in_all / tasks.len().max(1) as u64;
+        // Groups are hidden from each other, then lines are sought from each cell.
+        let counter = Counter::new(options.progress, "proofs", tasks.len() + self.cell_at.len());
         let work = |shaft: &mut Shaft<'a>, task: Pair| {
             let (mut found, mut stack) = (Vec::new(), vec![task]);
             let before = shaft.counters().n_programs;
             while let Some(pair) = stack.pop() {
-                if shaft.counters().n_programs - before >= share {
+                if counter.is_cancelled() || shaft.counters().n_programs - before >= share {
                     break;
                 }
                 self.hide(pair, shaft, &mut found, &mut stack);
             }
+            // A cancellation is noticed below, when all threads are done.
+            let _ = counter.step();
             found
         };
-        let all: Vec<Vec<Found>> = on_threads(threads, |_| {
+        let all: Vec<Vec<Found>> = on_threads(options.threads, |_| {
             tasks.into_par_iter().with_max_len(1).map_init(|| Shaft::new(self.blockers), work).collect()
         });
+        counter.check()?;
         for ([a, b], proof) in found.into_iter().chain(all.into_iter().flatten()) {
             let _ = maker.take_boxes([&corners(&a), &corners(&b)], translated(&proof));
         }
-        self.seek_all(&mut maker, &mut shaft);
-        maker.finish()
+        self.seek_all(&mut maker, &mut shaft, &counter)?;
+        Ok(maker.finish())
     }
 
     /// Proves that two groups are hidden from each other, or passes on smaller pairs.
@@ -236,13 +247,20 @@ impl<'a> Search<'a> {
     }
 
     /// Finds a line for each visible pair of cells that has none yet.
-    fn seek_all(&self, maker: &mut BoxMaker<'_>, shaft: &mut Shaft<'a>) {
+    fn seek_all(
+        &self,
+        maker: &mut BoxMaker<'_>,
+        shaft: &mut Shaft<'a>,
+        counter: &Counter<'_>,
+    ) -> Result<(), Cancelled> {
         let mut random = Random::new(0x7072_6F6F_6673_0003);
         for a in 0..self.cell_at.len() {
             for b in self.sees.ones(a).filter(|&b| b > a) {
                 self.seek([a, b], maker, shaft, &mut random);
             }
+            counter.step()?;
         }
+        Ok(())
     }
 
     /// Finds a line between two cells, given by their positions, if they have none yet.

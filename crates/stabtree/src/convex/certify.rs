@@ -5,7 +5,7 @@ use super::bound;
 use super::gates::Gates;
 use super::pairs::SequenceTracer;
 use super::vector::{Point3, add, cross, dot, scale};
-use crate::certify::CertifyOptions;
+use crate::certify::{CertifyError, CertifyOptions};
 use sightlines_cells::{CellGraph, Convex, Portal3};
 use sightlines_certificates::convex::{
     ConvexBlock, ConvexCut, ConvexLine, ConvexMaker, ConvexNetwork, ConvexNetworkError, ConvexPlane, ConvexPortal,
@@ -14,6 +14,7 @@ use sightlines_certificates::convex::{
 use sightlines_certificates::{ChainSolver, ChainStep};
 use sightlines_geometry::Random;
 use sightlines_geometry::check_coordinate;
+use sightlines_progress::{Cancelled, Counter};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::convex::{Block, BoxProof, ConvexCertificate, ConvexNode, PlaneProof};
 use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
@@ -34,22 +35,26 @@ const MULTIPLIERS: [f64; 3] = [120.0, 16_000.0, 2_000_000.0];
 /// a stabbable chain of gates, and through open space these are many.
 ///
 /// # Errors
-/// [`ConvexNetworkError`] for a graph that is not well formed.
+/// [`CertifyError`] with a [`ConvexNetworkError`] for a graph that is not well formed; or if the observer cancels.
 ///
 /// # Panics
 /// If there is not a row for each cell.
 pub fn certify_convex(
     graph: &CellGraph<Convex>,
     rows: &BitMatrix,
-    options: &CertifyOptions,
-) -> Result<ConvexProofs, ConvexNetworkError> {
+    options: &CertifyOptions<'_>,
+) -> Result<ConvexProofs, CertifyError<ConvexNetworkError>> {
     assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
-    let network = convex_network(graph)?;
+    let network = convex_network(graph).map_err(CertifyError::Network)?;
     let gates = Gates::new(graph);
+    let seeks = options.most_steps > 0;
+    // Lines are sought from each gate and each cell, then walks from each cell.
+    let n_seeks = if seeks { gates.len() + graph.n_cells() } else { 0 };
+    let counter = Counter::new(options.progress, "proofs", n_seeks + graph.n_cells());
     let mut maker = ConvexMaker::new(&network);
     shoot(&gates, &mut maker, options.chords);
-    if options.most_steps > 0 {
-        seek(&gates, rows, &mut maker);
+    if seeks {
+        seek(&gates, rows, &mut maker, &counter)?;
     }
     for a in 0..graph.n_cells() {
         for b in rows.iter_ones(a).filter(|&b| b > a) {
@@ -75,6 +80,7 @@ pub fn certify_convex(
                 waiting.extend([(high.to_vec(), n_halvings + 1), (low.to_vec(), n_halvings + 1)]);
             }
         }
+        counter.step()?;
     }
     Ok(maker.finish())
 }
@@ -125,7 +131,7 @@ fn shoot(gates: &Gates, maker: &mut ConvexMaker<'_>, per_portal: u32) {
 }
 
 /// Searches for lines to visible cells that have none yet: by beams, then by sequences.
-fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
+fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>, counter: &Counter<'_>) -> Result<(), Cancelled> {
     let mut through = BitMatrix::new(gates.len(), gates.n_cells());
     for gate in 0..gates.len() {
         through.row_mut(gate).copy_from_slice(&bound::seen_through(gates, gate as u32));
@@ -149,6 +155,7 @@ fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
         in_doubt[from as usize / 64] &= !(1 << (from % 64));
         let traced = beams.trace(gates, gate, in_doubt, &through);
         traced.chains.iter().for_each(|chain| take(chain, maker));
+        counter.step()?;
     }
     let mut sequences = SequenceTracer::new(gates);
     for a in 0..gates.n_cells() as u32 {
@@ -159,7 +166,9 @@ fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
                 take(&chain, maker);
             }
         }
+        counter.step()?;
     }
+    Ok(())
 }
 
 /// Searches for a line through each chain, or the reason why there is none.

@@ -29,7 +29,7 @@ fn rows_of_plan(graph: &CellGraph<Planar>) -> BitMatrix {
 }
 
 /// Proofs for these rows, through their bytes and the checker.
-fn proven_plan(graph: &CellGraph<Planar>, rows: &BitMatrix, options: &CertifyOptions) -> Proven {
+fn proven_plan(graph: &CellGraph<Planar>, rows: &BitMatrix, options: &CertifyOptions<'_>) -> Proven {
     let made = certify_plan(graph, rows, options).expect("the graph is good");
     let read = PlanProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
     assert_eq!(read, made);
@@ -181,7 +181,7 @@ fn searched(graph: &CellGraph<Convex>) -> ConvexVisibility {
     search.finish()
 }
 
-fn proven_convex(graph: &CellGraph<Convex>, rows: &BitMatrix, options: &CertifyOptions) -> Proven {
+fn proven_convex(graph: &CellGraph<Convex>, rows: &BitMatrix, options: &CertifyOptions<'_>) -> Proven {
     let made = certify_convex(graph, rows, options).expect("the graph is good");
     let read = ConvexProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
     assert_eq!(read, made);

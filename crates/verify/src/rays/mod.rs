@@ -11,27 +11,37 @@ use crate::truth::Truth;
 use rayon::prelude::*;
 use seen::{Seen, Tally};
 use sightlines_geometry::Random;
+use sightlines_progress::{Cancelled, Counter, Observer, Progress};
 use sightlines_pvs::{CellId, Table};
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 /// Rays that one thread shoots in a row; violations are counted after every [`BATCH`] of them.
 const CHUNK: u64 = 256;
 const BATCH: u64 = 64;
 
 /// Shoots rays, and adds to the findings what they found.
-pub(crate) fn check(table: &Table, truth: &Truth<'_>, options: &VerifyOptions, findings: &mut Findings) {
+pub(crate) fn check(
+    table: &Table,
+    truth: &Truth<'_>,
+    options: &VerifyOptions<'_>,
+    findings: &mut Findings,
+) -> Result<(), Cancelled> {
     if table.n_cells() == 0 {
         findings.no_rays = Some("the table has no cells");
-        return;
+        return Ok(());
     }
     if findings.by_kind.contains_key("count") {
         findings.no_rays = Some("the table is not of this scene");
-        return;
+        return Ok(());
     }
     match truth {
         Truth::Plan(plan) => match PlanWorld::new(table, plan) {
             Some(world) => shoot_all(&world, table, options, findings),
-            None => findings.no_rays = Some("the table was stripped of the outlines of its cells"),
+            None => {
+                findings.no_rays = Some("the table was stripped of the outlines of its cells");
+                Ok(())
+            }
         },
         Truth::Scene(scene) => shoot_all(&SolidWorld::new(table, scene), table, options, findings),
         Truth::Portals(graph) => shoot_all(&PortalWorld::new(graph), table, options, findings),
@@ -39,19 +49,46 @@ pub(crate) fn check(table: &Table, truth: &Truth<'_>, options: &VerifyOptions, f
     }
 }
 
-fn shoot_all<R: RayOracle>(world: &R, table: &Table, options: &VerifyOptions, findings: &mut Findings) {
+/// A part of all rays: the share that its reports give is that of all of them.
+struct Part<'a> {
+    observer: &'a dyn Observer,
+    begin: f64,
+    end: f64,
+}
+
+impl Observer for Part<'_> {
+    fn report(&self, progress: Progress) -> ControlFlow<()> {
+        let share = self.begin + (self.end - self.begin) * progress.share;
+        self.observer.report(progress.with_share(share))
+    }
+}
+
+fn shoot_all<R: RayOracle>(
+    world: &R,
+    table: &Table,
+    options: &VerifyOptions<'_>,
+    findings: &mut Findings,
+) -> Result<(), Cancelled> {
     let seen = Seen::of(table);
     let tally = Tally::new(table);
     let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
     let n_chunks = options.rays.div_ceil(CHUNK);
+    let (n_random, n_aimed) = (options.rays as f64, options.pairs as f64 * f64::from(options.tries));
+    let middle = n_random / (n_random + n_aimed).max(1.0);
+    let parts = options
+        .progress
+        .map(|observer| [(0.0, middle), (middle, 1.0)].map(|(begin, end)| Part { observer, begin, end }));
+    let part = |k: usize| parts.as_ref().map(|parts| &parts[k] as &dyn Observer);
+    let counter = Counter::new(part(0), "random rays", n_chunks as usize);
     let mut chunk = 0;
     while chunk < n_chunks && hidden.len() < VerifyOptions::MOST_VIOLATIONS {
         let end = (chunk + BATCH).min(n_chunks);
         let shoot = |k: u64| {
             let n = CHUNK.min(options.rays - k * CHUNK);
-            shoot_chunk(world, &seen, &tally, table.n_cells(), n, mixed(options.seed, k))
+            let found = shoot_chunk(world, &seen, &tally, table.n_cells(), n, mixed(options.seed, k));
+            counter.step().map(|()| found)
         };
-        let found: Vec<_> = (chunk..end).into_par_iter().map(shoot).collect();
+        let found: Vec<_> = (chunk..end).into_par_iter().map(shoot).collect::<Result<_, Cancelled>>()?;
         for (sights, n_rays) in found {
             findings.n_rays += n_rays;
             // Of several for a pair the first ray counts.
@@ -63,12 +100,14 @@ fn shoot_all<R: RayOracle>(world: &R, table: &Table, options: &VerifyOptions, fi
     }
     let suspects = suspects::most(world, table, &seen, options.pairs);
     if hidden.len() < VerifyOptions::MOST_VIOLATIONS {
+        let counter = Counter::new(part(1), "aimed rays", suspects.len());
         let aim = |s: &suspects::Suspect| {
             let mut random = Random::new(mixed(options.seed, s.hash));
             let tries = if s.is_surrounded { options.tries.saturating_mul(8) } else { options.tries };
-            world.aim(table, s.from.0, s.target, tries, &mut random)
+            let found = world.aim(table, s.from.0, s.target, tries, &mut random);
+            counter.step().map(|()| found)
         };
-        let found: Vec<_> = suspects.par_iter().map(aim).collect();
+        let found: Vec<_> = suspects.par_iter().map(aim).collect::<Result<_, Cancelled>>()?;
         found.into_iter().flatten().for_each(|s| {
             hidden.entry(key(&s)).or_insert(s);
         });
@@ -90,6 +129,7 @@ fn shoot_all<R: RayOracle>(world: &R, table: &Table, options: &VerifyOptions, fi
             Target::Object(object) => Violation::HiddenObject { cell: from, object, segment },
         });
     }
+    Ok(())
 }
 
 /// A pair of cells, whichever of them is looked from, or of a cell and an object.

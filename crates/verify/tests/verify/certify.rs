@@ -22,7 +22,7 @@ fn proofs_of(table: &Table) -> Vec<u8> {
     certified(table, &CertifyOptions::default()).expect("the table has cells and portals").proofs.to_bytes()
 }
 
-fn certified(table: &Table, options: &CertifyOptions) -> Result<Certified, CertifyError> {
+fn certified(table: &Table, options: &CertifyOptions<'_>) -> Result<Certified, CertifyError> {
     let graph = from_table::graph(table).ok_or(CertifyError::NoGraph)?;
     certify_table(table, &graph, options)
 }

@@ -3,6 +3,7 @@
 use super::Error;
 use crate::error::OutputError;
 use crate::output::{self, bytes, seconds};
+use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::Baked;
 use sightlines::stabtree::CertifyOptions;
@@ -45,9 +46,12 @@ impl CertifyArgs {
         out: &Path,
         baked: &Baked,
         threads: usize,
+        show_progress: bool,
     ) -> Result<Option<Certified>, Error> {
         let Some(file) = self.file(out) else { return Ok(None) };
-        let made = baked.certify(&CertifyOptions { threads, ..CertifyOptions::default() });
+        let bar = Bar::new("proofs", show_progress);
+        let made = baked.certify(&CertifyOptions { threads, progress: Some(&bar), ..CertifyOptions::default() });
+        drop(bar);
         let made = made.map_err(|source| Error::Certify { path: path.to_owned(), source })?;
         let content = made.proofs.to_bytes();
         output::save(&file, &content)?;

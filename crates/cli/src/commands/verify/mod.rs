@@ -13,6 +13,7 @@ use crate::error::InputError;
 use crate::input;
 use crate::input::refuse;
 use crate::picture::PictureKind;
+use crate::progress::Bar;
 use crate::{output, tables};
 use error::Error;
 use outcome::{Outcome, With};
@@ -67,7 +68,7 @@ pub(crate) struct VerifyArgs {
 /// Bytes of blocks of a packed table that are kept while it is unpacked.
 const CACHE: usize = 64 << 20;
 
-pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Error> {
     if let Some(picture) = &args.draw {
         PictureKind::of(picture)?;
         output::check(&[&args.table, &args.scene], &[picture])?;
@@ -88,7 +89,10 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<Answer, Error> {
     }
     let VerifyArgs { rays, pairs, tries, seed, threads, .. } = *args;
     let start = Instant::now();
-    let findings = verify(table, &scene.truth(), &VerifyOptions { rays, pairs, tries, seed, threads });
+    let bar = Bar::new("rays", show_progress);
+    let options = VerifyOptions { rays, pairs, tries, seed, threads, progress: Some(&bar) };
+    let findings = verify(table, &scene.truth(), &options);
+    drop(bar);
     let findings =
         findings.map_err(|source| Error::Verify { table: args.table.clone(), scene: args.scene.clone(), source })?;
     let time = start.elapsed();

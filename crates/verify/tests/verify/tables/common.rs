@@ -48,11 +48,11 @@ pub(crate) struct Case {
 }
 
 /// Options that suit tests: few random rays, and all hidden pairs.
-pub(crate) fn quick() -> VerifyOptions {
+pub(crate) fn quick() -> VerifyOptions<'static> {
     VerifyOptions { rays: 4_000, pairs: 3_000, ..VerifyOptions::default() }
 }
 
-pub(crate) fn check(table: &Table, real: &Real, options: &VerifyOptions) -> Findings {
+pub(crate) fn check(table: &Table, real: &Real, options: &VerifyOptions<'_>) -> Findings {
     verify(table, &real.truth(), options).expect("a table of this kind of scene")
 }
 

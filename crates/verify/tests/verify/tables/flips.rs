@@ -2,8 +2,11 @@
 
 use crate::tables::common::{Case, cases, changed, check, quick};
 use sightlines_geometry::Random;
+use sightlines_progress::Progress;
 use sightlines_pvs::{CellId, Table};
-use sightlines_verify::{Findings, Truth, VerifyOptions, Violation, verify};
+use sightlines_verify::{Findings, Truth, VerifyError, VerifyOptions, Violation, verify};
+use std::ops::ControlFlow;
+use std::sync::Mutex;
 
 /// Invariant: a true table has no violations, and rays confirm a part of what it shows.
 #[test]
@@ -29,6 +32,26 @@ fn threads_change_nothing() {
             };
             assert_eq!(with(1), with(3), "{}", case.name);
         }
+    }
+}
+
+/// Invariant: an observer gets shares from 0 to 1, changes nothing, and may cancel.
+#[test]
+fn rays_are_observed() {
+    for case in cases().into_iter().step_by(3) {
+        let shares = Mutex::new(Vec::new());
+        let watch = |progress: Progress| {
+            shares.lock().expect("no panic").push(progress.share);
+            ControlFlow::Continue(())
+        };
+        let options = VerifyOptions { rays: 2_000, pairs: 300, ..quick() };
+        let watched = check(&case.table, &case.real, &VerifyOptions { progress: Some(&watch), ..options });
+        assert_eq!(watched, check(&case.table, &case.real, &options), "{}", case.name);
+        let shares = shares.into_inner().expect("no panic");
+        assert!(shares.len() > 8 && shares.iter().all(|share| (0.0..=1.0).contains(share)), "{shares:?}");
+        let stop = |_: Progress| ControlFlow::Break(());
+        let stopped = verify(&case.table, &case.real.truth(), &VerifyOptions { progress: Some(&stop), ..options });
+        assert!(matches!(stopped, Err(VerifyError::Cancelled(_))), "{}: {stopped:?}", case.name);
     }
 }
 
