@@ -2,7 +2,7 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the whole way for any input ([`bake`](fn@bake)) and the steps for each kind of it ([`bake_plan`], [`bake_scene`],
+//! - **Owns**: the whole way for any input ([`bake`](fn@bake)), from a file of any format ([`Bakeable`]), and the steps for each kind of it ([`bake_plan`], [`bake_scene`],
 //!   [`bake_regions`], [`bake_prt`], [`bake_map`]), all of which return the graph, the table and a report ([`Baked`]); stab
 //!   trees ([`with_stab_trees`]) and proofs ([`certify_table`]) from a graph, and the graph of a stored table ([`from_table`]);
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
@@ -13,6 +13,7 @@
 //!   threads; every approximation on the way errs towards visible.
 
 pub mod auto;
+mod bakeable;
 mod baked;
 mod certify;
 mod error;
@@ -37,6 +38,7 @@ mod stab;
 mod subdivide;
 mod table;
 
+pub use bakeable::{Bakeable, BakeableError};
 pub use baked::{Baked, BakedMap, BakedPlan, BakedPrt, BakedRegions, BakedScene};
 pub use certify::{Certified, CertifyError, Proofs, certify_table};
 pub use error::BakeError;

@@ -1,38 +1,36 @@
-//! Inputs by name. Which format a file has is decided in [`sightlines::formats::input`]; here it is what a command can use, or an error.
+//! Inputs by name. [`sightlines::formats::input`] decides which format a file has; this module returns what a command can use, or an
+//! error.
 
 use crate::error::InputError;
 use sightlines::bake::from_table::planar_graph;
-use sightlines::cells::{CellGraph, Plan, Planar};
+use sightlines::bake::{Bakeable, BakeableError};
+use sightlines::cells::{CellGraph, Planar};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
-use sightlines::formats::quake::{Bsp, Prt};
+use sightlines::formats::input::HEAD;
+use sightlines::formats::quake::{Prt, portals_beside};
 use sightlines::formats::scene::{Simplified, read_scene};
-use sightlines::formats::{Input as FileInput, InputKind, ReadError, SceneFile, Source, Wad, detect_file, geojson};
-use sightlines::packed;
-use sightlines::pvs::{Table, format};
+use sightlines::formats::{Input, InputKind, ReadError, SceneFile, Source, Wad, detect_file};
+use sightlines::pvs::Table;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What a file holds, as [`formats::input`](sightlines::formats::input) recognises it; `None` if no format does.
 pub(crate) fn kind_of(path: &Path) -> Result<Option<InputKind>, InputError> {
     Ok(detect_file(path)?.map(|format| format.kind))
 }
 
-/// Reads a table.
+/// Reads a table. What is no table is refused by its first bytes, however large it is.
 pub(crate) fn table(path: &Path) -> Result<Table, InputError> {
-    let open = |source| InputError::Open { path: path.to_owned(), source };
-    let mut bytes = Vec::new();
-    let mut file = File::open(path).map_err(open)?;
-    // What is no table is refused before the rest of a large file is read.
-    file.by_ref().take(format::MAGIC.len() as u64).read_to_end(&mut bytes).map_err(open)?;
-    if bytes == packed::format::MAGIC {
+    let kind = kind_of(path)?;
+    if kind == Some(InputKind::Packed) {
         return Err(InputError::IsPacked { path: path.to_owned() });
     }
-    if bytes == format::MAGIC {
-        file.read_to_end(&mut bytes).map_err(open)?;
-    } else {
-        refuse_source(path)?;
-    }
+    refuse_source(path)?;
+    let limit = if kind == Some(InputKind::Table) { u64::MAX } else { HEAD as u64 };
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes));
+    read.map_err(|source| InputError::Open { path: path.to_owned(), source })?;
     Table::from_bytes(&bytes).map_err(|source| InputError::Table { path: path.to_owned(), source })
 }
 
@@ -50,13 +48,13 @@ const fn is_source(kind: InputKind) -> bool {
     matches!(kind, InputKind::Wad | InputKind::Plan | InputKind::Scene | InputKind::Prt | InputKind::Bsp)
 }
 
-/// Whether a table is of a portal file, with its map or without: its cells are joined by convex portals, and nobody knows
-/// their volumes.
+/// Whether a table is of a portal file, with its map or without: its cells are joined by convex portals, and their volumes are
+/// unknown.
 pub(crate) fn is_of_portals(table: &Table) -> bool {
     table.kind().is_quake()
 }
 
-/// Refuses a table that does not know where its cells are; `what` says what cannot be done for that.
+/// Refuses a table that does not store where its cells are; `what` names what cannot be done without.
 pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static str) -> Result<(), InputError> {
     if !table.has_places() { Err(InputError::NoPlaces { path: path.to_owned(), what }) } else { Ok(()) }
 }
@@ -66,47 +64,44 @@ pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, Inp
     planar_graph(table).ok_or_else(|| InputError::Stripped(path.to_owned()))
 }
 
-/// What is to be built.
-#[derive(Debug)]
-pub(crate) enum Input {
-    /// A scene in the plane.
-    Plan(PlanFile),
-    /// A scene in space.
-    Scene(SceneFile),
-    /// The clusters of a Quake map, without the map.
-    Portals(Prt),
-    /// A Quake map, without its portals.
-    Map(Bsp),
-}
-
-/// A plan, and the map that it is of.
-#[derive(Debug)]
-pub(crate) struct PlanFile {
-    pub(crate) plan: Plan,
-    pub(crate) map: Option<String>,
-}
-
-/// What `build` takes, as errors say it.
+/// What `build` takes, in the words of errors.
 const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
 
-/// Reads what is to be built: a map of a WAD, a GeoJSON file, a scene in space, a portal file, or a Quake map.
+/// Reads a file from which a table can be built: a WAD, a GeoJSON file, a scene in space, a portal file, or a Quake map. `map` is
+/// refused for all but WADs.
 pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, InputError> {
     let format = detect_file(path)?.filter(|format| is_source(format.kind));
     let format = format.ok_or_else(|| InputError::Kind { path: path.to_owned(), expected: BUILDABLE })?;
     if map.is_some() && format.kind != InputKind::Wad {
         return Err(InputError::MapOfPlan(path.to_owned()));
     }
-    match Source::File(path).read_as(format)? {
-        FileInput::Wad(wad) => Ok(Input::Plan(plan_of_map(path, &wad, map)?)),
-        FileInput::Plan(plan) => Ok(Input::Plan(PlanFile { plan, map: None })),
-        FileInput::Scene(file) => {
-            check_occluder(path, &file)?;
-            Ok(Input::Scene(file))
+    Ok(Source::File(path).read_as(format)?)
+}
+
+/// Makes of a file, and what belongs to it, what can be baked.
+pub(crate) fn bakeable(
+    path: &Path,
+    input: Input,
+    map: Option<&str>,
+    portals: Option<Prt>,
+) -> Result<Bakeable, InputError> {
+    Bakeable::new(input, map, portals).map_err(|error| match error {
+        BakeableError::Read(error) => error.into(),
+        BakeableError::Choice(error) => which_map(path, error),
+        BakeableError::Doom(error) => ReadError::new(path, error).into(),
+        BakeableError::Plan { map, source } => {
+            InputError::Plan { path: path.to_owned(), map: Some(map.to_string()), source }
         }
-        FileInput::Prt(prt) => Ok(Input::Portals(prt)),
-        FileInput::Bsp(bsp) => Ok(Input::Map(bsp)),
-        _ => Err(InputError::Kind { path: path.to_owned(), expected: BUILDABLE }),
-    }
+        BakeableError::Moved => InputError::NoOccluder(path.to_owned()),
+        BakeableError::NoPortals => InputError::MapWithoutPortals(path.to_owned()),
+        _ => InputError::Kind { path: path.to_owned(), expected: BUILDABLE },
+    })
+}
+
+/// The portal file of a Quake map: the one that was named, or the one beside the map.
+pub(crate) fn portal_file(map: &Path, named: Option<&Path>) -> Result<PathBuf, InputError> {
+    let path = named.map_or_else(|| portals_beside(map), Path::to_owned);
+    if named.is_some() || path.exists() { Ok(path) } else { Err(InputError::MapWithoutPortals(map.to_owned())) }
 }
 
 /// Refuses a file that is no scene in space.
@@ -117,7 +112,7 @@ pub(crate) fn check_is_scene(path: &Path) -> Result<(), InputError> {
     }
 }
 
-/// Reads a scene that is to hide something, and refuses one that might hide what can be seen.
+/// Reads a scene whose triangles are used as occluders, and refuses one that might hide what can be seen.
 pub(crate) fn occluders(path: &Path) -> Result<SceneFile, InputError> {
     let file = read_scene(path)?;
     check_occluder(path, &file)?;
@@ -132,37 +127,25 @@ pub(crate) fn check_occluder(path: &Path, file: &SceneFile) -> Result<(), InputE
     }
 }
 
-/// Reads a plan in a GeoJSON file.
-pub(crate) fn plan(path: &Path) -> Result<PlanFile, InputError> {
-    Ok(PlanFile { plan: geojson::read_plan(path)?, map: None })
-}
-
-/// Reads a map of a WAD; its only one, if none is named.
+/// Reads a map of a WAD; without a name, its only one.
 pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap, InputError> {
-    map_of(path, &Wad::read(path)?, name)
+    let wad = Wad::read(path)?;
+    let maps = list_maps(&wad);
+    let lumps = choose_map(&maps, name).map_err(|error| which_map(path, error))?;
+    Ok(DoomMap::parse(&wad, lumps).map_err(|error| ReadError::new(path, error))?)
 }
 
-fn plan_of_map(path: &Path, wad: &Wad, name: Option<&str>) -> Result<PlanFile, InputError> {
-    let map = map_of(path, wad, name)?;
-    let name = map.name().to_string();
-    let plan =
-        map.plan().map_err(|source| InputError::Plan { path: path.to_owned(), map: Some(name.clone()), source })?;
-    Ok(PlanFile { plan, map: Some(name) })
+/// Names the WAD in which no map was chosen.
+fn which_map(path: &Path, error: MapChoiceError) -> InputError {
+    let path = path.to_owned();
+    match error {
+        MapChoiceError::Which { names } => InputError::WhichMap { path, names },
+        MapChoiceError::NoSuchMap { name, names } => InputError::NoSuchMap { path, name, names },
+        _ => InputError::NoMaps(path),
+    }
 }
 
-/// The map that is meant, with what there is to choose from if none is.
-fn map_of(path: &Path, wad: &Wad, name: Option<&str>) -> Result<DoomMap, InputError> {
-    let maps = list_maps(wad);
-    let names = || maps.iter().map(|map| map.name().to_string()).collect();
-    let lumps = choose_map(&maps, name).map_err(|error| match error {
-        MapChoiceError::NoMaps => InputError::NoMaps(path.to_owned()),
-        MapChoiceError::Which { .. } => InputError::WhichMap { path: path.to_owned(), names: names() },
-        _ => InputError::NoSuchMap { path: path.to_owned(), name: name.unwrap_or_default().to_owned(), names: names() },
-    })?;
-    Ok(DoomMap::parse(wad, lumps).map_err(|error| ReadError::new(path, error))?)
-}
-
-/// Refuses the first option that was given though it is meant for something else.
+/// Refuses the first of the given options, which are meant for something else.
 pub(crate) fn refuse(
     path: &Path,
     given: &[(&'static str, bool)],

@@ -1,5 +1,5 @@
 #![cfg_attr(
-    any(not(doctest), all(feature = "bake", feature = "cells", feature = "geometry")),
+    any(not(doctest), all(feature = "bake", feature = "cells", feature = "formats", feature = "geometry", feature = "scenes")),
     doc = include_str!("../README.md")
 )]
 //!

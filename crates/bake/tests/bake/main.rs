@@ -1,6 +1,7 @@
 //! Tables of plans, maps and scenes, against oracles and full rebuilds.
 
 mod any_input;
+mod bakeable;
 mod live;
 mod mirrors;
 mod plan;

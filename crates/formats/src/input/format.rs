@@ -1,4 +1,4 @@
-//! What the registry says of a format.
+//! An entry of the registry.
 
 use super::members::{has_member, is_object};
 use super::{Input, Source};
@@ -60,7 +60,7 @@ pub enum Sign {
     JsonMember(&'static str),
     /// All other JSON.
     Json,
-    /// Not at all: only the name says it.
+    /// Not at all: only the name decides.
     Name,
 }
 

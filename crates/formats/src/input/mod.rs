@@ -1,6 +1,6 @@
 //! Which format a file has, and what it holds, in one place.
 //!
-//! [`FORMATS`] lists what is read: name, endings, how it is recognised, reader. [`detect`] tells the format of some bytes with a
+//! [`FORMATS`] lists what is read: name, endings, how it is recognised, reader. [`detect`] returns the format of bytes with a
 //! name, [`detect_file`] that of a file, and [`read_input`] reads it. A new format is a module with a reader, one line
 //! in that list, and a sample in its test.
 //!
@@ -23,13 +23,14 @@ pub use format::{Format, InputKind, Sign};
 pub use registry::{FORMATS, detect};
 
 use crate::error::ReadErrorKind;
-use crate::quake::{Bsp, Prt};
+use crate::quake::prt::parse_prt;
+use crate::quake::{Bsp, Prt, portals_beside};
 use crate::{LevelsIndex, ReadError, SceneFile, ViewCells, Wad};
 use sightlines_cells::Plan;
 use sightlines_pvs::Table;
 use std::borrow::Cow;
 use std::fs::{self, File};
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 /// As many bytes from the beginning of a file [`detect`] looks at.
@@ -96,6 +97,25 @@ impl<'a> Source<'a> {
     /// As [`Source::read`].
     pub fn read_as(&self, format: &Format) -> Result<Input, ReadError> {
         (format.read)(self).map_err(|kind| ReadError::new(self.name(), kind))
+    }
+
+    /// The portals of a Quake map: those of the portal file beside it; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`ReadError`] with the name of the portal file and the place in it.
+    pub fn portals(&self) -> Result<Option<Prt>, ReadError> {
+        let path = portals_beside(self.name());
+        let name = Path::new(path.file_name().unwrap_or_default());
+        let found = match *self {
+            Self::File(map) => Folder::of(map).read(name),
+            Self::Memory { beside: Some(beside), .. } => beside.read(name),
+            Self::Memory { beside: None, .. } => Ok(None),
+        };
+        match found {
+            Ok(bytes) => bytes.map(|b| parse_prt(&b).map_err(|error| ReadError::new(&path, error))).transpose(),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(ReadError::new(&path, error)),
+        }
     }
 
     /// The name of the input.

@@ -17,12 +17,13 @@ pub(crate) use error::Error;
 pub(crate) use source::bake_visibly;
 
 use crate::Answer;
-use crate::input::{self, Input, refuse};
+use crate::input::{self, refuse};
 use crate::output;
 use options::BakeArgs;
 use serde::Serialize;
 use sightlines::bake::auto::choose_for;
-use sightlines::bake::{BakeOptions, Baked, Report, SceneMethod};
+use sightlines::bake::{BakeOptions, Bakeable, Baked, Report, SceneMethod};
+use sightlines::formats::Input;
 use source::Source;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -69,22 +70,23 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     args.certify.check(path, out)?;
     let input = input::read(path, args.map.as_deref())?;
     args.refuse_meaningless(&input)?;
-    let source = Source::new(path, input, args.prt.as_deref(), out, &args.bake)?;
+    let chosen = (args.map.as_deref(), args.prt.as_deref());
+    let source = Source::new(path, input, chosen, out, &args.bake)?;
     let mut options = args.bake.options();
     args.region.apply(&mut options)?;
     let mut auto = None;
     if options.method == SceneMethod::Auto {
-        let (choice, chosen) = choose_for(&source.input(), &options);
+        let (choice, chosen) = choose_for(&(&source.content).into(), &options);
         (auto, options) = (Some(auto::Chosen::new(choice)), chosen);
     }
     args.refuse_for_regions(&source, &options)?;
 
-    let baked = bake_visibly(path, source.input(), &options, show_progress);
+    let baked = bake_visibly(path, (&source.content).into(), &options, show_progress);
     let baked = baked.map_err(|error| source.failed(path, error))?;
     let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, show_progress)?;
     let bytes = baked.table.to_bytes();
     output::save(out, &bytes)?;
-    let proofs = args.certify.write(path, out, &baked, options.threads)?;
+    let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
     let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
     output::print(args.json, &Built { auto, outcome, stab, proofs })?;
     Ok(Answer::Yes)
@@ -93,7 +95,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
 impl BuildArgs {
     /// Refuses options that mean nothing for an input.
     fn refuse_meaningless(&self, input: &Input) -> Result<(), Error> {
-        if !matches!(input, Input::Map(_)) {
+        if !matches!(input, Input::Bsp(_)) {
             refuse(&self.input, &[("--prt", self.prt.is_some())], "Quake maps", "none")?;
         }
         if !matches!(input, Input::Scene(_)) {
@@ -104,7 +106,7 @@ impl BuildArgs {
 
     /// Refuses what tables by from-region queries cannot have.
     fn refuse_for_regions(&self, source: &Source, options: &BakeOptions<'_>) -> Result<(), Error> {
-        if !matches!(source, Source::Scene(_)) || !options.takes_regions() {
+        if !matches!(source.content, Bakeable::Scene(_)) || !options.takes_regions() {
             return Ok(());
         }
         let of_certify = [("--certify", self.certify.is_given())];
@@ -138,23 +140,23 @@ impl Outcome {
         verbose: bool,
     ) -> Self {
         let (table, fast) = (&baked.table, options.fast);
-        match (source, &baked.report) {
-            (Source::Plan(file), Report::Plan(did)) => {
-                Self::Plan(plan::Outcome::new(out, file.map.clone(), table, did))
+        match (&source.content, &baked.report) {
+            (Bakeable::Plan { map, .. }, Report::Plan(did)) => {
+                Self::Plan(plan::Outcome::new(out, map.map(|name| name.to_string()), table, did))
             }
-            (Source::Scene(file), Report::Scene(did)) => {
+            (Bakeable::Scene(file), Report::Scene(did)) => {
                 Self::Scene(Box::new(space::Outcome::new(out, file, options.portals, table, did)))
             }
-            (Source::Scene(file), Report::Regions(did)) => {
+            (Bakeable::Scene(file), Report::Regions(did)) => {
                 Self::Regions(Box::new(region::Outcome::new(out, file, options.has_given_cells(), table, did)))
             }
-            (Source::Portals(prt), Report::Clusters(did)) => {
+            (Bakeable::Portals(prt), Report::Clusters(did)) => {
                 Self::Portals(portals::Outcome::new(out, prt, fast, did, n_bytes).verbose(verbose))
             }
-            (Source::Map(bsp, portals), Report::Map(did)) => {
-                Self::Map(quake::Outcome::new(out, bsp, portals, fast, did, n_bytes).verbose(verbose))
+            (Bakeable::Map(bsp, prt), Report::Map(did)) => {
+                Self::Map(quake::Outcome::new(out, bsp, prt, fast, did, n_bytes).verbose(verbose))
             }
-            _ => unreachable!("a bake reports on the kind of input that it was given"),
+            _ => unreachable!("the report of a bake is of the kind of its input"),
         }
     }
 }

@@ -4,44 +4,24 @@ use super::Error;
 use super::portals::write_method;
 use crate::clusters::Clusters;
 use crate::error::InputError;
-use crate::output::{self, bytes, count};
+use crate::output::{bytes, count};
 use serde::Serialize;
 use sightlines::bake::{MapReport, PrtBakeError, WorldSummary};
 use sightlines::formats::Prt;
-use sightlines::formats::quake::{Bsp, VisibilityError, read_prt};
+use sightlines::formats::quake::{Bsp, VisibilityError};
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// The portals of a map.
-#[derive(Debug)]
-pub(crate) struct Portals {
-    path: PathBuf,
-    pub(super) prt: Prt,
-}
-
-impl Portals {
-    /// Reads the portal file that was named, or the one beside the map.
-    pub(crate) fn read(map: &Path, named: Option<&Path>, out: &Path) -> Result<Self, Error> {
-        let path = named.map_or_else(|| map.with_extension("prt"), Path::to_owned);
-        if named.is_none() && !path.exists() {
-            return Err(InputError::MapWithoutPortals(map.to_owned()).into());
-        }
-        output::refuse_same(&path, out)?;
-        let prt = read_prt(&path)?;
-        Ok(Self { path, prt })
-    }
-}
-
-/// Names the file that an error is about: the map, its portal file, or that the two do not go together.
-pub(super) fn failed(map: &Path, portals: &Portals, source: PrtBakeError) -> Error {
+/// Names the file that an error is about: the map, its portal file, or both if they do not go together.
+pub(super) fn failed(map: &Path, portals: &Path, source: PrtBakeError) -> Error {
     match source {
         PrtBakeError::Bsp(_) => Error::BakePrt { path: map.to_owned(), source },
         PrtBakeError::Visibility(
             source @ (VisibilityError::Leafs { .. }
             | VisibilityError::Clusters { .. }
             | VisibilityError::OtherMap { .. }),
-        ) => InputError::OtherMap { prt: portals.path.clone(), bsp: map.to_owned(), source: Box::new(source) }.into(),
-        source => Error::BakePrt { path: portals.path.clone(), source },
+        ) => InputError::OtherMap { prt: portals.to_owned(), bsp: map.to_owned(), source: Box::new(source) }.into(),
+        source => Error::BakePrt { path: portals.to_owned(), source },
     }
 }
 
@@ -72,19 +52,12 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    pub(crate) fn new(
-        out: &Path,
-        bsp: &Bsp,
-        portals: &Portals,
-        fast: bool,
-        report: &MapReport,
-        n_bytes: usize,
-    ) -> Self {
+    pub(crate) fn new(out: &Path, bsp: &Bsp, prt: &Prt, fast: bool, report: &MapReport, n_bytes: usize) -> Self {
         let WorldSummary { n_faces, n_unlisted_faces, n_listed, n_reaching, n_planes, slack, .. } = report.world;
         Self {
             out: out.display().to_string(),
             format: bsp.format().name(),
-            portal_format: portals.prt.dialect().magic(),
+            portal_format: prt.dialect().magic(),
             fast,
             clusters: Clusters::new(&report.clusters),
             n_faces,

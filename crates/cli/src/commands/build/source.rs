@@ -1,67 +1,56 @@
 //! What is built: an input with all files that belong to it.
 
-use super::quake::{self, Portals};
-use super::{BakeArgs, Error, plan, space};
+use super::{BakeArgs, Error, plan, quake, space};
 use crate::buffers::MethodFailed;
-use crate::input::{Input, PlanFile};
+use crate::input;
+use crate::output;
 use crate::progress::Bar;
-use sightlines::bake::{BakeError, BakeInput, BakeOptions, Baked, Report, bake};
-use sightlines::formats::quake::Bsp;
-use sightlines::formats::{Prt, SceneFile};
-use std::path::Path;
+use sightlines::bake::{BakeError, BakeInput, BakeOptions, Bakeable, Baked, Report, bake};
+use sightlines::formats::Input;
+use sightlines::formats::quake::read_prt;
+use std::path::{Path, PathBuf};
 
 /// An input with all files that belong to it.
 #[derive(Debug)]
-pub(super) enum Source {
-    Plan(PlanFile),
-    Scene(SceneFile),
-    Portals(Prt),
-    Map(Bsp, Portals),
+pub(super) struct Source {
+    pub(super) content: Bakeable,
+    /// The portal file of a Quake map.
+    portals: Option<PathBuf>,
 }
 
 impl Source {
-    /// Completes an input that came from `path`: a map by its portal file, which is `prt` or beside it. Refuses options that
-    /// mean nothing for it.
+    /// Completes an input that came from `path`: chooses the map of a WAD, and reads the portal file of a Quake map, which is `prt` or
+    /// beside it. Refuses options that mean nothing for the input.
     pub(super) fn new(
         path: &Path,
         input: Input,
-        prt: Option<&Path>,
+        (map, prt): (Option<&str>, Option<&Path>),
         out: &Path,
         args: &BakeArgs,
     ) -> Result<Self, Error> {
-        let source = match input {
-            Input::Plan(file) => Self::Plan(file),
-            Input::Scene(file) => Self::Scene(file),
-            Input::Portals(prt) => Self::Portals(prt),
-            Input::Map(bsp) => Self::Map(bsp, Portals::read(path, prt, out)?),
-        };
-        match source {
-            Self::Plan(_) => args.check_for_plan(path)?,
-            Self::Scene(_) => args.check_for_space(path)?,
-            Self::Portals(_) | Self::Map(..) => args.check_for_portals(path)?,
+        let portals = if matches!(input, Input::Bsp(_)) { Some(input::portal_file(path, prt)?) } else { None };
+        portals.iter().try_for_each(|portals| output::refuse_same(portals, out))?;
+        let prt = portals.as_ref().map(read_prt).transpose()?;
+        let content = input::bakeable(path, input, map, prt)?;
+        match content {
+            Bakeable::Plan { .. } => args.check_for_plan(path)?,
+            Bakeable::Scene(_) => args.check_for_space(path)?,
+            Bakeable::Portals(_) | Bakeable::Map(..) => args.check_for_portals(path)?,
         }
-        Ok(source)
-    }
-
-    /// The input of the bake.
-    pub(super) fn input(&self) -> BakeInput<'_> {
-        match self {
-            Self::Plan(file) => (&file.plan).into(),
-            Self::Scene(file) => file.into(),
-            Self::Portals(prt) => prt.into(),
-            Self::Map(bsp, portals) => (bsp, &portals.prt).into(),
-        }
+        Ok(Self { content, portals })
     }
 
     /// The error, with the name of the file that it is about.
     pub(super) fn failed(&self, path: &Path, source: BakeError) -> Error {
-        let path = path.to_owned();
-        match (self, source) {
-            (Self::Map(_, portals), BakeError::Prt(source)) => quake::failed(&path, portals, source),
-            (_, BakeError::Prt(source)) => Error::BakePrt { path, source },
-            (_, BakeError::Method(source)) => MethodFailed { path, source }.into(),
-            (Self::Plan(file), source) => Error::Bake { path, map: file.map.clone(), source: Box::new(source) },
-            (_, source) => Error::Bake { path, map: None, source: Box::new(source) },
+        let map = match &self.content {
+            Bakeable::Plan { map, .. } => map.map(|name| name.to_string()),
+            _ => None,
+        };
+        match (source, &self.portals) {
+            (BakeError::Prt(source), Some(portals)) => quake::failed(path, portals, source),
+            (BakeError::Prt(source), None) => Error::BakePrt { path: path.to_owned(), source },
+            (BakeError::Method(source), _) => MethodFailed { path: path.to_owned(), source }.into(),
+            (source, _) => Error::Bake { path: path.to_owned(), map, source: Box::new(source) },
         }
     }
 }

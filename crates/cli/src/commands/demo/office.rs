@@ -4,7 +4,6 @@ use super::Error;
 use super::{DemoArgs, Done};
 use crate::Answer;
 use crate::commands::build::{bake_visibly, plan};
-use crate::input;
 use crate::output::{self, bytes, percent};
 use crate::picture::{PictureKind, draw_plan, save_picture};
 use serde::Serialize;
@@ -24,8 +23,8 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     let (plan_path, table_path) = (folder.join("plan.geojson"), folder.join("plan.pvs"));
     output::save(&plan_path, geojson::write_plan(&office).as_bytes())?;
     // The plan is read back from the file, as `build` would do.
-    let file = input::plan(&plan_path)?;
-    let baked = bake_visibly(&plan_path, (&file.plan).into(), &BakeOptions::default(), show_progress);
+    let floor = geojson::read_plan(&plan_path)?;
+    let baked = bake_visibly(&plan_path, (&floor).into(), &BakeOptions::default(), show_progress);
     let baked = baked.map_err(|source| Error::Bake { path: plan_path, source: Box::new(source) })?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let mut files = vec!["plan.geojson".to_owned(), "plan.pvs".to_owned()];

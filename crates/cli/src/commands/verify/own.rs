@@ -7,7 +7,7 @@ use crate::output::{bytes, count};
 use serde::Serialize;
 use sightlines::bake::BakeError;
 use sightlines::formats::InputKind;
-use sightlines::formats::quake::{portals_beside, read_bsp, read_prt};
+use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::triangulation::subdivide;
 use sightlines::verify::{OwnError, OwnSummary, OwnVisibility};
 use std::fmt;
@@ -86,7 +86,7 @@ pub(super) fn read(
     }
 }
 
-/// Reads the lump of a Quake map; of which cluster each leaf is, is in the portal file of the scene.
+/// Reads the lump of a Quake map; the portal file of the scene lists the cluster of each leaf.
 fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility, Error> {
     let bsp = read_bsp(path)?;
     let named = portals_of(path, scene, prt)?;
@@ -135,11 +135,7 @@ fn refused(path: &Path, map: Option<String>, error: OwnError) -> Error {
 fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<PathBuf, Error> {
     match (input::kind_of(scene)?, prt) {
         (Some(InputKind::Prt), _) => Ok(scene.to_owned()),
-        (Some(InputKind::Bsp), Some(prt)) => Ok(prt.to_owned()),
-        (Some(InputKind::Bsp), None) => {
-            let beside = portals_beside(scene);
-            if beside.exists() { Ok(beside) } else { Err(InputError::MapWithoutPortals(scene.to_owned()).into()) }
-        }
+        (Some(InputKind::Bsp), prt) => Ok(input::portal_file(scene, prt)?),
         _ => Err(Error::OwnScene {
             path: path.to_owned(),
             scene: scene.to_owned(),

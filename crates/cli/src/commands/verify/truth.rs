@@ -1,11 +1,11 @@
-//! The scene of a table, as it is checked against.
+//! The scene that a table is checked against.
 
 use super::Error;
 use crate::error::InputError;
-use crate::input::refuse;
-use crate::input::{self, Input};
-use sightlines::bake::PrtBakeError;
+use crate::input::{self, refuse};
+use sightlines::bake::{Bakeable, PrtBakeError};
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
+use sightlines::formats::Input;
 use sightlines::formats::quake::bsp::BspError;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{graph_of_prt, read_prt};
@@ -24,21 +24,21 @@ impl Real {
     /// Reads a scene of any kind; of a map also its portals.
     pub(super) fn read(path: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Self, Error> {
         let input = input::read(path, map)?;
-        if !matches!(input, Input::Map(_)) {
+        let file = match input {
+            Input::Bsp(_) => Some(input::portal_file(path, prt)?),
+            _ => None,
+        };
+        if file.is_none() {
             refuse(path, &[("--prt", prt.is_some())], "Quake maps", "none")?;
         }
-        Ok(match input {
-            Input::Plan(file) => Self::Plan(file.plan),
-            Input::Scene(file) => Self::Scene(file.scene),
-            Input::Portals(prt) => Self::Portals(graph_of_prt(&prt)),
-            Input::Map(bsp) => {
-                let named = prt.map_or_else(|| path.with_extension("prt"), Path::to_owned);
-                if prt.is_none() && !named.exists() {
-                    return Err(InputError::MapWithoutPortals(path.to_owned()).into());
-                }
-                let portals = read_prt(&named)?;
+        let portals = file.as_ref().map(read_prt).transpose()?;
+        Ok(match input::bakeable(path, input, map, portals)? {
+            Bakeable::Plan { plan, .. } => Self::Plan(plan),
+            Bakeable::Scene(file) => Self::Scene(file.scene),
+            Bakeable::Portals(prt) => Self::Portals(graph_of_prt(&prt)),
+            Bakeable::Map(bsp, portals) => {
                 let other_map = |source| InputError::OtherMap {
-                    prt: named.clone(),
+                    prt: file.unwrap_or_default(),
                     bsp: path.to_owned(),
                     source: Box::new(source),
                 };
@@ -50,7 +50,7 @@ impl Real {
         })
     }
 
-    /// The same without what is seen in it, for a table that says nothing of objects.
+    /// The same without objects, for a table that has none.
     pub(super) fn without_objects(self) -> Self {
         match self {
             Self::Plan(plan) => {
