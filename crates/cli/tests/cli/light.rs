@@ -55,3 +55,25 @@ fn what_cannot_be_drawn_is_refused() {
     folder.run(&[&["light", "none.obj", "--light", "0,8,0,1,8,1", "-o", "out.png"][..], &VIEW].concat()).expect(2);
     assert_eq!(folder.names(), ["board.obj"]);
 }
+
+/// A closed box over the floor: every method finds its umbra, or less of it, and none finds umbra where the others prove light.
+#[test]
+fn every_method_finds_umbrae() {
+    let folder = with_board();
+    folder.write(
+        "box.obj",
+        "v -8 0 -8\nv -8 0 8\nv 8 0 8\nv 8 0 -8\nf 1 2 3 4\n\
+         v -2 2 -2\nv 2 2 -2\nv 2 2 2\nv -2 2 2\nv -2 3 -2\nv 2 3 -2\nv 2 3 2\nv -2 3 2\n\
+         o box\nf 5 6 7 8\nf 9 12 11 10\nf 5 9 10 6\nf 6 10 11 7\nf 7 11 12 8\nf 8 12 9 5\n",
+    );
+    let run = |method: &str| {
+        let args = ["light", "box.obj", "--light", "-1,8,-1,1,8,1", "--method", method, "-o", "out.png", "--json"];
+        let reply = folder.run(&[&args[..], &VIEW].concat()).expect(0).json();
+        (number(&reply, "area_umbra"), number(&reply, "area_lit"))
+    };
+    let all = run("sheets,multifocal,shafts,voxels");
+    for method in ["sheets", "multifocal", "shafts", "voxels"] {
+        let (umbra, lit) = run(method);
+        assert!(umbra > 0.0 && umbra <= all.0 + 1e-9 && (lit - all.1).abs() < 1e-9, "{method}: {umbra} {lit} {all:?}");
+    }
+}

@@ -1,9 +1,8 @@
 //! Why `light` fails.
 
-use crate::error::InputError;
-use crate::error::OutputError;
+use crate::buffers::MethodFailed;
 use crate::eye::EyeError;
-use crate::picture::PictureError;
+use crate::file_error::{FileError, from_file_error};
 use sightlines::multifocal::BackendError;
 use sightlines::multifocal::VolumeError;
 use sightlines::visible_surface::FacesError;
@@ -12,16 +11,10 @@ use std::path::PathBuf;
 /// Why `light` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A picture that cannot be drawn or written.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
-    /// An eye that sees nothing.
+    File(FileError),
+    /// A camera that shows nothing.
     #[error(transparent)]
     Eye(#[from] EyeError),
     /// A scene that is too large.
@@ -30,7 +23,12 @@ pub(crate) enum Error {
     /// A box that is no volume of viewpoints.
     #[error("--volume: {0}")]
     Volume(#[from] VolumeError),
-    /// Nobody could fill the buffer.
+    /// A method cannot be prepared.
+    #[error(transparent)]
+    Method(#[from] MethodFailed),
+    /// No backend could fill the buffer.
     #[error("{}: {source}", path.display())]
     Backend { path: PathBuf, source: BackendError },
 }
+
+from_file_error!(Error);

@@ -5,14 +5,16 @@ mod method;
 mod outcome;
 
 use crate::Answer;
+use crate::buffers::MethodFailed;
 use crate::eye::EyeArgs;
 use crate::input;
+use crate::named::one_of;
 use crate::output;
 use crate::picture::{self, PictureError};
 use crate::region::Region;
 use crate::view::Up;
 use error::Error;
-use method::{Kind, made};
+use method::{UmbraMethod, union};
 use outcome::Outcome;
 use sightlines::area_light::{Options, Shade, Shadows, Sides, shown};
 use sightlines::multifocal::{FromRegion, Volume};
@@ -50,11 +52,11 @@ pub(crate) struct LightArgs {
         long,
         help_heading = "Method",
         value_name = "NAME[,NAME...]",
-        value_enum,
         value_delimiter = ',',
-        default_value = "sheets"
+        default_value = UmbraMethod::Sheets.name(),
+        value_parser = one_of(&UmbraMethod::all(), UmbraMethod::name, UmbraMethod::about)
     )]
-    method: Vec<Kind>,
+    method: Vec<UmbraMethod>,
     /// Maximum number of times that a face is halved
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 10)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_DEPTH)))]
@@ -91,7 +93,8 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer, Error> {
     let chosen = shown(&faces, &image);
 
     let start = Instant::now();
-    let mut method = made(&args.method, faces.corners(), file.scene.bounds());
+    let mut method =
+        union(&args.method, &file.scene).map_err(|source| MethodFailed { path: args.scene.clone(), source })?;
     let options = Options { sides: Sides::Towards(camera.eye()), max_depth: args.depth, min_size: args.min_size };
     let shadows = Shadows::new(&faces);
     let lighting = shadows

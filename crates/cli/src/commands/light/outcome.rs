@@ -22,7 +22,7 @@ pub(super) struct Outcome {
     pub(super) size: [u32; 2],
     /// Pixels in umbra, lit, traced.
     pub(super) pixels: [u64; 3],
-    /// Rays that were cast, and those that a picture without knowledge takes.
+    /// Rays that were cast, and those that a picture without proofs takes.
     pub(super) rays: [u64; 2],
     pub(super) decided: Duration,
     pub(super) drawn: Duration,
