@@ -1,7 +1,7 @@
 //! The program `sightlines`: visibility tables from a shell.
 //!
 //! Owns: arguments, files by name, what is printed where, exit codes.
-//! Does not know: how anything is computed; every command is a few calls of the library.
+//! Out of scope: how anything is computed; every command is a few calls of the library.
 //! Invariants: results go to standard output, everything else to standard error; an output file appears
 //! whole or not at all, and not if anything failed; a closed pipe is no error.
 
@@ -12,6 +12,7 @@ mod commands;
 mod error;
 mod eye;
 mod facts;
+mod file_error;
 mod folder;
 mod glb;
 mod input;
@@ -66,7 +67,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::Build(args) => commands::build::run(args, show_progress, arguments.verbose > 0)?,
         Command::Reject(args) => commands::reject::run(args, show_progress)?,
         Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0)?,
-        Command::Verify(args) => commands::verify::run(args)?,
+        Command::Verify(args) => commands::verify::run(args, show_progress)?,
         Command::Query(args) => commands::query::run(args)?,
         Command::Walk(args) => commands::walk::run(args, show_progress)?,
         Command::Pack(args) => commands::pack::pack(args)?,

@@ -1,8 +1,7 @@
 //! `export`: a table as JSON.
 
 use crate::Answer;
-use crate::error::InputError;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use crate::{input, output};
 use sightlines::report::{export_json, write_json};
 use std::io::Write;
@@ -11,13 +10,12 @@ use std::path::PathBuf;
 /// Why `export` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
 }
+
+from_file_error!(Error);
 
 /// Arguments of `export`.
 #[derive(Debug, clap::Args)]

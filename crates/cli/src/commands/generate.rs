@@ -1,7 +1,7 @@
 //! `generate`: scenes to try things on.
 
 use crate::Answer;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use crate::glb::{self, GlbError, save_glb};
 use crate::output::{self, bytes, count};
 use serde::Serialize;
@@ -13,9 +13,9 @@ use std::path::PathBuf;
 /// Why `generate` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// A result that cannot be written.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
     /// A scene that cannot be written as GLB.
     #[error(transparent)]
     Glb(#[from] GlbError),
@@ -23,6 +23,8 @@ pub(crate) enum Error {
     #[error(transparent)]
     Generate(#[from] SceneError),
 }
+
+from_file_error!(Error);
 
 /// Arguments of `generate`.
 #[derive(Debug, clap::Args)]

@@ -2,7 +2,7 @@
 
 use crate::Answer;
 use crate::error::InputError;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use crate::output::{self, bytes, count, percent};
 use crate::{input, tables};
 use serde::Serialize;
@@ -18,16 +18,15 @@ const CACHE: usize = 64 << 20;
 /// Why `pack` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
     /// A table cannot be packed.
     #[error("{}: {source}", path.display())]
     Pack { path: PathBuf, source: PackError },
 }
+
+from_file_error!(Error);
 
 /// Arguments of `pack`.
 #[derive(Debug, clap::Args)]
@@ -106,14 +105,14 @@ struct Outcome {
     out: String,
     n_plain_bytes: u64,
     n_packed_bytes: u64,
-    /// Bytes that say what is seen; merging makes these fewer.
+    /// Bytes of the visibility rows; merging reduces them.
     n_row_bytes: u64,
     n_cells: usize,
     /// Rows that differ.
     n_rows: usize,
-    /// Rows that did not differ before.
+    /// How many times two different rows were merged.
     n_merges: usize,
-    /// Pairs of cells that are visible now, for each that was.
+    /// Visible pairs of cells for each one before merging.
     over_estimation: f64,
 }
 

@@ -1,13 +1,12 @@
 //! `reject`: the REJECT lumps of a WAD.
 
 use crate::Answer;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use crate::output::{self, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::RejectError;
 use sightlines::bake::{MapOutcome, MapStatus, RejectOptions, reject_wad};
-use sightlines::formats::ReadError;
 use sightlines::formats::Wad;
 use std::fmt;
 use std::path::PathBuf;
@@ -16,16 +15,15 @@ use std::time::Duration;
 /// Why `reject` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// A WAD, a plan or a scene cannot be read.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
     /// The REJECT lumps of a WAD cannot be built.
     #[error("{}: {source}", path.display())]
     Reject { path: PathBuf, source: Box<RejectError> },
 }
+
+from_file_error!(Error);
 
 /// Arguments of `reject`.
 #[derive(Debug, clap::Args)]

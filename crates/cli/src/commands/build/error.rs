@@ -1,32 +1,24 @@
 //! Why `build` fails.
 
 use crate::buffers::MethodFailed;
-use crate::error::InputError;
-use crate::error::OutputError;
 use crate::error::of_map;
+use crate::file_error::{FileError, from_file_error};
 use sightlines::bake::BakeError;
 use sightlines::bake::CertifyError;
 use sightlines::bake::PrtBakeError;
 use sightlines::bake::StabBakeError;
-use sightlines::formats::ReadError;
 use std::path::PathBuf;
 
 /// Why `build` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A WAD, a plan or a scene cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
     /// A from-region method cannot be prepared.
     #[error(transparent)]
     Method(#[from] MethodFailed),
-    /// A table that would be called JSON, and is none.
+    /// A table under a name that ends in `.json`.
     #[error("{}: `build` writes a table, which is not JSON: name it {}, and then: sightlines export {} -o {}", out.display(),
             out.with_extension("pvs").display(), out.with_extension("pvs").display(), out.display())]
     Json { out: PathBuf },
@@ -43,3 +35,5 @@ pub(crate) enum Error {
     #[error("{}: {source}", path.display())]
     Stab { path: PathBuf, source: StabBakeError },
 }
+
+from_file_error!(Error);

@@ -1,29 +1,17 @@
 //! Why `demo` fails.
 
-use crate::error::InputError;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use crate::glb::GlbError;
-use crate::picture::PictureError;
 use sightlines::bake::BakeError;
-use sightlines::formats::ReadError;
 use sightlines::scenes::SceneError;
 use std::path::PathBuf;
 
 /// Why `demo` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A WAD, a plan or a scene cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A picture that cannot be drawn or written.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
+    File(FileError),
     /// A scene that cannot be written as GLB.
     #[error(transparent)]
     Glb(#[from] GlbError),
@@ -34,3 +22,5 @@ pub(crate) enum Error {
     #[error(transparent)]
     Generate(#[from] SceneError),
 }
+
+from_file_error!(Error);

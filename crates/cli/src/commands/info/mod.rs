@@ -8,13 +8,12 @@ mod wad;
 
 use crate::Answer;
 use crate::error::InputError;
-use crate::error::OutputError;
 use crate::facts::{Facts, StabFacts};
+use crate::file_error::{FileError, from_file_error};
 use crate::input;
 use crate::output::{self, bytes};
 use serde::Serialize;
 use sightlines::formats::InputKind;
-use sightlines::formats::ReadError;
 use sightlines::pvs::Table;
 use sightlines::report::Summary;
 use std::fmt;
@@ -23,16 +22,12 @@ use std::path::{Path, PathBuf};
 /// Why `info` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A WAD, a plan or a scene cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
 }
+
+from_file_error!(Error);
 
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
@@ -74,7 +69,7 @@ struct TableInfo {
     /// If the table has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<StabFacts>,
-    /// How the table says it was made.
+    /// How the table was made, as it states.
     #[serde(serialize_with = "as_map")]
     info: Vec<(String, String)>,
 }
@@ -88,7 +83,7 @@ impl TableInfo {
         let file = path.display().to_string();
         let mut summary = Summary::of(table);
         if input::is_of_portals(table) {
-            // The boxes are around portals, not around cells: nothing is known of volumes. Null in JSON.
+            // The boxes are around portals, not around cells: volumes are unknown. Null in JSON.
             (summary.mean_floor_share, summary.floor) = (f64::NAN, f64::NAN);
         }
         Self { file, kind: "table", summary, stab: StabFacts::of(table), info: table.info().to_vec() }

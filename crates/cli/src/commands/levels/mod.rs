@@ -3,8 +3,7 @@
 mod outcome;
 
 use crate::Answer;
-use crate::error::InputError;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use crate::folder::NewFolder;
 use crate::input;
 use crate::output;
@@ -23,16 +22,15 @@ const N_RAYS: u64 = 1 << 12;
 /// Why `levels` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
     /// A scene that cannot be simplified.
     #[error(transparent)]
     Simplification(#[from] SimplificationError),
 }
+
+from_file_error!(Error);
 
 /// Arguments of `levels`.
 #[derive(Debug, clap::Args)]

@@ -1,9 +1,7 @@
 //! Why `multifocal` fails.
 
 use crate::buffers::MethodFailed;
-use crate::error::InputError;
-use crate::error::OutputError;
-use crate::picture::PictureError;
+use crate::file_error::{FileError, from_file_error};
 use sightlines::multifocal::BackendError;
 use sightlines::multifocal::JobError;
 use sightlines::multifocal::PlaneError;
@@ -13,15 +11,9 @@ use std::path::PathBuf;
 /// Why `multifocal` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A picture that cannot be drawn or written.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
+    File(FileError),
     /// A box that is no volume of viewpoints.
     #[error("--volume: {0}")]
     Volume(#[from] VolumeError),
@@ -43,3 +35,5 @@ pub(crate) enum Error {
     #[error("{}: {source}", path.display())]
     Backend { path: PathBuf, source: BackendError },
 }
+
+from_file_error!(Error);

@@ -1,7 +1,6 @@
 //! Why `query` fails.
 
-use crate::error::InputError;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use crate::place::LookupError;
 use sightlines::eye_to_cell::ViewError;
 use std::path::PathBuf;
@@ -9,22 +8,21 @@ use std::path::PathBuf;
 /// Why `query` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
     /// A cell or a point that the table does not have.
     #[error(transparent)]
     Lookup(#[from] LookupError),
-    /// A direction, or what else says how a viewer looks, that is none.
+    /// An invalid direction, angle or aspect ratio of the view.
     #[error("{option}: {source}")]
     View { option: &'static str, source: ViewError },
-    /// An angle of view, and nothing that says where it is looked.
+    /// An angle of view without a direction.
     #[error("--fov, --aspect and --up need --dir: without it the viewer looks all round")]
     LensWithoutDirection,
     /// A portal that the table does not have.
     #[error("{}: there is no portal {portal}: the table has {n_portals} portals", path.display())]
     NoSuchPortal { path: PathBuf, portal: u32, n_portals: usize },
 }
+
+from_file_error!(Error);

@@ -1,29 +1,17 @@
 //! Why `render` fails.
 
-use crate::error::InputError;
-use crate::error::OutputError;
 use crate::eye::EyeError;
-use crate::picture::PictureError;
-use sightlines::formats::ReadError;
+use crate::file_error::{FileError, from_file_error};
 use sightlines::visible_surface::FacesError;
 use std::path::PathBuf;
 
 /// Why `render` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A WAD, a plan or a scene cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A picture that cannot be drawn or written.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
-    /// An eye that sees nothing.
+    File(FileError),
+    /// A camera that shows nothing.
     #[error(transparent)]
     Eye(#[from] EyeError),
     /// A scene that is too large.
@@ -33,10 +21,10 @@ pub(crate) enum Error {
     #[error("--method: several methods are drawn with --compare only; name one")]
     ManyMethods,
     /// A depth format, and no z-buffer.
-    #[error("--depth: this is what a z-buffer keeps, and none is drawn: add --method zbuffer")]
+    #[error("--depth: this is the format of a z-buffer, and none is drawn: add --method zbuffer")]
     NoBuffer,
-    /// A table that nobody asks.
-    #[error("--table: nothing is asked of the table: add --cull pvs")]
+    /// A table that is not used.
+    #[error("--table: the table is not used: add --cull pvs")]
     NoCulling,
     /// A table is needed and not named.
     #[error("--cull pvs: this needs a table of the scene: name it with --table")]
@@ -51,6 +39,8 @@ pub(crate) enum Error {
     )]
     Sheet { n: usize, size: [u32; 2], most: u64 },
 }
+
+from_file_error!(Error);
 
 /// What a table and a scene do not have in common.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

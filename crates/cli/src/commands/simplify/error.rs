@@ -1,7 +1,6 @@
 //! Why `simplify` fails.
 
-use crate::error::InputError;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use crate::simplification::SimplificationError;
 use sightlines::multifocal::VolumeError;
 use sightlines::simplify::ViewsError;
@@ -10,12 +9,9 @@ use std::path::PathBuf;
 /// Why `simplify` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
     /// A scene that cannot be simplified.
     #[error(transparent)]
     Simplification(#[from] SimplificationError),
@@ -26,3 +22,5 @@ pub(crate) enum Error {
     #[error("{}: {source}", path.display())]
     Views { path: PathBuf, source: ViewsError },
 }
+
+from_file_error!(Error);

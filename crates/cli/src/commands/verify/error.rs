@@ -1,12 +1,9 @@
 //! Why `verify` fails.
 
-use crate::error::InputError;
-use crate::error::OutputError;
 use crate::error::of_map;
-use crate::picture::PictureError;
+use crate::file_error::{FileError, from_file_error};
 use sightlines::bake::BakeError;
 use sightlines::bake::PrtBakeError;
-use sightlines::formats::ReadError;
 use sightlines::formats::quake::VisibilityError;
 use sightlines::formats::reject::RejectLengthError;
 use sightlines::verify::ProofError;
@@ -16,18 +13,9 @@ use std::path::PathBuf;
 /// Why `verify` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A WAD, a plan or a scene cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A picture that cannot be drawn or written.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
+    File(FileError),
     /// A plan or a scene cannot be baked.
     #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
     Bake { path: PathBuf, map: Option<String>, source: Box<BakeError> },
@@ -59,3 +47,5 @@ pub(crate) enum Error {
     #[error("{}: --strict is for tables with proofs, and there are none: no --proofs, and no {}", path.display(), beside.display())]
     NoProofs { path: PathBuf, beside: PathBuf },
 }
+
+from_file_error!(Error);

@@ -1,10 +1,8 @@
 //! Why `walk` fails.
 
 use super::nesting::Found;
-use crate::error::InputError;
-use crate::error::OutputError;
+use crate::file_error::{FileError, from_file_error};
 use sightlines::eye_to_cell::{Method, ViewError};
-use sightlines::formats::ReadError;
 use sightlines::geometry::CoordinateError;
 use sightlines::walkthrough::LevelError;
 use std::path::PathBuf;
@@ -12,28 +10,24 @@ use std::path::PathBuf;
 /// Why `walk` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
-    /// An input that is none.
+    /// A file cannot be read, used or written.
     #[error(transparent)]
-    Input(#[from] InputError),
-    /// A WAD, a plan or a scene cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A result that cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    File(FileError),
     /// A path that cannot be walked.
     #[error("{}: {source}", path.display())]
     Path { path: PathBuf, source: PathError },
-    /// A table in which nobody can walk.
+    /// A table in which there is nowhere to walk.
     #[error("{}: no cell has a portal, so there is nowhere to go; name a path with --path", .0.display())]
     NoWay(PathBuf),
-    /// A method found something that a coarser one did not find: our own fault.
+    /// A method found something that a coarser one did not find: a defect of the program.
     #[error("{}: frame {frame}: {finer} finds {what}, which {coarser} does not; this is a defect of the program", path.display())]
     Nesting { path: PathBuf, frame: usize, finer: Method, coarser: Method, what: Found },
     /// An index of levels for another table.
     #[error("{}: {source}", path.display())]
     LevelsOf { path: PathBuf, source: UnlikeLevels },
 }
+
+from_file_error!(Error);
 
 /// Why levels do not go with a table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -44,7 +38,7 @@ pub(crate) enum UnlikeLevels {
     Index(#[from] LevelError),
 }
 
-/// Why a file is no walk. Frames count from 0.
+/// Why a file is not a walk. Frames count from 0.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum PathError {
     #[error("{0}")]
