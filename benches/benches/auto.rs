@@ -8,17 +8,14 @@ use sightlines::bake::auto::choose;
 use sightlines::bake::{CellsFrom, PortalMode, RegionBakeOptions, bake_regions};
 use sightlines::cells::Scene;
 use sightlines::formats::ViewCells;
-use sightlines::formats::scene::read_scene;
-use sightlines::formats::view_cells::ViewCell;
-use sightlines::formats::view_cells::read_view_cells;
-use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
 use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, Split, UnionMethod};
 use sightlines::multifocal_cpu::Fast;
-use sightlines::scenes::city::{CityOptions, city, city_crossings};
-use sightlines::scenes::{TowerOptions, tower, tower_rooms};
-use std::path::Path;
+use sightlines::scenes::{CityOptions, TowerOptions};
+use sightlines_benches::program::{Common, exit};
+use sightlines_benches::viewed::{ViewedScene, evenly};
+use std::error::Error;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -26,8 +23,8 @@ use std::time::{Duration, Instant};
 /// What is chosen for a scene, against every fixed choice.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Real scenes, and for each the file of its cells.
     #[arg(long, value_delimiter = ',', default_values_t = [
         "duplex:cells_rooms", "office_a:cells_rooms", "whale_large:cells_walk", "whale_tall:cells_rooms", "delft:cells_street",
@@ -40,12 +37,6 @@ struct Args {
     /// The cells of a k-d tree instead. Fixed choices with buffers, which take longer than auto's in any case, are left out.
     #[arg(long)]
     kd: bool,
-    /// A small city and a small tower only.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 struct Case {
@@ -60,43 +51,24 @@ impl Case {
     }
 }
 
-fn of_boxes(boxes: Vec<Aabb<3>>) -> CellsFrom {
-    let cells = (0..).zip(boxes).map(|(i, bounds): (u32, _)| ViewCell { id: i.to_string(), bounds }).collect();
-    CellsFrom::Boxes(ViewCells { cells })
+/// A scene with at most `n` of its boxes, or with the cells of a k-d tree.
+fn case(viewed: ViewedScene, n: usize, kd: bool) -> Case {
+    let ViewedScene { name, scene, cells, .. } = viewed;
+    let boxes = CellsFrom::Boxes(ViewCells { cells: evenly(cells, n) });
+    Case { name, scene, cells: if kd { CellsFrom::KdTree } else { boxes } }
 }
 
-/// At most `n` of the cells that are given.
-fn some(cells: &mut CellsFrom, n: usize) {
-    if let CellsFrom::Boxes(ViewCells { cells }) = cells {
-        let step = cells.len().div_ceil(n.max(1)).max(1);
-        *cells = std::mem::take(cells).into_iter().step_by(step).collect();
+fn scenes(args: &Args) -> Result<Vec<ViewedScene>, Box<dyn Error>> {
+    let test = args.common.test;
+    let blocks = if test { 3 } else { 6 };
+    let mut scenes = vec![
+        ViewedScene::city(CityOptions { blocks_x: blocks, blocks_z: blocks, ..CityOptions::default() })?,
+        ViewedScene::tower(TowerOptions { floors: if test { 1 } else { 2 }, ..TowerOptions::default() })?,
+    ];
+    for named in args.scenes.iter().filter(|_| !test) {
+        scenes.extend(ViewedScene::real(named)?);
     }
-}
-
-fn generated(args: &Args) -> Vec<Case> {
-    let blocks = if args.test { 3 } else { 6 };
-    let options = CityOptions { blocks_x: blocks, blocks_z: blocks, ..CityOptions::default() };
-    let boxes = city_crossings(options).expect("in range");
-    let streets = Case { name: "city".to_owned(), scene: city(options).expect("in range"), cells: of_boxes(boxes) };
-    let options = TowerOptions { floors: if args.test { 1 } else { 2 }, ..TowerOptions::default() };
-    let boxes = tower_rooms(options).expect("in range").into_iter().map(|room| room.bounds).collect();
-    let rooms = Case { name: "tower".to_owned(), scene: tower(options).expect("in range"), cells: of_boxes(boxes) };
-    vec![streets, rooms]
-}
-
-fn real(args: &Args) -> Vec<Case> {
-    let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
-        eprintln!("!! SIGHTLINES_DATA is not set: real scenes are left out");
-        return Vec::new();
-    };
-    let case = |named: &String| {
-        let (name, cells) = named.split_once(':').expect("a scene and its cells, with a colon between");
-        let folder = Path::new(&data).join("scenes").join(name);
-        let scene = read_scene(folder.join(format!("{name}.glb"))).expect("the scene can be read").scene;
-        let cells = read_view_cells(folder.join(format!("{cells}.json"))).expect("the cells can be read");
-        Case { name: name.to_owned(), scene, cells: CellsFrom::Boxes(cells) }
-    };
-    args.scenes.iter().map(case).collect()
+    Ok(scenes)
 }
 
 /// Planes and texels of buffers, if any; and whether sheets.
@@ -161,7 +133,7 @@ fn rows(case: &Case) -> bool {
         .collect();
     let start = Instant::now();
     let (facts, choice) = choose(&case.scene, case.is_given());
-    let method = choice.asks_a_method().then_some((choice.planes, choice.texels, choice.sheets));
+    let method = choice.uses_region_method().then_some((choice.planes, choice.texels, choice.sheets));
     let auto = bake(case, &format!("auto: {choice}"), true, method, start);
     let as_tight = fixed.iter().filter(|f| f.reported <= auto.reported).map(|f| f.time).min();
     let all = (auto.n_cells * case.scene.objects().len()) as f64;
@@ -191,19 +163,14 @@ fn rows(case: &Case) -> bool {
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    if args.filter.as_ref().is_some_and(|filter| !"auto".contains(filter.as_str())) {
+    if !args.common.is_wanted("auto") {
         return ExitCode::SUCCESS;
     }
-    let mut cases = generated(&args);
-    if !args.test {
-        cases.extend(real(&args));
-    }
-    for case in &mut cases {
-        some(&mut case.cells, if args.test { 3 } else { args.cells });
-        if args.kd {
-            case.cells = CellsFrom::KdTree;
-        }
-    }
+    let n = if args.common.test { 3 } else { args.cells };
+    let cases: Vec<Case> = match scenes(&args) {
+        Ok(scenes) => scenes.into_iter().map(|viewed| case(viewed, n, args.kd)).collect(),
+        Err(error) => return exit(Err(error)),
+    };
     println!(
         "| scene | triangles | cells | axial | loose | open | method | pairs | reported | s | against the fastest fixed one as tight |"
     );

@@ -1,23 +1,35 @@
-//! All 100 maps of Freedoom on one thread: CPU time of each map, the total, and how the tables compare
-//! with the shipped ones, which are those of ZenNode. Needs `SIGHTLINES_FREEDOOM`.
+//! All 100 maps of Freedoom on one thread: the time of each map, the total, and a comparison with the tables that Freedoom ships,
+//! which are those of ZenNode. Needs `SIGHTLINES_FREEDOOM`.
 
+use clap::Parser;
 use sightlines::bake::reject::{RejectOptions, reject_table};
 use sightlines::formats::doom::{DoomMap, list_maps};
 use sightlines::formats::{RejectTable, Wad};
+use sightlines_benches::program::Common;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+/// REJECT tables of Freedoom.
+#[derive(Debug, Clone, Parser)]
+struct Args {
+    #[command(flatten)]
+    common: Common,
+}
+
 fn main() {
+    let Args { common } = Args::parse();
+    if !common.is_wanted("bake/reject/freedoom") {
+        return;
+    }
     let Some(folder) = std::env::var_os("SIGHTLINES_FREEDOOM") else {
         eprintln!("SKIPPED: SIGHTLINES_FREEDOOM is not set, so Freedoom is not benched");
         return;
     };
-    let once = std::env::args().any(|a| a == "--test");
     let mut maps: Vec<(String, u32, Duration)> = Vec::new();
     let (mut only_shipped, mut only_ours) = (0u64, 0u64);
     for name in ["freedoom1.wad", "freedoom2.wad", "freedm.wad"] {
         let wad = Wad::read(Path::new(&folder).join(name)).unwrap_or_else(|e| panic!("{e}"));
-        for lumps in list_maps(&wad).iter().take(if once { 1 } else { usize::MAX }) {
+        for lumps in list_maps(&wad).iter().take(if common.test { 1 } else { usize::MAX }) {
             let start = Instant::now();
             let map = DoomMap::parse(&wad, lumps).unwrap_or_else(|e| panic!("{e}"));
             let options = RejectOptions { threads: 1, ..RejectOptions::default() };

@@ -5,8 +5,6 @@
 
 use clap::Parser;
 use sightlines::cells::Scene;
-use sightlines::formats::scene::read_scene;
-use sightlines::formats::view_cells::read_view_cells;
 use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::line_space::{Effort, LineSpace, Surface};
@@ -16,10 +14,12 @@ use sightlines::multifocal::{
     adaptive,
 };
 use sightlines::multifocal_cpu::Fast;
-use sightlines::scenes::city::{CityOptions, city, city_crossings};
-use sightlines::scenes::{TowerOptions, tower, tower_rooms};
+use sightlines::scenes::{CityOptions, TowerOptions};
+use sightlines_benches::program::{Common, exit};
+use sightlines_benches::viewed::{ViewedScene, evenly};
 use sightlines_testkit::RayScene;
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -28,8 +28,8 @@ use std::time::{Duration, Instant};
 /// Over-estimation of from-region methods on scenes.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Real scenes, and for each the file of its cells.
     #[arg(long, value_delimiter = ',', default_values_t = [
         "delft:cells_street", "sponza:cells_walk", "pandora:cells_walk", "whale_large:cells_walk", "duplex:cells_rooms", "office_a:cells_rooms",
@@ -47,12 +47,6 @@ struct Args {
     /// Only methods whose name contains it.
     #[arg(long, default_value = "")]
     method: String,
-    /// Checks the answers on a small city.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// A scene, and where it is looked from.
@@ -88,52 +82,39 @@ struct Found {
     ask: Duration,
 }
 
-/// At most `n` of them, evenly chosen.
-fn some<T>(cells: Vec<T>, n: usize) -> Vec<T> {
-    let step = cells.len().div_ceil(n.max(1)).max(1);
-    cells.into_iter().step_by(step).collect()
+/// A scene with at most `n` of its boxes, and what is known to be seen from them.
+fn case(viewed: ViewedScene, n: usize, mut dense: BTreeMap<String, Vec<u32>>) -> Case {
+    let ViewedScene { name, scene, cells, .. } = viewed;
+    let cells = evenly(cells, n);
+    let dense = cells.iter().map(|cell| dense.remove(&cell.id).unwrap_or_default()).collect();
+    Case { name, scene, cells: cells.into_iter().map(|cell| cell.bounds).collect(), dense }
 }
 
-fn generated(args: &Args) -> Vec<Case> {
-    let blocks = if args.test { 3 } else { 6 };
-    let options = CityOptions { blocks_x: blocks, blocks_z: blocks, ..CityOptions::default() };
-    let streets = city_crossings(options).expect("in range");
-    let mut cases = vec![Case {
-        name: "city".to_owned(),
-        scene: city(options).expect("in range"),
-        cells: streets,
-        dense: Vec::new(),
-    }];
-    if !args.test {
-        let options = TowerOptions { floors: 2, ..TowerOptions::default() };
-        let rooms = tower_rooms(options).expect("in range").into_iter().map(|room| room.bounds).collect();
-        let scene = tower(options).expect("in range");
-        cases.push(Case { name: "tower:2".to_owned(), scene, cells: rooms, dense: Vec::new() });
+/// A real scene, `SCENE:CELLS`.
+fn real(named: &str, n: usize) -> Result<Option<Case>, Box<dyn Error>> {
+    let Some(mut viewed) = ViewedScene::real(named)? else { return Ok(None) };
+    let cells = named.split_once(':').map_or("", |(_, cells)| cells);
+    let file = viewed.folder.as_ref().map(|folder| folder.join("seen_dense.json"));
+    let dense = file.map(|file| read_dense(&file, cells)).unwrap_or_default();
+    // Cells that were looked at closely are the ones to be judged by.
+    if !dense.is_empty() {
+        viewed.cells.retain(|cell| dense.contains_key(&cell.id));
     }
-    cases.iter_mut().for_each(|case| case.cells = some(std::mem::take(&mut case.cells), args.cells));
-    cases
+    Ok(Some(case(viewed, n, dense)))
 }
 
-fn real(args: &Args) -> Vec<Case> {
-    let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
-        eprintln!("!! SIGHTLINES_DATA is not set: real scenes are left out");
-        return Vec::new();
-    };
-    let case = |named: &String| {
-        let (name, cells) = named.split_once(':').expect("a scene and its cells, with a colon between");
-        let folder = Path::new(&data).join("scenes").join(name);
-        let scene = read_scene(folder.join(format!("{name}.glb"))).expect("the scene can be read").scene;
-        let mut dense = read_dense(&folder.join("seen_dense.json"), cells);
-        let mut cells = read_view_cells(folder.join(format!("{cells}.json"))).expect("the cells can be read").cells;
-        // Cells that were looked at closely are the ones to be judged by.
-        if !dense.is_empty() {
-            cells.retain(|cell| dense.contains_key(&cell.id));
+fn cases(args: &Args) -> Result<Vec<Case>, Box<dyn Error>> {
+    let blocks = if args.common.test { 3 } else { 6 };
+    let city = ViewedScene::city(CityOptions { blocks_x: blocks, blocks_z: blocks, ..CityOptions::default() })?;
+    let mut cases = vec![case(city, args.cells, BTreeMap::new())];
+    if !args.common.test {
+        let tower = ViewedScene::tower(TowerOptions { floors: 2, ..TowerOptions::default() })?;
+        cases.push(case(ViewedScene { name: "tower:2".to_owned(), ..tower }, args.cells, BTreeMap::new()));
+        for named in &args.scenes {
+            cases.extend(real(named, args.cells)?);
         }
-        let cells = some(cells, args.cells);
-        let dense = cells.iter().map(|cell| dense.remove(&cell.id).unwrap_or_default()).collect();
-        Case { name: name.to_owned(), scene, cells: cells.into_iter().map(|cell| cell.bounds).collect(), dense }
-    };
-    args.scenes.iter().map(case).collect()
+    }
+    Ok(cases)
 }
 
 /// Makes a method for a scene.
@@ -263,16 +244,16 @@ fn table(args: &Args, cases: &[Case]) -> usize {
 
 fn main() -> ExitCode {
     let mut args = Args::parse();
-    if args.filter.as_ref().is_some_and(|filter| !"from_region".contains(filter.as_str())) {
+    if !args.common.is_wanted("from_region") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         args = Args { cells: 2, rays: 5000, planes: vec![1], ..args };
     }
-    let mut cases = generated(&args);
-    if !args.test {
-        cases.extend(real(&args));
-    }
+    let cases = match cases(&args) {
+        Ok(cases) => cases,
+        Err(error) => return exit(Err(error)),
+    };
     match table(&args, &cases) {
         0 => ExitCode::SUCCESS,
         n => {

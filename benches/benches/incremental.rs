@@ -11,7 +11,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::stabtree::{SearchOptions, SpaceVisibility, space_visibility};
 use sightlines_benches::chart::{Panel, Series, svg};
-use sightlines_benches::program::{Common, exit, read_file};
+use sightlines_benches::program::{Common, Files, exit, read_rows, save};
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -39,18 +39,11 @@ struct Args {
     /// How often each is done and undone; the quickest time counts.
     #[arg(long, default_value_t = 2)]
     rounds: usize,
-    /// Writes what was measured.
-    #[arg(long)]
-    csv: Option<PathBuf>,
+    #[command(flatten)]
+    files: Files,
     /// Writes the table for people.
     #[arg(long)]
     md: Option<PathBuf>,
-    /// Writes the chart.
-    #[arg(long)]
-    svg: Option<PathBuf>,
-    /// Measures nothing, and writes what follows from this file.
-    #[arg(long, value_name = "CSV")]
-    draw: Option<PathBuf>,
 }
 
 /// Kinds of edits, in the order of the file.
@@ -90,19 +83,12 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
-    let rows = match &args.draw {
-        Some(file) => read_file(file, read)?,
-        None => measure(args)?,
-    };
+    let rows = args.files.rows(read, || measure(args))?;
     if args.common.test {
         check(&rows)?;
     }
-    let write_to = |path: &Option<PathBuf>, text: String| match path {
-        Some(path) => std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display())),
-        None => Ok(()),
-    };
-    write_to(&args.md, for_people(&rows))?;
-    write_to(&args.svg, chart(&rows))?;
+    save(args.md.as_deref(), || for_people(&rows))?;
+    args.files.save_chart(|| chart(&rows))?;
     print!("{}", table(&rows));
     Ok(())
 }
@@ -122,9 +108,7 @@ fn measure(args: &Args) -> Result<Vec<Row>, Box<dyn Error>> {
         let edits = edits(&scene, floors / 2, args.edits)?;
         for &threads in &args.threads {
             rows.extend(measure_tower(&scene, &edits, floors, threads, args)?);
-            if let Some(path) = &args.csv {
-                std::fs::write(path, write(&rows)).map_err(|e| format!("{}: {e}", path.display()))?;
-            }
+            args.files.save_rows(|| write(&rows))?;
         }
     }
     Ok(rows)
@@ -300,11 +284,7 @@ fn write(rows: &[Row]) -> String {
 }
 
 fn read(text: &str) -> Result<Vec<Row>, String> {
-    let mut lines = text.lines().zip(1..);
-    if lines.next().is_none_or(|(head, _)| head != HEAD) {
-        return Err("line 1: not what this bench writes".to_owned());
-    }
-    lines.map(|(line, number)| row_of(line).ok_or_else(|| format!("line {number}: not a row of this bench"))).collect()
+    read_rows(text, HEAD, row_of)
 }
 
 fn row_of(line: &str) -> Option<Row> {

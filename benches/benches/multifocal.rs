@@ -10,6 +10,7 @@ use sightlines::multifocal::{
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines::scenes::{Occlusion, OcclusionOptions, occlusion};
+use sightlines_benches::program::Common;
 use sightlines_testkit::{SampledView, sampled_view};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -18,8 +19,8 @@ use std::time::{Duration, Instant};
 /// Over-estimation and soundness of multifocal buffers.
 #[derive(Debug, Clone, Parser)]
 struct Args {
-    /// Runs only if this bench's name contains it.
-    filter: Option<String>,
+    #[command(flatten)]
+    common: Common,
     /// Half sizes of the volume.
     #[arg(long, value_delimiter = ',', default_values_t = [0.25, 0.5])]
     halves: Vec<f64>,
@@ -38,12 +39,6 @@ struct Args {
     /// Rays of each benchmark.
     #[arg(long, default_value_t = 1_000_000)]
     rays: u64,
-    /// Checks the answers on small benchmarks.
-    #[arg(long)]
-    test: bool,
-    /// Given by cargo.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// A benchmark, and what rays saw of it.
@@ -180,7 +175,7 @@ fn fill(args: &Args) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be started");
     println!("\n| occluders | texels | measure | ms on one thread | blocked |");
     println!("| ---: | ---: | --- | ---: | ---: |");
-    let sizes = if args.test { vec![(50, 64)] } else { vec![(1000, 512), (10_000, 1024)] };
+    let sizes = if args.common.test { vec![(50, 64)] } else { vec![(1000, 512), (10_000, 1024)] };
     for (n, texels) in sizes {
         let options = OcclusionOptions { occluders: n, tilt: 60, ..OcclusionOptions::default() };
         let made = occlusion(options).expect("numbers are in range");
@@ -195,7 +190,7 @@ fn fill(args: &Args) {
                 pool.install(|| fast.render(&job, &mut out)).expect("the CPU does not fail");
                 start.elapsed()
             };
-            let rounds = if args.test { 1 } else { 7 };
+            let rounds = if args.common.test { 1 } else { 7 };
             let mut times: Vec<Duration> = (0..rounds).map(|_| once()).collect();
             times.sort_unstable();
             let blocked = out[0].n_blocked() as f64 / f64::from(texels * texels);
@@ -208,10 +203,10 @@ fn fill(args: &Args) {
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    if args.filter.as_ref().is_some_and(|filter| !"multifocal".contains(filter.as_str())) {
+    if !args.common.is_wanted("multifocal") {
         return ExitCode::SUCCESS;
     }
-    if args.test {
+    if args.common.test {
         check(&args);
         fill(&args);
         return ExitCode::SUCCESS;

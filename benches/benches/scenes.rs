@@ -140,7 +140,7 @@ fn measure(args: &Args) -> Result<Report, Box<dyn std::error::Error>> {
     result.map(|()| report)
 }
 
-/// The scenes asked for, or all there are.
+/// The scenes that were named, or all there are.
 fn scenes(args: &Args) -> Result<Vec<SceneSpec>, Box<dyn std::error::Error>> {
     if !args.scenes.is_empty() {
         return Ok(args.scenes.clone());

@@ -10,12 +10,11 @@ use sightlines::pvs::Table;
 use sightlines::scenes::TowerOptions;
 use sightlines_benches::chart::{Panel, Series, exponent, svg};
 use sightlines_benches::child::{self, Job, Limits, Outcome, portals_of};
-use sightlines_benches::program::{Common, exit, read_file};
+use sightlines_benches::program::{Common, Files, exit, read_rows};
 use sightlines_benches::shares::{mean_share, share_of, triangles_of};
 use sightlines_benches::spec::SceneSpec;
 use sightlines_testkit::Random;
 use std::error::Error;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -51,15 +50,8 @@ struct Args {
     /// Threads of a bake; 0 for one for each core.
     #[arg(long, default_value_t = 0)]
     threads: usize,
-    /// Writes what was measured, tower by tower.
-    #[arg(long)]
-    csv: Option<PathBuf>,
-    /// Measures nothing, and draws what this file says was measured.
-    #[arg(long, value_name = "CSV", requires = "svg")]
-    draw: Option<PathBuf>,
-    /// The chart to write.
-    #[arg(long)]
-    svg: Option<PathBuf>,
+    #[command(flatten)]
+    files: Files,
 }
 
 /// The columns of the file, in which [`Row`] keeps its numbers.
@@ -104,16 +96,11 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
-    let rows = match &args.draw {
-        Some(file) => read_file(file, read)?,
-        None => measure(args)?,
-    };
+    let rows = args.files.rows(read, || measure(args))?;
     if args.common.test {
         check(&rows)?;
     }
-    if let Some(path) = &args.svg {
-        std::fs::write(path, chart(&rows)).map_err(|e| format!("{}: {e}", path.display()))?;
-    }
+    args.files.save_chart(|| chart(&rows))?;
     print(&rows);
     Ok(())
 }
@@ -144,9 +131,7 @@ fn measure(args: &Args) -> Result<Vec<Row>, Box<dyn Error>> {
             Outcome::TooLarge(bytes) => eprintln!("{spec}: stopped at {} MiB", bytes >> 20),
             Outcome::Failed => return Err(format!("{spec}: the bake failed").into()),
         }
-        if let Some(path) = &args.csv {
-            std::fs::write(path, write(&rows)).map_err(|e| format!("{}: {e}", path.display()))?;
-        }
+        args.files.save_rows(|| write(&rows))?;
     }
     if file.is_file() {
         std::fs::remove_file(&file)?;
@@ -190,16 +175,11 @@ fn write(rows: &[Row]) -> String {
 }
 
 fn read(text: &str) -> Result<Vec<Row>, String> {
-    let mut lines = text.lines().zip(1..);
-    if lines.next().is_none_or(|(head, _)| head != COLUMNS.join(",")) {
-        return Err("line 1: not what this bench writes".to_owned());
-    }
-    let row = |(line, number): (&str, usize)| {
+    let row = |line: &str| {
         let numbers: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
-        let row = numbers.ok().and_then(|numbers| Row::try_from(numbers).ok());
-        row.ok_or_else(|| format!("line {number}: not {} numbers", COLUMNS.len()))
+        Row::try_from(numbers.ok()?).ok()
     };
-    lines.map(row).collect()
+    read_rows(text, &COLUMNS.join(","), row)
 }
 
 fn points(rows: &[Row], y: impl Fn(&Row) -> f64) -> Vec<[f64; 2]> {

@@ -1,5 +1,5 @@
 //! What benches share: portal sequences as a search meets them, bakes in processes of their own, rays against
-//! tables, a z-buffer, methods on Quake maps, charts.
+//! tables, a z-buffer, methods on Quake maps, scenes with boxes for eyes, rows of files, charts.
 
 pub mod bits;
 pub mod chart;
@@ -13,6 +13,7 @@ pub mod recorded;
 pub mod shares;
 pub mod spec;
 pub mod targets;
+pub mod viewed;
 pub mod witness;
 
 use sightlines::cells::{CellGraph, Exit, Plan, Planar};

@@ -2,8 +2,6 @@
 
 use sightlines::bake::{SceneBakeOptions, bake_scene};
 use sightlines::cells::{CellId, Scene};
-use sightlines::formats::scene::read_scene;
-use sightlines::formats::view_cells::read_view_cells;
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
 use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod, Volume};
@@ -11,8 +9,8 @@ use sightlines::multifocal_cpu::Fast;
 use sightlines::pvs::Table;
 use sightlines::scenes::{CityOptions, TowerOptions, city, city_crossings, tower, tower_rooms};
 use sightlines::simplify::Views;
+use sightlines_benches::viewed::ViewedScene;
 use std::error::Error;
-use std::path::Path;
 use std::sync::Arc;
 
 /// A scene and a place in it.
@@ -66,16 +64,9 @@ pub(crate) fn named(name: &str, n: usize) -> Result<Vec<Case>, Box<dyn Error>> {
             Ok(cases)
         }
         real => {
-            let data = std::env::var_os("SIGHTLINES_DATA");
-            let Some(data) = data else {
-                eprintln!("!! SIGHTLINES_DATA is not set: {real} is left out");
-                return Ok(Vec::new());
-            };
-            let (name, cells) = real.split_once(':').ok_or("a real scene and its cells, with a colon between")?;
-            let folder = Path::new(&data).join("scenes").join(name);
-            let scene = read_scene(folder.join(format!("{name}.glb")))?.scene;
-            let cells = read_view_cells(folder.join(format!("{cells}.json")))?.cells;
-            of_boxes(name, scene, cells.into_iter().map(|c| c.bounds).collect(), n)
+            let Some(viewed) = ViewedScene::real(real)? else { return Ok(Vec::new()) };
+            let boxes = viewed.boxes();
+            of_boxes(&viewed.name, viewed.scene, boxes, n)
         }
     }
 }

@@ -13,9 +13,8 @@ use clap::Parser;
 use measured::Row;
 use sightlines::simplify::{HiddenBy, Prepared, SimplifyOptions};
 use sightlines_benches::chart::{Panel, Series, svg};
-use sightlines_benches::program::Common;
+use sightlines_benches::program::{Common, Files, read_csv, write_csv};
 use std::error::Error;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -42,15 +41,8 @@ struct Args {
     /// Rays from each eye at least; there are more for small budgets.
     #[arg(long, default_value_t = 20_000)]
     rays: u64,
-    /// Writes what was measured.
-    #[arg(long)]
-    csv: Option<PathBuf>,
-    /// Measures nothing, and draws what this file says was measured.
-    #[arg(long, value_name = "CSV", requires = "svg")]
-    draw: Option<PathBuf>,
-    /// The chart to write.
-    #[arg(long)]
-    svg: Option<PathBuf>,
+    #[command(flatten)]
+    files: Files,
 }
 
 fn main() -> ExitCode {
@@ -74,17 +66,12 @@ fn main() -> ExitCode {
 
 /// Whether every promise was kept.
 fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
-    let rows = match &args.draw {
-        Some(file) => measured::read(&std::fs::read_to_string(file)?)?,
-        None => measure(args)?,
-    };
+    let rows = args.files.rows(read_csv, || measure(args))?;
     if args.common.test {
         check(&rows)?;
     }
-    if let Some(path) = &args.svg {
-        std::fs::write(path, chart(&rows))?;
-    }
-    if args.draw.is_none() {
+    args.files.save_chart(|| chart(&rows))?;
+    if args.files.draw.is_none() {
         measured::print(&rows);
     }
     let broken: Vec<&Row> = rows.iter().filter(|r| r.breaks_its_promise()).collect();
@@ -108,9 +95,7 @@ fn measure(args: &Args) -> Result<Vec<Row>, Box<dyn Error>> {
                 let merged = shares.last().map(|&collapse| (collapse, true));
                 for how in shares.iter().map(|&collapse| (collapse, false)).chain(merged) {
                     rows.extend(measured::all(&case, &prepared, budget, how, args.eyes, args.rays)?);
-                    if let Some(path) = &args.csv {
-                        std::fs::write(path, measured::write(&rows))?;
-                    }
+                    args.files.save_rows(|| write_csv(&rows))?;
                 }
             }
         }
@@ -152,11 +137,11 @@ fn check(rows: &[Row]) -> Result<(), Box<dyn Error>> {
     let (none, some): (Vec<&Row>, Vec<&Row>) = ours.iter().partition(|r| r.budget == 0.0);
     assert!(none.iter().all(|r| r.changed == 0.0) && some.iter().all(|r| r.changed > 0.0), "{ours:?}");
     assert!(some.iter().all(|r| r.left < none[usize::from(r.flat)].left) && none[1].left < none[0].left, "{ours:?}");
-    let text = measured::write(rows);
+    let text = write_csv(rows);
     // Numbers that are none are not equal to themselves.
-    assert_eq!(measured::write(&measured::read(&text)?), text, "what was measured is read back");
-    assert_eq!(chart(&measured::read(&text)?), chart(rows), "the same numbers make the same chart");
-    assert!(measured::read(&text.replacen("intercepts,", "", 1)).is_err());
+    assert_eq!(write_csv(&read_csv::<Row>(&text)?), text, "what was measured is read back");
+    assert_eq!(chart(&read_csv(&text)?), chart(rows), "the same numbers make the same chart");
+    assert!(read_csv::<Row>(&text.replacen("intercepts,", "", 1)).is_err());
     let mut broken = some[0].clone();
     broken.worst = broken.bound * 4.0;
     assert!(broken.breaks_its_promise() && !some[0].breaks_its_promise());

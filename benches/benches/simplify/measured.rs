@@ -4,43 +4,43 @@ use crate::cases::Case;
 use sightlines::simplify::{
     MeasureOptions, Prepared, Simplified, SimplifyOptions, estimate, geometric, measure, measure_aimed,
 };
-use sightlines_benches::program::read_rows;
+use sightlines_benches::csv_row;
 use std::error::Error;
 use std::time::Instant;
 
-/// One metric at one budget.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Row {
-    pub(crate) scene: String,
-    pub(crate) view: usize,
-    pub(crate) budget: f64,
-    /// Share of the budget that is kept for collapsing.
-    pub(crate) collapse: f64,
-    /// Whether faces in one plane are merged.
-    pub(crate) flat: bool,
-    /// `intercepts` is ours, `shape` the quadrics of the geometry alone at the same count, `meshopt` another one's.
-    pub(crate) metric: String,
-    pub(crate) before: usize,
-    pub(crate) hidden: usize,
-    pub(crate) left: usize,
-    pub(crate) new: usize,
-    /// Promised; infinite if nothing is.
-    pub(crate) bound: f64,
-    /// Measured, of all rays and for the worst eye.
-    pub(crate) changed: f64,
-    pub(crate) worst: f64,
-    /// By rays that are aimed at what has changed, of the worst eye, and its standard error; for ours only.
-    pub(crate) aimed: f64,
-    pub(crate) aimed_error: f64,
-    pub(crate) other_object: f64,
-    pub(crate) moved: f64,
-    pub(crate) rays_per_eye: u64,
-    pub(crate) n_eyes: usize,
-    /// Without finding what is hidden, which is done once for all budgets.
-    pub(crate) seconds: f64,
+csv_row! {
+    /// One metric at one budget.
+    #[derive(Debug, Clone, PartialEq)]
+    pub(crate) struct Row {
+        pub(crate) scene: String,
+        pub(crate) view: usize,
+        pub(crate) budget: f64,
+        /// Share of the budget that is kept for collapsing.
+        pub(crate) collapse: f64,
+        /// Whether faces in one plane are merged.
+        pub(crate) flat: bool,
+        /// `intercepts` is ours, `shape` the quadrics of the geometry alone at the same count, `meshopt` another one's.
+        pub(crate) metric: String,
+        pub(crate) before: usize,
+        pub(crate) hidden: usize,
+        pub(crate) left: usize,
+        pub(crate) new: usize,
+        /// Promised; infinite if nothing is.
+        pub(crate) bound: f64,
+        /// Measured, of all rays and for the worst eye.
+        pub(crate) changed: f64,
+        pub(crate) worst: f64,
+        /// By rays that are aimed at what has changed, of the worst eye, and its standard error; for ours only.
+        pub(crate) aimed: f64,
+        pub(crate) aimed_error: f64,
+        pub(crate) other_object: f64,
+        pub(crate) moved: f64,
+        pub(crate) rays_per_eye: u64,
+        pub(crate) n_eyes: usize,
+        /// Without finding what is hidden, which is done once for all budgets.
+        pub(crate) seconds: f64,
+    }
 }
-
-const HEAD: &str = "scene,view,budget,collapse,flat,metric,before,hidden,left,new,bound,changed,worst,aimed,aimed_error,other_object,moved,rays_per_eye,n_eyes,seconds";
 
 impl Row {
     /// Whether more was changed than was promised, and not by chance: the chance is below one in a million.
@@ -117,90 +117,6 @@ pub(crate) fn all(
         rows.push(row("meshopt", &theirs, start.elapsed().as_secs_f64(), n_rays)?);
     }
     Ok(rows)
-}
-
-pub(crate) fn write(rows: &[Row]) -> String {
-    let line = |r: &Row| {
-        format!(
-            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-            r.scene,
-            r.view,
-            r.budget,
-            r.collapse,
-            r.flat,
-            r.metric,
-            r.before,
-            r.hidden,
-            r.left,
-            r.new,
-            r.bound,
-            r.changed,
-            r.worst,
-            r.aimed,
-            r.aimed_error,
-            r.other_object,
-            r.moved,
-            r.rays_per_eye,
-            r.n_eyes,
-            r.seconds
-        )
-    };
-    format!("{HEAD}\n{}", rows.iter().map(line).collect::<String>())
-}
-
-pub(crate) fn read(text: &str) -> Result<Vec<Row>, String> {
-    read_rows(text, HEAD, parse)
-}
-
-fn parse(line: &str) -> Option<Row> {
-    let all: Vec<&str> = line.split(',').collect();
-    let &[
-        scene,
-        view,
-        budget,
-        collapse,
-        flat,
-        metric,
-        before,
-        hidden,
-        left,
-        new,
-        bound,
-        changed,
-        worst,
-        aimed,
-        aimed_error,
-        other_object,
-        moved,
-        rays_per_eye,
-        n_eyes,
-        seconds,
-    ] = &all[..]
-    else {
-        return None;
-    };
-    Some(Row {
-        scene: scene.to_owned(),
-        view: view.parse().ok()?,
-        budget: budget.parse().ok()?,
-        collapse: collapse.parse().ok()?,
-        flat: flat.parse().ok()?,
-        metric: metric.to_owned(),
-        before: before.parse().ok()?,
-        hidden: hidden.parse().ok()?,
-        left: left.parse().ok()?,
-        new: new.parse().ok()?,
-        bound: bound.parse().ok()?,
-        changed: changed.parse().ok()?,
-        worst: worst.parse().ok()?,
-        aimed: aimed.parse().ok()?,
-        aimed_error: aimed_error.parse().ok()?,
-        other_object: other_object.parse().ok()?,
-        moved: moved.parse().ok()?,
-        rays_per_eye: rays_per_eye.parse().ok()?,
-        n_eyes: n_eyes.parse().ok()?,
-        seconds: seconds.parse().ok()?,
-    })
 }
 
 pub(crate) fn print(rows: &[Row]) {

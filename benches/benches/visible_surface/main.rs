@@ -13,9 +13,8 @@ use clap::Parser;
 use families::Family;
 use measured::{Limits, Row};
 use sightlines_benches::chart::{Panel, Series, svg};
-use sightlines_benches::program::{Common, exit};
+use sightlines_benches::program::{Common, Files, exit, read_csv, write_csv};
 use std::error::Error;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Visible surfaces for one viewpoint.
@@ -38,15 +37,8 @@ struct Args {
     /// Leaves out depth precision and tables.
     #[arg(long)]
     only_families: bool,
-    /// Writes what was measured.
-    #[arg(long)]
-    csv: Option<PathBuf>,
-    /// Measures nothing, and draws what this file says was measured.
-    #[arg(long, value_name = "CSV", requires = "svg")]
-    draw: Option<PathBuf>,
-    /// The chart to write.
-    #[arg(long)]
-    svg: Option<PathBuf>,
+    #[command(flatten)]
+    files: Files,
 }
 
 fn main() -> ExitCode {
@@ -62,20 +54,15 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
-    let rows = match &args.draw {
-        Some(file) => measured::read(&std::fs::read_to_string(file)?)?,
-        None => measure(args)?,
-    };
+    let rows = args.files.rows(read_csv, || measure(args))?;
     if args.common.test {
         check(&rows)?;
     }
-    if let Some(path) = &args.svg {
-        std::fs::write(path, chart(&rows))?;
-    }
+    args.files.save_chart(|| chart(&rows))?;
     if let Some(row) = rows.iter().find(|r| r.is_exact && r.wrong > 0) {
         return Err(format!("{} of {} is wrong in {} pixels", row.method, row.family, row.wrong).into());
     }
-    if args.draw.is_none() {
+    if args.files.draw.is_none() {
         measured::print(&rows);
         if !args.only_families {
             precision::print(size(args)?);
@@ -96,9 +83,7 @@ fn measure(args: &Args) -> Result<Vec<Row>, Box<dyn Error>> {
         let mut limits = Limits::new(args.limit);
         for scene in family.scenes(&args.sizes) {
             rows.extend(measured::all(family, &scene, size(args)?, &mut limits));
-            if let Some(path) = &args.csv {
-                std::fs::write(path, measured::write(&rows))?;
-            }
+            args.files.save_rows(|| write_csv(&rows))?;
         }
     }
     Ok(rows)
@@ -112,7 +97,7 @@ fn chart(rows: &[Row]) -> String {
         Series { name: method.to_owned(), points }
     };
     let panel = |title: &str, series: Vec<Series>| Panel { title: title.into(), x_name: "faces".into(), series };
-    let ms = |r: &Row| r.draw * 1e3;
+    let ms = |r: &Row| r.draw_s * 1e3;
     let panels = [
         panel(
             "soup: ms to draw",
@@ -120,7 +105,7 @@ fn chart(rows: &[Row]) -> String {
         ),
         panel(
             "soup: ms to prepare",
-            ["bsp", "schumacker", "raycast"].map(|m| of("soup", m, &|r| r.prepare * 1e3)).to_vec(),
+            ["bsp", "schumacker", "raycast"].map(|m| of("soup", m, &|r| r.prepare_s * 1e3)).to_vec(),
         ),
         panel(
             "wrong pixels (of exact methods: 0)",
@@ -160,9 +145,9 @@ fn check(rows: &[Row]) -> Result<(), Box<dyn Error>> {
         rows.iter().filter(|r| r.family == family && r.method == method).map(|r| r.wrong).sum()
     };
     assert!(wrong("cycles", "painter") > 0 && wrong("interleaved", "painter") > 0, "painter errs where it must");
-    let text = measured::write(rows);
-    assert_eq!(measured::read(&text)?, rows, "what was measured is read back");
-    assert_eq!(chart(&measured::read(&text)?), chart(rows), "the same numbers make the same chart");
-    assert!(measured::read(&text.replacen("painter,", "", 1)).is_err());
+    let text = write_csv(rows);
+    assert_eq!(read_csv::<Row>(&text)?, rows, "what was measured is read back");
+    assert_eq!(chart(&read_csv(&text)?), chart(rows), "the same numbers make the same chart");
+    assert!(read_csv::<Row>(&text.replacen("painter,", "", 1)).is_err());
     Ok(())
 }

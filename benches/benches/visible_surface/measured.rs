@@ -5,34 +5,34 @@ use sightlines::visible_surface::{
     Bsp, BspOptions, Counters, DepthFormat, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput,
     Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
-use sightlines_benches::program::read_rows;
+use sightlines_benches::csv_row;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// One method on one scene.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Row {
-    pub(crate) family: String,
-    pub(crate) faces: u64,
-    pub(crate) method: String,
-    /// Whether it promises to show what is seen.
-    pub(crate) is_exact: bool,
-    /// Seconds for what does not depend on the eye.
-    pub(crate) prepare: f64,
-    /// Seconds for a picture.
-    pub(crate) draw: f64,
-    /// Pixels that show another face than the ray caster, ties left out.
-    pub(crate) wrong: u64,
-    pub(crate) ties: u64,
-    pub(crate) covered: u64,
-    /// Pieces that faces were split into, which includes those that were not.
-    pub(crate) pieces: u64,
-    pub(crate) written: u64,
-    /// Decisions that doubles could not make.
-    pub(crate) exact: u64,
+csv_row! {
+    /// One method on one scene.
+    #[derive(Debug, Clone, PartialEq)]
+    pub(crate) struct Row {
+        pub(crate) family: String,
+        pub(crate) faces: u64,
+        pub(crate) method: String,
+        /// Whether it promises to show what is seen.
+        pub(crate) is_exact: bool,
+        /// Seconds for what does not depend on the eye.
+        pub(crate) prepare_s: f64,
+        /// Seconds for a picture.
+        pub(crate) draw_s: f64,
+        /// Pixels that show another face than the ray caster, ties left out.
+        pub(crate) wrong: u64,
+        pub(crate) ties: u64,
+        pub(crate) covered: u64,
+        /// Pieces that faces were split into, which includes those that were not.
+        pub(crate) pieces: u64,
+        pub(crate) written: u64,
+        /// Decisions that doubles could not make.
+        pub(crate) exact: u64,
+    }
 }
-
-const HEAD: &str = "family,faces,method,is_exact,prepare_s,draw_s,wrong,ties,covered,pieces,written,exact";
 
 /// Which methods have become too slow for a family.
 #[derive(Debug)]
@@ -94,8 +94,8 @@ pub(crate) fn all(family: Family, case: &Case, size: [u32; 2], limits: &mut Limi
             faces: faces.len() as u64,
             method: method.to_owned(),
             is_exact,
-            prepare: times[0],
-            draw: times[1],
+            prepare_s: times[0],
+            draw_s: times[1],
             wrong: found.wrong.len() as u64,
             ties: found.ties,
             covered: counters.covered,
@@ -120,53 +120,6 @@ pub(crate) fn all(family: Family, case: &Case, size: [u32; 2], limits: &mut Limi
     rows
 }
 
-pub(crate) fn write(rows: &[Row]) -> String {
-    let line = |r: &Row| {
-        format!(
-            "{},{},{},{},{},{},{},{},{},{},{},{}\n",
-            r.family,
-            r.faces,
-            r.method,
-            r.is_exact,
-            r.prepare,
-            r.draw,
-            r.wrong,
-            r.ties,
-            r.covered,
-            r.pieces,
-            r.written,
-            r.exact
-        )
-    };
-    format!("{HEAD}\n{}", rows.iter().map(line).collect::<String>())
-}
-
-pub(crate) fn read(text: &str) -> Result<Vec<Row>, String> {
-    read_rows(text, HEAD, parse)
-}
-
-fn parse(line: &str) -> Option<Row> {
-    let all: Vec<&str> = line.split(',').collect();
-    let &[family, faces, method, is_exact, prepare, draw, wrong, ties, covered, pieces, written, exact] = &all[..]
-    else {
-        return None;
-    };
-    Some(Row {
-        family: family.to_owned(),
-        faces: faces.parse().ok()?,
-        method: method.to_owned(),
-        is_exact: is_exact.parse().ok()?,
-        prepare: prepare.parse().ok()?,
-        draw: draw.parse().ok()?,
-        wrong: wrong.parse().ok()?,
-        ties: ties.parse().ok()?,
-        covered: covered.parse().ok()?,
-        pieces: pieces.parse().ok()?,
-        written: written.parse().ok()?,
-        exact: exact.parse().ok()?,
-    })
-}
-
 pub(crate) fn print(rows: &[Row]) {
     println!(
         "| scene | faces | method | prepare, ms | draw, ms | wrong | ties | covered | pieces | overdraw | exact |"
@@ -178,8 +131,8 @@ pub(crate) fn print(rows: &[Row]) {
             r.family,
             r.faces,
             r.method,
-            r.prepare * 1e3,
-            r.draw * 1e3,
+            r.prepare_s * 1e3,
+            r.draw_s * 1e3,
             r.wrong,
             r.ties,
             r.covered,

@@ -214,7 +214,7 @@ pub fn markdown(rows: &[Row]) -> String {
         }
     }
     text += "\nThe exact search:\n\n\
-         | map | peak, MiB | one thread, s | two threads, s | ratio | counted |\n\
+         | map | peak, MiB | one thread, wall s | two threads, wall s | ratio | counted |\n\
          | --- | --: | --: | --: | --: | --- |\n";
     for map in maps(rows) {
         for row in of_map(rows, map).into_iter().filter(|row| row.method == Method::Exact) {
