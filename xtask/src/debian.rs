@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn packages_are_told_by_their_lines() {
+    fn packages_are_recognised_by_their_lines() {
         let line = "'http://deb.debian.org/pool/x/libx_1%3a2_amd64.deb' libx-11_1%3a2_amd64.deb 5 SHA256:00";
         assert_eq!(named(line), Some("libx-11"));
         for other in ["Reading package lists...", "'http://host/file' file 5", "", "'x' "] {

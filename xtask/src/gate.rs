@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn published_crates_are_told_by_their_manifests() {
+    fn published_crates_are_recognised_by_their_manifests() {
         let names = published().expect("manifests are readable");
         assert!(
             ["sightlines", "sightlines-shaders"].iter().all(|n| names.iter().any(|m| m == n)) && names.len() >= 13,

@@ -25,14 +25,14 @@ impl<'a> Shadows<'a> {
         Self { faces, blockers: Blockers::build(faces) }
     }
 
-    /// Says of the chosen faces which parts are in umbra, lit, or in doubt.
+    /// Classifies the chosen faces: which parts are in umbra, lit, or in doubt.
     ///
     /// A point of the light lights a point of a face's side if it is strictly in front of that side's plane, and no
     /// face is met between the two. A light shines from all of its points to all sides; what lies on its border, such
     /// as the ceiling that a lamp is flush with, hides nothing from it that other points of the light see; nothing is
     /// guaranteed for points of the light on a surface. [`Piece`] defines a piece of a face.
     ///
-    /// * *umbra*: the light is behind the side's plane or on it, or `method` says that the piece is hidden. This
+    /// * *umbra*: the light is behind the side's plane or on it, or `method` finds the piece hidden. This
     ///   is as sure as [`FromRegion::guarantee`] says, and as complete as the method is. The method has to be made for the same faces, or some of them.
     /// * *lit*: the light is in front of the side's plane or on it, and no face meets the interior of the hull of light and piece: proven by exact
     ///   predicates and bounds of rounding, whatever the method.
@@ -41,7 +41,7 @@ impl<'a> Shadows<'a> {
     /// Faces without area have no pieces and hide nothing. A light of one point or within one plane is a light like any other; a light within a solid
     /// leaves everything outside in umbra, if the method can tell. The same input gives the same answer.
     ///
-    /// Cost: a few rays for each piece, and for those of which all rays arrive, or none, a search for blockers or a question to the method.
+    /// Cost: a few rays for each piece, and for those of which all rays arrive, or none, a search for blockers or a query of the method.
     ///
     /// # Errors
     /// [`BackendError`] of the method.

@@ -1,15 +1,15 @@
 //! The convex hull of a light and a piece, and what certainly stays out of its interior.
 //!
 //! A piece is wholly lit if no face meets the interior of the hull `K` of light and piece: every line from an inner point of the light to
-//! an inner point of the piece runs in there. Of a face it is shown that it stays out by a plane with the face on one side and `K` on
-//! the other, where both may touch it. Where they do touch, the plane has to be exact; there are four such planes:
+//! an inner point of the piece runs in there. A face is shown to stay out by a plane with the face on one side and `K` on
+//! the other; both may touch it. Where they do touch, the plane has to be exact; there are four such planes:
 //! 1. the piece's own, behind which nothing counts: its neighbours in one plane or at convex edges;
 //! 2. planes across the axes through the borders of `K`;
 //! 3. the other face's, if light and the whole face of the piece are on one side: neighbours at concave edges;
 //! 4. the same for the piece alone, if its corners are exact.
 //!
-//! Where they do not touch, any direction will do, along which `K` and the face lie apart by more than doubles may err. Tried are
-//! those of all planes that can touch both: of sides of `K`, of the face, and of pairs of their edges.
+//! Where they do not touch, any direction will do, along which `K` and the face lie apart by more than doubles may err. The
+//! directions tried are the normals of all planes that can touch both: of sides of `K`, of the face, and of pairs of their edges.
 //!
 //! Source: Haines and Wallace, "Shaft culling for efficient ray-traced radiosity", 1991, for the planes between light and piece;
 //! the separating axis theorem for the rest. The exact planes and bounds were chosen here.
@@ -304,7 +304,7 @@ mod tests {
             let b = Aabb::around(t);
             prop_assert!(!apart || hull.misses(&t));
             prop_assert!(!far || !hull.misses_box(&b) || hull.misses(&t));
-            // A face of which the whole hull is on one side, corners on it included.
+            // A face with the whole hull on one side; corners may lie on its plane.
             let sides: Vec<f64> = all.iter().map(|&p| orient3d(t[0], t[1], t[2], p)).collect();
             let beside = sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0);
             prop_assert!(!beside || hull.misses(&t));

@@ -3,7 +3,7 @@
 use crate::{Piece, State};
 use sightlines_multifocal::{Guarantee, Volume};
 
-/// LightingAreas of pieces by their states, in squared scene units, rounded. Sides count one by one.
+/// Areas of pieces by state, in squared scene units, rounded. Both sides of a face count.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LightingAreas {
     /// Of what is wholly in umbra.
@@ -12,7 +12,8 @@ pub struct LightingAreas {
     pub lit: f64,
     /// Of the rest.
     pub in_doubt: f64,
-    /// Of those pieces in doubt of which rays found that neither would be true. An estimate of what no method can decide at this size.
+    /// Of the pieces in doubt that rays found to be neither wholly in umbra nor wholly lit: an estimate of what no method can decide at this
+    /// size.
     pub mixed: f64,
 }
 
@@ -36,14 +37,14 @@ impl LightingAreas {
     }
 }
 
-/// What it took.
+/// The effort.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct LightCounters {
     /// Sides of faces that face away from all of the light.
     pub n_facing_away: u64,
     /// Faces that were found hidden with the box of a group of faces.
     pub n_in_groups: u64,
-    /// Boxes and pieces about which the from-region method was asked.
+    /// Queries of the from-region method: about boxes and about pieces.
     pub n_asked: u64,
     /// Hulls of light and piece that were searched for blockers.
     pub n_hulls: u64,
@@ -85,7 +86,7 @@ impl Lighting {
         &self.areas
     }
 
-    /// What it took.
+    /// The effort.
     pub fn counters(&self) -> &LightCounters {
         &self.counters
     }

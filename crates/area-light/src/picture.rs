@@ -42,7 +42,7 @@ pub struct LightPicture {
     pub shades: Vec<Shade>,
     /// Rays that were cast from the light.
     pub n_rays: u64,
-    /// Rays that a picture would have taken in which nothing is known before.
+    /// Rays that a picture without a classification would take.
     pub n_rays_else: u64,
 }
 
@@ -58,7 +58,7 @@ impl LightPicture {
     }
 }
 
-/// The faces that a picture shows: those that are worth asking about for it.
+/// The faces that a picture shows: only these have to be classified for it.
 pub fn shown(faces: &Faces, image: &Image) -> FaceMask {
     let mut is_shown = vec![false; faces.len()];
     image.faces().iter().filter(|&&face| face != NOTHING).for_each(|&face| is_shown[face as usize] = true);

@@ -1,8 +1,8 @@
 //! Pieces of faces: halves of halves, with bounds of how far rounding has moved their corners.
 //!
-//! A piece is cut in the middle of its longest edge, without rounding: what is meant by it, its *true* piece, is a part of the
-//! face, and the true pieces of a face cover it. A middle that no double holds is rounded, and `error` says by how much at most the
-//! corners of a piece are off, along each axis. What is claimed of a piece is proven for everything within these
+//! A piece is cut in the middle of its longest edge, without rounding: the exact result, its *true* piece, is a part of the
+//! face, and the true pieces of a face cover it. A middle that no double holds is rounded, and `error` bounds how far the
+//! corners of a piece are off along each axis. What is claimed of a piece is proven for everything within these
 //! bounds, so for the true piece and for the one with the given corners.
 //!
 //! Source: halving along the longest edge: Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid
@@ -19,7 +19,7 @@ pub enum State {
     Umbra,
     /// Every point of the light lights every point of it, but for lines that only graze: proven.
     Lit,
-    /// Neither is proven: it is in the penumbra, or too large, or the method could not tell.
+    /// Neither is proven: it is in the penumbra, or too large, or the method could not decide.
     InDoubt,
 }
 

@@ -10,8 +10,8 @@ use std::cell::Cell;
 
 /// Faces in a leaf.
 const PER_LEAF: usize = 4;
-/// What is met within this part of a ray at either end is where the ray begins or ends: a lamp on a ceiling, a surface
-/// that touches the lit one. Rays prove nothing, so neither does this.
+/// A hit within this share of a ray from either end is where the ray begins or ends: a lamp on a ceiling, a surface that
+/// touches the lit one. Rays prove nothing, so this decides nothing.
 const ENDS: f64 = 1e-9;
 
 /// The faces of a scene that have an area, in a tree: all of them block.
@@ -99,7 +99,7 @@ impl<'a> Blockers<'a> {
         for (i, weights) in (0..).zip(WEIGHTS) {
             let from = point_of(&light.volume, i, 0);
             let to = crate::vector::weighted(corners, weights);
-            // From behind nothing arrives, but that is no reason to think that anything hides.
+            // From behind nothing arrives, which does not mean that anything blocks.
             if orient3d(a, b, c, from) > 0.0 {
                 let blocked = self.is_blocked(from, to, own);
                 probe.any_blocked |= blocked;

@@ -1,4 +1,4 @@
-//! What surfaces are measured and cut with, beside vectors.
+//! Measures and points of triangles.
 
 use sightlines_geometry::Point3;
 use sightlines_geometry::vector::{length, normal};

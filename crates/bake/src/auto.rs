@@ -1,4 +1,4 @@
-//! Choosing methods by what an input is like: for a scene, no more than it needs.
+//! Choosing methods by the properties of an input: for a scene, no more than it needs.
 //!
 //! Nothing here decides what is hidden; a bad choice costs time, or hides less than another one would.
 
@@ -11,17 +11,16 @@ use sightlines_multifocal::mesh::Mesh;
 use sightlines_multifocal::{Layout, RaySampler};
 use std::fmt;
 
-/// What a scene in space is like. Shares are of the area of all triangles, unless they say otherwise.
+/// Properties of a scene in space. Shares are of the area of all triangles, unless stated otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneFacts {
     /// Triangles.
     pub n_triangles: usize,
     /// Objects.
     pub n_objects: usize,
-    /// The share of what is perpendicular to an axis, and so is a wall to sightlines.
+    /// The share of triangles perpendicular to an axis, which are walls to sightlines.
     pub axial: f64,
-    /// The share of flat pieces that stand alone, such as screens and signs: surfaces that hang together with nothing that lies in
-    /// another plane.
+    /// The share of flat pieces that stand alone, such as screens and signs: surfaces that are connected to nothing in another plane.
     /// Measured only where it matters, as it takes longer.
     pub loose: Option<f64>,
     /// The share of rays from anywhere in the scene's box that leave it without meeting anything: 0 for rooms, nearly 1 for a plain.
@@ -64,7 +63,7 @@ fn area(t: &[Point3; 3]) -> f64 {
     length(normal(*t)) / 2.0
 }
 
-/// The share of surfaces that lie in one plane, of the area of all that hang together by edges.
+/// The share of the area in connected surfaces that lie in one plane.
 fn loose_share(triangles: &[[Point3; 3]]) -> f64 {
     let total: f64 = triangles.iter().map(area).sum();
     let mesh = Mesh::weld(triangles);
@@ -108,16 +107,16 @@ fn openness(scene: &Scene) -> f64 {
 /// do not.
 const AXIAL: f64 = 0.9;
 
-/// From which share of loose pieces in the open on buffers are drawn: they put pieces together that do not touch, as sheets cannot.
+/// The share of loose pieces from which buffers are used in the open: they fuse pieces that do not touch, which sheets cannot.
 const LOOSE: f64 = 0.5;
 
-/// Below which openness a scene counts as rooms, whose walls hang together.
+/// The openness below which a scene counts as rooms, whose walls are connected.
 const ROOMS: f64 = 0.1;
 
-/// From which openness on a k-d tree finds little to cut along.
+/// The openness from which a k-d tree finds little to cut along.
 const OPEN: f64 = 0.5;
 
-/// How to bake a scene. Sightlines through the portals of a k-d tree, which are the default, are always asked, so nothing is looser than
+/// How to bake a scene. Sightlines through the portals of a k-d tree, the default, are always used as well, so no table is looser than
 /// by default.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneChoice {
@@ -153,25 +152,23 @@ pub fn choose(scene: &Scene, given_cells: bool) -> (SceneFacts, SceneChoice) {
 }
 
 impl SceneChoice {
-    /// Chooses by what the scene is like.
+    /// Chooses by the properties of the scene.
     fn of(facts: &SceneFacts, given_cells: bool) -> Result<Self, Missing> {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let standard = Layout::default();
         let mut choice = Self { sheets: false, planes: 0, texels: standard.texels, reasons: Vec::new() };
         if facts.axial >= AXIAL {
             let axial = percent(facts.axial);
-            choice
-                .reasons
-                .push(format!("{axial} of the area is perpendicular to an axis: sightlines know these walls"));
+            choice.reasons.push(format!("{axial} of the area is perpendicular to an axis: sightlines use these walls"));
             return Ok(choice);
         }
         let slanted = percent(1.0 - facts.axial);
-        choice.reasons.push(format!("{slanted} of the area is slanted: sheets know it, besides sightlines"));
+        choice.reasons.push(format!("{slanted} of the area is slanted: sheets use it, besides sightlines"));
         choice.sheets = true;
         if !given_cells && facts.openness.ok_or(Missing::Openness)? >= OPEN {
             let open = percent(facts.openness.unwrap_or(0.0));
             choice.reasons.push(format!(
-                "{open} of rays leave: in the open a k-d tree has few cells, and boxes of your own tell more"
+                "{open} of rays leave: in the open a k-d tree has few cells, and given boxes make tighter tables"
             ));
         }
         let loose = facts.loose.ok_or(Missing::Loose)?;
@@ -198,7 +195,7 @@ impl SceneChoice {
     }
 
     /// Whether a from-region method is used besides sight lines.
-    pub fn asks_a_method(&self) -> bool {
+    pub fn uses_region_method(&self) -> bool {
         self.sheets || self.planes > 0
     }
 }
@@ -221,14 +218,14 @@ impl fmt::Display for SceneChoice {
     }
 }
 
-/// What was chosen for an input, and why.
+/// The choice for an input, and the reasons.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     /// The methods, in words.
     pub method: String,
     /// Why, a sentence each.
     pub reasons: Vec<String>,
-    /// What a scene was measured to be like; none for other inputs.
+    /// The properties of a scene, as far as they were measured; none for other inputs.
     pub facts: Option<SceneFacts>,
 }
 
@@ -245,7 +242,7 @@ pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choi
         BakeInput::Scene(scene, _) => {
             let (facts, choice) = choose(scene, options.has_given_cells());
             let mut chosen = options.clone();
-            chosen.method = if choice.asks_a_method() { SceneMethod::Both } else { SceneMethod::Sightlines };
+            chosen.method = if choice.uses_region_method() { SceneMethod::Both } else { SceneMethod::Sightlines };
             (chosen.buffers.planes, chosen.buffers.texels) = (choice.planes, choice.texels);
             if !choice.sheets {
                 chosen.buffers.sheets = 0;
@@ -316,7 +313,7 @@ mod tests {
         };
         let choose = |facts: SceneFacts, given: bool| SceneChoice::of(&facts, given).expect("all is measured");
         let choice = choose(room, false);
-        assert!(!choice.asks_a_method() && choice.to_string() == "sightlines", "{choice:?}");
+        assert!(!choice.uses_region_method() && choice.to_string() == "sightlines", "{choice:?}");
         let slanted = choose(SceneFacts { axial: 0.2, loose: Some(0.1), ..room }, false);
         assert_eq!(slanted.to_string(), "sightlines and sheets");
         let screens = choose(SceneFacts { axial: 0.2, ..room }, false);

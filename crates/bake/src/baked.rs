@@ -5,7 +5,7 @@ use crate::reports::{ClusterVisibility, MapReport, PlanReport, RegionReport, Rep
 use sightlines_cells::{Axial, CellGraph, Convex, Planar};
 use sightlines_pvs::Table;
 
-/// A table, the graph that it was made from, and what the bake did.
+/// A table, the graph that it was made from, and a report.
 ///
 /// The functions for one kind of input have types of their own for graph and report; [`bake`](fn@crate::bake) has the
 /// enums over all kinds.

@@ -9,7 +9,7 @@ use sightlines_formats::{SceneFile, SceneInfo};
 pub enum BakeInput<'a> {
     /// A plan: a floor plan, or a map of Doom.
     Plan(&'a Plan),
-    /// A scene in space, with what its file says about axes and units, if it came from one.
+    /// A scene in space, with the axes and units that its file states, if it came from one.
     Scene(&'a Scene, Option<&'a SceneInfo>),
     /// The portal file of a Quake map alone: its cells are the clusters, at unknown places.
     Portals(&'a Prt),

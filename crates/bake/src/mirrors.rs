@@ -35,7 +35,7 @@ pub(crate) fn of_plan(graph: &CellGraph<Planar>, plan: &Plan) -> MirrorParts {
                 let side = [polygon[i], polygon[(i + 1) % polygon.len()]];
                 let Some([from, to]) = overlap(side, line) else { continue };
                 covered.push(interval(line, from, to));
-                // Cells go round counter-clockwise: who looks out over a side has its end on the left.
+                // Cells are counter-clockwise: as seen from inside, the end of a side is on the left.
                 let points = [to, from].map(|p| [p.x, p.y, 0.0]).to_vec();
                 out.parts.push(MirrorRecord { cell, mirror: MirrorId(face), points });
             }
@@ -140,7 +140,7 @@ fn record(cell: CellId, face: u32, axis: usize, rect: &Aabb<3>, from_above: bool
         p[v] = if high_v { rect.max[v] } else { rect.min[v] };
         p
     };
-    // From u towards v turns about the axis, which points at who looks from above.
+    // The turn from u to v is counter-clockwise about the axis, which points to a viewer above.
     let mut points = vec![corner(false, false), corner(true, false), corner(true, true), corner(false, true)];
     if !from_above {
         points.reverse();

@@ -14,7 +14,7 @@ use std::str::FromStr;
 /// What decides which cells and objects of a scene are visible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum SceneMethod {
-    /// Chosen by what the scene is like: see [`auto`](crate::auto).
+    /// Chosen by the properties of the scene: see [`auto`](crate::auto).
     Auto,
     /// Sightlines alone.
     #[default]
@@ -45,7 +45,7 @@ impl SceneMethod {
     /// What it does, as one line of help.
     pub const fn about(self) -> &'static str {
         match self {
-            Self::Auto => "Chosen by what the input is like",
+            Self::Auto => "Chosen by the properties of the input",
             Self::Sightlines => "Lines through the portals between cells, past axis-aligned walls",
             Self::Both => "Sightlines and multifocal: hides what either hides",
             Self::FromRegion(method) => method.about(),

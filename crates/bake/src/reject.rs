@@ -7,7 +7,7 @@
 //! names. Sector A sees sector B if an open set of segments without a closed one-sided line in their way
 //! leads from a region of A into a region of B.
 //!
-//! That rule answers the known traps without exceptions to it:
+//! That rule covers the known special cases without exceptions:
 //! * a *self-referencing* sector, whose lines have it on both sides, is a region of its own inside the
 //!   lines and shares the region outside with the sector around it; it sees and is seen from both;
 //! * an *unclosed* sector shares its region with whatever it leaks into;
@@ -58,7 +58,7 @@ pub enum RejectError {
     /// The file has no maps.
     #[error("the file has no maps")]
     NoMaps,
-    /// A map that was asked for is not in the file.
+    /// A map that was named is not in the file.
     #[error("map {0} is not in the file")]
     NoSuchMap(String),
     /// A map is damaged, or in a format whose geometry is not read.
@@ -83,7 +83,7 @@ pub enum RejectError {
 pub struct RejectOutcome {
     /// The new file.
     pub bytes: Vec<u8>,
-    /// What became of each map that was asked for, in file order.
+    /// What became of each requested map, in file order.
     pub maps: Vec<MapOutcome>,
 }
 
@@ -154,12 +154,12 @@ fn table_of(seen: &BitMatrix, n_sectors: u32) -> RejectTable {
 ///
 /// # Errors
 /// [`RejectError`]; then nothing is to be written. A map in an unsupported format is an error if it was
-/// asked for by name, or if the file has no others.
+/// named, or if the file has no others.
 pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcome, RejectError> {
     let all = list_maps(wad);
     let chosen = choose(&all, &options.maps)?;
     let readable = |m: &&MapLumps| matches!(m.format(), MapFormat::Doom | MapFormat::Hexen);
-    // To skip a map among others is one thing, to do nothing at all another.
+    // A map may be skipped among others, but to do nothing at all is an error.
     let insist = !options.maps.is_empty() || !chosen.iter().any(readable);
     let mut maps = Vec::with_capacity(chosen.len());
     let mut lumps = Vec::new();
@@ -172,7 +172,7 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
     Ok(RejectOutcome { bytes: wad.with_rejects(&lumps)?, maps })
 }
 
-/// The maps that were asked for, in file order.
+/// The requested maps, in file order.
 fn choose<'m>(all: &'m [MapLumps], names: &[String]) -> Result<Vec<&'m MapLumps>, RejectError> {
     if all.is_empty() {
         return Err(RejectError::NoMaps);
@@ -180,8 +180,8 @@ fn choose<'m>(all: &'m [MapLumps], names: &[String]) -> Result<Vec<&'m MapLumps>
     if let Some(missing) = names.iter().find(|name| !all.iter().any(|m| m.name().is(name))) {
         return Err(RejectError::NoSuchMap(missing.clone()));
     }
-    let asked = |m: &&MapLumps| names.is_empty() || names.iter().any(|name| m.name().is(name));
-    Ok(all.iter().filter(asked).collect())
+    let requested = |m: &&MapLumps| names.is_empty() || names.iter().any(|name| m.name().is(name));
+    Ok(all.iter().filter(requested).collect())
 }
 
 /// The table that an engine reads from a lump: bytes past its end do not count. `None` if it is short.

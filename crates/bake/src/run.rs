@@ -17,10 +17,10 @@ use sightlines_stabtree::ConvexOptions;
 /// Bakes an input: cuts it into cells where it has none, decides what they see, and makes the table.
 ///
 /// Errs towards visible, and gives the same table, byte for byte, with any number of threads. The functions for one kind
-/// of input ([`bake_plan`], [`bake_scene`], [`bake_regions`], [`bake_prt`], [`bake_map`]) say what each decides, and take
-/// more: a search that is resumed, or a from-region method of one's own.
+/// of input ([`bake_plan`], [`bake_scene`], [`bake_regions`], [`bake_prt`], [`bake_map`]) document what each decides, and take
+/// further arguments: the state of a search to resume, or any from-region method.
 ///
-/// [`SceneMethod::Auto`] measures the input first; [`choose_for`] tells what was chosen and why.
+/// [`SceneMethod::Auto`] measures the input first; [`choose_for`] returns what was chosen and why.
 ///
 /// # Errors
 /// [`BakeError`]

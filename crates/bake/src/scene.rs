@@ -47,7 +47,7 @@ pub struct SceneBakeOptions<'a> {
     pub portals: PortalMode,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// What the scene's file says of its axes and units, if it came from one; the table says it too.
+    /// Axes and units as the scene's file states them, if it came from one; the table states them too.
     pub file: Option<&'a SceneInfo>,
     /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,
@@ -119,7 +119,7 @@ pub(crate) fn drawn_box(object: &SceneObject) -> Aabb<3> {
     Aabb::around(object.corners().flatten())
 }
 
-/// The polygons that are drawn for an object; more than the table can say count as the most that it can.
+/// The polygons that are drawn for an object; more than the table can store count as the most that it can.
 pub(crate) fn n_triangles(object: &SceneObject) -> u32 {
     u32::try_from(object.triangles.len()).unwrap_or(u32::MAX)
 }
@@ -141,10 +141,10 @@ pub(crate) fn merge_portals(graph: &CellGraph<Axial>) -> CellGraph<Axial> {
     CellGraph::new(graph.cells().to_vec(), portals)
 }
 
-/// What found the hidden in a table of a scene that was cut along its rectangles.
+/// The methods behind a table of a scene that was cut along its rectangles.
 const SIGHTLINES: SceneMethods = SceneMethods { sightlines: true, from_region: false, only_in_air: false };
 
-/// What the table of a scene says of how it was made.
+/// How the table of a scene was made, for people.
 pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(String, String)> {
     let pair = |k: &str, v: String| (k.to_owned(), v);
     // Ascending keys.

@@ -32,7 +32,7 @@ impl fmt::Debug for StabOptions<'_> {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StabBakeError {
-    /// Nothing is known of portals: the cells are boxes that were given, or the portals were stripped.
+    /// There are no portals: the cells are boxes that were given, or the portals were stripped.
     #[error("stab trees need the cells and portals that the table was made from, and it does not have them")]
     NoGraph,
     /// The graph of another table.
@@ -49,7 +49,7 @@ pub enum StabBakeError {
     Table(#[from] TableError),
 }
 
-/// A table with stab trees, and how they came about.
+/// A table with stab trees, and a report on them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakedStab {
     /// The table.
@@ -58,7 +58,7 @@ pub struct BakedStab {
     pub report: StabReport,
 }
 
-/// How stab trees came about.
+/// A report on stab trees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StabReport {
     /// The most nodes that a tree was allowed.
@@ -128,7 +128,7 @@ pub fn with_stab_trees<'g>(
 }
 
 impl<R> Baked<TableGraph, R> {
-    /// The same with stab trees in the table ([`with_stab_trees`]), and how they came about.
+    /// The same with stab trees in the table ([`with_stab_trees`]), and a report on them.
     ///
     /// # Errors
     /// As [`with_stab_trees`].

@@ -40,7 +40,7 @@ fn cell_record(cell: &ConvexCell2) -> CellRecord {
     CellRecord {
         min: lift(bounds.min),
         max: lift(bounds.max),
-        // Where lines disagree, the first group speaks for the cell.
+        // Where lines disagree, the cell has the first group.
         group: cell.groups.first().copied(),
         polygon: cell.polygon.iter().map(|p| [p.x, p.y]).collect(),
     }
@@ -54,7 +54,7 @@ fn portal_record(portal: &Portal<Planar>) -> PortalRecord {
 /// The table of a planar graph whose cells see each other as `rows` says.
 ///
 /// # Errors
-/// [`TableError`] if the parts do not fit together, which is a defect of who made them.
+/// [`TableError`] if the parts do not fit together, which is a defect of the caller.
 pub fn table_of(graph: &CellGraph<Planar>, rows: BitMatrix, options: TableOptions<'_>) -> Result<Table, TableError> {
     Table::new(planar_parts(graph, rows, options))
 }
@@ -79,7 +79,7 @@ pub(crate) fn planar_parts(graph: &CellGraph<Planar>, rows: BitMatrix, options: 
     }
 }
 
-/// Adds what the file of a scene says of its axes and units.
+/// Adds the axes and units that the file of a scene states.
 pub(crate) fn state_file(parts: &mut TableParts, file: Option<&SceneInfo>) {
     let Some(file) = file else { return };
     parts.up = Some(file.up);
@@ -113,7 +113,7 @@ pub(crate) fn axial_portal_record(portal: &Portal<Axial>) -> PortalRecord {
         p[c] = if high_c { max[c] } else { min[c] };
         p
     };
-    // With b towards c, the right-hand rule gives the axis; who crosses forwards stands on its low side.
+    // By the right-hand rule, the turn from b to c gives the axis; a crossing forwards begins on its low side.
     let mut points = vec![corner(false, false), corner(false, true), corner(true, true), corner(true, false)];
     if !forward {
         points.reverse();

@@ -13,7 +13,7 @@ pub(crate) struct MethodFailed {
     pub(crate) source: MethodError,
 }
 
-/// The command that brings what this build of the program lacks.
+/// The command that installs what this build of the program lacks.
 fn remedy(error: &MethodError) -> &'static str {
     match error {
         MethodError::NotBuiltIn(_) => {

@@ -1,4 +1,4 @@
-//! The clusters of a Quake map, as `vis` and `build` sum them up.
+//! The clusters of a Quake map, as `vis` and `build` report them.
 
 use crate::output::{count, percent, seconds};
 use serde::Serialize;

@@ -4,10 +4,10 @@ use crate::view::Up;
 use sightlines::geometry::{Point3, check_coordinate};
 use sightlines::visible_surface::{Camera, CameraError};
 
-/// Why an eye sees nothing.
+/// Why there is no camera.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum EyeError {
-    /// An eye that sees nothing.
+    /// A camera that shows nothing.
     #[error("{option}: {source}")]
     Camera { option: &'static str, source: CameraError },
 }
@@ -39,7 +39,7 @@ pub(crate) struct EyeArgs {
 }
 
 impl EyeArgs {
-    /// What is up in the picture, where the scene says `named`.
+    /// The up direction of the picture; `named` is that of the scene.
     pub(crate) fn up(&self, named: Up) -> Point3 {
         self.up.unwrap_or(named).0
     }

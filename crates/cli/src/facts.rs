@@ -8,7 +8,7 @@ use sightlines::report::Summary;
 use std::fmt;
 use std::time::Duration;
 
-/// Cells, portals, visible pairs, and what has to be drawn; a share of the floor that is no number is not known.
+/// Cells, portals, visible pairs, and what has to be drawn; a share of the floor that is not a number is unknown.
 pub(crate) struct Facts<'a>(pub(crate) &'a Summary);
 
 impl fmt::Display for Facts<'_> {
@@ -43,10 +43,10 @@ pub(crate) fn times(cut_seconds: f64, what: &str, see_seconds: f64) -> String {
 pub(crate) struct StabFacts {
     /// Sequences of portals, of all cells.
     n_sequences: u64,
-    /// Nodes, each for all sequences that go on alike.
+    /// Nodes; sequences that continue alike share one.
     n_stab_nodes: usize,
     n_stab_edges: u64,
-    /// What the table would be smaller without.
+    /// Bytes by which the table would be smaller without them.
     n_stab_bytes: usize,
 }
 
@@ -84,13 +84,13 @@ pub(crate) fn axis(axis: Axis) -> &'static str {
     }
 }
 
-/// What a file says about its scene, for people: format, axis, unit.
+/// What a file states about its scene, for people: format, axis, unit.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct Stated {
     format: &'static str,
     up: &'static str,
     up_is_assumed: bool,
-    /// Null if the file does not say.
+    /// Null if the file does not state it.
     unit: Option<&'static str>,
 }
 

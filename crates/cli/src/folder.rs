@@ -14,10 +14,10 @@ pub(crate) struct NewFolder {
 }
 
 impl NewFolder {
-    /// Begins a folder that will replace what is at `target`, if that is nothing, or a folder of files whose names are `ours`.
+    /// Creates a folder that will replace `target`, which must not exist or contain only files whose names are `ours`.
     pub(crate) fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self, OutputError> {
         let failed = |source| OutputError::Folder { path: target.to_owned(), source };
-        // A name with a dot or a slash at its end has a place all the same.
+        // Resolves names that end in a dot or a slash.
         let target = match target.canonicalize() {
             Ok(found) => found,
             Err(error) if error.kind() == io::ErrorKind::NotFound => target.to_owned(),
@@ -51,7 +51,7 @@ impl NewFolder {
         let old = beside(&self.target, "old").ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
         fs::rename(&self.target, &old).map_err(failed)?;
         if let Err(error) = fs::rename(&self.beside, &self.target) {
-            // What was there goes back; the reason above is the one to report.
+            // The old folder is put back; the error above is the one to report.
             let _ = fs::rename(&old, &self.target);
             return Err(failed(error));
         }
@@ -61,7 +61,7 @@ impl NewFolder {
 
 impl Drop for NewFolder {
     fn drop(&mut self) {
-        // After it was put in its place there is nothing left.
+        // Nothing is left once the folder is in its place.
         let _ = fs::remove_dir_all(&self.beside);
     }
 }

@@ -13,7 +13,7 @@ pub(crate) enum GlbError {
     /// A result that cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// A scene is written as GLB, so its name should say so.
+    /// The name of a GLB ends otherwise.
     #[error("{}: the scene is written as GLB; give a name that ends in .glb", path.display())]
     NotGlb { path: PathBuf },
     /// A scene cannot be written as GLB.
@@ -21,14 +21,14 @@ pub(crate) enum GlbError {
     Glb { path: PathBuf, source: SceneWriteError },
 }
 
-/// Writes a scene as GLB; how many bytes it has.
+/// Writes a scene as GLB, and returns the number of bytes.
 pub(crate) fn save_glb(path: &Path, scene: &Scene) -> Result<usize, GlbError> {
     let glb = write_glb(scene).map_err(|source| GlbError::Glb { path: path.to_owned(), source })?;
     output::save(path, &glb)?;
     Ok(glb.len())
 }
 
-/// Refuses a name that does not say that the file is GLB.
+/// Refuses a name that does not end in `.glb`.
 pub(crate) fn check_name(path: &Path) -> Result<(), GlbError> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb")) {
         Ok(())

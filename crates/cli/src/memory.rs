@@ -1,6 +1,6 @@
 //! How much memory the program has used.
 
-/// The most bytes of memory that were in use at once so far; `None` where the system does not tell.
+/// The most bytes of memory that were in use at once so far; `None` where the system does not report it.
 pub(crate) fn peak_bytes() -> Option<u64> {
     parse(&std::fs::read_to_string("/proc/self/status").ok()?)
 }

@@ -1,4 +1,4 @@
-//! Values that the libraries name, as arguments: one of a list.
+//! Arguments that are one of a list of values that the libraries name.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use sightlines::multifocal::Measure;

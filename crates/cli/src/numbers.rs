@@ -1,6 +1,6 @@
 //! Numbers as arguments.
 
-/// Number of threads that a command may ask for; 0 stands for one for each core.
+/// Number of threads of a command; 0 stands for one for each core.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
     const MOST: usize = 1024;
     match text.parse::<usize>() {

@@ -1,4 +1,4 @@
-//! Results: standard output, and files that appear whole.
+//! Results: standard output, and files that are written as a whole.
 
 use crate::error::{OutputError, StdoutError};
 use crate::folder::beside;
@@ -9,8 +9,8 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// The version of what commands print with `--json`, the same for all. It grows when a field goes, gets another name, or means
-/// something else; new fields do not change it. The report types of the commands have the fields.
+/// The version of what all commands print with `--json`. It grows when a field is removed, renamed or redefined; new fields do not
+/// change it. The report types of the commands define the fields.
 pub(crate) const JSON_VERSION: u32 = 1;
 
 /// A result with the version of its form.
@@ -47,7 +47,7 @@ pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     Ok(atomic_write(path, bytes)?)
 }
 
-/// Refuses an output that is the input: a slip that would destroy what the output is made from.
+/// Refuses an output that is the input: a slip that would destroy the input.
 pub(crate) fn refuse_same(input: &Path, output: &Path) -> Result<(), OutputError> {
     let same = match (input.canonicalize(), output.canonicalize()) {
         (Ok(a), Ok(b)) => a == b && a.is_file(),
@@ -56,8 +56,8 @@ pub(crate) fn refuse_same(input: &Path, output: &Path) -> Result<(), OutputError
     if same { Err(OutputError::SameFile(output.to_owned())) } else { Ok(()) }
 }
 
-/// Refuses outputs, before anything is read or computed, that would fail at the end: one that is an input, two that are one file, and
-/// one that cannot be written. Leaves nothing behind.
+/// Refuses, before anything is read or computed, outputs that would fail at the end: one that is an input, two that are the same file,
+/// and one that cannot be written. Leaves nothing behind.
 pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<(), OutputError> {
     for (k, output) in outputs.iter().enumerate() {
         inputs.iter().try_for_each(|input| refuse_same(input, output))?;
@@ -69,7 +69,7 @@ pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<(), OutputErr
     Ok(())
 }
 
-/// Whether two names are one file. What is no file, such as `/dev/null`, may be written to twice.
+/// Whether two names are the same file. Special files such as `/dev/null` may be written to twice.
 fn is_one_file(a: &Path, b: &Path) -> bool {
     let is_special = fs::metadata(a).is_ok_and(|found| !found.is_file() && !found.is_dir());
     (a == b && !is_special) || refuse_same(a, b).is_err()
@@ -77,8 +77,8 @@ fn is_one_file(a: &Path, b: &Path) -> bool {
 
 /// Refuses an output that cannot be written: its folder is not there or refuses new files, or a folder has its name.
 ///
-/// A file is written beside its place and renamed, so an empty one is put there and taken away. Changes until the
-/// output is written are reported then.
+/// A file is written under another name in the same folder and renamed, so an empty one is created there and removed. What
+/// changes before the output is written is reported then.
 pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
     let try_beside = || -> io::Result<()> {
         let target = match fs::metadata(path) {
@@ -95,7 +95,7 @@ pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
                 drop(file);
                 fs::remove_file(&beside)
             }
-            // Left by a run that was killed; a file could be made there.
+            // A run that was killed left it, so a file can be created there.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
             Err(error) => Err(error),
         }

@@ -16,7 +16,7 @@ pub(crate) enum PictureError {
     /// A result that cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// A picture whose name does not say which kind it is.
+    /// A picture whose name has no extension of a picture.
     #[error("{}: the name of a picture ends in .svg or .png", .0.display())]
     PictureKind(PathBuf),
     /// A picture of a kind that this build of the program cannot write.
@@ -26,7 +26,7 @@ pub(crate) enum PictureError {
          `cargo install --path crates/cli --features png` installs one that does both", .0.display()
     )]
     NoPng(PathBuf),
-    /// A picture that is always PNG, and is not called so.
+    /// A picture that is always PNG, whose name ends otherwise.
     #[error("{}: the picture is written as PNG; give a name that ends in .png", .0.display())]
     NotPng(PathBuf),
     /// A picture cannot be drawn.
@@ -49,10 +49,10 @@ impl PictureKind {
     /// The endings of the kinds that this build of the program writes.
     pub(crate) const ENDINGS: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
 
-    /// The kind of a picture, by the end of its name.
+    /// The kind of a picture, by the extension of its name.
     ///
     /// # Errors
-    /// If it is no kind of picture, or one that this build of the program cannot write.
+    /// For any other extension, and for a kind that this build of the program cannot write.
     pub(crate) fn of(path: &Path) -> Result<Self, PictureError> {
         match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("svg") => Ok(Self::Svg),
@@ -70,7 +70,7 @@ pub(crate) fn draw_plan(source: &Path, table: &Table, options: &DrawOptions) -> 
     plan_svg(table, options).map_err(|error| PictureError::Draw { path: source.to_owned(), source: error })
 }
 
-/// Writes a picture in the kind that the file's name says.
+/// Writes a picture, of the kind that the file's name ends in.
 pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<(), PictureError> {
     match PictureKind::of(out)? {
         PictureKind::Svg => Ok(output::save(out, svg.as_bytes())?),
@@ -82,7 +82,7 @@ pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<(), PictureError> {
     }
 }
 
-/// Which way is up in a table: what it says, or y.
+/// The up axis of a table; y if it stores none.
 pub(crate) fn up_of(table: &Table) -> Up {
     match table.up() {
         Some(Axis::X) => Up::X,
@@ -97,7 +97,7 @@ pub(crate) fn middle(table: &Table, id: CellId, up: Up) -> f64 {
     0.5 * cell.min[up.axis()] + 0.5 * cell.max[up.axis()]
 }
 
-/// Refuses a name that does not say that the picture is PNG.
+/// Refuses a name that does not end in `.png`.
 pub(crate) fn check_png_name(path: &Path) -> Result<(), PictureError> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
         Ok(())

@@ -5,7 +5,7 @@ use sightlines::pvs::{CellId, Table};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Why a table has no such cell or point.
+/// Why a cell or point is not one of a table.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum LookupError {
     /// A cell that the table does not have.
@@ -20,7 +20,7 @@ pub(crate) enum LookupError {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Point(Vec<f64>);
 
-/// Why text is no point.
+/// Why a text is not a point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum PointError {
     #[error("a point is two or three comma-separated numbers, such as -1.5,2")]
@@ -116,7 +116,7 @@ impl FromStr for Place {
     }
 }
 
-/// Why text is neither a cell nor a point.
+/// Why a text is neither a cell nor a point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum PlaceError {
     #[error("'{0}' is neither the id of a cell nor a point such as -1.5,2")]

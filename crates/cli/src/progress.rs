@@ -1,4 +1,4 @@
-//! A bar on standard error while something takes long, if a person is there to see it.
+//! A progress bar on standard error, if that is a terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use sightlines::progress::{Observer, Progress};
@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A bar with the share that is done and the time that is left, of something that may have been begun by an earlier run.
-/// It is an observer and cancels nothing.
+/// A bar with the finished share of a search, which an earlier run may have begun, and the time left. An observer that cancels
+/// nothing.
 #[derive(Debug)]
 pub(crate) struct Bar {
     bar: ProgressBar,
@@ -40,7 +40,7 @@ impl Bar {
     fn show(&self, Progress { share, .. }: Progress) {
         let now = Instant::now();
         let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
-        // What the first report says was done before.
+        // The first report gives the share that was done before.
         let pace = pace.get_or_insert(Pace { since: now, before: share });
         let left = pace.left(share, now - pace.since);
         self.bar.set_position((share.clamp(0.0, 1.0) * Self::STEPS as f64) as u64);
@@ -61,7 +61,7 @@ impl Drop for Bar {
     }
 }
 
-/// How quickly shares get done, in this run.
+/// The pace of this run.
 #[derive(Debug, Clone, Copy)]
 struct Pace {
     since: Instant,
@@ -70,7 +70,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// The time left if the rest goes as what was done in this run; `None` until there is something to estimate it from.
+    /// The time left if the rest proceeds at the pace of this run; `None` until there is something to estimate it from.
     fn left(self, share: f64, elapsed: Duration) -> Option<Duration> {
         let done = share - self.before;
         let left = elapsed.as_secs_f64() * (1.0 - share) / done;
@@ -78,7 +78,7 @@ impl Pace {
     }
 }
 
-/// A duration, as roughly as an estimate deserves.
+/// A duration, rounded as an estimate should be.
 fn rough(time: Duration) -> String {
     match time.as_secs() {
         s @ 0..90 => format!("{s} s"),

@@ -7,7 +7,7 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Region(pub(crate) Aabb<3>);
 
-/// Why text is no box.
+/// Why a text is not a box.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum RegionError {
     #[error("a box is six comma-separated numbers: the lower corner, then the upper one")]

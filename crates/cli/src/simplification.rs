@@ -88,7 +88,7 @@ impl HowArgs {
         self.budget
     }
 
-    /// The name of the method, and the method prepared for a scene that came from `path`; none if only the table proves.
+    /// The name of the method, and the method prepared for a scene that came from `path`; none if only the table is used.
     pub(crate) fn prepare(
         &self,
         path: &Path,
@@ -109,7 +109,7 @@ impl HowArgs {
     }
 }
 
-/// A scene, with what it takes to write its file again.
+/// A scene, and the source that is needed to write its file again.
 #[derive(Debug)]
 pub(crate) struct ReadScene {
     pub(crate) file: SceneFile,
@@ -117,7 +117,7 @@ pub(crate) struct ReadScene {
     pub(crate) source: Option<GltfSource>,
 }
 
-/// Reads a scene that is to be simplified. One of which triangles were moved is refused: its surfaces hide each other.
+/// Reads a scene to simplify. A scene whose triangles were moved is refused, because its own surfaces are used as occluders.
 pub(crate) fn read(path: &Path) -> Result<ReadScene, SimplificationError> {
     input::check_is_scene(path)?;
     let (file, source) = read_scene_with_source(path)?;

@@ -1,4 +1,4 @@
-//! Tables of both kinds, plain and packed, as the commands ask them that follow a viewer.
+//! Tables of both kinds, plain and packed, for the commands that follow a viewer.
 
 use crate::error::InputError;
 use crate::input;
@@ -53,10 +53,10 @@ pub(crate) trait Cells: CellSource<Error: Send + 'static> + CoarseVisibility + C
 
     fn polygons_of(&self, object: ObjectId) -> Result<u32, Self::Error>;
 
-    /// Bytes that stay in memory, and bytes of blocks that are kept now; `None` for a table that is in memory as a whole.
+    /// Bytes that stay in memory, and bytes of the blocks that are kept now; `None` for a table that is wholly in memory.
     fn bytes_in_memory(&self) -> Option<(usize, usize)>;
 
-    /// Refuses a table that does not know where its cells are.
+    /// Refuses a table that does not store where its cells are.
     fn refuse_without_places(&self, path: &Path) -> Result<(), InputError> {
         if !self.has_places() {
             return Err(InputError::NoPlaces { path: path.to_owned(), what: "no cell can be found at a point" });

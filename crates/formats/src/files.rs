@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 pub struct WriteError {
     /// The file, as the caller named it.
     pub path: PathBuf,
-    /// What the system said.
+    /// The error of the system.
     #[source]
     pub source: io::Error,
 }

@@ -6,7 +6,7 @@
 //! byte, unless pairs are given up ([`SceneReport::n_assumed`](crate::SceneReport::n_assumed)): an update may know from
 //! an easier earlier search that these are hidden.
 //!
-//! Doors of the run-time are portals by id. A portal that is closed is a wall, for the rows of the table only: its
+//! Doors at run time are portals, named by their ids. A portal that is closed is a wall, for the rows of the table only: its
 //! portals stay, so that ids mean the same when it is opened.
 
 mod cut;
@@ -61,11 +61,11 @@ impl How {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LiveUpdate {
-    /// What changed, and what was asked.
+    /// What changed, and how it was decided.
     pub space: SpaceUpdate,
     /// Time to cut the scene.
     pub cut_time: Duration,
-    /// Time to decide who sees what.
+    /// Time to decide what is visible.
     pub see_time: Duration,
     /// Time to make the table.
     pub table_time: Duration,

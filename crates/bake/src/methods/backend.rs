@@ -26,7 +26,7 @@ type Make = Box<dyn Fn() -> Boxed + Send + Sync>;
 /// Opens a backend; warnings go to the function.
 type Open = fn(fn(&str)) -> Result<Vec<Make>, NotBuiltIn>;
 
-/// What the table of backends knows of one.
+/// An entry of the table of backends.
 struct Entry {
     name: &'static str,
     about: &'static str,

@@ -36,7 +36,7 @@ pub enum OcclusionMethod {
 /// Prepares a method for a scene.
 type Prepare = fn(&Scene, &BufferOptions) -> Result<Box<dyn Prepared>, MethodError>;
 
-/// What the table of methods knows of one.
+/// An entry of the table of methods.
 struct Entry {
     name: &'static str,
     about: &'static str,
@@ -120,7 +120,7 @@ impl fmt::Debug for OcclusionMethodFactory {
 }
 
 impl OcclusionMethodFactory {
-    /// Prepares `method` for `scene`. Methods without buffers ignore what `options` says of them.
+    /// Prepares `method` for `scene`. Methods without buffers ignore `options`.
     ///
     /// Cost: that of the method; linear in triangles for sheets, and quadratic at worst for merging patches.
     ///

@@ -47,7 +47,7 @@ impl fmt::Debug for PrtOptions<'_> {
     }
 }
 
-/// A map with its visibility, and how that came about.
+/// A map with its visibility, and a report on that.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisMap {
     /// The map.
@@ -76,7 +76,7 @@ pub fn vis_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<VisMap, 
 
 /// Finds out which clusters of a portal file see which, and makes a table of them: cell `k` is cluster `k`.
 ///
-/// A portal file says nothing of walls, so the table does not know where its cells are: the box of a cell is that
+/// A portal file contains no walls, so the table does not store where its cells are: the box of a cell is that
 /// around its portals, which the cell may leave on all sides, and a cell without portals has a box without volume.
 /// Query such a table, of the kind [`sightlines_pvs::TableKind::QuakePortalFile`], by cells instead of points.
 ///

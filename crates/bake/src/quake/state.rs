@@ -1,4 +1,4 @@
-//! How far a search came, as bytes that outlive the program.
+//! The state of a search as bytes, from which a later run resumes it.
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -17,8 +17,8 @@
 //!
 //! A state is only of use to the search that it came from. [`decode`] refuses what was made from other portals, with
 //! other options or by another version, and what is damaged. It takes memory for the graph that the caller has,
-//! whatever the bytes claim, and time in proportion to bytes and graph. A state that somebody made up to lie, with
-//! right hashes, is believed: hashes find accidents, not intent.
+//! whatever the bytes claim, and time in proportion to bytes and graph. A forged state with correct hashes
+//! is accepted: hashes detect accidents, not intent.
 
 mod body;
 
@@ -28,10 +28,10 @@ use sightlines_cells::{CellGraph, Convex};
 use sightlines_stabtree::ConvexState;
 use xxhash_rust::xxh3::xxh3_128;
 
-/// What a state begins with. The byte in front is no text, and line ends show what text tools did to it.
+/// What a state begins with. The byte in front is no text, and its line ends reveal changes by text tools.
 pub const MAGIC: [u8; 8] = *b"\x8ESLVIS\r\n";
 
-/// Changes with the layout, and whenever the search means something else by its stages.
+/// Changes with the layout, and whenever the stages of the search change their meaning.
 pub const VERSION: u32 = 1;
 
 /// Bytes of the hash behind a state.
@@ -57,16 +57,16 @@ impl StateKey {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StateError {
-    /// They begin otherwise.
+    /// They begin differently.
     #[error("this is no state of a search")]
     Magic,
     /// Another version of the program wrote it.
     #[error("the state is of version {found}, this program continues version {VERSION}")]
     Version {
-        /// The version that it says.
+        /// The version that it states.
         found: u32,
     },
-    /// There are more or fewer bytes than it says.
+    /// There are more or fewer bytes than it states.
     #[error("the state has {found} bytes instead of {needed}: it is cut off or has something behind it")]
     Length {
         /// Bytes there are.
@@ -94,7 +94,7 @@ pub enum StateError {
         /// What is wrong there.
         what: &'static str,
     },
-    /// The search does not know what to make of it.
+    /// The search rejects it.
     #[error("the state does not fit the portals")]
     Unfit,
 }

@@ -1,4 +1,4 @@
-//! Tables of maps: clusters that know where they are, and the faces that are drawn when they are seen.
+//! Tables of maps: clusters with their places, and the faces that are drawn when they are seen.
 
 mod faces;
 mod planes;
@@ -20,7 +20,7 @@ use sightlines_pvs::{CellRecord, Locator, ObjectRecord, Table, TableKind};
 /// compilers cut the rest off.
 const BOUNDS_ROUNDING: f64 = 1.0;
 
-/// Finds out which clusters of a map see which, and makes a table of them that knows where they are: cell `k` is
+/// Decides which clusters of a map see which, and makes a table of them with their places: cell `k` is
 /// cluster `k`, planes are those of the map's tree, an object is a face of the world, named by its number in the map.
 ///
 /// The box of a cell is that around its leafs and its portals. The tree is that of the map, whose planes are rounded to
@@ -79,7 +79,7 @@ fn boxes(bsp: &Bsp, tree: &BspTree, leafs: &[Option<u32>], graph: &CellGraph<Con
     for leaf in planes::leafs_of(tree) {
         let (Some(cluster), record) = (leafs[leaf as usize], bsp.leafs()[leaf as usize]) else { continue };
         let (low, high) = (record.mins.map(f64::from), record.maxs.map(f64::from));
-        // A box that is none says nothing of its leaf, and the portals have to do.
+        // An invalid box gives no bounds of its leaf, so the portals have to do.
         if (0..3).all(|k| low[k].is_finite() && high[k].is_finite() && low[k] <= high[k]) {
             let around = &mut boxes[cluster as usize];
             *around = around.with(low.map(|x| x - BOUNDS_ROUNDING)).with(high.map(|x| x + BOUNDS_ROUNDING));

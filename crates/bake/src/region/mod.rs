@@ -64,7 +64,7 @@ pub struct RegionBakeOptions<'a> {
     pub portals: PortalMode,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// What the scene's file says of its axes and units, if it came from one; the table says it too.
+    /// Axes and units as the scene's file states them, if it came from one; the table states them too.
     pub file: Option<&'a SceneInfo>,
     /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,

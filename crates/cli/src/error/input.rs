@@ -17,16 +17,16 @@ pub(crate) enum InputError {
     /// A file cannot be opened or read.
     #[error("{}: {source}", path.display())]
     Open { path: PathBuf, source: io::Error },
-    /// A file is no sound table.
+    /// A file is not a sound table.
     #[error("{}: {source}", path.display())]
     Table { path: PathBuf, source: DecodeError },
-    /// A file is no sound packed table.
+    /// A file is not a sound packed table.
     #[error("{}: {source}", path.display())]
     Packed { path: PathBuf, source: PackedError },
     /// A packed table where a plain one is needed.
     #[error("{}: the table is packed; `sightlines unpack` makes it a plain one, which this command takes", path.display())]
     IsPacked { path: PathBuf },
-    /// A file is none of the kinds that the command takes.
+    /// A file is of no kind that the command takes.
     #[error("{}: neither {expected}", path.display())]
     Kind { path: PathBuf, expected: &'static str },
     /// A WAD without maps.
@@ -44,20 +44,20 @@ pub(crate) enum InputError {
     /// An option that means nothing for what the file holds.
     #[error("{}: {option} is for {meant}, and this is {found}", path.display())]
     Option { path: PathBuf, option: &'static str, meant: &'static str, found: &'static str },
-    /// A map is no sound plan.
+    /// The lines of a map do not make a plan.
     #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
     Plan { path: PathBuf, map: Option<String>, source: PlanError },
-    /// What a table is built from, where the table is needed.
+    /// A file from which a table is built, where the table is needed.
     #[error("{}: is {found}, not a table: build one first: sightlines build {}{} -o {}", path.display(), path.display(),
             if *found == "a WAD" { " --map NAME" } else { "" }, path.with_extension("pvs").display())]
     NotTable { path: PathBuf, found: &'static str },
-    /// A table that does not know where its cells are.
+    /// A table that does not store where its cells are.
     #[error("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())]
     NoPlaces { path: PathBuf, what: &'static str },
-    /// A table whose cells and portals are not there, so that no lines can be sought.
+    /// A table without polygons and portals, in which no lines can be searched for.
     #[error("{}: the table has no polygons and portals to look for lines in", .0.display())]
     Stripped(PathBuf),
-    /// A scene whose triangles were moved, where something is to hide.
+    /// A scene whose triangles were moved, where occluders are needed.
     #[error("{}: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the original \
              that it was made from", .0.display())]
     NoOccluder(PathBuf),

@@ -13,7 +13,7 @@ pub(crate) enum OutputError {
     /// A folder cannot be made.
     #[error("{}: cannot be made: {source}", path.display())]
     Folder { path: PathBuf, source: io::Error },
-    /// A folder that holds what nobody asked to be replaced.
+    /// A folder with other files than levels, which are not to be replaced.
     #[error("{}: the folder has {name:?} in it, which is no level: name a new folder, or one that only holds levels", path.display())]
     NotLevels { path: PathBuf, name: String },
     /// An output that would replace the input it is made from.

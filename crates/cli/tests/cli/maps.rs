@@ -58,7 +58,7 @@ fn other_threads_and_options_are_taken() {
     folder.run(&["build", "map.bsp", "-o", "fast.pvs", "--fast"]).expect(0);
     let table = Table::from_bytes(&folder.read("fast.pvs")).expect("a sound table");
     assert_eq!((table.info_value("search"), table.planes().is_some()), (Some("fast"), true));
-    // Without the map nobody knows places.
+    // Without the map, places are unknown.
     folder.run(&["build", "map.prt", "-o", "blind.pvs"]).expect(0);
     let error = folder.refused(&["query", "blind.pvs", "--eye", "1,1,1"]);
     assert!(error.contains("does not say where its cells are"), "{error}");

@@ -74,7 +74,7 @@ fn exact_methods_draw_the_same_picture_in_the_colours_of_faces() {
     assert_eq!(n, 2 * EXACT.len());
 }
 
-/// The bars hide each other all round, so whatever the painter draws last is wrong somewhere; nobody else is.
+/// The bars hide each other all round, so whatever the painter draws last is wrong somewhere; no other method is.
 #[test]
 fn the_painter_is_wrong_and_the_sheet_marks_where() {
     let folder = with_cycle();
@@ -299,7 +299,7 @@ fn bad_input_is_refused_in_one_line() {
     let sheet = with(&["--compare", "--size", "16384x16384"]);
     assert!(sheet.starts_with("--size: 6 pictures of 16384 by 16384 pixels make a sheet of more than "), "{sheet}");
     assert_eq!(with(&["--cull", "pvs"]), "--cull pvs: this needs a table of the scene: name it with --table");
-    assert_eq!(with(&["--table", "cycle.pvs"]), "--table: nothing is asked of the table: add --cull pvs");
+    assert_eq!(with(&["--table", "cycle.pvs"]), "--table: the table is not used: add --cull pvs");
     let asked =
         |scene: &str, table: &str| way(scene, "0,0,0", "0,0,1", &["-o", "out.png", "--cull", "pvs", "--table", table]);
     assert_eq!(asked("cycle.obj", "maze.pvs"), "maze.pvs: does not go with cycle.obj: the table is of a plan");
@@ -325,7 +325,7 @@ fn bad_input_is_refused_in_one_line() {
     );
     assert_eq!(
         folder.refused(&[&args[..], &out, &["--depth", "f32"]].concat()),
-        "--depth: this is what a z-buffer keeps, and none is drawn: add --method zbuffer"
+        "--depth: this is the format of a z-buffer, and none is drawn: add --method zbuffer"
     );
     assert_eq!(folder.names(), before);
 }

@@ -55,7 +55,7 @@ fn what_is_hidden_goes_and_the_rest_stays() {
     assert!(folder.read("a.glb") == folder.read("b.glb"));
     assert_eq!(folder.names(), ["a.glb", "b.glb", "o.glb", "o.pvs", "tower.glb", "tower.pvs"]);
 
-    // More eyes see more, and less is hidden by nobody.
+    // More eyes see more, and less is hidden from all of them.
     let both = simplified(&folder, "c.glb", &["--volume", VOLUME, "--volume", "4,0.5,1,5,1.5,2"]);
     assert!(both["n_left"].as_u64() >= reply["n_left"].as_u64());
     let nobody = simplified(&folder, "c.glb", &["--volume", VOLUME, "--method", "none"]);

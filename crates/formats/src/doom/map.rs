@@ -152,14 +152,14 @@ impl DoomMap {
         self.reject.as_deref()
     }
 
-    /// The sector on the right hand of a line, and the one on its left, as its sides say.
+    /// The sector on the right hand of a line, and the one on its left, from its sides.
     pub fn sectors_of(&self, line: &LineDef) -> [Option<u32>; 2] {
         [line.right, line.left].map(|side| side.map(|s| self.side_sectors[s as usize]))
     }
 
-    /// The map as engines see it when they ask REJECT: flat. Line `k` of the plan is line `k` of the
+    /// The map as engines use REJECT: flat. Line `k` of the plan is line `k` of the
     /// map, from its first vertex to its second; it blocks sight unless its flag [`ML_TWOSIDED`] is
-    /// set. Heights, doors and textures do not count, because they change while one plays. Groups are
+    /// set. Heights, doors and textures do not count, because they change during play. Groups are
     /// sectors; [`Plan::n_groups`] may be less than [`DoomMap::n_sectors`], as some may be unused.
     /// Things are objects without extent, called such as `thing 3001 #12`.
     ///

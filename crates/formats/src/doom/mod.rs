@@ -1,6 +1,6 @@
 //! Doom maps inside WADs: which there are, what is in them, and their REJECT lumps.
 //!
-//! Read are the binary maps of Doom and Hexen, and of them only what sight depends on: vertices,
+//! The reader takes binary maps of Doom and Hexen, and of them only what sight depends on: vertices,
 //! lines, sides, the number of sectors, things. Lumps that node builders make are passed through,
 //! whatever their format. Maps as text (UDMF) and maps of the console games are recognised and
 //! refused by name.

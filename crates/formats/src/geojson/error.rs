@@ -135,7 +135,7 @@ pub enum GeoJsonErrorKind {
     /// A line or ring without two different positions.
     #[error("a {0} needs two different positions")]
     NoExtent(GeometryKind),
-    /// A property that says something about sight, but nothing that is understood.
+    /// A property that concerns sight, with a value that is not understood.
     #[error("property \"{property}\" is not {expected}")]
     Property {
         /// The property.

@@ -1,9 +1,9 @@
 //! Floor plans as GeoJSON: lines and outlines are walls, points are objects.
 //!
-//! Read are FeatureCollections, single Features and bare geometries, GeometryCollections included, with
-//! coordinates taken as they are: numbers in one plane, not degrees. Heights are ignored.
+//! The reader takes FeatureCollections, single Features and bare geometries, GeometryCollections included, with
+//! coordinates as they are: numbers in one plane, not degrees. Heights are ignored.
 //!
-//! | property of a feature | what it says |
+//! | property of a feature | meaning |
 //! | --- | --- |
 //! | `"sight": "transparent"` or `"opaque": false` | its lines do not block sight |
 //! | `"mirror": true` | its lines are mirrors, which have to block sight |

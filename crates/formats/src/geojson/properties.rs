@@ -1,4 +1,4 @@
-//! The properties of a feature that say something about sight.
+//! The properties of a feature that concern sight.
 
 use super::MAX_GROUPS;
 use super::context::Context;
@@ -83,7 +83,7 @@ impl<'de> Visitor<'de> for ScalarSeed {
     }
 }
 
-/// What a feature says about its geometry.
+/// The properties of a feature that concern its geometry.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Properties {
     pub(super) transparent: bool,

@@ -7,7 +7,7 @@ use std::fmt::Write;
 ///
 /// Lines come first, then objects, in the plan's order: lines as LineStrings, objects as Points, or as
 /// MultiPoints of two corners if they have extent. Numbers are the shortest decimals that mean them.
-/// Read back are only groups below [`super::MAX_GROUPS`].
+/// Only groups below [`super::MAX_GROUPS`] are read back.
 pub fn write_plan(plan: &Plan) -> String {
     let is_mirror = |id: LineId| plan.mirrors().binary_search(&id).is_ok();
     let lines = (0u32..).map(LineId).zip(plan.lines()).map(|(id, line)| line_feature(line, is_mirror(id)));

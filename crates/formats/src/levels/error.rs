@@ -61,7 +61,7 @@ pub enum LevelsIndexErrorKind {
     /// A level that does not lie beside the index.
     #[error("{name:?} is no name of a file beside the index")]
     File {
-        /// What it says.
+        /// The name.
         name: String,
     },
     /// Two levels in one file.

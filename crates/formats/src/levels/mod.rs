@@ -10,10 +10,10 @@
 //! }
 //! ```
 //!
-//! `triangles` are those of the whole scene, and of each level; `bytes` what a level takes in memory by the measure of
-//! who made it (the file has textures as well). `cells` has for each cell of the table the number of its level, or null where the whole
+//! `triangles` are those of the whole scene, and of each level; `bytes` is what a level takes in memory by the measure of
+//! its maker (the file has textures as well). `cells` has for each cell of the table the number of its level, or null where the whole
 //! scene is to be drawn. In `budget` and `bound` is the share of the sphere of directions in which an eye in the cells may meet another face
-//! first than in the whole scene: what was allowed, and what is promised. `occluder` says whether the level lies inside of the scene, as in
+//! first than in the whole scene: what was allowed, and what is promised. `occluder` states whether the level lies inside the scene, as in
 //! [`Simplified`](crate::scene::Simplified). `file` is beside the index. Members that are not shown here mean nothing.
 
 mod error;
@@ -56,7 +56,7 @@ pub struct LevelFile {
     pub n_bytes: u64,
     /// The share of the sphere of directions that changes at most, for every eye in its cells.
     pub bound: f64,
-    /// Whether it may be used to hide.
+    /// Whether it may be used as an occluder.
     pub occluder: bool,
 }
 

@@ -135,8 +135,8 @@ pub(super) fn load_file(beside: Option<&dyn Neighbours>, uri: &str) -> Result<Ve
     found.ok_or_else(refused)
 }
 
-/// The path that a URI names, if it leads into or below the folder where one is: a scene from elsewhere
-/// has no business with other files.
+/// The path that a URI names, if it leads into or below the folder where one is: a scene must not
+/// read files outside that folder.
 fn relative_path(uri: &str) -> Option<PathBuf> {
     if uri.is_empty() || uri.contains(':') {
         return None;

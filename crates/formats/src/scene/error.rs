@@ -374,7 +374,7 @@ pub enum BufferErrorKind {
     Io {
         /// The URI.
         uri: String,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
 }

@@ -32,7 +32,7 @@ pub(super) struct Document {
 #[derive(Debug, Deserialize)]
 pub(super) struct Asset {
     pub(super) version: String,
-    /// What its extras say of it: `{"sightlines": {"simplified": {"occluder": false}}}`.
+    /// Whether its extras mark it as simplified: `{"sightlines": {"simplified": {"occluder": false}}}`.
     #[serde(default, rename = "extras", deserialize_with = "super::role::simplified")]
     pub(super) simplified: Option<Simplified>,
 }

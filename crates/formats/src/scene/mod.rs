@@ -49,19 +49,19 @@ pub const MAX_ELEMENTS: usize = 1 << 26;
 /// The most objects that a scene of glTF may have.
 pub const MAX_OBJECTS: usize = 1 << 22;
 
-/// How names of objects end that are mirrors.
+/// The suffix of the names of mirrors.
 pub const MIRROR_SUFFIX: &str = "-mirror";
 
-/// A scene and what its file says about it.
+/// A scene, and what its file states about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
     /// The scene.
     pub scene: Scene,
-    /// What its file says about it.
+    /// What its file states about it.
     pub info: SceneInfo,
 }
 
-/// What a file says about its scene, besides the scene.
+/// What a file states about its scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneInfo {
     /// How it was written.
@@ -80,7 +80,7 @@ pub struct SceneInfo {
     pub n_triangles: usize,
     /// Number of triangles that were left out because they have no area: their corners lie on a line, exactly.
     pub n_degenerate_triangles: usize,
-    /// What the file says if its scene has fewer triangles than the one that it was made from.
+    /// Set if the file states that its scene was made from one with more triangles.
     pub simplified: Option<Simplified>,
 }
 
@@ -90,7 +90,7 @@ pub struct Simplified {
     /// Whether it lies inside the original, so that what it hides was hidden before: triangles were only taken
     /// away. A scene of which triangles were moved may hide what can be seen, and must not be used to hide.
     ///
-    /// Files that say that they are simplified, but not how, are read as `false`.
+    /// Files that state that they are simplified, but not how, are read as `false`.
     pub occluder: bool,
 }
 
@@ -110,7 +110,7 @@ pub enum SceneFormat {
 pub enum LengthUnit {
     /// One metre.
     Metre,
-    /// Not said.
+    /// Not stated.
     Unknown,
 }
 

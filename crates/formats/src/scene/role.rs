@@ -1,4 +1,4 @@
-//! What the extras of a node and of a document say. Extras are whatever a program likes to put there.
+//! Roles in the extras of nodes and documents. Extras may contain anything.
 
 use super::Simplified;
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
@@ -8,22 +8,22 @@ use std::fmt;
 const ROLE: [&str; 2] = ["sightlines", "role"];
 const MIRROR: &str = "mirror";
 
-/// Where a document says whether it may hide what its original did not hide.
+/// Where a document states whether it may hide what its original did not hide.
 const OCCLUDER: [&str; 3] = ["sightlines", "simplified", "occluder"];
 
-/// Whether extras have the role of a mirror. Extras of any other form say nothing, and none of them is an error.
+/// Whether extras have the role of a mirror. Extras of any other form are ignored.
 pub(super) fn is_mirror<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
     Ok(Path(&ROLE).deserialize(deserializer)? == Found { n_keys: 2, leaf: Leaf::Mirror })
 }
 
-/// Whether extras say that a scene was simplified; if they do not say how, then in the worst way.
+/// Whether extras state that a scene was simplified; if they do not state how, the worst is assumed.
 pub(super) fn simplified<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Simplified>, D::Error> {
     let found = Path(&OCCLUDER).deserialize(deserializer)?;
     let occluder = found == Found { n_keys: 3, leaf: Leaf::True };
     Ok((found.n_keys >= 2).then_some(Simplified { occluder }))
 }
 
-/// What stands at the end of a path, and how many keys of it there are.
+/// The value at the end of a path, and how many keys of the path exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Found {
     n_keys: usize,
@@ -150,7 +150,7 @@ mod tests {
         ] {
             assert!(!read(other), "{other}");
         }
-        // As deep as nobody reads it.
+        // Nested more deeply than is read.
         let deep = format!("{{\"x\": {}{}}}", "[".repeat(5000), "]".repeat(5000));
         assert!(!read(&deep));
     }

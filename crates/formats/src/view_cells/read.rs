@@ -49,7 +49,7 @@ struct Reader {
     of_id: BTreeMap<String, usize>,
     place: ViewCellPlace,
     failure: Option<Kind>,
-    /// What to say if the next value is of another JSON type than it should be.
+    /// The error if the next value is of another JSON type than it should be.
     mismatch: Option<Kind>,
 }
 

@@ -37,9 +37,9 @@ pub enum WadError {
     /// The directory is not inside the file.
     #[error("the directory ({count} lumps at byte {offset}) is not inside the file of {file_len} bytes")]
     Directory {
-        /// Where the header says it is.
+        /// Where it is according to the header.
         offset: i32,
-        /// How many entries the header says it has.
+        /// How many entries it has according to the header.
         count: i32,
         /// Length of the file.
         file_len: u64,

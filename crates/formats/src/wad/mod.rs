@@ -1,8 +1,8 @@
 //! The WAD container: a header, lumps, and a directory of their places and names.
 //!
 //! All numbers are little-endian. Header: 4 letters `IWAD` or `PWAD`, i32 number of lumps, i32 place of
-//! the directory. Directory entry: i32 place, i32 size, 8 bytes of name. Nothing is known here of what
-//! lumps contain.
+//! the directory. Directory entry: i32 place, i32 size, 8 bytes of name. What lumps contain is out
+//! of scope here.
 
 mod builder;
 mod error;
@@ -23,7 +23,7 @@ use std::path::Path;
 pub(crate) const HEADER_LEN: usize = 12;
 pub(crate) const ENTRY_LEN: usize = 16;
 
-/// What a WAD says of itself.
+/// The kind of a WAD.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WadKind {
     /// A whole game: `IWAD`.

@@ -1,4 +1,4 @@
-//! Documents written again with fewer triangles: what was asked for, corner by corner and attribute by attribute, as the
+//! Documents written again with fewer triangles: what was requested, corner by corner and attribute by attribute, as the
 //! package `gltf` finds it, and all else as it was.
 
 use crate::common::data_folder;
@@ -136,7 +136,7 @@ fn without_extras(bytes: &[u8]) -> Vec<u8> {
     glb(&text.to_string(), bytes.get(start + 8..).unwrap_or_default())
 }
 
-/// Says where a document written again is not what was asked for, if anywhere.
+/// Where a document written again is not what was requested, if anywhere.
 fn difference(before: &[u8], source: &GltfSource, changes: &Changes, after: &[u8]) -> Option<String> {
     let parse = |bytes| gltf::Gltf::from_slice(&without_extras(bytes)).unwrap_or_else(|e| panic!("{e}"));
     let [before, after] = [before, after].map(parse);
@@ -423,7 +423,7 @@ fn meshes_part_and_go() {
     let text = text_of(&after);
     assert_eq!([&text["nodes"][1]["mesh"], &text["nodes"][2]["mesh"]], [&json!(0), &json!(3)]);
     assert_eq!((&text["meshes"][3]["name"], text["meshes"][3]["primitives"][0].get("mode")), (&json!("grid"), None));
-    // A mesh that nobody has any more goes, the others move up, and what moved its targets goes too.
+    // A mesh that no node has any more goes, the others move up, and what moved its targets goes too.
     let mut changes: Changes = vec![Some(Vec::new()); 4];
     changes.extend([None, None]);
     let after = source.rewrite(&changes, None).unwrap();
@@ -453,7 +453,7 @@ fn sparse_and_quantised_vertices_are_copied() {
 
 #[test]
 fn extensions_are_kept_or_refused() {
-    // One that nobody knows names accessors as it likes: everything stays in its place.
+    // An unknown one may name accessors in any way: everything stays in its place.
     let mut doc = rich_doc();
     doc.json["extensions"]["ACME_things"] = json!({"thing": [3, 1], "bufferView": 2});
     let (file, source) = with_source(&doc);

@@ -1,4 +1,4 @@
-//! Where a search stands, as bytes.
+//! The state of a search as bytes.
 
 use super::StateError;
 use sightlines_formats::quake::rle;

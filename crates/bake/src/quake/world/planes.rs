@@ -116,14 +116,14 @@ fn slack(tree: &BspTree, clusters: &[Option<u32>], graph: &CellGraph<Convex>) ->
     Ok(slack.max(uneven).max(largest * 2f64.powi(-44)))
 }
 
-/// A tree as it is climbed from the leafs of clusters.
+/// A tree that is climbed from the leafs of clusters.
 struct Surroundings<'t> {
     tree: &'t BspTree,
     /// For each node its parent and the side that it is on there; none for the root.
     parents: Vec<Option<(u32, usize)>>,
     /// For each cluster the nodes that its leafs are on, with the side.
     places: Vec<Vec<(u32, usize)>>,
-    /// On which sides of each node the cluster is that is stood in.
+    /// The sides of each node that the current cluster is on.
     sides: Vec<[bool; 2]>,
     /// Nodes with such a side.
     marked: Vec<u32>,
@@ -160,8 +160,8 @@ impl<'t> Surroundings<'t> {
         }
     }
 
-    /// How far the farthest of some points is from the nearest plane that has a part of the cluster that is stood in on
-    /// one side and a part of another on the other.
+    /// How far the farthest of some points is from the nearest plane that has a part of the current cluster on one side
+    /// and a part of another on the other.
     fn distance_towards(&self, cluster: u32, points: &[Point3]) -> Option<f64> {
         let mut least: Option<f64> = None;
         for place in &self.places[cluster as usize] {

@@ -9,7 +9,7 @@ use std::fmt;
 pub(super) struct Chosen {
     method: String,
     reasons: Vec<String>,
-    /// What a scene in space was measured to be like.
+    /// The measured properties of a scene in space.
     #[serde(skip_serializing_if = "Option::is_none")]
     facts: Option<Facts>,
 }
@@ -19,7 +19,7 @@ struct Facts {
     n_triangles: usize,
     n_objects: usize,
     axial_share: f64,
-    /// What did not matter was not measured.
+    /// Properties that do not matter are not measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     loose_share: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]

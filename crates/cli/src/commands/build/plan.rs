@@ -9,7 +9,7 @@ use sightlines::report::Summary;
 use std::fmt;
 use std::path::Path;
 
-/// Says on standard error what is only approximately so.
+/// Warns of what is only approximate.
 pub(super) fn warn(path: &Path, report: &PlanReport) {
     let say = |n: usize, noun: &str, what: &str| {
         if n > 0 {

@@ -89,7 +89,7 @@ pub(super) struct Outcome {
     n_objects_seen: u64,
     /// Volumes that were queried: cells, and parts of cells.
     n_volumes: u64,
-    /// Questions whether a box, or a triangle, is hidden.
+    /// Queries whether a box, or a triangle, is hidden.
     n_asked: u64,
     seconds: f64,
 }

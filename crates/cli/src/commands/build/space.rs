@@ -11,7 +11,7 @@ use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
 use std::path::Path;
 
-/// Says on standard error which mirrors do not reflect.
+/// Warns of mirrors that do not reflect.
 pub(super) fn warn(path: &Path, report: &SceneReport) {
     let say = |n: usize, noun: &str, what: &str| {
         if n > 0 {
@@ -54,9 +54,9 @@ pub(crate) struct Outcome {
     pub(crate) table: Summary,
     /// What a viewer sees on average, each place of the same weight.
     pub(crate) viewer: ViewerShare,
-    /// Rectangles that walls were put together to.
+    /// Rectangles that walls were merged into.
     n_blockers: usize,
-    /// Questions whether one box sees another; these counts vary from run to run with several threads.
+    /// Queries whether one box sees another; these counts vary from run to run with several threads.
     n_asked: u64,
     /// Linear programs solved in doubles.
     n_programs: u64,

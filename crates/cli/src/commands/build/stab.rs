@@ -10,7 +10,7 @@ use sightlines::pvs::Table;
 use std::fmt;
 use std::path::Path;
 
-/// Adds stab trees to what was baked from `path`, if they are wanted; `wanted` may say how many nodes a tree may have.
+/// Adds stab trees to what was baked from `path`, if they are wanted; `wanted` may limit the nodes of a tree.
 pub(super) fn add(
     path: &Path,
     baked: Baked,

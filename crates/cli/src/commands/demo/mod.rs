@@ -1,4 +1,4 @@
-//! `demo`: the whole road on a generated scene.
+//! `demo`: all steps on a generated scene.
 
 mod error;
 mod office;
@@ -53,7 +53,7 @@ struct Done {
     folder: String,
     seed: u64,
     seconds: f64,
-    /// Null where the system does not tell.
+    /// Null where the system does not report it.
     peak_bytes: Option<u64>,
     /// In the folder.
     files: Vec<String>,
@@ -70,7 +70,7 @@ impl Done {
         }
     }
 
-    /// The line about memory, if the system tells.
+    /// The line about memory, if the system reports it.
     fn memory(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.peak_bytes.map_or(Ok(()), |peak| writeln!(f, "memory         {} at most", bytes(peak)))
     }

@@ -18,7 +18,7 @@ use std::path::Path;
 
 /// The source of the clusters, and the query.
 #[derive(Debug)]
-pub(super) struct Asked<'a> {
+pub(super) struct ClusterQuery<'a> {
     pub(super) path: &'a Path,
     pub(super) graph: &'a CellGraph<Convex>,
     pub(super) places: [&'a Place; 2],
@@ -28,7 +28,7 @@ pub(super) struct Asked<'a> {
     pub(super) json: bool,
 }
 
-impl Asked<'_> {
+impl ClusterQuery<'_> {
     /// Explains and prints; `listed` is what a table says of two cells.
     pub(super) fn answer(&self, listed: impl Fn(CellId, CellId) -> Option<bool>) -> Result<Answer, Error> {
         let n_clusters = self.graph.n_cells();

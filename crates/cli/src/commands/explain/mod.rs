@@ -12,7 +12,7 @@ use crate::error::InputError;
 use crate::picture::{PictureKind, draw_plan, save_picture};
 use crate::place::Place;
 use crate::{input, output};
-use convex::Asked;
+use convex::ClusterQuery;
 use error::Error;
 use plan::PlanReason;
 use report::{ExplanationReport, Outside};
@@ -73,7 +73,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
     if input::kind_of(&args.table)? == Some(InputKind::Prt) {
         args.refuse_meaningless(Of::Portals, "a portal file")?;
         let graph = graph_of_prt(&read_prt(&args.table)?);
-        return args.asked(&graph).answer(|_, _| None);
+        return args.query(&graph).answer(|_, _| None);
     }
     let table = input::table(&args.table)?;
     let (of, found) = Of::table(&table);
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
 }
 
 impl ExplainArgs {
-    /// Refuses options that say nothing about such a file.
+    /// Refuses options that mean nothing for such a file.
     fn refuse_meaningless(&self, of: Of, found: &'static str) -> Result<(), Error> {
         let given = [
             (self.draw.is_some(), "--draw", Of::Plan, "plans"),
@@ -121,8 +121,8 @@ impl ExplainArgs {
         ExplanationReport { from: a.0, to: b.0, listed, checked: None, reason, n_shown: self.proofs }
     }
 
-    fn asked<'a>(&'a self, graph: &'a CellGraph<Convex>) -> Asked<'a> {
-        Asked {
+    fn query<'a>(&'a self, graph: &'a CellGraph<Convex>) -> ClusterQuery<'a> {
+        ClusterQuery {
             path: &self.table,
             graph,
             places: [&self.from, &self.to],
@@ -133,7 +133,7 @@ impl ExplainArgs {
     }
 }
 
-/// What a file is of, which decides the engine.
+/// The kind of a file, which decides the engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Of {
     Plan,
@@ -161,16 +161,16 @@ fn in_clusters(args: &ExplainArgs, table: &Table) -> Result<Answer, Error> {
     let graph = convex_graph(table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
     let listed = |a, b| Some(table.sees(a, b));
     if table.planes().is_none() {
-        return args.asked(&graph).answer(listed);
+        return args.query(&graph).answer(listed);
     }
     let Some((a, b)) = args.pair(table)? else { return Ok(Answer::No) };
     let [from, to] = [a, b].map(|cell| Place::Cell(cell.0));
-    Asked { places: [&from, &to], ..args.asked(&graph) }.answer(listed)
+    ClusterQuery { places: [&from, &to], ..args.query(&graph) }.answer(listed)
 }
 
 fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {
     let graph = axial_graph(table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
-    // The table does not tell what was left out beside its cells, and no answer depends on that.
+    // The table does not record what was left out beside its cells, and no answer depends on it.
     let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
     Ok(args.report(table, [a, b], SpaceReason::new(explanation)).print(args.json)?)
 }

@@ -9,7 +9,7 @@ use std::fmt;
 
 /// What an engine found about a pair of cells.
 pub(super) trait Reason: Serialize {
-    /// What the table says of a pair that it lists as visible though the engine did not decide it.
+    /// The verdict of the table on a pair that it lists as visible though the engine did not decide it.
     const UNDECIDED_BUT_LISTED: &'static str = "the table says that they see each other";
 
     /// Whether they see each other; `None` if that was not decided.
@@ -24,14 +24,14 @@ pub(super) trait Reason: Serialize {
 pub(super) struct ExplanationReport<R> {
     pub(super) from: u32,
     pub(super) to: u32,
-    /// What the table says of the pair; null without a table.
+    /// What the table lists for the pair; null without a table.
     pub(super) listed: Option<bool>,
     /// Whether an independent checker accepts the reason; left out where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) checked: Option<bool>,
     #[serde(flatten)]
     pub(super) reason: R,
-    /// How many proofs people get to see; programs get them all.
+    /// How many proofs are shown to people; programs get them all.
     #[serde(skip)]
     pub(super) n_shown: usize,
 }

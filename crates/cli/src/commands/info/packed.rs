@@ -26,7 +26,7 @@ pub(super) struct PackedInfo {
     /// Bytes that stay in memory as they are in the file.
     resident_bytes: usize,
     parts: Vec<Part>,
-    /// How the table says it was made.
+    /// How the table was made, as it states.
     #[serde(serialize_with = "as_map")]
     info: Vec<(String, String)>,
 }
@@ -106,7 +106,7 @@ impl fmt::Display for PackedInfo {
         if self.n_mirror_parts > 0 {
             writeln!(f, "mirrors        {} parts in cells", self.n_mirror_parts)?;
         }
-        writeln!(f, "in memory      {}, the rest is read when it is asked for", bytes(self.resident_bytes as u64))?;
+        writeln!(f, "in memory      {}, the rest is read on demand", bytes(self.resident_bytes as u64))?;
         for Part { name, what, n_bytes, resident } in &self.parts {
             let share = percent(*n_bytes as f64 / self.n_bytes.max(1) as f64);
             let held = if *resident { ", in memory" } else { "" };

@@ -79,7 +79,7 @@ pub(super) struct BspInfo {
     visibility_bytes: usize,
     /// What sees and is seen: `leaf`, or `cluster` in Quake II.
     pairs_of: &'static str,
-    /// Ordered pairs of different ones of which the first sees the second, as the map says; null without
+    /// Ordered pairs of different ones of which the first sees the second, according to the map; null without
     /// visibility.
     n_seen_pairs: Option<u64>,
     /// Of all ordered pairs of different ones.
@@ -143,7 +143,7 @@ impl fmt::Display for BspInfo {
             (None, Some(n), Some(share)) => {
                 writeln!(f, "visibility     {size}: {n} pairs of {}s, {}", self.pairs_of, percent(share))
             }
-            _ => writeln!(f, "visibility     none: nobody has worked it out yet"),
+            _ => writeln!(f, "visibility     none: not computed yet"),
         }
     }
 }

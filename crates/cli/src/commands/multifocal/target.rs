@@ -19,7 +19,7 @@ pub(super) struct PlaneArg {
 /// Lower and upper corner along the two axes that follow the plane's.
 type Window = [[f64; 2]; 2];
 
-/// Why text is no plane.
+/// Why a text is not a plane.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(super) enum PlaneArgError {
     #[error("a plane is an axis and a place on it, such as z=20 or z=20:-4,-4,4,4")]

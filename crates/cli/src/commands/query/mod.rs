@@ -58,7 +58,7 @@ fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer, Error> {
     Ok(if at.is_empty() { Answer::No } else { Answer::Yes })
 }
 
-/// What the table says of the cells at a point, wherever in them that is.
+/// What the table lists for the cells at a point.
 fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found, C::Error> {
     let (mut visible, mut objects) = (BTreeSet::new(), BTreeSet::new());
     let (mut some_cells, mut some_objects) = (Vec::new(), Vec::new());

@@ -99,7 +99,7 @@ fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point
     Ok(Some(seen))
 }
 
-/// Why a table is not of a scene, as far as objects tell.
+/// Why a table is not of a scene, as far as its objects show.
 fn unlike<C: Cells>(cells: &C, scene: &Scene) -> Result<Option<Unlike>, C::Error> {
     if cells.n_dimensions() != 3 {
         return Ok(Some(Unlike::Plane));

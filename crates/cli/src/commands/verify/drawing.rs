@@ -10,7 +10,7 @@ use sightlines::report::{DrawOptions, SliceOptions, View, slice_svg};
 use sightlines::verify::{Findings, Violation};
 use std::path::{Path, PathBuf};
 
-/// Draws what the table says that the cell sees, and the ray that says otherwise. `None`, and no picture, if no violation has a
+/// Draws what a cell sees according to the table, and the ray that contradicts it. `None`, and no picture, if no violation has a
 /// ray.
 pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path) -> Result<Option<PathBuf>, Error> {
     let shown = findings.violations.iter().find_map(|v| Some((v, v.segment()?)));

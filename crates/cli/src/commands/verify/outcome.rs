@@ -1,4 +1,4 @@
-//! What `verify` says.
+//! The report of `verify`.
 
 use super::own::About;
 use super::proofs::ProofOutcome;
@@ -192,15 +192,15 @@ impl fmt::Display for Outcome {
                 )?;
                 writeln!(f, "               is known of whether what the table hides is hidden")
             }
-            0 if self.is_true => writeln!(f, "result         nothing found that is not as the table says"),
-            0 => writeln!(f, "result         nothing found by structure and rays, but see what the proofs say"),
+            0 if self.is_true => writeln!(f, "result         nothing found that contradicts the table"),
+            0 => writeln!(f, "result         nothing found by structure and rays, but see the proofs"),
             n if self.has_more_violations => writeln!(f, "result         at least {}", count(n as u64, "violation")),
             n => writeln!(f, "result         {}", count(n as u64, "violation")),
         }
     }
 }
 
-/// What was found, with what the proofs say.
+/// What was found, with the result of the proofs.
 #[derive(Debug, Serialize)]
 pub(super) struct With {
     #[serde(flatten)]

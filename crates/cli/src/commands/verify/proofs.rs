@@ -39,14 +39,14 @@ const SHOWN: usize = 5;
 /// Pairs and violations that JSON lists.
 const LISTED: usize = 1000;
 
-/// What the proofs say.
+/// The result of checking proofs.
 #[derive(Debug, Serialize)]
 pub(super) struct ProofOutcome {
     file: String,
     n_bytes: usize,
     /// Whether they were found beside the table and are of another one, with other cells or portals: then nothing was checked.
     pub(super) is_stale: bool,
-    /// Whether nothing speaks against the table, and if that was asked for, everything hidden is proven.
+    /// Whether nothing contradicts the table and, with `--strict`, everything hidden is proven.
     pub(super) is_true: bool,
     /// Pairs that the table shows and a line joins.
     n_visible: u64,
@@ -59,7 +59,7 @@ pub(super) struct ProofOutcome {
     unproven_hidden: Vec<[u32; 2]>,
     n_violations: u64,
     violations: Vec<String>,
-    /// Parts of borders of cells that are no portals: what the proofs take for walls.
+    /// Parts of borders of cells that are not portals: the proofs take them for walls.
     n_walls: u64,
     /// Of these, parts that nothing in the scene covers exactly.
     n_bare_walls: u64,
@@ -93,7 +93,7 @@ pub(super) fn check(
         Ok(found) => found.violations.contains(&ProofViolation::Refused(Refusal::OtherTable)),
         Err(error) => matches!(error, ProofError::Kind { .. }),
     };
-    // Nobody said that they are of this table; most likely it was built again without.
+    // They were not named, only found beside the table: most likely it was built again without proofs.
     if is_of_other && !is_asked_for {
         let nothing = ProofOutcome::new(
             &file,
@@ -180,7 +180,7 @@ impl fmt::Display for ProofOutcome {
             writeln!(f, "violation      {text}")?;
         }
         match self.n_violations {
-            0 => writeln!(f, "proofs say     nothing that is not as the table says"),
+            0 => writeln!(f, "proofs say     nothing that contradicts the table"),
             n => writeln!(f, "proofs say     {}", count(n, "violation")),
         }
     }

@@ -14,7 +14,7 @@ use std::path::Path;
 #[derive(Debug, Default, PartialEq, Eq, Serialize)]
 pub(super) struct Certified {
     visible: Proven,
-    /// Of hidden pairs those were picked of which one cluster is beside another that the other one sees.
+    /// Hidden pairs are picked where one cluster borders on a cluster that the other one sees.
     hidden: Proven,
 }
 
@@ -90,7 +90,7 @@ fn visible_pairs(seen: &ConvexVisibility) -> Vec<[u32; 2]> {
     (0..seen.cells.n_rows()).flat_map(row).collect()
 }
 
-/// Pairs of clusters that do not see each other, though one is beside a cluster that the other sees.
+/// Pairs of clusters that do not see each other, though one borders on a cluster that the other sees.
 fn border_pairs(graph: &CellGraph<Convex>, seen: &ConvexVisibility) -> Vec<[u32; 2]> {
     let mut pairs = Vec::new();
     for portal in graph.portals() {
@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(certified.visible.n_picked + certified.hidden.n_picked, 6);
     }
 
-    /// The impostors: a table with a pair more or less is found out.
+    /// The impostors: a table with a pair more or less is detected.
     #[test]
     fn tables_that_are_wrong_are_refused() {
         let (graph, seen) = searched();

@@ -40,13 +40,13 @@ pub(crate) struct VisArgs {
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
     /// Resume an interrupted run with the same portals and options
-    #[arg(long, help_heading = "Going on")]
+    #[arg(long, help_heading = "Resuming")]
     resume: bool,
     /// File for the state of the run [default: beside the output, with the extension .vis-state]
-    #[arg(long, help_heading = "Going on", value_name = "FILE")]
+    #[arg(long, help_heading = "Resuming", value_name = "FILE")]
     state: Option<PathBuf>,
     /// Seconds between two savings of the state
-    #[arg(long, help_heading = "Going on", hide = true, value_name = "SECONDS", default_value_t = 30)]
+    #[arg(long, help_heading = "Resuming", hide = true, value_name = "SECONDS", default_value_t = 30)]
     save_every: u64,
     /// Prove this many visible and as many hidden pairs, and check the proofs independently
     #[arg(long, help_heading = "Method", value_name = "N")]

@@ -1,4 +1,4 @@
-//! What `vis` says that it did.
+//! The report of `vis`.
 
 use super::certify::Certified;
 use crate::clusters::Clusters;
@@ -22,9 +22,9 @@ pub(super) struct Outcome {
     #[serde(flatten)]
     clusters: Clusters,
     pub(super) fast: bool,
-    /// Whether it went on from an earlier run.
+    /// Whether it resumed an earlier run.
     pub(super) resumed: bool,
-    /// What was proven, if that was asked for.
+    /// What was proven, if `--certify` was given.
     pub(super) certified: Option<Certified>,
     n_bytes: usize,
     /// Reading and writing included.

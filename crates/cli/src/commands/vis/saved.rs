@@ -1,4 +1,4 @@
-//! The state of a search in a file: how far it came, for a run that goes on after this one was stopped.
+//! The state of a search in a file: how far it came, for a run that continues after this one was stopped.
 
 use super::Error;
 use crate::error::InputError;
@@ -76,7 +76,7 @@ impl Saved {
         if since < self.every && !(has_ended && since >= LEAST) {
             return;
         }
-        // What cannot be kept is lost only if the run is stopped; that is no reason to stop it.
+        // A state that cannot be written is lost only if the run is stopped, so the run continues.
         if let Err(error) = atomic_write(&self.path, &state::encode(&self.key, state)) {
             tracing::warn!("{error}; a run that is stopped cannot be resumed");
         }

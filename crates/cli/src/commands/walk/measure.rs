@@ -10,9 +10,9 @@ use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Frames that one method walks before the next walks them: the answers of no more are kept to be compared.
+/// Frames that one method walks before the next one does: only so many answers are kept for the comparison.
 const CHUNK: usize = 256;
-/// A frame that did not get its answer is repeated at most so many times: with mirrors each may need one more to be prepared.
+/// A frame that was not answered is repeated at most so many times: with mirrors each may need one more to be prepared.
 const TRIES: usize = 16;
 /// How long to sleep while something is prepared.
 const NAP: Duration = Duration::from_micros(50);
@@ -41,7 +41,7 @@ pub(super) struct MethodSums {
     pub(super) image_polygons: u64,
     /// Of each frame, ascending.
     pub(super) times: Vec<Duration>,
-    /// Frames of the walk without waiting that came before everything was prepared.
+    /// Frames of the walk without waiting whose answer was not ready in time.
     pub(super) n_late: u64,
 }
 
@@ -53,11 +53,11 @@ pub(super) struct Measured {
     pub(super) n_full: usize,
     /// Frames with the eye outside of every cell.
     pub(super) n_outside: usize,
-    /// Frames that never got their answer, because the budget is too small for what they need.
+    /// Frames that were never answered, because the budget is too small for what they need.
     pub(super) n_starved: usize,
     /// The most bytes of prepared subgraphs that were kept at once.
     pub(super) most_bytes: usize,
-    /// VisibleSubgraphs that were prepared and dropped while waiting.
+    /// Visible subgraphs that were prepared and dropped while waiting.
     pub(super) n_prepared: u64,
     pub(super) n_dropped: u64,
 }
@@ -177,7 +177,7 @@ impl<C: Cells> Walk<'_, C> {
         unreachable!("the last try is not repeated")
     }
 
-    /// How many frames come before everything is prepared if nobody waits.
+    /// Number of frames whose answer is not ready in time in a walk without waiting.
     fn hurry(&self, method: Method) -> u64 {
         let mut walk = Walkthrough::new(self.cells.clone(), self.cells.clone(), self.options);
         let pause = self.fps.map(|fps| Duration::from_secs(1) / fps);

@@ -47,7 +47,7 @@ struct MethodLine {
     method: &'static str,
     cells: Kept,
     objects: Kept,
-    /// Of the objects; an object counts as one where the table does not know.
+    /// Of the objects; an object counts as one where the table stores no number.
     polygons: Kept,
     /// Images in mirrors, and polygons of the objects in them, which come on top.
     images: f64,
@@ -55,7 +55,7 @@ struct MethodLine {
     mean_us: f64,
     median_us: f64,
     p99_us: f64,
-    /// Frames of a walk without waiting that came before everything was prepared.
+    /// Frames of a walk without waiting whose answer was not ready in time.
     n_late: u64,
 }
 
@@ -68,7 +68,7 @@ struct Kept {
     share_of_all: f64,
 }
 
-/// A quotient; nothing of nothing is nothing.
+/// A quotient; 0 / 0 is 0.
 fn share(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
@@ -229,7 +229,8 @@ impl fmt::Display for Outcome {
         writeln!(f, "left to draw   on average; of it, % of the first line; of all, %")?;
         writeln!(
             f,
-            "late           frames of a walk without waiting (paced by --fps) that came too early, and showed more"
+            "late           frames whose answer was not ready in time, so that they showed more; of a second walk that does not wait \
+             for answers, at the pace of --fps"
         )
     }
 }

@@ -77,13 +77,13 @@ pub enum BspError {
         /// Index of the first that is not inside the file; 0 if the directory itself is not.
         bad: usize,
     },
-    /// There is no model 0, which says how many leafs can be seen.
+    /// There is no model 0, which states how many leafs can be seen.
     #[error("lump 14 (models): there is no model 0")]
     NoWorld,
     /// More leafs can be seen than there are, besides leaf 0.
     #[error("model 0 has {found} visible leafs, but there are {n_leafs} leafs, one of them for what is solid")]
     VisibleLeafs {
-        /// How many it says.
+        /// How many it states.
         found: i32,
         /// How many leafs there are.
         n_leafs: usize,

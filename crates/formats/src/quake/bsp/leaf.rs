@@ -6,12 +6,12 @@ use super::{BspError, BspFormat, bytes_at, i16_at, i32_at, u16_at, u32_at};
 pub(super) const MODELS: usize = 14;
 /// Bytes of a model there.
 pub(super) const MODEL_LEN: usize = 64;
-/// Where a model says how many leafs can be seen: behind 9 floats and 4 nodes.
+/// Where a model states how many leafs can be seen: behind 9 floats and 4 nodes.
 const MODEL_LEAFS: usize = 52;
 /// Where a leaf has its place of a row, in all formats but Quake II's.
 pub(super) const LEAF_ROW: usize = 4;
 
-/// What a leaf sees, as the map says it.
+/// What a leaf sees according to the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LeafRow {
     /// Everything.

@@ -26,7 +26,7 @@ pub use tree::{BspChild, BspNode, BspTree};
 
 use std::ops::Range;
 
-/// How many steps a leaf may be below the root. Maps that were looked at have 22 to 127.
+/// How many steps a leaf may be below the root. Maps that were examined have 22 to 127.
 pub const MAX_TREE_DEPTH: usize = 1024;
 
 /// A version of the format.
@@ -207,7 +207,7 @@ impl Bsp {
         };
         let leafs = leaf::parse_leafs(format, records(format.leaf_lump(), leaf::leaf_len(format))?)?;
         let n_visible_leafs = match format.has_clusters() {
-            // Leaf 0 is what is solid. Which of the others are visible their clusters say.
+            // Leaf 0 is what is solid. The clusters of the others determine which are visible.
             true => leafs.len().saturating_sub(1),
             false => leaf::visible_leafs(records(leaf::MODELS, leaf::MODEL_LEN)?, leafs.len())?,
         };
@@ -306,7 +306,7 @@ fn find_bspx(bytes: &[u8], lumps: &[Range<usize>]) -> Result<Option<Bspx>, BspEr
     if entries.len() as u64 / (BSPX_ENTRY as u64) < u64::from(n_lumps) {
         return Err(BspError::Bspx { at, n_lumps, bad: 0 });
     }
-    // They begin behind their directory, or what they say would change when they move.
+    // They begin behind their directory; otherwise moving them would change what they contain.
     let behind = (at + BSPX_HEADER) as u64 + u64::from(n_lumps) * BSPX_ENTRY as u64;
     let outside = |entry: &[u8]| {
         let (start, len) = (u64::from(u32_at(entry, 24)), u64::from(u32_at(entry, 28)));

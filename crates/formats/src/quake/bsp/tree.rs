@@ -199,7 +199,7 @@ impl NodesOfFile<'_> {
         let numbers: [f64; 4] =
             std::array::from_fn(|k| f64::from(f32::from_bits(u32_at(self.planes, PLANE_LEN * plane + 4 * k))));
         let [x, y, z, distance] = numbers;
-        // A normal of any other length is no rounding: floats have it to 1e-7, and the maps that were looked at do.
+        // A normal of any other length is no rounding: floats have it to 1e-7, and the maps that were examined do.
         let length = (x * x + y * y + z * z).sqrt();
         if (length - 1.0).abs() <= 1.0 / 64.0 && distance.is_finite() {
             Ok(([x, y, z], distance))

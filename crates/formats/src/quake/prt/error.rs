@@ -103,7 +103,7 @@ pub enum PrtErrorKind {
     Unexpected {
         /// What should stand there.
         item: PrtItem,
-        /// What does, cut off after some characters.
+        /// What stands there, cut off after some characters.
         found: String,
     },
     /// The file ends where a piece should stand.
@@ -115,7 +115,7 @@ pub enum PrtErrorKind {
     /// A whole number is not in its range.
     #[error("{item}: {found} is not from {min} to {max}")]
     Count {
-        /// What it says.
+        /// What it counts.
         item: PrtItem,
         /// The number, as the file has it.
         found: String,

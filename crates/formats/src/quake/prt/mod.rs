@@ -43,7 +43,7 @@ pub const PORTAL_POINTS: RangeInclusive<usize> = 3..=64;
 /// A way of writing portals, with the word that such a file begins with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PrtDialect {
-    /// `PRT1`: clusters are leafs (Quake), or the map says which leafs they are made of (Quake II).
+    /// `PRT1`: clusters are leafs (Quake), or the map lists which leafs they are made of (Quake II).
     Prt1,
     /// `PRT2` of ericw-tools: the leafs of each cluster.
     Prt2,
@@ -87,7 +87,7 @@ pub enum LeafList {
 /// The clusters of a map and the portals between them, checked: there is a cluster, portals join two
 /// clusters that exist, have 3 to 64 points and coordinates that predicates accept; if leafs are listed, each
 /// is in one cluster; the points of a portal go round an area and are within [`MAX_UNEVENNESS`] of a plane, or lie on
-/// one line. Corners of theirs may turn inwards.
+/// one line. Their corners may turn inwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prt {
     n_clusters: u32,

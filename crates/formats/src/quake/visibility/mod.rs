@@ -46,7 +46,7 @@ impl Bsp {
 
 /// Makes the lump for a map, and the loudness of its leafs.
 ///
-/// * `leafs`: the leafs of the clusters, as the portal file says; Quake II ignores them.
+/// * `leafs`: the leafs of the clusters, from the portal file; Quake II ignores them.
 /// * `seen`: row `a` has the clusters that cluster `a` sees. Written as it is: the caller guarantees that everything
 ///   sees itself and that visibility is symmetric.
 ///
@@ -153,7 +153,7 @@ fn append_row(words: &[u64], n_columns: usize, out: &mut Vec<u8>) {
     rle::encode(&row, out);
 }
 
-/// A place in a lump, as files can say it.
+/// A place in a lump, as files store it.
 fn place(at: usize) -> Result<u32, VisibilityError> {
     i32::try_from(at).map(i32::cast_unsigned).map_err(|_| VisibilityError::TooLarge { len: at })
 }

@@ -4,11 +4,11 @@ use super::{Bsp, LeafClusters, VisibilityError, check_match, rle};
 use crate::quake::bsp::LeafRow;
 use sightlines_pvs::BitMatrix;
 
-/// Which clusters see which, as a map says it: row `a` has what cluster `a` sees. `None` for a map whose lump
+/// Which clusters see which according to a map: row `a` has what cluster `a` sees. `None` for a map whose lump
 /// is empty, because nothing was computed yet.
 ///
 /// A cluster of several leafs sees what any of its leafs sees any leaf of. Bits past the last leaf are ignored.
-/// The result is what the file says: it need not be symmetric. O(rows of the lump) per cluster.
+/// The result is that of the file, which need not be symmetric. O(rows of the lump) per cluster.
 ///
 /// # Errors
 /// [`VisibilityError`] with the leaf or cluster whose row is wrong.

@@ -28,7 +28,7 @@ impl GltfSource {
     ///
     /// * `triangles`: for each object `None` if it stays as it is, or all triangles that it shall have, as indices of its
     ///   vertices in the scene and wound as there.
-    /// * `simplified`: what the result says of itself to readers of ours; the result is no occluder if the source is none.
+    /// * `simplified`: what the result states about itself, for readers of ours; it is no occluder if the source is none.
     ///
     /// Reading the result gives the objects that have anything left, in the same order: those that stay as they are, and the
     /// others with these triangles in this order, at vertices with the same bits. (Triangles without area are left out by
@@ -103,7 +103,7 @@ fn check(source: &GltfSource, triangles: &[Option<Vec<[u32; 3]>>]) -> Result<(),
     Ok(())
 }
 
-/// Writes into the extras of the asset whether the scene may be used to hide.
+/// Writes into the extras of the asset whether the scene may be used as an occluder.
 fn mark(root: &mut Object, occluder: bool) -> Result<(), RewriteError> {
     let asset = root.get_mut("asset").and_then(Value::as_object_mut);
     let asset = asset.ok_or_else(|| document::form("asset", "an object"))?;

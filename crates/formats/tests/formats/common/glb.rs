@@ -30,7 +30,7 @@ pub(crate) struct Doc {
 }
 
 impl Doc {
-    /// A document with these nodes; the roots are all that is nobody's child, in one scene.
+    /// A document with these nodes; the roots are all nodes without a parent, in one scene.
     pub(crate) fn new(nodes: Value) -> Self {
         let list = nodes.as_array().unwrap();
         let children: Vec<u64> = list
