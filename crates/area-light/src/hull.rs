@@ -1,7 +1,7 @@
 //! The convex hull of a light and a piece, and what certainly stays out of its interior.
 //!
-//! A piece is wholly lit if no face meets the interior of the hull `K` of light and piece: every line from an inner point of the light to
-//! an inner point of the piece runs in there. A face is shown to stay out by a plane with the face on one side and `K` on
+//! A piece is wholly lit if no face meets the interior of the hull `K` of light and piece, because every line from an inner point of the
+//! light to an inner point of the piece runs inside it. A face is shown to stay out by a plane with the face on one side and `K` on
 //! the other; both may touch it. Where they do touch, the plane has to be exact; there are four such planes:
 //! 1. the piece's own, behind which nothing counts: its neighbours in one plane or at convex edges;
 //! 2. planes across the axes through the borders of `K`;

@@ -23,10 +23,10 @@ pub enum BakeError {
     /// The lines of a map do not make a plan.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// There is no such grid of view cells.
+    /// A grid of view cells with none or too many.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// A view cell is no volume.
+    /// A view cell is not a volume.
     #[error("view cell {cell}: {error}")]
     Cell {
         /// Its index.

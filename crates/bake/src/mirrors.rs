@@ -8,7 +8,7 @@ use sightlines_geometry::{Aabb, Point2, orient2d};
 use sightlines_kdtree::{AxialFace, SceneOptions, scene_faces};
 use sightlines_pvs::{MirrorId, MirrorRecord};
 
-/// The parts of mirrors, and what has none.
+/// The parts of mirrors, and the mirrors without.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct MirrorParts {
     /// Cell by cell, and in each by face.

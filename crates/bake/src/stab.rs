@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// How to add stab trees to a table.
 #[derive(Clone, Copy, Default)]
 pub struct StabOptions<'a> {
-    /// The most nodes of the tree of one cell, before equal ones are put together; beyond, it is cut, the nearest
+    /// The most nodes of the tree of one cell, before equal ones are merged; a larger tree is cut, the nearest
     /// sequences stay, and what may go on is marked. `None`: [`GraphRef::most_nodes`].
     pub max_nodes: Option<usize>,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
@@ -44,7 +44,7 @@ pub enum StabBakeError {
     /// The trees do not fit the table: a defect of this crate.
     #[error("the stab trees are inconsistent: {0}")]
     Stab(#[from] StabError),
-    /// The table with trees is no table: a defect of this crate.
+    /// The table with trees is invalid: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),
 }
@@ -63,7 +63,7 @@ pub struct BakedStab {
 pub struct StabReport {
     /// The most nodes that a tree was allowed.
     pub max_nodes: usize,
-    /// What the trees are, before equal ones are put together.
+    /// The trees in numbers, before equal ones are merged.
     pub trees: StabTreesSummary,
     /// Time to find them.
     pub time: Duration,

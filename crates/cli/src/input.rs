@@ -20,7 +20,7 @@ pub(crate) fn kind_of(path: &Path) -> Result<Option<InputKind>, InputError> {
     Ok(detect_file(path)?.map(|format| format.kind))
 }
 
-/// Reads a table. What is no table is refused by its first bytes, however large it is.
+/// Reads a table. Anything else is refused by its first bytes, however large it is.
 pub(crate) fn table(path: &Path) -> Result<Table, InputError> {
     let kind = kind_of(path)?;
     if kind == Some(InputKind::Packed) {
@@ -104,7 +104,7 @@ pub(crate) fn portal_file(map: &Path, named: Option<&Path>) -> Result<PathBuf, I
     if named.is_some() || path.exists() { Ok(path) } else { Err(InputError::MapWithoutPortals(map.to_owned())) }
 }
 
-/// Refuses a file that is no scene in space.
+/// Refuses a file that is not a scene in space.
 pub(crate) fn check_is_scene(path: &Path) -> Result<(), InputError> {
     match kind_of(path)? {
         Some(InputKind::Scene) => Ok(()),

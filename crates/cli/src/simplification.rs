@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// Why a scene was not simplified.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum SimplificationError {
-    /// An input that is none.
+    /// A file that the command cannot use.
     #[error(transparent)]
     Input(#[from] InputError),
     /// A WAD, a plan or a scene cannot be read.

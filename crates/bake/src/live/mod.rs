@@ -24,7 +24,7 @@ use sightlines_pvs::Table;
 use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceUpdate};
 use std::time::{Duration, Instant};
 
-/// A scene with its table, and what it takes to keep that up to date.
+/// A scene with its table, and the state that keeps the table up to date.
 ///
 /// Memory beside the table: see [`LiveSpace`].
 #[derive(Debug, Clone)]

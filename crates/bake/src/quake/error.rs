@@ -9,7 +9,7 @@ use sightlines_pvs::TableError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PrtBakeError {
-    /// There is no way from any cluster to another, which no map with several clusters means.
+    /// No cluster leads to another, which no map with several clusters intends.
     #[error("there are {n_clusters} clusters, but no portals between them")]
     NoPortals {
         /// Clusters of the file.

@@ -28,7 +28,7 @@ use sightlines_cells::{CellGraph, Convex};
 use sightlines_stabtree::ConvexState;
 use xxhash_rust::xxh3::xxh3_128;
 
-/// What a state begins with. The byte in front is no text, and its line ends reveal changes by text tools.
+/// What a state begins with. The first byte is not text, and its line ends reveal changes by text tools.
 pub const MAGIC: [u8; 8] = *b"\x8ESLVIS\r\n";
 
 /// Changes with the layout, and whenever the stages of the search change their meaning.

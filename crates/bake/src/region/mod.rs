@@ -87,7 +87,7 @@ impl fmt::Debug for RegionBakeOptions<'_> {
 /// are visible from it. Errs towards visible only, as far as the method does.
 ///
 /// # Errors
-/// [`BakeError`]: for scenes that cannot be cut, cells that are no volumes, and methods that fail.
+/// [`BakeError`]: for scenes that cannot be cut, cells that are not volumes, and methods that fail.
 pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
     let start = Instant::now();
     let triangles: Vec<Vec<[Point3; 3]>> = scene.objects().iter().map(|o| o.corners().collect()).collect();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A text that is no index of levels, shown as `line 3 column 14: not JSON that can be read` or `level 2: ...`.
+/// A text that is not an index of levels, shown as `line 3 column 14: not JSON that can be read` or `level 2: ...`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{place}{kind}")]
 pub struct LevelsIndexError {
@@ -50,7 +50,7 @@ pub enum LevelsIndexErrorKind {
         /// The version that it states.
         found: u32,
     },
-    /// A number that is no share.
+    /// A number that is not a share.
     #[error("\"{member}\" is a share from 0 to 1, not {value}")]
     Share {
         /// The member.

@@ -25,7 +25,7 @@ pub enum RleError {
         /// Bytes of a row.
         needed: usize,
     },
-    /// A run has no zeros. Nothing writes that.
+    /// A run has no zeros. No compiler writes that.
     #[error("a run of no zeros at byte {at} of a row")]
     EmptyRun {
         /// Where it is in the row.

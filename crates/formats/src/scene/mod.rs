@@ -129,7 +129,7 @@ pub fn read_scene(path: impl AsRef<Path>) -> Result<SceneFile, ReadError> {
     parsed.map_err(|error| ReadError::new(path, error))
 }
 
-/// As [`read_scene`], with what it takes to write the file again with fewer triangles; an OBJ has no such source.
+/// As [`read_scene`], with the source that is needed to write the file again with fewer triangles; an OBJ has none.
 ///
 /// # Errors
 /// As [`read_scene`].

@@ -6,7 +6,7 @@ use sightlines_geometry::{Point2, orient2d};
 /// The most corners of a polygon that no fan covers: cutting ears takes cubic time at worst.
 pub(super) const MAX_WINDING_CORNERS: usize = 1024;
 
-/// Why a polygon is no union of triangles.
+/// Why a polygon is not a union of triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PolygonError {
     /// Its outline crosses itself as seen from every axis.

@@ -46,7 +46,7 @@ pub struct ObjectSource<'a> {
     pub is_mirrored: bool,
 }
 
-/// As [`parse_glb`](super::parse_glb), with what it takes to write the document again with fewer triangles.
+/// As [`parse_glb`](super::parse_glb), with the source that is needed to write the document again with fewer triangles.
 ///
 /// Costs the memory of the file and of its outside buffers, and a number for each vertex of a mesh.
 ///

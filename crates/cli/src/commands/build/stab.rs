@@ -33,7 +33,7 @@ pub(super) fn add(
 pub(super) struct Added {
     #[serde(flatten)]
     facts: StabFacts,
-    /// The most nodes that the tree of a cell was allowed, before equal ones are put together.
+    /// The most nodes that the tree of a cell was allowed, before equal ones are merged.
     max_nodes: usize,
     n_largest: u64,
     /// Cells whose tree was cut.

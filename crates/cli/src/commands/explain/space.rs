@@ -45,13 +45,13 @@ pub(super) struct Line {
 /// What stops all lines.
 #[derive(Debug, Serialize)]
 pub(super) struct Walls {
-    /// Rectangles that all walls between cells were put together to.
+    /// Rectangles that all walls between cells were merged into.
     n_blockers: usize,
-    /// Rectangles gone past in the proof, each as often as that happens.
+    /// Rectangles that the proof goes past, each as often as that happens.
     n_nodes: usize,
     /// Contradictions that end the proof's branches.
     n_contradictions: usize,
-    /// Most rectangles gone past one after the other.
+    /// The most rectangles gone past one after the other.
     depth: usize,
     walls: Vec<Wall>,
     proof: Value,

@@ -20,7 +20,7 @@ pub(crate) enum Error {
     /// A scene that is too large.
     #[error("{}: {source}", path.display())]
     Faces { path: PathBuf, source: FacesError },
-    /// A box that is no volume of viewpoints.
+    /// A box that is not a volume of viewpoints.
     #[error("--volume: {0}")]
     Volume(#[from] VolumeError),
     /// A method cannot be prepared.

@@ -14,7 +14,7 @@ pub(crate) enum Error {
     /// A file cannot be read, used or written.
     #[error(transparent)]
     File(FileError),
-    /// A box that is no volume of viewpoints.
+    /// A box that is not a volume of viewpoints.
     #[error("--volume: {0}")]
     Volume(#[from] VolumeError),
     /// A plane on which no buffer can be.

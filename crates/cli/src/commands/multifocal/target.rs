@@ -147,7 +147,7 @@ impl Texels {
             Self::Both(both) => both,
             Self::Longer(n) => {
                 let longer = size[0].max(size[1]);
-                // Windows without a size are refused afterwards; what is no number becomes 1.
+                // Windows without a size are refused afterwards; a quotient that is not a number becomes 1.
                 size.map(|s| if s == longer { n } else { ((f64::from(n) * s / longer).round() as u32).clamp(1, n) })
             }
         }

@@ -15,10 +15,10 @@ pub(crate) enum Error {
     /// A scene that cannot be simplified.
     #[error(transparent)]
     Simplification(#[from] SimplificationError),
-    /// A box that is no volume of viewpoints.
+    /// A box that is not a volume of viewpoints.
     #[error("--volume: {0}")]
     Volume(#[from] VolumeError),
-    /// Places of the eye that are none.
+    /// Invalid places of the eye.
     #[error("{}: {source}", path.display())]
     Views { path: PathBuf, source: ViewsError },
 }

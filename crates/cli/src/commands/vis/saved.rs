@@ -30,7 +30,7 @@ impl Saved {
     /// The state in the file, if `resume` is set and there is one. Without `resume` a state that is there will be
     /// overwritten.
     ///
-    /// Refuses a file that is no state, and with `resume` one that is not of this search.
+    /// Refuses a file that is not a state, and with `resume` a state of another search.
     pub(super) fn open(
         path: PathBuf,
         every: Duration,

@@ -88,11 +88,11 @@ impl BspFormat {
     /// All that are read.
     pub const ALL: [Self; 4] = [Self::Bsp29, Self::Bsp2, Self::Bsp2Psb, Self::Quake2];
 
-    /// What files of each begin with.
+    /// The first bytes of files of each.
     pub const MAGICS: [&'static [u8]; 4] =
         [Self::ALL[0].magic(), Self::ALL[1].magic(), Self::ALL[2].magic(), Self::ALL[3].magic()];
 
-    /// What a file begins with.
+    /// The first bytes of a file.
     pub const fn magic(self) -> &'static [u8] {
         match self {
             Self::Bsp29 => &[29, 0, 0, 0],

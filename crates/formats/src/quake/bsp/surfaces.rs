@@ -5,7 +5,7 @@ use crate::point::check_point;
 use sightlines_geometry::Point3;
 use std::ops::Range;
 
-/// How often in all records of a list may be named, in multiples of its length. Compilers name each once.
+/// How often the records of a list may be named in all, in multiples of its length. Compilers name each once.
 const MOST_SHARED: u64 = 4;
 
 /// The faces of the world, without those of doors and the like: polygons, most of them convex, with corners that
@@ -89,7 +89,7 @@ impl Bsp {
     /// Reads the faces of the world with their corners. Time and memory in proportion to the file.
     ///
     /// # Errors
-    /// [`BspError`] for lumps that are no whole number of records, for a face, list, edge or vertex that is not there,
+    /// [`BspError`] for lumps that are not a whole number of records, for a face, list, edge or vertex that is not there,
     /// for a vertex that is nowhere, and for faces that share more of the list of edges than their number explains.
     ///
     /// # Source
@@ -135,7 +135,7 @@ impl Bsp {
     /// Reads which faces the visible leafs list. Time and memory in proportion to the file.
     ///
     /// # Errors
-    /// [`BspError`] for lumps that are no whole number of records, for a part of the list or a face that is not there,
+    /// [`BspError`] for lumps that are not a whole number of records, for a part of the list or a face that is not there,
     /// and for leafs that share more of the list than their number explains.
     pub fn leaf_faces(&self) -> Result<LeafFaces, BspError> {
         let lumps = Lumps::of(self.format());

@@ -57,7 +57,7 @@ impl Bsp {
     /// Reads the tree of the world. O(file).
     ///
     /// # Errors
-    /// [`BspError`] for lumps that are no whole number of records, a plane, node or leaf that is not there, a plane that
+    /// [`BspError`] for lumps that are not a whole number of records, a plane, node or leaf that is not there, a plane that
     /// is none, a node that is reached twice, and a tree that is too deep.
     ///
     /// # Source
@@ -199,7 +199,7 @@ impl NodesOfFile<'_> {
         let numbers: [f64; 4] =
             std::array::from_fn(|k| f64::from(f32::from_bits(u32_at(self.planes, PLANE_LEN * plane + 4 * k))));
         let [x, y, z, distance] = numbers;
-        // A normal of any other length is no rounding: floats have it to 1e-7, and the maps that were examined do.
+        // A normal of any other length is not the result of rounding: floats have it to 1e-7, and the maps that were examined do.
         let length = (x * x + y * y + z * z).sqrt();
         if (length - 1.0).abs() <= 1.0 / 64.0 && distance.is_finite() {
             Ok(([x, y, z], distance))

@@ -55,7 +55,7 @@ impl PrtDialect {
     /// All that are read.
     pub const ALL: [Self; 3] = [Self::Prt1, Self::Prt2, Self::Prt1Am];
 
-    /// What files of each begin with.
+    /// The first bytes of files of each.
     pub const MAGICS: [&'static [u8]; 3] =
         [Self::ALL[0].magic().as_bytes(), Self::ALL[1].magic().as_bytes(), Self::ALL[2].magic().as_bytes()];
 

@@ -151,7 +151,7 @@ impl<'t> Reader<'t> {
     fn coordinate(&mut self, portal: usize, point: usize) -> Result<f64, PrtError> {
         let item = PrtItem::Coordinate { portal, point };
         let token = self.token(item)?;
-        // Rust would read "nan" and "inf" too; they are no decimals.
+        // Rust would read "nan" and "inf" too; they are not decimals.
         let is_decimal = |b: &u8| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E');
         let text = token.bytes.filter(|bytes| bytes.iter().all(is_decimal));
         let number = text.and_then(|bytes| std::str::from_utf8(bytes).ok()?.parse().ok());

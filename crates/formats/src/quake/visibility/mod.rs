@@ -74,7 +74,7 @@ pub fn lump(bsp: &Bsp, leafs: &LeafClusters, seen: &BitMatrix) -> Result<Visibil
 /// [`VisibilityError`] if the three do not fit together, or the faces of a leaf cannot be looked up.
 ///
 /// # Source
-/// What Quake's vis has always written: it meant to soften with distance, but takes every distance as 0.25.
+/// What Quake's vis has always written: loudness was meant to fall with distance, but every distance is taken as 0.25.
 pub fn ambient(bsp: &Bsp, leafs: &LeafClusters, seen: &BitMatrix) -> Result<Vec<[u8; 4]>, VisibilityError> {
     check_match(bsp, leafs)?;
     check_square(seen, leafs.n_clusters())?;

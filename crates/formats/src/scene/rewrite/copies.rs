@@ -190,7 +190,7 @@ fn object(value: Value) -> Object {
     }
 }
 
-/// The least and the largest numbers of elements, unless they are no numbers of JSON.
+/// The least and the largest numbers of elements, unless JSON cannot hold them as numbers.
 fn put_bounds(json: &mut Object, elements: &Elements<'_>, used: &[usize]) {
     if json.get("type").and_then(Value::as_str).is_none_or(|kind| kind.starts_with("MAT")) {
         return;

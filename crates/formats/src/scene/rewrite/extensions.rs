@@ -26,9 +26,9 @@ const VARIANTS: &str = "KHR_materials_variants";
 /// Code a buffer view again, beside its bytes.
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// Whether an extension is used that may name accessors or buffer views in a way of its own.
+/// Whether an extension that may name accessors or buffer views in a way of its own is used.
 ///
-/// Refuses what names buffers in a way of its own: they are put together.
+/// Refuses extensions that name buffers in a way of their own: buffers are merged.
 pub(super) fn any_unknown(document: &mut Object) -> Result<bool, RewriteError> {
     for (k, view) in list(document, "bufferViews")?.iter_mut().enumerate() {
         let place = || format!("bufferViews[{k}]");

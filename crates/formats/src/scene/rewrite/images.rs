@@ -29,7 +29,7 @@ pub(super) fn outside(
         }
     }
     let load = |(uri, images): (String, Vec<usize>)| {
-        // Data URIs, and what is elsewhere, are no files below the folder.
+        // Data URIs, and images elsewhere, are not files below the folder.
         let bytes = load_file(beside, &uri).ok()?;
         let mime = mime_of(&bytes)?;
         Some(OutsideImage { bytes, mime, images })
