@@ -2,8 +2,8 @@
 
 use sightlines_bake::methods::{Backend, BufferOptions, OcclusionMethod};
 use sightlines_bake::{
-    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, CertifyError, PlanBakeOptions, PrtOptions, Report, SceneBakeOptions,
-    SceneMethod, TableGraph, bake, bake_plan, bake_prt, bake_scene, from_table,
+    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, CertifyError, PlanBakeOptions, PrtOptions, Report,
+    SceneBakeOptions, SceneMethod, TableGraph, bake, bake_plan, bake_prt, bake_scene, from_table,
 };
 use sightlines_formats::quake::prt::parse_prt;
 use sightlines_progress::Progress;
@@ -116,7 +116,8 @@ fn proofs_are_observed() {
             reports.lock().unwrap().push((progress.done, progress.total, progress.share));
             ControlFlow::Continue(())
         };
-        let watched = baked.certify(&CertifyOptions { threads: 2, progress: Some(&watch), ..CertifyOptions::default() });
+        let watched =
+            baked.certify(&CertifyOptions { threads: 2, progress: Some(&watch), ..CertifyOptions::default() });
         let alone = baked.certify(&CertifyOptions::default()).unwrap();
         assert_eq!(watched.unwrap().proofs.to_bytes(), alone.proofs.to_bytes());
         let mut reports = reports.into_inner().unwrap();
