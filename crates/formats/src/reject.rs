@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn effects_are_told_from_sight() {
+    fn effects_are_distinguished_from_sight() {
         let mut table = RejectTable::new(5);
         table.set(1, 4, true);
         assert!(!table.is_symmetric() && table.has_hand_made_effects());

@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn coverage_is_told() {
+    fn coverage_is_decided() {
         let section = rect([0., 4.], [0., 2.]);
         let halves = [rect([-1., 2.], [0., 2.]), rect([2., 5.], [0., 2.])];
         assert!(covered_by(&section, halves.into_iter()));

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn pieces_are_told_apart() {
+    fn pieces_are_separated() {
         let mut turned = tetrahedron(9.0, 4);
         turned.1.iter_mut().for_each(|t| t.swap(0, 1));
         let mesh = Mesh::of(&object(vec![tetrahedron(0.0, 4), tetrahedron(5.0, 3), turned]));

@@ -43,7 +43,7 @@ pub enum NetworkError {
         cell: u32,
     },
     /// Portals on one side of a cell that are not on one line.
-    #[error("portals {} and {} are said to be on one side of cell {cell}, and are not", portals[0], portals[1])]
+    #[error("portals {} and {} are listed on one side of cell {cell}, and are not", portals[0], portals[1])]
     Sides {
         /// The cell.
         cell: u32,

@@ -140,7 +140,7 @@ fn networks_that_are_none_are_refused() {
     };
     assert_eq!(with(&turned), NetworkError::OffBorder { portal: 2, cell: 2 });
     let sides = with(&|_, p| p[1].sides = [3, 3]);
-    assert_eq!(sides.to_string(), "portals 0 and 1 are said to be on one side of cell 1, and are not");
+    assert_eq!(sides.to_string(), "portals 0 and 1 are listed on one side of cell 1, and are not");
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn prove_and_flip(folder: &Folder, scene: &str) {
 
 /// Proofs beside a table that was built again are not held against it, unless they are requested.
 #[test]
-fn stale_proofs_are_told_apart() {
+fn stale_proofs_are_recognized() {
     let folder = Folder::with_office();
     folder.run(&["build", "office.geojson", "-o", "t.pvs", "--certify"]).expect(0);
     let map = rooms(4, 3);
@@ -114,7 +114,7 @@ fn stale_proofs_are_told_apart() {
 }
 
 #[test]
-fn people_are_told() {
+fn the_text_has_the_counts() {
     let folder = Folder::with_office();
     let out = folder.run(&["build", "office.geojson", "-o", "t.pvs", "--certify=p.bin"]).expect(0).out;
     assert!(out.contains("\nproofs         p.bin, "), "{out}");

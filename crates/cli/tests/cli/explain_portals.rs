@@ -73,7 +73,7 @@ fn clusters_are_explained() {
 }
 
 #[test]
-fn people_are_told_too() {
+fn the_text_has_the_same() {
     let folder = with(&rooms(4, 1));
     let reply = explain(&folder, "map.prt", [0, 1], &[]).expect(0).out;
     let start = "cluster 0 sees cluster 1 through 1 portal\n  portal 0 into cluster 1 at (16, ";
@@ -97,7 +97,7 @@ fn people_are_told_too() {
 }
 
 #[test]
-fn limits_and_wrong_tables_are_told() {
+fn limits_and_wrong_tables_are_reported() {
     let folder = with(&rooms(6, 5));
     let reply = explain(&folder, "map.prt", [0, 29], &["--max-questions", "1"]).expect(0).out;
     assert_eq!(reply, "cluster 0 and cluster 29: given up after 1 question; see --max-questions\n");

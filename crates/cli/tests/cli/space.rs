@@ -76,7 +76,7 @@ fn build_is_deterministic_and_options_matter() {
 }
 
 #[test]
-fn scenes_are_told_from_plans_by_content_and_name() {
+fn scenes_and_plans_are_distinguished_by_content_and_name() {
     let folder = Folder::with_tower();
     folder.write("tower.wad", folder.read("tower.glb"));
     folder.run(&["build", "tower.wad", "-o", "out.pvs"]).expect(0);

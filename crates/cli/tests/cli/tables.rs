@@ -63,7 +63,7 @@ fn build_takes_the_map_that_is_named_or_the_only_one() {
 }
 
 #[test]
-fn walls_that_do_not_block_are_told() {
+fn walls_that_do_not_block_are_reported() {
     let folder = Folder::with_wad();
     let args = ["build", "maps.wad", "--map", "MAP01", "-o", "kd.pvs", "--subdivide", "kd"];
     let run = folder.run(&args).expect(0);

@@ -125,7 +125,7 @@ fn answers_are_the_same_with_any_number_of_threads() {
 }
 
 #[test]
-fn people_are_told_what_was_checked() {
+fn the_text_lists_what_was_checked() {
     let folder = Folder::with_office();
     let reply = folder.run(&["verify", "office.pvs", "office.geojson", "--rays", "2000"]).expect(0).out;
     for line in [
@@ -156,7 +156,7 @@ fn people_are_told_what_was_checked() {
 
 /// Without rays and proofs, the output states that only the structure was checked.
 #[test]
-fn what_was_not_checked_is_told() {
+fn what_was_not_checked_is_listed() {
     let folder = Folder::with_office();
     let none = ["verify", "office.pvs", "office.geojson", "--rays", "0", "--pairs", "0"];
     let reply = folder.run(&none).expect(0).out;

@@ -109,7 +109,7 @@ fn a_map_is_replaced() {
 }
 
 #[test]
-fn files_are_told_by_their_content() {
+fn files_are_recognized_by_their_content() {
     let map = rooms(3, 3);
     let folder = with(&map);
     folder.write("portals", &map.prt);

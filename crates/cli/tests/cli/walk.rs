@@ -54,7 +54,7 @@ fn methods_are_nested() {
 }
 
 #[test]
-fn a_look_is_told_in_words() {
+fn a_look_is_described_in_words() {
     let folder = Folder::with_office();
     let table = table(&folder, "office.pvs");
     let eye = middle(&table, 0);

@@ -34,7 +34,7 @@ fn an_index_is_written_as_the_documentation_says() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn what_is_wrong_is_reported_with_its_place() {
     let spoilt = |from: &str, to: &str, says: &str| {
         let text = write_levels_index(&small());
         assert!(text.contains(from), "{from}");

@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn mirrors_are_told_from_turns() {
+    fn mirrors_are_distinguished_from_turns() {
         let scaled = |s| Transform::from_parts([0.; 3], [0., 0., 0., 1.], s).unwrap().mirrors();
         assert!(scaled([-1., 1., 1.]) && scaled([-1., -2., -1.]));
         assert!(!scaled([-1., -1., 1.]) && !scaled([2., 1., 1.]) && !scaled([-1., 0., 1.]));

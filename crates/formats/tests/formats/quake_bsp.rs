@@ -248,7 +248,7 @@ fn lumps_that_share_bytes_are_not_torn() {
 }
 
 #[test]
-fn portals_of_another_map_are_told() {
+fn portals_of_another_map_are_refused() {
     let bsp = small(BspFormat::Bsp29);
     let text = |leafs: LeafClusters, bsp: &Bsp| check_match(bsp, &leafs).unwrap_err().to_string();
     let other = LeafClusters::identity(5).unwrap();

@@ -378,7 +378,7 @@ fn all_that_has_nothing_to_do_with_triangles_stays() {
 }
 
 #[test]
-fn impostors_are_told_apart() {
+fn impostors_are_found_out() {
     let doc = rich_doc();
     let (file, source) = with_source(&doc);
     let changes = every(&file, |k| k != 1);

@@ -248,7 +248,7 @@ fn by_tobj(text: &str) -> Summary {
 }
 
 #[test]
-fn impostor_scenes_are_told_apart() {
+fn impostor_scenes_are_found_out() {
     let doc = document(
         vec![json!({"mesh": 0}), json!({"mesh": 0})],
         &[vec![(vec![[0, 0, 0], [1, 0, 0], [0, 1, 0]], None, 4)]],

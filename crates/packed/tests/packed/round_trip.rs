@@ -112,7 +112,7 @@ fn names_come_and_go_alone() {
 
 /// The comparison can fail: a table with one pair less differs.
 #[test]
-fn impostor_a_table_without_a_pair_is_told_apart() {
+fn impostor_a_table_without_a_pair_is_found_out() {
     let table = table((2, 6, 5, 7, 0xFF));
     let mut parts = table.clone().into_parts();
     let (a, b) = (0..30).flat_map(|a| (0..a).map(move |b| (a, b))).find(|&(a, b)| parts.rows.get(a, b)).unwrap();

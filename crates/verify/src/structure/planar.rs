@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn walls_in_portals_are_told() {
+    fn walls_in_portals_are_reported() {
         let p = |x: f64, y: f64| Point2::new(x, y);
         let (left, right) = (p(0.0, 4.0), p(0.0, 0.0));
         for wall in [[p(-1.0, 2.0), p(1.0, 2.0)], [p(0.0, 3.0), p(0.0, 9.0)], [p(0.0, -1.0), p(0.0, 9.0)]] {
