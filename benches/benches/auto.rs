@@ -5,12 +5,11 @@
 
 use clap::Parser;
 use sightlines::bake::auto::choose;
-use sightlines::bake::{CellsFrom, PortalMode, RegionBakeOptions, bake_regions};
+use sightlines::bake::{CellsFrom, RegionBakeOptions, bake_regions};
 use sightlines::cells::Scene;
 use sightlines::formats::ViewCells;
-use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
-use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, Split, UnionMethod};
+use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::{CityOptions, TowerOptions};
 use sightlines_benches::program::{Common, exit};
@@ -102,15 +101,10 @@ fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instan
         Box::new(UnionMethod::new(methods))
     };
     let options = RegionBakeOptions {
-        cells: &case.cells,
         method: shared.is_some().then_some(&make),
         sightlines,
-        split: Split::default(),
-        cut: SceneOptions::default(),
-        portals: PortalMode::Exact,
         threads: 1,
-        file: None,
-        progress: None,
+        ..RegionBakeOptions::new(&case.cells)
     };
     let baked = bake_regions(&case.scene, &options).expect("the scene can be baked");
     let n_cells = baked.table.n_cells();

@@ -2,16 +2,14 @@
 
 use crate::rates::{Rates, least};
 use sightlines::bake::{
-    CellsFrom, PlanBakeOptions, PortalMode, RegionBakeOptions, SceneBakeOptions, bake_plan, bake_regions, bake_scene,
-    see_groups,
+    CellsFrom, PlanBakeOptions, RegionBakeOptions, SceneBakeOptions, bake_plan, bake_regions, bake_scene, see_groups,
 };
 use sightlines::cells::Scene;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::ViewCells;
 use sightlines::formats::view_cells::ViewCell;
 use sightlines::geometry::{Aabb, Adaptive, AxialDoor, Point3, Portal3};
-use sightlines::kdtree::SceneOptions;
-use sightlines::multifocal::{Job, Measure, MultifocalBackend, Occluder, Plane, Split, Volume};
+use sightlines::multifocal::{Job, Measure, MultifocalBackend, Occluder, Plane, Volume};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::packed::{PackOptions, Packed, pack};
 use sightlines::pvs::{CellId, Table};
@@ -350,17 +348,7 @@ fn given_cells(rates: &Rates, scene: &Scene, options: TowerOptions) -> Path {
     let rooms = tower_rooms(options).expect("in range");
     let cells = (0u32..).zip(&rooms).map(|(i, room)| ViewCell { id: i.to_string(), bounds: room.bounds }).collect();
     let cells = CellsFrom::Boxes(ViewCells { cells });
-    let options = RegionBakeOptions {
-        cells: &cells,
-        method: None,
-        sightlines: true,
-        split: Split::default(),
-        cut: SceneOptions::default(),
-        portals: PortalMode::Exact,
-        threads: 1,
-        file: None,
-        progress: None,
-    };
+    let options = RegionBakeOptions { threads: 1, ..RegionBakeOptions::new(&cells) };
     let baked = bake_regions(scene, &options).expect("a tower can be baked");
     let seconds = least(|| drop(black_box(bake_regions(scene, &options))));
     let pairs = baked.report.n_objects_seen + baked.report.n_visible_pairs;

@@ -70,6 +70,23 @@ pub struct RegionBakeOptions<'a> {
     pub progress: Option<&'a dyn Observer>,
 }
 
+impl<'a> RegionBakeOptions<'a> {
+    /// These cells by sightlines alone, with everything else as it is by default.
+    pub fn new(cells: &'a CellsFrom) -> Self {
+        Self {
+            cells,
+            method: None,
+            sightlines: true,
+            split: Split::default(),
+            cut: SceneOptions::default(),
+            portals: PortalMode::default(),
+            threads: 0,
+            file: None,
+            progress: None,
+        }
+    }
+}
+
 impl fmt::Debug for RegionBakeOptions<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("RegionBakeOptions")

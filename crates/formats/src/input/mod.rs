@@ -48,7 +48,7 @@ pub enum Input {
     Scene(SceneFile),
     /// The clusters of a Quake map, without the map.
     Prt(Prt),
-    /// A Quake map, without its portals; those are beside it, see [`portals_beside`](crate::quake::portals_beside).
+    /// A Quake map, without its portals; those are beside it, see [`portals_beside`].
     Bsp(Bsp),
     /// A visibility table.
     Table(Box<Table>),

@@ -1,15 +1,14 @@
 //! Tables of boxes, which have no portals: whatever a ray from the eye meets is in the answer of every method.
 
 use sightlines::bake::region::grid;
-use sightlines::bake::{CellsFrom, PortalMode, RegionBakeOptions, bake_regions};
+use sightlines::bake::{CellsFrom, RegionBakeOptions, bake_regions};
 use sightlines::cells::Scene;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::ViewCells;
 use sightlines::geometry::Random;
 use sightlines::geometry::vector::{length, scale};
-use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::SheetMethod;
-use sightlines::multifocal::{FromRegion, RaySampler, Split};
+use sightlines::multifocal::{FromRegion, RaySampler};
 use sightlines::pvs::{BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, Table, TableKind, TableParts};
 use sightlines::scenes::{TowerOptions, tower};
 
@@ -17,17 +16,7 @@ fn table_of(scene: &Scene, cells: ViewCells) -> Table {
     let triangles: Vec<_> = scene.objects().iter().flat_map(|o| o.corners()).collect();
     let make = || Box::new(SheetMethod::new(&triangles)) as Box<dyn FromRegion + Send>;
     let cells = CellsFrom::Boxes(cells);
-    let options = RegionBakeOptions {
-        cells: &cells,
-        method: Some(&make),
-        sightlines: true,
-        split: Split::default(),
-        cut: SceneOptions::default(),
-        portals: PortalMode::Exact,
-        threads: 1,
-        file: None,
-        progress: None,
-    };
+    let options = RegionBakeOptions { method: Some(&make), threads: 1, ..RegionBakeOptions::new(&cells) };
     bake_regions(scene, &options).expect("a tower can be baked").table
 }
 

@@ -2,13 +2,12 @@
 
 use crate::from_region::common::{around, shipped, triangles};
 use sightlines::bake::region::grid;
-use sightlines::bake::{BakedRegions, CellsFrom, PortalMode, RegionBakeOptions, bake_regions};
+use sightlines::bake::{BakedRegions, CellsFrom, RegionBakeOptions, bake_regions};
 use sightlines::cells::Scene;
 use sightlines::formats::ViewCells;
 use sightlines::formats::scene::read_scene;
 use sightlines::formats::view_cells::ViewCell;
 use sightlines::geometry::Aabb;
-use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::{FromRegion, Split};
 use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::city::{CityOptions, city, city_crossings};
@@ -34,15 +33,11 @@ fn bake(scene: &Scene, cells: &CellsFrom, by: By, split: u32, threads: usize) ->
     let around = around(scene, &ends);
     let make = || -> Box<dyn FromRegion + Send> { Box::new(shipped(&all, around)) };
     let options = RegionBakeOptions {
-        cells,
         method: (by != By::Sightlines).then_some(&make),
         sightlines: by != By::Multifocal,
         split: Split { depth: split, ..Split::default() },
-        cut: SceneOptions::default(),
-        portals: PortalMode::Exact,
         threads,
-        file: None,
-        progress: None,
+        ..RegionBakeOptions::new(cells)
     };
     bake_regions(scene, &options).expect("the scene can be baked")
 }

@@ -108,17 +108,7 @@ fn grid_case(name: &'static str, sightlines: bool) -> Case {
     let make = || -> Box<dyn FromRegion + Send> {
         Box::new(Multifocal::new(Fast::new(), Arc::clone(&chosen), bounds, layout))
     };
-    let options = RegionBakeOptions {
-        cells: &cells,
-        method: Some(&make),
-        sightlines,
-        split: sightlines_multifocal::Split { depth: 0, ..Default::default() },
-        cut: Default::default(),
-        portals: Default::default(),
-        threads: 0,
-        file: None,
-        progress: None,
-    };
+    let options = RegionBakeOptions { method: Some(&make), sightlines, ..RegionBakeOptions::new(&cells) };
     let table = bake_regions(&scene, &options).expect("boxes").table;
     Case { name, table, real: Real::Scene(scene), least_caught: [0.75, 0.4] }
 }
