@@ -172,9 +172,10 @@ impl End {
         if middle == a || middle == b {
             return None;
         }
-        let (j, l) = ((i + 1) % 3, (i + 2) % 3);
-        let [p, q, r] = [i, j, l].map(|c| self.corners[c]);
-        Some([Self::rounded([p, middle, r], radius), Self::rounded([middle, q, r], radius)])
+        let [x, y, z, _] = self.corners;
+        let (mut first, mut second) = ([x, y, z], [x, y, z]);
+        (first[(i + 1) % 3], second[i]) = (middle, middle);
+        Some([first, second].map(|corners| Self::rounded(corners, radius)))
     }
 
     /// Cuts a rectangle where coordinate `k` is `at`; none if that is not inside.

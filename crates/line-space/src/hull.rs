@@ -110,6 +110,11 @@ impl Hull {
     /// Adds the half-space whose border goes through three points and that contains both ends; says whether there is one.
     fn add(&mut self, through: [Point3; 3], cell: &Cell, radius: Point3) -> bool {
         let [a, b, c] = through;
+        // The plane where lines begin is the first one, and has a rule of its own.
+        let begins_here = |p: &Point3| through.contains(p) || orient(a, b, c, *p) == 0.0;
+        if self.begins && cell.from.corners().iter().all(begins_here) {
+            return false;
+        }
         let (mut positive, mut negative) = (false, false);
         for &p in cell.from.corners().iter().chain(cell.to.corners()) {
             if through.contains(&p) {

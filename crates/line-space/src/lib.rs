@@ -15,6 +15,7 @@
 
 mod cell;
 mod chain;
+mod conform;
 mod end;
 mod hull;
 mod method;

@@ -1,5 +1,6 @@
 //! The surfaces of a scene, prepared for lines: a mesh, a tree of its triangles, and what estimates need.
 
+use crate::conform::conform;
 use sightlines_geometry::vector::{add, length, normal, scale, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3, ray_box, ray_triangle};
 use sightlines_multifocal::mesh::Mesh;
@@ -26,9 +27,10 @@ pub(crate) struct Hit {
 const SLACK: f64 = 1e-9;
 
 impl Surface {
-    /// Welds the triangles. O(n log² n).
+    /// Welds the triangles, and cuts flat faces along the edges that stand on them. O(n log² n), and quadratic at worst in the
+    /// edges on one face.
     pub fn new(triangles: &[[Point3; 3]]) -> Self {
-        let mesh = Mesh::weld(triangles);
+        let mesh = Mesh::weld(&conform(&Mesh::weld(triangles)));
         let all = || (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t));
         let boxes: Vec<Aabb<3>> = all().map(Aabb::around).collect();
         let tree = BoxTree::build(&boxes, 4);

@@ -128,3 +128,19 @@ fn boxes_and_points_without_area_are_decided_too() {
         "no area"
     );
 }
+
+/// A target that touches the plane where lines begin at a corner: that plane supports it, too, and the edges of a door lie in it.
+#[test]
+fn part_of_a_wall_is_seen_through_a_door() {
+    let mut soup: Soup = quad([[0., 7., -1.], [0., 9., -1.], [0., 9., 9.], [0., 7., 9.]], false).into();
+    soup.extend(quad([[0., 4., 4.], [0., 7., 4.], [0., 7., 9.], [0., 4., 9.]], false));
+    soup.extend(quad([[4., -1., -1.], [4., 9., -1.], [4., 9., 9.], [4., -1., 9.]], false));
+    let v = Aabb { min: [-2.0, 6.0, 2.0], max: [0.0, 8.5, 4.0] };
+    let target = [[0.0, 9.0, 9.0], [8.0, 9.0, 9.0], [8.0, 9.0, -1.0]];
+    assert_eq!(LineSpace::new(&soup).see_triangle(&v, target, BUDGET), Outcome::Reached);
+    // What is beyond the wall is hidden.
+    let beyond = [[4.0, 9.0, 9.0], [8.0, 9.0, 9.0], [8.0, 9.0, -1.0]];
+    soup.extend(quad([[4., 9., -1.], [0., 9., -1.], [0., 9., 9.], [4., 9., 9.]], false));
+    soup.extend(quad([[4., -1., 9.], [0., -1., 9.], [0., 9., 9.], [4., 9., 9.]], false));
+    assert_eq!(LineSpace::new(&soup).see_triangle(&v, beyond, BUDGET), Outcome::Hidden);
+}
