@@ -11,7 +11,7 @@ use sightlines_multifocal::mesh::Mesh;
 use sightlines_multifocal::{Layout, RaySampler};
 use std::fmt;
 
-/// Properties of a scene in space. Shares are of the area of all triangles, unless stated otherwise.
+/// Properties of what hides in a scene in space. Shares are of the area of all its triangles, unless stated otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneFacts {
     /// Triangles.
@@ -41,12 +41,12 @@ impl SceneFacts {
         let total: f64 = all.iter().map(area).sum();
         let share = |part: f64| if total > 0.0 { (part / total).min(1.0) } else { 0.0 };
         let longest = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
-        let mut sizes: Vec<f64> = scene.objects().iter().map(|o| longest(&o.bounds())).collect();
+        let mut sizes: Vec<f64> = scene.occluders().map(|(_, o)| longest(&o.bounds())).collect();
         sizes.sort_by(f64::total_cmp);
         let (whole, middle) = (longest(&scene.bounds()), sizes.get(sizes.len() / 2).copied().unwrap_or(0.0));
         Self {
             n_triangles: all.len(),
-            n_objects: scene.objects().len(),
+            n_objects: sizes.len(),
             axial: share(all.iter().filter(|t| flat(t)).map(area).fold(0.0, |sum, area| sum + area)),
             loose: None,
             openness: None,
@@ -56,7 +56,7 @@ impl SceneFacts {
 }
 
 fn triangles_of(scene: &Scene) -> Vec<[Point3; 3]> {
-    scene.objects().iter().flat_map(|o| o.corners()).collect()
+    scene.occluding_triangles().collect()
 }
 
 fn area(t: &[Point3; 3]) -> f64 {

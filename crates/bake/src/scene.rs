@@ -65,7 +65,7 @@ impl std::fmt::Debug for SceneBakeOptions<'_> {
 
 /// Cuts a scene, decides which cells see which cells and objects, and makes the table.
 ///
-/// Walls are the axis-aligned faces of the scene that are not detail; nothing else hides anything. Cells
+/// Walls are the axis-aligned faces of the scene that are neither detail nor see-through; nothing else hides anything. Cells
 /// see each other exactly if an open set of lines leads through the exact portals (or through the
 /// rectangles around them, with [`PortalMode::Bounding`]); an object counts as its box. Errs towards
 /// visible only.
@@ -86,7 +86,7 @@ pub(crate) fn see_scene(
     let cut = subdivide_scene(scene, &options.cut)?;
     let cut_time = start.elapsed();
     let start = Instant::now();
-    let boxes: Vec<Aabb<3>> = scene.objects().iter().map(drawn_box).collect();
+    let boxes = extents(scene);
     let solid = cut.left_out();
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
     let graph = match options.portals {
@@ -114,9 +114,9 @@ pub(crate) fn see_scene(
     Ok((graph, parts, report))
 }
 
-/// The box around an object's triangles; empty, and so never seen, if it has none.
-pub(crate) fn drawn_box(object: &SceneObject) -> Aabb<3> {
-    Aabb::around(object.corners().flatten())
+/// The boxes outside of which nothing of an object is drawn; empty, and so never seen, for those without triangles.
+pub(crate) fn extents(scene: &Scene) -> Vec<Aabb<3>> {
+    (0u32..).zip(scene.objects()).map(|(object, _)| scene.extent(object)).collect()
 }
 
 /// The polygons that are drawn for an object; more than the table can store count as the most that it can.

@@ -1,6 +1,8 @@
 //! Scenes in space: objects made of triangles.
 
+use sightlines_geometry::coordinate::MAX_MAGNITUDE;
 use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate};
+use std::borrow::Cow;
 
 /// Something that is seen or not as a whole: a mesh of triangles.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,11 +28,31 @@ impl SceneObject {
 }
 
 /// A scene in space, checked: coordinates that the predicates accept, indices in range.
+///
+/// Every object is seen. An object hides what is behind it, from both sides, unless it is [see-through](Self::see_through):
+/// glass, leaves, and everything that [moves](Self::moving). Whoever looks for occluders takes [`Self::occluders`] or
+/// [`Self::occluding_triangles`]; whoever asks where an object can be seen takes [`Self::extent`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     objects: Vec<SceneObject>,
     mirrors: Vec<u32>,
+    /// Ascending.
+    see_through: Vec<u32>,
+    /// By object, ascending; all of them are see-through.
+    moving: Vec<MovingObject>,
 }
+
+/// An object that moves or changes its shape at run time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingObject {
+    /// Its index.
+    pub object: u32,
+    /// A box that it never leaves, in scene units, around its triangles at rest too; `None` if it may be anywhere.
+    pub within: Option<Aabb<3>>,
+}
+
+/// The box of an object that may be anywhere: wherever an eye or a cell is, it is in this box.
+pub const ANYWHERE: Aabb<3> = Aabb { min: [-MAX_MAGNITUDE; 3], max: [MAX_MAGNITUDE; 3] };
 
 /// Why objects do not make a scene.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -63,6 +85,27 @@ pub enum SceneError {
         /// Index of the object.
         object: usize,
     },
+    /// What is marked as see-through is no object.
+    #[error("object {object} cannot be see-through: there is no such object")]
+    SeeThrough {
+        /// Index of the object.
+        object: usize,
+    },
+    /// What is marked as moving is no object.
+    #[error("object {object} cannot move: there is no such object")]
+    Moving {
+        /// Index of the object.
+        object: usize,
+    },
+    /// The box that a moving object does not leave has a coordinate that cannot be used.
+    #[error("object {object}, the box of its motion: {kind}")]
+    Motion {
+        /// Index of the object.
+        object: usize,
+        /// What is wrong with it.
+        #[source]
+        kind: CoordinateError,
+    },
 }
 
 impl Scene {
@@ -84,7 +127,7 @@ impl Scene {
                 }
             }
         }
-        Ok(Self { objects, mirrors: Vec::new() })
+        Ok(Self { objects, ..Self::default() })
     }
 
     /// The same scene, with the faces of these objects as mirrors, and no others.
@@ -106,6 +149,113 @@ impl Scene {
         &self.mirrors
     }
 
+    /// The same scene, in which these objects are seen and hide nothing; and those that move, but no others.
+    ///
+    /// # Errors
+    /// [`SceneError::SeeThrough`] for an object that does not exist.
+    pub fn with_see_through(mut self, mut see_through: Vec<u32>) -> Result<Self, SceneError> {
+        see_through.extend(self.moving.iter().map(|moving| moving.object));
+        see_through.sort_unstable();
+        see_through.dedup();
+        if let Some(&object) = see_through.iter().find(|&&object| object as usize >= self.objects.len()) {
+            return Err(SceneError::SeeThrough { object: object as usize });
+        }
+        self.see_through = see_through;
+        Ok(self)
+    }
+
+    /// The same scene, in which these objects move, and no others. They hide nothing. Boxes are widened to what the objects
+    /// have at rest; of several entries for an object, all hold.
+    ///
+    /// # Errors
+    /// [`SceneError::Moving`] for an object that does not exist, [`SceneError::Motion`] for a box with coordinates that are
+    /// none.
+    pub fn with_moving(mut self, mut moving: Vec<MovingObject>) -> Result<Self, SceneError> {
+        moving.sort_by_key(|moving| moving.object);
+        self.moving.clear();
+        for MovingObject { object, within } in moving {
+            let o = self.objects.get(object as usize).ok_or(SceneError::Moving { object: object as usize })?;
+            let invalid = |kind| SceneError::Motion { object: object as usize, kind };
+            let given = within.iter().filter(|b| !b.is_empty()).flat_map(|b| b.min.into_iter().chain(b.max));
+            given.map(check_coordinate).collect::<Result<Vec<_>, _>>().map_err(invalid)?;
+            let within = within.map(|within| united(&within, &Aabb::around(o.corners().flatten())));
+            match self.moving.last_mut().filter(|last| last.object == object) {
+                Some(last) => last.within = last.within.zip(within).map(|(a, b)| united(&a, &b)),
+                None => self.moving.push(MovingObject { object, within }),
+            }
+        }
+        let see_through = std::mem::take(&mut self.see_through);
+        self.with_see_through(see_through)
+    }
+
+    /// The objects that are seen and hide nothing, ascending.
+    pub fn see_through(&self) -> &[u32] {
+        &self.see_through
+    }
+
+    /// The objects that move, ascending; all of them are see-through.
+    pub fn moving(&self) -> &[MovingObject] {
+        &self.moving
+    }
+
+    /// Whether an object hides what is behind it.
+    pub fn is_opaque(&self, object: u32) -> bool {
+        self.see_through.binary_search(&object).is_err()
+    }
+
+    /// The objects that hide what is behind them, with their ids.
+    pub fn occluders(&self) -> impl Iterator<Item = (u32, &SceneObject)> {
+        (0..).zip(&self.objects).filter(|(object, _)| self.is_opaque(*object))
+    }
+
+    /// The scene of what hides: the same objects, of which those that are see-through have neither corners nor triangles.
+    pub fn opaque_part(&self) -> Cow<'_, Self> {
+        if self.see_through.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut objects = self.objects.clone();
+        for &object in &self.see_through {
+            let object = &mut objects[object as usize];
+            (object.vertices, object.triangles) = (Vec::new(), Vec::new());
+        }
+        Cow::Owned(Self { objects, mirrors: self.mirrors.clone(), ..Self::default() })
+    }
+
+    /// The scene of what does not move: the same objects, of which those that move have no triangles.
+    pub fn still_part(&self) -> Cow<'_, Self> {
+        if self.moving.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut still = Self { moving: Vec::new(), ..self.clone() };
+        self.moving.iter().for_each(|moving| still.objects[moving.object as usize].triangles.clear());
+        Cow::Owned(still)
+    }
+
+    /// The corners of all triangles that hide what is behind them, object by object.
+    pub fn occluding_triangles(&self) -> impl Iterator<Item = [Point3; 3]> + '_ {
+        self.occluders().flat_map(|(_, object)| object.corners())
+    }
+
+    /// The box outside of which nothing of an object is ever drawn, in scene units: around its triangles, and around all
+    /// places that it moves to. Empty if it has no triangles.
+    pub fn extent(&self, object: u32) -> Aabb<3> {
+        let at_rest = Aabb::around(self.objects[object as usize].corners().flatten());
+        match self.moving.binary_search_by_key(&object, |moving| moving.object) {
+            Ok(k) if !at_rest.is_empty() => self.moving[k].within.unwrap_or(ANYWHERE),
+            _ => at_rest,
+        }
+    }
+
+    /// Triangles that hide an object if they are hidden: its own; of one that moves, the faces of the box that it does not
+    /// leave.
+    pub fn covering_triangles(&self, object: u32) -> Vec<[Point3; 3]> {
+        let extent = self.extent(object);
+        match self.moving.binary_search_by_key(&object, |moving| moving.object) {
+            Ok(_) if !extent.is_empty() => faces_of(&extent),
+            _ => self.objects[object as usize].corners().collect(),
+        }
+    }
+
     /// The objects, by id.
     pub fn objects(&self) -> &[SceneObject] {
         &self.objects
@@ -116,10 +266,26 @@ impl Scene {
         self.objects.iter().map(|o| o.triangles.len()).sum()
     }
 
-    /// Smallest box around everything; empty for a scene without vertices.
+    /// Smallest box around everything, and around all places that objects move to, but for those that may be anywhere;
+    /// empty for a scene without vertices.
     pub fn bounds(&self) -> Aabb<3> {
-        Aabb::around(self.objects.iter().flat_map(|o| o.vertices.iter().copied()))
+        let moving = self.moving.iter().filter_map(|moving| moving.within).filter(|within| !within.is_empty());
+        let at_rest = self.objects.iter().flat_map(|o| o.vertices.iter().copied());
+        Aabb::around(at_rest.chain(moving.flat_map(|within| [within.min, within.max])))
     }
+}
+
+/// The smallest box around two, either of which may be empty.
+fn united(a: &Aabb<3>, b: &Aabb<3>) -> Aabb<3> {
+    Aabb::around([a, b].into_iter().filter(|b| !b.is_empty()).flat_map(|b| [b.min, b.max]))
+}
+
+/// The six sides of a box, two triangles each, with their fronts outwards.
+fn faces_of(b: &Aabb<3>) -> Vec<[Point3; 3]> {
+    let corner = |i: usize| -> Point3 { std::array::from_fn(|k| if i >> k & 1 == 0 { b.min[k] } else { b.max[k] }) };
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = sides.iter().flat_map(|&[p, q, r, s]| [[p, q, r], [p, r, s]]);
+    triangles.map(|t| t.map(corner)).collect()
 }
 
 #[cfg(test)]
@@ -144,5 +310,34 @@ mod tests {
         assert_eq!(scene.clone().with_mirrors(vec![0, 0]).unwrap().mirrors(), [0]);
         let error = scene.with_mirrors(vec![1]).unwrap_err().to_string();
         assert_eq!(error, "object 1 cannot be a mirror: there is no such object");
+    }
+
+    #[test]
+    fn what_is_see_through_hides_nothing_and_what_moves_is_where_it_may_be() {
+        let at = |z: f64| triangle([[0., 0., z], [1., 0., z], [0., 2., z]], [0, 1, 2]);
+        let scene = Scene::new(vec![at(0.0), at(1.0), at(2.0), at(3.0)]).unwrap();
+        assert_eq!(scene.occluding_triangles().count(), 4);
+        let glass = scene.clone().with_see_through(vec![1, 1]).unwrap();
+        assert_eq!(glass.occluders().map(|(k, _)| k).collect::<Vec<_>>(), [0, 2, 3]);
+        assert_eq!((glass.bounds(), glass.extent(1)), (scene.bounds(), scene.extent(1)));
+        let within = Some(Aabb { min: [5., 0., 2.], max: [6., 1., 9.] });
+        let moves = |object, within| MovingObject { object, within };
+        let moving = glass.with_moving(vec![moves(3, None), moves(2, within)]).unwrap();
+        assert_eq!(moving.see_through(), [1, 2, 3]);
+        assert!(moving.is_opaque(0) && !moving.is_opaque(3));
+        assert_eq!(moving.extent(2), Aabb { min: [0., 0., 2.], max: [6., 2., 9.] });
+        assert_eq!((moving.extent(3), moving.bounds().max), (ANYWHERE, [6., 2., 9.]));
+        assert_eq!((moving.covering_triangles(2).len(), moving.covering_triangles(1).len()), (12, 1));
+        assert_eq!(Aabb::around(moving.covering_triangles(2).into_iter().flatten()), moving.extent(2));
+        // Marks may come in any order; what no longer moves may still be see-through.
+        let still = moving.with_moving(Vec::new()).unwrap();
+        assert_eq!((still.see_through(), still.extent(3)), (&[1, 2, 3][..], scene.extent(3)));
+        let error = scene.clone().with_see_through(vec![4]).unwrap_err().to_string();
+        assert_eq!(error, "object 4 cannot be see-through: there is no such object");
+        let error = scene.clone().with_moving(vec![moves(4, None)]).unwrap_err().to_string();
+        assert_eq!(error, "object 4 cannot move: there is no such object");
+        let nowhere = Aabb { min: [f64::NAN; 3], max: [1.; 3] };
+        let error = scene.with_moving(vec![moves(0, Some(nowhere))]).unwrap_err().to_string();
+        assert_eq!(error, "object 0, the box of its motion: coordinate NaN is not a finite number");
     }
 }

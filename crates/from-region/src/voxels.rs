@@ -63,7 +63,7 @@ pub struct Voxels {
 }
 
 impl Voxels {
-    /// Makes voxels of a scene.
+    /// Makes voxels of what hides in a scene.
     ///
     /// Cost: for n triangles and m voxels O(n log n + m), and one step for each voxel that a triangle meets.
     ///
@@ -78,7 +78,7 @@ impl Voxels {
         if grid.n_voxels() > MAX_VOXELS {
             return Err(VoxelError::Count(n));
         }
-        let insides = Insides::new(scene, &grid, options.interior == Interior::Flooded);
+        let insides = Insides::new(&scene.opaque_part(), &grid, options.interior == Interior::Flooded);
         Ok(Self { grid, insides, options })
     }
 

@@ -30,11 +30,18 @@ pub(crate) fn hollow_rooms(
             hollow.rule_out(room);
         }
     }
-    for ((object, shape), &is_detail) in scene.objects().iter().zip(&survey.shapes).zip(&survey.detail) {
+    let objects = scene.objects().iter().zip(&survey.shapes).zip(&survey.detail);
+    for (id, ((object, shape), &is_detail)) in (0u32..).zip(objects) {
         if hollow.n_left == 0 {
             break;
         }
-        if is_detail {
+        if !scene.is_opaque(id) {
+            // Both sides are seen.
+            for [a, b, c] in object.corners() {
+                show(&[a, b, c], tree, rooms, &mut hollow);
+                show(&[a, c, b], tree, rooms, &mut hollow);
+            }
+        } else if is_detail {
             // The box around a small thing is small.
             visit_inside(tree, &shape.bounds, |cell| hollow.rule_out(rooms.of_cell[cell] as usize));
         } else {

@@ -52,7 +52,7 @@ pub struct SceneSubdivision {
     pub graph: CellGraph<Axial>,
     /// Statistics.
     pub summary: SceneSummary,
-    /// For each object whether it was detail.
+    /// For each object whether it was detail, or see-through.
     pub detail: Vec<bool>,
     cells: Vec<Option<CellId>>,
 }

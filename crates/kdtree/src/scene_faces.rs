@@ -25,7 +25,7 @@ pub struct SceneFaces {
     pub n_detail_objects: usize,
     /// How many flat regions were left out because they are small.
     pub n_small_regions: usize,
-    /// For each object whether it is detail.
+    /// For each object whether it is detail, or see-through.
     pub detail: Vec<bool>,
     /// Size below which things are detail, in scene units.
     pub detail_below: f64,
@@ -37,6 +37,8 @@ pub struct SceneFaces {
 /// triangles of a plane are united, whichever way they face: all are opaque from both sides. Where the union has
 /// slanted borders, rectangles inside it are taken that end at coordinates of its corners; where all borders are
 /// axis-parallel, the rectangles are the whole union. So, by exact predicates, faces never hide more than triangles do.
+///
+/// Objects that are [see-through](Scene::see_through) divide nothing and hide nothing.
 ///
 /// Left out as detail are, with [`SceneOptions::detail_below`] as the size:
 /// * objects whose box is smaller in every direction;
@@ -61,11 +63,11 @@ pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
 /// 0 for a scene without corners. Computed in rounded arithmetic, the same on every machine; no choice of
 /// it is unsound. O(n log n) for n objects.
 pub fn default_detail_below(scene: &Scene) -> f64 {
-    let boxes: Vec<Aabb<3>> = scene.objects().iter().map(SceneObject::bounds).collect();
+    let boxes: Vec<Aabb<3>> = scene.occluders().map(|(_, object)| object.bounds()).collect();
     detail_below_of(&boxes)
 }
 
-/// The same from the boxes of all objects.
+/// The same from the boxes of all objects that hide.
 fn detail_below_of(objects: &[Aabb<3>]) -> f64 {
     let bounds = around_all(objects.iter());
     if bounds.is_empty() {
@@ -101,8 +103,12 @@ fn largest_side(b: &Aabb<3>) -> f64 {
 #[derive(Debug)]
 pub(crate) struct Survey {
     pub(crate) detail_below: f64,
-    /// For each object whether it is detail.
+    /// For each object whether it is detail, or see-through.
     pub(crate) detail: Vec<bool>,
+    /// How many objects are detail because they are small.
+    n_detail: usize,
+    /// The box around all objects, wherever they move.
+    bounds: Aabb<3>,
     /// The objects in pieces; empty for those that are detail.
     pub(crate) meshes: Vec<Arc<Mesh>>,
     /// The triangles of the objects.
@@ -113,21 +119,25 @@ impl Survey {
     /// Classifies a scene. Equal objects of the last scene are taken from the cache, which is then replaced.
     pub(crate) fn of(scene: &Scene, options: &SceneOptions, cache: &mut FaceCache) -> Self {
         let shapes = cache.shapes_of(scene);
-        let boxes: Vec<Aabb<3>> = shapes.iter().map(|shape| shape.bounds).collect();
+        let of_shapes = (0u32..).zip(&shapes).map(|(object, shape)| (scene.is_opaque(object), shape.bounds));
+        let boxes: Vec<Aabb<3>> = of_shapes.clone().filter(|(hides, _)| *hides).map(|(_, bounds)| bounds).collect();
         let detail_below = options.detail_below.unwrap_or_else(|| detail_below_of(&boxes));
-        let detail: Vec<bool> = boxes.iter().map(|b| largest_side(b) < detail_below).collect();
+        let n_detail = boxes.iter().filter(|b| largest_side(b) < detail_below).count();
+        let detail: Vec<bool> = of_shapes.map(|(hides, b)| !hides || largest_side(&b) < detail_below).collect();
+        let moving = scene.moving().iter().filter_map(|moving| moving.within.as_ref());
+        let bounds = around_all(shapes.iter().map(|shape| &shape.bounds).chain(moving));
         let nothing = Arc::new(Mesh::default());
         let objects = scene.objects().iter().zip(&shapes).zip(&detail);
         let mesh = |((object, shape), is_detail): ((&SceneObject, &Arc<Shape>), &bool)| match is_detail {
             true => Arc::clone(&nothing),
             false => Arc::clone(shape.mesh.get_or_init(|| Arc::new(Mesh::of(object)))),
         };
-        Self { detail_below, meshes: objects.map(mesh).collect(), detail, shapes }
+        Self { detail_below, meshes: objects.map(mesh).collect(), detail, n_detail, bounds, shapes }
     }
 
-    /// The box around all objects.
-    pub(crate) fn bounds(&self) -> Aabb<3> {
-        around_all(self.shapes.iter().map(|shape| &shape.bounds))
+    /// The box around all objects, wherever they move.
+    pub(crate) const fn bounds(&self) -> Aabb<3> {
+        self.bounds
     }
 
     /// Whether a piece is detail although its object is not.
@@ -147,7 +157,7 @@ impl Survey {
             n_axial_triangles: self.shapes.iter().map(|shape| shape.flat.len()).sum(),
             n_empty_triangles: self.shapes.iter().map(|shape| shape.n_empty).sum(),
             n_other_triangles: self.shapes.iter().map(|shape| shape.n_other).sum(),
-            n_detail_objects: self.detail.iter().filter(|d| **d).count(),
+            n_detail_objects: self.n_detail,
             detail: self.detail.clone(),
             detail_below: self.detail_below,
             ..SceneFaces::default()

@@ -29,6 +29,7 @@ pub fn geometric(scene: &Scene, target: usize) -> Result<Simplified, SimplifyErr
             mesh.n_left() <= self.0
         }
     }
+    let (whole, scene) = (scene, &*scene.still_part());
     let faces = Faces::of_scene(scene)?;
     let mut mesh = Mesh::of_objects(scene);
     let mut counts = Counts { before: faces.len(), ..Counts::default() };
@@ -41,5 +42,5 @@ pub fn geometric(scene: &Scene, target: usize) -> Result<Simplified, SimplifyErr
     let mut collapser = Collapser::new(&mesh, &weights);
     collapser.run(&mut mesh, &mut Count(target));
     let deviation = collapser.deviation();
-    Ok(finish(scene, &mesh, counts, f64::INFINITY, [deviation, f64::INFINITY]))
+    Ok(finish(scene, &mesh, counts, f64::INFINITY, [deviation, f64::INFINITY]).with_moving_of(whole))
 }

@@ -77,9 +77,10 @@ pub fn levels(
     check_mirrors(scene, &options.simplify)?;
     check_table(scene, table)?;
     in_threads(options.simplify.threads, || {
+        let (whole, scene) = (scene, &*scene.still_part());
         let faces = Faces::of_scene(scene)?;
         let hider = Hider::new(&faces, &HiddenBy { method: by.method, table: Some(table) });
-        let maker = LevelBuilder { scene, table, faces: &faces, hider, mesh: Mesh::new(scene), options };
+        let maker = LevelBuilder { whole, scene, table, faces: &faces, hider, mesh: Mesh::new(scene), options };
         let all: Vec<CellId> = (0..table.n_cells() as u32).map(CellId).collect();
         let asked = all.par_iter().map(|&cell| maker.kept(cell)).collect::<Result<Vec<_>, SimplifyError>>()?;
         let (visible, kept): (Vec<Vec<bool>>, Vec<Bits>) = asked.into_iter().unzip();
@@ -126,6 +127,8 @@ impl Levels {
 
 /// The input of levels.
 struct LevelBuilder<'a> {
+    whole: &'a Scene,
+    /// What does not move.
     scene: &'a Scene,
     table: &'a Table,
     faces: &'a Faces,
@@ -166,6 +169,7 @@ impl LevelBuilder<'_> {
             (views, intercepts)
         };
         let simplified = within_budget(self.scene, self.faces, self.mesh.clone(), &views, &intercepts, options);
+        let simplified = simplified.with_moving_of(self.whole);
         let n_bytes = simplified.counts.left as u64;
         let n_bytes = n_bytes.saturating_mul(self.options.bytes_per_triangle);
         Ok(Level { cells: cells.to_vec(), simplified, n_bytes })

@@ -64,6 +64,19 @@ impl Simplified {
         origin.len() != all || origin.iter().any(Option::is_none)
     }
 
+    /// The same, with all triangles of what moves in a scene: they are never changed. This was made of its
+    /// [part that does not move](Scene::still_part).
+    pub(crate) fn with_moving_of(mut self, scene: &Scene) -> Self {
+        for moving in scene.moving() {
+            let all = &scene.objects()[moving.object as usize].triangles;
+            self.triangles[moving.object as usize].clone_from(all);
+            self.origin[moving.object as usize] = (0..all.len() as u32).map(Some).collect();
+            self.counts.before += all.len();
+            self.counts.left += all.len();
+        }
+        self
+    }
+
     /// The remaining triangles as a scene: the same objects with the same vertices, some perhaps without triangles.
     ///
     /// # Errors
@@ -75,6 +88,7 @@ impl Simplified {
             triangles: triangles.clone(),
         };
         let objects = scene.objects().iter().zip(&self.triangles).map(object).collect();
-        Scene::new(objects)?.with_mirrors(scene.mirrors().to_vec())
+        let left = Scene::new(objects)?.with_mirrors(scene.mirrors().to_vec())?;
+        left.with_see_through(scene.see_through().to_vec())?.with_moving(scene.moving().to_vec())
     }
 }

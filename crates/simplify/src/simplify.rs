@@ -15,6 +15,7 @@ use sightlines_geometry::Aabb;
 use sightlines_multifocal::BackendError;
 use sightlines_pvs::Table;
 use sightlines_visible_surface::{Faces, FacesError};
+use std::borrow::Cow;
 
 /// Why a scene was not simplified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -84,6 +85,8 @@ const WEIGHT_OF_AREA: f64 = 1e-3;
 /// Deterministic, whatever the number of threads. Costs what the method costs for each part of the views, the rays, and
 /// O(n log n) for collapsing. Memory: 8 bytes for each face and part.
 ///
+/// What [moves](Scene::moving) stays as it is.
+///
 /// # Errors
 /// [`SimplifyError`]
 ///
@@ -103,7 +106,9 @@ pub fn simplify(
 /// A scene with bounds on what its faces can intercept for some views: to be simplified with several budgets.
 #[derive(Debug)]
 pub struct Prepared<'a> {
-    scene: &'a Scene,
+    whole: &'a Scene,
+    /// What does not move.
+    scene: Cow<'a, Scene>,
     faces: Faces,
     views: Views,
     intercepts: Intercepts,
@@ -128,10 +133,11 @@ impl<'a> Prepared<'a> {
             check_views(views, table)?;
         }
         in_threads(options.threads, || {
-            let faces = Faces::of_scene(scene)?;
+            let (whole, scene) = (scene, scene.still_part());
+            let faces = Faces::of_scene(&scene)?;
             let views = views.clone().cut(options.n_parts);
             let intercepts = Intercepts::new(&faces, &views, by, options.depth)?;
-            Ok(Self { scene, faces, views, intercepts })
+            Ok(Self { whole, scene, faces, views, intercepts })
         })
     }
 
@@ -141,8 +147,9 @@ impl<'a> Prepared<'a> {
     /// [`SimplifyError::Options`]
     pub fn simplify(&self, options: &SimplifyOptions) -> Result<Simplified, SimplifyError> {
         options.check()?;
-        let Self { scene, faces, views, intercepts } = self;
-        Ok(in_threads(options.threads, || within_budget(scene, faces, Mesh::new(scene), views, intercepts, options)))
+        let Self { whole, scene, faces, views, intercepts } = self;
+        let run = || within_budget(scene, faces, Mesh::new(scene), views, intercepts, options).with_moving_of(whole);
+        Ok(in_threads(options.threads, run))
     }
 
     /// Bounds on what its faces can intercept, for each part of [`Self::views`].
@@ -155,7 +162,7 @@ impl<'a> Prepared<'a> {
         &self.views
     }
 
-    /// Its faces.
+    /// Its faces, but for those of what moves.
     pub const fn faces(&self) -> &Faces {
         &self.faces
     }

@@ -11,7 +11,7 @@ use sightlines_pvs::{Table, TableKind};
 pub enum Truth<'a> {
     /// A plan: opaque lines stop sight.
     Plan(&'a Plan),
-    /// A scene in space: every triangle stops sight, from both sides.
+    /// A scene in space: every triangle stops sight, from both sides, but for those of objects that are see-through.
     Scene(&'a Scene),
     /// The portals of a Quake map: a line sees on through portals, in their order along it.
     Portals(&'a CellGraph<Convex>),

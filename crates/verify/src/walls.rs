@@ -41,11 +41,11 @@ impl WallFindings {
     }
 }
 
-/// Checks that every wall of the cells of a table is covered by axis-parallel triangles of a scene. Exact. Cost: for each wall what is on
+/// Checks that every wall of the cells of a table is covered by axis-parallel triangles of a scene that hide. Exact. Cost: for each wall what is on
 /// its plane.
 pub fn check_walls_in_space(table: &Table, scene: &Scene) -> WallFindings {
     let mut on_plane: BTreeMap<(usize, u64), Vec<[Point2; 3]>> = BTreeMap::new();
-    for triangle in scene.objects().iter().flat_map(|object| object.corners()) {
+    for triangle in scene.occluding_triangles() {
         for axis in 0..3 {
             let at = triangle[0][axis];
             let flat = triangle.map(|p| Point2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]));

@@ -8,6 +8,7 @@ mod doom;
 mod eye_to_cell;
 mod from_region;
 mod layers;
+mod materials;
 mod oracles;
 mod quake_tables;
 mod scenes;

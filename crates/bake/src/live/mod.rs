@@ -13,7 +13,7 @@ mod cut;
 
 use crate::error::BakeError;
 use crate::mirrors;
-use crate::scene::{PortalMode, SceneBakeOptions, drawn_box, info, scene_parts};
+use crate::scene::{PortalMode, SceneBakeOptions, extents, info, scene_parts};
 use crate::table::state_file;
 use cut::Cut;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, PortalId, Scene};
@@ -82,7 +82,7 @@ impl LiveScene {
         let mut cutter = SceneCutter::default();
         let cut = Cut::of(&mut cutter, &scene, &how.cut, portals)?;
         let search = SearchOptions { threads, progress, ..SearchOptions::default() };
-        let boxes = boxes_of(&scene);
+        let boxes = extents(&scene);
         let space = LiveSpace::new(cut.graph.clone(), &cut.solid, boxes.clone(), &search)?;
         let table = tabulate(&scene, &boxes, &cut, &space, &how)?;
         Ok(Self { how, scene, boxes, cutter, cut, closed: Vec::new(), space, table })
@@ -114,7 +114,7 @@ impl LiveScene {
         let start = Instant::now();
         let cut = Cut::of(&mut self.cutter, &scene, &self.how.cut, self.how.portals)?;
         let cut_time = start.elapsed();
-        (self.boxes, self.scene, self.cut) = (boxes_of(&scene), scene, cut);
+        (self.boxes, self.scene, self.cut) = (extents(&scene), scene, cut);
         Ok(LiveUpdate { cut_time, ..self.see()? })
     }
 
@@ -179,10 +179,6 @@ impl LiveScene {
 fn lies_in(portal: &AxialDoor, door: &AxialDoor) -> bool {
     let (inner, outer) = (&portal.extent, &door.extent);
     portal.axis == door.axis && outer.contains(inner.min) && outer.contains(inner.max)
-}
-
-fn boxes_of(scene: &Scene) -> Vec<Aabb<3>> {
-    scene.objects().iter().map(drawn_box).collect()
 }
 
 fn tabulate(scene: &Scene, boxes: &[Aabb<3>], cut: &Cut, space: &LiveSpace, how: &How) -> Result<Table, BakeError> {

@@ -143,9 +143,9 @@ impl OcclusionMethodFactory {
     }
 }
 
-/// The triangles of all objects.
+/// The triangles of all objects that hide.
 fn triangles(scene: &Scene) -> Vec<[Point3; 3]> {
-    scene.objects().iter().flat_map(|o| o.corners()).collect()
+    scene.occluding_triangles().collect()
 }
 
 #[cfg(test)]

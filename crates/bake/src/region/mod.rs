@@ -17,10 +17,10 @@ use crate::error::BakeError;
 use crate::graph::TableGraph;
 use crate::objects::object_lists;
 use crate::reports::RegionReport;
-use crate::scene::{PortalMode, SceneBakeOptions, merge_portals, n_triangles, see_scene};
+use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
 use crate::table::{object_record, state_file};
 use parts::Start;
-use sightlines_cells::Scene;
+use sightlines_cells::{ANYWHERE, Scene};
 use sightlines_formats::{SceneInfo, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{SceneOptions, subdivide_scene};
@@ -100,15 +100,14 @@ impl fmt::Debug for RegionBakeOptions<'_> {
 
 /// Decides which cells see which objects and each other, and makes the table.
 ///
-/// An eye may be anywhere in a closed cell. Objects are hidden if all of their triangles are; those whose box touches a cell
-/// are visible from it. Errs towards visible only, as far as the method does.
+/// An eye may be anywhere in a closed cell. Objects are hidden if all of their triangles are, and those that move if the box
+/// that they do not leave is; those whose box touches a cell are visible from it. Errs towards visible only, as far as the method does.
 ///
 /// # Errors
 /// [`BakeError`]: for scenes that cannot be cut, cells that are not volumes, and methods that fail.
 pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
     let start = Instant::now();
-    let triangles: Vec<Vec<[Point3; 3]>> = scene.objects().iter().map(|o| o.corners().collect()).collect();
-    let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(t.iter().flatten().copied())).collect();
+    let boxes = extents(scene);
     let by_sightlines = options.sightlines || options.method.is_none();
     let mut n_assumed = 0;
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
@@ -134,7 +133,15 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         Some(make) => {
             let made = make();
             let method = (made.name(), made.only_in_air());
-            let witness = RaySampler::new(triangles.iter().map(|t| &t[..]));
+            // What may be anywhere touches every cell, and need not be decided.
+            let covering = |(object, extent): (u32, &Aabb<3>)| {
+                if *extent == ANYWHERE { Vec::new() } else { scene.covering_triangles(object) }
+            };
+            let triangles: Vec<Vec<[Point3; 3]>> = (0u32..).zip(&boxes).map(covering).collect();
+            // What is see-through stops no ray.
+            let none: &[[Point3; 3]] = &[];
+            let in_the_way = (0u32..).zip(&triangles).map(|(k, of)| if scene.is_opaque(k) { &of[..] } else { none });
+            let witness = RaySampler::new(in_the_way);
             let occludees = Occludees::new(triangles);
             let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes };
             let seen = see::see(&scene, make, options, rows, objects)?;

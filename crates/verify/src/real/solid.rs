@@ -1,4 +1,4 @@
-//! Scenes in space: every triangle stops sight.
+//! Scenes in space: every triangle stops sight, but for those of objects that are see-through.
 
 use super::climb::climb;
 use super::{RayOracle, at, clip, extreme, length, neighbours_of, scale_of, sub};
@@ -16,6 +16,8 @@ pub(crate) struct SolidWorld {
     object_of: Vec<u32>,
     /// The triangles of each object, as a range.
     of_object: Vec<[u32; 2]>,
+    /// For each object whether its triangles stop sight.
+    is_opaque: Vec<bool>,
     tree: BoxTree<3>,
     cells: Vec<Aabb<3>>,
     cell_tree: BoxTree<3>,
@@ -46,6 +48,7 @@ impl SolidWorld {
             triangles,
             object_of,
             of_object,
+            is_opaque: (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_opaque(object)).collect(),
             cells,
             next: neighbours_of(table),
             slack: scale * 2f64.powi(-40),
@@ -73,12 +76,22 @@ impl SolidWorld {
         self.tree.visit(|b| clip(p, d, b, [0.0, limit.get()], self.slack).is_some(), each);
     }
 
-    /// The first triangle that a ray meets, and where, as a multiple of its direction; rounded.
+    fn stops_sight(&self, triangle: u32) -> bool {
+        self.is_opaque[self.object_of[triangle as usize] as usize]
+    }
+
+    /// The first triangle that stops a ray, and where, as a multiple of its direction; rounded.
     fn hit(&self, p: Point3, d: Point3, far: f64) -> (f64, Option<u32>) {
+        self.first(p, d, far, |i| self.stops_sight(i))
+    }
+
+    /// The first of some triangles that a ray meets, and where.
+    fn first(&self, p: Point3, d: Point3, far: f64, counts: impl Fn(u32) -> bool) -> (f64, Option<u32>) {
         let limit = Cell::new(far);
         let mut first = None;
         self.near(p, d, &limit, |i| {
-            if let Some(t) = meet(p, d, &self.triangles[i as usize])
+            if counts(i)
+                && let Some(t) = meet(p, d, &self.triangles[i as usize])
                 && t < limit.get()
             {
                 limit.set(t);
@@ -100,8 +113,8 @@ impl SolidWorld {
         }
     }
 
-    /// Whether nothing touches the closed segment but triangles of one object, of which it crosses one properly; or
-    /// nothing at all, if there is no such object. Exact.
+    /// Whether nothing that stops sight touches the closed segment but triangles of one object, of which it crosses one
+    /// properly, or nothing at all, if there is no such object. Exact.
     fn is_free(&self, p: Point3, q: Point3, but: Option<u32>) -> bool {
         let d = sub(q, p);
         let limit = Cell::new(1.0);
@@ -113,7 +126,7 @@ impl SolidWorld {
             }
             if but == Some(self.object_of[i as usize]) {
                 crosses |= segment_crosses_triangle(p, q, triangle);
-            } else if !segment_and_triangle_apart(p, q, triangle) {
+            } else if self.stops_sight(i) && !segment_and_triangle_apart(p, q, triangle) {
                 free = false;
                 limit.set(f64::NEG_INFINITY);
             }
@@ -161,7 +174,9 @@ impl SolidWorld {
         for _ in 0..tries {
             let (p, q) = (self.place(from, random)?, self.on_object(object, random)?);
             let d = sub(q, p);
-            let (t, first) = self.hit(p, d, 1.0 + 2f64.powi(-20));
+            // What is see-through is no obstacle, but may be the aim.
+            let counts = |i: u32| self.stops_sight(i) || self.object_of[i as usize] == object;
+            let (t, first) = self.first(p, d, 1.0 + 2f64.powi(-20), counts);
             if first.is_some_and(|i| self.object_of[i as usize] == object) {
                 let sight = Self::sight(from, Target::Object(object), Self::just_behind(p, d, t));
                 if self.proves(&sight) {
@@ -238,6 +253,23 @@ impl RayOracle for SolidWorld {
         if let Some(i) = first {
             let target = Target::Object(self.object_of[i as usize]);
             visit(Self::sight(from, target, Self::just_behind(p, d, far)));
+        }
+        if self.is_opaque.iter().all(|is_opaque| *is_opaque) {
+            return Some(());
+        }
+        // All that is see-through on the way is seen.
+        let limit = Cell::new(far);
+        let mut passed = Vec::new();
+        self.near(p, d, &limit, |i| {
+            if !self.stops_sight(i)
+                && let Some(t) = meet(p, d, &self.triangles[i as usize]).filter(|&t| t < far)
+            {
+                passed.push((i, t));
+            }
+        });
+        for (i, t) in passed {
+            let target = Target::Object(self.object_of[i as usize]);
+            visit(Self::sight(from, target, Self::just_behind(p, d, t)));
         }
         Some(())
     }

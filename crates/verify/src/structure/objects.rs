@@ -26,12 +26,12 @@ pub(super) fn of_plan(table: &Table, plan: &Plan, findings: &mut Findings) {
 
 /// Compares names, boxes, numbers of triangles and lists with those of a scene in space.
 pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
-    let drawn = |o: &sightlines_cells::SceneObject| {
-        let b = Aabb::<3>::around(o.corners().flatten());
+    let drawn = |object: usize| {
+        let b = scene.extent(object as u32);
         // What has no triangles is nowhere, and tables have it at the origin.
         if b.is_empty() { ([0.0; 3], [0.0; 3]) } else { (b.min, b.max) }
     };
-    let objects = scene.objects().iter().map(|o| (o.name.as_str(), drawn(o).0, drawn(o).1));
+    let objects = scene.objects().iter().enumerate().map(|(k, o)| (o.name.as_str(), drawn(k).0, drawn(k).1));
     if !compare(table, objects, findings) {
         return;
     }

@@ -1,0 +1,201 @@
+//! What is see-through is seen and hides nothing, what moves is seen wherever it may be: in tables of all methods, against
+//! tables of scenes without it, and against rays.
+
+use proptest::prelude::*;
+use sightlines::bake::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFactory};
+use sightlines::bake::{CellsFrom, RegionBakeOptions, SceneBakeOptions, bake_regions, bake_scene};
+use sightlines::cells::{CellId, MovingObject, Point3, Scene, SceneObject};
+use sightlines::geometry::{Aabb, Random};
+use sightlines::kdtree::SceneOptions;
+use sightlines::multifocal::Split;
+use sightlines::pvs::{ObjectId, Table};
+use sightlines::verify::{Truth, VerifyOptions, check_walls_in_space, verify};
+
+/// A closed box of twelve triangles, its fronts outwards.
+fn block(name: &str, min: Point3, max: Point3) -> SceneObject {
+    let corner = |i: usize| -> Point3 { std::array::from_fn(|k| if i >> k & 1 == 0 { min[k] } else { max[k] }) };
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    SceneObject { name: name.to_owned(), vertices: (0..8).map(corner).collect(), triangles }
+}
+
+/// A hall of 12 by 4 by 3, seen from inside, with a thing at either end.
+fn hall() -> Vec<SceneObject> {
+    let mut shell = block("shell", [0.0; 3], [12.0, 4.0, 3.0]);
+    shell.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+    vec![shell, block("west", [1.0; 3], [2.0, 2.0, 2.0]), block("east", [10.0, 1.0, 1.0], [11.0, 2.0, 2.0])]
+}
+
+/// The hall, divided by a wall, which is object 3, and with it a pane of slanted glass, which is object 4.
+fn divided() -> Scene {
+    let mut objects = hall();
+    objects.push(block("wall", [6.0, 0.0, 0.0], [6.5, 4.0, 3.0]));
+    let pane: Vec<Point3> = vec![[4.0, 0.0, 0.0], [5.0, 4.0, 0.0], [5.0, 4.0, 3.0], [4.0, 0.0, 3.0]];
+    objects.push(SceneObject { name: "pane".to_owned(), vertices: pane, triangles: vec![[0, 1, 2], [0, 2, 3]] });
+    Scene::new(objects).unwrap()
+}
+
+fn cut() -> SceneOptions {
+    SceneOptions { detail_below: Some(0.0), keep_solid: true, ..SceneOptions::default() }
+}
+
+fn by_sightlines(scene: &Scene) -> Table {
+    bake_scene(scene, &SceneBakeOptions { cut: cut(), threads: 2, ..SceneBakeOptions::default() }).unwrap().table
+}
+
+fn by_method(scene: &Scene, method: OcclusionMethod, cells: &CellsFrom, sightlines: bool) -> Table {
+    let factory = OcclusionMethodFactory::new(method, scene, &BufferOptions::default()).unwrap();
+    let make = || factory.instance();
+    let options = RegionBakeOptions {
+        cells,
+        method: Some(&make),
+        sightlines,
+        split: Split::default(),
+        cut: cut(),
+        portals: Default::default(),
+        threads: 2,
+        file: None,
+        progress: None,
+    };
+    bake_regions(scene, &options).unwrap().table
+}
+
+/// Tables of a scene by every method, on both kinds of cells.
+fn tables(scene: &Scene) -> Vec<(String, Table)> {
+    let mut all = vec![("sightlines".to_owned(), by_sightlines(scene))];
+    for method in OcclusionMethod::ALL {
+        for (name, cells) in [("kd", CellsFrom::KdTree), ("grid", CellsFrom::Grid([6, 2, 1]))] {
+            for sightlines in [false, true] {
+                let name = format!("{method} {name} {sightlines}");
+                all.push((name, by_method(scene, method, &cells, sightlines)));
+            }
+        }
+    }
+    all
+}
+
+/// The cells that contain a point.
+fn cells_at(table: &Table, p: Point3) -> Vec<CellId> {
+    let contains = |c: &CellId| Aabb { min: table.cells()[c.idx()].min, max: table.cells()[c.idx()].max }.contains(p);
+    (0u32..).map(CellId).take(table.n_cells()).filter(contains).collect()
+}
+
+/// Whether a point's cells see an object.
+fn sees(table: &Table, from: Point3, object: u32) -> bool {
+    cells_at(table, from).into_iter().any(|cell| table.visible_objects(cell).contains(&ObjectId(object)))
+}
+
+fn n_violations(table: &Table, scene: &Scene) -> usize {
+    let options = VerifyOptions { rays: 4000, pairs: 400, tries: 64, seed: 7, threads: 2, ..VerifyOptions::default() };
+    verify(table, &Truth::Scene(scene), &options).unwrap().by_kind.values().sum()
+}
+
+const WEST: Point3 = [0.5, 0.5, 0.5];
+
+#[test]
+fn glass_hides_nothing_and_is_seen() {
+    let opaque = divided();
+    let glass = opaque.clone().with_see_through(vec![3, 4]).unwrap();
+    let (mut n_hidden, mut n_caught) = (0, 0);
+    for ((name, of_walls), (_, of_glass)) in tables(&opaque).into_iter().zip(tables(&glass)) {
+        // The same wall hides if it is opaque: what is checked below is no accident.
+        n_hidden += u32::from(!sees(&of_walls, WEST, 2));
+        for object in 0..5 {
+            assert!(sees(&of_glass, WEST, object), "{name}: {object}");
+        }
+        assert_eq!(n_violations(&of_glass, &glass), 0, "{name}");
+        assert_eq!(n_violations(&of_walls, &opaque), 0, "{name}");
+        // Glass taken for a wall is caught by rays.
+        n_caught += u32::from(n_violations(&of_walls, &glass) > 0);
+    }
+    assert!(n_hidden >= 7 && n_caught >= n_hidden, "{n_hidden} {n_caught}");
+    // Where borders of cells are walls, what covers them has to hide.
+    let table = by_sightlines(&opaque);
+    assert_eq!(check_walls_in_space(&table, &opaque).n_bare, 0);
+    assert!(check_walls_in_space(&table, &glass).n_bare > 0);
+}
+
+#[test]
+fn what_moves_is_seen_wherever_it_may_be() {
+    let opaque = divided();
+    let moving = |within| opaque.clone().with_moving(vec![MovingObject { object: 2, within }]).unwrap();
+    let stays = moving(Some(Aabb { min: [9.0, 1.0, 1.0], max: [11.0, 3.0, 2.0] }));
+    let crosses = moving(Some(Aabb { min: [3.0, 1.0, 1.0], max: [11.0, 2.0, 2.0] }));
+    let anywhere = moving(None);
+    let mut n_hidden = 0;
+    for (((name, stays_table), (_, crosses_table)), (_, anywhere_table)) in
+        tables(&stays).into_iter().zip(tables(&crosses)).zip(tables(&anywhere))
+    {
+        n_hidden += u32::from(!sees(&stays_table, WEST, 2));
+        assert!(sees(&crosses_table, WEST, 2), "{name}");
+        for cell in (0u32..).map(CellId).take(anywhere_table.n_cells()) {
+            assert!(anywhere_table.visible_objects(cell).contains(&ObjectId(2)), "{name} {cell}");
+        }
+        for (table, scene) in [(&stays_table, &stays), (&crosses_table, &crosses), (&anywhere_table, &anywhere)] {
+            assert_eq!(n_violations(table, scene), 0, "{name}");
+        }
+    }
+    assert!(n_hidden >= 7, "{n_hidden}");
+}
+
+/// Blocks and panes on a small grid in the hall, some of which are see-through.
+fn cluttered(random: &mut Random) -> (Scene, Vec<u32>) {
+    let mut objects = hall();
+    let mut glass = Vec::new();
+    for k in 0..6 {
+        let min: Point3 = [random.below(12) as f64, random.below(4) as f64, random.below(3) as f64];
+        let mut size: Point3 =
+            [(1 + random.below(3)) as f64, (1 + random.below(4)) as f64, (1 + random.below(3)) as f64];
+        // Many are panes, some across all of the hall.
+        let flat = random.below(3);
+        let mut min = min;
+        if random.below(2) == 0 {
+            size[0] = 0.0;
+            if flat == 0 {
+                (min, size) = ([min[0], 0.0, 0.0], [0.0, 4.0, 3.0]);
+            }
+        }
+        let max = std::array::from_fn(|axis| (min[axis] + size[axis]).min([12.0, 4.0, 3.0][axis]));
+        if random.below(2) == 0 {
+            glass.push(objects.len() as u32);
+        }
+        objects.push(block(&format!("block {k}"), min, max));
+    }
+    (Scene::new(objects).unwrap(), glass)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.div_ceil(8), ..ProptestConfig::default() })]
+
+    /// A see-through thing changes nothing but that it is seen itself: cells, what they see, and which of the other objects
+    /// they see are those of the scene without it.
+    #[test]
+    fn see_through_things_change_nothing(seed in any::<u64>()) {
+        let (scene, glass) = cluttered(&mut Random::new(seed));
+        let without = scene.clone().with_see_through(glass.clone()).unwrap().opaque_part().into_owned();
+        let seen = scene.with_see_through(glass.clone()).unwrap();
+        let (with, without) = (by_sightlines(&seen), by_sightlines(&without));
+        prop_assert_eq!(with.cells(), without.cells());
+        prop_assert_eq!(with.portals(), without.portals());
+        for cell in (0u32..).map(CellId).take(with.n_cells()) {
+            let rows = [&with, &without].map(|table| table.visible(cell).collect::<Vec<_>>());
+            prop_assert_eq!(&rows[0], &rows[1]);
+            let others = [&with, &without].map(|table| {
+                let objects = table.visible_objects(cell).into_iter();
+                objects.filter(|object| !glass.contains(&object.0)).collect::<Vec<_>>()
+            });
+            prop_assert_eq!(&others[0], &others[1]);
+        }
+        prop_assert_eq!(n_violations(&with, &seen), 0);
+    }
+
+    /// Whatever finds the hidden, rays through what is see-through find nothing that it hides wrongly.
+    #[test]
+    fn no_method_hides_behind_glass(seed in any::<u64>()) {
+        let (scene, glass) = cluttered(&mut Random::new(seed));
+        let scene = scene.with_see_through(glass).unwrap();
+        let method = OcclusionMethod::ALL[seed as usize % OcclusionMethod::ALL.len()];
+        let table = by_method(&scene, method, &CellsFrom::Grid([4, 2, 1]), seed % 2 == 0);
+        prop_assert_eq!(n_violations(&table, &scene), 0);
+    }
+}
