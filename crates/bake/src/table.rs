@@ -3,7 +3,7 @@
 use crate::objects::{cell_objects, object_lists};
 use sightlines_cells::{Axial, AxialDoor, CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
 use sightlines_formats::SceneInfo;
-use sightlines_formats::scene::LengthUnit;
+use sightlines_formats::scene::{LengthUnit, SceneReadOptions};
 use sightlines_geometry::{Aabb, Point2, Portal2};
 use sightlines_pvs::{
     BitMatrix, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableKind, TableParts,
@@ -86,6 +86,18 @@ pub(crate) fn state_file(parts: &mut TableParts, file: Option<&SceneInfo>) {
     parts.info.push(("up".to_owned(), ["x", "y", "z"][file.up.idx()].to_owned()));
     if file.unit == LengthUnit::Metre {
         parts.info.push(("unit".to_owned(), "metre".to_owned()));
+    }
+    // Whoever checks the table reads the scene likewise.
+    let SceneReadOptions { opaque, see_through, single_sided, scene } = &file.read_with;
+    if *single_sided {
+        parts.info.push(("single-sided".to_owned(), "see-through".to_owned()));
+    }
+    parts.info.extend(scene.iter().map(|scene| ("scene".to_owned(), scene.clone())));
+    for (key, patterns) in [("opaque", opaque), ("see-through", see_through)] {
+        if !patterns.is_empty() {
+            let lines: Vec<String> = patterns.iter().map(ToString::to_string).collect();
+            parts.info.push((key.to_owned(), lines.join("\n")));
+        }
     }
     parts.info.sort();
 }

@@ -63,7 +63,11 @@ fn gltf(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
 }
 
 fn obj(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    Ok(Input::Scene(scene::parse_obj(&source.bytes()?)?))
+    let (bytes, options) = (source.bytes()?, scene::SceneReadOptions::default());
+    Ok(Input::Scene(match *source {
+        Source::File(path) => scene::parse_obj_with(&bytes, Some(&Folder::of(path)), &options),
+        Source::Memory { beside, .. } => scene::parse_obj_with(&bytes, beside, &options),
+    }?))
 }
 
 fn portals(source: &Source<'_>) -> Result<Input, ReadErrorKind> {

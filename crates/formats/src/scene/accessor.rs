@@ -176,6 +176,12 @@ impl<'a> Elements<'a> {
         }
     }
 
+    /// The same, as what they stand for.
+    pub(super) fn normalized_numbers(&self, k: usize) -> Vec<f64> {
+        let numbers = self.numbers(k).into_iter();
+        if self.normalized { numbers.map(|x| self.component.normalized(x)).collect() } else { numbers.collect() }
+    }
+
     /// Index `k`, below `count`.
     pub(super) fn index(&self, k: usize) -> u32 {
         self.get(k).map_or(0, |bytes| self.component.index(bytes))

@@ -1,9 +1,13 @@
 //! From corners and triangles to the objects of a scene, the same way for all formats.
 
+use super::closed::is_closed_outwards;
 use super::error::SceneReadError;
+use super::role::Role;
+use super::surface::{SceneReadOptions, Taken, Verdict};
 use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplified};
 use crate::point::are_collinear;
-use sightlines_cells::{Point3, Scene, SceneObject};
+use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
+use sightlines_geometry::Aabb;
 
 /// A mesh of which every corner is used.
 #[derive(Debug, Default)]
@@ -34,8 +38,14 @@ impl Compact {
 pub(super) struct Builder {
     objects: Vec<SceneObject>,
     mirrors: Vec<u32>,
+    see_through: Vec<u32>,
+    moving: Vec<MovingObject>,
+    taken: Vec<Taken>,
     n_degenerate: usize,
+    n_single_sided: usize,
     simplified: Option<Simplified>,
+    /// What a user should hear of the file.
+    pub(super) warnings: Vec<String>,
 }
 
 impl Builder {
@@ -62,15 +72,50 @@ impl Builder {
         self.objects.push(SceneObject { name, vertices, triangles });
     }
 
+    /// Index of the object that was added last.
+    fn last(&self) -> Option<u32> {
+        self.objects.len().checked_sub(1).and_then(|last| u32::try_from(last).ok())
+    }
+
     /// Marks the object that was added last as a mirror.
     pub(super) fn mark_mirror(&mut self) {
-        self.mirrors.extend(self.objects.len().checked_sub(1).and_then(|last| u32::try_from(last).ok()));
+        self.mirrors.extend(self.last());
+    }
+
+    /// Counts the triangles of the object that was added last as single-sided, or takes it for see-through if it is not
+    /// closed and such things are to hide nothing.
+    pub(super) fn mark_single_sided(&mut self, hides_nothing: bool) {
+        let Some(object) = self.objects.last() else { return };
+        if hides_nothing && !object.triangles.is_empty() && !is_closed_outwards(object) {
+            let because = "single sides".to_owned();
+            self.take(Verdict { role: Role::SeeThrough, moves: false, because }, None);
+        } else {
+            self.n_single_sided += object.triangles.len();
+        }
+    }
+
+    /// Takes the object that was added last for what was decided. `within` is the box that it does not leave if it moves,
+    /// `None` if it may be anywhere.
+    pub(super) fn take(&mut self, verdict: Verdict, within: Option<Aabb<3>>) {
+        let Some(object) = self.last() else { return };
+        if !verdict.hides() {
+            self.see_through.push(object);
+        }
+        if !verdict.role.is_drawn() {
+            self.objects[object as usize].triangles.clear();
+        }
+        if verdict.moves {
+            self.moving.push(MovingObject { object, within });
+        }
+        let Verdict { role, moves, because } = verdict;
+        self.taken.push(Taken { object, role, moves, because });
     }
 
     /// The scene, if there is anything to see in it.
-    pub(super) fn finish(self, format: SceneFormat) -> Result<SceneFile, SceneReadError> {
+    pub(super) fn finish(self, format: SceneFormat, read_with: &SceneReadOptions) -> Result<SceneFile, SceneReadError> {
         let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
+        let scene = scene.with_see_through(self.see_through)?.with_moving(self.moving)?;
         let n_triangles = scene.n_triangles();
         if n_triangles == 0 {
             return Err(SceneReadError::NoTriangles { n_objects, n_degenerate });
@@ -85,7 +130,11 @@ impl Builder {
             n_objects_without_triangles: scene.objects().iter().filter(|o| o.triangles.is_empty()).count(),
             n_triangles,
             n_degenerate_triangles: n_degenerate,
+            n_single_sided_triangles: self.n_single_sided,
             simplified,
+            read_with: read_with.clone(),
+            taken: self.taken,
+            warnings: self.warnings,
         };
         Ok(SceneFile { scene, info })
     }

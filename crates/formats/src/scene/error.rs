@@ -53,7 +53,7 @@ pub enum SceneReadError {
         found: String,
     },
     /// The geometry is coded in a way that is not understood.
-    #[error("extension {name} is not understood")]
+    #[error("extension {name} is not understood{}", remedy(name))]
     Extension {
         /// The extension.
         name: String,
@@ -63,6 +63,14 @@ pub enum SceneReadError {
     NoScene {
         /// Its index.
         scene: usize,
+    },
+    /// None of the scenes is the one that is asked for.
+    #[error("there is no scene {name:?}, but {}", if names.is_empty() { "none".to_owned() } else { names.join(", ") })]
+    NoSuchScene {
+        /// The name or index that is asked for.
+        name: String,
+        /// The names of all scenes, or indices.
+        names: Vec<String>,
     },
     /// A scene lists a node that does not exist.
     #[error("scene {scene}: there is no node {node}")]
@@ -111,6 +119,17 @@ pub enum SceneReadError {
     /// The whole is not a scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
+}
+
+/// The command that writes a file without an extension, if there is a usual one.
+fn remedy(extension: &str) -> &'static str {
+    match extension {
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" => {
+            "; `npx @gltf-transform/cli cp IN.glb OUT.glb` unpacks the file"
+        }
+        "KHR_meshopt_compression" => "; `gltfpack -i IN.glb -o OUT.glb -noq -kn -km` unpacks the file",
+        _ => "",
+    }
 }
 
 /// Why bytes are not a GLB container.
@@ -178,9 +197,6 @@ pub enum NodeErrorKind {
     /// Its rotation is a quaternion of length zero.
     #[error("its rotation is the zero quaternion")]
     ZeroRotation,
-    /// Its mesh is bent by a skin or by morph weights, so its rest shape is not the visible one.
-    #[error("its mesh is deformed by a skin or by morph weights")]
-    Deformed,
 }
 
 /// What an accessor is used for.

@@ -4,9 +4,12 @@ use super::accessor::Elements;
 use super::buffers::{Buffers, split_glb};
 use super::build::{Builder, Compact};
 use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
-use super::json::{Document, Mesh, Node, Primitive, TRIANGLES};
+use super::json::{Document, Mesh, Node, Primitive, SceneRoots, TRIANGLES};
+use super::motion::{Motions, Vertices};
+use super::role::{Role, Said, role_of_name};
+use super::surface::{Evidence, Judge, SceneReadOptions, Verdict, see_through};
 use super::transform::Transform;
-use super::{MAX_ELEMENTS, MAX_OBJECTS, MIRROR_SUFFIX, SceneFile, SceneFormat};
+use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
 use crate::beside::{Folder, Neighbours};
 use crate::point::check_point;
 use std::path::Path;
@@ -19,12 +22,16 @@ const TRIANGLE_STRIP: u32 = 5;
 const TRIANGLE_FAN: u32 = 6;
 
 /// Extensions that do not change where a triangle is, and quantised meshes, which are understood.
-const HARMLESS: [&str; 8] = [
+const HARMLESS: [&str; 12] = [
     "EXT_lights_",
     "EXT_texture_",
+    "KHR_animation_pointer",
+    "KHR_implicit_shapes",
     "KHR_lights_",
     "KHR_materials_",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
+    "KHR_physics_rigid_bodies",
     "KHR_texture_",
     "KHR_xmp",
     "MSFT_texture_",
@@ -48,7 +55,9 @@ const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 ///
 /// # Source
 /// Khronos Group, glTF 2.0 Specification (ISO/IEC 12113:2022), and KHR_mesh_quantization.
-/// Chosen here: extensions that code geometry in another way, skins and morph weights are refused.
+/// Chosen here: extensions that code geometry in another way are refused. What hides and what is only seen: see [`Role`] and
+/// [`Taken`](super::Taken). What is animated, physics, skins and morph targets hide nothing, and are seen in a box that they
+/// never leave, or from everywhere if there is no telling.
 pub fn parse_glb(bytes: &[u8], folder: Option<&Path>) -> Result<SceneFile, SceneReadError> {
     let folder = folder.map(|folder| Folder(folder.to_owned()));
     parse_gltf(bytes, folder.as_ref().map(|folder| folder as &dyn Neighbours))
@@ -59,7 +68,19 @@ pub fn parse_glb(bytes: &[u8], folder: Option<&Path>) -> Result<SceneFile, Scene
 /// # Errors
 /// As [`parse_glb`].
 pub fn parse_gltf(bytes: &[u8], beside: Option<&dyn Neighbours>) -> Result<SceneFile, SceneReadError> {
-    parse(bytes, beside, |_| {}).map(|(file, _)| file)
+    parse_gltf_with(bytes, beside, &SceneReadOptions::default())
+}
+
+/// As [`parse_gltf`], with options.
+///
+/// # Errors
+/// As [`parse_glb`].
+pub fn parse_gltf_with(
+    bytes: &[u8],
+    beside: Option<&dyn Neighbours>,
+    options: &SceneReadOptions,
+) -> Result<SceneFile, SceneReadError> {
+    parse(bytes, beside, options, |_| {}).map(|(file, _)| file)
 }
 
 /// A node with a mesh, as it is read: what an object comes from, one for each primitive of the mesh.
@@ -81,15 +102,29 @@ pub(super) type Loaded = Vec<Option<Vec<u8>>>;
 pub(super) fn parse(
     bytes: &[u8],
     beside: Option<&dyn Neighbours>,
+    options: &SceneReadOptions,
     watch: impl FnMut(Origin<'_>),
 ) -> Result<(SceneFile, Loaded), SceneReadError> {
     let (text, binary) = split(bytes)?;
     let document: Document = serde_json::from_str(text).map_err(|source| SceneReadError::Json { source })?;
     check_understood(&document)?;
-    let placed = place_nodes(&document)?;
+    let placed = place_nodes(&document, options.scene.as_deref())?;
     check_size(&document, &placed)?;
     let buffers = Buffers::new(&document.buffers, binary, beside);
-    let file = build(&document, &buffers, &placed, watch)?.finish(SceneFormat::Gltf)?;
+    let mut judge = Judge::new(options);
+    let mut builder = build(&document, &buffers, &placed, &mut judge, watch)?;
+    builder.warnings.extend(unknown_roles(&document));
+    if options.scene.is_none() && document.scenes.len() > 1 {
+        let read = scene_names(&document).swap_remove(document.scene.unwrap_or(0));
+        let n = document.scenes.len();
+        builder.warnings.push(format!("the default scene, {read}, was read, one of {n} in the file"));
+    }
+    if document.extensions_used.iter().any(|name| name == "KHR_interactivity") {
+        let warning = "KHR_interactivity may move and show anything: name what it moves as see-through";
+        builder.warnings.push(warning.to_owned());
+    }
+    builder.warnings.extend(judge.warnings());
+    let file = builder.finish(SceneFormat::Gltf, options)?;
     Ok((file, buffers.into_loaded()))
 }
 
@@ -123,14 +158,39 @@ struct Placed<'a> {
     mesh_idx: usize,
     mesh: &'a Mesh,
     world: Transform,
+    inherited: Inherited,
 }
 
-impl Placed<'_> {
+/// What a node has of those above it, and its children of it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Inherited {
+    /// The role of the nearest node that has one, and the ending of the name that states it, if its extras do not.
+    role: Option<(Role, Option<&'static str>)>,
+    /// Whether one of them is not drawn at first.
+    is_invisible: bool,
+}
+
+impl Inherited {
+    /// What `node` has, below what has `self`.
+    fn by(self, node: &Node) -> Self {
+        let of_name = node.name.as_deref().and_then(role_of_name).map(|(role, ending)| (role, Some(ending)));
+        let own = node.role.role().map(|role| (role, None)).filter(|own| own.0 != Role::Mirror);
+        let own = own.or(of_name.filter(|own| own.0 != Role::Mirror));
+        Self { role: own.or(self.role), is_invisible: self.is_invisible || node.is_invisible() }
+    }
+
+    /// What of it holds for the children: that a name promises more hiding is said of one node.
+    fn for_children(self) -> Self {
+        Self { role: self.role.filter(|role| !matches!(role, (Role::Occluder, Some(_)))), ..self }
+    }
+}
+
+impl<'a> Placed<'a> {
     fn id(&self) -> NodeId {
         id_of(self.index, self.node)
     }
 
-    fn given_name(&self) -> Option<&str> {
+    fn given_name(&self) -> Option<&'a str> {
         self.node.name.as_deref().or(self.mesh.name.as_deref())
     }
 
@@ -141,7 +201,37 @@ impl Placed<'_> {
 
     /// Whether the node says, by its extras or by its name, that it is a mirror.
     fn is_mirror(&self) -> bool {
-        self.node.is_mirror || self.node.name.as_deref().is_some_and(|name| name.ends_with(MIRROR_SUFFIX))
+        let by_name = self.node.name.as_deref().and_then(role_of_name);
+        self.node.role == Said::Role(Role::Mirror) || by_name.is_some_and(|(role, _)| role == Role::Mirror)
+    }
+
+    /// What is known of one of its objects. `name` is that of the object.
+    fn evidence<'e>(
+        &'e self,
+        document: &'e Document,
+        motions: &Motions<'_, '_>,
+        primitive: &Primitive,
+        name: &'e str,
+    ) -> Evidence<'e> {
+        let material = primitive.material.and_then(|m| document.materials.get(m)?.as_ref());
+        let names = [Some(name), self.node.name.as_deref(), self.mesh.name.as_deref()];
+        let names = names.into_iter().chain([material.and_then(|m| m.name.as_deref())]).flatten().collect();
+        let below = [self.mesh.role.role(), material.and_then(|m| m.role.role())].into_iter().flatten();
+        let below = below.filter(|role| *role != Role::Mirror).map(|role| (role, None));
+        let role = self.inherited.role.or_else(|| below.into_iter().next());
+        let because =
+            |ending: Option<&str>| ending.map_or_else(|| "extras".to_owned(), |ending| format!("a name with {ending}"));
+        let see_through = see_through(document, primitive);
+        let is_invisible = self.inherited.is_invisible || motions.appears(self.index);
+        let invisible = is_invisible.then(|| "KHR_node_visibility".to_owned());
+        let moves = motions.why(self.index, self.mesh, primitive);
+        Evidence {
+            names,
+            role: role.map(|(role, ending)| (role, because(ending))),
+            see_through: see_through.or(invisible),
+            moves: moves.map(|moves| moves.because.to_owned()),
+            deforms: moves.is_some_and(|moves| moves.deforms),
+        }
     }
 
     fn fail(&self, primitive: usize, kind: PrimitiveErrorKind) -> SceneReadError {
@@ -153,9 +243,25 @@ fn id_of(index: usize, node: &Node) -> NodeId {
     NodeId { index, name: node.name.as_deref().map(str::to_owned) }
 }
 
-/// The nodes where a scene begins.
-fn roots(document: &Document) -> Result<Vec<usize>, SceneReadError> {
-    let scene = document.scene.unwrap_or(0);
+/// The scene of a document that has this name, or else this index.
+fn scene_called(document: &Document, name: &str) -> Result<usize, SceneReadError> {
+    let of_name = document.scenes.iter().position(|scene| scene.name.as_deref() == Some(name));
+    let of_index = || name.parse().ok().filter(|&index: &usize| index < document.scenes.len());
+    of_name
+        .or_else(of_index)
+        .ok_or_else(|| SceneReadError::NoSuchScene { name: name.to_owned(), names: scene_names(document) })
+}
+
+/// The names of all scenes; the index of one without.
+fn scene_names(document: &Document) -> Vec<String> {
+    let name = |(k, scene): (usize, &SceneRoots)| scene.name.as_deref().map_or_else(|| k.to_string(), str::to_owned);
+    document.scenes.iter().enumerate().map(name).collect()
+}
+
+/// The nodes where a scene begins: the one that is asked for, or the default.
+fn roots(document: &Document, asked: Option<&str>) -> Result<Vec<usize>, SceneReadError> {
+    let asked = asked.map(|name| scene_called(document, name)).transpose()?;
+    let scene = asked.or(document.scene).unwrap_or(0);
     match document.scenes.get(scene) {
         Some(roots) => match roots.nodes.iter().find(|&&node| node >= document.nodes.len()) {
             Some(&node) => Err(SceneReadError::NoRoot { scene, node }),
@@ -176,35 +282,29 @@ fn roots(document: &Document) -> Result<Vec<usize>, SceneReadError> {
 }
 
 /// All nodes with meshes, parents before children. Keeps its own stack, so depth costs nothing but memory.
-fn place_nodes(document: &Document) -> Result<Vec<Placed<'_>>, SceneReadError> {
+fn place_nodes<'a>(document: &'a Document, scene: Option<&str>) -> Result<Vec<Placed<'a>>, SceneReadError> {
     let mut reached = vec![false; document.nodes.len()];
-    let mut stack: Vec<_> = roots(document)?.into_iter().rev().map(|node| (node, Transform::IDENTITY)).collect();
+    let start = |node| (node, Transform::IDENTITY, Inherited::default());
+    let mut stack: Vec<_> = roots(document, scene)?.into_iter().rev().map(start).collect();
     let mut placed = Vec::new();
-    while let Some((index, parent)) = stack.pop() {
+    while let Some((index, parent, inherited)) = stack.pop() {
         let node = &document.nodes[index];
         let fail = |kind| SceneReadError::Node { node: id_of(index, node), kind };
         if std::mem::replace(&mut reached[index], true) {
             return Err(fail(NodeErrorKind::ReachedTwice));
         }
         let world = parent.after(&Transform::of_node(node).map_err(fail)?);
+        let inherited = inherited.by(node);
         if let Some(mesh_idx) = node.mesh {
             let mesh = document.meshes.get(mesh_idx).ok_or_else(|| fail(NodeErrorKind::NoMesh { mesh: mesh_idx }))?;
-            if is_deformed(node, mesh) {
-                return Err(fail(NodeErrorKind::Deformed));
-            }
-            placed.push(Placed { index, node, mesh_idx, mesh, world });
+            placed.push(Placed { index, node, mesh_idx, mesh, world, inherited });
         }
         if let Some(&child) = node.children.iter().find(|&&child| child >= document.nodes.len()) {
             return Err(fail(NodeErrorKind::NoChild { child }));
         }
-        stack.extend(node.children.iter().rev().map(|&child| (child, world)));
+        stack.extend(node.children.iter().rev().map(|&child| (child, world, inherited.for_children())));
     }
     Ok(placed)
-}
-
-fn is_deformed(node: &Node, mesh: &Mesh) -> bool {
-    let weights = node.weights.as_deref().or(mesh.weights.as_deref());
-    node.skin.is_some() || weights.is_some_and(|weights| weights.iter().any(|&w| w != 0.0))
 }
 
 /// Refuses scenes that are too large before any object is made: a small file can describe a large scene.
@@ -234,9 +334,11 @@ fn build(
     document: &Document,
     buffers: &Buffers<'_>,
     placed: &[Placed<'_>],
+    judge: &mut Judge<'_>,
     mut watch: impl FnMut(Origin<'_>),
 ) -> Result<Builder, SceneReadError> {
     let mut builder = Builder::saying(document.asset.simplified);
+    let motions = Motions::new(document, buffers);
     // Meshes by their index, read when the first node has them.
     let mut meshes: Vec<Option<Vec<LocalMesh>>> = Vec::new();
     meshes.resize_with(document.meshes.len(), || None);
@@ -250,17 +352,57 @@ fn build(
         };
         watch(Origin { node: at.index, mesh: at.mesh_idx, mirrors: at.world.mirrors(), locals: mesh });
         for (k, local) in mesh.iter().enumerate() {
-            let world = |(&vertex, &p)| {
-                check_point(at.world.apply(p)).map_err(|kind| at.fail(k, PrimitiveErrorKind::Vertex { vertex, kind }))
+            let (name, primitive) = (at.name(k), &at.mesh.primitives[k]);
+            let verdict = judge.verdict(at.evidence(document, &motions, primitive, &name));
+            let moved = verdict.as_ref().filter(|verdict| verdict.moves).map(|_| {
+                let vertices = Vertices { corners: &local.mesh.corners, positions: &local.positions };
+                motions.moved(at.index, at.mesh, primitive, vertices)
+            });
+            let placed =
+                |(vertex, p)| check_point(p).map_err(|kind| at.fail(k, PrimitiveErrorKind::Vertex { vertex, kind }));
+            let corners = local.mesh.corners.iter().copied();
+            let vertices = match moved.as_ref().and_then(|moved| moved.at_rest.as_ref()) {
+                Some(at_rest) => corners.zip(at_rest.iter().copied()).map(placed).collect::<Result<_, _>>()?,
+                None => {
+                    let world = local.positions.iter().map(|&p| at.world.apply(p));
+                    corners.zip(world).map(placed).collect::<Result<_, _>>()?
+                }
             };
-            let vertices = local.mesh.corners.iter().zip(&local.positions).map(world).collect::<Result<_, _>>()?;
-            builder.add(at.name(k), vertices, local.mesh.triangles.iter().copied(), at.world.mirrors());
+            builder.add(name, vertices, local.mesh.triangles.iter().copied(), at.world.mirrors());
             if at.is_mirror() {
                 builder.mark_mirror();
+            }
+            if verdict.as_ref().is_none_or(Verdict::hides) && is_single_sided(document, primitive) {
+                // Who says by name that something hides has the last word.
+                builder.mark_single_sided(judge.hides_no_single_sides() && verdict.is_none());
+            }
+            if let Some(verdict) = verdict {
+                builder.take(verdict, moved.and_then(|moved| moved.within));
             }
         }
     }
     Ok(builder)
+}
+
+/// Whether engines draw only the fronts of a primitive.
+fn is_single_sided(document: &Document, primitive: &Primitive) -> bool {
+    let material = primitive.material.and_then(|m| document.materials.get(m)?.as_ref());
+    material.is_none_or(|material| !material.double_sided)
+}
+
+/// Warnings of extras that state a role that there is not.
+fn unknown_roles(document: &Document) -> Vec<String> {
+    fn of<'a>(what: &str, said: impl Iterator<Item = (Said, Option<&'a str>)>) -> Option<String> {
+        let names: Vec<&str> =
+            said.filter(|(role, _)| *role == Said::Unknown).map(|(_, name)| name.unwrap_or_default()).collect();
+        let (first, n) = (names.first()?, names.len());
+        let roles = Role::ALL.map(Role::name).join(", ");
+        Some(format!("extras of {what} state a role that is none of {roles}: {n}, the first called {first:?}"))
+    }
+    let nodes = document.nodes.iter().map(|node| (node.role, node.name.as_deref()));
+    let meshes = document.meshes.iter().map(|mesh| (mesh.role, mesh.name.as_deref()));
+    let materials = document.materials.iter().flatten().map(|material| (material.role, material.name.as_deref()));
+    [of("nodes", nodes), of("meshes", meshes), of("materials", materials)].into_iter().flatten().collect()
 }
 
 /// A primitive as it is in its mesh.

@@ -4,7 +4,10 @@
 //! that is written 10,000 km from the origin would have its walls moved against each other.
 
 use super::Simplified;
-use serde::Deserialize;
+use super::role::Said;
+use serde::de::{Deserializer, IgnoredAny};
+use serde::{Deserialize, de::DeserializeOwned};
+use serde_json::Value;
 
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -17,6 +20,14 @@ pub(super) struct Document {
     pub(super) nodes: Vec<Node>,
     #[serde(default)]
     pub(super) meshes: Vec<Mesh>,
+    /// `None` for one that is not as the specification has it.
+    #[serde(default, deserialize_with = "lenient")]
+    pub(super) materials: Vec<Option<Material>>,
+    /// Likewise.
+    #[serde(default, deserialize_with = "lenient")]
+    pub(super) skins: Vec<Option<Skin>>,
+    #[serde(default)]
+    pub(super) animations: Vec<Animation>,
     #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
     #[serde(default)]
@@ -39,6 +50,7 @@ pub(super) struct Asset {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct SceneRoots {
+    pub(super) name: Option<Box<str>>,
     #[serde(default)]
     pub(super) nodes: Vec<usize>,
 }
@@ -56,9 +68,34 @@ pub(super) struct Node {
     pub(super) scale: Option<Box<[f64; 3]>>,
     pub(super) skin: Option<usize>,
     pub(super) weights: Option<Box<[f64]>>,
-    /// Whether its extras say so: `{"sightlines": {"role": "mirror"}}`.
-    #[serde(default, rename = "extras", deserialize_with = "super::role::is_mirror")]
-    pub(super) is_mirror: bool,
+    /// What its extras say: `{"sightlines": {"role": "mirror"}}`.
+    #[serde(default, rename = "extras", deserialize_with = "super::role::said")]
+    pub(super) role: Said,
+    #[serde(default)]
+    pub(super) extensions: Option<Box<NodeExtensions>>,
+}
+
+/// The extensions of a node that change whether, and where, it is seen.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "KHR_node_visibility")]
+    visibility: Option<Value>,
+    #[serde(rename = "KHR_physics_rigid_bodies")]
+    physics: Option<Value>,
+}
+
+impl Node {
+    /// Whether the node, and all below it, is not drawn at first: a program may show it later.
+    pub(super) fn is_invisible(&self) -> bool {
+        let said = self.extensions.as_ref().and_then(|extensions| extensions.visibility.as_ref());
+        said.is_some_and(|said| said.get("visible") == Some(&Value::Bool(false)))
+    }
+
+    /// Whether physics move it.
+    pub(super) fn is_body(&self) -> bool {
+        let said = self.extensions.as_ref().and_then(|extensions| extensions.physics.as_ref());
+        said.is_some_and(|said| said.get("motion").is_some())
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -67,6 +104,9 @@ pub(super) struct Mesh {
     #[serde(default)]
     pub(super) primitives: Vec<Primitive>,
     pub(super) weights: Option<Box<[f64]>>,
+    /// As that of a node, for all nodes with this mesh.
+    #[serde(default, rename = "extras", deserialize_with = "super::role::said")]
+    pub(super) role: Said,
 }
 
 #[derive(Debug, Deserialize)]
@@ -76,12 +116,101 @@ pub(super) struct Primitive {
     pub(super) indices: Option<usize>,
     #[serde(default = "triangles")]
     pub(super) mode: u32,
+    pub(super) material: Option<usize>,
+    /// Morph targets.
+    #[serde(default)]
+    pub(super) targets: Vec<Attributes>,
+    /// Materials that it may have instead, by `KHR_materials_variants`.
+    #[serde(default, rename = "extensions", deserialize_with = "variants")]
+    pub(super) variants: Vec<usize>,
 }
 
+/// The materials that a primitive may have instead of its own, by `KHR_materials_variants`. A list that is not as it
+/// should be counts as one material that does not exist.
+fn variants<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<usize>, D::Error> {
+    let extensions = Value::deserialize(deserializer)?;
+    let Some(variants) = extensions.get("KHR_materials_variants") else { return Ok(Vec::new()) };
+    let of = |mapping: &Value| mapping.get("material").and_then(Value::as_u64).and_then(|m| usize::try_from(m).ok());
+    let mappings = variants.get("mappings").and_then(Value::as_array);
+    let found = mappings.and_then(|mappings| mappings.iter().map(of).collect::<Option<Vec<usize>>>());
+    Ok(found.unwrap_or_else(|| vec![usize::MAX]))
+}
+
+/// Attributes of vertices, which are accessors.
 #[derive(Debug, Default, Deserialize)]
 pub(super) struct Attributes {
     #[serde(rename = "POSITION")]
     pub(super) position: Option<usize>,
+    /// All others: a primitive has any number of sets of joints and weights.
+    #[serde(flatten)]
+    pub(super) others: std::collections::BTreeMap<String, Value>,
+}
+
+/// What of a material says whether it lets light through.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Material {
+    pub(super) name: Option<Box<str>>,
+    pub(super) alpha_mode: Option<Box<str>>,
+    #[serde(default)]
+    pub(super) double_sided: bool,
+    #[serde(default)]
+    pub(super) extensions: MaterialExtensions,
+    /// As that of a node, for all primitives with this material.
+    #[serde(default, rename = "extras", deserialize_with = "super::role::said")]
+    pub(super) role: Said,
+}
+
+/// The extensions by which a material lets light through.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_transmission")]
+    pub(super) transmission: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_volume")]
+    pub(super) volume: Option<IgnoredAny>,
+    #[serde(rename = "KHR_materials_diffuse_transmission")]
+    pub(super) diffuse_transmission: Option<IgnoredAny>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Skin {
+    pub(super) joints: Vec<usize>,
+    pub(super) inverse_bind_matrices: Option<usize>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct Animation {
+    #[serde(default)]
+    pub(super) channels: Vec<Channel>,
+    #[serde(default)]
+    pub(super) samplers: Vec<Sampler>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Channel {
+    pub(super) sampler: usize,
+    pub(super) target: Target,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Target {
+    pub(super) node: Option<usize>,
+    pub(super) path: Box<str>,
+    pub(super) extensions: Option<Value>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Sampler {
+    pub(super) input: usize,
+    pub(super) output: usize,
+    pub(super) interpolation: Option<Box<str>>,
+}
+
+/// A list of what can be read of it; nothing where it is no list.
+fn lenient<'de, D: Deserializer<'de>, T: DeserializeOwned>(deserializer: D) -> Result<Vec<Option<T>>, D::Error> {
+    let Value::Array(list) = Value::deserialize(deserializer)? else { return Ok(Vec::new()) };
+    Ok(list.into_iter().map(|element| serde_json::from_value(element).ok()).collect())
 }
 
 /// The number of the usual mode: a list of triangles.

@@ -5,25 +5,34 @@
 //! | objects | one per node and primitive of the default scene, parents before children | one per `o`, or per `g` where there is no `o` |
 //! | up, unit | Y, metres, as the format says | Y assumed, unknown |
 //! | numbers | single precision or quantised, placed by transforms in double precision | double precision |
-//! | mirrors | nodes with `"extras": {"sightlines": {"role": "mirror"}}`, or a name that ends in `-mirror` | objects with such a name |
-//! | left out | materials, animations, cameras | materials, normals, lines, curves |
+//! | seen, and hide nothing | materials with `alphaMode` `BLEND` or `MASK`, or with transmission or volume; what is not drawn at first | materials with `d`, `Tr`, `map_d`, or of which nothing is known |
+//! | roles | `"extras": {"sightlines": {"role": …}}` of nodes, meshes and materials, see [`Role`]; endings of names | endings of names |
+//! | mirrors | nodes with that role, or a name that ends in `-mirror` | objects with such a name |
+//! | left out | looks, animations, cameras | looks, normals, lines, curves |
 //! | written again | with fewer triangles, and all else as it was ([`GltfSource::rewrite`]) | as GLB, without materials |
 //!
 //! Objects keep their order, which gives them their ids, even those that are only points or lines and have no
-//! triangles. Corners that nothing uses are left out, and so are triangles without area. Deformed meshes (skins, morph
-//! weights) and unknown compressions are refused: a wall in the wrong place would be a silent error.
+//! triangles. Corners that nothing uses are left out, and so are triangles without area. What moves or changes its shape
+//! (animations, physics, skins, morph targets) hides nothing. Unknown compressions are refused: a wall in the wrong place
+//! would be a silent error.
 
 mod accessor;
 mod buffers;
 mod build;
+mod closed;
 mod error;
 mod gltf;
 mod json;
+mod motion;
+mod mtl;
 mod obj;
+mod pattern;
 mod polygon;
+mod range;
 mod rewrite;
 mod role;
 mod source;
+mod surface;
 mod transform;
 mod write;
 
@@ -32,13 +41,17 @@ pub use error::{
     PrimitiveErrorKind, SceneReadError, SceneWriteError,
 };
 pub(crate) use gltf::MAGIC as GLB_MAGIC;
-pub use gltf::{parse_glb, parse_gltf};
-pub use obj::parse_obj;
+pub use gltf::{parse_glb, parse_gltf, parse_gltf_with};
+pub use obj::{parse_obj, parse_obj_with};
+pub use pattern::{EmptyPattern, NamePattern};
 pub use rewrite::RewriteError;
+pub use role::Role;
 pub use source::{GltfSource, ObjectSource, parse_glb_with_source};
+pub use surface::{SceneReadOptions, Taken};
 pub use write::{write_glb, write_simplified_glb};
 
 use crate::ReadError;
+use crate::beside::{Folder, Neighbours};
 use sightlines_cells::Scene;
 pub use sightlines_pvs::Axis;
 use std::fs;
@@ -80,8 +93,16 @@ pub struct SceneInfo {
     pub n_triangles: usize,
     /// Number of triangles that were left out because they have no area: their corners lie on a line, exactly.
     pub n_degenerate_triangles: usize,
+    /// Number of triangles that hide, of which engines draw the fronts only (glTF: materials that are not `doubleSided`).
+    pub n_single_sided_triangles: usize,
     /// Set if the file states that its scene was made from one with more triangles.
     pub simplified: Option<Simplified>,
+    /// What it was read with.
+    pub read_with: SceneReadOptions,
+    /// The objects that are not simply walls, ascending.
+    pub taken: Vec<Taken>,
+    /// What a user should hear of the file, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// How a scene with fewer triangles is related to the one that it was made from.
@@ -115,16 +136,27 @@ pub enum LengthUnit {
 }
 
 /// Reads the scene in the file at `path`: a GLB by its content, else by the name what is named `.obj`, `.glb`
-/// or `.gltf`, else a glTF text by its content. Buffers of a glTF are searched in the file's folder.
+/// or `.gltf`, else a glTF text by its content. Buffers of a glTF, and libraries of materials of an OBJ, are searched in the
+/// file's folder.
 ///
 /// # Errors
 /// [`ReadError`] with the file's name and the place in it.
 pub fn read_scene(path: impl AsRef<Path>) -> Result<SceneFile, ReadError> {
+    read_scene_with(path, &SceneReadOptions::default())
+}
+
+/// As [`read_scene`], with options.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn read_scene_with(path: impl AsRef<Path>, options: &SceneReadOptions) -> Result<SceneFile, ReadError> {
     let path = path.as_ref();
     let (bytes, format) = read_bytes(path)?;
+    let folder = Folder::of(path);
+    let beside: Option<&dyn Neighbours> = Some(&folder);
     let parsed = match format {
-        SceneFormat::Gltf => parse_glb(&bytes, Some(folder_of(path))),
-        SceneFormat::Obj => parse_obj(&bytes),
+        SceneFormat::Gltf => parse_gltf_with(&bytes, beside, options),
+        SceneFormat::Obj => parse_obj_with(&bytes, beside, options),
     };
     parsed.map_err(|error| ReadError::new(path, error))
 }
@@ -134,20 +166,27 @@ pub fn read_scene(path: impl AsRef<Path>) -> Result<SceneFile, ReadError> {
 /// # Errors
 /// As [`read_scene`].
 pub fn read_scene_with_source(path: impl AsRef<Path>) -> Result<(SceneFile, Option<GltfSource>), ReadError> {
-    let path = path.as_ref();
-    let (bytes, format) = read_bytes(path)?;
-    let parsed = match format {
-        SceneFormat::Gltf => {
-            parse_glb_with_source(bytes, Some(folder_of(path))).map(|(file, source)| (file, Some(source)))
-        }
-        SceneFormat::Obj => parse_obj(&bytes).map(|file| (file, None)),
-    };
-    parsed.map_err(|error| ReadError::new(path, error))
+    read_scene_with_source_and(path, &SceneReadOptions::default())
 }
 
-/// The folder where buffers are searched. A bare file name has the empty path as parent, which is the current folder.
-fn folder_of(path: &Path) -> &Path {
-    path.parent().unwrap_or(Path::new(""))
+/// As [`read_scene_with_source`], with options.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn read_scene_with_source_and(
+    path: impl AsRef<Path>,
+    options: &SceneReadOptions,
+) -> Result<(SceneFile, Option<GltfSource>), ReadError> {
+    let path = path.as_ref();
+    let (bytes, format) = read_bytes(path)?;
+    let folder = Folder::of(path);
+    let parsed = match format {
+        SceneFormat::Gltf => {
+            source::parse_with_source(bytes, Some(&folder.0), options).map(|(file, source)| (file, Some(source)))
+        }
+        SceneFormat::Obj => parse_obj_with(&bytes, Some(&folder), options).map(|file| (file, None)),
+    };
+    parsed.map_err(|error| ReadError::new(path, error))
 }
 
 fn read_bytes(path: &Path) -> Result<(Vec<u8>, SceneFormat), ReadError> {

@@ -1,12 +1,18 @@
 //! Wavefront OBJ: corners and faces, line by line.
 
+use super::buffers::load_file;
 use super::build::{Builder, Compact};
 use super::error::{ObjErrorKind, SceneReadError};
+use super::mtl::parse_mtl;
 use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
-use super::{MAX_ELEMENTS, MIRROR_SUFFIX, SceneFile, SceneFormat};
+use super::role::{Role, role_of_name};
+use super::surface::{Evidence, Judge, SceneReadOptions, Verdict};
+use super::{MAX_ELEMENTS, SceneFile, SceneFormat};
+use crate::beside::Neighbours;
 use crate::point::check_point;
 use sightlines_cells::Point3;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 /// Reads an OBJ.
 ///
@@ -15,6 +21,9 @@ use std::borrow::Cow;
 /// triangles that cover the face and nothing else, even where it is not convex. Coordinates are taken in
 /// double precision. Everything about looks, lines, points and curves is skipped.
 ///
+/// Materials are not looked up, so faces with a material of a library (`mtllib`) hide nothing: it may be glass. See
+/// [`parse_obj_with`].
+///
 /// Costs time and memory in proportion to the text, but for winding faces of many corners.
 ///
 /// # Errors
@@ -22,23 +31,119 @@ use std::borrow::Cow;
 ///
 /// # Source
 /// Wavefront Technologies, Advanced Visualizer manual, appendix B1 (the format of `.obj`). Chosen here: materials do
-/// not split objects; self-intersecting outlines are refused, because the extent of such a face is undefined.
+/// not split objects, but for the faces of an object that are see-through while others are not; self-intersecting outlines
+/// are refused, because the extent of such a face is undefined.
 pub fn parse_obj(bytes: &[u8]) -> Result<SceneFile, SceneReadError> {
+    parse_obj_with(bytes, None, &SceneReadOptions::default())
+}
+
+/// As [`parse_obj`], with options, and with materials wherever `beside` has the libraries that the file names.
+///
+/// Faces with a material that lets light through hide nothing; nor do those with a material of which nothing is known,
+/// because its library, or it in the library, is missing. Faces without a material, and those of a file that names no library,
+/// are opaque. Where an object has faces of both kinds, those that hide nothing become an object of their own, behind it,
+/// with `#see-through` at the end of its name.
+///
+/// # Errors
+/// As [`parse_obj`]. A library that cannot be read is a warning.
+pub fn parse_obj_with(
+    bytes: &[u8],
+    beside: Option<&dyn Neighbours>,
+    options: &SceneReadOptions,
+) -> Result<SceneFile, SceneReadError> {
     let obj = Obj::read(bytes)?;
     let mut builder = Builder::default();
+    let mut judge = Judge::new(options);
+    let surfaces = Surfaces::read(&obj, beside, &mut builder.warnings);
     for (k, group) in obj.groups.iter().enumerate() {
         let end = obj.groups.get(k + 1).map_or(obj.faces.len(), |next| next.first_face);
         let faces = &obj.faces[group.first_face..end];
-        if !faces.is_empty() {
+        // What each material makes of the faces of this object.
+        let mut verdicts = BTreeMap::new();
+        for face in faces {
+            verdicts.entry(face.material).or_insert_with(|| {
+                let material = face.material.map(|m| obj.materials[m].as_str());
+                let role = role_of_name(&group.name).filter(|(role, _)| *role != Role::Mirror);
+                judge.verdict(Evidence {
+                    names: [Some(group.name.as_str()), material].into_iter().flatten().collect(),
+                    role: role.map(|(role, ending)| (role, format!("a name with {ending}"))),
+                    see_through: material.and_then(|m| surfaces.see_through(m)),
+                    ..Evidence::default()
+                })
+            });
+        }
+        let hides = |face: &&Face| verdicts[&face.material].as_ref().is_none_or(Verdict::hides);
+        let (walls, glass): (Vec<&Face>, Vec<&Face>) = faces.iter().partition(hides);
+        for (faces, suffix) in [(&walls, ""), (&glass, if walls.is_empty() { "" } else { "#see-through" })] {
+            let Some(first) = faces.first() else { continue };
             let mesh = obj.mesh(faces)?;
             let vertices = mesh.corners.iter().map(|&v| obj.positions[v]).collect();
-            builder.add(group.name.clone(), vertices, mesh.triangles.iter().copied(), false);
-            if group.name.ends_with(MIRROR_SUFFIX) {
+            builder.add(format!("{}{suffix}", group.name), vertices, mesh.triangles.iter().copied(), false);
+            if matches!(role_of_name(&group.name), Some((Role::Mirror, _))) {
                 builder.mark_mirror();
+            }
+            // The reason is that of the first face; others have a like one.
+            if let Some(verdict) = &verdicts[&first.material] {
+                builder.take(verdict.clone(), None);
             }
         }
     }
-    builder.finish(SceneFormat::Obj)
+    builder.warnings.extend(judge.warnings());
+    builder.finish(SceneFormat::Obj, options)
+}
+
+/// What is known of the materials of an OBJ.
+struct Surfaces {
+    /// Why each lets light through; `None` for one that is opaque.
+    known: BTreeMap<String, Option<String>>,
+    /// What is said of one that is not known; `None` if the file names no library, so that there are none.
+    unknown: Option<String>,
+}
+
+impl Surfaces {
+    fn read(obj: &Obj, beside: Option<&dyn Neighbours>, warnings: &mut Vec<String>) -> Self {
+        let mut known: BTreeMap<String, Option<String>> = BTreeMap::new();
+        let mut missing = Vec::new();
+        for library in &obj.libraries {
+            let Some(files) = read_libraries(library, beside) else {
+                missing.push(library.as_str());
+                continue;
+            };
+            for (name, why) in files.iter().flat_map(|bytes| parse_mtl(bytes)) {
+                let entry = known.entry(name).or_default();
+                *entry = entry.take().or(why);
+            }
+        }
+        if let Some(first) = missing.first() {
+            warnings.push(format!(
+                "the material library {first:?} cannot be read: put it beside the OBJ; without it, faces with its materials \
+                 hide nothing"
+            ));
+        }
+        let unknown = match missing.first() {
+            Some(library) => Some(format!("a material of the missing {library}")),
+            None => (!obj.libraries.is_empty()).then(|| "a material that is in no library".to_owned()),
+        };
+        Self { known, unknown }
+    }
+
+    fn see_through(&self, material: &str) -> Option<String> {
+        match self.known.get(material) {
+            Some(why) => why.clone(),
+            None => self.unknown.clone(),
+        }
+    }
+}
+
+/// The contents of the libraries that a line names: one, whose name may have spaces, or several. `None` if one of them
+/// cannot be read.
+fn read_libraries(line: &str, beside: Option<&dyn Neighbours>) -> Option<Vec<Vec<u8>>> {
+    // Names from Windows may have backslashes.
+    let read = |name: &str| load_file(beside, name).or_else(|_| load_file(beside, &name.replace('\\', "/"))).ok();
+    match read(line) {
+        Some(bytes) => Some(vec![bytes]),
+        None => line.split_ascii_whitespace().map(read).collect(),
+    }
 }
 
 /// The parts of an OBJ that matter here.
@@ -50,6 +155,10 @@ struct Obj {
     faces: Vec<Face>,
     groups: Vec<Group>,
     n_triangles: usize,
+    /// Names of materials, in the order in which faces first have them.
+    materials: Vec<String>,
+    /// What each line that names files with materials has behind its keyword.
+    libraries: Vec<String>,
 }
 
 /// Invariant: `first_corner` ascends, and every face has three corners or more.
@@ -58,6 +167,8 @@ struct Face {
     line: usize,
     first_corner: usize,
     n_corners: usize,
+    /// Index into the names of materials.
+    material: Option<usize>,
 }
 
 /// What becomes an object.
@@ -72,16 +183,32 @@ impl Obj {
         let divider = if lines(bytes).any(|(_, line)| keyword(&line) == b"o") { b"o" } else { b"g" };
         let mut obj = Self::default();
         obj.groups.push(Group { name: "object 0".to_owned(), first_face: 0 });
+        let (mut by_name, mut material) = (BTreeMap::new(), None);
         for (number, line) in lines(bytes) {
             let fail = |kind| SceneReadError::Obj { line: number, kind };
             match keyword(&line) {
                 b"v" => obj.vertex(words(&line).map_err(fail)?).map_err(fail)?,
-                b"f" => obj.face(number, words(&line).map_err(fail)?).map_err(fail)?,
+                b"f" => obj.face(number, material, words(&line).map_err(fail)?).map_err(fail)?,
+                b"usemtl" => {
+                    let name = lossy_text(&line);
+                    let next = by_name.len();
+                    material = (!name.is_empty()).then(|| *by_name.entry(name).or_insert(next));
+                }
+                b"mtllib" => obj.library(lossy_text(&line)),
                 word if word == divider => obj.group(text(&line).map_err(fail)?),
                 _ => {}
             }
         }
+        let mut names: Vec<(usize, String)> = by_name.into_iter().map(|(name, k)| (k, name)).collect();
+        names.sort_unstable();
+        obj.materials = names.into_iter().map(|(_, name)| name).collect();
         Ok(obj)
+    }
+
+    fn library(&mut self, name: String) {
+        if !name.is_empty() && !self.libraries.contains(&name) {
+            self.libraries.push(name);
+        }
     }
 
     fn vertex<'a>(&mut self, mut words: impl Iterator<Item = &'a str>) -> Result<(), ObjErrorKind> {
@@ -97,7 +224,12 @@ impl Obj {
         Ok(())
     }
 
-    fn face<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a str>) -> Result<(), ObjErrorKind> {
+    fn face<'a>(
+        &mut self,
+        line: usize,
+        material: Option<usize>,
+        words: impl Iterator<Item = &'a str>,
+    ) -> Result<(), ObjErrorKind> {
         let first_corner = self.corners.len();
         for word in words {
             // Behind slashes are texture coordinates and normals.
@@ -118,7 +250,7 @@ impl Obj {
         if self.n_triangles > MAX_ELEMENTS {
             return Err(ObjErrorKind::TooMany { max: MAX_ELEMENTS });
         }
-        self.faces.push(Face { line, first_corner, n_corners });
+        self.faces.push(Face { line, first_corner, n_corners, material });
         Ok(())
     }
 
@@ -131,7 +263,7 @@ impl Obj {
     }
 
     /// The triangles of `faces`. Indices are looked up only here, since a face may stand before its corners.
-    fn mesh(&self, faces: &[Face]) -> Result<Compact, SceneReadError> {
+    fn mesh(&self, faces: &[&Face]) -> Result<Compact, SceneReadError> {
         let (mut used, mut triangles) = (Vec::new(), Vec::new());
         for face in faces {
             let fail = |kind| SceneReadError::Obj { line: face.line, kind };
@@ -191,6 +323,12 @@ fn keyword(line: &[u8]) -> &[u8] {
 fn text(line: &[u8]) -> Result<&str, ObjErrorKind> {
     let behind = &line.trim_ascii_start()[keyword(line).len()..];
     std::str::from_utf8(behind.trim_ascii()).map_err(|_| ObjErrorKind::Utf8)
+}
+
+/// What follows the keyword, whatever it is: names of materials and files are compared and never shown as they are.
+fn lossy_text(line: &[u8]) -> String {
+    let behind = &line.trim_ascii_start()[keyword(line).len()..];
+    String::from_utf8_lossy(behind.trim_ascii()).into_owned()
 }
 
 fn words(line: &[u8]) -> Result<impl Iterator<Item = &str>, ObjErrorKind> {

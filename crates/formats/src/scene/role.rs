@@ -1,19 +1,135 @@
-//! Roles in the extras of nodes and documents. Extras may contain anything.
+//! Roles of objects: in the extras of a node, a mesh or a material, and by how a name ends; and whether a document is
+//! simplified. Extras may contain anything.
 
-use super::Simplified;
+use super::{MIRROR_SUFFIX, Simplified};
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
-/// Where the role of a node stands, and which one is known.
+/// What an object is for, as extras say it: `{"sightlines": {"role": "see-through"}}`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum Role {
+    /// Hides what is behind it, whatever its material says.
+    Occluder,
+    /// Is seen, and hides nothing.
+    SeeThrough,
+    /// Is seen, and hides nothing, because it is small.
+    Detail,
+    /// Is seen, and hides nothing, because it opens.
+    Door,
+    /// Shows where an opening is; is not seen, and hides nothing.
+    Portal,
+    /// Shows where a viewer can be; is not seen, and hides nothing.
+    ViewVolume,
+    /// Is not seen, and hides nothing.
+    Ignore,
+    /// Reflects. What it hides is left to its material.
+    Mirror,
+}
+
+impl Role {
+    /// All roles.
+    pub const ALL: [Self; 8] = [
+        Self::Occluder,
+        Self::SeeThrough,
+        Self::Detail,
+        Self::Door,
+        Self::Portal,
+        Self::ViewVolume,
+        Self::Ignore,
+        Self::Mirror,
+    ];
+
+    /// As extras have it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Occluder => "occluder",
+            Self::SeeThrough => "see-through",
+            Self::Detail => "detail",
+            Self::Door => "door",
+            Self::Portal => "portal",
+            Self::ViewVolume => "view-volume",
+            Self::Ignore => "ignore",
+            Self::Mirror => "mirror",
+        }
+    }
+
+    /// Whether such an object is drawn at all.
+    pub const fn is_drawn(self) -> bool {
+        !matches!(self, Self::Portal | Self::ViewVolume | Self::Ignore)
+    }
+}
+
+/// What extras say of a role.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Said {
+    #[default]
+    Nothing,
+    Role(Role),
+    /// A text that is no role.
+    Unknown,
+}
+
+impl Said {
+    pub(super) fn role(self) -> Option<Role> {
+        if let Self::Role(role) = self { Some(role) } else { None }
+    }
+}
+
+/// How a name ends that says what an object is for, as importers of Godot read it: what they do not draw, and what they
+/// make a body that moves, hides nothing.
+///
+/// # Source
+/// Godot documentation, "Node type customization using name suffixes". Chosen here: a hint counts after `-`, `_` or `$`, in
+/// any case, before numbers that a program added (`Wall-colonly.001`), so that what one version of the importer leaves
+/// out hides nothing; `occ` and `occonly`, by which an object hides more, only after `-` and as they are written.
+const HINTS: [&str; 7] = ["colonly", "convcolonly", "noimp", "navmesh", "rigid", "vehicle", "wheel"];
+
+/// Hints that something hides.
+const OCCLUDERS: [&str; 2] = ["-occ", "-occonly"];
+
+/// The role that a name states by how it ends, and the ending.
+pub(super) fn role_of_name(name: &str) -> Option<(Role, &'static str)> {
+    if name.ends_with(MIRROR_SUFFIX) {
+        return Some((Role::Mirror, MIRROR_SUFFIX));
+    }
+    let name = without_number(name);
+    if let Some(ending) = OCCLUDERS.into_iter().find(|ending| name.ends_with(ending)) {
+        return Some((Role::Occluder, ending));
+    }
+    HINTS.into_iter().find(|hint| has_hint(name, hint)).map(|hint| (Role::SeeThrough, hint))
+}
+
+/// Whether the name of a material says that it lets light through: `-alpha`, as importers of Godot read it.
+pub(super) fn is_alpha_by_name(name: &str) -> bool {
+    has_hint(without_number(name), "alpha")
+}
+
+/// A name without the number that programs add to copies.
+fn without_number(name: &str) -> &str {
+    name.trim_end_matches(|c: char| c.is_ascii_digit() || c.is_ascii_whitespace() || c == '.' || c == '_')
+}
+
+/// Whether a name ends in a hint after `-` or `_`, or has it anywhere after `$`.
+fn has_hint(name: &str, hint: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    let before = name.strip_suffix(hint).unwrap_or_default();
+    before.ends_with(['-', '_']) || name.split('$').skip(1).any(|part| part.starts_with(hint))
+}
+
+/// Where the role of a node stands.
 const ROLE: [&str; 2] = ["sightlines", "role"];
-const MIRROR: &str = "mirror";
 
 /// Where a document states whether it may hide what its original did not hide.
 const OCCLUDER: [&str; 3] = ["sightlines", "simplified", "occluder"];
 
-/// Whether extras have the role of a mirror. Extras of any other form are ignored.
-pub(super) fn is_mirror<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
-    Ok(Path(&ROLE).deserialize(deserializer)? == Found { n_keys: 2, leaf: Leaf::Mirror })
+/// The role that extras state. Extras of any other form are ignored.
+pub(super) fn said<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Said, D::Error> {
+    Ok(match Path(&ROLE).deserialize(deserializer)? {
+        Found { n_keys: 2, leaf: Leaf::Role(role) } => Said::Role(role),
+        Found { n_keys: 2, leaf: Leaf::Text } => Said::Unknown,
+        _ => Said::Nothing,
+    })
 }
 
 /// Whether extras state that a scene was simplified; if they do not state how, the worst is assumed.
@@ -32,8 +148,10 @@ struct Found {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Leaf {
-    Mirror,
+    Role(Role),
     True,
+    /// A text that is no role.
+    Text,
     Other,
 }
 
@@ -82,7 +200,8 @@ impl<'de> Visitor<'de> for Path {
     }
 
     fn visit_str<E>(self, value: &str) -> Result<Found, E> {
-        Ok(Self::found(if value == MIRROR { Leaf::Mirror } else { Leaf::Other }))
+        let role = Role::ALL.into_iter().find(|role| role.name() == value);
+        Ok(Self::found(role.map_or(Leaf::Text, Leaf::Role)))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Found, A::Error> {
@@ -110,7 +229,35 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> bool {
-        is_mirror(&mut serde_json::Deserializer::from_str(text)).unwrap()
+        said(&mut serde_json::Deserializer::from_str(text)).unwrap() == Said::Role(Role::Mirror)
+    }
+
+    #[test]
+    fn roles_are_read_as_they_are_named() {
+        for role in Role::ALL {
+            let text = format!(r#"{{"sightlines": {{"role": "{}"}}}}"#, role.name());
+            assert_eq!(said(&mut serde_json::Deserializer::from_str(&text)).unwrap(), Said::Role(role));
+        }
+        let unknown = r#"{"sightlines": {"role": "seethrough"}}"#;
+        assert_eq!(said(&mut serde_json::Deserializer::from_str(unknown)).unwrap(), Said::Unknown);
+        let other = r#"{"sightlines": {"role": 3}}"#;
+        assert_eq!(said(&mut serde_json::Deserializer::from_str(other)).unwrap(), Said::Nothing);
+    }
+
+    #[test]
+    fn names_say_what_importers_make_of_them() {
+        let role = |name: &str| role_of_name(name).map(|found| found.0);
+        for name in ["Wall-colonly", "wall-CONVCOLONLY.001", "a_noimp", "x$navmesh y", "Car-vehicle", "car-wheel2"] {
+            assert_eq!(role(name), Some(Role::SeeThrough), "{name}");
+        }
+        assert_eq!((role("House-occ"), role("House-occonly.002")), (Some(Role::Occluder), Some(Role::Occluder)));
+        assert_eq!(role("hall-mirror"), Some(Role::Mirror));
+        for name in ["wheel", "Wall-col", "Wall-convcol", "house_occ", "House-OCC", "colonly-wall", "rigidity", ""] {
+            assert_eq!(role(name), None, "{name}");
+        }
+        assert!(
+            is_alpha_by_name("Leaves-alpha") && is_alpha_by_name("leaves_Alpha.003") && !is_alpha_by_name("alphabet")
+        );
     }
 
     #[test]

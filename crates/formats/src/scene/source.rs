@@ -3,6 +3,7 @@
 use super::SceneFile;
 use super::error::SceneReadError;
 use super::gltf::{Loaded, parse};
+use super::surface::SceneReadOptions;
 use crate::beside::{Folder, Neighbours};
 use std::path::Path;
 
@@ -53,10 +54,19 @@ pub struct ObjectSource<'a> {
 /// # Errors
 /// As [`parse_glb`](super::parse_glb).
 pub fn parse_glb_with_source(bytes: Vec<u8>, folder: Option<&Path>) -> Result<(SceneFile, GltfSource), SceneReadError> {
+    parse_with_source(bytes, folder, &SceneReadOptions::default())
+}
+
+/// As [`parse_glb_with_source`], with options.
+pub(super) fn parse_with_source(
+    bytes: Vec<u8>,
+    folder: Option<&Path>,
+    options: &SceneReadOptions,
+) -> Result<(SceneFile, GltfSource), SceneReadError> {
     let (mut origins, mut objects, mut corners) = (Vec::new(), Vec::new(), Vec::<Vec<Vec<usize>>>::new());
     let folder = folder.map(|folder| Folder(folder.to_owned()));
     let beside = folder.as_ref().map(|folder| folder as &dyn Neighbours);
-    let (file, loaded) = parse(&bytes, beside, |origin| {
+    let (file, loaded) = parse(&bytes, beside, options, |origin| {
         let (node, mesh) = (origin.node, origin.mesh);
         if corners.len() <= mesh {
             corners.resize_with(mesh + 1, Vec::new);

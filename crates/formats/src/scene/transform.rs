@@ -5,6 +5,7 @@
 
 use super::error::NodeErrorKind;
 use super::json::Node;
+use super::range::Range;
 use sightlines_cells::Point3;
 
 /// An affine map of space.
@@ -32,6 +33,16 @@ impl Transform {
                 Self::from_parts(translation, rotation, scale)
             }
         }
+    }
+
+    /// The map with these columns, if it is affine.
+    pub(super) fn of_columns(m: &[f64; 16]) -> Option<Self> {
+        Self::from_columns(m).ok()
+    }
+
+    /// The rows, as ranges that hold nothing else.
+    pub(super) fn ranges(&self) -> [[Range; 4]; 3] {
+        self.rows.map(|row| row.map(Range::of))
     }
 
     fn from_columns(m: &[f64; 16]) -> Result<Self, NodeErrorKind> {

@@ -9,7 +9,8 @@ use sightlines_cells::{Scene, SceneObject};
 /// Writes a scene as GLB: a node, a mesh and a primitive per object, without transforms.
 ///
 /// Reading it again gives the same objects in the same order with the same triangles; corners that no
-/// triangle uses are gone then, unless the object has no triangles at all: its corners are written as points.
+/// triangle uses are gone then, unless the object has no triangles at all: its corners are written as points. Objects that
+/// hide nothing get a material with `alphaMode` `BLEND`; of those that move only the shape at rest is written.
 ///
 /// # Errors
 /// [`SceneWriteError`]: a coordinate that single precision cannot hold exactly is refused, not rounded.
@@ -28,8 +29,10 @@ pub fn write_simplified_glb(scene: &Scene, simplified: Simplified) -> Result<Vec
 fn write(scene: &Scene, simplified: Option<Simplified>) -> Result<Vec<u8>, SceneWriteError> {
     let mut parts = Parts::default();
     for (k, object) in scene.objects().iter().enumerate() {
-        let is_mirror = u32::try_from(k).is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
-        parts.add(k, object, is_mirror)?;
+        let id = u32::try_from(k);
+        let is_mirror = id.is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
+        let is_opaque = id.is_ok_and(|k| scene.is_opaque(k));
+        parts.add(k, object, is_mirror, is_opaque)?;
     }
     parts.into_glb(simplified)
 }
@@ -76,6 +79,15 @@ struct Primitive {
     #[serde(skip_serializing_if = "Option::is_none")]
     indices: Option<usize>,
     mode: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    material: Option<usize>,
+}
+
+/// The material of what hides nothing.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Material {
+    alpha_mode: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -125,6 +137,8 @@ struct Document<'a> {
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     meshes: &'a [Mesh],
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    materials: &'a [Material],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
     accessors: &'a [Accessor],
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     buffer_views: &'a [BufferView],
@@ -136,17 +150,30 @@ struct Document<'a> {
 struct Parts<'a> {
     nodes: Vec<Node<'a>>,
     meshes: Vec<Mesh>,
+    /// None, or the one of what hides nothing.
+    materials: Vec<Material>,
     accessors: Vec<Accessor>,
     views: Vec<BufferView>,
     binary: Vec<u8>,
 }
 
 impl<'a> Parts<'a> {
-    fn add(&mut self, k: usize, object: &'a SceneObject, is_mirror: bool) -> Result<(), SceneWriteError> {
+    fn add(
+        &mut self,
+        k: usize,
+        object: &'a SceneObject,
+        is_mirror: bool,
+        is_opaque: bool,
+    ) -> Result<(), SceneWriteError> {
         let position = self.positions(k, object)?;
+        if !is_opaque && self.materials.is_empty() {
+            self.materials.push(Material { alpha_mode: "BLEND" });
+        }
+        let material = (!is_opaque).then_some(0);
         let indices = (!object.triangles.is_empty()).then(|| self.indices(object));
         let mode = if indices.is_some() { 4 } else { 0 };
-        self.meshes.push(Mesh { primitives: [Primitive { attributes: Attributes { position }, indices, mode }] });
+        let primitive = Primitive { attributes: Attributes { position }, indices, mode, material };
+        self.meshes.push(Mesh { primitives: [primitive] });
         let extras = is_mirror.then_some(Extras { sightlines: Role { role: "mirror" } });
         self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1, extras });
         Ok(())
@@ -220,6 +247,7 @@ impl<'a> Parts<'a> {
             scenes: [Roots { nodes: (0..self.nodes.len()).collect() }],
             nodes: &self.nodes,
             meshes: &self.meshes,
+            materials: &self.materials,
             accessors: &self.accessors,
             buffer_views: &self.views,
             buffers: if self.binary.is_empty() { &[] } else { std::slice::from_ref(&buffer) },

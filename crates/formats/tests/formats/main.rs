@@ -2,6 +2,8 @@
 
 mod common;
 mod maps;
+mod materials;
+mod motion;
 mod mutations;
 mod quake_bsp;
 mod quake_prt;

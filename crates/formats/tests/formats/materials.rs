@@ -1,0 +1,264 @@
+//! Which objects of a scene hide, and which are only seen: by materials, roles, names and options.
+
+use crate::common::glb::Doc;
+use serde_json::{Value, json};
+use sightlines_formats::input::Neighbours;
+use sightlines_formats::scene::{
+    Role, SceneReadOptions, parse_glb, parse_gltf_with, parse_obj, parse_obj_with, write_glb,
+};
+use sightlines_formats::{SceneFile, SceneReadError};
+use std::io;
+use std::path::Path;
+
+/// A document of a triangle for each of some nodes, with a material each.
+fn doc(nodes: &[Value], materials: &[Value]) -> Doc {
+    let list: Vec<Value> = nodes
+        .iter()
+        .enumerate()
+        .map(|(k, node)| {
+            let mut node = node.clone();
+            node["mesh"] = json!(k);
+            node
+        })
+        .collect();
+    let mut doc = Doc::new(json!(list));
+    for k in 0..nodes.len() {
+        let positions = doc.positions(&[[0., 0., k as f32], [1., 0., 0.], [0., 1., 0.]]);
+        doc.mesh(json!([{"attributes": {"POSITION": positions}}]));
+        if k < materials.len() {
+            doc.json["meshes"][k]["primitives"][0]["material"] = json!(k);
+        }
+    }
+    doc.json["materials"] = json!(materials);
+    doc
+}
+
+fn read(doc: &Doc) -> SceneFile {
+    parse_glb(&doc.glb(), None).unwrap()
+}
+
+fn options(opaque: &[&str], see_through: &[&str]) -> SceneReadOptions {
+    let parse = |list: &[&str]| list.iter().map(|text| text.parse().unwrap()).collect();
+    SceneReadOptions { opaque: parse(opaque), see_through: parse(see_through), ..SceneReadOptions::default() }
+}
+
+fn read_with(doc: &Doc, options: &SceneReadOptions) -> SceneFile {
+    parse_gltf_with(&doc.glb(), None, options).unwrap()
+}
+
+/// What each object that is not simply a wall is taken for, and why.
+fn taken(file: &SceneFile) -> Vec<(u32, Role, &str)> {
+    file.info.taken.iter().map(|t| (t.object, t.role, t.because.as_str())).collect()
+}
+
+#[test]
+fn materials_that_let_light_through_hide_nothing() {
+    let extension = |name: &str| json!({"extensions": {name: {}}});
+    let materials = [
+        (json!({}), None),
+        (json!({"alphaMode": "OPAQUE", "name": "wall", "doubleSided": true}), None),
+        // Alpha below 1 means nothing in an opaque material.
+        (json!({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]}}), None),
+        (extension("KHR_materials_clearcoat"), None),
+        (json!({"alphaMode": "BLEND"}), Some("alphaMode BLEND")),
+        (json!({"alphaMode": "MASK", "alphaCutoff": 0.9}), Some("alphaMode MASK")),
+        (json!({"alphaMode": "ADD"}), Some("alphaMode ADD")),
+        (extension("KHR_materials_transmission"), Some("KHR_materials_transmission")),
+        (extension("KHR_materials_volume"), Some("KHR_materials_volume")),
+        (extension("KHR_materials_diffuse_transmission"), Some("KHR_materials_diffuse_transmission")),
+        (json!({"name": "Leaves-alpha"}), Some("a material named -alpha")),
+        (json!({"alphaMode": 7}), Some("a material that cannot be read")),
+        (json!(3), Some("a material that cannot be read")),
+    ];
+    let list: Vec<Value> = materials.iter().map(|m| m.0.clone()).collect();
+    let file = read(&doc(&vec![json!({}); list.len() + 1], &list));
+    let expected: Vec<(u32, Role, &str)> =
+        (0..).zip(&materials).filter_map(|(k, m)| Some((k, Role::SeeThrough, m.1?))).collect();
+    assert_eq!(taken(&file), expected);
+    assert_eq!(file.scene.see_through().len(), expected.len());
+    // All are there and seen; of those that hide, all but one are single-sided.
+    assert_eq!((file.info.n_triangles, file.info.n_single_sided_triangles), (14, 4));
+    assert!(file.info.warnings.is_empty());
+    // A material that does not exist, and one that a variant brings.
+    let mut other = doc(&[json!({}), json!({}), json!({})], &[json!({}), json!({"alphaMode": "BLEND"})]);
+    other.json["meshes"][0]["primitives"][0]["material"] = json!(9);
+    other.json["meshes"][2]["primitives"][0]["extensions"] = json!({"KHR_materials_variants": {"mappings": [{"material": 0, "variants": [0]}, {"material": 1, "variants": [1]}]}});
+    let reasons: Vec<_> = read(&other).info.taken.into_iter().map(|t| (t.object, t.because)).collect();
+    assert_eq!(
+        reasons,
+        [
+            (0, "a material that cannot be read".to_owned()),
+            (1, "alphaMode BLEND".to_owned()),
+            (2, "alphaMode BLEND of a variant".to_owned())
+        ]
+    );
+}
+
+#[test]
+fn artists_say_otherwise() {
+    let role = |role: &str| json!({"extras": {"sightlines": {"role": role}}});
+    let named = |name: &str| json!({"name": name});
+    let nodes = [
+        role("occluder"),
+        role("see-through"),
+        role("detail"),
+        role("door"),
+        role("portal"),
+        role("view-volume"),
+        role("ignore"),
+        role("mirror"),
+        role("wall"),
+        named("Fence-colonly"),
+        named("House-occ"),
+    ];
+    let file = read(&doc(&nodes, &[json!({"alphaMode": "BLEND"})]));
+    let all: Vec<(u32, Role)> = taken(&file).iter().map(|t| (t.0, t.1)).collect();
+    let roles =
+        [Role::Occluder, Role::SeeThrough, Role::Detail, Role::Door, Role::Portal, Role::ViewVolume, Role::Ignore];
+    let expected: Vec<(u32, Role)> = (0..).zip(roles).chain([(9, Role::SeeThrough), (10, Role::Occluder)]).collect();
+    assert_eq!(all, expected);
+    assert_eq!((file.scene.see_through(), file.scene.mirrors()), (&[1, 2, 3, 4, 5, 6, 9][..], &[7][..]));
+    // Places and helpers are not drawn; their ids stay.
+    let n_triangles: Vec<usize> = file.scene.objects().iter().map(|o| o.triangles.len()).collect();
+    assert_eq!(n_triangles, [1, 1, 1, 1, 0, 0, 0, 1, 1, 1, 1]);
+    let [warning] = &file.info.warnings[..] else { panic!("{:?}", file.info.warnings) };
+    assert_eq!(
+        warning,
+        "extras of nodes state a role that is none of occluder, see-through, detail, door, portal, view-volume, ignore, \
+         mirror: 1, the first called \"\""
+    );
+    // A mirror of glass is both.
+    let mut glass = doc(&[role("mirror")], &[json!({"alphaMode": "BLEND"})]);
+    let file = read(&glass);
+    assert_eq!((file.scene.mirrors(), file.scene.see_through()), (&[0][..], &[0][..]));
+    // Meshes and materials have roles for all that has them; that of the node is stronger.
+    glass.json["materials"][0] = role("detail");
+    glass.json["nodes"][0] = json!({"mesh": 0});
+    assert_eq!(taken(&read(&glass)), [(0, Role::Detail, "extras")]);
+    glass.json["meshes"][0]["extras"] = role("door")["extras"].clone();
+    assert_eq!(taken(&read(&glass)), [(0, Role::Door, "extras")]);
+    glass.json["nodes"][0]["extras"] = role("occluder")["extras"].clone();
+    assert_eq!(taken(&read(&glass)), [(0, Role::Occluder, "extras")]);
+    assert!(read(&glass).scene.is_opaque(0));
+}
+
+#[test]
+fn what_holds_for_a_node_holds_below_it() {
+    let below = |parent: Value| {
+        let mut doc = Doc::new(json!([parent, {"mesh": 0}]));
+        doc.json["nodes"][0]["children"] = json!([1]);
+        doc.json["scenes"][0]["nodes"] = json!([0]);
+        doc.triangle();
+        read(&doc)
+    };
+    let seen = |parent: Value| taken(&below(parent)).into_iter().map(|t| (t.1, t.2.to_owned())).collect::<Vec<_>>();
+    let one = |role: Role, because: &str| vec![(role, because.to_owned())];
+    assert_eq!(seen(json!({"name": "props-noimp"})), one(Role::SeeThrough, "a name with noimp"));
+    assert_eq!(seen(json!({"extras": {"sightlines": {"role": "detail"}}})), one(Role::Detail, "extras"));
+    let hidden = json!({"extensions": {"KHR_node_visibility": {"visible": false}}});
+    assert_eq!(seen(hidden), one(Role::SeeThrough, "KHR_node_visibility"));
+    assert_eq!(seen(json!({"extensions": {"KHR_node_visibility": {"visible": true}}})), []);
+    assert_eq!(seen(json!({"name": "walls-occ"})), []);
+    assert_eq!(seen(json!({"name": "hall-mirror"})), []);
+}
+
+#[test]
+fn users_have_the_last_word() {
+    let nodes = [json!({"name": "Front"}), json!({"name": "Pane.001"}), json!({"name": "Hedge"})];
+    let materials = [json!({"name": "Brick"}), json!({"name": "Glass", "alphaMode": "BLEND"}), json!({"name": "Leaf"})];
+    let doc = doc(&nodes, &materials);
+    assert_eq!(read(&doc).scene.see_through(), [1]);
+    let file = read_with(&doc, &options(&["glass"], &["leaf"]));
+    assert_eq!(file.scene.see_through(), [2]);
+    assert_eq!(taken(&file), [(1, Role::Occluder, "the pattern glass"), (2, Role::SeeThrough, "the pattern leaf")]);
+    assert_eq!(file.info.read_with, options(&["glass"], &["leaf"]));
+    let file = read_with(&doc, &options(&["*"], &["Pane*", "no such"]));
+    assert_eq!(file.scene.see_through(), [1]);
+    assert_eq!(file.info.warnings, ["no object, node, mesh or material is called no such"]);
+}
+
+#[test]
+fn single_sides_hide_by_default_and_not_if_asked() {
+    let mut doc = doc(&[json!({"name": "a"}), json!({}), json!({})], &[json!({}), json!({"doubleSided": true})]);
+    // The third one is a closed tetrahedron.
+    let closed = doc.positions(&[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]]);
+    let sides = doc.indices(&[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3], 1);
+    doc.json["meshes"][2]["primitives"][0] = json!({"attributes": {"POSITION": closed}, "indices": sides});
+    let file = read(&doc);
+    assert_eq!((file.scene.see_through().len(), file.info.n_single_sided_triangles), (0, 5));
+    let asked = SceneReadOptions { single_sided: true, ..options(&[], &[]) };
+    let file = read_with(&doc, &asked);
+    assert_eq!(taken(&file), [(0, Role::SeeThrough, "single sides")]);
+    assert_eq!(file.info.n_single_sided_triangles, 4);
+    let file = read_with(&doc, &SceneReadOptions { opaque: options(&["a"], &[]).opaque, ..asked });
+    assert_eq!(taken(&file), [(0, Role::Occluder, "the pattern a")]);
+    assert!(file.scene.see_through().is_empty());
+}
+
+/// Files beside an OBJ.
+#[derive(Debug)]
+struct Files<'a>(&'a [(&'a str, &'a str)]);
+
+impl Neighbours for Files<'_> {
+    fn read(&self, path: &Path) -> io::Result<Option<Vec<u8>>> {
+        let found = self.0.iter().find(|(name, _)| Path::new(name) == path);
+        found.map(|(_, text)| Some(text.as_bytes().to_vec())).ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+}
+
+const FACES: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+
+fn obj(text: &str, files: &[(&str, &str)], options: &SceneReadOptions) -> Result<SceneFile, SceneReadError> {
+    parse_obj_with(format!("{FACES}{text}").as_bytes(), Some(&Files(files)), options)
+}
+
+/// Names of objects, and whether each hides.
+fn hiding(file: &SceneFile) -> Vec<(&str, bool)> {
+    (0..).zip(file.scene.objects()).map(|(k, o)| (o.name.as_str(), file.scene.is_opaque(k))).collect()
+}
+
+#[test]
+fn materials_of_an_obj_are_looked_up() {
+    let mtl = "newmtl brick\nd 1\nnewmtl glass\nd 0.5\n";
+    let text = "mtllib my walls.mtl\no house\nusemtl brick\nf 1 2 3\nusemtl glass\nf 1 2 4\no pane\nf 2 3 4\no post\n\
+                usemtl brick\nf 1 3 4\no bare\nusemtl\nf 1 2 3\n";
+    let none = SceneReadOptions::default();
+    let file = obj(text, &[("my walls.mtl", mtl)], &none).unwrap();
+    let split = [("house", true), ("house#see-through", false), ("pane", false), ("post", true), ("bare", true)];
+    assert_eq!(hiding(&file), split);
+    assert_eq!(taken(&file), [(1, Role::SeeThrough, "d 0.5"), (2, Role::SeeThrough, "d 0.5")]);
+    assert!(file.info.warnings.is_empty());
+    // Several libraries on a line, and in folders as Windows has them.
+    let two = text.replace("my walls.mtl", r"a.mtl sub\b.mtl");
+    let files = [("a.mtl", "newmtl brick\n"), ("sub/b.mtl", "newmtl glass\nTr 0.1\n")];
+    assert_eq!(hiding(&obj(&two, &files, &none).unwrap()), split);
+    // What nobody knows hides nothing; who knows says so.
+    let file = obj(text, &[], &none).unwrap();
+    assert_eq!(hiding(&file), [("house", false), ("pane", false), ("post", false), ("bare", true)]);
+    assert_eq!(
+        file.info.warnings,
+        [
+            "the material library \"my walls.mtl\" cannot be read: put it beside the OBJ; without it, faces with its materials \
+          hide nothing"
+        ]
+    );
+    assert_eq!(parse_obj(format!("{FACES}{text}").as_bytes()).unwrap(), file);
+    assert_eq!(hiding(&obj(text, &[], &options(&["brick"], &[])).unwrap()), split);
+    let file = obj(text, &[("my walls.mtl", "newmtl glass")], &none).unwrap();
+    assert_eq!(taken(&file)[0].2, "a material that is in no library");
+    // Without a library there are no materials.
+    let bare = text.replace("mtllib", "#");
+    assert!(obj(&bare, &[], &none).unwrap().scene.see_through().is_empty());
+    // Names say as much as in a glTF.
+    let file = obj("o walls-colonly\nf 1 2 3\no hall-mirror\nf 1 2 4\n", &[], &none).unwrap();
+    assert_eq!((file.scene.see_through(), file.scene.mirrors()), (&[0][..], &[1][..]));
+}
+
+#[test]
+fn what_is_written_hides_no_more() {
+    let nodes = [json!({"name": "a"}), json!({"name": "b"}), json!({"name": "c-mirror"})];
+    let blend = json!({"alphaMode": "BLEND"});
+    let scene = read(&doc(&nodes, &[json!({}), blend.clone(), blend])).scene;
+    let again = parse_glb(&write_glb(&scene).unwrap(), None).unwrap().scene;
+    assert_eq!((again.see_through(), &again), (&[1, 2][..], &scene));
+}
