@@ -106,6 +106,18 @@ impl Stated {
     }
 }
 
+impl Stated {
+    /// Whether the file states lengths in metres.
+    pub(crate) fn is_in_metres(&self) -> bool {
+        self.unit.is_some()
+    }
+
+    /// What lengths are in.
+    pub(crate) fn unit_name(&self) -> &'static str {
+        if self.is_in_metres() { "metres" } else { "units" }
+    }
+}
+
 impl fmt::Display for Stated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let assumed = if self.up_is_assumed { " (assumed)" } else { "" };

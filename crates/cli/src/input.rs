@@ -2,13 +2,14 @@
 //! error.
 
 use crate::error::InputError;
+use crate::surfaces;
 use sightlines::bake::from_table::planar_graph;
 use sightlines::bake::{Bakeable, BakeableError};
 use sightlines::cells::{CellGraph, Planar};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
 use sightlines::formats::input::HEAD;
 use sightlines::formats::quake::{Prt, portals_beside};
-use sightlines::formats::scene::{Simplified, read_scene};
+use sightlines::formats::scene::{SceneReadOptions, Simplified, read_scene_with};
 use sightlines::formats::{Input, InputKind, ReadError, SceneFile, Source, Wad, detect_file};
 use sightlines::pvs::Table;
 use std::fs::File;
@@ -69,11 +70,16 @@ const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Q
 
 /// Reads a file from which a table can be built: a WAD, a GeoJSON file, a scene in space, a portal file, or a Quake map. `map` is
 /// refused for all but WADs.
-pub(crate) fn read(path: &Path, map: Option<&str>) -> Result<Input, InputError> {
+///
+/// * `options`: of scenes in space
+pub(crate) fn read(path: &Path, map: Option<&str>, options: &SceneReadOptions) -> Result<Input, InputError> {
     let format = detect_file(path)?.filter(|format| is_source(format.kind));
     let format = format.ok_or_else(|| InputError::Kind { path: path.to_owned(), expected: BUILDABLE })?;
     if map.is_some() && format.kind != InputKind::Wad {
         return Err(InputError::MapOfPlan(path.to_owned()));
+    }
+    if format.kind == InputKind::Scene {
+        return Ok(Input::Scene(scene(path, options)?));
     }
     Ok(Source::File(path).read_as(format)?)
 }
@@ -113,9 +119,16 @@ pub(crate) fn check_is_scene(path: &Path) -> Result<(), InputError> {
 }
 
 /// Reads a scene whose triangles are used as occluders, and refuses one that might hide what can be seen.
-pub(crate) fn occluders(path: &Path) -> Result<SceneFile, InputError> {
-    let file = read_scene(path)?;
+pub(crate) fn occluders(path: &Path, options: &SceneReadOptions) -> Result<SceneFile, InputError> {
+    let file = scene(path, options)?;
     check_occluder(path, &file)?;
+    Ok(file)
+}
+
+/// Reads a scene in space, and warns of what a user should hear of it.
+pub(crate) fn scene(path: &Path, options: &SceneReadOptions) -> Result<SceneFile, ReadError> {
+    let file = read_scene_with(path, options)?;
+    surfaces::warn(path, &file);
     Ok(file)
 }
 

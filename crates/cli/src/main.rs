@@ -25,6 +25,7 @@ mod place;
 mod progress;
 mod region;
 mod simplification;
+mod surfaces;
 mod tables;
 mod view;
 

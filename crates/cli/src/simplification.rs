@@ -6,11 +6,12 @@ use crate::glb::GlbError;
 use crate::input;
 use crate::named::one_of;
 use crate::numbers::share;
+use crate::surfaces::{self, SurfaceArgs};
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::ReadError;
 use sightlines::formats::scene::RewriteError;
-use sightlines::formats::scene::{self, read_scene_with_source, write_simplified_glb};
+use sightlines::formats::scene::{self, SceneReadOptions, read_scene_with_source_and, write_simplified_glb};
 use sightlines::formats::{GltfSource, SceneFile};
 use sightlines::simplify::SimplifyError;
 use sightlines::simplify::{Simplified, SimplifyOptions};
@@ -42,6 +43,8 @@ pub(crate) enum SimplificationError {
 /// How to simplify, as arguments.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct HowArgs {
+    #[command(flatten)]
+    pub(crate) surfaces: SurfaceArgs,
     /// Share of the sphere of directions in which the visible face may change, 0 to 1; 0 removes only what is hidden
     #[arg(long, help_heading = "Method", value_name = "SHARE", default_value_t = 0.0, value_parser = share, allow_hyphen_values = true)]
     budget: f64,
@@ -118,9 +121,10 @@ pub(crate) struct ReadScene {
 }
 
 /// Reads a scene to simplify. A scene whose triangles were moved is refused, because its own surfaces are used as occluders.
-pub(crate) fn read(path: &Path) -> Result<ReadScene, SimplificationError> {
+pub(crate) fn read(path: &Path, options: &SceneReadOptions) -> Result<ReadScene, SimplificationError> {
     input::check_is_scene(path)?;
-    let (file, source) = read_scene_with_source(path)?;
+    let (file, source) = read_scene_with_source_and(path, options)?;
+    surfaces::warn(path, &file);
     input::check_occluder(path, &file)?;
     if source.is_none() {
         tracing::warn!("{}: of an OBJ, triangles and names are kept; materials are not", path.display());
@@ -155,7 +159,7 @@ pub(crate) fn written(
 /// The objects of which something is left, with the vertices that are used.
 fn left(scene: &Scene, simplified: &Simplified) -> Scene {
     let is_mirror = |k: usize| scene.mirrors().iter().any(|&mirror| mirror as usize == k);
-    let (mut objects, mut mirrors) = (Vec::new(), Vec::new());
+    let (mut objects, mut mirrors, mut see_through) = (Vec::new(), Vec::new(), Vec::new());
     for (k, (o, triangles)) in scene.objects().iter().zip(&simplified.triangles).enumerate() {
         if triangles.is_empty() {
             continue;
@@ -167,6 +171,9 @@ fn left(scene: &Scene, simplified: &Simplified) -> Scene {
         if is_mirror(k) {
             mirrors.push(objects.len() as u32);
         }
+        if !scene.is_opaque(k as u32) {
+            see_through.push(objects.len() as u32);
+        }
         objects.push(SceneObject {
             name: o.name.clone(),
             vertices: used.iter().map(|&v| o.vertices[v as usize]).collect(),
@@ -174,5 +181,6 @@ fn left(scene: &Scene, simplified: &Simplified) -> Scene {
         });
     }
     let scene = Scene::new(objects).expect("coordinates and indices are those of a scene");
-    scene.with_mirrors(mirrors).expect("mirrors are objects")
+    let scene = scene.with_mirrors(mirrors).expect("mirrors are objects");
+    scene.with_see_through(see_through).expect("what is see-through is an object")
 }

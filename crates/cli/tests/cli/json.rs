@@ -285,6 +285,10 @@ fn scenes(all: &mut Results) {
     add("build of a scene by regions", "build least.glb -o r.pvs --method shafts --grid 2,1,2");
     add("build of a scene by regions", "build triangles.obj -o r.pvs --method shafts --stab-trees=16");
     add("info of a scene", "info tower.glb");
+    // Some of it is glass.
+    add("info of a scene", "info slanted.obj --see-through s1");
+    add("build of a scene", "build triangles.obj -o g.pvs --see-through *");
+    add("build of a scene by regions", "build slanted.obj -o g.pvs --method shafts --see-through s? --opaque s2");
     for cell in some_cells(&table(&folder, "tower.pvs")) {
         add("explain in a scene", &format!("explain tower.pvs 0 {cell}"));
         add("explain in a scene", &format!("explain tower.pvs 0 {cell} --max-programs 0"));

@@ -12,6 +12,7 @@ mod help;
 mod json;
 mod light;
 mod maps;
+mod materials;
 mod multifocal;
 mod outputs;
 mod own;

@@ -19,6 +19,7 @@ pub(crate) use source::bake_visibly;
 use crate::Answer;
 use crate::input::{self, refuse};
 use crate::output;
+use crate::surfaces::{SurfaceArgs, Surfaces};
 use options::BakeArgs;
 use serde::Serialize;
 use sightlines::bake::auto::choose_for;
@@ -40,6 +41,8 @@ pub(crate) struct BuildArgs {
     /// Quake maps: the portal file that the compiler wrote [default: beside the map]
     #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
     #[command(flatten)]
     bake: BakeArgs,
     #[command(flatten, next_help_heading = "Method")]
@@ -68,7 +71,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     }
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
-    let input = input::read(path, args.map.as_deref())?;
+    let input = input::read(path, args.map.as_deref(), &args.surfaces.options())?;
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
     let source = Source::new(path, input, chosen, out, &args.bake)?;
@@ -88,7 +91,8 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     output::save(out, &bytes)?;
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
     let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
-    output::print(args.json, &Built { auto, outcome, stab, proofs })?;
+    let surfaces = if let Bakeable::Scene(file) = &source.content { Some(Surfaces::new(file)) } else { None };
+    output::print(args.json, &Built { auto, outcome, surfaces, stab, proofs })?;
     Ok(Answer::Yes)
 }
 
@@ -100,6 +104,7 @@ impl BuildArgs {
         }
         if !matches!(input, Input::Scene(_)) {
             refuse(&self.input, &self.region.of_space(), "scenes in space", "none")?;
+            refuse(&self.input, &self.surfaces.given(), "scenes in space", "none")?;
         }
         Ok(())
     }
@@ -181,6 +186,9 @@ struct Built {
     auto: Option<auto::Chosen>,
     #[serde(flatten)]
     outcome: Outcome,
+    /// Of a scene in space.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    surfaces: Option<Surfaces>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<stab::Added>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
@@ -191,6 +199,7 @@ impl fmt::Display for Built {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.auto.iter().try_for_each(|auto| write!(f, "{auto}"))?;
         write!(f, "{}", self.outcome)?;
+        self.surfaces.iter().try_for_each(|surfaces| write!(f, "{surfaces}"))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))
     }

@@ -4,7 +4,7 @@ use crate::facts::{Facts, Stated, times};
 use crate::output::{bytes, count, percent};
 use serde::Serialize;
 use sightlines::bake::{PortalMode, SceneReport};
-use sightlines::cells::SceneObject;
+use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::SceneFile;
 use sightlines::pvs::Table;
 use sightlines::report::{Summary, ViewerShare};
@@ -81,7 +81,7 @@ impl Outcome {
             n_axial_triangles: cut.n_axial_triangles,
             n_other_triangles: cut.n_other_triangles,
             n_degenerate_triangles: file.info.n_degenerate_triangles,
-            n_detail_triangles: n_detail_triangles(file.scene.objects(), cut.detail_below),
+            n_detail_triangles: n_detail_triangles(&file.scene, cut.detail_below),
             n_detail_objects: cut.n_detail_objects,
             detail_below: cut.detail_below,
             n_faces: cut.n_faces,
@@ -108,12 +108,12 @@ impl Outcome {
 }
 
 /// Triangles of objects that are smaller in every direction than detail may be.
-fn n_detail_triangles(objects: &[SceneObject], detail_below: f64) -> usize {
+fn n_detail_triangles(scene: &Scene, detail_below: f64) -> usize {
     let is_small = |o: &&SceneObject| {
         let b = o.bounds();
         (0..3).all(|k| b.max[k] - b.min[k] < detail_below)
     };
-    objects.iter().filter(is_small).map(|o| o.triangles.len()).sum()
+    scene.occluders().map(|(_, object)| object).filter(is_small).map(|o| o.triangles.len()).sum()
 }
 
 impl fmt::Display for Outcome {

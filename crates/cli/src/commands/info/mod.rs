@@ -12,6 +12,7 @@ use crate::facts::{Facts, StabFacts};
 use crate::file_error::{FileError, from_file_error};
 use crate::input;
 use crate::output::{self, bytes};
+use crate::surfaces::SurfaceArgs;
 use serde::Serialize;
 use sightlines::formats::InputKind;
 use sightlines::pvs::Table;
@@ -36,6 +37,8 @@ pub(crate) struct InfoArgs {
     /// file
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -43,12 +46,16 @@ pub(crate) struct InfoArgs {
 
 pub(crate) fn run(args: &InfoArgs) -> Result<Answer, Error> {
     let path = &args.file;
-    match input::kind_of(path)? {
+    let kind = input::kind_of(path)?;
+    if kind.is_some_and(|kind| kind != InputKind::Scene) {
+        input::refuse(path, &args.surfaces.given(), "scenes in space", "none")?;
+    }
+    match kind {
         Some(InputKind::Table) => output::print(args.json, &TableInfo::new(path, &input::table(path)?))?,
         Some(InputKind::Packed) => output::print(args.json, &packed::PackedInfo::read(path)?)?,
         Some(InputKind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
         Some(InputKind::Plan) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
-        Some(InputKind::Scene) => output::print(args.json, &scene::SceneInfo::read(path)?)?,
+        Some(InputKind::Scene) => output::print(args.json, &scene::SceneInfo::read(path, &args.surfaces.options())?)?,
         Some(InputKind::Prt) => output::print(args.json, &quake::PrtInfo::read(path)?)?,
         Some(InputKind::Bsp) => output::print(args.json, &quake::BspInfo::read(path)?)?,
         _ => {

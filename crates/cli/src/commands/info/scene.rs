@@ -2,8 +2,10 @@
 
 use super::Error;
 use crate::facts::Stated;
+use crate::input;
+use crate::surfaces::Surfaces;
 use serde::Serialize;
-use sightlines::formats::scene::read_scene;
+use sightlines::formats::scene::SceneReadOptions;
 use std::fmt;
 use std::path::Path;
 
@@ -14,6 +16,8 @@ pub(super) struct SceneInfo {
     kind: &'static str,
     #[serde(flatten)]
     stated: Stated,
+    #[serde(flatten)]
+    surfaces: Surfaces,
     n_objects: usize,
     n_objects_without_triangles: usize,
     n_triangles: usize,
@@ -24,13 +28,14 @@ pub(super) struct SceneInfo {
 }
 
 impl SceneInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, Error> {
-        let file = read_scene(path)?;
+    pub(super) fn read(path: &Path, options: &SceneReadOptions) -> Result<Self, Error> {
+        let file = input::scene(path, options)?;
         let bounds = file.scene.bounds();
         Ok(Self {
             file: path.display().to_string(),
             kind: "scene",
             stated: Stated::new(&file.info),
+            surfaces: Surfaces::new(&file),
             n_objects: file.info.n_objects,
             n_objects_without_triangles: file.info.n_objects_without_triangles,
             n_triangles: file.info.n_triangles,
@@ -54,7 +59,27 @@ impl fmt::Display for SceneInfo {
             n => format!(", besides {n} without area"),
         };
         writeln!(f, "triangles      {}{degenerate}", self.n_triangles)?;
+        write!(f, "{}", self.surfaces)?;
         let ([x0, y0, z0], [x1, y1, z1]) = (self.min, self.max);
-        writeln!(f, "extent         ({x0}, {y0}, {z0}) to ({x1}, {y1}, {z1})")
+        writeln!(f, "extent         ({x0}, {y0}, {z0}) to ({x1}, {y1}, {z1})")?;
+        let size: [f64; 3] = std::array::from_fn(|k| self.max[k] - self.min[k]);
+        let longest = size.into_iter().fold(0.0, f64::max);
+        let unit = self.stated.unit_name();
+        writeln!(f, "size           {} by {} by {} {unit}", size[0], size[1], size[2])?;
+        let is_in_metres = self.stated.is_in_metres();
+        if is_in_metres && longest > 5000.0 {
+            let metres = longest / 1000.0;
+            writeln!(f, "               if it was modelled in millimetres, it is {metres} metres: scale it by 0.001")?;
+        }
+        let far = self.min.into_iter().chain(self.max).fold(0.0, |m: f64, x| m.max(x.abs()));
+        // Single precision has 24 bits: from here on, a thousandth of the scene is not ten steps of it.
+        if far > longest * f64::from(1 << 11) {
+            let step = (far as f32).next_up() - far as f32;
+            writeln!(
+                f,
+                "far away       {far} {unit} from the origin, where single precision has steps of {step} {unit}"
+            )?;
+        }
+        Ok(())
     }
 }

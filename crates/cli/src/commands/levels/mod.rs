@@ -69,7 +69,7 @@ fn is_ours(name: &str) -> bool {
 pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Error> {
     // Outputs that cannot be written are reported before the work is done.
     let folder = NewFolder::new(&args.output, is_ours)?;
-    let ReadScene { file, source } = read(&args.scene)?;
+    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options())?;
     let scene = &file.scene;
     let table = input::table(&args.table)?;
     let (method, factory) = args.how.prepare(&args.scene, scene)?;

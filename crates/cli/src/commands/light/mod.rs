@@ -12,6 +12,7 @@ use crate::named::one_of;
 use crate::output;
 use crate::picture::{self, PictureError};
 use crate::region::Region;
+use crate::surfaces::{self, SurfaceArgs};
 use crate::view::Up;
 use error::Error;
 use method::{UmbraMethod, union};
@@ -41,6 +42,8 @@ pub(crate) struct LightArgs {
     /// The scene: GLB, glTF or OBJ
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
     /// The light as a box: its lower corner, then its upper one, in scene units; a flat box is a rectangle, an empty
     /// one a point light
     #[arg(long, help_heading = "Light", value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
@@ -83,9 +86,11 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer, Error> {
     picture::check_png_name(&args.output)?;
     output::check(&[&args.scene], &[&args.output])?;
     input::check_is_scene(&args.scene)?;
-    // All of it casts shadows.
-    let file = input::occluders(&args.scene)?;
-    let faces = Faces::of_scene(&file.scene).map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
+    // All that hides casts shadows, and nothing else is drawn.
+    let file = input::occluders(&args.scene, &args.surfaces.options())?;
+    let faces = Faces::of_scene(&file.scene.opaque_part())
+        .map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
+    surfaces::warn_not_drawn(&args.scene, &file);
     let light = Volume::new(args.light.0)?;
     let camera = args.eye.camera(args.eye.up(Up::axis(file.info.up)))?;
     let shot = RenderInput { faces: &faces, camera: &camera, mask: &FaceMask::all(&faces) };

@@ -12,6 +12,7 @@ use crate::named::{measure, one_of};
 use crate::output;
 use crate::picture::{self, PictureError};
 use crate::region::Region;
+use crate::surfaces::SurfaceArgs;
 use error::Error;
 use outcome::{FieldInfo, Outcome};
 use sightlines::bake::methods::{Backend, NotBuiltIn};
@@ -36,6 +37,8 @@ pub(crate) struct MultifocalArgs {
     /// The scene: GLB, glTF or OBJ
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
     /// The view volume as a box: its lower corner, then its upper one, in scene units
     #[arg(long, help_heading = "Viewer", value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     volume: Region,
@@ -76,8 +79,8 @@ pub(crate) struct MultifocalArgs {
 pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, Error> {
     check_outputs(args)?;
     input::check_is_scene(&args.scene)?;
-    let scene = input::occluders(&args.scene)?.scene;
-    let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|object| object.corners()).collect();
+    let scene = input::occluders(&args.scene, &args.surfaces.options())?.scene;
+    let triangles: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
     let volume = Volume::new(args.volume.0)?;
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
     let occluders = occluders(&triangles, args.triangles);

@@ -12,12 +12,12 @@ use crate::named::one_of;
 use crate::output;
 use crate::picture::{self, PictureError};
 use crate::progress::Bar;
+use crate::surfaces::{self, SurfaceArgs};
 use crate::view::Up;
 use cull::{Cull, leave_out, seen_by_table};
 use error::Error;
 use method::{Drawn, Kind, Readied, Ready, compared};
 use outcome::{Outcome, Row};
-use sightlines::formats::scene::read_scene;
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
 use sightlines::visible_surface::{Camera, Comparison, DepthFormat, FaceMask, Faces, NOTHING, RenderInput, compare};
 use std::path::{Path, PathBuf};
@@ -40,6 +40,8 @@ pub(crate) struct RenderArgs {
     /// The scene: GLB, glTF or OBJ
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
     #[command(flatten)]
     eye: EyeArgs,
     /// The method; this or --compare is needed. With --compare several, separated by commas
@@ -72,11 +74,13 @@ pub(crate) struct RenderArgs {
 pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, Error> {
     check(args)?;
     input::check_is_scene(&args.scene)?;
-    let file = read_scene(&args.scene)?;
+    let file = input::scene(&args.scene, &args.surfaces.options())?;
     if args.cull.contains(&Cull::Pvs) {
         input::check_occluder(&args.scene, &file)?;
     }
-    let faces = Faces::of_scene(&file.scene).map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
+    let faces = Faces::of_scene(&file.scene.opaque_part())
+        .map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
+    surfaces::warn_not_drawn(&args.scene, &file);
     let up = args.eye.up(Up::axis(file.info.up));
     let camera = args.eye.camera(up)?;
     let methods = methods(args, &camera)?;

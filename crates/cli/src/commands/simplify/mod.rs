@@ -52,7 +52,7 @@ pub(crate) struct SimplifyArgs {
 pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Error> {
     glb::check_name(&args.output).map_err(SimplificationError::from)?;
     output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
-    let ReadScene { file, source } = read(&args.scene)?;
+    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options())?;
     let scene = &file.scene;
     let (table, views) = args.eyes.read()?;
     let (method, factory) = args.how.prepare(&args.scene, scene)?;

@@ -14,6 +14,7 @@ use crate::input;
 use crate::input::refuse;
 use crate::picture::PictureKind;
 use crate::progress::Bar;
+use crate::surfaces::SurfaceArgs;
 use crate::{output, tables};
 use error::Error;
 use outcome::{Outcome, With};
@@ -40,6 +41,8 @@ pub(crate) struct VerifyArgs {
     /// Quake maps: the portal file [default: beside the map]
     #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
     /// Number of rays from random places in random directions
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().rays)]
     rays: u64,
@@ -78,7 +81,9 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
         Some(own) => &own.table,
         None => &read_table(&args.table)?,
     };
-    let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref())?;
+    // What the table was built with holds without being said again.
+    let options = args.surfaces.options_with(table);
+    let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref(), &options)?;
     let scene = if own.is_some() { scene.without_objects() } else { scene };
     if own.is_some() {
         let found = "a map with its own";

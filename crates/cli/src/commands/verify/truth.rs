@@ -9,6 +9,7 @@ use sightlines::formats::Input;
 use sightlines::formats::quake::bsp::BspError;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{graph_of_prt, read_prt};
+use sightlines::formats::scene::SceneReadOptions;
 use sightlines::verify::{Truth, WorldTree};
 use std::path::Path;
 
@@ -22,8 +23,13 @@ pub(super) enum Real {
 
 impl Real {
     /// Reads a scene of any kind; of a map also its portals.
-    pub(super) fn read(path: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Self, Error> {
-        let input = input::read(path, map)?;
+    pub(super) fn read(
+        path: &Path,
+        map: Option<&str>,
+        prt: Option<&Path>,
+        options: &SceneReadOptions,
+    ) -> Result<Self, Error> {
+        let input = input::read(path, map, options)?;
         let file = match input {
             Input::Bsp(_) => Some(input::portal_file(path, prt)?),
             _ => None,

@@ -1,0 +1,138 @@
+//! What of a scene hides and what is only seen: how users say it, and what they are told.
+
+use crate::output::count;
+use serde::Serialize;
+use sightlines::formats::SceneFile;
+use sightlines::formats::scene::{NamePattern, Role, SceneInfo, SceneReadOptions};
+use sightlines::pvs::Table;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+
+/// Names that are listed of a kind of objects.
+const MOST_NAMES: usize = 5;
+
+/// How a scene is read, as arguments.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub(crate) struct SurfaceArgs {
+    /// Scenes in space: objects that are seen and hide nothing, beside those with transparent materials; by the name of
+    /// the object, node, mesh or material. * stands for any text, ? for a character; may be given several times
+    #[arg(long, help_heading = "Input", value_name = "PATTERN")]
+    see_through: Vec<NamePattern>,
+    /// Scenes in space: objects that hide what is behind them, although their material is transparent or they are
+    /// animated; by the same names. --see-through is stronger
+    #[arg(long, help_heading = "Input", value_name = "PATTERN")]
+    opaque: Vec<NamePattern>,
+    /// glTF: faces that are not doubleSided hide nothing, unless they belong to a closed object with its fronts outwards.
+    /// Without it they hide from both sides, which holds for eyes that never see the back of one
+    #[arg(long, help_heading = "Input")]
+    single_sided: bool,
+    /// A glTF with several scenes: the one to read, by its name or index [default: the default scene]
+    #[arg(long, help_heading = "Input", value_name = "NAME")]
+    scene_name: Option<String>,
+}
+
+impl SurfaceArgs {
+    /// These arguments as options of readers.
+    pub(crate) fn options(&self) -> SceneReadOptions {
+        let Self { opaque, see_through, single_sided, scene_name } = self.clone();
+        SceneReadOptions { opaque, see_through, single_sided, scene: scene_name }
+    }
+
+    /// The same, and what the scene of a table was read with.
+    pub(crate) fn options_with(&self, table: &Table) -> SceneReadOptions {
+        let mut options = self.options();
+        for (key, patterns) in [("opaque", &mut options.opaque), ("see-through", &mut options.see_through)] {
+            let stated = table.info_value(key).unwrap_or_default();
+            patterns.extend(stated.lines().filter_map(|pattern| pattern.parse().ok()));
+        }
+        options.single_sided |= table.info_value("single-sided").is_some();
+        options.scene = options.scene.or_else(|| table.info_value("scene").map(str::to_owned));
+        options
+    }
+
+    /// Each argument by its name, and whether it was given.
+    pub(crate) fn given(&self) -> [(&'static str, bool); 4] {
+        [
+            ("--see-through", !self.see_through.is_empty()),
+            ("--opaque", !self.opaque.is_empty()),
+            ("--single-sided", self.single_sided),
+            ("--scene-name", self.scene_name.is_some()),
+        ]
+    }
+}
+
+/// Says on standard error what a user should hear of a scene's file.
+pub(crate) fn warn(path: &Path, file: &SceneFile) {
+    for warning in &file.info.warnings {
+        tracing::warn!("{}: {warning}", path.display());
+    }
+}
+
+/// Says on standard error how many objects a picture does not show because they hide nothing.
+pub(crate) fn warn_not_drawn(path: &Path, file: &SceneFile) {
+    let n = file.scene.see_through().len() as u64;
+    if n > 0 {
+        tracing::warn!("{}: see-through and not drawn: {}", path.display(), count(n, "object"));
+    }
+}
+
+/// Objects that are taken for the same, for the same reason.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct TakenGroup {
+    /// What for.
+    role: &'static str,
+    /// Whether they move or change their shape.
+    moves: bool,
+    because: String,
+    n_objects: usize,
+    /// The first few.
+    names: Vec<String>,
+}
+
+/// What of a scene hides, and what does not.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Surfaces {
+    /// What is not simply a wall, the largest groups first.
+    taken: Vec<TakenGroup>,
+    /// Triangles that hide, of which engines draw the fronts only.
+    n_single_sided_triangles: usize,
+}
+
+impl Surfaces {
+    pub(crate) fn new(file: &SceneFile) -> Self {
+        let SceneInfo { taken, n_single_sided_triangles, .. } = &file.info;
+        let mut groups: BTreeMap<(Role, bool, &str), Vec<u32>> = BTreeMap::new();
+        for t in taken {
+            groups.entry((t.role, t.moves, &t.because)).or_default().push(t.object);
+        }
+        let name = |object: &u32| file.scene.objects()[*object as usize].name.clone();
+        let group = |((role, moves, because), objects): ((Role, bool, &str), Vec<u32>)| TakenGroup {
+            role: role.name(),
+            moves,
+            because: because.to_owned(),
+            n_objects: objects.len(),
+            names: objects.iter().take(MOST_NAMES).map(name).collect(),
+        };
+        let mut taken: Vec<TakenGroup> = groups.into_iter().map(group).collect();
+        taken.sort_by_key(|group| std::cmp::Reverse(group.n_objects));
+        Self { taken, n_single_sided_triangles: *n_single_sided_triangles }
+    }
+}
+
+impl fmt::Display for Surfaces {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for group in &self.taken {
+            let TakenGroup { role, moves, because, n_objects, names } = group;
+            let more = if names.len() < *n_objects { ", …" } else { "" };
+            let moves = if *moves { ", moving," } else { "" };
+            let objects = count(*n_objects as u64, "object");
+            writeln!(f, "{role:<14} {objects}{moves} by {because}: {}{more}", names.join(", "))?;
+        }
+        if self.n_single_sided_triangles > 0 {
+            let triangles = count(self.n_single_sided_triangles as u64, "triangle");
+            writeln!(f, "single-sided   {triangles}, which hide from both sides; engines may draw their fronts only")?;
+        }
+        Ok(())
+    }
+}

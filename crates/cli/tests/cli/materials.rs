@@ -1,0 +1,140 @@
+//! Glass, roles and options in scenes, from the file to the report and back.
+
+use crate::common::Folder;
+use sightlines::formats::scene::{parse_glb, read_scene};
+
+/// A room of 8 by 4 by 3 with a pane across its middle, and a thing on either side; quads, in the order of `f`.
+fn room() -> String {
+    let quad = |name: &str, material: &str, p: [[f64; 3]; 4], first: usize| {
+        let corners: String = p.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+        format!("o {name}\nusemtl {material}\n{corners}f {} {} {} {}\n", first, first + 1, first + 2, first + 3)
+    };
+    let across =
+        |x: f64, low: f64, high: [f64; 2]| [[x, low, low], [x, high[0], low], [x, high[0], high[1]], [x, low, high[1]]];
+    let level = |y: f64| [[0.0, y, 0.0], [8.0, y, 0.0], [8.0, y, 3.0], [0.0, y, 3.0]];
+    let along = |z: f64| [[0.0, 0.0, z], [8.0, 0.0, z], [8.0, 4.0, z], [0.0, 4.0, z]];
+    let quads = [
+        ("west", "wall", across(0.0, 0.0, [4.0, 3.0])),
+        ("east", "wall", across(8.0, 0.0, [4.0, 3.0])),
+        ("floor", "wall", level(0.0)),
+        ("ceiling", "wall", level(4.0)),
+        ("front", "wall", along(0.0)),
+        ("back", "wall", along(3.0)),
+        ("pane", "glass", across(4.0, 0.0, [4.0, 3.0])),
+        ("west picture", "wall", across(1.0, 1.0, [3.0, 2.0])),
+        ("east picture", "wall", across(7.0, 1.0, [3.0, 2.0])),
+    ];
+    let all: String = (0..).zip(quads).map(|(k, (name, material, p))| quad(name, material, p, 4 * k + 1)).collect();
+    format!("mtllib room.mtl\n{all}")
+}
+
+/// Objects that a point of the west sees in a table.
+fn seen(folder: &Folder, table: &str) -> String {
+    folder.run(&["query", table, "--eye", "2,2,1.5"]).expect(0).out
+}
+
+#[test]
+fn glass_is_reported_and_hides_nothing() {
+    let folder = Folder::new();
+    folder.write("room.obj", room());
+    folder.write("room.mtl", "newmtl wall\nd 1\nnewmtl glass\nd 0.2\n");
+    let build = ["build", "room.obj", "--detail-below", "0", "-o"];
+    let run = folder.run(&[&build[..], &["glass.pvs"]].concat()).expect(0);
+    assert!(run.out.contains("see-through    1 object by d 0.2: pane\n"), "{}", run.out);
+    assert!(seen(&folder, "glass.pvs").contains("east picture"));
+    assert!(folder.run(&["info", "room.obj"]).expect(0).out.contains("see-through    1 object by d 0.2: pane\n"));
+    // The twin: the same pane hides if somebody says that it does.
+    let run = folder.run(&[&build[..], &["wall.pvs", "--opaque", "Glass"]].concat()).expect(0);
+    assert!(run.out.contains("occluder       1 object by the pattern Glass: pane\n"), "{}", run.out);
+    assert!(!seen(&folder, "wall.pvs").contains("east picture"));
+    // The table says so, so that it is checked with the same; glass that was taken for a wall is found.
+    folder.run(&["verify", "wall.pvs", "room.obj", "--rays", "2000"]).expect(0);
+    folder.run(&["verify", "glass.pvs", "room.obj", "--rays", "2000"]).expect(0);
+    folder.write("room.mtl", "newmtl wall\nnewmtl glass\n");
+    folder.run(&[&build[..], &["blind.pvs"]].concat()).expect(0);
+    folder.write("room.mtl", "newmtl wall\nnewmtl glass\nd 0.2\n");
+    folder.run(&["verify", "blind.pvs", "room.obj", "--rays", "2000"]).expect(1);
+    // Without its library nobody knows what is glass.
+    std::fs::remove_file(folder.path("room.mtl")).unwrap();
+    let run = folder.run(&[&build[..], &["none.pvs"]].concat()).expect(0);
+    assert!(run.err.contains("the material library \"room.mtl\" cannot be read"), "{}", run.err);
+    assert!(run.out.contains(
+        "see-through    9 objects by a material of the missing room.mtl: west, east, floor, ceiling, front, …\n"
+    ));
+    let run = folder.run(&[&build[..], &["some.pvs", "--opaque", "wall"]].concat()).expect(0);
+    assert!(run.out.contains("occluder       8 objects by the pattern wall"), "{}", run.out);
+    assert!(seen(&folder, "some.pvs").contains("east picture"));
+    let run = folder.run(&[&build[..], &["odd.pvs", "--see-through", "door*"]].concat()).expect(0);
+    assert!(run.err.contains("no object, node, mesh or material is called door*"), "{}", run.err);
+}
+
+#[test]
+fn what_is_not_a_scene_has_no_glass() {
+    let folder = Folder::with_wad();
+    let run = folder.run(&["build", "maps.wad", "--map", "MAP01", "-o", "m.pvs", "--opaque", "x"]).expect(2);
+    assert!(run.err.contains("--opaque"), "{}", run.err);
+    folder.run(&["info", "maps.wad", "--see-through", "x"]).expect(2);
+    folder.run(&["build", "maps.wad", "-o", "m.pvs", "--see-through", ""]).expect(2);
+}
+
+#[test]
+fn pictures_and_simplified_scenes_keep_glass_apart() {
+    let folder = Folder::new();
+    folder.write("room.obj", room());
+    folder.write("room.mtl", "newmtl wall\nnewmtl glass\nTr 0.5\n");
+    let look =
+        ["--method", "raycast", "--size", "32x24", "--eye", "2,2,1.5", "--look-at", "7,2,1.5", "--by-object", "-o"];
+    let run = folder.run(&[&["render", "room.obj"], &look[..], &["glass.png"]].concat()).expect(0);
+    assert!(run.err.contains("room.obj: see-through and not drawn: 1 object"), "{}", run.err);
+    folder.run(&[&["render", "room.obj", "--opaque", "*"], &look[..], &["wall.png"]].concat()).expect(0);
+    assert_ne!(folder.read("glass.png"), folder.read("wall.png"));
+    // What is behind glass is not taken away, and glass stays glass.
+    let simplify = ["simplify", "room.obj", "--volume=1.5,1.5,1.4,2.5,2.5,1.6", "--method", "shafts", "-o"];
+    folder.run(&[&simplify[..], &["glass.glb"]].concat()).expect(0);
+    folder.run(&[&simplify[..], &["wall.glb", "--opaque", "*"]].concat()).expect(0);
+    let names = |name: &str| -> Vec<String> {
+        let scene = read_scene(folder.path(name)).unwrap().scene;
+        scene.objects().iter().map(|o| o.name.clone()).collect()
+    };
+    assert!(names("glass.glb").contains(&"east picture".to_owned()));
+    assert!(!names("wall.glb").contains(&"east picture".to_owned()));
+    let scene = parse_glb(&folder.read("glass.glb"), None).unwrap().scene;
+    assert_eq!(scene.see_through().iter().map(|&k| &scene.objects()[k as usize].name).collect::<Vec<_>>(), ["pane"]);
+}
+
+#[test]
+fn scenes_of_a_file_are_chosen_by_name() {
+    let folder = Folder::new();
+    let node = |name: &str| format!(r#"{{"name": "{name}", "mesh": 0}}"#);
+    let data = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let text = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"name": "day", "nodes": [0]}}, {{"nodes": [1]}}],
+            "nodes": [{}, {}], "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+            "accessors": [{{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+            "buffers": [{{"byteLength": 36, "uri": "data:;base64,{data}"}}]}}"#,
+        node("sun"),
+        node("moon")
+    );
+    folder.write("two.gltf", text);
+    let run = folder.run(&["info", "two.gltf"]).expect(0);
+    assert!(run.err.contains("the default scene, day, was read, one of 2 in the file"), "{}", run.err);
+    assert!(folder.run(&["info", "two.gltf", "--scene-name", "1"]).expect(0).err.is_empty());
+    // What it took the numbers for: metres, 3 units across, at the origin.
+    let run = folder.run(&["info", "two.gltf"]).expect(0);
+    assert!(run.out.contains("single-sided   1 triangle") && run.out.contains("size           1 by 1 by 0 metres\n"));
+    let text = String::from_utf8(folder.read("two.gltf")).unwrap();
+    let moved = |what: &str| text.replace(r#""name": "sun","#, &format!(r#""name": "sun", {what},"#));
+    folder.write("far.gltf", moved(r#""translation": [500000, 0, 4000000]"#));
+    let run = folder.run(&["info", "far.gltf"]).expect(0);
+    assert!(
+        run.out.contains(
+            "far away       4000000 metres from the origin, where single precision has steps of 0.25 metres\n"
+        )
+    );
+    folder.write("large.gltf", moved(r#""scale": [9000, 3000, 1]"#));
+    let run = folder.run(&["info", "large.gltf"]).expect(0);
+    assert!(run.out.contains("if it was modelled in millimetres, it is 9 metres: scale it by 0.001\n"), "{}", run.out);
+    let run = folder.run(&["info", "two.gltf", "--scene-name", "dusk"]).expect(2);
+    assert!(run.err.contains("there is no scene \"dusk\", but day, 1"), "{}", run.err);
+}
