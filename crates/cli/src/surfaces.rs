@@ -1,4 +1,4 @@
-//! What of a scene hides and what is only seen: how users say it, and what they are told.
+//! What of a scene hides and what is only seen: arguments, and lines of reports.
 
 use crate::output::count;
 use serde::Serialize;
@@ -39,9 +39,10 @@ impl SurfaceArgs {
         SceneReadOptions { opaque, see_through, single_sided, scene: scene_name }
     }
 
-    /// The same, and what the scene of a table was read with.
-    pub(crate) fn options_with(&self, table: &Table) -> SceneReadOptions {
+    /// The same, and what the scene of a table was read with, if there is one.
+    pub(crate) fn options_with(&self, table: Option<&Table>) -> SceneReadOptions {
         let mut options = self.options();
+        let Some(table) = table else { return options };
         for (key, patterns) in [("opaque", &mut options.opaque), ("see-through", &mut options.see_through)] {
             let stated = table.info_value(key).unwrap_or_default();
             patterns.extend(stated.lines().filter_map(|pattern| pattern.parse().ok()));

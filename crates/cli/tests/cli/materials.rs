@@ -102,6 +102,31 @@ fn pictures_and_simplified_scenes_keep_glass_apart() {
     assert_eq!(scene.see_through().iter().map(|&k| &scene.objects()[k as usize].name).collect::<Vec<_>>(), ["pane"]);
 }
 
+/// What was see-through for a table is so for whoever removes triangles by it, without being named again.
+#[test]
+fn simplification_reads_a_scene_as_its_table_was_built() {
+    let folder = Folder::new();
+    folder.write("room.obj", room());
+    folder.write("room.mtl", "newmtl wall\nnewmtl glass\n");
+    let names = |path: &str| -> Vec<String> {
+        let scene = read_scene(folder.path(path)).unwrap().scene;
+        scene.objects().iter().map(|o| o.name.clone()).collect()
+    };
+    let keeps = |pattern: &str| {
+        let build = ["build", "room.obj", "--grid", "2,1,1", "--see-through", pattern, "-o", "table.pvs"];
+        folder.run(&build).expect(0);
+        let how = ["--table", "table.pvs", "--method", "shafts"];
+        folder.run(&[&["simplify", "room.obj", "--cell", "0", "-o", "left.glb"], &how[..]].concat()).expect(0);
+        folder.run(&[&["levels", "room.obj", "-o", "levels"], &how[..]].concat()).expect(0);
+        let is_there = |path: &str| names(path).contains(&"east picture".to_owned());
+        let n_levels = std::fs::read_dir(folder.path("levels")).unwrap().count() - 1;
+        [is_there("left.glb"), (0..n_levels).all(|k| is_there(&format!("levels/level_{k}.glb")))]
+    };
+    assert_eq!(keeps("pane"), [true, true]);
+    // The twin: an opaque pane hides it from the western half.
+    assert_eq!(keeps("west picture"), [false, false]);
+}
+
 #[test]
 fn scenes_of_a_file_are_chosen_by_name() {
     let folder = Folder::new();

@@ -69,9 +69,10 @@ fn is_ours(name: &str) -> bool {
 pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Error> {
     // Outputs that cannot be written are reported before the work is done.
     let folder = NewFolder::new(&args.output, is_ours)?;
-    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options())?;
-    let scene = &file.scene;
     let table = input::table(&args.table)?;
+    // What was see-through for the table must not count as a wall here.
+    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(Some(&table)))?;
+    let scene = &file.scene;
     let (method, factory) = args.how.prepare(&args.scene, scene)?;
     let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };
     let make: MakeMethod<'_> = &make;

@@ -52,9 +52,10 @@ pub(crate) struct SimplifyArgs {
 pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Error> {
     glb::check_name(&args.output).map_err(SimplificationError::from)?;
     output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
-    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options())?;
-    let scene = &file.scene;
     let (table, views) = args.eyes.read()?;
+    // What was see-through for the table must not count as a wall here.
+    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.as_ref()))?;
+    let scene = &file.scene;
     let (method, factory) = args.how.prepare(&args.scene, scene)?;
     let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };
     let make: MakeMethod<'_> = &make;
