@@ -7,7 +7,7 @@ use crate::surface::Surface;
 use crate::touch::{Start, Target};
 use sightlines_geometry::coordinate::MIN_MAGNITUDE;
 use sightlines_geometry::{Aabb, Point3, check_coordinate};
-use sightlines_multifocal::mesh::avoids;
+use sightlines_multifocal::mesh::{avoids, collinear};
 use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use std::sync::Arc;
 
@@ -73,7 +73,8 @@ impl LineSpace {
         if triangle.iter().flatten().any(|&x| check_coordinate(x).is_err()) || !avoids(&triangle, &volume, false) {
             return Outcome::Undecided;
         }
-        if is_flat(triangle) {
+        let [a, b, c] = triangle;
+        if collinear(a, b, c) {
             return self.see_box(&volume, &Aabb::around(triangle), budget);
         }
         self.run(triangle_roots(&volume, triangle), &Target::Triangle(triangle), budget)
@@ -84,15 +85,6 @@ impl LineSpace {
         self.n_cells += u64::from(n);
         outcome
     }
-}
-
-/// Whether three points lie on a line. Exact.
-fn is_flat(t: [Point3; 3]) -> bool {
-    use sightlines_geometry::{Point2, orient2d};
-    (0..3).all(|k| {
-        let of = |p: Point3| Point2::new(p[k], p[(k + 1) % 3]);
-        orient2d(of(t[0]), of(t[1]), of(t[2])) == 0.0
-    })
 }
 
 /// The box, or a larger one where it has no area: a box that is flat along two axes is made thicker along these, by a 2^-40th of its

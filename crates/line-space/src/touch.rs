@@ -3,6 +3,7 @@
 use crate::end::End;
 use crate::orient::orient;
 use sightlines_geometry::{Aabb, Point2, Point3, orient2d};
+use sightlines_multifocal::mesh::avoids as avoids_box;
 
 /// What the lines of a search end at.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +27,7 @@ impl Target {
                 let inside_of = |piece: &[Point3; 3]| avoids_inside(triangle, piece);
                 inside_of(whole)
                     || end.is_exact() && inside_of(&[end.corners()[0], end.corners()[1], end.corners()[2]])
-                    || avoids_box(triangle, around)
+                    || avoids_box(triangle, around, true)
             }
         }
     }
@@ -61,27 +62,18 @@ impl Start {
 fn avoids(t: &[Point3; 3], end: &End, touching: bool) -> bool {
     let corners = end.corners();
     let n = corners.len();
-    if plane_separates(t[0], t[1], t[2], &[], corners, touching) {
-        return true;
-    }
-    if plane_separates(corners[0], corners[1], corners[2], corners, t, false) {
-        return true;
-    }
-    for i in 0..3 {
-        for &p in corners {
-            if plane_splits(t[i], t[(i + 1) % 3], p, t, corners, touching) {
-                return true;
-            }
-        }
-    }
-    for i in 0..n {
-        for &p in t {
-            if plane_splits(corners[i], corners[(i + 1) % n], p, t, corners, touching) {
-                return true;
-            }
-        }
-    }
-    coplanar_apart(t, corners, touching)
+    let by_plane = |a: Point3, b: Point3, c: Point3| {
+        let side = |p: Point3| orient(a, b, c, p);
+        Sides::of(corners, side).are_apart_from(&Sides::of(t, side), touching)
+    };
+    let of_triangle = (0..3).flat_map(|i| corners.iter().map(move |&p| (t[i], t[(i + 1) % 3], p)));
+    let of_end = (0..n).flat_map(|i| t.iter().map(move |&p| (corners[i], corners[(i + 1) % n], p)));
+    // The end's own plane has nothing of the end strictly on a side; there the triangle has to be.
+    let leaves_plane = Sides::of(t, |p| orient(corners[0], corners[1], corners[2], p)).are_strictly_on_one_side();
+    leaves_plane
+        || by_plane(t[0], t[1], t[2])
+        || of_triangle.chain(of_end).any(|(a, b, c)| by_plane(a, b, c))
+        || coplanar_apart(t, corners, touching)
 }
 
 /// Whether a triangle has no inner point of another one.
@@ -89,46 +81,36 @@ fn avoids_inside(t: &[Point3; 3], inside: &[Point3; 3]) -> bool {
     avoids(t, &End::triangle(*inside), true)
 }
 
-/// Whether a triangle has no point of the relative interior of a box.
-fn avoids_box(t: &[Point3; 3], b: &Aabb<3>) -> bool {
-    sightlines_multifocal::mesh::avoids(t, b, true)
+/// On which sides of a plane, or of a line in a plane, some points lie.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sides {
+    positive: bool,
+    negative: bool,
+    on: bool,
 }
 
-/// Whether all `points` lie on one side of a plane, none of them on it; with `touching` some may, but not all.
-fn plane_separates(a: Point3, b: Point3, c: Point3, _on: &[Point3], points: &[Point3], touching: bool) -> bool {
-    let [mut positive, mut negative, mut zero] = [false; 3];
-    for &p in points {
-        let side = orient(a, b, c, p);
-        positive |= side > 0.0;
-        negative |= side < 0.0;
-        zero |= side == 0.0;
-    }
-    positive != negative && (touching || !zero)
-}
-
-/// Whether a plane has a triangle on one side or on it, and the end strictly on the other; with `touching` some corners of the end may be
-/// on it, but not all.
-fn plane_splits(a: Point3, b: Point3, c: Point3, t: &[Point3; 3], end: &[Point3], touching: bool) -> bool {
-    let sides = |points: &[Point3]| {
-        let mut has = [false; 3];
+impl Sides {
+    fn of<P: Copy>(points: &[P], side: impl Fn(P) -> f64) -> Self {
+        let mut sides = Self::default();
         for &p in points {
-            let side = orient(a, b, c, p);
-            has[if side > 0.0 {
-                0
-            } else if side < 0.0 {
-                1
-            } else {
-                2
-            }] = true;
+            let side = side(p);
+            sides.positive |= side > 0.0;
+            sides.negative |= side < 0.0;
+            sides.on |= side == 0.0;
         }
-        has
-    };
-    let [up, down, on] = sides(end);
-    if up == down || (on && !touching) {
-        return false;
+        sides
     }
-    let [triangle_up, triangle_down, _] = sides(t);
-    if up { !triangle_up } else { !triangle_down }
+
+    fn are_strictly_on_one_side(&self) -> bool {
+        self.positive != self.negative && !self.on
+    }
+
+    /// Whether these are the corners of an end on one side, and `triangle` is on the other or on the border. With `touching` some
+    /// corners of the end may be on the border, but not all.
+    fn are_apart_from(&self, triangle: &Self, touching: bool) -> bool {
+        let one_side = self.positive != self.negative && (touching || !self.on);
+        one_side && !(if self.positive { triangle.positive } else { triangle.negative })
+    }
 }
 
 /// Whether a triangle and an end in one plane have a line between them there.
@@ -137,31 +119,12 @@ fn coplanar_apart(t: &[Point3; 3], end: &[Point3], touching: bool) -> bool {
         return false;
     }
     (0..3).any(|k| {
-        let flat = |p: &Point3| Point2::new(p[(k + 1) % 3], p[(k + 2) % 3]);
-        let (t, end): (Vec<Point2>, Vec<Point2>) = (t.iter().map(flat).collect(), end.iter().map(flat).collect());
-        let sides = |a: Point2, b: Point2, points: &[Point2]| {
-            let mut has = [false; 3];
-            for &p in points {
-                let side = orient2d(a, b, p);
-                has[if side > 0.0 {
-                    0
-                } else if side < 0.0 {
-                    1
-                } else {
-                    2
-                }] = true;
-            }
-            has
+        let flat = |p: Point3| Point2::new(p[(k + 1) % 3], p[(k + 2) % 3]);
+        let by_line = |a: Point3, b: Point3| {
+            let side = |p: Point3| orient2d(flat(a), flat(b), flat(p));
+            Sides::of(end, side).are_apart_from(&Sides::of(t, side), touching)
         };
-        let splits = |a: Point2, b: Point2| {
-            let [up, down, on] = sides(a, b, &end);
-            if up == down || (on && !touching) {
-                return false;
-            }
-            let [triangle_up, triangle_down, _] = sides(a, b, &t);
-            if up { !triangle_up } else { !triangle_down }
-        };
-        let around = |ring: &[Point2]| (0..ring.len()).any(|i| splits(ring[i], ring[(i + 1) % ring.len()]));
-        around(&t) || around(&end)
+        let around = |ring: &[Point3]| (0..ring.len()).any(|i| by_line(ring[i], ring[(i + 1) % ring.len()]));
+        around(t) || around(end)
     })
 }

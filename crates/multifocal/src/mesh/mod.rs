@@ -27,4 +27,5 @@ pub use patch_options::PatchOptions;
 pub use select::{Chooser, select};
 pub use shaft::avoids;
 pub use sheet::{SheetTester, Sheets};
+pub use vector::collinear;
 pub use weld::Mesh;

@@ -17,7 +17,7 @@ pub(super) fn vector_area(outline: &[Point3]) -> Point3 {
 }
 
 /// Whether three points lie on a line. Exact.
-pub(super) fn collinear(a: Point3, b: Point3, c: Point3) -> bool {
+pub fn collinear(a: Point3, b: Point3, c: Point3) -> bool {
     (0..3).all(|k| {
         let of = |p: Point3| Point2::new(p[k], p[(k + 1) % 3]);
         orient2d(of(a), of(b), of(c)) == 0.0
