@@ -49,10 +49,11 @@ pub(crate) struct Shaft {
 }
 
 impl Shaft {
-    pub(crate) fn new(cell: Cell, start: Start, weights: [[f64; 4]; 2]) -> Self {
-        let (from, _) = cell.from.inner(weights[0]);
-        let (to, rounding) = cell.to.inner(weights[1]);
-        Self { cell, start, hull: Hull::of(&cell), line: [from, to], rounding }
+    /// None for ends without inner points.
+    pub(crate) fn new(cell: Cell, start: Start, weights: [[f64; 4]; 2]) -> Option<Self> {
+        let (from, _) = cell.from.inner(weights[0])?;
+        let (to, rounding) = cell.to.inner(weights[1])?;
+        Some(Self { cell, start, hull: Hull::of(&cell), line: [from, to], rounding })
     }
 }
 

@@ -118,21 +118,22 @@ impl End {
         [corners[i], corners[(i + 1) % corners.len()]]
     }
 
-    /// A point inside, at about these weights of the corners; rounded for triangles, by at most the radius that comes with it.
-    pub(crate) fn inner(&self, weights: [f64; 4]) -> (Point3, Point3) {
+    /// A point inside, at about these weights of the corners; rounded for triangles, by at most the radius that comes with it. None
+    /// for a rectangle so thin that no double lies inside.
+    pub(crate) fn inner(&self, weights: [f64; 4]) -> Option<(Point3, Point3)> {
         if self.n == 4 {
             // Doubles between those of two opposite corners are points of the rectangle.
             let [low, high] = [self.corners[0], self.corners[2]];
-            let t = [weights[0] / (weights[0] + weights[1]), weights[2] / (weights[2] + weights[3])];
-            let mut n = 0;
-            let at = std::array::from_fn(|k| {
-                if low[k] == high[k] {
-                    return low[k];
+            let mut parts =
+                [weights[0] / (weights[0] + weights[1]), weights[2] / (weights[2] + weights[3])].into_iter();
+            let mut at = low;
+            for k in (0..3).filter(|&k| low[k] != high[k]) {
+                at[k] = check_coordinate(low[k] + (high[k] - low[k]) * parts.next()?).ok()?;
+                if !(low[k] < at[k] && at[k] < high[k]) {
+                    return None;
                 }
-                n += 1;
-                low[k] + (high[k] - low[k]) * t[n - 1]
-            });
-            return (at, [0.0; 3]);
+            }
+            return Some((at, [0.0; 3]));
         }
         let sum = weights[0] + weights[1] + weights[2];
         let corners = self.corners();
@@ -143,7 +144,7 @@ impl End {
         let point = std::array::from_fn(|k| if same(k) { corners[0][k] } else { at(k) });
         let rounding =
             std::array::from_fn(|k| if same(k) { self.radius[k] } else { self.radius[k] + 4.0 * ROUNDING * size(k) });
-        (point, rounding)
+        Some((point, rounding))
     }
 
     /// Cuts it across side `i` at about the part `t` of that side, between 0 and 1; none where doubles leave no room.
@@ -230,6 +231,9 @@ mod tests {
             assert!(((p.max[k] - b.min[k]) / (b.max[k] - b.min[k]) - 0.25).abs() < 1e-15);
         }
         assert!(End::rectangle(&b, 1).is_none());
+        assert!(end.inner([1.0; 4]).is_some());
+        let thin = Aabb { max: [1.0f64.next_up(), 2.0, 5.0], ..b };
+        assert_eq!(End::rectangle(&thin, 2).expect("it has an area").inner([1.0; 4]), None);
     }
 
     #[test]
@@ -242,7 +246,7 @@ mod tests {
         let thirds = End::triangle([[0.1, 0.3, 1.0], [0.7, 0.9, 1.0], [1.0 / 3.0, 1e-9, 1.0]]);
         let [p, _] = thirds.cut(1, 0.4).expect("there is room");
         assert!(!p.is_exact() && p.radius()[2] == 0.0 && p.radius()[0] < 1e-14, "{p:?}");
-        let (inner, radius) = p.inner([1.0, 2.0, 3.0, 0.0]);
+        let (inner, radius) = p.inner([1.0, 2.0, 3.0, 0.0]).expect("triangles have inner points");
         assert!(inner[2] == 1.0 && radius[2] == 0.0 && radius[0] > 0.0);
         let point = End::triangle([[1.0, 1.0, 1.0], [1.0f64.next_up(), 1.0, 1.0], [1.0, 2.0, 1.0]]);
         assert!(point.cut(0, 0.5).is_none());

@@ -26,7 +26,8 @@ pub(crate) struct Root {
     pub(crate) start: Start,
 }
 
-/// Hits this near to an end are at it: they do not say that a line is blocked in between.
+/// Hits this near to the end of a line count as its end: the target itself, or what lies on it. So `Reached` may be wrong by that part of a
+/// line, which shows more; what is hidden is never decided by it.
 const AT_END: f64 = 1e-6;
 
 /// The search for the lines between two ends, with its memory.
@@ -65,7 +66,9 @@ impl Search {
             }
             n += 1;
             let mut weights = || [0; 4].map(|_| 0.7 + 0.6 * random.unit());
-            let shaft = Shaft::new(root.cell, root.start, [weights(), weights()]);
+            let Some(shaft) = Shaft::new(root.cell, root.start, [weights(), weights()]) else {
+                return (Outcome::Undecided, n);
+            };
             surface.hits(shaft.line[0], shaft.line[1], &mut self.hits);
             if self.hits.iter().all(|hit| hit.at > 1.0 - AT_END) {
                 return (Outcome::Reached, n);

@@ -23,7 +23,7 @@ pub(crate) struct Hit {
     pub(crate) triangle: u32,
 }
 
-/// By how much segments may miss triangles and still start a chain there; decides nothing.
+/// By how much segments may miss triangles and still start a chain there. More hits only cost time: chains are checked exactly.
 const SLACK: f64 = 1e-9;
 
 impl Surface {
