@@ -1,5 +1,6 @@
 //! The tests of this crate, as one program.
 
+mod attacks;
 mod conforms;
 mod hides;
 mod known;
