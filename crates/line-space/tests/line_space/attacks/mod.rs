@@ -6,7 +6,7 @@ mod lattice;
 mod surfaces;
 
 use families::{Case, Family, case, shaken};
-use lattice::{At, Cuboid, Goal, Place, witness};
+use lattice::{At, Cuboid, Goal, Place, STEP, witness};
 use proptest::test_runner::Config;
 use sightlines_geometry::Random;
 use sightlines_line_space::{Effort, LineSpace, Outcome, Surface};
@@ -56,7 +56,7 @@ fn see(lines: &mut LineSpace, place: &Place, from: &Cuboid, goal: &Goal) -> Outc
 
 /// A scale and a shift that keep all coordinates exact.
 fn place(random: &mut Random) -> Place {
-    let scale = [1.0, 1.0, 1000.0, 1.0 / 1024.0, 3.0, 2f64.powi(-60), 2f64.powi(60)][random.below(7)];
+    let scale = [1.0, 1.0, 1000.0, 1.0 / 1024.0, 3.0, 2f64.powi(-100), 2f64.powi(180)][random.below(7)];
     let far = f64::from(1u32 << 30);
     let shift = match random.below(4) {
         0 if scale == 1.0 => [1e6, -1e6, 0.125],
@@ -143,4 +143,27 @@ fn surfaces_that_are_closed_by_mistake_are_noticed_in_every_family() {
         assert!(by_holes > if family == Family::Junk { 0 } else { 8 }, "{family:?}: {by_holes}");
     }
     assert!(n_slits > 20, "{n_slits}");
+}
+
+/// Triangles on the side of a volume, within it or over its border, may be seen from inside of it, whatever hides the rest of them; and
+/// a volume that a triangle only touches sees it.
+#[test]
+fn triangles_that_touch_a_volume_are_never_hidden() {
+    let unit = |x: i64, y: i64, z: i64| [x, y, z].map(|x| x * STEP);
+    let place = Place { scale: 1.0, shift: [0.0; 3] };
+    let from = [unit(0, 0, 0), unit(1, 1, 1)];
+    // A wall on the side y = 1 of the volume, and beyond.
+    let wall = [unit(-9, 1, -9), unit(9, 1, -9), unit(0, 1, 18)];
+    let behind = [unit(2, 2, 0), unit(2, 3, 0), unit(2, 2, 1)];
+    let mut n_hidden = 0;
+    for y in [-1, 0, 1] {
+        for (a, b) in [(0, 1), (0, 3), (1, 2), (-1, 2)] {
+            let touching = [unit(1, y, a), unit(1, y + 2, a), unit(1, y, b)];
+            let mut lines = LineSpace::new(&place.soup(&[wall, touching]));
+            let seen = see(&mut lines, &place, &from, &Goal::Triangle(touching));
+            assert_ne!(seen, Outcome::Hidden, "{touching:?}");
+            n_hidden += u32::from(see(&mut lines, &place, &from, &Goal::Triangle(behind)) == Outcome::Hidden);
+        }
+    }
+    assert_eq!(n_hidden, 12, "what the wall hides");
 }
