@@ -305,9 +305,8 @@ fn turned(all: Soup, axis: usize, angle: f64) -> Soup {
 
 const ANGLES: [f64; 8] = [90.0, 1e-6, 1e-3, 1.0, 20.0, 45.0, 60.0, 89.9999];
 
-/// A scene of a family, and pairs of which the second is asked about from the first.
-pub(super) fn case(family: Family, random: &mut Random) -> Case {
-    let all = match family {
+fn made(family: Family, random: &mut Random) -> Soup {
+    match family {
         Family::Junk => junk(random),
         Family::Faces => faces(random),
         Family::Sheet => sheet(random),
@@ -317,7 +316,15 @@ pub(super) fn case(family: Family, random: &mut Random) -> Case {
         Family::Tube => tube(random),
         Family::Book => book(random),
         Family::Floor => floor(random),
-    };
+    }
+}
+
+/// A scene of a family, some with one of another, and pairs of which the second is asked about from the first.
+pub(super) fn case(family: Family, random: &mut Random) -> Case {
+    let mut all = made(family, random);
+    if chance(random, 2) {
+        all.extend(made(Family::ALL[random.below(Family::ALL.len())], random));
+    }
     let mut triangles = damaged(all, random);
     if triangles.is_empty() {
         triangles = junk(random);
