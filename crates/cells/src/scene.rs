@@ -42,7 +42,8 @@ pub struct Scene {
     moving: Vec<MovingObject>,
 }
 
-/// An object that moves or changes its shape at run time.
+/// An object that moves or changes its shape at run time. It is drawn, even if none of its triangles has an area at rest, and if
+/// it has none there: what is never drawn is not listed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingObject {
     /// Its index.
@@ -176,11 +177,13 @@ impl Scene {
         for MovingObject { object, within } in moving {
             let o = self.objects.get(object as usize).ok_or(SceneError::Moving { object: object as usize })?;
             let invalid = |kind| SceneError::Motion { object: object as usize, kind };
-            let given = within.iter().filter(|b| !b.is_empty()).flat_map(|b| b.min.into_iter().chain(b.max));
-            given.map(check_coordinate).collect::<Result<Vec<_>, _>>().map_err(invalid)?;
-            let within = within.map(|within| united(&within, &Aabb::around(o.corners().flatten())));
+            let mut within = within;
+            for x in within.iter_mut().filter(|b| !b.is_empty()).flat_map(|b| b.min.iter_mut().chain(&mut b.max)) {
+                *x = check_coordinate(*x).map_err(invalid)?;
+            }
+            let within = within.map(|within| within.united(Aabb::around(o.corners().flatten())));
             match self.moving.last_mut().filter(|last| last.object == object) {
-                Some(last) => last.within = last.within.zip(within).map(|(a, b)| united(&a, &b)),
+                Some(last) => last.within = last.within.zip(within).map(|(a, b)| a.united(b)),
                 None => self.moving.push(MovingObject { object, within }),
             }
         }
@@ -237,12 +240,11 @@ impl Scene {
     }
 
     /// The box outside of which nothing of an object is ever drawn, in scene units: around its triangles, and around all
-    /// places that it moves to. Empty if it has no triangles.
+    /// places that it moves to, whatever it is at rest. Empty if it has no triangles and does not move.
     pub fn extent(&self, object: u32) -> Aabb<3> {
-        let at_rest = Aabb::around(self.objects[object as usize].corners().flatten());
         match self.moving.binary_search_by_key(&object, |moving| moving.object) {
-            Ok(k) if !at_rest.is_empty() => self.moving[k].within.unwrap_or(ANYWHERE),
-            _ => at_rest,
+            Ok(k) => self.moving[k].within.unwrap_or(ANYWHERE),
+            Err(_) => Aabb::around(self.objects[object as usize].corners().flatten()),
         }
     }
 
@@ -273,11 +275,6 @@ impl Scene {
         let at_rest = self.objects.iter().flat_map(|o| o.vertices.iter().copied());
         Aabb::around(at_rest.chain(moving.flat_map(|within| [within.min, within.max])))
     }
-}
-
-/// The smallest box around two, either of which may be empty.
-fn united(a: &Aabb<3>, b: &Aabb<3>) -> Aabb<3> {
-    Aabb::around([a, b].into_iter().filter(|b| !b.is_empty()).flat_map(|b| [b.min, b.max]))
 }
 
 /// The six sides of a box, two triangles each, with their fronts outwards.
@@ -329,6 +326,14 @@ mod tests {
         assert_eq!((moving.extent(3), moving.bounds().max), (ANYWHERE, [6., 2., 9.]));
         assert_eq!((moving.covering_triangles(2).len(), moving.covering_triangles(1).len()), (12, 1));
         assert_eq!(Aabb::around(moving.covering_triangles(2).into_iter().flatten()), moving.extent(2));
+        // What has no triangles at rest is seen where it may be; negative zeros become zeros.
+        let flat = triangle([[0., 0., 0.], [0., 0., 0.], [0., 0., 0.]], [0, 1, 2]);
+        let bare = SceneObject { triangles: Vec::new(), ..flat.clone() };
+        let risen = Aabb { min: [-0., 0., 2.], max: [3., 1., 9.] };
+        let both =
+            Scene::new(vec![flat, bare]).unwrap().with_moving(vec![moves(0, None), moves(1, Some(risen))]).unwrap();
+        assert_eq!((both.extent(0), both.extent(1)), (ANYWHERE, risen));
+        assert_eq!(both.extent(1).min[0].to_bits(), 0);
         // Marks may come in any order; what no longer moves may still be see-through.
         let still = moving.with_moving(Vec::new()).unwrap();
         assert_eq!((still.see_through(), still.extent(3)), (&[1, 2, 3][..], scene.extent(3)));

@@ -28,6 +28,17 @@ impl<const D: usize> Aabb<D> {
         self
     }
 
+    /// The smallest box around this one and another. What is [empty](Self::is_empty) adds nothing.
+    #[must_use]
+    pub fn united(self, other: Self) -> Self {
+        match (self.is_empty(), other.is_empty()) {
+            (true, true) => Self::EMPTY,
+            (true, false) => other,
+            (false, true) => self,
+            (false, false) => self.with(other.min).with(other.max),
+        }
+    }
+
     /// Whether `p` is inside or on the boundary.
     pub fn contains(&self, p: [f64; D]) -> bool {
         (0..D).all(|k| self.min[k] <= p[k] && p[k] <= self.max[k])
@@ -49,5 +60,14 @@ mod tests {
         assert_eq!(b, Aabb { min: [0.0, -1.0], max: [3.0, 2.0] });
         assert!(b.contains([3.0, 2.0]) && !b.contains([3.1, 0.0]));
         assert!(Aabb::<2>::EMPTY.is_empty() && !b.is_empty());
+    }
+
+    #[test]
+    fn empty_boxes_add_nothing() {
+        let (a, b) = (Aabb { min: [0.0, 2.0], max: [1.0, 3.0] }, Aabb { min: [-1.0, 2.5], max: [0.5, 2.5] });
+        assert_eq!(a.united(b), Aabb { min: [-1.0, 2.0], max: [1.0, 3.0] });
+        // Empty along one axis only: its ends along the other one do not count.
+        let empty = Aabb { min: [9.0, 5.0], max: [10.0, 4.0] };
+        assert_eq!([a.united(empty), empty.united(a), empty.united(empty)], [a, a, Aabb::EMPTY]);
     }
 }

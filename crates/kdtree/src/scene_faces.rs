@@ -69,7 +69,7 @@ pub fn default_detail_below(scene: &Scene) -> f64 {
 
 /// The same from the boxes of all objects that hide.
 fn detail_below_of(objects: &[Aabb<3>]) -> f64 {
-    let bounds = around_all(objects.iter());
+    let bounds = objects.iter().copied().fold(Aabb::EMPTY, Aabb::united);
     if bounds.is_empty() {
         return 0.0;
     }
@@ -88,11 +88,6 @@ fn detail_below_of(objects: &[Aabb<3>]) -> f64 {
         below > most
     });
     first_beyond.map_or(f64::INFINITY, |b| b[2]).min(middle / 20.0)
-}
-
-/// The box around boxes; those that are empty add nothing.
-fn around_all<'a>(boxes: impl Iterator<Item = &'a Aabb<3>>) -> Aabb<3> {
-    Aabb::around(boxes.filter(|b| !b.is_empty()).flat_map(|b| [b.min, b.max]))
 }
 
 fn largest_side(b: &Aabb<3>) -> f64 {
@@ -124,8 +119,8 @@ impl Survey {
         let detail_below = options.detail_below.unwrap_or_else(|| detail_below_of(&boxes));
         let n_detail = boxes.iter().filter(|b| largest_side(b) < detail_below).count();
         let detail: Vec<bool> = of_shapes.map(|(hides, b)| !hides || largest_side(&b) < detail_below).collect();
-        let moving = scene.moving().iter().filter_map(|moving| moving.within.as_ref());
-        let bounds = around_all(shapes.iter().map(|shape| &shape.bounds).chain(moving));
+        let moving = scene.moving().iter().filter_map(|moving| moving.within);
+        let bounds = shapes.iter().map(|shape| shape.bounds).chain(moving).fold(Aabb::EMPTY, Aabb::united);
         let nothing = Arc::new(Mesh::default());
         let objects = scene.objects().iter().zip(&shapes).zip(&detail);
         let mesh = |((object, shape), is_detail): ((&SceneObject, &Arc<Shape>), &bool)| match is_detail {
