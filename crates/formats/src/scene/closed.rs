@@ -8,7 +8,7 @@ use sightlines_cells::{Point3, SceneObject};
 use std::collections::BTreeMap;
 
 /// Whether every piece of an object is closed, with its fronts outwards: each edge is passed as often in one direction as in
-/// the other, by two triangles, and the volume inside is positive.
+/// the other, by two triangles, and the volume inside is certainly positive. Triangles that share an edge are of one piece.
 ///
 /// Corners at one place are one. Whether a piece intersects itself is not looked at. O(n log n).
 pub(super) fn is_closed_outwards(object: &SceneObject) -> bool {
@@ -19,40 +19,69 @@ pub(super) fn is_closed_outwards(object: &SceneObject) -> bool {
         *places.entry(p.map(|x| (x + 0.0).to_bits())).or_insert(next)
     };
     let triangles: Vec<[usize; 3]> = object.corners().map(|t| t.map(&mut place)).collect();
-    // For each edge how often it is passed, and how much more often upwards.
-    let mut edges: BTreeMap<[usize; 2], (u32, i32)> = BTreeMap::new();
-    for &[a, b, c] in &triangles {
+    // For each edge the triangles that pass it, and how much more often upwards.
+    let mut edges: BTreeMap<[usize; 2], (Vec<usize>, i32)> = BTreeMap::new();
+    for (k, &[a, b, c]) in triangles.iter().enumerate() {
         for (from, to) in [(a, b), (b, c), (c, a)] {
             let edge = edges.entry([from.min(to), from.max(to)]).or_default();
-            *edge = (edge.0 + 1, edge.1 + if from < to { 1 } else { -1 });
+            edge.0.push(k);
+            edge.1 += if from < to { 1 } else { -1 };
         }
     }
-    if edges.values().any(|&(n, balance)| n != 2 || balance != 0) {
+    if edges.values().any(|(passing, balance)| passing.len() != 2 || *balance != 0) {
         return false;
     }
-    // Pieces hang together by corners.
-    let mut parents: Vec<usize> = (0..places.len()).collect();
-    fn root(parents: &mut [usize], mut k: usize) -> usize {
-        while parents[k] != k {
-            parents[k] = parents[parents[k]];
-            k = parents[k];
+    // Pieces hang together by edges. Two of them may touch at a corner, with the one inside out.
+    let mut pieces: Vec<usize> = (0..triangles.len()).collect();
+    fn root(pieces: &mut [usize], mut k: usize) -> usize {
+        while pieces[k] != k {
+            pieces[k] = pieces[pieces[k]];
+            k = pieces[k];
         }
         k
     }
-    for &[a, b, c] in &triangles {
-        for other in [b, c] {
-            let (x, y) = (root(&mut parents, a), root(&mut parents, other));
-            parents[x] = y;
+    for (passing, _) in edges.values() {
+        let (x, y) = (root(&mut pieces, passing[0]), root(&mut pieces, passing[1]));
+        pieces[x] = y;
+    }
+    let mut volumes: BTreeMap<usize, Volume> = BTreeMap::new();
+    for (k, [p, q, r]) in object.corners().enumerate() {
+        let volume =
+            volumes.entry(root(&mut pieces, k)).or_insert(Volume { origin: p, sum: 0.0, magnitude: 0.0, n: 0 });
+        volume.add([p, q, r]);
+    }
+    !volumes.is_empty() && volumes.values().all(Volume::is_positive)
+}
+
+/// Six times the volume that triangles enclose, and how far rounding can be off.
+struct Volume {
+    origin: Point3,
+    sum: f64,
+    /// The sum of the magnitudes of all products.
+    magnitude: f64,
+    n: usize,
+}
+
+impl Volume {
+    fn add(&mut self, corners: [Point3; 3]) {
+        let [p, q, r] = corners.map(|v| -> Point3 { std::array::from_fn(|k| v[k] - self.origin[k]) });
+        for (k, x) in p.into_iter().enumerate() {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let (ahead, back) = (q[a] * r[b], q[b] * r[a]);
+            self.sum += x * (ahead - back);
+            self.magnitude += x.abs() * (ahead.abs() + back.abs());
         }
+        self.n += 1;
     }
-    let mut volumes: BTreeMap<usize, (Point3, f64)> = BTreeMap::new();
-    for (&[a, ..], [p, q, r]) in triangles.iter().zip(object.corners()) {
-        let (origin, volume) = volumes.entry(root(&mut parents, a)).or_insert((p, 0.0));
-        let [p, q, r] = [p, q, r].map(|v| -> Point3 { std::array::from_fn(|k| v[k] - origin[k]) });
-        let cross = [q[1] * r[2] - q[2] * r[1], q[2] * r[0] - q[0] * r[2], q[0] * r[1] - q[1] * r[0]];
-        *volume += p[0] * cross[0] + p[1] * cross[1] + p[2] * cross[2];
+
+    /// Whether it is certainly above zero.
+    ///
+    /// A product is of three differences, each rounded once, and rounded itself in two steps; the difference in it is rounded
+    /// once, the sum at most 3 n times. So a product is off by a share of at most 6 + 3 n units of 2^-53, up to terms of
+    /// second order, which the doubled bound covers for all n that a file can have.
+    fn is_positive(&self) -> bool {
+        self.sum > self.magnitude * (12.0 + 6.0 * self.n as f64) * (0.5 * f64::EPSILON)
     }
-    !volumes.is_empty() && volumes.values().all(|&(_, volume)| volume > 0.0)
 }
 
 #[cfg(test)]
@@ -90,6 +119,24 @@ mod tests {
             })
         };
         assert!(twice(false) && !twice(true));
+        // A small one inside out that hangs at a corner of a large one; the right way round it is closed.
+        let hanging = |inside_out: bool| {
+            changed(&|o| {
+                o.vertices.extend([[5.0, 0.0, -0.1], [5.1, 0.0, 0.0], [5.0, -0.1, 0.0]]);
+                let small = [[0, 4, 6], [0, 5, 4], [0, 6, 5], [4, 5, 6]];
+                let small = small.map(|[a, b, c]| if inside_out { [a, c, b] } else { [a, b, c] });
+                o.triangles.extend(small);
+            })
+        };
+        assert!(hanging(false) && !hanging(true));
+        // A sheet of two sides has no inside, wherever it is.
+        let sheet = |at: f64| {
+            changed(&|o| {
+                o.vertices = vec![[at, 0.1, 0.7], [at + 0.3, 1.1, 0.2], [at, 0.9, 1.3]];
+                o.triangles = vec![[0, 1, 2], [0, 2, 1]];
+            })
+        };
+        assert!(!sheet(0.1) && !sheet(1e6 / 3.0));
         assert!(changed(&|o| {
             o.vertices.push(o.vertices[3]);
             o.triangles[1] = [0, 1, 4];
