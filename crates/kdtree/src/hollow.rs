@@ -35,7 +35,10 @@ pub(crate) fn hollow_rooms(
         if hollow.n_left == 0 {
             break;
         }
-        if !scene.is_opaque(id) {
+        if scene.moving().binary_search_by_key(&id, |moving| moving.object).is_ok() {
+            // Wherever it may be.
+            visit_inside(tree, &scene.extent(id), |cell| hollow.rule_out(rooms.of_cell[cell] as usize));
+        } else if !scene.is_opaque(id) {
             // Both sides are seen.
             for [a, b, c] in object.corners() {
                 show(&[a, b, c], tree, rooms, &mut hollow);

@@ -1,7 +1,7 @@
 //! Scenes made by hand: doors, windows, furniture, thick and hollow walls, houses.
 
 use crate::meshes::{aabb, cuboid, object, quad, scene};
-use sightlines_cells::{Point3, Scene, SceneObject};
+use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{KdError, SceneOptions, SceneSubdivision, default_detail_below, subdivide_scene};
 use sightlines_pvs::CellId;
@@ -186,6 +186,16 @@ fn the_gap_between_sheets_is_hollow_if_it_shows_backs_only() {
     inhabited.push(object("cat", &[[[4.1, 1., 1.], [4.2, 1., 1.5], [4.3, 2., 1.]]]));
     let out = cut(inhabited, &SceneOptions { detail_below: Some(1.2), ..SceneOptions::default() });
     assert_eq!((out.summary.n_hollow, out.summary.n_detail_objects, out.graph.n_cells()), (0, 1, 3));
+    // Something that is elsewhere at rest, and may come into the gap, or not.
+    let visited = |within| {
+        let mut objects = with_edge(false);
+        let cat = objects.len() as u32;
+        objects.push(object("cat", &[[[1., 1., 1.], [1.2, 1., 1.5], [1.3, 2., 1.]]]));
+        let scene = Scene::new(objects).unwrap().with_moving(vec![MovingObject { object: cat, within }]).unwrap();
+        subdivide_scene(&scene, &everything()).unwrap().summary.n_hollow
+    };
+    let up_to = |x: f64| Some(aabb([1.; 3], [x, 2., 2.]));
+    assert_eq!([visited(up_to(3.)), visited(up_to(4.2)), visited(None)], [1, 0, 0]);
 }
 
 #[test]
