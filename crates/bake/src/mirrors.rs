@@ -17,6 +17,8 @@ pub(crate) struct MirrorParts {
     pub(crate) n_lost: usize,
     /// Triangles of mirrors that are not perpendicular to an axis, in space.
     pub(crate) n_other_triangles: usize,
+    /// Objects that are mirrors and move, in space.
+    pub(crate) n_moving: usize,
 }
 
 /// The parts of a plan's mirrors: where a side of a cell and a mirror lie on one line, exactly, and overlap. The face is
@@ -87,11 +89,17 @@ fn overlap([from, to]: [Point2; 2], line: &PlanLine) -> Option<[Point2; 2]> {
 /// looking into it. A mirror reflects on both sides, whichever way its triangles look; where it lies inside a cell, because
 /// the cell was not cut along it, that cell has both. Faces count the rectangles of all mirrors, object by object.
 ///
+/// A mirror that moves has no part: where it reflects at rest it soon does not, and where else it does, a table cannot hold.
+///
 /// O(rectangles × cells).
 pub(crate) fn of_scene(graph: &CellGraph<Axial>, scene: &Scene) -> MirrorParts {
     let mut out = MirrorParts::default();
     let mut faces = Vec::new();
     for &object in scene.mirrors() {
+        if scene.moving().binary_search_by_key(&object, |moving| moving.object).is_ok() {
+            out.n_moving += 1;
+            continue;
+        }
         let alone = Scene::new(vec![scene.objects()[object as usize].clone()]).expect("an object of a scene makes one");
         // Nothing of a mirror is detail.
         let found = scene_faces(&alone, &SceneOptions { detail_below: Some(0.0), ..SceneOptions::default() });

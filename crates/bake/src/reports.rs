@@ -105,6 +105,8 @@ pub struct SceneReport {
     pub n_lost_mirrors: usize,
     /// Triangles of mirrors that are not perpendicular to an axis, and do not reflect.
     pub n_other_mirror_triangles: usize,
+    /// Mirrors that move, and do not reflect.
+    pub n_moving_mirrors: usize,
     /// Rectangles that the walls between the cells were merged into.
     pub n_blockers: usize,
     /// Pairs of a cell and a cell or object that count as visible because deciding them took too much effort, or more

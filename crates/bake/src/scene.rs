@@ -102,6 +102,7 @@ pub(crate) fn see_scene(
         n_mirror_parts: found.parts.len(),
         n_lost_mirrors: found.n_lost,
         n_other_mirror_triangles: found.n_other_triangles,
+        n_moving_mirrors: found.n_moving,
         n_blockers: seen.n_blockers,
         n_assumed: seen.n_assumed,
         counters: seen.counters,
@@ -114,7 +115,7 @@ pub(crate) fn see_scene(
     Ok((graph, parts, report))
 }
 
-/// The boxes outside of which nothing of an object is drawn; empty, and so never seen, for those without triangles.
+/// The boxes outside of which nothing of an object is drawn; empty, and so never seen, for those that are not drawn.
 pub(crate) fn extents(scene: &Scene) -> Vec<Aabb<3>> {
     (0u32..).zip(scene.objects()).map(|(object, _)| scene.extent(object)).collect()
 }

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sightlines_bake::{PlanBakeOptions, SceneBakeOptions, Subdivide, bake_plan, bake_scene};
-use sightlines_cells::{LineId, Plan, PlanLine, Scene, SceneObject};
+use sightlines_cells::{LineId, MovingObject, Plan, PlanLine, Scene, SceneObject};
 use sightlines_geometry::Point2;
 use sightlines_pvs::{CellId, MirrorRecord, Table, TableParts};
 use sightlines_testkit::mutate::SplitMix;
@@ -266,6 +266,25 @@ fn rays_hit_the_mirrors_of_scenes() {
         let impostor = without(table, part);
         assert!((0..40).any(|seed| check_scene(&impostor, seed).is_err()), "{:?}", table.mirrors()[part]);
     }
+}
+
+#[test]
+fn mirrors_that_move_do_not_reflect() {
+    let still = hall();
+    let mirror = still.mirrors()[0];
+    let parts = |scene: &Scene| {
+        let baked = bake_scene(scene, &SceneBakeOptions::default()).unwrap();
+        (baked.report.n_mirror_parts, baked.report.n_moving_mirrors, baked.table.mirrors().len())
+    };
+    let (n_parts, ..) = parts(&still);
+    let moving = still.clone().with_moving(vec![MovingObject { object: mirror, within: None }]).unwrap();
+    let (n_left, n_moving, n_records) = parts(&moving);
+    assert!(n_moving == 1 && n_left < n_parts && n_left == n_records, "{n_left} {n_parts}");
+    // The twin: all others reflect as before.
+    let others = still.mirrors()[1..].to_vec();
+    let without = moving.with_mirrors(others).unwrap();
+    assert_eq!(parts(&without), (n_left, 0, n_left));
+    assert_eq!(parts(&still).1, 0);
 }
 
 #[test]

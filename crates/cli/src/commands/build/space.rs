@@ -19,6 +19,7 @@ pub(super) fn warn(path: &Path, report: &SceneReport) {
         }
     };
     say(report.n_other_mirror_triangles, "triangle", "do not reflect: they are not perpendicular to an axis");
+    say(report.n_moving_mirrors, "object", "do not reflect: they move");
     say(report.n_lost_mirrors, "rectangle", "do not reflect everywhere: a part is in no cell");
 }
 
