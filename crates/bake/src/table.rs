@@ -88,12 +88,12 @@ pub(crate) fn state_file(parts: &mut TableParts, file: Option<&SceneInfo>) {
         parts.info.push(("unit".to_owned(), "metre".to_owned()));
     }
     // Whoever checks the table reads the scene likewise.
-    let SceneReadOptions { opaque, see_through, single_sided, scene } = &file.read_with;
+    let SceneReadOptions { opaque, see_through, still, single_sided, scene } = &file.read_with;
     if *single_sided {
         parts.info.push(("single-sided".to_owned(), "see-through".to_owned()));
     }
     parts.info.extend(scene.iter().map(|scene| ("scene".to_owned(), scene.clone())));
-    for (key, patterns) in [("opaque", opaque), ("see-through", see_through)] {
+    for (key, patterns) in [("opaque", opaque), ("see-through", see_through), ("still", still)] {
         if !patterns.is_empty() {
             let lines: Vec<String> = patterns.iter().map(ToString::to_string).collect();
             parts.info.push((key.to_owned(), lines.join("\n")));

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// The version of what all commands print with `--json`. It grows when a field is removed, renamed or redefined; new fields do not
 /// change it. The report types of the commands define the fields.
-pub(crate) const JSON_VERSION: u32 = 1;
+pub(crate) const JSON_VERSION: u32 = 2;
 
 /// A result with the version of its form.
 #[derive(Serialize)]

@@ -19,12 +19,17 @@ pub(crate) struct SurfaceArgs {
     /// the object, node, mesh or material. * stands for any text, ? for a character; may be given several times
     #[arg(long, help_heading = "Input", value_name = "PATTERN")]
     see_through: Vec<NamePattern>,
-    /// Scenes in space: objects that hide what is behind them, although their material is transparent or they are
-    /// animated; by the same names. --see-through is stronger
+    /// Scenes in space: objects that hide what is behind them, although their material is transparent; by the same names.
+    /// --see-through is stronger, and what moves hides nothing
     #[arg(long, help_heading = "Input", value_name = "PATTERN")]
     opaque: Vec<NamePattern>,
-    /// glTF: faces that are not doubleSided hide nothing, unless they belong to a closed object with its fronts outwards.
-    /// Without it they hide from both sides, which holds for eyes that never see the back of one
+    /// Scenes in space: objects that never move, although the file has animations, physics or other extensions that could
+    /// move them; by the same names. Does not hold for skins and morph targets
+    #[arg(long, help_heading = "Input", value_name = "PATTERN")]
+    still: Vec<NamePattern>,
+    /// glTF: of walls with one side (materials that are not doubleSided) viewers can see the back, where engines draw
+    /// nothing. Such walls then hide nothing, unless they are part of a closed object. Without this option they hide from
+    /// both sides, which is right if no viewer ever gets behind one
     #[arg(long, help_heading = "Input")]
     single_sided: bool,
     /// A glTF with several scenes: the one to read, by its name or index [default: the default scene]
@@ -35,15 +40,17 @@ pub(crate) struct SurfaceArgs {
 impl SurfaceArgs {
     /// These arguments as options of readers.
     pub(crate) fn options(&self) -> SceneReadOptions {
-        let Self { opaque, see_through, single_sided, scene_name } = self.clone();
-        SceneReadOptions { opaque, see_through, single_sided, scene: scene_name }
+        let Self { opaque, see_through, still, single_sided, scene_name } = self.clone();
+        SceneReadOptions { opaque, see_through, still, single_sided, scene: scene_name }
     }
 
     /// The same, and what the scene of a table was read with, if there is one.
     pub(crate) fn options_with(&self, table: Option<&Table>) -> SceneReadOptions {
         let mut options = self.options();
         let Some(table) = table else { return options };
-        for (key, patterns) in [("opaque", &mut options.opaque), ("see-through", &mut options.see_through)] {
+        let lists =
+            [("opaque", &mut options.opaque), ("see-through", &mut options.see_through), ("still", &mut options.still)];
+        for (key, patterns) in lists {
             let stated = table.info_value(key).unwrap_or_default();
             patterns.extend(stated.lines().filter_map(|pattern| pattern.parse().ok()));
         }
@@ -53,10 +60,11 @@ impl SurfaceArgs {
     }
 
     /// Each argument by its name, and whether it was given.
-    pub(crate) fn given(&self) -> [(&'static str, bool); 4] {
+    pub(crate) fn given(&self) -> [(&'static str, bool); 5] {
         [
             ("--see-through", !self.see_through.is_empty()),
             ("--opaque", !self.opaque.is_empty()),
+            ("--still", !self.still.is_empty()),
             ("--single-sided", self.single_sided),
             ("--scene-name", self.scene_name.is_some()),
         ]
@@ -78,14 +86,13 @@ pub(crate) fn warn_not_drawn(path: &Path, file: &SceneFile) {
     }
 }
 
-/// Objects that are taken for the same, for the same reason.
+/// Objects that are classified alike, for the same reason.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct TakenGroup {
-    /// What for.
+pub(crate) struct ClassGroup {
     role: &'static str,
     /// Whether they move or change their shape.
     moves: bool,
-    because: String,
+    reason: String,
     n_objects: usize,
     /// The first few.
     names: Vec<String>,
@@ -95,40 +102,39 @@ pub(crate) struct TakenGroup {
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Surfaces {
     /// What is not simply a wall, the largest groups first.
-    taken: Vec<TakenGroup>,
+    surfaces: Vec<ClassGroup>,
     /// Triangles that hide, of which engines draw the fronts only.
     n_single_sided_triangles: usize,
 }
 
 impl Surfaces {
     pub(crate) fn new(file: &SceneFile) -> Self {
-        let SceneInfo { taken, n_single_sided_triangles, .. } = &file.info;
+        let SceneInfo { surfaces, n_single_sided_triangles, .. } = &file.info;
         let mut groups: BTreeMap<(Role, bool, &str), Vec<u32>> = BTreeMap::new();
-        for t in taken {
-            groups.entry((t.role, t.moves, &t.because)).or_default().push(t.object);
+        for found in surfaces {
+            groups.entry((found.role, found.moves, &found.reason)).or_default().push(found.object);
         }
         let name = |object: &u32| file.scene.objects()[*object as usize].name.clone();
-        let group = |((role, moves, because), objects): ((Role, bool, &str), Vec<u32>)| TakenGroup {
+        let group = |((role, moves, reason), objects): ((Role, bool, &str), Vec<u32>)| ClassGroup {
             role: role.name(),
             moves,
-            because: because.to_owned(),
+            reason: reason.to_owned(),
             n_objects: objects.len(),
             names: objects.iter().take(MOST_NAMES).map(name).collect(),
         };
-        let mut taken: Vec<TakenGroup> = groups.into_iter().map(group).collect();
-        taken.sort_by_key(|group| std::cmp::Reverse(group.n_objects));
-        Self { taken, n_single_sided_triangles: *n_single_sided_triangles }
+        let mut surfaces: Vec<ClassGroup> = groups.into_iter().map(group).collect();
+        surfaces.sort_by_key(|group| std::cmp::Reverse(group.n_objects));
+        Self { surfaces, n_single_sided_triangles: *n_single_sided_triangles }
     }
 }
 
 impl fmt::Display for Surfaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for group in &self.taken {
-            let TakenGroup { role, moves, because, n_objects, names } = group;
+        for group in &self.surfaces {
+            let ClassGroup { role, moves, reason, n_objects, names } = group;
             let more = if names.len() < *n_objects { ", …" } else { "" };
-            let moves = if *moves { ", moving," } else { "" };
-            let objects = count(*n_objects as u64, "object");
-            writeln!(f, "{role:<14} {objects}{moves} by {because}: {}{more}", names.join(", "))?;
+            let objects = count(*n_objects as u64, if *moves { "moving object" } else { "object" });
+            writeln!(f, "{role:<14} {objects}, classified by {reason}: {}{more}", names.join(", "))?;
         }
         if self.n_single_sided_triangles > 0 {
             let triangles = count(self.n_single_sided_triangles as u64, "triangle");

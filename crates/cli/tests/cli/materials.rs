@@ -40,12 +40,18 @@ fn glass_is_reported_and_hides_nothing() {
     folder.write("room.mtl", "newmtl wall\nd 1\nnewmtl glass\nd 0.2\n");
     let build = ["build", "room.obj", "--detail-below", "0", "-o"];
     let run = folder.run(&[&build[..], &["glass.pvs"]].concat()).expect(0);
-    assert!(run.out.contains("see-through    1 object by d 0.2: pane\n"), "{}", run.out);
+    assert!(run.out.contains("see-through    1 object, classified by d 0.2: pane\n"), "{}", run.out);
     assert!(seen(&folder, "glass.pvs").contains("east picture"));
-    assert!(folder.run(&["info", "room.obj"]).expect(0).out.contains("see-through    1 object by d 0.2: pane\n"));
+    assert!(
+        folder
+            .run(&["info", "room.obj"])
+            .expect(0)
+            .out
+            .contains("see-through    1 object, classified by d 0.2: pane\n")
+    );
     // The twin: the same pane hides if somebody says that it does.
     let run = folder.run(&[&build[..], &["wall.pvs", "--opaque", "Glass"]].concat()).expect(0);
-    assert!(run.out.contains("occluder       1 object by the pattern Glass: pane\n"), "{}", run.out);
+    assert!(run.out.contains("occluder       1 object, classified by the pattern Glass: pane\n"), "{}", run.out);
     assert!(!seen(&folder, "wall.pvs").contains("east picture"));
     // The table says so, so that it is checked with the same; glass that was taken for a wall is found.
     folder.run(&["verify", "wall.pvs", "room.obj", "--rays", "2000"]).expect(0);
@@ -59,10 +65,10 @@ fn glass_is_reported_and_hides_nothing() {
     let run = folder.run(&[&build[..], &["none.pvs"]].concat()).expect(0);
     assert!(run.err.contains("the material library \"room.mtl\" cannot be read"), "{}", run.err);
     assert!(run.out.contains(
-        "see-through    9 objects by a material of the missing room.mtl: west, east, floor, ceiling, front, …\n"
+        "see-through    9 objects, classified by a material of the missing room.mtl: west, east, floor, ceiling, front, …\n"
     ));
     let run = folder.run(&[&build[..], &["some.pvs", "--opaque", "wall"]].concat()).expect(0);
-    assert!(run.out.contains("occluder       8 objects by the pattern wall"), "{}", run.out);
+    assert!(run.out.contains("occluder       8 objects, classified by the pattern wall"), "{}", run.out);
     assert!(seen(&folder, "some.pvs").contains("east picture"));
     let run = folder.run(&[&build[..], &["odd.pvs", "--see-through", "door*"]].concat()).expect(0);
     assert!(run.err.contains("no object, node, mesh or material is called door*"), "{}", run.err);

@@ -2,8 +2,7 @@
 
 use super::closed::is_closed_outwards;
 use super::error::SceneReadError;
-use super::role::Role;
-use super::surface::{SceneReadOptions, Taken, Verdict};
+use super::surface::{Classification, Classified, SceneReadOptions};
 use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplified};
 use crate::point::are_collinear;
 use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
@@ -40,7 +39,7 @@ pub(super) struct Builder {
     mirrors: Vec<u32>,
     see_through: Vec<u32>,
     moving: Vec<MovingObject>,
-    taken: Vec<Taken>,
+    surfaces: Vec<Classified>,
     n_degenerate: usize,
     n_single_sided: usize,
     simplified: Option<Simplified>,
@@ -54,7 +53,8 @@ impl Builder {
         Self { simplified, ..Self::default() }
     }
 
-    /// Adds an object, without those of its triangles that have no area.
+    /// Adds an object, without those of its triangles that have no area. Of what moves, only those that have a corner twice are
+    /// left out: others may have an area elsewhere.
     ///
     /// `mirrored` turns every triangle round, so that fronts stay fronts.
     pub(super) fn add(
@@ -63,11 +63,17 @@ impl Builder {
         vertices: Vec<Point3>,
         triangles: impl Iterator<Item = [u32; 3]>,
         mirrored: bool,
+        moves: bool,
     ) {
         let mut n_all = 0;
         let counted = triangles.inspect(|_| n_all += 1);
         let turned = counted.map(|[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] });
-        let triangles: Vec<_> = turned.filter(|t| !are_collinear(t.map(|i| vertices[i as usize]))).collect();
+        let triangles: Vec<_> = turned
+            .filter(|t| match moves {
+                true => t[0] != t[1] && t[1] != t[2] && t[2] != t[0],
+                false => !are_collinear(t.map(|i| vertices[i as usize])),
+            })
+            .collect();
         self.n_degenerate += n_all - triangles.len();
         self.objects.push(SceneObject { name, vertices, triangles });
     }
@@ -82,33 +88,35 @@ impl Builder {
         self.mirrors.extend(self.last());
     }
 
-    /// Counts the triangles of the object that was added last as single-sided, or takes it for see-through if it is not
-    /// closed and such things are to hide nothing.
-    pub(super) fn mark_single_sided(&mut self, hides_nothing: bool) {
-        let Some(object) = self.objects.last() else { return };
+    /// Counts the triangles of the object that was added last as single-sided. If such things are to hide nothing, and it is not
+    /// closed, returns what it is instead.
+    pub(super) fn count_single_sided(&mut self, hides_nothing: bool) -> Option<Classification> {
+        let object = self.objects.last()?;
         if hides_nothing && !object.triangles.is_empty() && !is_closed_outwards(object) {
-            let because = "single sides".to_owned();
-            self.take(Verdict { role: Role::SeeThrough, moves: false, because }, None);
-        } else {
-            self.n_single_sided += object.triangles.len();
+            return Some(Classification::see_through("single sides".to_owned()));
         }
+        let n = object.triangles.len();
+        self.n_single_sided += n;
+        None
     }
 
-    /// Takes the object that was added last for what was decided. `within` is the box that it does not leave if it moves,
-    /// `None` if it may be anywhere.
-    pub(super) fn take(&mut self, verdict: Verdict, within: Option<Aabb<3>>) {
+    /// Notes how the object that was added last is classified. `within` is the box that it does not leave if it moves, `None` if
+    /// it may be anywhere.
+    pub(super) fn classify(&mut self, class: Classification, within: Option<Aabb<3>>) {
         let Some(object) = self.last() else { return };
-        if !verdict.hides() {
+        if !class.hides() {
             self.see_through.push(object);
         }
-        if !verdict.role.is_drawn() {
-            self.objects[object as usize].triangles.clear();
+        let triangles = &mut self.objects[object as usize].triangles;
+        if !class.role.is_drawn() {
+            triangles.clear();
         }
-        if verdict.moves {
+        // What has no triangles, such as points and lines, is nowhere drawn.
+        if class.moves && !triangles.is_empty() {
             self.moving.push(MovingObject { object, within });
         }
-        let Verdict { role, moves, because } = verdict;
-        self.taken.push(Taken { object, role, moves, because });
+        let Classification { role, moves, reason, .. } = class;
+        self.surfaces.push(Classified { object, role, moves, reason });
     }
 
     /// The scene, if there is anything to see in it.
@@ -133,7 +141,7 @@ impl Builder {
             n_single_sided_triangles: self.n_single_sided,
             simplified,
             read_with: read_with.clone(),
-            taken: self.taken,
+            surfaces: self.surfaces,
             warnings: self.warnings,
         };
         Ok(SceneFile { scene, info })

@@ -6,8 +6,9 @@ use super::build::{Builder, Compact};
 use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
 use super::json::{Document, Mesh, Node, Primitive, SceneRoots, TRIANGLES};
 use super::motion::{Motions, Vertices};
-use super::role::{Role, Said, role_of_name};
-use super::surface::{Evidence, Judge, SceneReadOptions, Verdict, see_through};
+use super::movers;
+use super::role::{Role, StatedRole, role_of_name};
+use super::surface::{self, Classification, Classifier, Evidence, SceneReadOptions, see_through};
 use super::transform::Transform;
 use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
 use crate::beside::{Folder, Neighbours};
@@ -37,7 +38,7 @@ const HARMLESS: [&str; 12] = [
     "MSFT_texture_",
 ];
 /// Draws a mesh many times where a reader that does not know it draws it once; objects would be missing.
-const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Reads a GLB, or the text of a glTF if it does not begin like a GLB.
 ///
@@ -56,7 +57,7 @@ const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// # Source
 /// Khronos Group, glTF 2.0 Specification (ISO/IEC 12113:2022), and KHR_mesh_quantization.
 /// Chosen here: extensions that code geometry in another way are refused. What hides and what is only seen: see [`Role`] and
-/// [`Taken`](super::Taken). What is animated, physics, skins and morph targets hide nothing, and are seen in a box that they
+/// [`Classified`](super::Classified). What is animated, physics, skins and morph targets hide nothing, and are seen in a box that they
 /// never leave, or from everywhere if there is no telling.
 pub fn parse_glb(bytes: &[u8], folder: Option<&Path>) -> Result<SceneFile, SceneReadError> {
     let folder = folder.map(|folder| Folder(folder.to_owned()));
@@ -108,22 +109,20 @@ pub(super) fn parse(
     let (text, binary) = split(bytes)?;
     let document: Document = serde_json::from_str(text).map_err(|source| SceneReadError::Json { source })?;
     check_understood(&document)?;
-    let placed = place_nodes(&document, options.scene.as_deref())?;
+    let Nodes { placed, above } = place_nodes(&document, options.scene.as_deref())?;
     check_size(&document, &placed)?;
     let buffers = Buffers::new(&document.buffers, binary, beside);
-    let mut judge = Judge::new(options);
-    let mut builder = build(&document, &buffers, &placed, &mut judge, watch)?;
+    let mut classifier = Classifier::new(options);
+    let mut builder = build(&document, &Motions::new(&document, &buffers, &above), &placed, &mut classifier, watch)?;
     builder.warnings.extend(unknown_roles(&document));
     if options.scene.is_none() && document.scenes.len() > 1 {
         let read = scene_names(&document).swap_remove(document.scene.unwrap_or(0));
         let n = document.scenes.len();
         builder.warnings.push(format!("the default scene, {read}, was read, one of {n} in the file"));
     }
-    if document.extensions_used.iter().any(|name| name == "KHR_interactivity") {
-        let warning = "KHR_interactivity may move and show anything: name what it moves as see-through";
-        builder.warnings.push(warning.to_owned());
-    }
-    builder.warnings.extend(judge.warnings());
+    builder.warnings.extend(movers::warnings(&document));
+    builder.warnings.extend(surface::warnings(&document));
+    builder.warnings.extend(classifier.warnings());
     let file = builder.finish(SceneFormat::Gltf, options)?;
     Ok((file, buffers.into_loaded()))
 }
@@ -143,9 +142,12 @@ fn check_understood(document: &Document) -> Result<(), SceneReadError> {
         return Err(SceneReadError::Version { found: version.clone() });
     }
     let strange = |name: &&String| !HARMLESS.iter().any(|harmless| name.starts_with(harmless));
-    let instancing = document.extensions_used.iter().find(|name| *name == INSTANCING);
-    match document.extensions_required.iter().find(strange).or(instancing) {
-        Some(name) => Err(SceneReadError::Extension { name: name.clone() }),
+    let is_instanced = |node: &Node| node.extensions.as_ref().is_some_and(|extensions| extensions.is_instanced);
+    let is_instanced =
+        document.extensions_used.iter().any(|name| name == INSTANCING) || document.nodes.iter().any(is_instanced);
+    let instancing = is_instanced.then_some(INSTANCING);
+    match document.extensions_required.iter().find(strange).map(String::as_str).or(instancing) {
+        Some(name) => Err(SceneReadError::Extension { name: name.to_owned() }),
         None => Ok(()),
     }
 }
@@ -174,7 +176,7 @@ impl Inherited {
     /// What `node` has, below what has `self`.
     fn by(self, node: &Node) -> Self {
         let of_name = node.name.as_deref().and_then(role_of_name).map(|(role, ending)| (role, Some(ending)));
-        let own = node.role.role().map(|role| (role, None)).filter(|own| own.0 != Role::Mirror);
+        let own = node.stated.role.role().map(|role| (role, None)).filter(|own| own.0 != Role::Mirror);
         let own = own.or(of_name.filter(|own| own.0 != Role::Mirror));
         Self { role: own.or(self.role), is_invisible: self.is_invisible || node.is_invisible() }
     }
@@ -199,38 +201,43 @@ impl<'a> Placed<'a> {
         if primitive == 0 { name } else { format!("{name}#{primitive}") }
     }
 
-    /// Whether the node says, by its extras or by its name, that it is a mirror.
-    fn is_mirror(&self) -> bool {
-        let by_name = self.node.name.as_deref().and_then(role_of_name);
-        self.node.role == Said::Role(Role::Mirror) || by_name.is_some_and(|(role, _)| role == Role::Mirror)
+    /// Whether extras of the node, the mesh or the material, or the name of the node, state that a primitive is a mirror.
+    fn is_mirror(&self, document: &Document, primitive: &Primitive) -> bool {
+        let by_name = self.node.name.as_deref().and_then(role_of_name).map(|(role, _)| role);
+        let material = primitive.material.and_then(|m| document.materials.get(m)?.as_ref());
+        let stated =
+            [self.node.stated.role.role(), self.mesh.role.role(), material.and_then(|m| m.role.role()), by_name];
+        stated.contains(&Some(Role::Mirror))
     }
 
-    /// What is known of one of its objects. `name` is that of the object.
+    /// What is known of one of its objects if it has a material. `name` is that of the object. Of several roles the one that is
+    /// stated of the least counts: of the material, the mesh, the node, or the nearest node above it that has one.
     fn evidence<'e>(
         &'e self,
         document: &'e Document,
         motions: &Motions<'_, '_>,
         primitive: &Primitive,
+        material: Option<usize>,
         name: &'e str,
     ) -> Evidence<'e> {
-        let material = primitive.material.and_then(|m| document.materials.get(m)?.as_ref());
+        let see_through = material.and_then(|m| see_through(document, m));
+        let material = material.and_then(|m| document.materials.get(m)?.as_ref());
         let names = [Some(name), self.node.name.as_deref(), self.mesh.name.as_deref()];
         let names = names.into_iter().chain([material.and_then(|m| m.name.as_deref())]).flatten().collect();
-        let below = [self.mesh.role.role(), material.and_then(|m| m.role.role())].into_iter().flatten();
-        let below = below.filter(|role| *role != Role::Mirror).map(|role| (role, None));
-        let role = self.inherited.role.or_else(|| below.into_iter().next());
-        let because =
+        let own = [material.and_then(|m| m.role.role()), self.mesh.role.role()].into_iter().flatten();
+        let mut own = own.filter(|role| *role != Role::Mirror).map(|role| (role, None));
+        let role = own.next().or(self.inherited.role);
+        let reason =
             |ending: Option<&str>| ending.map_or_else(|| "extras".to_owned(), |ending| format!("a name with {ending}"));
-        let see_through = see_through(document, primitive);
         let is_invisible = self.inherited.is_invisible || motions.appears(self.index);
         let invisible = is_invisible.then(|| "KHR_node_visibility".to_owned());
         let moves = motions.why(self.index, self.mesh, primitive);
         Evidence {
             names,
-            role: role.map(|(role, ending)| (role, because(ending))),
+            role: role.map(|(role, ending)| (role, reason(ending))),
             see_through: see_through.or(invisible),
-            moves: moves.map(|moves| moves.because.to_owned()),
-            deforms: moves.is_some_and(|moves| moves.deforms),
+            deforms: moves.as_ref().is_some_and(|moves| moves.deforms),
+            moves: moves.map(|moves| moves.reason),
         }
     }
 
@@ -281,16 +288,24 @@ fn roots(document: &Document, asked: Option<&str>) -> Result<Vec<usize>, SceneRe
     }
 }
 
-/// All nodes with meshes, parents before children. Keeps its own stack, so depth costs nothing but memory.
-fn place_nodes<'a>(document: &'a Document, scene: Option<&str>) -> Result<Vec<Placed<'a>>, SceneReadError> {
-    let mut reached = vec![false; document.nodes.len()];
-    let start = |node| (node, Transform::IDENTITY, Inherited::default());
+/// The nodes of a scene.
+struct Nodes<'a> {
+    /// Those with meshes, parents before children.
+    placed: Vec<Placed<'a>>,
+    /// The parent of each node of the scene, `Some(None)` for a root; `None` for nodes that are of no or another scene.
+    above: Vec<Option<Option<usize>>>,
+}
+
+/// The nodes of a scene. Keeps its own stack, so depth costs nothing but memory.
+fn place_nodes<'a>(document: &'a Document, scene: Option<&str>) -> Result<Nodes<'a>, SceneReadError> {
+    let mut above: Vec<Option<Option<usize>>> = vec![None; document.nodes.len()];
+    let start = |node| (node, None, Transform::IDENTITY, Inherited::default());
     let mut stack: Vec<_> = roots(document, scene)?.into_iter().rev().map(start).collect();
     let mut placed = Vec::new();
-    while let Some((index, parent, inherited)) = stack.pop() {
+    while let Some((index, parent_idx, parent, inherited)) = stack.pop() {
         let node = &document.nodes[index];
         let fail = |kind| SceneReadError::Node { node: id_of(index, node), kind };
-        if std::mem::replace(&mut reached[index], true) {
+        if above[index].replace(parent_idx).is_some() {
             return Err(fail(NodeErrorKind::ReachedTwice));
         }
         let world = parent.after(&Transform::of_node(node).map_err(fail)?);
@@ -302,9 +317,9 @@ fn place_nodes<'a>(document: &'a Document, scene: Option<&str>) -> Result<Vec<Pl
         if let Some(&child) = node.children.iter().find(|&&child| child >= document.nodes.len()) {
             return Err(fail(NodeErrorKind::NoChild { child }));
         }
-        stack.extend(node.children.iter().rev().map(|&child| (child, world, inherited.for_children())));
+        stack.extend(node.children.iter().rev().map(|&child| (child, Some(index), world, inherited.for_children())));
     }
-    Ok(placed)
+    Ok(Nodes { placed, above })
 }
 
 /// Refuses scenes that are too large before any object is made: a small file can describe a large scene.
@@ -332,13 +347,12 @@ fn check_size(document: &Document, placed: &[Placed<'_>]) -> Result<(), SceneRea
 
 fn build(
     document: &Document,
-    buffers: &Buffers<'_>,
+    motions: &Motions<'_, '_>,
     placed: &[Placed<'_>],
-    judge: &mut Judge<'_>,
+    classifier: &mut Classifier<'_>,
     mut watch: impl FnMut(Origin<'_>),
 ) -> Result<Builder, SceneReadError> {
     let mut builder = Builder::saying(document.asset.simplified);
-    let motions = Motions::new(document, buffers);
     // Meshes by their index, read when the first node has them.
     let mut meshes: Vec<Option<Vec<LocalMesh>>> = Vec::new();
     meshes.resize_with(document.meshes.len(), || None);
@@ -346,15 +360,17 @@ fn build(
         let mesh = match &mut meshes[at.mesh_idx] {
             Some(mesh) => mesh,
             unread => {
-                let read = |(k, p)| LocalMesh::read(document, buffers, p).map_err(|kind| at.fail(k, kind));
+                let read = |(k, p)| LocalMesh::read(document, motions.buffers(), p).map_err(|kind| at.fail(k, kind));
                 unread.insert(at.mesh.primitives.iter().enumerate().map(read).collect::<Result<_, _>>()?)
             }
         };
         watch(Origin { node: at.index, mesh: at.mesh_idx, mirrors: at.world.mirrors(), locals: mesh });
         for (k, local) in mesh.iter().enumerate() {
             let (name, primitive) = (at.name(k), &at.mesh.primitives[k]);
-            let verdict = judge.verdict(at.evidence(document, &motions, primitive, &name));
-            let moved = verdict.as_ref().filter(|verdict| verdict.moves).map(|_| {
+            let materials = materials_of(primitive);
+            let evidence = materials.iter().map(|&m| at.evidence(document, motions, primitive, m, &name));
+            let mut class = classifier.classify(evidence);
+            let moved = class.as_ref().filter(|class| class.moves).map(|_| {
                 let vertices = Vertices { corners: &local.mesh.corners, positions: &local.positions };
                 motions.moved(at.index, at.mesh, primitive, vertices)
             });
@@ -368,38 +384,48 @@ fn build(
                     corners.zip(world).map(placed).collect::<Result<_, _>>()?
                 }
             };
-            builder.add(name, vertices, local.mesh.triangles.iter().copied(), at.world.mirrors());
-            if at.is_mirror() {
+            builder.add(name, vertices, local.mesh.triangles.iter().copied(), at.world.mirrors(), moved.is_some());
+            if at.is_mirror(document, primitive) {
                 builder.mark_mirror();
             }
-            if verdict.as_ref().is_none_or(Verdict::hides) && is_single_sided(document, primitive) {
+            if class.as_ref().is_none_or(Classification::hides)
+                && materials.iter().any(|&m| is_single_sided(document, m))
+            {
                 // Who says by name that something hides has the last word.
-                builder.mark_single_sided(judge.hides_no_single_sides() && verdict.is_none());
+                let is_vouched_for = class.as_ref().is_some_and(|class| class.is_vouched_for);
+                if let Some(other) = builder.count_single_sided(classifier.hides_no_single_sides() && !is_vouched_for) {
+                    class = Some(other);
+                }
             }
-            if let Some(verdict) = verdict {
-                builder.take(verdict, moved.and_then(|moved| moved.within));
+            if let Some(class) = class {
+                builder.classify(class, moved.and_then(|moved| moved.within));
             }
         }
     }
     Ok(builder)
 }
 
-/// Whether engines draw only the fronts of a primitive.
-fn is_single_sided(document: &Document, primitive: &Primitive) -> bool {
-    let material = primitive.material.and_then(|m| document.materials.get(m)?.as_ref());
+/// The material of a primitive, and those that it may have instead; `None` for the standard one.
+fn materials_of(primitive: &Primitive) -> Vec<Option<usize>> {
+    std::iter::once(primitive.material).chain(primitive.variants.iter().copied().map(Some)).collect()
+}
+
+/// Whether engines draw only the fronts of what has a material.
+fn is_single_sided(document: &Document, material: Option<usize>) -> bool {
+    let material = material.and_then(|m| document.materials.get(m)?.as_ref());
     material.is_none_or(|material| !material.double_sided)
 }
 
 /// Warnings of extras that state a role that there is not.
 fn unknown_roles(document: &Document) -> Vec<String> {
-    fn of<'a>(what: &str, said: impl Iterator<Item = (Said, Option<&'a str>)>) -> Option<String> {
+    fn of<'a>(what: &str, said: impl Iterator<Item = (StatedRole, Option<&'a str>)>) -> Option<String> {
         let names: Vec<&str> =
-            said.filter(|(role, _)| *role == Said::Unknown).map(|(_, name)| name.unwrap_or_default()).collect();
+            said.filter(|(role, _)| *role == StatedRole::Unknown).map(|(_, name)| name.unwrap_or_default()).collect();
         let (first, n) = (names.first()?, names.len());
         let roles = Role::ALL.map(Role::name).join(", ");
         Some(format!("extras of {what} state a role that is none of {roles}: {n}, the first called {first:?}"))
     }
-    let nodes = document.nodes.iter().map(|node| (node.role, node.name.as_deref()));
+    let nodes = document.nodes.iter().map(|node| (node.stated.role, node.name.as_deref()));
     let meshes = document.meshes.iter().map(|mesh| (mesh.role, mesh.name.as_deref()));
     let materials = document.materials.iter().flatten().map(|material| (material.role, material.name.as_deref()));
     [of("nodes", nodes), of("meshes", meshes), of("materials", materials)].into_iter().flatten().collect()

@@ -4,10 +4,12 @@
 //! that is written 10,000 km from the origin would have its walls moved against each other.
 
 use super::Simplified;
-use super::role::Said;
+use super::movers::NodeExtensions;
+use super::role::{Stated, StatedRole};
 use serde::de::{Deserializer, IgnoredAny};
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -38,6 +40,9 @@ pub(super) struct Document {
     pub(super) extensions_required: Vec<String>,
     #[serde(default)]
     pub(super) extensions_used: Vec<String>,
+    /// Their names.
+    #[serde(default, deserialize_with = "super::movers::names")]
+    pub(super) extensions: BTreeSet<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -68,33 +73,25 @@ pub(super) struct Node {
     pub(super) scale: Option<Box<[f64; 3]>>,
     pub(super) skin: Option<usize>,
     pub(super) weights: Option<Box<[f64]>>,
-    /// What its extras say: `{"sightlines": {"role": "mirror"}}`.
-    #[serde(default, rename = "extras", deserialize_with = "super::role::said")]
-    pub(super) role: Said,
+    /// What its extras state: `{"sightlines": {"role": "mirror", "moves": true}}`.
+    #[serde(default, rename = "extras", deserialize_with = "super::role::stated")]
+    pub(super) stated: Stated,
     #[serde(default)]
     pub(super) extensions: Option<Box<NodeExtensions>>,
-}
-
-/// The extensions of a node that change whether, and where, it is seen.
-#[derive(Debug, Default, Deserialize)]
-pub(super) struct NodeExtensions {
-    #[serde(rename = "KHR_node_visibility")]
-    visibility: Option<Value>,
-    #[serde(rename = "KHR_physics_rigid_bodies")]
-    physics: Option<Value>,
 }
 
 impl Node {
     /// Whether the node, and all below it, is not drawn at first: a program may show it later.
     pub(super) fn is_invisible(&self) -> bool {
-        let said = self.extensions.as_ref().and_then(|extensions| extensions.visibility.as_ref());
-        said.is_some_and(|said| said.get("visible") == Some(&Value::Bool(false)))
+        self.extensions.as_ref().is_some_and(|extensions| extensions.is_invisible)
     }
 
-    /// Whether physics move it.
-    pub(super) fn is_body(&self) -> bool {
-        let said = self.extensions.as_ref().and_then(|extensions| extensions.physics.as_ref());
-        said.is_some_and(|said| said.get("motion").is_some())
+    /// Why programs may move it, and all below it, anywhere.
+    pub(super) fn loose(&self) -> Option<String> {
+        if self.stated.moves {
+            return Some("extras".to_owned());
+        }
+        self.extensions.as_ref()?.reason()
     }
 }
 
@@ -106,7 +103,7 @@ pub(super) struct Mesh {
     pub(super) weights: Option<Box<[f64]>>,
     /// As that of a node, for all nodes with this mesh.
     #[serde(default, rename = "extras", deserialize_with = "super::role::said")]
-    pub(super) role: Said,
+    pub(super) role: StatedRole,
 }
 
 #[derive(Debug, Deserialize)]
@@ -143,7 +140,7 @@ pub(super) struct Attributes {
     pub(super) position: Option<usize>,
     /// All others: a primitive has any number of sets of joints and weights.
     #[serde(flatten)]
-    pub(super) others: std::collections::BTreeMap<String, Value>,
+    pub(super) others: BTreeMap<String, Value>,
 }
 
 /// What of a material says whether it lets light through.
@@ -155,21 +152,10 @@ pub(super) struct Material {
     #[serde(default)]
     pub(super) double_sided: bool,
     #[serde(default)]
-    pub(super) extensions: MaterialExtensions,
+    pub(super) extensions: BTreeMap<Box<str>, IgnoredAny>,
     /// As that of a node, for all primitives with this material.
     #[serde(default, rename = "extras", deserialize_with = "super::role::said")]
-    pub(super) role: Said,
-}
-
-/// The extensions by which a material lets light through.
-#[derive(Debug, Default, Deserialize)]
-pub(super) struct MaterialExtensions {
-    #[serde(rename = "KHR_materials_transmission")]
-    pub(super) transmission: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_volume")]
-    pub(super) volume: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_diffuse_transmission")]
-    pub(super) diffuse_transmission: Option<IgnoredAny>,
+    pub(super) role: StatedRole,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -5,15 +5,15 @@
 //! | objects | one per node and primitive of the default scene, parents before children | one per `o`, or per `g` where there is no `o` |
 //! | up, unit | Y, metres, as the format says | Y assumed, unknown |
 //! | numbers | single precision or quantised, placed by transforms in double precision | double precision |
-//! | seen, and hide nothing | materials with `alphaMode` `BLEND` or `MASK`, or with transmission or volume; what is not drawn at first | materials with `d`, `Tr`, `map_d`, or of which nothing is known |
+//! | seen, and hide nothing | materials with `alphaMode` `BLEND` or `MASK`, or with transmission, volume or an extension that is not known; what is not drawn at first | materials with `d`, `Tr`, `map_d`, or of which nothing is known |
 //! | roles | `"extras": {"sightlines": {"role": …}}` of nodes, meshes and materials, see [`Role`]; endings of names | endings of names |
-//! | mirrors | nodes with that role, or a name that ends in `-mirror` | objects with such a name |
+//! | mirrors | nodes, meshes and materials with that role, or nodes with a name that ends in `-mirror` | objects with such a name |
 //! | left out | looks, animations, cameras | looks, normals, lines, curves |
 //! | written again | with fewer triangles, and all else as it was ([`GltfSource::rewrite`]) | as GLB, without materials |
 //!
 //! Objects keep their order, which gives them their ids, even those that are only points or lines and have no
 //! triangles. Corners that nothing uses are left out, and so are triangles without area. What moves or changes its shape
-//! (animations, physics, skins, morph targets) hides nothing. Unknown compressions are refused: a wall in the wrong place
+//! (animations, physics and other extensions, skins, morph targets) hides nothing. Unknown compressions are refused: a wall in the wrong place
 //! would be a silent error.
 
 mod accessor;
@@ -24,6 +24,7 @@ mod error;
 mod gltf;
 mod json;
 mod motion;
+mod movers;
 mod mtl;
 mod obj;
 mod pattern;
@@ -47,7 +48,7 @@ pub use pattern::{EmptyPattern, NamePattern};
 pub use rewrite::RewriteError;
 pub use role::Role;
 pub use source::{GltfSource, ObjectSource, parse_glb_with_source};
-pub use surface::{SceneReadOptions, Taken};
+pub use surface::{Classified, SceneReadOptions};
 pub use write::{write_glb, write_simplified_glb};
 
 use crate::ReadError;
@@ -100,7 +101,7 @@ pub struct SceneInfo {
     /// What it was read with.
     pub read_with: SceneReadOptions,
     /// The objects that are not simply walls, ascending.
-    pub taken: Vec<Taken>,
+    pub surfaces: Vec<Classified>,
     /// What a user should hear of the file, a sentence each.
     pub warnings: Vec<String>,
 }

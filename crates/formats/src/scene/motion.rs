@@ -14,6 +14,7 @@ use super::accessor::Elements;
 use super::buffers::Buffers;
 use super::error::AccessorRole;
 use super::json::{Channel, Document, Mesh, Node, Primitive, Sampler};
+use super::movers::moves_everything;
 use super::range::{Range, RangeBox, bounded, box_of, mapped, rotations, united};
 use super::transform::Transform;
 use serde_json::Value;
@@ -30,10 +31,10 @@ const MOST_PIECES: usize = 1024;
 const ROUNDING: f64 = 1.0 / (1u64 << 44) as f64;
 
 /// Why a mesh moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Moves {
     /// In a few words.
-    pub(super) because: &'static str,
+    pub(super) reason: String,
     /// Whether it changes its shape.
     pub(super) deforms: bool,
 }
@@ -80,8 +81,8 @@ struct Keyed {
 /// What a node has of itself or of those above it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Inherited {
-    /// Whether physics move it.
-    is_body: bool,
+    /// The node that programs may move anywhere.
+    loose: Option<usize>,
     /// Whether an animation moves it.
     is_keyed: bool,
     /// Whether an animation lets it come into sight, or go.
@@ -122,27 +123,31 @@ impl Keyed {
 pub(super) struct Motions<'a, 'b> {
     document: &'a Document,
     buffers: &'a Buffers<'b>,
+    /// In the scene that is read; of nodes outside of it, in the document.
     parents: Vec<Option<usize>>,
+    /// Whether a node outside of the scene has several parents.
+    is_torn: Vec<bool>,
     /// What each node has of itself or of those above it.
     inherited: Vec<Inherited>,
     keyed: BTreeMap<usize, Keyed>,
-    /// Whether an animation is about something that is not understood.
-    all_anywhere: bool,
+    /// Why anything may be anywhere, if it may: an extension, or an animation of something that is not understood.
+    all_anywhere: Option<String>,
     n_steps: Cell<u64>,
 }
 
 impl<'a, 'b> Motions<'a, 'b> {
-    pub(super) fn new(document: &'a Document, buffers: &'a Buffers<'b>) -> Self {
-        let mut parents = vec![None; document.nodes.len()];
+    /// * `above`: of each node in the scene that is read its parent there, `Some(None)` for a root; `None` for other nodes
+    pub(super) fn new(document: &'a Document, buffers: &'a Buffers<'b>, above: &[Option<Option<usize>>]) -> Self {
+        let mut parents: Vec<Option<usize>> = above.iter().map(|above| above.flatten()).collect();
+        let mut is_torn = vec![false; parents.len()];
         for (parent, node) in document.nodes.iter().enumerate() {
-            for &child in &node.children {
-                if let Some(of) = parents.get_mut(child) {
-                    *of = Some(parent);
-                }
+            for &child in node.children.iter().filter(|&&child| above.get(child) == Some(&None)) {
+                is_torn[child] = parents[child].replace(parent).is_some_and(|other| other != parent) || is_torn[child];
             }
         }
         let (n_steps, keyed, inherited) = (Cell::new(0), BTreeMap::new(), Vec::new());
-        let mut motions = Self { document, buffers, parents, inherited, keyed, all_anywhere: false, n_steps };
+        let all_anywhere = moves_everything(document).map(str::to_owned);
+        let mut motions = Self { document, buffers, parents, is_torn, inherited, keyed, all_anywhere, n_steps };
         for animation in &document.animations {
             for channel in &animation.channels {
                 motions.add(channel, &animation.samplers);
@@ -150,6 +155,11 @@ impl<'a, 'b> Motions<'a, 'b> {
         }
         motions.inherited = motions.inherit();
         motions
+    }
+
+    /// What accessors are in.
+    pub(super) fn buffers(&self) -> &'a Buffers<'b> {
+        self.buffers
     }
 
     /// What each node has of itself or of those above it: parents before children, so that depth costs nothing. Nodes in
@@ -167,7 +177,7 @@ impl<'a, 'b> Motions<'a, 'b> {
             let above = self.parents[node].map_or(Inherited::default(), |parent| all[parent]);
             let keyed = self.keyed.get(&node);
             all[node] = Inherited {
-                is_body: above.is_body || nodes[node].is_body(),
+                loose: above.loose.or_else(|| nodes[node].loose().map(|_| node)),
                 is_keyed: above.is_keyed || keyed.is_some_and(Keyed::moves),
                 appears: above.appears || keyed.is_some_and(|keyed| keyed.appears),
             };
@@ -190,7 +200,7 @@ impl<'a, 'b> Motions<'a, 'b> {
     /// Why a primitive of a node moves, if it does.
     pub(super) fn why(&self, node: usize, mesh: &Mesh, primitive: &Primitive) -> Option<Moves> {
         let n = &self.document.nodes[node];
-        let says = |because: &'static str, deforms: bool| Some(Moves { because, deforms });
+        let says = |reason: &str, deforms: bool| Some(Moves { reason: reason.to_owned(), deforms });
         if n.skin.is_some() {
             return says("a skin", true);
         }
@@ -198,10 +208,14 @@ impl<'a, 'b> Motions<'a, 'b> {
         if !primitive.targets.is_empty() || weights.is_some_and(|weights| weights.iter().any(|&w| w != 0.0)) {
             return says("morph targets", true);
         }
-        if self.inherited[node].is_body {
-            return says("physics", false);
+        if let Some(reason) = self.inherited[node].loose.and_then(|loose| self.document.nodes[loose].loose()) {
+            return says(&reason, false);
         }
-        if self.all_anywhere || self.inherited[node].is_keyed { says("an animation", false) } else { None }
+        match &self.all_anywhere {
+            Some(reason) => says(reason, false),
+            None if self.inherited[node].is_keyed => says("an animation", false),
+            None => None,
+        }
     }
 
     /// Whether an animation lets a node, or one above it, come into sight or go.
@@ -216,7 +230,7 @@ impl<'a, 'b> Motions<'a, 'b> {
             return Moved { at_rest: None, within: None };
         };
         let moved = match n.skin {
-            Some(skin) => self.skinned(skin, primitive, vertices, &ranges, at_rest.as_deref()),
+            Some(skin) => self.skinned(node, skin, primitive, vertices, &ranges, at_rest.as_deref()),
             None => {
                 let within = self.swept(node, &ranges);
                 // Where the node puts what has no other shape, the caller knows.
@@ -226,8 +240,8 @@ impl<'a, 'b> Motions<'a, 'b> {
             }
         };
         let moved = moved.unwrap_or(Moved { at_rest: None, within: None });
-        // Physics and what is not understood move things as they like.
-        let is_loose = self.all_anywhere || self.inherited[node].is_body;
+        // Physics, programs and what is not understood move things as they like.
+        let is_loose = self.all_anywhere.is_some() || self.inherited[node].loose.is_some();
         if is_loose { Moved { within: None, ..moved } } else { moved }
     }
 
@@ -275,6 +289,7 @@ impl<'a, 'b> Motions<'a, 'b> {
     /// Where joints bring vertices.
     fn skinned(
         &self,
+        node: usize,
         skin: usize,
         primitive: &Primitive,
         vertices: Vertices<'_>,
@@ -315,11 +330,12 @@ impl<'a, 'b> Motions<'a, 'b> {
                     weights += w;
                     place = std::array::from_fn(|axis| place[axis] + w * p[axis]);
                 }
+                // Some programs take the first sets only, so each part of the sum counts. Without any weight there is no telling.
+                if weights == 0.0 {
+                    return None;
+                }
+                sum = sum.with(Range::of(weights).wider(weights * ROUNDING));
             }
-            if weights == 0.0 {
-                return None;
-            }
-            sum = sum.with(Range::of(weights).wider(weights * ROUNDING));
             rest.push(place.map(|x| x / weights));
         }
         let mut all: Option<RangeBox> = None;
@@ -328,9 +344,20 @@ impl<'a, 'b> Motions<'a, 'b> {
             let swept = self.swept_box(joint.node, bound)?;
             all = Some(all.map_or(swept, |all| united(all, swept)));
         }
-        // Weights that do not add up to 1 pull a vertex away from the hull in some programs, not in others.
-        let within = all.map(|all| united(all, all.map(|range| range.times(sum))));
-        Some(Moved { at_rest: Some(rest), within: within.and_then(bounded) })
+        // Weights that do not add up to 1 pull a vertex away from the hull: to the origin or to the node of the mesh, by how a
+        // program computes it, or nowhere if it divides by the sum.
+        let all = all?;
+        // Two ways to write the same: one is tighter for weights near 1, one where `to` is small.
+        let pulled = |to: RangeBox| -> RangeBox {
+            std::array::from_fn(|k| {
+                let from = all[k].minus(to[k]);
+                let by_difference = all[k].plus(sum.minus(Range::of(1.0)).times(from));
+                by_difference.within(to[k].plus(sum.times(from)))
+            })
+        };
+        let mesh = self.swept_box(node, box_of([0.0; 3]))?;
+        let within = united(all, united(pulled(box_of([0.0; 3])), pulled(mesh)));
+        Some(Moved { at_rest: Some(rest), within: bounded(within) })
     }
 
     fn joints(&self, nodes: &[usize], binds: Option<&Elements<'_>>) -> Option<Vec<Joint>> {
@@ -375,7 +402,7 @@ impl<'a, 'b> Motions<'a, 'b> {
     fn world(&self, node: usize) -> Option<Transform> {
         let mut world = Transform::IDENTITY;
         for above in self.chain(node) {
-            if !self.step(1) {
+            if self.is_torn[above] || !self.step(1) {
                 return None;
             }
             world = Transform::of_node(&self.document.nodes[above]).ok()?.after(&world);
@@ -408,12 +435,12 @@ impl<'a, 'b> Motions<'a, 'b> {
 
     /// A box in the coordinates of a node, wherever it and those above it move.
     fn swept_box(&self, node: usize, mut b: RangeBox) -> Option<RangeBox> {
-        if self.inherited[node].is_body {
+        if self.inherited[node].loose.is_some() {
             return None;
         }
         for above in self.chain(node) {
             let n = &self.document.nodes[above];
-            if !self.step(1) {
+            if self.is_torn[above] || !self.step(1) {
                 return None;
             }
             let Some(keyed) = self.keyed.get(&above).filter(|keyed| keyed.moves()) else {
@@ -455,7 +482,7 @@ impl<'a, 'b> Motions<'a, 'b> {
                 }
                 Some(Pointed::Other) => return,
                 None => {
-                    self.all_anywhere = true;
+                    self.all_anywhere.get_or_insert_with(|| "an animation".to_owned());
                     return;
                 }
             },

@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 /// light through counts: readers differ in which of them they take.
 ///
 /// See-through are materials with `d` below 1, `Tr` above 0, `map_d` or `map_Tr`, and an `illum` that names glass or
-/// refraction (4, 6, 7, 9). A number that cannot be read counts as see-through.
+/// refraction (4, 6, 7, 9). A number that cannot be read counts as see-through. `Tf` only colours what one of these lets
+/// through, so alone it lets nothing through; many programs write it for every material. Textures are not read: alpha in one
+/// that `map_Kd` names is not weighed.
 ///
 /// # Source
 /// Wavefront Technologies, Advanced Visualizer manual, the format of `.mtl`; `Tr` as most programs write it, 1 - `d`.
@@ -47,7 +49,7 @@ mod tests {
 
     #[test]
     fn glass_is_told_from_walls() {
-        let text = "# materials\nd 0.1\nnewmtl wall\nKd 1 1 1\nd 1.0\nTr 0\nillum 2\nnewmtl glass\r\n  d 0.25\r\n\
+        let text = "# materials\nd 0.1\nnewmtl wall\nKd 1 1 1\nTf 0.6 0.6 0.6\nd 1.0\nTr 0\nillum 2\nnewmtl glass\r\n  d 0.25\r\n\
                     newmtl water\nTr 0.5 # half\nnewmtl leaf\nmap_d leaf mask.png\nnewmtl pane\nillum 4\nnewmtl halo\nd -halo 1\n\
                     newmtl odd\nd\nnewmtl old glass\nd 1\nnewmtl old glass\nd 0.9";
         let found = parse_mtl(text.as_bytes());

@@ -6,7 +6,7 @@ use super::error::{ObjErrorKind, SceneReadError};
 use super::mtl::parse_mtl;
 use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
 use super::role::{Role, role_of_name};
-use super::surface::{Evidence, Judge, SceneReadOptions, Verdict};
+use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
 use super::{MAX_ELEMENTS, SceneFile, SceneFormat};
 use crate::beside::Neighbours;
 use crate::point::check_point;
@@ -40,8 +40,8 @@ pub fn parse_obj(bytes: &[u8]) -> Result<SceneFile, SceneReadError> {
 /// As [`parse_obj`], with options, and with materials wherever `beside` has the libraries that the file names.
 ///
 /// Faces with a material that lets light through hide nothing; nor do those with a material of which nothing is known,
-/// because its library, or it in the library, is missing. Faces without a material, and those of a file that names no library,
-/// are opaque. Where an object has faces of both kinds, those that hide nothing become an object of their own, behind it,
+/// because its library, or it in the library, is missing. Faces without a material are opaque, and so are, with a warning, those
+/// of a file that names no library: nobody who reads it can draw them otherwise. Where an object has faces of both kinds, those that hide nothing become an object of their own, behind it,
 /// with `#see-through` at the end of its name.
 ///
 /// # Errors
@@ -53,42 +53,42 @@ pub fn parse_obj_with(
 ) -> Result<SceneFile, SceneReadError> {
     let obj = Obj::read(bytes)?;
     let mut builder = Builder::default();
-    let mut judge = Judge::new(options);
+    let mut classifier = Classifier::new(options);
     let surfaces = Surfaces::read(&obj, beside, &mut builder.warnings);
     for (k, group) in obj.groups.iter().enumerate() {
         let end = obj.groups.get(k + 1).map_or(obj.faces.len(), |next| next.first_face);
         let faces = &obj.faces[group.first_face..end];
         // What each material makes of the faces of this object.
-        let mut verdicts = BTreeMap::new();
+        let mut classes = BTreeMap::new();
         for face in faces {
-            verdicts.entry(face.material).or_insert_with(|| {
+            classes.entry(face.material).or_insert_with(|| {
                 let material = face.material.map(|m| obj.materials[m].as_str());
                 let role = role_of_name(&group.name).filter(|(role, _)| *role != Role::Mirror);
-                judge.verdict(Evidence {
+                classifier.classify([Evidence {
                     names: [Some(group.name.as_str()), material].into_iter().flatten().collect(),
                     role: role.map(|(role, ending)| (role, format!("a name with {ending}"))),
                     see_through: material.and_then(|m| surfaces.see_through(m)),
                     ..Evidence::default()
-                })
+                }])
             });
         }
-        let hides = |face: &&Face| verdicts[&face.material].as_ref().is_none_or(Verdict::hides);
+        let hides = |face: &&Face| classes[&face.material].as_ref().is_none_or(Classification::hides);
         let (walls, glass): (Vec<&Face>, Vec<&Face>) = faces.iter().partition(hides);
         for (faces, suffix) in [(&walls, ""), (&glass, if walls.is_empty() { "" } else { "#see-through" })] {
             let Some(first) = faces.first() else { continue };
             let mesh = obj.mesh(faces)?;
             let vertices = mesh.corners.iter().map(|&v| obj.positions[v]).collect();
-            builder.add(format!("{}{suffix}", group.name), vertices, mesh.triangles.iter().copied(), false);
+            builder.add(format!("{}{suffix}", group.name), vertices, mesh.triangles.iter().copied(), false, false);
             if matches!(role_of_name(&group.name), Some((Role::Mirror, _))) {
                 builder.mark_mirror();
             }
             // The reason is that of the first face; others have a like one.
-            if let Some(verdict) = &verdicts[&first.material] {
-                builder.take(verdict.clone(), None);
+            if let Some(class) = &classes[&first.material] {
+                builder.classify(class.clone(), None);
             }
         }
     }
-    builder.warnings.extend(judge.warnings());
+    builder.warnings.extend(classifier.warnings());
     builder.finish(SceneFormat::Obj, options)
 }
 
@@ -118,6 +118,18 @@ impl Surfaces {
             warnings.push(format!(
                 "the material library {first:?} cannot be read: put it beside the OBJ; without it, faces with its materials \
                  hide nothing"
+            ));
+        }
+        let n_faces = obj.faces.iter().filter(|face| face.material.is_some()).count();
+        if let (true, Some(first), true) = (obj.libraries.is_empty(), obj.materials.first(), n_faces > 0) {
+            let faces = if n_faces == 1 {
+                "1 face has a material".to_owned()
+            } else {
+                format!("{n_faces} faces have materials")
+            };
+            warnings.push(format!(
+                "{faces}, such as {first:?}, and the file names no library (mtllib): they count as opaque; name what is glass \
+                 (--see-through)"
             ));
         }
         let unknown = match missing.first() {

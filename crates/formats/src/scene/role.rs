@@ -62,7 +62,7 @@ impl Role {
 
 /// What extras say of a role.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum Said {
+pub(super) enum StatedRole {
     #[default]
     Nothing,
     Role(Role),
@@ -70,7 +70,7 @@ pub(super) enum Said {
     Unknown,
 }
 
-impl Said {
+impl StatedRole {
     pub(super) fn role(self) -> Option<Role> {
         if let Self::Role(role) = self { Some(role) } else { None }
     }
@@ -117,25 +117,42 @@ fn has_hint(name: &str, hint: &str) -> bool {
     before.ends_with(['-', '_']) || name.split('$').skip(1).any(|part| part.starts_with(hint))
 }
 
+/// What extras of a node state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Stated {
+    pub(super) role: StatedRole,
+    /// Whether the node, and all below it, moves, and may be anywhere.
+    pub(super) moves: bool,
+}
+
 /// Where the role of a node stands.
 const ROLE: [&str; 2] = ["sightlines", "role"];
+/// What stands beside it if the node moves.
+const MOVES: &str = "moves";
 
 /// Where a document states whether it may hide what its original did not hide.
 const OCCLUDER: [&str; 3] = ["sightlines", "simplified", "occluder"];
 
 /// The role that extras state. Extras of any other form are ignored.
-pub(super) fn said<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Said, D::Error> {
-    Ok(match Path(&ROLE).deserialize(deserializer)? {
-        Found { n_keys: 2, leaf: Leaf::Role(role) } => Said::Role(role),
-        Found { n_keys: 2, leaf: Leaf::Text } => Said::Unknown,
-        _ => Said::Nothing,
-    })
+pub(super) fn said<'de, D: Deserializer<'de>>(deserializer: D) -> Result<StatedRole, D::Error> {
+    stated(deserializer).map(|stated| stated.role)
+}
+
+/// The role that extras state, and whether they state that the node moves.
+pub(super) fn stated<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Stated, D::Error> {
+    let found = Path(&ROLE).deserialize(deserializer)?;
+    let role = match found {
+        Found { n_keys: 2, leaf: Leaf::Role(role), .. } => StatedRole::Role(role),
+        Found { n_keys: 2, leaf: Leaf::Text, .. } => StatedRole::Unknown,
+        _ => StatedRole::Nothing,
+    };
+    Ok(Stated { role, moves: found.moves })
 }
 
 /// Whether extras state that a scene was simplified; if they do not state how, the worst is assumed.
 pub(super) fn simplified<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Simplified>, D::Error> {
     let found = Path(&OCCLUDER).deserialize(deserializer)?;
-    let occluder = found == Found { n_keys: 3, leaf: Leaf::True };
+    let occluder = matches!(found, Found { n_keys: 3, leaf: Leaf::True, .. });
     Ok((found.n_keys >= 2).then_some(Simplified { occluder }))
 }
 
@@ -144,6 +161,8 @@ pub(super) fn simplified<'de, D: Deserializer<'de>>(deserializer: D) -> Result<O
 struct Found {
     n_keys: usize,
     leaf: Leaf,
+    /// Whether [`MOVES`] is true beside the last key.
+    moves: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -160,7 +179,7 @@ struct Path(&'static [&'static str]);
 
 impl Path {
     fn found(leaf: Leaf) -> Found {
-        Found { n_keys: 0, leaf }
+        Found { n_keys: 0, leaf, moves: false }
     }
 }
 
@@ -214,9 +233,10 @@ impl<'de> Visitor<'de> for Path {
         while let Some(key) = map.next_key::<String>()? {
             match self.0.split_first() {
                 Some((first, rest)) if *first == key => {
-                    let Found { n_keys, leaf } = map.next_value_seed(Path(rest))?;
-                    found = Found { n_keys: n_keys + 1, leaf };
+                    let inner = map.next_value_seed(Path(rest))?;
+                    found = Found { n_keys: inner.n_keys + 1, leaf: inner.leaf, moves: found.moves | inner.moves };
                 }
+                Some((_, [])) if key == MOVES => found.moves |= map.next_value_seed(Path(&[]))?.leaf == Leaf::True,
                 _ => _ = map.next_value::<IgnoredAny>()?,
             }
         }
@@ -229,19 +249,36 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> bool {
-        said(&mut serde_json::Deserializer::from_str(text)).unwrap() == Said::Role(Role::Mirror)
+        said(&mut serde_json::Deserializer::from_str(text)).unwrap() == StatedRole::Role(Role::Mirror)
     }
 
     #[test]
     fn roles_are_read_as_they_are_named() {
         for role in Role::ALL {
             let text = format!(r#"{{"sightlines": {{"role": "{}"}}}}"#, role.name());
-            assert_eq!(said(&mut serde_json::Deserializer::from_str(&text)).unwrap(), Said::Role(role));
+            assert_eq!(said(&mut serde_json::Deserializer::from_str(&text)).unwrap(), StatedRole::Role(role));
         }
         let unknown = r#"{"sightlines": {"role": "seethrough"}}"#;
-        assert_eq!(said(&mut serde_json::Deserializer::from_str(unknown)).unwrap(), Said::Unknown);
+        assert_eq!(said(&mut serde_json::Deserializer::from_str(unknown)).unwrap(), StatedRole::Unknown);
         let other = r#"{"sightlines": {"role": 3}}"#;
-        assert_eq!(said(&mut serde_json::Deserializer::from_str(other)).unwrap(), Said::Nothing);
+        assert_eq!(said(&mut serde_json::Deserializer::from_str(other)).unwrap(), StatedRole::Nothing);
+    }
+
+    #[test]
+    fn what_moves_is_stated_beside_its_role() {
+        let read = |text: &str| stated(&mut serde_json::Deserializer::from_str(text)).unwrap();
+        let door = StatedRole::Role(Role::Door);
+        for text in
+            [r#"{"sightlines": {"role": "door", "moves": true}}"#, r#"{"sightlines": {"moves": true, "role": "door"}}"#]
+        {
+            assert_eq!(read(text), Stated { role: door, moves: true });
+        }
+        assert!(read(r#"{"sightlines": {"moves": true}}"#).moves);
+        for text in
+            [r#"{"moves": true}"#, r#"{"sightlines": {"moves": 1}}"#, r#"{"sightlines": {"x": {"moves": true}}}"#]
+        {
+            assert!(!read(text).moves, "{text}");
+        }
     }
 
     #[test]

@@ -3,18 +3,22 @@
 //! An object that is wrongly taken for a wall hides what can be seen; one that is wrongly taken for glass only shows more.
 //! So whatever is not certain to be opaque hides nothing, and only a user says otherwise.
 
-use super::json::{Document, Material, Primitive};
+use super::json::{Document, Material};
 use super::pattern::NamePattern;
 use super::role::{Role, is_alpha_by_name};
+use std::collections::BTreeMap;
 
 /// How to read a scene, beside what its file says. By default everything is taken as the file says.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SceneReadOptions {
     /// Objects that hide what is behind them, whatever the file says: those of which the name, or that of the node, the mesh
-    /// or the material, matches one of these. Does not hold for meshes that are deformed, which have no shape to hide with.
+    /// or the material, matches one of these. What moves hides nothing all the same.
     pub opaque: Vec<NamePattern>,
     /// Objects that hide nothing, whatever the file says; by the same names. Stronger than [`Self::opaque`].
     pub see_through: Vec<NamePattern>,
+    /// Objects that never move, by the same names, whatever animations, physics or extensions of the file do to them. Does not
+    /// hold for meshes that are deformed: skins and morph targets.
+    pub still: Vec<NamePattern>,
     /// Whether objects of which engines draw the fronts only hide nothing, unless they are closed, with their fronts outwards:
     /// an eye behind a single wall of that kind looks through it. By default they hide from both sides, which holds for eyes
     /// that see the back of none. glTF: materials that are not `doubleSided`; an OBJ does not say.
@@ -24,20 +28,20 @@ pub struct SceneReadOptions {
     pub scene: Option<String>,
 }
 
-/// An object that is not simply a wall, or is one in spite of its material.
+/// An object that is not simply a wall, or is one in spite of what its file states.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Taken {
+pub struct Classified {
     /// Index of the object.
     pub object: u32,
-    /// What it is taken for.
+    /// What it is for. A role of [`Role::Occluder`] means that it hides.
     pub role: Role,
-    /// Whether it moves or changes its shape at run time.
+    /// Whether it moves or changes its shape at run time. What does hides nothing.
     pub moves: bool,
     /// Why, in a few words.
-    pub because: String,
+    pub reason: String,
 }
 
-/// What is known of an object before it is decided what it is taken for.
+/// What is known of an object before it is classified.
 #[derive(Debug, Default)]
 pub(super) struct Evidence<'a> {
     /// Its name, and those of what it comes from.
@@ -52,79 +56,152 @@ pub(super) struct Evidence<'a> {
     pub(super) deforms: bool,
 }
 
-/// What an object is taken for.
+/// How an object is classified.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Verdict {
+pub(super) struct Classification {
     pub(super) role: Role,
     pub(super) moves: bool,
-    pub(super) because: String,
+    pub(super) reason: String,
+    /// Whether a role or an option calls it an occluder, which it is not, because it moves.
+    pub(super) is_overruled: bool,
+    /// Whether a role or an option calls it an occluder, which it is.
+    pub(super) is_vouched_for: bool,
 }
 
-impl Verdict {
+impl Classification {
+    /// Of what stands still, is seen, and hides nothing.
+    pub(super) fn see_through(reason: String) -> Self {
+        Self { role: Role::SeeThrough, moves: false, reason, is_overruled: false, is_vouched_for: false }
+    }
+
     /// Whether the object hides what is behind it.
     pub(super) fn hides(&self) -> bool {
         self.role == Role::Occluder
     }
 }
 
-/// Options with a note of which of them were of use.
-#[derive(Debug)]
-pub(super) struct Judge<'a> {
-    options: &'a SceneReadOptions,
-    /// Whether each pattern of `opaque` matched, then each of `see_through`.
-    used: [Vec<bool>; 2],
+/// Of what each of several materials makes of an object, of which it has one at a time, what holds whichever it has: it hides
+/// if it does with all of them, and is seen if it is with one. `None` is simply a wall. The first counts where all are alike.
+pub(super) fn least_hiding(mut all: Vec<Option<Classification>>) -> Option<Classification> {
+    let moves = all.iter().flatten().any(|c| c.moves);
+    let is_overruled = all.iter().flatten().any(|c| c.is_overruled);
+    let is_vouched_for = all.iter().all(|c| c.as_ref().is_some_and(|c| c.is_vouched_for));
+    let is_drawn = |c: &Option<Classification>| c.as_ref().is_none_or(|c| c.role.is_drawn());
+    let hides = |c: &Option<Classification>| c.as_ref().is_none_or(Classification::hides);
+    let chosen = match all.iter().position(|c| is_drawn(c) && !hides(c)) {
+        Some(k) => k,
+        None if all.iter().any(hides) => match all.iter().position(|c| !is_drawn(c)) {
+            // With some materials it hides, with others it is not drawn.
+            Some(k) => {
+                if let Some(c) = &mut all[k] {
+                    c.role = Role::SeeThrough;
+                }
+                k
+            }
+            None => 0,
+        },
+        None => 0,
+    };
+    let found = all.into_iter().nth(chosen)??;
+    let of = if chosen == 0 { "" } else { " of a variant" };
+    Some(Classification { moves, is_overruled, is_vouched_for, reason: format!("{}{of}", found.reason), ..found })
 }
 
-impl<'a> Judge<'a> {
+/// Options with a note of which of them were of use.
+#[derive(Debug)]
+pub(super) struct Classifier<'a> {
+    options: &'a SceneReadOptions,
+    /// Whether each pattern of `opaque` matched, then each of `see_through`, then each of `still`.
+    used: [Vec<bool>; 3],
+    /// How many objects are called occluders and move, and the name of the first.
+    overruled: (usize, String),
+}
+
+impl<'a> Classifier<'a> {
     pub(super) fn new(options: &'a SceneReadOptions) -> Self {
-        Self { options, used: [vec![false; options.opaque.len()], vec![false; options.see_through.len()]] }
+        let used = Self::patterns(options).map(|patterns| vec![false; patterns.len()]);
+        Self { options, used, overruled: (0, String::new()) }
     }
 
-    /// The first pattern that one of some names matches, of `opaque` or of `see_through`. All that match are of use.
-    fn find(&mut self, of: usize, names: &[&str]) -> Option<&'a NamePattern> {
-        let patterns = [&self.options.opaque, &self.options.see_through][of];
-        let mut found = None;
-        for (pattern, used) in patterns.iter().zip(&mut self.used[of]) {
-            if names.iter().any(|name| pattern.matches(name)) {
-                *used = true;
-                found = found.or(Some(pattern));
+    fn patterns(options: &SceneReadOptions) -> [&[NamePattern]; 3] {
+        [&options.opaque, &options.see_through, &options.still]
+    }
+
+    /// For each kind of patterns the first that one of some names matches. All that match are of use.
+    fn find(&mut self, names: &[&str]) -> [Option<&'a NamePattern>; 3] {
+        let patterns = Self::patterns(self.options);
+        std::array::from_fn(|of| {
+            let mut found = None;
+            for (pattern, used) in patterns[of].iter().zip(&mut self.used[of]) {
+                if names.iter().any(|name| pattern.matches(name)) {
+                    *used = true;
+                    found = found.or(Some(pattern));
+                }
+            }
+            found
+        })
+    }
+
+    /// Classifies an object by what is known of it with its own material, and with each that it may have instead; `None` for
+    /// what is simply a wall. The first of the names is its own.
+    pub(super) fn classify<'e>(&mut self, evidence: impl IntoIterator<Item = Evidence<'e>>) -> Option<Classification> {
+        let mut own = None;
+        let all: Vec<_> = evidence
+            .into_iter()
+            .map(|evidence| {
+                own = own.or(evidence.names.first().copied());
+                self.with_material(evidence)
+            })
+            .collect();
+        let found = least_hiding(all);
+        if found.as_ref().is_some_and(|found| found.is_overruled) {
+            self.overruled.0 += 1;
+            if self.overruled.0 == 1 {
+                self.overruled.1 = own.unwrap_or_default().to_owned();
             }
         }
         found
     }
 
-    /// Decides; `None` for what is simply a wall.
-    pub(super) fn verdict(&mut self, evidence: Evidence<'_>) -> Option<Verdict> {
+    fn with_material(&mut self, evidence: Evidence<'_>) -> Option<Classification> {
         let Evidence { names, role, see_through, moves, deforms } = evidence;
-        let (opaque, glass) = (self.find(0, &names), self.find(1, &names));
+        let [opaque, glass, still] = self.find(&names);
+        let still = still.filter(|_| !deforms && moves.is_some());
+        let moves = moves.filter(|_| still.is_none());
+        let is_overruled =
+            moves.is_some() && (opaque.is_some() || matches!(role, Some((Role::Occluder, _)))) && glass.is_none();
         let is_moving = moves.is_some();
-        let as_role = |role: Role, because: String, moves: bool| Some(Verdict { role, moves, because });
+        let class = |role: Role, reason: String| {
+            let is_vouched_for = role == Role::Occluder;
+            Some(Classification { role, moves: is_moving, reason, is_overruled, is_vouched_for })
+        };
+        let by = |pattern: &NamePattern| format!("the pattern {pattern}");
         match role {
-            Some((role, because)) if !role.is_drawn() => return as_role(role, because, is_moving),
+            Some((role, reason)) if !role.is_drawn() => return class(role, reason),
             _ => {}
         }
         if let Some(pattern) = glass {
-            return as_role(Role::SeeThrough, format!("the pattern {pattern}"), is_moving);
+            return class(Role::SeeThrough, by(pattern));
         }
-        let is_wall = role.is_none() && see_through.is_none() && moves.is_none();
-        if let Some(pattern) = opaque.filter(|_| !deforms) {
-            // Of what is a wall anyway there is nothing to say.
-            return if is_wall && !self.options.single_sided {
-                None
-            } else {
-                as_role(Role::Occluder, format!("the pattern {pattern}"), false)
-            };
-        }
-        match (role, moves, see_through) {
-            (Some((Role::Occluder, because)), ..) if !deforms => as_role(Role::Occluder, because, false),
-            (Some((role, because)), ..) if role != Role::Occluder => as_role(role, because, is_moving),
-            // A door that an animation turns is a door.
-            (_, Some(because), _) => {
+        match (role, moves) {
+            // What moves hides nothing, whoever says so: where it was, it no longer is.
+            (Some((role, reason)), Some(_)) if role != Role::Occluder => class(role, reason),
+            (_, Some(reason)) => {
+                // A door that an animation turns is a door.
                 let is_door = !deforms && names.iter().any(|name| name.to_lowercase().contains("door"));
-                as_role(if is_door { Role::Door } else { Role::SeeThrough }, because, true)
+                class(if is_door { Role::Door } else { Role::SeeThrough }, reason)
             }
-            (.., Some(because)) => as_role(Role::SeeThrough, because, false),
-            _ => None,
+            (role, None) => match (opaque, role, see_through) {
+                // Of what is a wall anyway there is nothing to say.
+                (Some(_), None, None) if still.is_none() && !self.options.single_sided => None,
+                (Some(pattern), ..) => class(Role::Occluder, by(pattern)),
+                (None, Some((role, reason)), _) => class(role, reason),
+                (None, None, Some(reason)) => class(Role::SeeThrough, reason),
+                (None, None, None) => {
+                    let found = still.and_then(|pattern| class(Role::Occluder, by(pattern)));
+                    found.map(|found| Classification { is_vouched_for: false, ..found })
+                }
+            },
         }
     }
 
@@ -133,31 +210,66 @@ impl<'a> Judge<'a> {
         self.options.single_sided
     }
 
-    /// What a user should hear of the options.
+    /// What a user should hear of the options, and of what the file states against them.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let all = [&self.options.opaque, &self.options.see_through];
+        let all = Self::patterns(self.options);
         let unused = all.into_iter().zip(&self.used).flat_map(|(patterns, used)| {
             patterns.iter().zip(used).filter(|(_, used)| !**used).map(|(pattern, _)| pattern)
         });
-        unused.map(|pattern| format!("no object, node, mesh or material is called {pattern}")).collect()
+        let mut warnings: Vec<String> =
+            unused.map(|pattern| format!("no object, node, mesh or material is called {pattern}")).collect();
+        let (n, first) = &self.overruled;
+        if *n > 0 {
+            let objects =
+                if *n == 1 { "1 occluder moves and hides".to_owned() } else { format!("{n} occluders move and hide") };
+            warnings.push(format!("{objects} nothing, the first is called {first:?}: name what never moves (--still)"));
+        }
+        warnings
     }
 }
 
-/// Why a primitive of a glTF lets light through, by its material or by one that it may get; `None` if it is opaque.
+/// Extensions of materials with which a material is as opaque as without, by how their names begin.
+///
+/// # Source
+/// The specifications of the extensions. Dispersion is seen only where there is transmission. The alpha of
+/// `KHR_materials_pbrSpecularGlossiness` is weighed by `alphaMode`, as that of others.
+const OPAQUE: [&str; 20] = [
+    "ADOBE_materials_clearcoat_",
+    "EXT_materials_clearcoat_",
+    "EXT_materials_diffuse_roughness",
+    "EXT_materials_specular_edge_color",
+    "FB_materials_modmap",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_roughness",
+    "KHR_materials_dispersion",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_unlit",
+    "KHR_texture_transform",
+    "KHR_xmp",
+    "MOZ_lightmap",
+    "MSFT_packing_",
+];
+
+/// Extensions by which a material lets light through.
+const SEE_THROUGH: [&str; 4] = [
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_diffuse_transmission",
+    "ADOBE_materials_thin_transparency",
+];
+
+/// Why a material of a glTF lets light through; `None` if it is opaque.
 ///
 /// # Source
 /// glTF 2.0 Specification, section 3.9.4 (alpha coverage). Chosen here: what the extensions for light inside of things say
-/// in numbers is not weighed.
-pub(super) fn see_through(document: &Document, primitive: &Primitive) -> Option<String> {
-    let own = primitive.material.and_then(|m| of_material(document, m));
-    own.or_else(|| {
-        let mut variants = primitive.variants.iter();
-        variants.find_map(|&m| of_material(document, m)).map(|why| format!("{why} of a variant"))
-    })
-}
-
-/// Why a material lets light through.
-fn of_material(document: &Document, material: usize) -> Option<String> {
+/// in numbers is not weighed; a material with an extension that is not known lets light through.
+pub(super) fn see_through(document: &Document, material: usize) -> Option<String> {
     let Some(Some(m)) = document.materials.get(material) else {
         return Some("a material that cannot be read".to_owned());
     };
@@ -166,15 +278,34 @@ fn of_material(document: &Document, material: usize) -> Option<String> {
         None | Some("OPAQUE") => {}
         Some(mode) => return Some(format!("alphaMode {mode}")),
     }
-    let by_extension = [
-        (extensions.transmission.is_some(), "KHR_materials_transmission"),
-        (extensions.volume.is_some(), "KHR_materials_volume"),
-        (extensions.diffuse_transmission.is_some(), "KHR_materials_diffuse_transmission"),
-    ];
-    if let Some((_, name)) = by_extension.into_iter().find(|(has, _)| *has) {
+    if let Some(name) = SEE_THROUGH.into_iter().find(|name| extensions.contains_key(*name)) {
         return Some(name.to_owned());
     }
+    if let Some(name) = unknown_extensions(m).next() {
+        return Some(format!("the unknown extension {name}"));
+    }
     name.as_deref().filter(|name| is_alpha_by_name(name)).map(|_| "a material named -alpha".to_owned())
+}
+
+fn unknown_extensions(material: &Material) -> impl Iterator<Item = &str> {
+    let is_known = |name: &str| SEE_THROUGH.contains(&name) || OPAQUE.iter().any(|known| name.starts_with(known));
+    material.extensions.keys().map(|name| &**name).filter(move |name| !is_known(name))
+}
+
+/// What a user should hear of the extensions of materials.
+pub(super) fn warnings(document: &Document) -> Vec<String> {
+    let mut n_materials: BTreeMap<&str, usize> = BTreeMap::new();
+    for name in document.materials.iter().flatten().flat_map(unknown_extensions) {
+        *n_materials.entry(name).or_default() += 1;
+    }
+    let warning = |(name, n): (&str, usize)| {
+        let materials = if n == 1 { "material has" } else { "materials have" };
+        format!(
+            "{n} {materials} the extension {name}, which is not known: they count as see-through; name what is opaque \
+             (--opaque)"
+        )
+    };
+    n_materials.into_iter().map(warning).collect()
 }
 
 #[cfg(test)]
@@ -187,7 +318,7 @@ mod tests {
     }
 
     fn role(options: &SceneReadOptions, evidence: Evidence<'_>) -> Option<(Role, bool)> {
-        Judge::new(options).verdict(evidence).map(|verdict| (verdict.role, verdict.moves))
+        Classifier::new(options).classify([evidence]).map(|class| (class.role, class.moves))
     }
 
     fn text(text: &str) -> Option<String> {
@@ -206,14 +337,15 @@ mod tests {
         assert_eq!(role(&none, named), Some((Role::Door, true)));
         let door = Evidence { moves: text("x"), role: Some((Role::Door, String::new())), ..Evidence::default() };
         assert_eq!(role(&none, door), Some((Role::Door, true)));
-        // Who says that it is a wall has it; but not of what has no shape.
+        // Who says that it is a wall has it; but not of what moves.
         let said = |deforms: bool| Evidence {
             moves: text("x"),
             role: Some((Role::Occluder, String::new())),
             deforms,
             ..Evidence::default()
         };
-        assert_eq!(role(&none, said(false)), Some((Role::Occluder, false)));
+        assert_eq!(role(&none, said(false)), Some((Role::SeeThrough, true)));
+        assert_eq!(role(&none, Evidence { moves: None, ..said(false) }), Some((Role::Occluder, false)));
         assert_eq!(role(&none, said(true)), Some((Role::SeeThrough, true)));
     }
 
@@ -233,8 +365,56 @@ mod tests {
         assert_eq!(role(&both, skin), Some((Role::SeeThrough, true)));
         let ignored = Evidence { role: Some((Role::Ignore, String::new())), ..wall(&["front"]) };
         assert_eq!(role(&both, ignored), Some((Role::Ignore, false)));
-        let mut judge = Judge::new(&both);
-        judge.verdict(wall(&["frontage"]));
-        assert_eq!(judge.warnings(), ["no object, node, mesh or material is called *glass"]);
+        let mut classifier = Classifier::new(&both);
+        classifier.classify([wall(&["frontage"])]);
+        assert_eq!(classifier.warnings(), ["no object, node, mesh or material is called *glass"]);
+    }
+
+    #[test]
+    fn what_moves_hides_nothing_unless_it_never_moves() {
+        let moving = |names: &[&'static str], deforms: bool| Evidence {
+            names: names.to_vec(),
+            moves: text("an animation"),
+            deforms,
+            ..Evidence::default()
+        };
+        let opaque = options(&["wall"], &[]);
+        let mut classifier = Classifier::new(&opaque);
+        let class = classifier.classify([moving(&["wall"], false)]).unwrap();
+        assert_eq!((class.role, class.moves, class.hides()), (Role::SeeThrough, true, false));
+        let warning =
+            "1 occluder moves and hides nothing, the first is called \"wall\": name what never moves (--still)";
+        assert_eq!(classifier.warnings(), [warning]);
+        let still = SceneReadOptions { still: vec!["wall".parse().unwrap()], ..opaque };
+        assert_eq!(role(&still, moving(&["wall"], false)), Some((Role::Occluder, false)));
+        // A skin has no place of its own to stay in.
+        assert_eq!(role(&still, moving(&["wall"], true)), Some((Role::SeeThrough, true)));
+        let alone = SceneReadOptions { opaque: Vec::new(), ..still };
+        assert_eq!(role(&alone, moving(&["wall"], false)), Some((Role::Occluder, false)));
+        assert_eq!(role(&alone, Evidence { moves: None, ..moving(&["wall"], false) }), None);
+        // What stands still may be glass.
+        let glass = Evidence { see_through: text("alphaMode BLEND"), ..moving(&["wall"], false) };
+        assert_eq!(role(&alone, glass), Some((Role::SeeThrough, false)));
+    }
+
+    #[test]
+    fn of_several_materials_the_one_that_hides_least_counts() {
+        let of = |roles: &[Option<Role>]| {
+            let class = |role: &Option<Role>| {
+                role.map(|role| Classification { role, ..Classification::see_through(role.name().to_owned()) })
+            };
+            least_hiding(roles.iter().map(class).collect()).map(|class| (class.role, class.reason))
+        };
+        let (wall, hides, glass, ignored) = (None, Some(Role::Occluder), Some(Role::Detail), Some(Role::Ignore));
+        let found = |role: Role, reason: &str| Some((role, reason.to_owned()));
+        assert_eq!((of(&[wall]), of(&[wall, hides])), (None, None));
+        assert_eq!(of(&[hides, wall]), found(Role::Occluder, "occluder"));
+        assert_eq!(of(&[wall, glass]), found(Role::Detail, "detail of a variant"));
+        assert_eq!(of(&[ignored, glass]), found(Role::Detail, "detail of a variant"));
+        assert_eq!(of(&[glass, wall]), found(Role::Detail, "detail"));
+        assert_eq!(of(&[ignored, ignored]), found(Role::Ignore, "ignore"));
+        // Hidden by one and not drawn by the other: seen, and hides nothing.
+        assert_eq!(of(&[hides, ignored]), found(Role::SeeThrough, "ignore of a variant"));
+        assert_eq!(of(&[ignored, wall]), found(Role::SeeThrough, "ignore"));
     }
 }

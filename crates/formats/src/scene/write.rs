@@ -10,7 +10,8 @@ use sightlines_cells::{Scene, SceneObject};
 ///
 /// Reading it again gives the same objects in the same order with the same triangles; corners that no
 /// triangle uses are gone then, unless the object has no triangles at all: its corners are written as points. Objects that
-/// hide nothing get a material with `alphaMode` `BLEND`; of those that move only the shape at rest is written.
+/// hide nothing get a material with `alphaMode` `BLEND`; of those that move the shape at rest is written, and extras that state
+/// that they move: read again, they may be anywhere.
 ///
 /// # Errors
 /// [`SceneWriteError`]: a coordinate that single precision cannot hold exactly is refused, not rounded.
@@ -32,7 +33,8 @@ fn write(scene: &Scene, simplified: Option<Simplified>) -> Result<Vec<u8>, Scene
         let id = u32::try_from(k);
         let is_mirror = id.is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
         let is_opaque = id.is_ok_and(|k| scene.is_opaque(k));
-        parts.add(k, object, is_mirror, is_opaque)?;
+        let moves = id.is_ok_and(|k| scene.moving().binary_search_by_key(&k, |moving| moving.object).is_ok());
+        parts.add(k, object, Marks { is_mirror, is_opaque, moves })?;
     }
     parts.into_glb(simplified)
 }
@@ -60,12 +62,23 @@ struct Node<'a> {
 /// What a reader of ours finds about a node.
 #[derive(Debug, Serialize)]
 struct Extras {
-    sightlines: Role,
+    sightlines: Stated,
 }
 
 #[derive(Debug, Serialize)]
-struct Role {
-    role: &'static str,
+struct Stated {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    role: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    moves: Option<bool>,
+}
+
+/// What an object is in its scene.
+#[derive(Debug, Clone, Copy)]
+struct Marks {
+    is_mirror: bool,
+    is_opaque: bool,
+    moves: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -158,14 +171,9 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn add(
-        &mut self,
-        k: usize,
-        object: &'a SceneObject,
-        is_mirror: bool,
-        is_opaque: bool,
-    ) -> Result<(), SceneWriteError> {
+    fn add(&mut self, k: usize, object: &'a SceneObject, marks: Marks) -> Result<(), SceneWriteError> {
         let position = self.positions(k, object)?;
+        let Marks { is_mirror, is_opaque, moves } = marks;
         if !is_opaque && self.materials.is_empty() {
             self.materials.push(Material { alpha_mode: "BLEND" });
         }
@@ -174,7 +182,8 @@ impl<'a> Parts<'a> {
         let mode = if indices.is_some() { 4 } else { 0 };
         let primitive = Primitive { attributes: Attributes { position }, indices, mode, material };
         self.meshes.push(Mesh { primitives: [primitive] });
-        let extras = is_mirror.then_some(Extras { sightlines: Role { role: "mirror" } });
+        let stated = Stated { role: is_mirror.then_some("mirror"), moves: moves.then_some(true) };
+        let extras = (is_mirror || moves).then_some(Extras { sightlines: stated });
         self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1, extras });
         Ok(())
     }

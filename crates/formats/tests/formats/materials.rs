@@ -2,11 +2,13 @@
 
 use crate::common::glb::Doc;
 use serde_json::{Value, json};
+use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_formats::input::Neighbours;
 use sightlines_formats::scene::{
     Role, SceneReadOptions, parse_glb, parse_gltf_with, parse_obj, parse_obj_with, write_glb,
 };
 use sightlines_formats::{SceneFile, SceneReadError};
+use sightlines_geometry::Aabb;
 use std::io;
 use std::path::Path;
 
@@ -46,9 +48,9 @@ fn read_with(doc: &Doc, options: &SceneReadOptions) -> SceneFile {
     parse_gltf_with(&doc.glb(), None, options).unwrap()
 }
 
-/// What each object that is not simply a wall is taken for, and why.
-fn taken(file: &SceneFile) -> Vec<(u32, Role, &str)> {
-    file.info.taken.iter().map(|t| (t.object, t.role, t.because.as_str())).collect()
+/// How each object that is not simply a wall is classified, and why.
+fn classified(file: &SceneFile) -> Vec<(u32, Role, &str)> {
+    file.info.surfaces.iter().map(|t| (t.object, t.role, t.reason.as_str())).collect()
 }
 
 #[test]
@@ -60,6 +62,14 @@ fn materials_that_let_light_through_hide_nothing() {
         // Alpha below 1 means nothing in an opaque material.
         (json!({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]}}), None),
         (extension("KHR_materials_clearcoat"), None),
+        (extension("KHR_materials_pbrSpecularGlossiness"), None),
+        (extension("KHR_materials_dispersion"), None),
+        (
+            json!({"extensions": {"KHR_materials_dispersion": {}, "KHR_materials_transmission": {}}}),
+            Some("KHR_materials_transmission"),
+        ),
+        (extension("KHR_materials_nothing_yet"), Some("the unknown extension KHR_materials_nothing_yet")),
+        (extension("KHR_techniques_webgl"), Some("the unknown extension KHR_techniques_webgl")),
         (json!({"alphaMode": "BLEND"}), Some("alphaMode BLEND")),
         (json!({"alphaMode": "MASK", "alphaCutoff": 0.9}), Some("alphaMode MASK")),
         (json!({"alphaMode": "ADD"}), Some("alphaMode ADD")),
@@ -74,16 +84,21 @@ fn materials_that_let_light_through_hide_nothing() {
     let file = read(&doc(&vec![json!({}); list.len() + 1], &list));
     let expected: Vec<(u32, Role, &str)> =
         (0..).zip(&materials).filter_map(|(k, m)| Some((k, Role::SeeThrough, m.1?))).collect();
-    assert_eq!(taken(&file), expected);
+    assert_eq!(classified(&file), expected);
     assert_eq!(file.scene.see_through().len(), expected.len());
     // All are there and seen; of those that hide, all but one are single-sided.
-    assert_eq!((file.info.n_triangles, file.info.n_single_sided_triangles), (14, 4));
-    assert!(file.info.warnings.is_empty());
+    assert_eq!((file.info.n_triangles, file.info.n_single_sided_triangles), (19, 6));
+    let unknown = |name: &str| {
+        format!(
+            "1 material has the extension {name}, which is not known: they count as see-through; name what is opaque (--opaque)"
+        )
+    };
+    assert_eq!(file.info.warnings, [unknown("KHR_materials_nothing_yet"), unknown("KHR_techniques_webgl")]);
     // A material that does not exist, and one that a variant brings.
     let mut other = doc(&[json!({}), json!({}), json!({})], &[json!({}), json!({"alphaMode": "BLEND"})]);
     other.json["meshes"][0]["primitives"][0]["material"] = json!(9);
     other.json["meshes"][2]["primitives"][0]["extensions"] = json!({"KHR_materials_variants": {"mappings": [{"material": 0, "variants": [0]}, {"material": 1, "variants": [1]}]}});
-    let reasons: Vec<_> = read(&other).info.taken.into_iter().map(|t| (t.object, t.because)).collect();
+    let reasons: Vec<_> = read(&other).info.surfaces.into_iter().map(|t| (t.object, t.reason)).collect();
     assert_eq!(
         reasons,
         [
@@ -92,6 +107,44 @@ fn materials_that_let_light_through_hide_nothing() {
             (2, "alphaMode BLEND of a variant".to_owned())
         ]
     );
+}
+
+/// A variant shows a primitive with another material: what hides with one of them only hides nothing.
+#[test]
+fn variants_count_by_their_roles_and_names() {
+    let role = |role: &str| json!({"extras": {"sightlines": {"role": role}}});
+    let mappings =
+        |material: usize| json!({"KHR_materials_variants": {"mappings": [{"material": material, "variants": [0]}]}});
+    let of = |own: Value, variant: Value, options: &SceneReadOptions| {
+        let mut doc = doc(&[json!({"name": "pane"}), json!({})], &[own, variant]);
+        doc.json["meshes"][0]["primitives"][0]["extensions"] = mappings(1);
+        let file = read_with(&doc, options);
+        let found = file.info.surfaces.iter().find(|found| found.object == 0);
+        (found.map(|found| (found.role, found.reason.clone())), file.scene.is_opaque(0))
+    };
+    let none = SceneReadOptions::default();
+    let found = |role: Role, reason: &str, hides: bool| (Some((role, reason.to_owned())), hides);
+    assert_eq!(of(json!({}), json!({}), &none), (None, true));
+    assert_eq!(of(json!({}), role("detail"), &none), found(Role::Detail, "extras of a variant", false));
+    assert_eq!(of(role("detail"), role("occluder"), &none), found(Role::Detail, "extras", false));
+    assert_eq!(of(role("occluder"), role("occluder"), &none), found(Role::Occluder, "extras", true));
+    assert_eq!(of(json!({}), role("ignore"), &none), found(Role::SeeThrough, "extras of a variant", false));
+    // A name that only a variant has.
+    let glass = json!({"name": "Glass"});
+    assert_eq!(
+        of(json!({}), glass.clone(), &options(&[], &["glass"])),
+        found(Role::SeeThrough, "the pattern glass of a variant", false)
+    );
+    // The own material is vouched for, the variant's is glass all the same; both may be vouched for by the name of the object.
+    let blend = json!({"name": "Glass", "alphaMode": "BLEND"});
+    let wall = json!({"name": "Wall"});
+    let seen = of(wall.clone(), blend.clone(), &options(&["wall"], &[]));
+    assert_eq!(seen, found(Role::SeeThrough, "alphaMode BLEND of a variant", false));
+    assert_eq!(of(wall, blend, &options(&["pane"], &[])), (None, true));
+    // Single-sided with one of them.
+    let sided = SceneReadOptions { single_sided: true, ..none };
+    assert_eq!(of(json!({"doubleSided": true}), json!({"doubleSided": true}), &sided), (None, true));
+    assert_eq!(of(json!({"doubleSided": true}), json!({}), &sided), found(Role::SeeThrough, "single sides", false));
 }
 
 #[test]
@@ -112,7 +165,7 @@ fn artists_say_otherwise() {
         named("House-occ"),
     ];
     let file = read(&doc(&nodes, &[json!({"alphaMode": "BLEND"})]));
-    let all: Vec<(u32, Role)> = taken(&file).iter().map(|t| (t.0, t.1)).collect();
+    let all: Vec<(u32, Role)> = classified(&file).iter().map(|t| (t.0, t.1)).collect();
     let roles =
         [Role::Occluder, Role::SeeThrough, Role::Detail, Role::Door, Role::Portal, Role::ViewVolume, Role::Ignore];
     let expected: Vec<(u32, Role)> = (0..).zip(roles).chain([(9, Role::SeeThrough), (10, Role::Occluder)]).collect();
@@ -128,18 +181,29 @@ fn artists_say_otherwise() {
          mirror: 1, the first called \"\""
     );
     // A mirror of glass is both.
-    let mut glass = doc(&[role("mirror")], &[json!({"alphaMode": "BLEND"})]);
+    let glass = doc(&[role("mirror")], &[json!({"alphaMode": "BLEND"})]);
     let file = read(&glass);
     assert_eq!((file.scene.mirrors(), file.scene.see_through()), (&[0][..], &[0][..]));
-    // Meshes and materials have roles for all that has them; that of the node is stronger.
-    glass.json["materials"][0] = role("detail");
-    glass.json["nodes"][0] = json!({"mesh": 0});
-    assert_eq!(taken(&read(&glass)), [(0, Role::Detail, "extras")]);
-    glass.json["meshes"][0]["extras"] = role("door")["extras"].clone();
-    assert_eq!(taken(&read(&glass)), [(0, Role::Door, "extras")]);
-    glass.json["nodes"][0]["extras"] = role("occluder")["extras"].clone();
-    assert_eq!(taken(&read(&glass)), [(0, Role::Occluder, "extras")]);
-    assert!(read(&glass).scene.is_opaque(0));
+    // Meshes and materials have roles for all that has them; the most specific one counts.
+    let blend = json!({"alphaMode": "BLEND"});
+    let of = |node: Option<&str>, mesh: Option<&str>, material: Option<&str>| {
+        let mut doc = doc(&[json!({})], std::slice::from_ref(&blend));
+        let places = [("/nodes/0", node), ("/meshes/0", mesh), ("/materials/0", material)];
+        for (path, stated) in places.into_iter().filter_map(|(path, stated)| Some((path, stated?))) {
+            doc.json.pointer_mut(path).unwrap()["extras"] = role(stated)["extras"].clone();
+        }
+        let file = read(&doc);
+        let &[(0, role, "extras")] = &classified(&file)[..] else { panic!("{:?}", file.info.surfaces) };
+        (role, file.scene.is_opaque(0))
+    };
+    assert_eq!(of(None, None, Some("detail")), (Role::Detail, false));
+    assert_eq!(of(None, Some("door"), None), (Role::Door, false));
+    assert_eq!(of(Some("occluder"), None, None), (Role::Occluder, true));
+    assert_eq!(of(Some("occluder"), Some("door"), None), (Role::Door, false));
+    assert_eq!(of(Some("occluder"), Some("door"), Some("detail")), (Role::Detail, false));
+    assert_eq!(of(Some("detail"), Some("detail"), Some("occluder")), (Role::Occluder, true));
+    // A mirror says nothing of what hides.
+    assert_eq!(of(Some("occluder"), None, Some("mirror")), (Role::Occluder, true));
 }
 
 #[test]
@@ -151,8 +215,9 @@ fn what_holds_for_a_node_holds_below_it() {
         doc.triangle();
         read(&doc)
     };
-    let seen = |parent: Value| taken(&below(parent)).into_iter().map(|t| (t.1, t.2.to_owned())).collect::<Vec<_>>();
-    let one = |role: Role, because: &str| vec![(role, because.to_owned())];
+    let seen =
+        |parent: Value| classified(&below(parent)).into_iter().map(|t| (t.1, t.2.to_owned())).collect::<Vec<_>>();
+    let one = |role: Role, reason: &str| vec![(role, reason.to_owned())];
     assert_eq!(seen(json!({"name": "props-noimp"})), one(Role::SeeThrough, "a name with noimp"));
     assert_eq!(seen(json!({"extras": {"sightlines": {"role": "detail"}}})), one(Role::Detail, "extras"));
     let hidden = json!({"extensions": {"KHR_node_visibility": {"visible": false}}});
@@ -170,7 +235,10 @@ fn users_have_the_last_word() {
     assert_eq!(read(&doc).scene.see_through(), [1]);
     let file = read_with(&doc, &options(&["glass"], &["leaf"]));
     assert_eq!(file.scene.see_through(), [2]);
-    assert_eq!(taken(&file), [(1, Role::Occluder, "the pattern glass"), (2, Role::SeeThrough, "the pattern leaf")]);
+    assert_eq!(
+        classified(&file),
+        [(1, Role::Occluder, "the pattern glass"), (2, Role::SeeThrough, "the pattern leaf")]
+    );
     assert_eq!(file.info.read_with, options(&["glass"], &["leaf"]));
     let file = read_with(&doc, &options(&["*"], &["Pane*", "no such"]));
     assert_eq!(file.scene.see_through(), [1]);
@@ -188,10 +256,10 @@ fn single_sides_hide_by_default_and_not_if_asked() {
     assert_eq!((file.scene.see_through().len(), file.info.n_single_sided_triangles), (0, 5));
     let asked = SceneReadOptions { single_sided: true, ..options(&[], &[]) };
     let file = read_with(&doc, &asked);
-    assert_eq!(taken(&file), [(0, Role::SeeThrough, "single sides")]);
+    assert_eq!(classified(&file), [(0, Role::SeeThrough, "single sides")]);
     assert_eq!(file.info.n_single_sided_triangles, 4);
     let file = read_with(&doc, &SceneReadOptions { opaque: options(&["a"], &[]).opaque, ..asked });
-    assert_eq!(taken(&file), [(0, Role::Occluder, "the pattern a")]);
+    assert_eq!(classified(&file), [(0, Role::Occluder, "the pattern a")]);
     assert!(file.scene.see_through().is_empty());
 }
 
@@ -226,7 +294,7 @@ fn materials_of_an_obj_are_looked_up() {
     let file = obj(text, &[("my walls.mtl", mtl)], &none).unwrap();
     let split = [("house", true), ("house#see-through", false), ("pane", false), ("post", true), ("bare", true)];
     assert_eq!(hiding(&file), split);
-    assert_eq!(taken(&file), [(1, Role::SeeThrough, "d 0.5"), (2, Role::SeeThrough, "d 0.5")]);
+    assert_eq!(classified(&file), [(1, Role::SeeThrough, "d 0.5"), (2, Role::SeeThrough, "d 0.5")]);
     assert!(file.info.warnings.is_empty());
     // Several libraries on a line, and in folders as Windows has them.
     let two = text.replace("my walls.mtl", r"a.mtl sub\b.mtl");
@@ -245,10 +313,20 @@ fn materials_of_an_obj_are_looked_up() {
     assert_eq!(parse_obj(format!("{FACES}{text}").as_bytes()).unwrap(), file);
     assert_eq!(hiding(&obj(text, &[], &options(&["brick"], &[])).unwrap()), split);
     let file = obj(text, &[("my walls.mtl", "newmtl glass")], &none).unwrap();
-    assert_eq!(taken(&file)[0].2, "a material that is in no library");
+    assert_eq!(classified(&file)[0].2, "a material that is in no library");
     // Without a library there are no materials.
     let bare = text.replace("mtllib", "#");
-    assert!(obj(&bare, &[], &none).unwrap().scene.see_through().is_empty());
+    let file = obj(&bare, &[], &none).unwrap();
+    assert!(file.scene.see_through().is_empty());
+    assert_eq!(
+        file.info.warnings,
+        [
+            "4 faces have materials, such as \"brick\", and the file names no library (mtllib): they count as opaque; name what is \
+             glass (--see-through)"
+        ]
+    );
+    let file = obj(&bare, &[], &options(&[], &["glass"])).unwrap();
+    assert_eq!(hiding(&file), split);
     // Names say as much as in a glTF.
     let file = obj("o walls-colonly\nf 1 2 3\no hall-mirror\nf 1 2 4\n", &[], &none).unwrap();
     assert_eq!((file.scene.see_through(), file.scene.mirrors()), (&[0][..], &[1][..]));
@@ -261,4 +339,14 @@ fn what_is_written_hides_no_more() {
     let scene = read(&doc(&nodes, &[json!({}), blend.clone(), blend])).scene;
     let again = parse_glb(&write_glb(&scene).unwrap(), None).unwrap().scene;
     assert_eq!((again.see_through(), &again), (&[1, 2][..], &scene));
+    // What moves may be anywhere afterwards, even if nothing of it has an area at rest.
+    let within = Aabb { min: [0.0; 3], max: [5.0; 3] };
+    let flat = SceneObject { vertices: vec![[1.0; 3]; 3], ..scene.objects()[0].clone() };
+    let objects = scene.objects().iter().cloned().chain([flat]).collect();
+    let marks = [(2, Some(within)), (3, None)].map(|(object, within)| MovingObject { object, within });
+    let moving = Scene::new(objects).unwrap().with_mirrors(vec![2]).unwrap().with_moving(marks.to_vec()).unwrap();
+    let again = parse_glb(&write_glb(&moving).unwrap(), None).unwrap().scene;
+    let anywhere = |object| MovingObject { object, within: None };
+    assert_eq!((again.moving(), again.mirrors()), (&[anywhere(2), anywhere(3)][..], &[2][..]));
+    assert_eq!(again.objects(), moving.objects());
 }

@@ -4,7 +4,7 @@ use crate::common::glb::Doc;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use sightlines_formats::SceneFile;
-use sightlines_formats::scene::parse_glb;
+use sightlines_formats::scene::{SceneReadOptions, parse_glb, parse_gltf_with};
 use sightlines_geometry::{Aabb, Random};
 
 type V3 = [f64; 3];
@@ -97,9 +97,21 @@ fn at<const N: usize>(values: &[f64], key: usize, span: f64, t: f64, how: &str) 
 }
 
 fn contains(b: &Aabb<3>, p: V3) -> bool {
-    // Single precision in files, doubles here: what is computed in another order may be a little outside.
-    let slack = 1e-9 * p.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+    contains_rounded(b, p, p.iter().fold(1.0, |m: f64, x| m.max(x.abs())))
+}
+
+/// Whether a box contains a point that was computed here, of numbers up to a magnitude.
+///
+/// Boxes are rounded outwards, places here are rounded in every step: to a place at most three nodes lead, each of at most a
+/// hundred operations (a curve of twenty, two arcs of twenty, a rotation of thirty), each off by 2^-53 of the magnitude.
+fn contains_rounded(b: &Aabb<3>, p: V3, magnitude: f64) -> bool {
+    let slack = 300.0 * 0.5 * f64::EPSILON * magnitude;
     (0..3).all(|k| b.min[k] - slack <= p[k] && p[k] <= b.max[k] + slack)
+}
+
+fn unit(q: Q) -> Q {
+    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    q.map(|x| x / length)
 }
 
 /// Keys of a property: so many numbers each.
@@ -119,7 +131,8 @@ fn keys(random: &mut Random, n_keys: usize, n: usize, how: &str, scale: f64, uni
 }
 
 proptest! {
-    /// Whatever is played, and when, a mesh stays in its box; two animated nodes, one above the other, with any interpolation.
+    /// Whatever is played, and when, a mesh stays in its box: two animated nodes, one above the other, with any interpolation, one
+    /// or two animations of a property, and now and then a scale of zero at rest.
     #[test]
     fn nothing_leaves_its_box(seed in any::<u64>()) {
         let mut random = Random::new(seed);
@@ -137,11 +150,16 @@ proptest! {
                 if random.below(3) == 0 {
                     continue;
                 }
-                let how = hows[random.below(3)];
-                let (n, unit) = if path == "rotation" { (4, true) } else { (3, false) };
-                let values = keys(&mut random, 3, n, how, if unit { 0.5 } else { 3.0 }, unit);
-                animate(&mut doc, node, path, &times, &values, how);
-                curves.push((node, path, values, how));
+                for _ in 0..1 + random.below(2) {
+                    let how = hows[random.below(3)];
+                    let (n, unit) = if path == "rotation" { (4, true) } else { (3, false) };
+                    let values = keys(&mut random, 3, n, how, if unit { 0.5 } else { 3.0 }, unit);
+                    animate(&mut doc, node, path, &times, &values, how);
+                    curves.push((node, path, values, how));
+                }
+                if path == "scale" && random.below(2) == 0 {
+                    doc.json["nodes"][node]["scale"] = json!([0, 0, 0]);
+                }
             }
         }
         let file = read(&doc);
@@ -155,6 +173,7 @@ proptest! {
         for _ in 0..200 {
             for corner in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
                 let mut p: V3 = corner;
+                let mut magnitude = 1.0_f64;
                 for node in [2, 1, 0] {
                     let n = &doc.json["nodes"][node];
                     let usual = |path: &str, without: Value| n.get(path).cloned().unwrap_or(without);
@@ -169,24 +188,21 @@ proptest! {
                         }
                         let (key, share) = (random.below(2), random.unit());
                         let span = times[key + 1] - times[key];
+                        // Fading goes from what is at rest, or played before, to what is played; for rotations on the shorter arc.
+                        let fade = if random.below(3) == 0 { random.unit() } else { 1.0 };
+                        let faded = |from: V3, to: V3| -> V3 { std::array::from_fn(|k| from[k] + fade * (to[k] - from[k])) };
                         match *path {
-                            "translation" => t = at(values, key, span, share, how),
-                            "scale" => s = at(values, key, span, share, how),
-                            _ => {
-                                let played = at(values, key, span, share, how);
-                                // Fading goes on the shorter arc between what is at rest and what is played.
-                                let fade = if random.below(3) == 0 { random.unit() } else { 1.0 };
-                                let length = |q: Q| q.iter().map(|x| x * x).sum::<f64>().sqrt();
-                                let unit = |q: Q| q.map(|x| x / length(q));
-                                r = slerp(unit(r), unit(played), fade);
-                            }
+                            "translation" => t = faded(t, at(values, key, span, share, how)),
+                            "scale" => s = faded(s, at(values, key, span, share, how)),
+                            _ => r = slerp(unit(r), unit(at(values, key, span, share, how)), fade),
                         }
                     }
                     p = std::array::from_fn(|k| p[k] * s[k]);
+                    magnitude = p.into_iter().chain(t).fold(magnitude, |m, x| m.max(x.abs()));
                     p = rotate(r, p);
                     p = std::array::from_fn(|k| p[k] + t[k]);
                 }
-                prop_assert!(contains(&within, p), "{p:?} is not in {within:?}");
+                prop_assert!(contains_rounded(&within, p, magnitude), "{p:?} is not in {within:?}");
             }
         }
     }
@@ -208,20 +224,35 @@ fn boxes_are_tight() {
     for (found, truth) in b.min.iter().chain(&b.max).zip([0.0, 0.0, -1.0, 1.0, 2.0, 0.0]) {
         assert!((found - truth).abs() < 0.06, "{b:?}");
     }
-    assert!(contains(&b, [0.0, 0.0, -1.0]) && contains(&b, [1.0, 2.0, 0.0]));
-    // Impostors: the box at rest, and one around the keys alone, which the door leaves between them.
+    assert_eq!(file.info.surfaces[0].reason, "an animation");
+    // Whether a box contains all corners of the door at a hundred times on its way to a rotation.
+    let holds = |b: &Aabb<3>, to: Q| {
+        let corners = [[0., 0., 0.], [1., 0., 0.], [1., 2., 0.], [0., 2., 0.]];
+        let turn = |k: i32| slerp([0.0, 0.0, 0.0, 1.0], to, f64::from(k) / 100.0);
+        (0..=100).all(|k| corners.iter().all(|&corner| contains(b, rotate(turn(k), corner))))
+    };
+    let quarter = [0.0, f64::from(h as f32), 0.0, f64::from(h as f32)];
+    assert!(holds(&b, quarter));
+    // The impostor: the box at rest.
     let at_rest = Aabb { min: [0.0; 3], max: [1.0, 2.0, 0.0] };
-    assert!(!contains(&at_rest, rotate([0.0, h, 0.0, h], [1.0, 0.0, 0.0])));
-    let half = slerp([0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0], 0.5);
-    assert!(!contains(&Aabb { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 0.0] }, rotate(half, [1.0, 0.0, 0.0])));
-    assert_eq!(file.info.taken[0].because, "an animation");
+    assert!(!holds(&at_rest, quarter));
+    // A third of a turn leaves the box around its keys on the way; the impostor is that box.
+    let third: Q = [0.0, f64::from(0.75_f32.sqrt()), 0.0, 0.5];
+    let positions = [[0., 0., 0.], [1., 0., 0.], [1., 2., 0.], [0., 2., 0.]];
+    doc.json["animations"] = json!([]);
+    animate(&mut doc, 0, "rotation", &[0.0, 1.0], &[&[0.0, 0.0, 0.0, 1.0], &third[..]].concat(), "LINEAR");
+    let b = within(&read(&doc), 0).unwrap();
+    assert!(holds(&b, third) && b.min[2] > -1.06, "{b:?}");
+    let around_keys = Aabb::around(positions.into_iter().flat_map(|p| [p, rotate(third, p)]));
+    assert!(!holds(&around_keys, third), "{around_keys:?}");
     // A lift: exact but for rounding.
     let mut doc = Doc::new(json!([{"children": [1]}, {"mesh": 0}]));
     doc.triangle();
     animate(&mut doc, 0, "translation", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 8.0, 0.0], "LINEAR");
     let b = within(&read(&doc), 0).unwrap();
     for (found, truth) in b.min.iter().chain(&b.max).zip([0.0, 0.0, 0.0, 1.0, 9.0, 0.0]) {
-        assert!((found - truth).abs() < 1e-9, "{b:?}");
+        // A key is widened by 2^-44 of itself.
+        assert!((found - truth).abs() < 1e-12, "{b:?}");
     }
 }
 
@@ -252,6 +283,48 @@ fn what_cannot_be_bounded_may_be_anywhere() {
         d["nodes"][1]["extensions"] = json!({"KHR_physics_rigid_bodies": {"motion": {"mass": 1}}});
     };
     assert_eq!(spoilt(&physics).0, 2);
+    // Extensions that move a node, or all of them.
+    let extended = |name: &str, value: Value| {
+        spoilt(&|d| {
+            d["nodes"][1]["extensions"] = json!({name: value.clone()});
+            d["animations"] = json!([]);
+        })
+    };
+    for name in ["OMI_vehicle_body", "VRMC_node_constraint", "VRMC_springBone", "ACME_orbit"] {
+        assert_eq!(extended(name, json!({})), (1, Some(false)), "{name}");
+    }
+    assert_eq!(extended("AGI_articulations", json!({"articulationName": "arm"})), (1, Some(false)));
+    assert_eq!(extended("OMI_physics_body", json!({"motion": {"type": "dynamic"}})), (1, Some(false)));
+    assert_eq!(extended("OMI_physics_body", json!({"motion": {"type": "static"}})), (0, None));
+    for name in ["KHR_lights_punctual", "MSFT_lod", "KHR_audio_emitter", "KHR_node_visibility"] {
+        assert_eq!(extended(name, json!({})), (0, None), "{name}");
+    }
+    for name in ["KHR_interactivity", "VRM", "VRMC_springBone"] {
+        assert_eq!(spoilt(&|d| d["extensionsUsed"] = json!([name])), (2, Some(false)), "{name}");
+        assert_eq!(spoilt(&|d| d["extensions"] = json!({name: {}})), (2, Some(false)), "{name}");
+    }
+    assert_eq!(spoilt(&|d| d["extensionsUsed"] = json!(["VRMC_materials_mtoon"])), (1, Some(true)));
+    assert_eq!(spoilt(&|d| d["extensions"] = json!(7)), (1, Some(true)));
+    let mut doc = door();
+    doc.json["extensions"] = json!({"KHR_interactivity": {}, "ACME_weather": {}});
+    doc.json["nodes"][1]["extensions"] = json!({"ACME_orbit": {}});
+    let file = read(&doc);
+    let reasons: Vec<&str> = file.info.surfaces.iter().map(|found| found.reason.as_str()).collect();
+    assert_eq!(reasons, ["KHR_interactivity", "the unknown extension ACME_orbit"]);
+    assert_eq!(
+        file.info.warnings,
+        [
+            "KHR_interactivity may move everything, so nothing hides and all is seen from everywhere: name what never moves \
+             (--still)",
+            "the extension ACME_weather of the document is not known: name what moves by it, if anything does (--see-through)",
+            "1 node has the extension ACME_orbit, which is not known: they count as moving anywhere; name what never moves \
+             (--still)"
+        ]
+    );
+    // Who knows that nothing moves says so.
+    let still = SceneReadOptions { still: vec!["*".parse().unwrap()], ..SceneReadOptions::default() };
+    let file = parse_gltf_with(&doc.glb(), None, &still).unwrap();
+    assert!(file.scene.moving().is_empty() && file.scene.see_through().is_empty());
     // A channel without a node does nothing, a pointer to nothing that is known everything.
     let target = |target: Value| spoilt(&|d| d["animations"][0]["channels"][0]["target"] = target.clone());
     assert_eq!(target(json!({"path": "translation"})), (0, None));
@@ -264,6 +337,131 @@ fn what_cannot_be_bounded_may_be_anywhere() {
     doc.json["animations"][0]["channels"][0]["target"] = pointer("/nodes/1/extensions/KHR_node_visibility/visible");
     let file = read(&doc);
     assert_eq!((file.scene.see_through(), file.scene.moving().len()), (&[1][..], 0));
+}
+
+/// What has no area at rest is seen where it has one.
+#[test]
+fn what_is_flat_at_rest_is_seen_where_it_is_not() {
+    let grows = [0.0, 0.0, 0.0, 2.0, 2.0, 2.0];
+    let mut doc = Doc::new(json!([{"mesh": 0, "scale": [0, 0, 0], "translation": [5, 0, 0]}, {"mesh": 0}]));
+    doc.triangle();
+    animate(&mut doc, 0, "scale", &[0.0, 1.0], &grows, "LINEAR");
+    let scene = read(&doc).scene;
+    let extent = scene.extent(0);
+    assert!(
+        contains(&extent, [5.0, 0.0, 0.0]) && contains(&extent, [7.0, 0.0, 0.0]) && contains(&extent, [5.0, 2.0, 0.0])
+    );
+    assert!((0..3).all(|k| extent.max[k] < [7.1, 2.1, 0.1][k] && extent.min[k] > [4.9, -0.1, -0.1][k]), "{extent:?}");
+    // The same without animation is nowhere.
+    doc.json["animations"] = json!([]);
+    let file = read(&doc);
+    assert!(file.scene.extent(0).is_empty() && file.info.n_degenerate_triangles == 1);
+    // By a node above it, by a target, and by joints.
+    let mut doc = Doc::new(json!([{"children": [1], "scale": [1, 0, 0]}, {"mesh": 0}]));
+    doc.triangle();
+    animate(&mut doc, 0, "scale", &[0.0, 1.0], &grows, "LINEAR");
+    assert!(contains(&read(&doc).scene.extent(0), [0.0, 2.0, 0.0]));
+    let mut doc = Doc::new(json!([{"mesh": 0}]));
+    let positions = doc.positions(&[[0., 0., 0.], [1., 0., 0.], [2., 0., 0.]]);
+    let lift = doc.positions(&[[0., 0., 0.], [0., 4., 0.], [0., 0., 0.]]);
+    doc.mesh(json!([{"attributes": {"POSITION": positions}, "targets": [{"POSITION": lift}]}]));
+    let scene = read(&doc).scene;
+    assert!(contains(&scene.extent(0), [1.0, 4.0, 0.0]) && scene.n_triangles() == 1);
+    // What is not drawn moves nowhere, and what has no triangles is not drawn.
+    doc.json["nodes"][0]["extras"] = json!({"sightlines": {"role": "ignore"}});
+    doc.push("nodes", json!({"mesh": 1}));
+    doc.push("nodes", json!({"mesh": 2}));
+    doc.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
+    doc.mesh(json!([{"attributes": {"POSITION": positions}, "mode": 0, "targets": [{"POSITION": lift}]}]));
+    doc.triangle();
+    let scene = read(&doc).scene;
+    assert!(scene.extent(0).is_empty() && scene.extent(1).is_empty() && scene.moving().is_empty());
+}
+
+/// What hides, hides where it stands: an occluder that moves is seen wherever it goes, and hides nothing.
+#[test]
+fn occluders_that_move_hide_nothing() {
+    let mut doc =
+        Doc::new(json!([{"name": "gate-occ", "mesh": 0}, {"mesh": 0, "extras": {"sightlines": {"role": "occluder"}}}]));
+    doc.triangle();
+    for node in [0, 1] {
+        animate(&mut doc, node, "translation", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 8.0, 0.0], "LINEAR");
+    }
+    let opaque = SceneReadOptions { opaque: vec!["gate*".parse().unwrap()], ..SceneReadOptions::default() };
+    for options in [SceneReadOptions::default(), opaque.clone()] {
+        let file = parse_gltf_with(&doc.glb(), None, &options).unwrap();
+        assert_eq!(file.scene.see_through(), [0, 1]);
+        assert!((0..2).all(|k| contains(&file.scene.extent(k), [0.0, 9.0, 0.0])));
+        let warning =
+            "2 occluders move and hide nothing, the first is called \"gate-occ\": name what never moves (--still)";
+        assert_eq!(file.info.warnings, [warning]);
+    }
+    // The twins: without animation it hides, and so it does if somebody says that it is never played.
+    let still = SceneReadOptions { still: vec!["gate*".parse().unwrap()], ..opaque };
+    let file = parse_gltf_with(&doc.glb(), None, &still).unwrap();
+    assert_eq!((file.scene.see_through(), file.scene.extent(0).max[1]), (&[1][..], 1.0));
+    doc.json["animations"] = json!([]);
+    assert!(read(&doc).scene.see_through().is_empty());
+}
+
+/// A node is where its parents in the scene put it, whatever other scenes make of it.
+#[test]
+fn parents_are_those_of_the_scene() {
+    let mut doc = Doc::new(json!([{"children": [2]}, {"children": [2], "translation": [50, 0, 0]}, {"mesh": 0}]));
+    doc.triangle();
+    doc.json["scenes"] = json!([{"nodes": [0]}]);
+    animate(&mut doc, 0, "translation", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 8.0, 0.0], "LINEAR");
+    let b = within(&read(&doc), 0).unwrap();
+    assert!(contains(&b, [0.0, 9.0, 0.0]) && b.max[0] < 1.1, "{b:?}");
+    // The same with the node as a root of the scene that is read, below an animated one of another.
+    doc.json["scenes"] = json!([{"nodes": [2]}]);
+    assert!(read(&doc).scene.moving().is_empty());
+    // A joint outside of the scene with two parents may be anywhere.
+    let mut doc = Doc::new(json!([{"mesh": 0, "skin": 0}, {"children": [3]}, {"children": [3]}, {}]));
+    let positions = doc.positions(&[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]);
+    let joints = doc.accessor(&[0; 12], 5121, "VEC4", 3);
+    let weights = floats(&mut doc, &[1.0, 0.0, 0.0, 0.0].repeat(3), "VEC4");
+    doc.mesh(json!([{"attributes": {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}}]));
+    doc.json["skins"] = json!([{"joints": [3]}]);
+    doc.json["scenes"] = json!([{"nodes": [0]}]);
+    assert_eq!(within(&read(&doc), 0), None);
+    doc.json["nodes"][2]["children"] = json!([]);
+    assert!(within(&read(&doc), 0).is_some());
+}
+
+/// Programs differ in what they make of weights that do not add up to 1, and of more than four joints.
+#[test]
+fn weights_that_do_not_add_up_are_held() {
+    let skinned = |first: [f64; 4], second: [f64; 4]| {
+        let mut doc = Doc::new(
+            json!([{"mesh": 0, "skin": 0, "translation": [0, 0, -40]}, {"translation": [0, 10, 0]}, {"translation": [0, 20, 0]}]),
+        );
+        let positions = doc.positions(&[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]);
+        let joints = [[0, 0, 0, 0], [1, 0, 0, 0]].map(|j| doc.accessor(&[j; 3].concat(), 5121, "VEC4", 3));
+        let weights = [first, second].map(|w| floats(&mut doc, &w.repeat(3), "VEC4"));
+        doc.mesh(json!([{"attributes": {"POSITION": positions, "JOINTS_0": joints[0], "WEIGHTS_0": weights[0],
+            "JOINTS_1": joints[1], "WEIGHTS_1": weights[1]}}]));
+        doc.json["skins"] = json!([{"joints": [1, 2]}]);
+        within(&read(&doc), 0)
+    };
+    let half = [0.5, 0.0, 0.0, 0.0];
+    let b = skinned(half, half).unwrap();
+    // All joints: the middle of both. Four of them, divided by their sum: the first. Not divided: half of it, as seen from the
+    // origin or from the node of the mesh.
+    for p in [[0.0, 15.0, 0.0], [0.0, 10.0, 0.0], [0.0, 5.0, 0.0], [0.0, 5.0, -20.0]] {
+        assert!(contains(&b, p), "{p:?} {b:?}");
+    }
+    assert!(
+        !contains(&b, [0.0, 4.0, 0.0]) && !contains(&b, [0.0, 15.0, -21.0]) && !contains(&b, [0.0, 22.0, 0.0]),
+        "{b:?}"
+    );
+    // All in one set, and no weight in the second: tight.
+    let b = skinned([1.0, 0.0, 0.0, 0.0], [0.0; 4]).unwrap();
+    assert!(contains(&b, [0.0, 10.0, 0.0]) && !contains(&b, [0.0, 9.99, 0.0]) && !contains(&b, [0.0, 10.0, -0.01]));
+    // Above 1, and nothing to divide by; below 0.
+    assert!(contains(&skinned([2.0, 0.0, 0.0, 0.0], [0.0; 4]).unwrap(), [2.0, 20.0, 40.0]));
+    assert_eq!(skinned([0.0; 4], half), None);
+    assert_eq!(skinned(half, [-0.5, 0.0, 0.0, 0.0]), None);
 }
 
 #[test]
@@ -284,7 +482,7 @@ fn skins_and_morph_targets_are_seen_where_they_may_be() {
     let h = std::f64::consts::FRAC_1_SQRT_2;
     animate(&mut doc, 2, "rotation", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, h, h], "LINEAR");
     let file = read(&doc);
-    assert_eq!((file.scene.see_through(), file.info.taken[0].because.as_str()), (&[0][..], "a skin"));
+    assert_eq!((file.scene.see_through(), file.info.surfaces[0].reason.as_str()), (&[0][..], "a skin"));
     // The node of the mesh does not count.
     let corners = &file.scene.objects()[0].vertices;
     assert_eq!((corners[0], corners[2]), ([0., 5., 0.], [2., 5.5, 0.]));
@@ -308,13 +506,13 @@ fn skins_and_morph_targets_are_seen_where_they_may_be() {
     let lift = doc.positions(&[[0., 0., 0.], [0., 0., 0.], [0., 0., 4.]]);
     doc.mesh(json!([{"attributes": {"POSITION": positions}, "targets": [{"POSITION": lift}]}]));
     let top = |doc: &Doc| within(&read(doc), 0).unwrap().max[2];
-    assert!((top(&doc) - 4.0).abs() < 1e-9);
+    assert!((top(&doc) - 4.0).abs() < 1e-13);
     doc.json["meshes"][0]["weights"] = json!([2]);
     let file = read(&doc);
-    assert!((top(&doc) - 8.0).abs() < 1e-9 && file.scene.objects()[0].vertices[2] == [0., 1., 8.]);
-    assert_eq!(file.info.taken[0].because, "morph targets");
+    assert!((top(&doc) - 8.0).abs() < 1e-13 && file.scene.objects()[0].vertices[2] == [0., 1., 8.]);
+    assert_eq!(file.info.surfaces[0].reason, "morph targets");
     animate(&mut doc, 0, "weights", &[0.0, 1.0], &[0.0, 3.0], "LINEAR");
-    assert!((top(&doc) - 12.0).abs() < 1e-9);
+    assert!((top(&doc) - 12.0).abs() < 1e-12);
     // Tangents bring it farther than keys.
     let cubic = [0.0, 0.0, 30.0, 0.0, 0.0, 0.0];
     doc.json["animations"] = Value::Null;

@@ -1,0 +1,240 @@
+//! Extensions of glTF by which programs move things: which of them move a node, and which may move everything.
+//!
+//! Something that is wrongly taken for still hides what can be seen, and is not seen where it goes; something that is wrongly
+//! taken for moving only shows more. So an extension of a node that is not known counts as one that moves it.
+
+use super::json::Document;
+use serde::Deserialize;
+use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fmt;
+
+/// Extensions of nodes and documents that leave nodes where they are, by how their names begin.
+///
+/// `MSFT_lod` shows other meshes in the same place; levels that reach beyond the finest one are not looked at.
+const STILL: [&str; 34] = [
+    "AGI_stk_metadata",
+    "CESIUM_",
+    "EXT_feature_metadata",
+    "EXT_instance_features",
+    "EXT_lights_",
+    "EXT_mesh_features",
+    "EXT_mesh_gpu_instancing",
+    "EXT_mesh_manifold",
+    "EXT_meshopt_compression",
+    "EXT_structural_metadata",
+    "EXT_texture_",
+    "GODOT_single_root",
+    "KHR_audio",
+    "KHR_implicit_shapes",
+    "KHR_lights_",
+    "KHR_materials_",
+    "KHR_meshopt_compression",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_node_visibility",
+    "KHR_texture_",
+    "KHR_xmp",
+    "MSFT_audio_emitter",
+    "MSFT_lod",
+    "OMI_audio_emitter",
+    "OMI_collider",
+    "OMI_environment_sky",
+    "OMI_link",
+    "OMI_personality",
+    "OMI_physics_gravity",
+    "OMI_physics_joint",
+    "OMI_physics_shape",
+    "OMI_seat",
+    "OMI_spawn_point",
+];
+
+/// Extensions of nodes that move them, or have a part that does: see [`moves`].
+const MOVING: [&str; 7] = [
+    "AGI_articulations",
+    "KHR_physics_rigid_bodies",
+    "OMI_physics_body",
+    "OMI_vehicle_",
+    "VRMC_node_constraint",
+    "VRMC_springBone",
+    "VRMC_vrm",
+];
+
+/// Extensions of a document by which programs may move any of its nodes: behaviour, and figures that are animated by whoever
+/// shows them. Whole names.
+const MOVING_EVERYTHING: [&str; 9] = [
+    "KHR_interactivity",
+    "MPEG_scene_dynamic",
+    "MPEG_scene_interactivity",
+    "VRM",
+    "VRMC_springBone",
+    "VRMC_springBone_extended_collider",
+    "VRMC_springBone_limit",
+    "VRMC_vrm",
+    "VRMC_vrm_animation",
+];
+
+fn begins_like(name: &str, list: &[&str]) -> bool {
+    list.iter().any(|known| name.starts_with(known))
+}
+
+/// Whether an extension of a node moves it, by what it contains where that is known.
+fn moves(name: &str, value: &Value) -> bool {
+    let Value::Object(members) = value else { return true };
+    let text = |value: Option<&Value>| value.and_then(Value::as_str).map(str::to_owned);
+    match name {
+        // Colliders and triggers without motion stand still.
+        "KHR_physics_rigid_bodies" => members.contains_key("motion"),
+        // Earlier versions have the kind of body where later ones have `motion`.
+        "OMI_physics_body" => match (members.get("motion"), members.get("type")) {
+            (Some(motion), _) => text(motion.get("type")).as_deref() != Some("static"),
+            (None, Some(kind)) => !matches!(kind.as_str(), Some("static" | "trigger")),
+            (None, None) => false,
+        },
+        // Without the name of an articulation it is a place where something is attached.
+        "AGI_articulations" => members.contains_key("articulationName"),
+        _ => true,
+    }
+}
+
+/// What the extensions of a node make of it.
+#[derive(Debug, Default)]
+pub(super) struct NodeExtensions {
+    /// Whether the node, and all below it, is not drawn at first: a program may show it later.
+    pub(super) is_invisible: bool,
+    /// Whether its mesh is drawn many times.
+    pub(super) is_instanced: bool,
+    /// The first extension that moves it.
+    mover: Option<Box<str>>,
+}
+
+impl NodeExtensions {
+    /// Why programs may move the node, if they may.
+    pub(super) fn reason(&self) -> Option<String> {
+        let name = self.mover.as_deref()?;
+        Some(if begins_like(name, &MOVING) { name.to_owned() } else { format!("the unknown extension {name}") })
+    }
+}
+
+impl<'de> Deserialize<'de> for NodeExtensions {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Extensions;
+        impl<'de> Visitor<'de> for Extensions {
+            type Value = NodeExtensions;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object of extensions")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<NodeExtensions, A::Error> {
+                let mut found = NodeExtensions::default();
+                while let Some(name) = map.next_key::<String>()? {
+                    if name == "KHR_node_visibility" {
+                        found.is_invisible = map.next_value::<Value>()?.get("visible") == Some(&Value::Bool(false));
+                    } else if begins_like(&name, &STILL) {
+                        found.is_instanced |= name == super::gltf::INSTANCING;
+                        map.next_value::<IgnoredAny>()?;
+                    } else if moves(&name, &map.next_value::<Value>()?) {
+                        found.mover.get_or_insert(name.into());
+                    }
+                }
+                Ok(found)
+            }
+        }
+        deserializer.deserialize_map(Extensions)
+    }
+}
+
+/// The names of the extensions of a document; none where they are not as the specification has them.
+pub(super) fn names<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeSet<String>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Extensions {
+        All(std::collections::BTreeMap<String, IgnoredAny>),
+        Other(IgnoredAny),
+    }
+    Ok(match Extensions::deserialize(deserializer)? {
+        Extensions::All(all) => all.into_keys().collect(),
+        Extensions::Other(_) => BTreeSet::new(),
+    })
+}
+
+/// The first extension by which a program may move any node of a document.
+pub(super) fn moves_everything(document: &Document) -> Option<&str> {
+    let mut names = document.extensions.iter().chain(&document.extensions_used).map(String::as_str);
+    names.find(|name| MOVING_EVERYTHING.contains(name))
+}
+
+/// What a user should hear of extensions that move things, or might.
+pub(super) fn warnings(document: &Document) -> Vec<String> {
+    let mut all = Vec::new();
+    if let Some(name) = moves_everything(document) {
+        all.push(format!(
+            "{name} may move everything, so nothing hides and all is seen from everywhere: name what never moves (--still)"
+        ));
+    }
+    let is_known =
+        |name: &str| begins_like(name, &STILL) || begins_like(name, &MOVING) || MOVING_EVERYTHING.contains(&name);
+    for name in document.extensions.iter().filter(|name| !is_known(name)) {
+        all.push(format!(
+            "the extension {name} of the document is not known: name what moves by it, if anything does (--see-through)"
+        ));
+    }
+    let mut nodes: Vec<&str> =
+        document.nodes.iter().filter_map(|node| node.extensions.as_ref()?.mover.as_deref()).collect();
+    nodes.retain(|name| !begins_like(name, &MOVING));
+    nodes.sort_unstable();
+    for of_one in nodes.chunk_by(|a, b| a == b) {
+        let (name, n) = (of_one[0], of_one.len());
+        let nodes = if n == 1 { "node has" } else { "nodes have" };
+        all.push(format!(
+            "{n} {nodes} the extension {name}, which is not known: they count as moving anywhere; name what never moves \
+             (--still)"
+        ));
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn what_an_extension_contains_tells_whether_it_moves() {
+        let reason = |extensions: Value| serde_json::from_value::<NodeExtensions>(extensions).unwrap().reason();
+        let moving = |name: &str, value: Value| reason(json!({name: value})) == Some(name.to_owned());
+        let physics = "KHR_physics_rigid_bodies";
+        assert!(moving(physics, json!({"motion": {"isKinematic": true}})) && moving(physics, json!(3)));
+        assert!(!moving(physics, json!({"collider": {}})));
+        let body = "OMI_physics_body";
+        for value in
+            [json!({"motion": {"type": "kinematic"}}), json!({"motion": {}}), json!({"type": "rigid"}), json!([])]
+        {
+            assert!(moving(body, value.clone()), "{value}");
+        }
+        for value in
+            [json!({"motion": {"type": "static"}}), json!({"type": "trigger"}), json!({"collider": {"shape": 0}})]
+        {
+            assert!(!moving(body, value.clone()), "{value}");
+        }
+        assert!(moving("AGI_articulations", json!({"articulationName": "arm"})));
+        assert!(!moving("AGI_articulations", json!({"isAttachPoint": true})));
+        for name in ["OMI_vehicle_body", "OMI_vehicle_wheel", "VRMC_node_constraint", "VRMC_springBone"] {
+            assert!(moving(name, json!({})), "{name}");
+        }
+        assert_eq!(reason(json!({"ACME_orbit": {}})).unwrap(), "the unknown extension ACME_orbit");
+        for name in
+            ["KHR_lights_punctual", "MSFT_lod", "EXT_mesh_gpu_instancing", "KHR_audio_emitter", "KHR_node_visibility"]
+        {
+            assert_eq!(reason(json!({name: {}})), None, "{name}");
+        }
+        assert!(
+            serde_json::from_value::<NodeExtensions>(json!({"KHR_node_visibility": {"visible": false}}))
+                .unwrap()
+                .is_invisible
+        );
+        assert!(serde_json::from_value::<NodeExtensions>(json!([])).is_err());
+    }
+}
