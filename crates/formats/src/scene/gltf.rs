@@ -6,7 +6,7 @@ use super::build::{Builder, Compact};
 use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
 use super::json::{Document, Mesh, Node, Primitive, SceneRoots, TRIANGLES};
 use super::motion::{Motions, Vertices};
-use super::movers;
+use super::movers::{self, INSTANCING};
 use super::role::{Role, StatedRole, role_of_name};
 use super::surface::{self, Classification, Classifier, Evidence, SceneReadOptions, see_through};
 use super::transform::Transform;
@@ -37,8 +37,6 @@ const HARMLESS: [&str; 12] = [
     "KHR_xmp",
     "MSFT_texture_",
 ];
-/// Draws a mesh many times where a reader that does not know it draws it once; objects would be missing.
-pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Reads a GLB, or the text of a glTF if it does not begin like a GLB.
 ///
@@ -120,7 +118,8 @@ pub(super) fn parse(
         let n = document.scenes.len();
         builder.warnings.push(format!("the default scene, {read}, was read, one of {n} in the file"));
     }
-    builder.warnings.extend(movers::warnings(&document));
+    let of_nodes = document.nodes.iter().filter_map(|node| node.extensions.as_deref());
+    builder.warnings.extend(movers::warnings(document.moves_everything(), &document.extensions, of_nodes));
     builder.warnings.extend(surface::warnings(&document));
     builder.warnings.extend(classifier.warnings());
     let file = builder.finish(SceneFormat::Gltf, options)?;

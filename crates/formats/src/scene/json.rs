@@ -4,7 +4,7 @@
 //! that is written 10,000 km from the origin would have its walls moved against each other.
 
 use super::Simplified;
-use super::movers::NodeExtensions;
+use super::movers::{NodeExtensions, moves_everything};
 use super::role::{Stated, StatedRole};
 use serde::de::{Deserializer, IgnoredAny};
 use serde::{Deserialize, de::DeserializeOwned};
@@ -43,6 +43,13 @@ pub(super) struct Document {
     /// Their names.
     #[serde(default, deserialize_with = "super::movers::names")]
     pub(super) extensions: BTreeSet<String>,
+}
+
+impl Document {
+    /// The first of its extensions by which a program may move any of its nodes.
+    pub(super) fn moves_everything(&self) -> Option<&str> {
+        moves_everything(self.extensions.iter().chain(&self.extensions_used).map(String::as_str))
+    }
 }
 
 #[derive(Debug, Deserialize)]

@@ -14,7 +14,6 @@ use super::accessor::Elements;
 use super::buffers::Buffers;
 use super::error::AccessorRole;
 use super::json::{Channel, Document, Mesh, Node, Primitive, Sampler};
-use super::movers::moves_everything;
 use super::range::{Range, RangeBox, bounded, box_of, mapped, rotations, united};
 use super::transform::Transform;
 use serde_json::Value;
@@ -146,7 +145,7 @@ impl<'a, 'b> Motions<'a, 'b> {
             }
         }
         let (n_steps, keyed, inherited) = (Cell::new(0), BTreeMap::new(), Vec::new());
-        let all_anywhere = moves_everything(document).map(str::to_owned);
+        let all_anywhere = document.moves_everything().map(str::to_owned);
         let mut motions = Self { document, buffers, parents, is_torn, inherited, keyed, all_anywhere, n_steps };
         for animation in &document.animations {
             for channel in &animation.channels {

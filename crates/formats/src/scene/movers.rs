@@ -3,7 +3,6 @@
 //! Something that is wrongly taken for still hides what can be seen, and is not seen where it goes; something that is wrongly
 //! taken for moving only shows more. So an extension of a node that is not known counts as one that moves it.
 
-use super::json::Document;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
@@ -49,6 +48,9 @@ const STILL: [&str; 34] = [
     "OMI_seat",
     "OMI_spawn_point",
 ];
+
+/// Draws a mesh many times where a reader that does not know it draws it once; objects would be missing.
+pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Extensions of nodes that move them, or have a part that does: see [`moves`].
 const MOVING: [&str; 7] = [
@@ -133,7 +135,7 @@ impl<'de> Deserialize<'de> for NodeExtensions {
                     if name == "KHR_node_visibility" {
                         found.is_invisible = map.next_value::<Value>()?.get("visible") == Some(&Value::Bool(false));
                     } else if begins_like(&name, &STILL) {
-                        found.is_instanced |= name == super::gltf::INSTANCING;
+                        found.is_instanced |= name == INSTANCING;
                         map.next_value::<IgnoredAny>()?;
                     } else if moves(&name, &map.next_value::<Value>()?) {
                         found.mover.get_or_insert(name.into());
@@ -160,29 +162,35 @@ pub(super) fn names<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeS
     })
 }
 
-/// The first extension by which a program may move any node of a document.
-pub(super) fn moves_everything(document: &Document) -> Option<&str> {
-    let mut names = document.extensions.iter().chain(&document.extensions_used).map(String::as_str);
-    names.find(|name| MOVING_EVERYTHING.contains(name))
+/// The first of some extensions by which a program may move any node of a document.
+pub(super) fn moves_everything<'a>(names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    names.into_iter().find(|name| MOVING_EVERYTHING.contains(name))
 }
 
 /// What a user should hear of extensions that move things, or might.
-pub(super) fn warnings(document: &Document) -> Vec<String> {
+///
+/// * `everything`: the one that may move everything
+/// * `document`: names of the extensions of the document
+/// * `nodes`: the extensions of its nodes
+pub(super) fn warnings<'a>(
+    everything: Option<&str>,
+    document: &BTreeSet<String>,
+    nodes: impl Iterator<Item = &'a NodeExtensions>,
+) -> Vec<String> {
     let mut all = Vec::new();
-    if let Some(name) = moves_everything(document) {
+    if let Some(name) = everything {
         all.push(format!(
             "{name} may move everything, so nothing hides and all is seen from everywhere: name what never moves (--still)"
         ));
     }
     let is_known =
         |name: &str| begins_like(name, &STILL) || begins_like(name, &MOVING) || MOVING_EVERYTHING.contains(&name);
-    for name in document.extensions.iter().filter(|name| !is_known(name)) {
+    for name in document.iter().filter(|name| !is_known(name)) {
         all.push(format!(
             "the extension {name} of the document is not known: name what moves by it, if anything does (--see-through)"
         ));
     }
-    let mut nodes: Vec<&str> =
-        document.nodes.iter().filter_map(|node| node.extensions.as_ref()?.mover.as_deref()).collect();
+    let mut nodes: Vec<&str> = nodes.filter_map(|extensions| extensions.mover.as_deref()).collect();
     nodes.retain(|name| !begins_like(name, &MOVING));
     nodes.sort_unstable();
     for of_one in nodes.chunk_by(|a, b| a == b) {
