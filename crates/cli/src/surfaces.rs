@@ -4,7 +4,6 @@ use crate::output::count;
 use serde::Serialize;
 use sightlines::formats::SceneFile;
 use sightlines::formats::scene::{NamePattern, Role, SceneInfo, SceneReadOptions};
-use sightlines::pvs::Table;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
@@ -44,18 +43,18 @@ impl SurfaceArgs {
         SceneReadOptions { opaque, see_through, still, single_sided, scene: scene_name }
     }
 
-    /// The same, and what the scene of a table was read with, if there is one.
-    pub(crate) fn options_with(&self, table: Option<&Table>) -> SceneReadOptions {
+    /// The same, and what the scene of a table was read with, by the information of that table.
+    pub(crate) fn options_with(&self, info: &[(String, String)]) -> SceneReadOptions {
         let mut options = self.options();
-        let Some(table) = table else { return options };
+        let value = |key: &str| info.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str());
         let lists =
             [("opaque", &mut options.opaque), ("see-through", &mut options.see_through), ("still", &mut options.still)];
         for (key, patterns) in lists {
-            let stated = table.info_value(key).unwrap_or_default();
+            let stated = value(key).unwrap_or_default();
             patterns.extend(stated.lines().filter_map(|pattern| pattern.parse().ok()));
         }
-        options.single_sided |= table.info_value("single-sided").is_some();
-        options.scene = options.scene.or_else(|| table.info_value("scene").map(str::to_owned));
+        options.single_sided |= value("single-sided").is_some();
+        options.scene = options.scene.or_else(|| value("scene").map(str::to_owned));
         options
     }
 

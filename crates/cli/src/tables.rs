@@ -19,6 +19,16 @@ pub(crate) enum Opened {
     Packed(PackedCells<File>),
 }
 
+impl Opened {
+    /// How it was made, by keys.
+    pub(crate) fn info(&self) -> &[(String, String)] {
+        match self {
+            Self::Plain(cells) => cells.table().info(),
+            Self::Packed(cells) => cells.packed().info(),
+        }
+    }
+}
+
 /// Opens a table. Of a packed one, at most `cache_bytes` of unpacked blocks are kept.
 pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened, InputError> {
     if input::kind_of(path)? == Some(InputKind::Packed) {

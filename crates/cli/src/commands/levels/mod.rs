@@ -71,7 +71,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     let folder = NewFolder::new(&args.output, is_ours)?;
     let table = input::table(&args.table)?;
     // What was see-through for the table must not count as a wall here.
-    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(Some(&table)))?;
+    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.info()))?;
     let scene = &file.scene;
     let (method, factory) = args.how.prepare(&args.scene, scene)?;
     let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };

@@ -1,7 +1,7 @@
 //! What is left out before anything is drawn.
 
 use super::error::{Error, Unlike};
-use crate::tables::{self, Cells, Opened};
+use crate::tables::{Cells, Opened};
 use sightlines::cells::Scene;
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::pvs::{ObjectId, Place, PlaceBuffer};
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Bytes of blocks of a packed table that are kept.
-const CACHE: usize = 64 << 20;
+pub(super) const CACHE: usize = 64 << 20;
 
 /// A way to leave faces out, as an argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -72,10 +72,16 @@ pub(super) fn leave_out(
 
 /// Which objects of a scene a table shows from a point; `None`, and a warning, if that is outside every cell, where
 /// everything may be seen.
-pub(super) fn seen_by_table(table: &Path, path: &Path, scene: &Scene, eye: Point3) -> Result<Option<Vec<bool>>, Error> {
-    match tables::open(table, CACHE)? {
-        Opened::Plain(cells) => ask(&cells, table, path, scene, eye),
-        Opened::Packed(cells) => ask(&cells, table, path, scene, eye),
+pub(super) fn seen_by_table(
+    opened: &Opened,
+    table: &Path,
+    path: &Path,
+    scene: &Scene,
+    eye: Point3,
+) -> Result<Option<Vec<bool>>, Error> {
+    match opened {
+        Opened::Plain(cells) => ask(cells, table, path, scene, eye),
+        Opened::Packed(cells) => ask(cells, table, path, scene, eye),
     }
 }
 

@@ -13,8 +13,9 @@ use crate::output;
 use crate::picture::{self, PictureError};
 use crate::progress::Bar;
 use crate::surfaces::{self, SurfaceArgs};
+use crate::tables;
 use crate::view::Up;
-use cull::{Cull, leave_out, seen_by_table};
+use cull::{CACHE, Cull, leave_out, seen_by_table};
 use error::Error;
 use method::{Drawn, Kind, Readied, Ready, compared};
 use outcome::{Outcome, Row};
@@ -74,7 +75,9 @@ pub(crate) struct RenderArgs {
 pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, Error> {
     check(args)?;
     input::check_is_scene(&args.scene)?;
-    let file = input::scene(&args.scene, &args.surfaces.options())?;
+    let table = args.table.as_ref().map(|path| Ok::<_, Error>((path, tables::open(path, CACHE)?))).transpose()?;
+    let options = args.surfaces.options_with(table.as_ref().map_or(&[], |(_, opened)| opened.info()));
+    let file = input::scene(&args.scene, &options)?;
     if args.cull.contains(&Cull::Pvs) {
         input::check_occluder(&args.scene, &file)?;
     }
@@ -84,8 +87,8 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, Erro
     let up = args.eye.up(Up::axis(file.info.up));
     let camera = args.eye.camera(up)?;
     let methods = methods(args, &camera)?;
-    let seen = match &args.table {
-        Some(table) => seen_by_table(table, &args.scene, &file.scene, camera.eye())?,
+    let seen = match &table {
+        Some((path, opened)) => seen_by_table(opened, path, &args.scene, &file.scene, camera.eye())?,
         None => None,
     };
     let mut chosen = FaceMask::all(&faces);

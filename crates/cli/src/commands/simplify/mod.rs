@@ -54,7 +54,8 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
     let (table, views) = args.eyes.read()?;
     // What was see-through for the table must not count as a wall here.
-    let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.as_ref()))?;
+    let ReadScene { file, source } =
+        read(&args.scene, &args.how.surfaces.options_with(table.as_ref().map_or(&[], |table| table.info())))?;
     let scene = &file.scene;
     let (method, factory) = args.how.prepare(&args.scene, scene)?;
     let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };

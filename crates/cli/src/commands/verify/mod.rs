@@ -82,7 +82,7 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
         None => &read_table(&args.table)?,
     };
     // What the table was built with holds without being said again.
-    let options = args.surfaces.options_with(Some(table));
+    let options = args.surfaces.options_with(table.info());
     let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref(), &options)?;
     let scene = if own.is_some() { scene.without_objects() } else { scene };
     if own.is_some() {
