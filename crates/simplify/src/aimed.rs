@@ -32,7 +32,7 @@ pub struct Aimed {
 /// that triangle caused the change, weighted by the reciprocal of its probability. The mean is the share that changes;
 /// eyes within a triangle's plane do not count it.
 ///
-/// Deterministic for a seed. O(n log n), and for each eye O(m) for m such triangles and two traced rays for each ray.
+/// Deterministic for a seed. O(n log n), and for each eye O(m) for m such triangles and two or four traced rays for each ray.
 ///
 /// # Errors
 /// [`SimplifyError::Faces`]
@@ -49,7 +49,7 @@ pub fn measure_aimed(
         let eyes = Eyes::new(views, options.seed);
         let look = |eye: usize| {
             let (place, mut random) = eyes.place(eye);
-            let mut rays = traced.each_ref().map(Traced::rays);
+            let mut rays: Vec<_> = traced.iter().map(|both| both.each_ref().map(Traced::rays)).collect();
             // Means add up, and so do the squares of their errors.
             let (mut mean, mut error) = (0.0, 0.0);
             for causes in &causes {
@@ -57,7 +57,7 @@ pub fn measure_aimed(
                 let (mut sum, mut squares) = (0.0, 0.0);
                 for _ in 0..options.n_rays / 2 {
                     let Some(shot) = targets.any(&compared, &mut random) else { break };
-                    let hit = compared.look(&mut rays, place, shot.way).is_some_and(|d| d.cause == shot.cause);
+                    let hit = compared.look_through(&mut rays, place, shot.way, |d| d.cause == shot.cause).is_some();
                     let value = if hit { shot.weight } else { 0.0 };
                     sum += value;
                     squares += value * value;

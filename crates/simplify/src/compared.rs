@@ -56,6 +56,8 @@ pub(crate) struct Compared {
     /// For each face of the original.
     is_kept: Vec<bool>,
     is_hidden: Vec<bool>,
+    /// For each object.
+    is_opaque: Vec<bool>,
 }
 
 impl Compared {
@@ -70,12 +72,30 @@ impl Compared {
             hidden.iter().for_each(|&k| is_hidden[first + k as usize] = true);
             first += object.triangles.len();
         }
-        Ok(Self { before, after, is_kept, is_hidden })
+        let is_opaque = (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_opaque(object)).collect();
+        Ok(Self { before, after, is_kept, is_hidden, is_opaque })
     }
 
-    /// Both scenes, ready for rays.
-    pub(crate) fn traced(&self) -> [Traced<'_>; 2] {
-        [Traced::new(&self.before), Traced::new(&self.after.faces)]
+    /// Both scenes, ready for rays; and once more without what is see-through, if there is any: what is behind it is seen too.
+    pub(crate) fn traced(&self) -> Vec<[Traced<'_>; 2]> {
+        let mut traced = vec![[Traced::new(&self.before), Traced::new(&self.after.faces)]];
+        if !self.is_opaque.iter().all(|is_opaque| *is_opaque) {
+            let before = Traced::of(&self.before, |face| self.is_opaque[self.before.object(face) as usize]);
+            let is_opaque = |face: u32| self.is_opaque[self.after.object[face as usize] as usize];
+            traced.push([before, Traced::of(&self.after.faces, is_opaque)]);
+        }
+        traced
+    }
+
+    /// The first difference along a ray, of those with and without what is see-through; of those that count.
+    pub(crate) fn look_through(
+        &self,
+        rays: &mut [[FirstHits<'_>; 2]],
+        eye: Point3,
+        way: Point3,
+        counts: impl Fn(&Difference) -> bool,
+    ) -> Option<Difference> {
+        rays.iter_mut().find_map(|rays| self.look(rays, eye, way).filter(&counts))
     }
 
     /// The triangles that may cause a difference: those with an area that were removed or added; and those that should
@@ -96,7 +116,7 @@ impl Compared {
 
     /// The difference along a ray; `None` if both first hits are on the same triangle, or on triangles of the same
     /// object in the same plane.
-    pub(crate) fn look(&self, [old, new]: &mut [FirstHits<'_>; 2], eye: Point3, way: Point3) -> Option<Difference> {
+    fn look(&self, [old, new]: &mut [FirstHits<'_>; 2], eye: Point3, way: Point3) -> Option<Difference> {
         let (a, b) = (old.of(eye, way), new.of(eye, way));
         let origin = b.and_then(|b| self.after.origin[b as usize]);
         if a.is_some() == b.is_some() && a == origin {

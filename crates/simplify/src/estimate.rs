@@ -3,6 +3,7 @@
 use crate::rays::Traced;
 use crate::views::Views;
 use rayon::prelude::*;
+use sightlines_cells::Scene;
 use sightlines_geometry::{Point3, Random};
 use sightlines_visible_surface::Faces;
 
@@ -34,6 +35,19 @@ impl Estimate {
     /// Deterministic, whatever the number of threads. O(log n) for each ray in practice, after O(n log n).
     pub fn new(faces: &Faces, views: &Views, n_rays: u64) -> Self {
         Self::of(&Traced::new(faces), faces.len(), views, n_rays)
+    }
+
+    /// The same for a scene, in which rays pass what is see-through to what is behind it: of that the hits are those of rays that
+    /// see-through things did not stop. `faces` are those of the scene.
+    pub(crate) fn through(scene: &Scene, faces: &Faces, views: &Views, n_rays: u64) -> Self {
+        let all = Self::new(faces, views, n_rays);
+        if scene.see_through().is_empty() {
+            return all;
+        }
+        let is_opaque = |face: u32| scene.is_opaque(faces.object(face));
+        let behind = Self::of(&Traced::of(faces, is_opaque), faces.len(), views, n_rays);
+        let hits = faces.ids().map(|face| if is_opaque(face) { behind.hits(face) } else { all.hits(face) });
+        Self { hits: hits.collect(), n_rays }
     }
 
     pub(crate) fn of(traced: &Traced<'_>, n_faces: usize, views: &Views, n_rays: u64) -> Self {

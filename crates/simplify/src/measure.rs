@@ -56,9 +56,10 @@ struct Changes {
 }
 
 /// Sends fresh rays through a scene before and after. A ray's first hit is the same if it is on the same
-/// triangle, or on one of the same object in the same plane.
+/// triangle, or on one of the same object in the same plane. Where there is something see-through, the first hit behind all of
+/// it has to be the same too.
 ///
-/// Deterministic for a seed. O(n log n) and two traced rays for each ray.
+/// Deterministic for a seed. O(n log n) and two or four traced rays for each ray.
 ///
 /// # Errors
 /// [`SimplifyError::Faces`]
@@ -75,9 +76,9 @@ pub fn measure(
         let look = |eye: usize| {
             let (place, mut random) = eyes.place(eye);
             let mut changes = Changes::default();
-            let mut rays = traced.each_ref().map(Traced::rays);
+            let mut rays: Vec<_> = traced.iter().map(|both| both.each_ref().map(Traced::rays)).collect();
             for _ in 0..options.n_rays {
-                if let Some(change) = compared.look(&mut rays, place, random.direction()) {
+                if let Some(change) = compared.look_through(&mut rays, place, random.direction(), |_| true) {
                     changes.changed += 1;
                     changes.other_object += u64::from(change.is_other_object);
                     changes.moved += u64::from(change.has_moved);
@@ -100,4 +101,58 @@ pub fn measure(
             n_rays,
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Estimate;
+    use crate::simplified::Counts;
+    use sightlines_cells::SceneObject;
+    use sightlines_geometry::Aabb;
+    use sightlines_multifocal::Volume;
+    use sightlines_visible_surface::Faces;
+
+    /// A pane before a wall, as seen from the origin along x.
+    fn pane_and_wall() -> Scene {
+        let square = |x: f64| SceneObject {
+            name: String::new(),
+            vertices: vec![[x, -9.0, -9.0], [x, 9.0, -9.0], [x, 9.0, 9.0], [x, -9.0, 9.0]],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        };
+        Scene::new(vec![square(1.0), square(2.0)]).unwrap()
+    }
+
+    #[test]
+    fn rays_pass_what_is_see_through() {
+        let opaque = pane_and_wall();
+        let glass = opaque.clone().with_see_through(vec![0]).unwrap();
+        let views = Views::new([Volume::new(Aabb { min: [0.0; 3], max: [0.1; 3] }).unwrap()]).unwrap();
+        // Without the wall.
+        let simplified = Simplified {
+            triangles: vec![vec![[0, 1, 2], [0, 2, 3]], Vec::new()],
+            origin: vec![vec![Some(0), Some(1)], Vec::new()],
+            hidden: vec![Vec::new(), vec![0, 1]],
+            bound: 0.0,
+            deviation: 0.0,
+            shift: 0.0,
+            counts: Counts::default(),
+        };
+        let options = MeasureOptions { n_eyes: 4, n_rays: 500, threads: 1, ..MeasureOptions::default() };
+        let changed = |scene: &Scene| {
+            let aimed = crate::measure_aimed(scene, &simplified, &views, &options).unwrap();
+            (measure(scene, &simplified, &views, &options).unwrap().changed, aimed.changed)
+        };
+        let (seen, aimed) = changed(&glass);
+        assert!((0.3..0.5).contains(&seen) && (0.3..0.5).contains(&aimed), "{seen} {aimed}");
+        // The twin: behind a pane that hides, nothing changes but past its rim.
+        let (seen, aimed) = changed(&opaque);
+        assert!(seen < 0.02 && aimed < 0.02, "{seen} {aimed}");
+        let hits = |scene: &Scene| {
+            let estimate = Estimate::through(scene, &Faces::of_scene(scene).unwrap(), &views, 4000);
+            [0..2, 2..4].map(|faces| faces.map(|face| estimate.hits(face)).sum::<u64>())
+        };
+        let ([pane, wall], [before, behind]) = (hits(&glass), hits(&opaque));
+        assert!(pane == before && wall > 1000 && behind < 100, "{pane} {wall} {behind}");
+    }
 }

@@ -14,7 +14,14 @@ pub(crate) struct Traced<'a> {
 impl<'a> Traced<'a> {
     /// O(n log n).
     pub(crate) fn new(faces: &'a Faces) -> Self {
-        Self { faces, chosen: FaceMask::all(faces), caster: RayCaster::build(faces) }
+        Self::of(faces, |_| true)
+    }
+
+    /// With those faces only that `keeps`: rays pass all others. O(n log n).
+    pub(crate) fn of(faces: &'a Faces, keeps: impl FnMut(u32) -> bool) -> Self {
+        let mut chosen = FaceMask::all(faces);
+        chosen.retain(keeps);
+        Self { faces, chosen, caster: RayCaster::build(faces) }
     }
 
     /// Rays for one thread.

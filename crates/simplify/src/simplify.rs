@@ -263,7 +263,7 @@ pub(crate) fn within_budget(
     if kept > 0.0 {
         // One half of the reserved budget covers removed faces, the other new ones.
         let mut paying = CollapseBudget::choose(faces, views, intercepts, &mesh, options, account);
-        let estimate = Estimate::new(faces, views, options.n_rays);
+        let estimate = Estimate::through(scene, faces, views, options.n_rays);
         let fronts = Fronts::new(faces, views);
         let area = Areas::new(faces);
         let weights = Weights {
