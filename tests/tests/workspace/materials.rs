@@ -138,6 +138,39 @@ fn what_moves_is_seen_wherever_it_may_be() {
     assert!(n_hidden >= 7, "{n_hidden}");
 }
 
+/// Rays go where things may be: a table that does not show one from where it passes is caught, though it is out of sight at
+/// rest, or has no triangles there.
+#[test]
+fn movers_are_aimed_at_wherever_they_may_be() {
+    let opaque = divided();
+    let within = Some(Aabb { min: [3.0, 1.0, 1.0], max: [11.0, 2.0, 2.0] });
+    let at_rest = opaque.clone().with_moving(vec![MovingObject { object: 2, within }]).unwrap();
+    let mut objects = opaque.objects().to_vec();
+    objects[2].triangles.clear();
+    let bare = Scene::new(objects).unwrap().with_moving(vec![MovingObject { object: 2, within }]).unwrap();
+    let anywhere = opaque.with_moving(vec![MovingObject { object: 2, within: None }]).unwrap();
+    for scene in [at_rest, bare, anywhere] {
+        let table = by_method(&scene, OcclusionMethod::ALL[0], &CellsFrom::Grid([6, 2, 1]), true);
+        assert_eq!(n_violations(&table, &scene), 0);
+        let mut parts = table.parts().clone();
+        for cell in cells_at(&table, WEST) {
+            assert!(!parts.cell_objects[cell.idx()].contains(&ObjectId(2)) || scene.moving()[0].within.is_none());
+            parts.cell_objects[cell.idx()].retain(|&object| object != ObjectId(2));
+            parts.objects_seen.as_mut().unwrap().set(cell.idx(), 2, false);
+        }
+        let impostor = Table::new(parts).unwrap();
+        assert!(!sees(&impostor, WEST, 2));
+        let options =
+            VerifyOptions { rays: 4000, pairs: 400, tries: 64, seed: 7, threads: 2, ..VerifyOptions::default() };
+        let found = verify(&impostor, &Truth::Scene(&scene), &options).unwrap();
+        assert!(
+            found.by_kind.keys().any(|kind| kind.contains("hidden") || kind.contains("object")),
+            "{:?}",
+            found.by_kind
+        );
+    }
+}
+
 /// Blocks and panes on a small grid in the hall, some of which are see-through.
 fn cluttered(random: &mut Random) -> (Scene, Vec<u32>) {
     let mut objects = hall();

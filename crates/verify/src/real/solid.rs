@@ -1,4 +1,5 @@
-//! Scenes in space: every triangle stops sight, but for those of objects that are see-through.
+//! Scenes in space: every triangle stops sight, but for those of objects that are see-through. What moves is seen wherever it may
+//! be.
 
 use super::climb::climb;
 use super::{RayOracle, at, clip, extreme, length, neighbours_of, scale_of, sub};
@@ -18,6 +19,11 @@ pub(crate) struct SolidWorld {
     of_object: Vec<[u32; 2]>,
     /// For each object whether its triangles stop sight.
     is_opaque: Vec<bool>,
+    /// The objects that move, ascending, and the boxes that they do not leave.
+    movers: Vec<(u32, Aabb<3>)>,
+    mover_tree: BoxTree<3>,
+    /// Around everything that stands still, and the cells.
+    bounds: Aabb<3>,
     tree: BoxTree<3>,
     cells: Vec<Aabb<3>>,
     cell_tree: BoxTree<3>,
@@ -42,7 +48,13 @@ impl SolidWorld {
         let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
         let all = boxes.iter().chain(&cells).fold(Aabb::EMPTY, |all: Aabb<3>, b| all.with(b.min).with(b.max));
         let scale = if all.is_empty() { 1.0 } else { scale_of(all.min.into_iter().chain(all.max)) };
+        let movers: Vec<(u32, Aabb<3>)> =
+            scene.moving().iter().map(|moving| (moving.object, scene.extent(moving.object))).collect();
+        let mover_boxes: Vec<Aabb<3>> = movers.iter().map(|mover| mover.1).collect();
         Self {
+            mover_tree: BoxTree::build(&mover_boxes, 4),
+            movers,
+            bounds: all,
             tree: BoxTree::build(&boxes, 4),
             cell_tree: BoxTree::build(&cells, 4),
             triangles,
@@ -170,8 +182,34 @@ impl SolidWorld {
         Some(std::array::from_fn(|k| a[k] + (b[k] - a[k]) * u + (c[k] - a[k]) * v))
     }
 
+    /// The box that an object does not leave, if it moves.
+    fn extent(&self, object: u32) -> Option<&Aabb<3>> {
+        self.movers.binary_search_by_key(&object, |mover| mover.0).ok().map(|k| &self.movers[k].1)
+    }
+
+    /// A point where something that moves may be, in the part of space where there is something to be seen from.
+    fn in_extent(&self, extent: &Aabb<3>, random: &mut Random) -> Option<Point3> {
+        let p = std::array::from_fn(|k| {
+            let (low, high) = (extent.min[k].max(self.bounds.min[k]), extent.max[k].min(self.bounds.max[k]));
+            low + (high - low) * extreme(random)
+        });
+        Some(snapped(p)).filter(|&p| extent.contains(p))
+    }
+
     fn aim_at_object(&self, from: u32, object: u32, tries: u32, random: &mut Random) -> Option<Sight> {
-        for _ in 0..tries {
+        let extent = self.extent(object);
+        for k in 0..tries {
+            // What moves is aimed at where it may be, and every other time where it is at rest.
+            if let Some(extent) = extent
+                .filter(|_| k % 2 == 0 || self.of_object[object as usize][0] == self.of_object[object as usize][1])
+            {
+                let p = self.place(from, random)?;
+                let sight = self.in_extent(extent, random).map(|q| Self::sight(from, Target::Object(object), [p, q]));
+                if let Some(sight) = sight.filter(|sight| self.proves(sight)) {
+                    return Some(sight);
+                }
+                continue;
+            }
             let (p, q) = (self.place(from, random)?, self.on_object(object, random)?);
             let d = sub(q, p);
             // What is see-through is no obstacle, but may be the aim.
@@ -257,6 +295,16 @@ impl RayOracle for SolidWorld {
         if self.is_opaque.iter().all(|is_opaque| *is_opaque) {
             return Some(());
         }
+        // What may be on the way is seen.
+        self.mover_tree.visit(
+            |b| clip(p, d, b, [0.0, far], self.slack).is_some(),
+            |k| {
+                let (object, extent) = &self.movers[k as usize];
+                if let Some([s, t]) = clip(p, d, extent, [0.0, far], 0.0) {
+                    visit(Self::sight(from, Target::Object(*object), [p, at(p, d, 0.5 * (s + t))]));
+                }
+            },
+        );
         // All that is see-through on the way is seen.
         let limit = Cell::new(far);
         let mut passed = Vec::new();
@@ -281,7 +329,10 @@ impl RayOracle for SolidWorld {
         }
         match sight.target {
             Target::Cell(cell) => self.is_inside(cell.0, q) && self.is_free(p, q, None),
-            Target::Object(object) => self.is_free(p, q, Some(object)),
+            Target::Object(object) => {
+                let may_be_there = self.extent(object).is_some_and(|extent| extent.contains(q));
+                (may_be_there && self.is_free(p, q, None)) || self.is_free(p, q, Some(object))
+            }
         }
     }
 

@@ -28,7 +28,7 @@ pub(super) fn of_plan(table: &Table, plan: &Plan, findings: &mut Findings) {
 pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
     let drawn = |object: usize| {
         let b = scene.extent(object as u32);
-        // What has no triangles is nowhere, and tables have it at the origin.
+        // What is not drawn is nowhere, and tables have it at the origin.
         if b.is_empty() { ([0.0; 3], [0.0; 3]) } else { (b.min, b.max) }
     };
     let objects = scene.objects().iter().enumerate().map(|(k, o)| (o.name.as_str(), drawn(k).0, drawn(k).1));
@@ -41,7 +41,7 @@ pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
             findings.add(Violation::ObjectBox { object });
         }
     }
-    let is_drawn: Vec<bool> = scene.objects().iter().map(|o| !o.triangles.is_empty()).collect();
+    let is_drawn: Vec<bool> = (0u32..).zip(scene.objects()).map(|(k, _)| !scene.extent(k).is_empty()).collect();
     for (id, cell) in (0u32..).map(CellId).zip(table.cells()) {
         let touches = |o: &ObjectRecord| meets(cell, o);
         lists_of(table, id, |k, o| is_drawn[k] && touches(o), findings);
