@@ -81,7 +81,7 @@ struct Found {
 }
 
 fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instant) -> Found {
-    let triangles = || case.scene.objects().iter().flat_map(|o| o.corners()).collect::<Vec<_>>();
+    let triangles = || case.scene.occluding_triangles().collect::<Vec<_>>();
     let shared = method.map(|(planes, texels, sheets)| {
         let triangles = triangles();
         let occluders = if planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };

@@ -128,7 +128,7 @@ struct Contender {
 }
 
 fn triangles(case: &Case) -> Vec<[Point3; 3]> {
-    case.scene.objects().iter().flat_map(|o| o.corners()).collect()
+    case.scene.occluding_triangles().collect()
 }
 
 fn buffers(case: &Case, layout: Layout) -> Multifocal<Fast> {

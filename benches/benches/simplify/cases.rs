@@ -78,7 +78,7 @@ fn some(all: Vec<Aabb<3>>, n: usize) -> Vec<Aabb<3>> {
 }
 
 fn of_boxes(name: &str, scene: Scene, boxes: Vec<Aabb<3>>, n: usize) -> Result<Vec<Case>, Box<dyn Error>> {
-    let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|o| o.corners()).collect();
+    let triangles: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
     let sheets = Arc::new(Sheets::new(&triangles));
     let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 500));
     let scene = Arc::new(scene);

@@ -8,7 +8,7 @@ use crate::named::one_of;
 use crate::numbers::share;
 use crate::surfaces::{self, SurfaceArgs};
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
-use sightlines::cells::{Scene, SceneObject};
+use sightlines::cells::{MovingObject, Scene, SceneObject};
 use sightlines::formats::ReadError;
 use sightlines::formats::scene::RewriteError;
 use sightlines::formats::scene::{self, SceneReadOptions, read_scene_with_source_and, write_simplified_glb};
@@ -159,7 +159,7 @@ pub(crate) fn written(
 /// The objects of which something is left, with the vertices that are used.
 fn left(scene: &Scene, simplified: &Simplified) -> Scene {
     let is_mirror = |k: usize| scene.mirrors().iter().any(|&mirror| mirror as usize == k);
-    let (mut objects, mut mirrors, mut see_through) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut objects, mut mirrors, mut see_through, mut moving) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (k, (o, triangles)) in scene.objects().iter().zip(&simplified.triangles).enumerate() {
         if triangles.is_empty() {
             continue;
@@ -174,6 +174,8 @@ fn left(scene: &Scene, simplified: &Simplified) -> Scene {
         if !scene.is_opaque(k as u32) {
             see_through.push(objects.len() as u32);
         }
+        let found = scene.moving().iter().find(|moving| moving.object as usize == k);
+        moving.extend(found.map(|found| MovingObject { object: objects.len() as u32, ..*found }));
         objects.push(SceneObject {
             name: o.name.clone(),
             vertices: used.iter().map(|&v| o.vertices[v as usize]).collect(),
@@ -182,5 +184,6 @@ fn left(scene: &Scene, simplified: &Simplified) -> Scene {
     }
     let scene = Scene::new(objects).expect("coordinates and indices are those of a scene");
     let scene = scene.with_mirrors(mirrors).expect("mirrors are objects");
-    scene.with_see_through(see_through).expect("what is see-through is an object")
+    let scene = scene.with_see_through(see_through).expect("what is see-through is an object");
+    scene.with_moving(moving).expect("what moves is an object, and its box is that of a scene")
 }

@@ -5,10 +5,11 @@ use super::buffers::{Buffers, split_glb};
 use super::build::{Builder, Compact};
 use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
 use super::json::{Document, Mesh, Node, Primitive, SceneRoots, TRIANGLES};
+use super::material::{self, see_through};
 use super::motion::{Motions, Vertices};
 use super::movers::{self, INSTANCING};
 use super::role::{Role, StatedRole, role_of_name};
-use super::surface::{self, Classification, Classifier, Evidence, SceneReadOptions, see_through};
+use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
 use super::transform::Transform;
 use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
 use crate::beside::{Folder, Neighbours};
@@ -120,7 +121,7 @@ pub(super) fn parse(
     }
     let of_nodes = document.nodes.iter().filter_map(|node| node.extensions.as_deref());
     builder.warnings.extend(movers::warnings(document.moves_everything(), &document.extensions, of_nodes));
-    builder.warnings.extend(surface::warnings(&document));
+    builder.warnings.extend(material::warnings(&document));
     builder.warnings.extend(classifier.warnings());
     let file = builder.finish(SceneFormat::Gltf, options)?;
     Ok((file, buffers.into_loaded()))

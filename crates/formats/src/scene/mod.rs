@@ -23,6 +23,7 @@ mod closed;
 mod error;
 mod gltf;
 mod json;
+mod material;
 mod motion;
 mod movers;
 mod mtl;

@@ -291,10 +291,16 @@ fn errors_name_node_and_primitive() {
         "extension KHR_draco_mesh_compression is not understood; `npx @gltf-transform/cli cp IN.glb OUT.glb` unpacks the \
          file",
     );
-    with(
-        &|doc| doc.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]),
-        "extension EXT_mesh_gpu_instancing is not understood",
+    set(
+        "/extensionsRequired/0",
+        json!("EXT_meshopt_compression"),
+        "extension EXT_meshopt_compression is not understood; `npx @gltf-transform/cli cp IN.glb OUT.glb` unpacks the file",
     );
+    // Instances would be missing, whether the file lists the extension or not.
+    let instancing = "extension EXT_mesh_gpu_instancing is not understood";
+    with(&|doc| doc.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]), instancing);
+    let instances = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}});
+    with(&|doc| doc.json["nodes"][1]["extensions"] = instances.clone(), instancing);
     set("/meshes/1/primitives/0/mode", json!(7), "node 2, primitive 0: mode 7 does not exist");
     set("/meshes/1/primitives/0/attributes", json!({}), "node 2, primitive 0: no positions");
     set("/meshes/0/primitives/1/mode", json!(4), "node 1 (\"wall\"), primitive 1: 4 corners are no list of triangles");
