@@ -53,7 +53,7 @@ impl Case {
 /// A scene with at most `n` of its boxes, or with the cells of a k-d tree.
 fn case(viewed: ViewedScene, n: usize, kd: bool) -> Case {
     let ViewedScene { name, scene, cells, .. } = viewed;
-    let boxes = CellsFrom::Boxes(ViewCells { cells: evenly(cells, n) });
+    let boxes = CellsFrom::Boxes(ViewCells { cells: evenly(cells, n), axes: None });
     Case { name, scene, cells: if kd { CellsFrom::KdTree } else { boxes } }
 }
 

@@ -347,7 +347,7 @@ fn vis(rates: &Rates, short: bool) -> Path {
 fn given_cells(rates: &Rates, scene: &Scene, options: TowerOptions) -> Path {
     let rooms = tower_rooms(options).expect("in range");
     let cells = (0u32..).zip(&rooms).map(|(i, room)| ViewCell { id: i.to_string(), bounds: room.bounds }).collect();
-    let cells = CellsFrom::Boxes(ViewCells { cells });
+    let cells = CellsFrom::Boxes(ViewCells { cells, axes: None });
     let options = RegionBakeOptions { threads: 1, ..RegionBakeOptions::new(&cells) };
     let baked = bake_regions(scene, &options).expect("a tower can be baked");
     let seconds = least(|| drop(black_box(bake_regions(scene, &options))));

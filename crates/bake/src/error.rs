@@ -4,6 +4,7 @@ use crate::methods::MethodError;
 use crate::quake::PrtBakeError;
 use crate::region::GridError;
 use sightlines_cells::PlanError;
+use sightlines_frame::MoveError;
 use sightlines_kdtree::KdError;
 use sightlines_multifocal::{BackendError, VolumeError};
 use sightlines_progress::Cancelled;
@@ -23,6 +24,9 @@ pub enum BakeError {
     /// The lines of a map do not make a plan.
     #[error(transparent)]
     Plan(#[from] PlanError),
+    /// The scene cannot be taken to be as imprecise as was stated.
+    #[error(transparent)]
+    Move(#[from] MoveError),
     /// A grid of view cells with none or too many.
     #[error(transparent)]
     Grid(#[from] GridError),

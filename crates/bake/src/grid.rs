@@ -33,5 +33,5 @@ pub fn grid(region: &Aabb<3>, n: [u32; 3]) -> Result<ViewCells, GridError> {
             }
         }
     }
-    Ok(ViewCells { cells })
+    Ok(ViewCells { cells, axes: None })
 }

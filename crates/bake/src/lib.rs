@@ -6,7 +6,7 @@
 //!   [`bake_regions`], [`bake_prt`], [`bake_map`]), all of which return the graph, the table and a report ([`Baked`]); stab
 //!   trees ([`with_stab_trees`]) and proofs ([`certify_table`]) from a graph, and the graph of a stored table ([`from_table`]);
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
-//!   ([`auto`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
+//!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
 //!   search ([`quake`]), the table of a changing scene ([`live`]).
 //! - **Out of scope**: paths, the command line, pictures.
 //! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
@@ -17,7 +17,9 @@ mod bakeable;
 mod baked;
 mod certify;
 mod error;
+mod framed;
 pub mod from_table;
+mod gap;
 mod graph;
 mod grid;
 mod input;
@@ -42,6 +44,8 @@ pub use bakeable::{Bakeable, BakeableError};
 pub use baked::{Baked, BakedMap, BakedPlan, BakedPrt, BakedRegions, BakedScene};
 pub use certify::{Certified, CertifyError, Proofs, certify_table};
 pub use error::BakeError;
+pub use framed::Framed;
+pub use gap::Gap;
 pub use graph::{GraphRef, OtherGraph, TableGraph};
 pub use input::BakeInput;
 pub use live::{LiveScene, LiveUpdate};

@@ -1,5 +1,6 @@
 //! How to bake any input: options with the names that the program has for them.
 
+use crate::gap::Gap;
 use crate::methods::{BufferOptions, OcclusionMethod};
 use crate::region::CellsFrom;
 use crate::scene::PortalMode;
@@ -7,6 +8,7 @@ use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneOptions;
 use sightlines_multifocal::Split;
 use sightlines_progress::Observer;
+use sightlines_pvs::Frame;
 use sightlines_stabtree::SearchOptions;
 use std::fmt;
 use std::str::FromStr;
@@ -96,6 +98,12 @@ pub struct BakeOptions<'a> {
     pub cut: SceneOptions,
     /// Plans: chords shot through each exit before the search. Changes nothing but the time.
     pub chords: u32,
+    /// Scenes: how precise their coordinates are, which decides whether walls that are nearly across an axis, of the file or of the
+    /// building, are taken to be so.
+    pub gap: Gap,
+    /// Scenes: the frame that the scene is in already, with its cells and view region; the table states it. [`Framed`](crate::Framed)
+    /// sets it.
+    pub frame: Option<Frame>,
     /// Scenes: which portals sightlines go through.
     pub portals: PortalMode,
     /// Scenes: what decides.
@@ -120,6 +128,8 @@ impl Default for BakeOptions<'_> {
             subdivide: Subdivide::Auto,
             cut: SceneOptions::default(),
             chords: SearchOptions::default().chords,
+            gap: Gap::default(),
+            frame: None,
             portals: PortalMode::default(),
             method: SceneMethod::default(),
             cells: CellsFrom::default(),
@@ -137,6 +147,8 @@ impl fmt::Debug for BakeOptions<'_> {
         f.debug_struct("BakeOptions")
             .field("subdivide", &self.subdivide)
             .field("cut", &self.cut)
+            .field("gap", &self.gap)
+            .field("frame", &self.frame)
             .field("portals", &self.portals)
             .field("method", &self.method)
             .field("cells", &self.cells)

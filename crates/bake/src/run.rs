@@ -3,6 +3,7 @@
 use crate::auto::choose_for;
 use crate::baked::Baked;
 use crate::error::BakeError;
+use crate::framed::Framed;
 use crate::input::BakeInput;
 use crate::methods::OcclusionMethodFactory;
 use crate::options::{BakeOptions, SceneMethod};
@@ -20,12 +21,20 @@ use sightlines_stabtree::ConvexOptions;
 /// of input ([`bake_plan`], [`bake_scene`], [`bake_regions`], [`bake_prt`], [`bake_map`]) document what each decides, and take
 /// further arguments: the state of a search to resume, or any from-region method.
 ///
+/// A scene whose walls lie at right angles to each other, but not along the axes of its file, is baked along axes of its own, which the
+/// table states ([`Framed`], [`BakeOptions::gap`]).
+///
 /// [`SceneMethod::Auto`] measures the input first; [`choose_for`] returns what was chosen and why.
 ///
 /// # Errors
 /// [`BakeError`]
 pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> Result<Baked, BakeError> {
     let input = input.into();
+    if let BakeInput::Scene(scene, file) = input
+        && let Some(framed) = Framed::of(scene, file, options)?
+    {
+        return bake(framed.input(file), &framed.options(options));
+    }
     if options.method == SceneMethod::Auto {
         return bake(input, &choose_for(&input, options).1);
     }
@@ -38,11 +47,14 @@ pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> R
             Ok(bake_plan(plan, &options)?.into_any())
         }
         BakeInput::Scene(scene, file) => {
-            if options.takes_regions() {
-                return by_regions(scene, options, file);
-            }
-            let BakeOptions { cut, portals, .. } = *options;
-            Ok(bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress })?.into_any())
+            let mut baked = if options.takes_regions() {
+                by_regions(scene, options, file)?
+            } else {
+                let BakeOptions { cut, portals, .. } = *options;
+                bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress })?.into_any()
+            };
+            baked.table = baked.table.with_frame(options.frame)?;
+            Ok(baked)
         }
         BakeInput::Portals(prt) => {
             Ok(bake_prt(prt, PrtOptions { search, progress, ..PrtOptions::default() })?.into_any())

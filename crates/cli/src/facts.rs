@@ -3,7 +3,7 @@
 use crate::output::{bytes, count, percent, seconds};
 use serde::Serialize;
 use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
-use sightlines::pvs::Table;
+use sightlines::pvs::{Frame, Table};
 use sightlines::report::Summary;
 use std::fmt;
 use std::time::Duration;
@@ -73,6 +73,38 @@ impl fmt::Display for StabFacts {
         writeln!(f, "stab trees     {} sequences in {nodes} nodes with {edges} edges", self.n_sequences)?;
         writeln!(f, "               {}, {each:.3} bytes a sequence", bytes(self.n_stab_bytes as u64))
     }
+}
+
+/// The frame of a table.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct FrameFacts {
+    /// Each axis as a unit vector of the scene.
+    axes: [[f64; 3]; 3],
+    /// In scene units.
+    gap: f64,
+}
+
+impl From<&Frame> for FrameFacts {
+    fn from(frame: &Frame) -> Self {
+        Self { axes: frame.axes(), gap: frame.gap() }
+    }
+}
+
+impl fmt::Display for FrameFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", frame(&self.axes, self.gap))
+    }
+}
+
+/// The line about the frame of a table: how it is turned, and its gap.
+fn frame(axes: &[[f64; 3]; 3], gap: f64) -> String {
+    // The angle of a turn from its trace.
+    let cosine = (axes[0][0] + axes[1][1] + axes[2][2] - 1.0) / 2.0;
+    // Near 1 the cosine tells nothing; the sine is in the differences across the diagonal.
+    let [x, y, z] = [axes[1][2] - axes[2][1], axes[2][0] - axes[0][2], axes[0][1] - axes[1][0]];
+    let sine = (x * x + y * y + z * z).sqrt() / 2.0;
+    let degrees = sine.atan2(cosine).to_degrees();
+    format!("frame          turned by {degrees:.6} degrees; openings narrower than {gap:.2e} units may count as closed")
 }
 
 /// The name of an axis.

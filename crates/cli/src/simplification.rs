@@ -13,8 +13,10 @@ use sightlines::formats::ReadError;
 use sightlines::formats::scene::RewriteError;
 use sightlines::formats::scene::{self, SceneReadOptions, read_scene_with_source_and, write_simplified_glb};
 use sightlines::formats::{GltfSource, SceneFile};
+use sightlines::pvs::Table;
 use sightlines::simplify::SimplifyError;
 use sightlines::simplify::{Simplified, SimplifyOptions};
+use sightlines::verify::{VerifyError, along_frame};
 use std::path::{Path, PathBuf};
 
 /// Why a scene was not simplified.
@@ -35,6 +37,9 @@ pub(crate) enum SimplificationError {
     /// A scene that cannot be written again.
     #[error("{}: {source}", path.display())]
     Rewrite { path: PathBuf, source: RewriteError },
+    /// A scene that cannot be taken along the frame of its table.
+    #[error("{}: {source}", path.display())]
+    Frame { path: PathBuf, source: VerifyError },
     /// A scene that cannot be simplified.
     #[error("{}: {source}", path.display())]
     Simplify { path: PathBuf, source: SimplifyError },
@@ -130,6 +135,12 @@ pub(crate) fn read(path: &Path, options: &SceneReadOptions) -> Result<ReadScene,
         tracing::warn!("{}: of an OBJ, triangles and names are kept; materials are not", path.display());
     }
     Ok(ReadScene { file, source })
+}
+
+/// A table without its frame, and the scene along it: what is simplified there has the corners of the original, by number. `None` for a
+/// table without a frame.
+pub(crate) fn along(path: &Path, table: &Table, scene: &Scene) -> Result<Option<(Table, Scene)>, SimplificationError> {
+    along_frame(table, scene).map_err(|source| SimplificationError::Frame { path: path.to_owned(), source })
 }
 
 /// What is left of a scene, as GLB.

@@ -11,14 +11,14 @@
 //!   of v and E carries a relative error of u in each coordinate, the products and their difference 3 u more; so
 //!   the value of the normal at w is off by at most 5 u |v|₁ |E|₁ R, and adding up three products costs 4 u |v|₁
 //!   |E|₁ R. Let A = |v|₁ |E|₁ R; for a side that the viewer's cone brings along, |normal|₁ stands for |v|₁ |E|₁,
-//!   and the 16 u by which its constructor may be off are part of what follows.
+//!   and the 16 u by which its constructor may be off, and the 174 u of a turn into the frame of a table, are part of what follows.
 //! - Clipping a polygon makes a new corner on an edge, at a place that is off by at most 8 u R in each coordinate.
 //!   Polygons are always the input's, clipped afresh by at most [`MOST_SIDES`] = 24 sides, so that a point of the true
 //!   clipped polygon is never farther than 24 × 8 u R from the computed one. At such a point a normal's value
 //!   changes by at most 192 u A. The new corner lies where the value is -tolerance but for 22 u A.
 //! - Together below 256 u A. A piece that is put together from others may reach beyond a side by a quarter of the
 //!   tolerance ([`Side::nearly_keeps`]), and by the error of the corners that it is tested with, below 181 u A. The
-//!   tolerance is 1024 u A = 2^-43 A, of which these take 256 + 256 + 181, and the smallest normal number for
+//!   tolerance is 1024 u A = 2^-43 A, of which these take 256 + 256 + 181 + 174, and the smallest normal number for
 //!   underflow.
 //!
 //! If the eye itself is known only to within `slack` in each coordinate (seen in a mirror), the value changes by

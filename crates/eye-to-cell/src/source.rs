@@ -1,7 +1,7 @@
 //! Where cells, portals and rows come from.
 
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, MirrorId, ObjectId, PortalId};
+use sightlines_pvs::{CellId, Frame, MirrorId, ObjectId, PortalId};
 
 /// A way out of a cell.
 #[derive(Debug, Clone, Copy)]
@@ -33,6 +33,9 @@ pub trait CellSource {
 
     /// 2 or 3.
     fn dimension(&self) -> u8;
+
+    /// The axes along which all coordinates of the source are; `None`: those of the scene. Views are always those of the scene.
+    fn frame(&self) -> Option<Frame>;
 
     /// Number of cells; ids are below it.
     fn n_cells(&self) -> usize;

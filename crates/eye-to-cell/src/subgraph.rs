@@ -4,7 +4,7 @@ use crate::front::Front;
 use crate::source::{CellSource, MirrorPiece, PortalEdge};
 use crate::trees::LocalTrees;
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, MirrorId, ObjectId, PortalId};
+use sightlines_pvs::{CellId, Frame, MirrorId, ObjectId, PortalId};
 
 /// All that a cell may see, gathered from a table: everything that the eye-to-cell methods ask, and nothing else.
 ///
@@ -14,6 +14,8 @@ use sightlines_pvs::{CellId, MirrorId, ObjectId, PortalId};
 pub struct VisibleSubgraph {
     pub(crate) root: u32,
     pub(crate) planar: bool,
+    /// The axes of all coordinates here; `None`: those of the scene.
+    pub(crate) frame: Option<Frame>,
     /// The cells that the root sees, ascending, and their boxes.
     pub(crate) cells: Vec<CellId>,
     pub(crate) bounds: Vec<Aabb<3>>,
@@ -80,6 +82,7 @@ impl VisibleSubgraph {
         let mut subgraph = Self {
             root: cells.binary_search(&root).unwrap_or_default() as u32,
             planar: source.dimension() == 2,
+            frame: source.frame(),
             bounds,
             first_way: vec![0],
             ways: Vec::new(),

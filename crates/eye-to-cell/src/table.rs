@@ -2,7 +2,7 @@
 
 use crate::source::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, ObjectId, PortalId, Table};
+use sightlines_pvs::{CellId, Frame, ObjectId, PortalId, Table};
 use std::borrow::Borrow;
 use std::convert::Infallible;
 
@@ -56,6 +56,10 @@ impl<T: Borrow<Table>> CellSource for TableCells<T> {
 
     fn dimension(&self) -> u8 {
         self.table().dimension()
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        self.table().frame().copied()
     }
 
     fn n_cells(&self) -> usize {

@@ -4,6 +4,7 @@ use crate::front::Front;
 use crate::side::{MOST_SIDES, Reach, Side, Vector, cross, dot, norm, radius, sub};
 use sightlines_geometry::Aabb;
 use sightlines_geometry::vector::unit_of_any_size;
+use sightlines_pvs::Frame;
 use std::f64::consts::{PI, TAU};
 
 /// An eye and the cone of directions that it looks at, in the plane or in space.
@@ -17,6 +18,8 @@ pub struct View {
     /// One convex cone, or two.
     parts: [ViewPart; 2],
     n_parts: usize,
+    /// Whether all this is along the axes of a table's frame already.
+    framed: bool,
 }
 
 /// A convex cone: the directions within all sides. Takes no memory of its own but for what a mirror frames.
@@ -53,7 +56,7 @@ impl View {
     /// [`ViewError::Eye`].
     pub fn all_round(eye: [f64; 3]) -> Result<Self, ViewError> {
         match eye.iter().all(|x| x.is_finite()) {
-            true => Ok(Self { eye, slack: 0.0, parts: Default::default(), n_parts: 1 }),
+            true => Ok(Self { eye, slack: 0.0, parts: Default::default(), n_parts: 1, framed: false }),
             false => Err(ViewError::Eye),
         }
     }
@@ -100,7 +103,7 @@ impl View {
         Ok(view)
     }
 
-    /// The eye, in scene units.
+    /// The eye, in scene units; of what is looked at in a mirror of a table with a frame, along the axes of the frame.
     pub fn eye(&self) -> [f64; 3] {
         self.eye
     }
@@ -111,6 +114,25 @@ impl View {
     pub fn may_meet(&self, bounds: &Aabb<3>) -> bool {
         let reach = self.reach(radius(bounds, self.eye));
         self.parts().iter().any(|part| !part.sides(reach).any(|side| side.excludes_box(bounds, self.eye)))
+    }
+
+    /// The view along the axes of a frame; the same if it is along them already.
+    ///
+    /// Eye and portals are known to within the gap, and the eye to within the rounding of the turn, which is its slack. A normal
+    /// is turned like a vector, which is right for axes at right angles: with u = 2^-53, products of the axes that are off by 32 u move the
+    /// value of a side by at most 96 u of its size, rounding by 4 u, and a size is at most √3 times that of the turned normal: 174 u
+    /// together, for which the tolerance of sides has room ([`side`](crate::side)).
+    pub(crate) fn in_frame(&self, frame: &Frame) -> Self {
+        if self.framed {
+            return self.clone();
+        }
+        let rounding = frame.rounding(self.eye).iter().fold(0.0f64, |m, x| m.max(*x));
+        let mut framed = self.clone();
+        framed.eye = frame.to_frame(self.eye);
+        framed.slack = self.slack + frame.gap() * (1.0 + f64::EPSILON) + rounding;
+        framed.parts.iter_mut().for_each(|part| part.turn(frame));
+        framed.framed = true;
+        framed
     }
 
     /// What is looked at in a mirror: the eye behind it, and the cone with these sides as the mirror shows it.
@@ -129,7 +151,7 @@ impl View {
         let rounding = if exact { 0.0 } else { size * 2.0 * f64::EPSILON * 4.0 };
         let mut part = ViewPart::default();
         cone.iter().take(MOST_SIDES).for_each(|side| part.add(side.mirrored(across)));
-        Self { eye, slack: self.slack + rounding, parts: [part, ViewPart::default()], n_parts: 1 }
+        Self { eye, slack: self.slack + rounding, parts: [part, ViewPart::default()], n_parts: 1, framed: self.framed }
     }
 
     /// Keeps the directions whose angle to `forward`, towards `right` or away from it, is at most `fov / 2`.
@@ -160,6 +182,11 @@ impl View {
 }
 
 impl ViewPart {
+    fn turn(&mut self, frame: &Frame) {
+        let given = self.few[..self.n_few].iter_mut().chain(&mut self.more);
+        given.for_each(|side| *side = Side::given(frame.to_frame(side.normal())));
+    }
+
     fn add(&mut self, side: Side) {
         if self.n_few < self.few.len() {
             self.few[self.n_few] = side;

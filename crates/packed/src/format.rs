@@ -7,7 +7,7 @@
 //! offset  size
 //!      0     8  magic: 89 'P' 'V' 'P' 0D 0A 1A 0A
 //!      8     2  major version; a reader refuses a larger one than its own
-//!     10     2  minor version; a larger one only adds optional sections and stores
+//!     10     2  minor version; a larger one only adds sections and stores
 //!     12     4  n, the number of sections
 //!     16     8  length of the whole in bytes
 //!     24   24n  the section table, one entry per section:
@@ -28,6 +28,7 @@
 //! | `PLAN`, optional | slack; number of nodes (`u32`); for each: normal (3), offset, two children: 2 `u32`, kind (0 node, 1 cell, 2 nothing) and id |
 //! | `MIRR`, optional | varint number; for each: varint cell, face, number of points; points (d each) |
 //! | `KIND`, optional | as in a `.pvs` file of version 1.4; new in 1.2 here |
+//! | `FRAM` | as in a `.pvs` file of version 1.5, and like there without leave to skip it; new in 1.3 here |
 //! | `INFO` | varint number; for each: key, value, each as varint number of bytes and UTF-8 |
 //! | `COAR` | pages by pages of cells, a bit if some cell of the one sees some cell of the other, rows of `u64` |
 //! | `CLAS` | classes of cells in `ROWS`, counted by their first members; empty if each is its own, else the unpacked length (`u32`) and, packed by zstd, for each cell a varint: how far its class is below the least that no cell before has |
@@ -57,7 +58,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVP\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the smallest version that supports the content of a table,
 /// so that files without newer features stay unchanged.
-pub const MINOR: u16 = 2;
+pub const MINOR: u16 = 3;
 /// Largest unpacked block that a reader accepts, in bytes, so that no file can demand more memory at once. The size of
 /// *written* blocks is [`BLOCK_BYTES`] and [`ROW_BLOCK_BYTES`].
 pub const MAX_UNPACKED_BLOCK: u32 = 1 << 24;
@@ -76,6 +77,7 @@ pub(crate) const LOCATOR: SectionId = SectionId(*b"LOCA");
 pub(crate) const PLANES: SectionId = SectionId(*b"PLAN");
 pub(crate) const MIRRORS: SectionId = SectionId(*b"MIRR");
 pub(crate) const KIND: SectionId = SectionId(*b"KIND");
+pub(crate) const FRAME: SectionId = SectionId(*b"FRAM");
 pub(crate) const INFO: SectionId = SectionId(*b"INFO");
 pub(crate) const COARSE: SectionId = SectionId(*b"COAR");
 pub(crate) const CLASSES: SectionId = SectionId(*b"CLAS");
@@ -83,8 +85,8 @@ pub(crate) const SEEN_ROWS: SectionId = SectionId(*b"SCLR");
 pub(crate) const SEEN_COLUMNS: SectionId = SectionId(*b"SCLC");
 pub(crate) const BLOCKS: SectionId = SectionId(*b"BLKS");
 
-/// The sections of this version, and whether they are optional.
-pub(crate) const SECTIONS: [(SectionId, bool); 13] = [
+/// The sections of this version, and whether readers may skip them.
+pub(crate) const SECTIONS: [(SectionId, bool); 14] = [
     (HEAD, false),
     (BOXES, false),
     (POLYGONS, true),
@@ -92,6 +94,7 @@ pub(crate) const SECTIONS: [(SectionId, bool); 13] = [
     (PLANES, true),
     (MIRRORS, true),
     (KIND, true),
+    (FRAME, false),
     (INFO, false),
     (COARSE, false),
     (CLASSES, false),
@@ -112,6 +115,8 @@ pub(crate) const CELL_NAMES: SectionId = SectionId(*b"CNAM");
 pub(crate) const SINCE_CELL_NAMES: u16 = 1;
 /// The minor version that added the kind of a table.
 pub(crate) const SINCE_KIND: u16 = 2;
+/// The minor version that added frames.
+pub(crate) const SINCE_FRAME: u16 = 3;
 
 /// Bytes before the section table.
 pub(crate) const FIXED: usize = 24;

@@ -83,7 +83,7 @@ impl PointLocation {
         if let Some(planes) = &self.planes {
             planes.for_each_cell(p, pending, |cell| out.push(cell));
         } else {
-            self.for_each_candidate(resident, p, pending, |cell| {
+            self.for_each_candidate(resident, p, p, pending, |cell| {
                 let (min, max) = self.cell_box(resident, cell.idx());
                 let in_box = (0..3).all(|k| min[k] <= p[k] && p[k] <= max[k]);
                 if in_box && polygon_may_contain(self.polygon(resident, cell.idx()), [p[0], p[1]]) {
@@ -91,6 +91,31 @@ impl PointLocation {
                 }
             });
         }
+    }
+
+    /// Puts the cells that a box with finite corners touches into `out`, as [`PointLocation::locate`] does; polygons of cells are
+    /// taken for their boxes, which finds more.
+    pub(crate) fn locate_box(
+        &self,
+        resident: &ResidentPart,
+        min: [f64; 3],
+        max: [f64; 3],
+        pending: &mut Vec<u32>,
+        out: &mut Vec<CellId>,
+    ) {
+        if let Some(planes) = &self.planes {
+            let mut add = |cell| {
+                out.push(cell);
+                true
+            };
+            return planes.for_each_cell_of_box(min, max, pending, &mut add);
+        }
+        self.for_each_candidate(resident, min, max, pending, |cell| {
+            let (low, high) = self.cell_box(resident, cell.idx());
+            if (0..3).all(|k| low[k] <= max[k] && min[k] <= high[k]) {
+                out.push(cell);
+            }
+        });
     }
 
     fn node(&self, resident: &ResidentPart, node: usize) -> (u32, u32, u64) {
@@ -105,7 +130,8 @@ impl PointLocation {
     fn for_each_candidate(
         &self,
         resident: &ResidentPart,
-        p: [f64; 3],
+        min: [f64; 3],
+        max: [f64; 3],
         pending: &mut Vec<u32>,
         mut visit: impl FnMut(CellId),
     ) {
@@ -122,12 +148,12 @@ impl PointLocation {
                 }
                 continue;
             }
-            let (x, split) = (p[axis as usize], f64::from_bits(rest));
-            if x > split {
+            let (low, high, split) = (min[axis as usize], max[axis as usize], f64::from_bits(rest));
+            if low > split {
                 at = second as usize;
             } else {
                 // On the split, both children count.
-                if x == split {
+                if high >= split {
                     pending.push(second);
                 }
                 at += 1;

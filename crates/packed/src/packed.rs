@@ -10,7 +10,7 @@ use crate::locate::PointLocation;
 use crate::source::Source;
 use sightlines_pvs::bits::ones;
 use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
-use sightlines_pvs::{Axis, CellId, MirrorId, MirrorRecord, SectionId, TableKind};
+use sightlines_pvs::{Axis, CellId, Frame, FrameError, MirrorId, MirrorRecord, SectionId, TableKind};
 use std::sync::Arc;
 
 /// A packed table that is read piece by piece within a memory budget.
@@ -26,6 +26,7 @@ pub struct Packed<S: Source> {
     pub(crate) places: PointLocation,
     info: Vec<(String, String)>,
     kind: TableKind,
+    frame: Option<Frame>,
     up: Option<Axis>,
     mirrors: Vec<MirrorRecord>,
     pub(crate) rows: RowStore,
@@ -219,6 +220,7 @@ impl<S: Source> Packed<S> {
         Ok(Self {
             info,
             kind,
+            frame: frame(&resident, head.dimension)?,
             up,
             mirrors: mirrors(&resident, &head)?,
             rows,
@@ -268,6 +270,11 @@ impl<S: Source> Packed<S> {
     /// The axis that points up, in its positive direction; `None` if it is not known.
     pub fn up(&self) -> Option<Axis> {
         self.up
+    }
+
+    /// The axes along which the coordinates of the table are, as [`sightlines_pvs::Table::frame`].
+    pub fn frame(&self) -> Option<&Frame> {
+        self.frame.as_ref()
     }
 
     /// Whether cells can be found at points, as [`sightlines_pvs::Table::has_places`].
@@ -425,6 +432,13 @@ fn kind(
         Err(_) if resident.minor() > format::MINOR => Ok((TableKind::Unspecified, None)),
         Err(value) => Err(section.place.fail(Kind::Value { value: u64::from(value) })),
     }
+}
+
+fn frame(resident: &ResidentPart, dimension: u8) -> Result<Option<Frame>, PackedError> {
+    let Some(section) = resident.find(format::FRAME) else { return Ok(None) };
+    let bytes = section.bytes.try_into().map_err(|_| section.place.fail(Kind::Cut))?;
+    let read = if dimension == 3 { Frame::from_bytes(bytes) } else { Err(FrameError::Plane) };
+    read.map(Some).map_err(|error| section.place.fail(Kind::Table(error.into())))
 }
 
 fn mirrors(resident: &ResidentPart, head: &Head) -> Result<Vec<MirrorRecord>, PackedError> {

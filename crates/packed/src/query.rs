@@ -82,7 +82,11 @@ impl<S: Source> Packed<S> {
         if !self.has_places() || !p.iter().all(|x| x.is_finite()) {
             return Place::Outside;
         }
-        buffer.fill(|pending, found| self.places.locate(&self.resident, p, pending, found))
+        let around = self.frame().map(|frame| frame.around(p, p));
+        buffer.fill(|pending, found| match around {
+            Some((min, max)) => self.places.locate_box(&self.resident, min, max, pending, found),
+            None => self.places.locate(&self.resident, p, pending, found),
+        })
     }
 
     /// Puts the cells that `cell` may see, itself included, into `out`, which is cleared, ascending.

@@ -30,6 +30,7 @@ impl<S: Source> Packed<S> {
             locator: Locator::from_nodes(&self.places.locator_nodes(&self.resident))
                 .map_err(|error| table_error(format::LOCATOR)(error.into()))?,
             up: self.up(),
+            frame: self.frame().copied(),
             ..TableParts::empty(self.dimension(), self.kind())
         };
         if let Some(seen) = &self.seen {

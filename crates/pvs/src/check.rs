@@ -2,7 +2,7 @@
 
 use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
-use crate::{BitMatrix, CellId, LocatorError, ObjectId, PlaneError, StabError, TableKind, side};
+use crate::{BitMatrix, CellId, FrameError, LocatorError, ObjectId, PlaneError, StabError, TableKind, side};
 
 /// A kind of thing with coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -219,6 +219,9 @@ pub enum TableError {
         /// Number of points.
         n: usize,
     },
+    /// The frame is wrong.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
     /// The plane tree is wrong.
     #[error(transparent)]
     Planes(#[from] PlaneError),
@@ -244,6 +247,9 @@ impl TableParts {
         }
         if self.kind.dimension().is_some_and(|d| d != self.dimension) {
             return Err(TableError::Kind { kind: self.kind, dimension: self.dimension });
+        }
+        if self.frame.is_some() && self.dimension != 3 {
+            return Err(FrameError::Plane.into());
         }
         self.check_counts()?;
         let mut cells = (0u32..).map(CellId).zip(&self.cells);

@@ -14,6 +14,7 @@
 pub mod bits;
 mod check;
 pub mod format;
+pub mod frame;
 mod id;
 mod kind;
 pub mod locator;
@@ -29,6 +30,7 @@ mod table;
 pub use bits::BitMatrix;
 pub use check::{Item, TableError};
 pub use format::{DecodeError, DecodeErrorKind, SectionId};
+pub use frame::{Frame, FrameError};
 pub use id::{CellId, MirrorId, ObjectId, PortalId};
 pub use kind::{Axis, SceneMethods, TableKind};
 pub use locator::{Locator, LocatorError, LocatorNode};

@@ -1,7 +1,7 @@
 //! The parts of a table.
 
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
-use crate::{Axis, BitMatrix, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
+use crate::{Axis, BitMatrix, Frame, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
 
 /// The parts of a [`crate::Table`], not yet checked.
 ///
@@ -14,6 +14,8 @@ pub struct TableParts {
     pub kind: TableKind,
     /// The axis that points up, in its positive direction; `None`: not known.
     pub up: Option<Axis>,
+    /// In space: the axes along which all coordinates of the table are; `None`: those of the scene.
+    pub frame: Option<Frame>,
     /// The cells; their index is their id.
     pub cells: Vec<CellRecord>,
     /// The portals; may be empty, as no query uses them.
@@ -50,6 +52,7 @@ impl TableParts {
             dimension,
             kind,
             up: None,
+            frame: None,
             cells: Vec::new(),
             portals: Vec::new(),
             rows: BitMatrix::default(),

@@ -103,6 +103,8 @@ impl<'a, const D: usize> Query<'a, D> {
     /// [`crate::PlaneTree`], that alone decides. A point on the border between cells is in all of them. Decided in doubles with an
     /// error bound that errs towards "inside": a point within rounding of a border may be found in cells on both sides of it,
     /// never in none of them. O(log n + candidates), with planes O(depth of the tree).
+    ///
+    /// In a table with a [frame](Table::frame) the point is in all cells within the gap of the frame.
     pub fn at(self, p: [f64; D]) -> Place<Inside<'a>> {
         self.table.place_at(lifted(p))
     }

@@ -2,7 +2,10 @@
 
 use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
-use crate::{Axis, CellId, CellSet, Locator, ObjectId, PlaneTree, StabTrees, TableError, TableKind, bits, side};
+use crate::{
+    Axis, CellId, CellSet, Frame, FrameError, Locator, ObjectId, PlaneTree, StabTrees, TableError, TableKind, bits,
+    side,
+};
 
 /// Which cells of a scene can see each other: checked, and immutable.
 ///
@@ -60,6 +63,25 @@ impl Table {
     /// The axis that points up, in its positive direction; `None` if it is not known.
     pub fn up(&self) -> Option<Axis> {
         self.parts.up
+    }
+
+    /// The axes along which the coordinates of cells, portals, objects and mirrors are; `None`: those of the scene. Queries take
+    /// points and boxes of the scene, with a frame or without.
+    pub fn frame(&self) -> Option<&Frame> {
+        self.parts.frame.as_ref()
+    }
+
+    /// The same table in another frame: its coordinates stay as they are, and are along these axes from now on. With `None`,
+    /// queries take points along the axes of the table.
+    ///
+    /// # Errors
+    /// [`TableError::Frame`] for a frame in a table of the plane.
+    pub fn with_frame(mut self, frame: Option<Frame>) -> Result<Self, TableError> {
+        if frame.is_some() && self.dimension() != 3 {
+            return Err(FrameError::Plane.into());
+        }
+        self.parts.frame = frame;
+        Ok(self)
     }
 
     /// Whether cells can be found at points: not in a table of the clusters of a Quake map without planes.
@@ -208,6 +230,13 @@ impl Table {
     /// once, in no particular order. The coordinates must be finite, and z must be 0 in a plane. `pending` is scratch
     /// space.
     pub(crate) fn for_each_cell_at(&self, p: [f64; 3], pending: &mut Vec<u32>, mut visit: impl FnMut(CellId)) {
+        if let Some(frame) = &self.parts.frame {
+            let (min, max) = frame.around(p, p);
+            return self.for_each_touching_along(min, max, pending, |cell| {
+                visit(cell);
+                true
+            });
+        }
         match &self.parts.planes {
             Some(planes) => planes.for_each_cell(p, pending, visit),
             None => self.parts.locator.for_each_candidate_in(p, pending, |id| {
@@ -218,15 +247,28 @@ impl Table {
         }
     }
 
-    /// Calls `visit` with every cell that the closed box from `min` to `max` (scene units; z is 0 in a plane) touches,
-    /// until it returns `false`; a cell may be visited more than once, in no particular order. `pending` is scratch
-    /// space.
+    /// Calls `visit` with every cell that the closed box from `min` to `max` (of the scene, in its units; z is 0 in a plane)
+    /// touches, until it returns `false`; a cell may be visited more than once, in no particular order. `pending` is
+    /// scratch space. In a table with a frame these are the cells that the box around that one, along the frame, touches.
     ///
     /// Cells are closed polygons, or boxes, or defined by a [`PlaneTree`], as for [`crate::Query::at`]. Errs towards
     /// touching, by rounding only: every cell that the box touches is visited. A NaN bounds nothing. O(cells near the
     /// box).
     #[inline]
     pub fn for_each_touching(
+        &self,
+        min: [f64; 3],
+        max: [f64; 3],
+        pending: &mut Vec<u32>,
+        visit: impl FnMut(CellId) -> bool,
+    ) {
+        let (min, max) = self.parts.frame.map_or((min, max), |frame| frame.around(min, max));
+        self.for_each_touching_along(min, max, pending, visit);
+    }
+
+    /// The same for a box along the axes of the table.
+    #[inline]
+    fn for_each_touching_along(
         &self,
         min: [f64; 3],
         max: [f64; 3],

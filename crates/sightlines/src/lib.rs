@@ -22,6 +22,8 @@ pub use sightlines_exact as exact;
 pub use sightlines_eye_to_cell as eye_to_cell;
 #[cfg(feature = "formats")]
 pub use sightlines_formats as formats;
+#[cfg(feature = "frame")]
+pub use sightlines_frame as frame;
 #[cfg(feature = "from-region")]
 pub use sightlines_from_region as from_region;
 #[cfg(feature = "geometry")]

@@ -39,6 +39,9 @@ pub enum ViewsError {
         /// Number of cells.
         n_cells: usize,
     },
+    /// The cells are along axes of their own.
+    #[error("the table has a frame; take it and the scene along its axes first")]
+    Frame,
     /// The table has no box for a cell.
     #[error("cell {cell} of the table is no box, or its shape is not known")]
     NoBox {
@@ -75,6 +78,9 @@ impl Views {
     pub fn of_cells(table: &Table, cells: &[CellId]) -> Result<Self, ViewsError> {
         if table.dimension() != 3 {
             return Err(ViewsError::Flat);
+        }
+        if table.frame().is_some() {
+            return Err(ViewsError::Frame);
         }
         let view = |&cell: &CellId| {
             let n_cells = table.n_cells();

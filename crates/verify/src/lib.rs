@@ -16,6 +16,7 @@
 
 pub mod exact;
 mod findings;
+mod framed;
 mod map;
 mod options;
 mod own;
@@ -29,6 +30,7 @@ mod truth;
 mod walls;
 
 pub use findings::{Confirmed, Findings, Remarks, Violation};
+pub use framed::along_frame;
 pub use options::VerifyOptions;
 pub use own::{LumpKind, OwnError, OwnSummary, OwnViolation, OwnVisibility};
 pub use proofs::{ProofError, ProofFindings, ProofViolation, boxes_of, check_proofs, convex_of, plan_of};
@@ -43,6 +45,9 @@ use sightlines_pvs::Table;
 /// First its structure, then random rays, then rays aimed at what the table hides, most suspicious first. Lists the
 /// first [`VerifyOptions::MOST_VIOLATIONS`] violations of each kind, and stops shooting rays once there are that many.
 ///
+/// A table with a frame is checked along its axes, against the scene as [`along_frame`] moves it: that every corner is within the gap that the
+/// table states is checked exactly, and the rays are shot in the moved scene. Places in the findings are along the axes of the table.
+///
 /// # Errors
 /// [`VerifyError`] for a table that cannot be of such a scene, because it is of another dimension or another kind; or if the observer
 /// cancels.
@@ -50,6 +55,11 @@ use sightlines_pvs::Table;
 /// Cost: O(size of table and scene * log) for the structure; each ray visits what is near it.
 pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> Result<Findings, VerifyError> {
     truth.check_kind(table)?;
+    if let Truth::Scene(scene) = truth
+        && let Some((table, scene)) = along_frame(table, scene)?
+    {
+        return verify(&table, &Truth::Scene(&scene), options);
+    }
     let mut findings = structure::check(table, truth);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
     pool.install(|| rays::check(table, truth, options, &mut findings))?;

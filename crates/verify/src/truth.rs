@@ -85,6 +85,17 @@ pub enum VerifyError {
     /// A table of a map of which only the portals were given, or the reverse.
     #[error("the table {0}")]
     Places(&'static str),
+    /// A corner that is farther from where the file has it than the gap that the table states.
+    #[error("object {object}, vertex {vertex} is not within the gap of the table's frame")]
+    Frame {
+        /// Index of the object.
+        object: usize,
+        /// Index of the vertex in it.
+        vertex: usize,
+    },
+    /// A scene with coordinates that are too large along the axes of the table.
+    #[error("the scene cannot be taken along the frame of the table")]
+    Range,
     /// The observer cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -4,7 +4,7 @@ use crate::coarse::CoarseVisibility;
 use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{Packed, PackedError, Source};
-use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer};
+use sightlines_pvs::{CellId, Frame, ObjectId, Place, PlaceBuffer};
 use std::sync::Arc;
 
 /// A packed table, shared by the frames and the thread that reads ahead.
@@ -38,6 +38,10 @@ impl<S: Source> CellSource for PackedCells<S> {
 
     fn dimension(&self) -> u8 {
         self.0.dimension()
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        self.0.frame().copied()
     }
 
     fn n_cells(&self) -> usize {

@@ -59,6 +59,11 @@ pub fn wander<S: CellSource + ?Sized>(
             }
         }
     }
+    if let Some(frame) = source.frame() {
+        frames.iter_mut().for_each(|pose| {
+            *pose = CameraPose { eye: frame.to_scene(pose.eye), dir: frame.to_scene(pose.dir) };
+        });
+    }
     Ok(frames)
 }
 

@@ -6,6 +6,7 @@ mod convex_worlds;
 mod docs;
 mod doom;
 mod eye_to_cell;
+mod frames;
 mod from_region;
 mod layers;
 mod materials;

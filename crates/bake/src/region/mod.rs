@@ -121,9 +121,9 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         CellsFrom::KdTree => parts::of_cut(scene, subdivide_scene(scene, &options.cut)?, boxes.len()),
         CellsFrom::Grid(n) => {
             let around = options.cut.view_region.unwrap_or_else(|| scene.bounds());
-            parts::of_boxes(&grid(&around, *n)?, boxes.len())
+            parts::of_boxes(&grid(&around, *n)?.cells, boxes.len())
         }
-        CellsFrom::Boxes(cells) => parts::of_boxes(cells, boxes.len()),
+        CellsFrom::Boxes(cells) => parts::of_boxes(&parts::upright(cells), boxes.len()),
     };
     let volumes = volumes(&cells)?;
     let touching = see::touching(&cells, &boxes);

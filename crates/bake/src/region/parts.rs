@@ -4,7 +4,7 @@ use crate::graph::TableGraph;
 use crate::mirrors;
 use crate::table::{axial_portal_record, box_record};
 use sightlines_cells::{Axial, CellGraph, Scene};
-use sightlines_formats::ViewCells;
+use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::SceneSubdivision;
 use sightlines_pvs::{BitMatrix, Locator, SceneMethods, TableKind, TableParts};
@@ -52,10 +52,10 @@ pub(super) fn of_cut(scene: &Scene, cut: SceneSubdivision, n_objects: usize) -> 
 }
 
 /// Given boxes, of which everything may see everything.
-pub(super) fn of_boxes(boxes: &ViewCells, n_objects: usize) -> Start {
-    let cells: Vec<Aabb<3>> = boxes.cells.iter().map(|b| b.bounds).collect();
+pub(super) fn of_boxes(boxes: &[ViewCell], n_objects: usize) -> Start {
+    let cells: Vec<Aabb<3>> = boxes.iter().map(|b| b.bounds).collect();
     let parts = TableParts {
-        cell_names: boxes.cells.iter().map(|b| b.id.clone()).collect(),
+        cell_names: boxes.iter().map(|b| b.id.clone()).collect(),
         info: vec![("subdivide".to_owned(), "boxes".to_owned())],
         ..parts_of(&cells, TableKind::SceneGivenCells { hidden_by: SceneMethods::default() })
     };
@@ -74,4 +74,27 @@ fn parts_of(cells: &[Aabb<3>], kind: TableKind) -> TableParts {
 fn all_visible(graph: TableGraph, parts: TableParts, cells: Vec<Aabb<3>>, n_objects: usize) -> Start {
     let n = cells.len();
     Start { graph, parts, cells, rows: ones(n, n), objects: ones(n, n_objects) }
+}
+
+/// Boxes along the axes of the scene around view cells that may stand along others.
+pub(super) fn upright(cells: &ViewCells) -> Vec<ViewCell> {
+    let Some(axes) = cells.axes else { return cells.cells.clone() };
+    // What was turned into axes of the file is taken back into those of the scene, widened by the rounding.
+    let turn = |cell: &ViewCell| {
+        let (min, max) = (cell.bounds.min, cell.bounds.max);
+        let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+        for k in 0..3 {
+            let mut size = 0.0;
+            for i in 0..3 {
+                let ends = [axes[i][k] * min[i], axes[i][k] * max[i]];
+                low[k] += ends[0].min(ends[1]);
+                high[k] += ends[0].max(ends[1]);
+                size += ends[0].abs().max(ends[1].abs());
+            }
+            low[k] -= size * (8.0 * f64::EPSILON);
+            high[k] += size * (8.0 * f64::EPSILON);
+        }
+        ViewCell { id: cell.id.clone(), bounds: Aabb { min: low, max: high } }
+    };
+    cells.cells.iter().map(turn).collect()
 }

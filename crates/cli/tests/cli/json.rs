@@ -15,6 +15,12 @@ const PAGE: &str = include_str!("../../../../docs/json.md");
 /// The section of the fields that all objects have.
 const COMMON: &str = "Every command";
 
+/// A room of 8 by 5 by 3, turned by the angle whose cosine and sine are 4/5 and 3/5.
+const TURNED: &str = "o room
+v 0 0 0\nv 6.4 4.8 0\nv -3 4 0\nv 3.4 8.8 0\nv 0 0 3\nv 6.4 4.8 3\nv -3 4 3\nv 3.4 8.8 3
+f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4
+";
+
 /// Two squares, one behind the other, and two triangles that are objects of their own.
 const BOARDS: &str =
     "v -1 -1 5\nv 1 -1 5\nv 1 1 5\nv -1 1 5\nv -1 -1 9\nv 1 -1 9\nv 1 1 9\nv -1 1 9\nf 1 2 3 4\nf 5 6 7 8\n";
@@ -275,6 +281,7 @@ fn scenes(all: &mut Results) {
     folder.write("boards.obj", BOARDS);
     folder.write("triangles.obj", TRIANGLES);
     folder.write("slanted.obj", slanted());
+    folder.write("turned.obj", TURNED);
     folder.write("path.json", r#"{"frames": [{"eye": [1, 1, 1], "dir": [1, 0, 0]}]}"#);
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     let least = "--floors 1 --rooms-x 1 --rooms-y 1 --furniture 0";
@@ -285,6 +292,12 @@ fn scenes(all: &mut Results) {
     add("build of a scene by regions", "build least.glb -o r.pvs --method shafts --grid 2,1,2");
     add("build of a scene by regions", "build triangles.obj -o r.pvs --method shafts --stab-trees=16");
     add("info of a scene", "info tower.glb");
+    add("build of a scene", "build turned.obj -o turned.pvs --gap 1e-5");
+    add("build of a scene by regions", "build turned.obj -o g.pvs --gap 1e-5 --method shafts --grid 2,1,1");
+    add("verify", "verify turned.pvs turned.obj --rays 100 --pairs 10");
+    add("info of a table", "info turned.pvs");
+    add("pack", "pack turned.pvs -o turned.pvz");
+    add("info of a packed table", "info turned.pvz");
     // Some of it is glass.
     add("info of a scene", "info slanted.obj --see-through s1");
     add("build of a scene", "build triangles.obj -o g.pvs --see-through *");

@@ -3,7 +3,7 @@
 use super::Clause;
 use crate::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, ObjectId, PortalId};
+use sightlines_pvs::{CellId, Frame, ObjectId, PortalId};
 use std::cell::Cell;
 
 /// What an [`Impostor`] does wrong.
@@ -86,6 +86,10 @@ impl<S: CellSource> CellSource for Impostor<S> {
 
     fn dimension(&self) -> u8 {
         if self.fault == Fault::FourDimensions { 4 } else { self.source.dimension() }
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        self.source.frame()
     }
 
     fn n_cells(&self) -> usize {

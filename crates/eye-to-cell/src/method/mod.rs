@@ -115,6 +115,8 @@ impl Method {
 
     /// Adds to `seen` the cells, objects and mirrors that a viewer in the root cell of `subgraph` sees.
     ///
+    /// The view is that of the scene; for a table with a frame it is taken along its axes here.
+    ///
     /// `seen` has room for the table's cells and objects ([`VisibleSet::clear`]). On the border between cells, look once with
     /// the subgraph of each of them. Allocates nothing once `scratch` and `seen` are warm, but for mirrors.
     pub fn look(
@@ -125,6 +127,8 @@ impl Method {
         scratch: &mut Scratch,
         seen: &mut VisibleSet,
     ) {
+        let turned = subgraph.frame.map(|frame| view.in_frame(&frame));
+        let view = turned.as_ref().unwrap_or(view);
         if self == Self::CellToCell {
             return query::all(subgraph, view, seen);
         }

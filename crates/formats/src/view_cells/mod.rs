@@ -1,10 +1,13 @@
 //! View cells: boxes in space where a viewer can be, each with a name, given instead of cut.
 //!
 //! ```json
-//! {"cells":[{"id":"kitchen","min":[0.5,0.1,10.4],"max":[6.1,2.5,12.6]}]}
+//! {"axes":[[0.8,0,0.6],[0,1,0],[-0.6,0,0.8]],
+//!  "cells":[{"id":"kitchen","min":[0.5,0.1,10.4],"max":[6.1,2.5,12.6]}]}
 //! ```
 //!
-//! Corners are x, y and z in the units and axes of the scene that the cells are for. Every cell needs an id of its
+//! Corners are x, y and z in the units and axes of the scene that the cells are for. With `axes`, which may be left out, the
+//! boxes stand along these instead: three unit vectors of the scene at right angles, to within a thousandth. A corner is then
+//! x times the first, y times the second, and z times the third. Every cell needs an id of its
 //! own, at least one character long. Boxes may touch, overlap, leave gaps and be flat. Members that are not shown
 //! here mean nothing, in the whole as in a cell. There is at least one cell.
 
@@ -22,6 +25,8 @@ use sightlines_geometry::Aabb;
 pub struct ViewCells {
     /// The cells, in the order of the file.
     pub cells: Vec<ViewCell>,
+    /// The axes of the boxes, as unit vectors of the scene; `None`: those of the scene.
+    pub axes: Option<[[f64; 3]; 3]>,
 }
 
 /// A box where a viewer can be.
@@ -29,7 +34,7 @@ pub struct ViewCells {
 pub struct ViewCell {
     /// What users call it.
     pub id: String,
-    /// Where it is, in scene units.
+    /// Where it is, in scene units, along the axes of the cells.
     pub bounds: Aabb<3>,
 }
 

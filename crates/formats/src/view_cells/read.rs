@@ -27,7 +27,7 @@ pub fn parse_view_cells(text: &[u8]) -> Result<ViewCells, ViewCellsError> {
     let mut reader = Reader::default();
     let mut json = serde_json::Deserializer::from_slice(text);
     match reader.whole(&mut json) {
-        Ok(()) => Ok(ViewCells { cells: reader.cells }),
+        Ok(()) => Ok(ViewCells { cells: reader.cells, axes: reader.axes }),
         Err(error) => Err(reader.explain(&error)),
     }
 }
@@ -45,6 +45,7 @@ pub fn read_view_cells(path: impl AsRef<Path>) -> Result<ViewCells, ReadError> {
 #[derive(Debug, Default)]
 struct Reader {
     cells: Vec<ViewCell>,
+    axes: Option<[[f64; 3]; 3]>,
     /// The cell that has an id.
     of_id: BTreeMap<String, usize>,
     place: ViewCellPlace,
@@ -132,6 +133,12 @@ impl<'de> Visitor<'de> for Top<'_> {
                     map.next_value_seed(List(reader))?;
                     found = true;
                 }
+                "axes" => {
+                    let axes = map.next_value_seed(Axes(reader))?;
+                    if reader.axes.replace(axes).is_some() {
+                        return Err(reader.fail(Kind::Repeated("axes")));
+                    }
+                }
                 _ => drop(map.next_value::<IgnoredAny>()?),
             }
         }
@@ -140,6 +147,52 @@ impl<'de> Visitor<'de> for Top<'_> {
             (true, true) => Err(reader.fail(Kind::NoCells)),
             (true, false) => Ok(()),
         }
+    }
+}
+
+/// Reads the axes of the cells.
+struct Axes<'r>(&'r mut Reader);
+
+impl Axes<'_> {
+    /// How far products of the axes may be from those of unit vectors at right angles, as files round them. A box is the hull of its
+    /// corners in any case.
+    const OFF: f64 = 1e-3;
+
+    fn mismatch() -> Kind {
+        Kind::Member { member: "axes", expected: "a list of three unit vectors at right angles" }
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Axes<'_> {
+    type Value = [[f64; 3]; 3];
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        self.0.mismatch = Some(Self::mismatch());
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Axes<'_> {
+    type Value = [[f64; 3]; 3];
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("three vectors")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
+        let reader = self.0;
+        let mut axes = [[0.0; 3]; 3];
+        for slot in &mut axes {
+            let axis = seq.next_element_seed(Corner { reader: &mut *reader, member: "axes" })?;
+            let Some(axis) = axis else { return Err(reader.fail(Self::mismatch())) };
+            *slot = axis;
+        }
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let are_right = (0..3).all(|i| (0..3).all(|j| (dot(axes[i], axes[j]) - f64::from(i == j)).abs() <= Self::OFF));
+        if seq.next_element::<IgnoredAny>()?.is_some() || !are_right {
+            return Err(reader.fail(Self::mismatch()));
+        }
+        Ok(axes)
     }
 }
 

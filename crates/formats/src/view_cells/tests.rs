@@ -162,7 +162,18 @@ fn by_value(text: &[u8]) -> Option<ViewCells> {
     let mut ids: Vec<&str> = cells.iter().map(|cell| cell.id.as_str()).collect();
     ids.sort_unstable();
     let sound = !cells.is_empty() && !ids[0].is_empty() && ids.windows(2).all(|pair| pair[0] != pair[1]);
-    sound.then_some(ViewCells { cells })
+    let axes = match whole.get("axes") {
+        Some(axes) => {
+            let axes: Vec<[f64; 3]> = axes.as_array()?.iter().map(corner).collect::<Option<_>>()?;
+            let axes: [[f64; 3]; 3] = axes.try_into().ok()?;
+            let product = |i: usize, j: usize| (0..3).map(|k| axes[i][k] * axes[j][k]).sum::<f64>();
+            let wanted = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+            let are_right = (0..9).all(|n| (product(n / 3, n % 3) - wanted(n / 3, n % 3)).abs() <= 1e-3);
+            Some(Some(axes)).filter(|_| are_right)?
+        }
+        None => None,
+    };
+    sound.then_some(ViewCells { cells, axes })
 }
 
 /// Whether the reader takes a text; both the reader and the oracle must say the same, to the last bit.
@@ -191,7 +202,7 @@ fn corner() -> impl Strategy<Value = [f64; 3]> {
 fn view_cells() -> impl Strategy<Value = ViewCells> {
     prop::collection::btree_map(".{1,6}", (corner(), corner()), 1..9).prop_map(|cells| {
         let cell = |(id, (a, b))| ViewCell { id, bounds: Aabb::around([a, b]) };
-        ViewCells { cells: cells.into_iter().map(cell).collect() }
+        ViewCells { cells: cells.into_iter().map(cell).collect(), axes: None }
     })
 }
 

@@ -4,7 +4,9 @@ use crate::common::{points, recipes, table};
 use proptest::prelude::*;
 use sightlines_packed::{PackOptions, Packed, PackedErrorKind, pack, pack_report};
 use sightlines_pvs::format::kind_to_bytes;
-use sightlines_pvs::{Axis, CellId, ObjectId, PlaceBuffer, PortalId, Table, TableKind, TableParts};
+use sightlines_pvs::{
+    Axis, BitMatrix, CellId, CellRecord, Frame, Locator, ObjectId, PlaceBuffer, PortalId, Table, TableKind, TableParts,
+};
 
 /// Compares all queries of the packed table with the table; returns the number of comparisons.
 pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
@@ -187,5 +189,40 @@ fn kinds_are_stored_and_older_files_understood() {
     let unknown = [9; 12];
     let error = made(with_kind(&bytes, *b"KIND", Some(unknown), 2)).unwrap_err();
     assert!(matches!(error.kind, PackedErrorKind::Value { .. }), "{error}");
-    assert_eq!(made(with_kind(&bytes, *b"KIND", Some(unknown), 3)).unwrap(), (TableKind::Unspecified, None, true));
+    let later = sightlines_packed::format::MINOR as u8 + 1;
+    assert_eq!(made(with_kind(&bytes, *b"KIND", Some(unknown), later)).unwrap(), (TableKind::Unspecified, None, true));
+}
+
+/// A table with a frame: packed and back it is the same, and points are found in the same cells.
+#[test]
+fn frames_are_packed() {
+    let frame = Frame::new([[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0], [0.0, 0.0, 1.0]], 0.25).unwrap();
+    let cell = |i: u32| {
+        let x = 2.0 * f64::from(i);
+        CellRecord { min: [x, 0.0, 0.0], max: [x + 2.0, 3.0, 4.0], group: None, polygon: Vec::new() }
+    };
+    let cells: Vec<CellRecord> = (0..40).map(cell).collect();
+    let bounds: Vec<_> = cells.iter().map(|c| (c.min, c.max)).collect();
+    let parts = TableParts {
+        rows: BitMatrix::identity(40),
+        cell_objects: vec![Vec::new(); 40],
+        locator: Locator::build(&bounds, 3),
+        cells,
+        frame: Some(frame),
+        ..TableParts::empty(3, TableKind::Unspecified)
+    };
+    let table = Table::new(parts).unwrap();
+    let bytes = pack(&table, &PackOptions::default()).unwrap();
+    assert_eq!(bytes[10], 3, "the minor version");
+    let packed = Packed::open(bytes, 1 << 20).unwrap();
+    assert_eq!((packed.frame(), packed.to_table().unwrap()), (table.frame(), table.clone()));
+    let mut buffer = PlaceBuffer::new();
+    let mut n_several = 0;
+    for i in 0..400 {
+        let p = frame.to_scene([f64::from(i) * 0.21 - 1.0, 2.9, 1.0]);
+        let found = packed.cells_at(p, &mut buffer).inside().unwrap_or_default();
+        assert_eq!(found, table.place_at(p).cells(), "{p:?}");
+        n_several += usize::from(found.len() > 1);
+    }
+    assert!(n_several > 20, "{n_several} points near borders");
 }

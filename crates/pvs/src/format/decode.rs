@@ -4,11 +4,13 @@ use super::container::{self, Section, array};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::{Reader, read};
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS, OBJECT_POLYGONS, OBJECTS,
-    PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_from_bytes, kind_from_info, n_row_words, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, FRAME, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS, OBJECT_POLYGONS,
+    OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_from_bytes, kind_from_info, n_row_words,
+    planes, stab,
 };
+use crate::frame::FRAME_LEN;
 use crate::locator::Node;
-use crate::{Axis, TableKind};
+use crate::{Axis, Frame, TableKind};
 use crate::{
     BitMatrix, CellId, CellRecord, Item, Locator, LocatorError, MirrorId, MirrorRecord, ObjectId, ObjectRecord,
     PortalRecord,
@@ -52,6 +54,7 @@ impl Table {
         let parts = TableParts {
             kind,
             up,
+            frame: sections.find(FRAME).map(|s| read(s, frame)).transpose()?,
             mirrors,
             object_polygons,
             cell_names,
@@ -124,6 +127,7 @@ fn section_of(error: &TableError) -> SectionId {
         TableError::ObjectPolygons { .. } => OBJECT_POLYGONS,
         TableError::CellNames { .. } => CELL_NAMES,
         TableError::MirrorCell { .. } | TableError::MirrorPoints { .. } => MIRRORS,
+        TableError::Frame(_) => FRAME,
         TableError::Planes(_) => PLANES,
         TableError::Stab(_) => STAB,
         TableError::Locator(_) => LOCATOR,
@@ -283,6 +287,12 @@ fn kind(r: &mut Reader<'_>, is_later: bool) -> Result<(TableKind, Option<Axis>),
         Err(value) => Err(r.fail(KIND_LEN, Kind::Value { value })),
         Ok(known) => Ok(known),
     }
+}
+
+fn frame(r: &mut Reader<'_>) -> Result<Frame, DecodeError> {
+    let bytes = r.take(FRAME_LEN)?;
+    let wrong = |error| r.fail(FRAME_LEN, Kind::Table(TableError::Frame(error)));
+    Frame::from_bytes(&array(bytes, 0)).map_err(wrong)
 }
 
 fn info(r: &mut Reader<'_>) -> Result<Vec<(String, String)>, DecodeError> {

@@ -6,7 +6,7 @@
 //! offset  size
 //!      0     8  magic: 89 'P' 'V' 'S' 0D 0A 1A 0A
 //!      8     2  major version; a reader refuses a larger one than its own
-//!     10     2  minor version; a larger one only adds optional sections
+//!     10     2  minor version; a larger one only adds sections
 //!     12     4  n, the number of sections
 //!     16     8  length of the whole in bytes
 //!     24   32n  the section table, one entry per section:
@@ -38,6 +38,7 @@
 //! | `STAB`, optional | the stab trees, see below |
 //! | `CNAM`, optional | for each cell its name, as number of bytes and UTF-8 |
 //! | `KIND`, optional | what kind of table it is (`u32`): 0 not stated, 1 plan by k-d tree, 2 plan by triangulation, 3 scene by k-d tree, 4 scene with given cells, 5 Quake portal file, 6 Quake map; for scenes, what found the hidden (`u32`): 1 sight lines, plus 2 a from-region method, plus 4 if nothing is promised for eyes inside solid matter; the axis that points up (`u32`): 0 not known, 1 to 3 |
+//! | `FRAM` | the axes of the frame (3 each), the gap |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
 //! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are their boxes, a
@@ -47,7 +48,8 @@
 //! that the stab trees are unknown. A missing `CNAM` (new in 1.3) means that the cells have no names. Without a `KIND`
 //! (new in 1.4), kind and axis are those that older programs left in `INFO` under the keys `source`, `subdivide`,
 //! `method` and `up` ([`kind_from_info`]), or unknown; a later minor version may add kinds, which a reader treats as
-//! not stated.
+//! not stated. Without a `FRAM` (new in 1.5) all coordinates are along the axes of the scene. Because it changes what coordinates mean,
+//! `FRAM` is not optional for a reader: one that does not have it refuses the file. Files without it are as before.
 //!
 //! # Stab trees
 //!
@@ -97,7 +99,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the smallest version with all the sections of a table, so
 /// that files without newer sections stay unchanged.
-pub const MINOR: u16 = 4;
+pub const MINOR: u16 = 5;
 
 const CELLS: SectionId = SectionId(*b"CELL");
 const POLYGONS: SectionId = SectionId(*b"POLY");
@@ -113,6 +115,7 @@ const PLANES: SectionId = SectionId(*b"PLNS");
 const STAB: SectionId = SectionId(*b"STAB");
 const CELL_NAMES: SectionId = SectionId(*b"CNAM");
 const KIND: SectionId = SectionId(*b"KIND");
+const FRAME: SectionId = SectionId(*b"FRAM");
 const INFO: SectionId = SectionId(*b"INFO");
 
 /// The minor version that added rows of objects.
@@ -123,9 +126,11 @@ const SINCE_MIRRORS_PLANES_STAB: u16 = 2;
 const SINCE_CELL_NAMES: u16 = 3;
 /// The minor version that added the kind of a table.
 const SINCE_KIND: u16 = 4;
+/// The minor version that added frames.
+const SINCE_FRAME: u16 = 5;
 
-/// The sections of this version, whether they are optional, and the minor version that added each, which is a constant.
-const KNOWN: [(SectionId, bool, u16); 15] = [
+/// The sections of this version, whether readers may skip them, and the minor version that added each, which is a constant.
+const KNOWN: [(SectionId, bool, u16); 16] = [
     (CELLS, false, 0),
     (POLYGONS, true, 0),
     (PORTALS, true, 0),
@@ -140,6 +145,7 @@ const KNOWN: [(SectionId, bool, u16); 15] = [
     (STAB, true, SINCE_MIRRORS_PLANES_STAB),
     (CELL_NAMES, true, SINCE_CELL_NAMES),
     (KIND, true, SINCE_KIND),
+    (FRAME, false, SINCE_FRAME),
     (INFO, false, 0),
 ];
 

@@ -3,6 +3,7 @@
 mod common;
 mod extras;
 mod format;
+mod frame;
 mod kind;
 mod planes;
 mod seen;

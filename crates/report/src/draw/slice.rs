@@ -83,7 +83,9 @@ pub(super) fn look(
             Ok((Some(VisibleSet::from_cell(table, cell)), None))
         }
         View::Eye(eye) if eye.iter().all(|x| x.is_finite()) => {
-            Ok((Some(VisibleSet::from_point(table, eye)), Some(eye)))
+            // Pictures are along the axes of the table.
+            let along = table.frame().map_or(eye, |frame| frame.to_frame(eye));
+            Ok((Some(VisibleSet::from_point(table, eye)), Some(along)))
         }
         View::Eye(_) => Err(DrawError::NotFinite),
     }

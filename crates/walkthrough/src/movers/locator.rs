@@ -2,7 +2,7 @@
 
 use sightlines_eye_to_cell::{CellSource, TableCells};
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, Frame, Table};
 use std::borrow::Borrow;
 use std::sync::Arc;
 
@@ -14,10 +14,10 @@ pub trait CellLocator {
     /// Number of cells; ids are below it.
     fn n_cells(&self) -> usize;
 
-    /// The box around all cells; [`Aabb::EMPTY`] without cells. May be slow; it is called once.
+    /// The box of the scene around all cells; [`Aabb::EMPTY`] without cells. May be slow; it is called once.
     fn bounds(&self) -> Aabb<3>;
 
-    /// Calls `visit` with every cell that the closed box touches (z is 0 in the plane), until it returns `false`. A
+    /// Calls `visit` with every cell that the closed box of the scene touches (z is 0 in the plane), until it returns `false`. A
     /// cell may be visited more than once, in any order. `pending` is scratch space.
     ///
     /// Errs towards touching, by rounding; cells that truly touch a box are visited for every larger box too.
@@ -34,11 +34,23 @@ impl<T: Borrow<Table>> CellLocator for TableCells<T> {
     }
 
     fn bounds(&self) -> Aabb<3> {
-        self.table().cells().iter().fold(Aabb::EMPTY, |all, cell| all.with(cell.min).with(cell.max))
+        let along = self.table().cells().iter().fold(Aabb::EMPTY, |all, cell| all.with(cell.min).with(cell.max));
+        in_scene(self.table().frame(), along)
     }
 
     fn touching(&self, bounds: &Aabb<3>, pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool) {
         self.table().for_each_touching(bounds.min, bounds.max, pending, visit);
+    }
+}
+
+/// The box of the scene around a box along the frame of a table, if it has one.
+fn in_scene(frame: Option<&Frame>, along: Aabb<3>) -> Aabb<3> {
+    match frame.filter(|_| !along.is_empty()) {
+        Some(frame) => {
+            let (min, max) = frame.around_in_scene(along.min, along.max);
+            Aabb { min, max }
+        }
+        None => along,
     }
 }
 
@@ -67,6 +79,8 @@ impl<P: CellLocator + ?Sized> CellLocator for Arc<P> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellBoxes {
     dimension: u8,
+    /// The axes of the boxes.
+    frame: Option<Frame>,
     boxes: Vec<Aabb<3>>,
     tree: BoxTree<3>,
 }
@@ -79,7 +93,7 @@ impl CellBoxes {
     pub fn read<S: CellSource + ?Sized>(source: &S) -> Result<Self, S::Error> {
         let boxes = (0..source.n_cells() as u32).map(|i| source.cell_box(CellId(i))).collect::<Result<Vec<_>, _>>()?;
         let tree = BoxTree::build(&boxes, 4);
-        Ok(Self { dimension: source.dimension(), boxes, tree })
+        Ok(Self { dimension: source.dimension(), frame: source.frame(), boxes, tree })
     }
 }
 
@@ -97,10 +111,14 @@ impl CellLocator for CellBoxes {
     }
 
     fn bounds(&self) -> Aabb<3> {
-        self.tree.nodes()[0].bounds
+        in_scene(self.frame.as_ref(), self.tree.nodes()[0].bounds)
     }
 
     fn touching(&self, bounds: &Aabb<3>, _pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool) {
+        let bounds = &self.frame.map_or(*bounds, |frame| {
+            let (min, max) = frame.around(bounds.min, bounds.max);
+            Aabb { min, max }
+        });
         let goes_on = std::cell::Cell::new(true);
         self.tree.visit(
             |node| goes_on.get() && touch(node, bounds),

@@ -3,8 +3,8 @@
 use sightlines_eye_to_cell::{CellSource, Method, MirrorPiece, PortalEdge, StabStep, TableCells, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord, PortalId, PortalRecord,
-    Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Frame, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord, PortalId,
+    PortalRecord, Table, TableKind, TableParts,
 };
 use sightlines_walkthrough::{Answer, Prefetcher, Prepare, WalkOptions, Walkthrough};
 use std::collections::BTreeSet;
@@ -78,6 +78,9 @@ impl CellSource for Slow {
 
     fn dimension(&self) -> u8 {
         CellSource::dimension(&self.table)
+    }
+    fn frame(&self) -> Option<Frame> {
+        self.table.frame()
     }
     fn n_cells(&self) -> usize {
         CellSource::n_cells(&self.table)

@@ -8,7 +8,7 @@ use sightlines::eye_to_cell::{
     CellSource, Doors, Method, MirrorPiece, PortalEdge, Scratch, StabStep, View, ViewError, VisibleSet, VisibleSubgraph,
 };
 use sightlines::geometry::Aabb;
-use sightlines::pvs::{CellId, MirrorId, ObjectId, PortalId};
+use sightlines::pvs::{CellId, Frame, MirrorId, ObjectId, PortalId};
 
 /// What hand-made sources and viewers are made of.
 const NUMBERS: [f64; 14] = [
@@ -73,6 +73,10 @@ impl CellSource for Garbage {
 
     fn dimension(&self) -> u8 {
         self.dimension
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        None
     }
 
     fn n_cells(&self) -> usize {

@@ -81,7 +81,7 @@ fn a_city_is_seen_as_rays_see_it_and_mostly_hidden() {
         .iter()
         .enumerate()
         .map(|(i, b)| sightlines::formats::view_cells::ViewCell { id: format!("crossing_{i}"), bounds: *b });
-    let cells = CellsFrom::Boxes(sightlines::formats::ViewCells { cells: named.collect() });
+    let cells = CellsFrom::Boxes(sightlines::formats::ViewCells { cells: named.collect(), axes: None });
     let baked = bake(&scene, &cells, By::Multifocal, 0, 2);
     let seen = check(&scene, &baked.table, "city");
     let (objects, _) = visible(&baked.table);
@@ -129,7 +129,7 @@ fn real_cells_show_what_was_seen() {
         let scene = read_scene(folder.join(format!("{name}.glb"))).unwrap_or_else(|e| panic!("{e}")).scene;
         let witnesses = scene_witness(&folder);
         let named = witnesses.iter().map(|w| ViewCell { id: w.id.clone(), bounds: Aabb { min: w.min, max: w.max } });
-        let cells = CellsFrom::Boxes(ViewCells { cells: named.collect() });
+        let cells = CellsFrom::Boxes(ViewCells { cells: named.collect(), axes: None });
         let start = std::time::Instant::now();
         let baked = bake(&scene, &cells, By::Sightlines, 0, 2);
         let time = start.elapsed();

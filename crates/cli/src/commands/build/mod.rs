@@ -3,6 +3,7 @@
 mod auto;
 mod certify;
 mod error;
+mod framed;
 mod options;
 pub(crate) mod plan;
 mod portals;
@@ -74,9 +75,10 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     let input = input::read(path, args.map.as_deref(), &args.surfaces.options())?;
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
-    let source = Source::new(path, input, chosen, out, &args.bake)?;
+    let mut source = Source::new(path, input, chosen, out, &args.bake)?;
     let mut options = args.bake.options();
     args.region.apply(&mut options)?;
+    let frame = framed::take(path, &mut source.content, &mut options)?;
     let mut auto = None;
     if options.method == SceneMethod::Auto {
         let (choice, chosen) = choose_for(&(&source.content).into(), &options);
@@ -92,7 +94,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
     let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
     let surfaces = if let Bakeable::Scene(file) = &source.content { Some(Surfaces::new(file)) } else { None };
-    output::print(args.json, &Built { auto, outcome, surfaces, stab, proofs })?;
+    output::print(args.json, &Built { auto, outcome, frame, surfaces, stab, proofs })?;
     Ok(Answer::Yes)
 }
 
@@ -186,6 +188,9 @@ struct Built {
     auto: Option<auto::Chosen>,
     #[serde(flatten)]
     outcome: Outcome,
+    /// The frame of a scene that does not stand along the axes of its file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<framed::Taken>,
     /// Of a scene in space.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     surfaces: Option<Surfaces>,
@@ -199,6 +204,7 @@ impl fmt::Display for Built {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.auto.iter().try_for_each(|auto| write!(f, "{auto}"))?;
         write!(f, "{}", self.outcome)?;
+        self.frame.iter().try_for_each(|frame| write!(f, "{frame}"))?;
         self.surfaces.iter().try_for_each(|surfaces| write!(f, "{surfaces}"))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))

@@ -5,7 +5,7 @@ use crate::input::refuse;
 use crate::named::one_of;
 use crate::numbers::share;
 use crate::region::Region;
-use sightlines::bake::{BakeOptions, PortalMode, Subdivide};
+use sightlines::bake::{BakeOptions, Gap, PortalMode, Subdivide};
 use sightlines::kdtree::SceneOptions;
 use std::path::Path;
 
@@ -30,6 +30,11 @@ pub(crate) struct BakeArgs {
     /// through one rectangle around each, which shows more
     #[arg(long, help_heading = "Method", value_name = "HOW", value_parser = one_of(&PortalMode::ALL, PortalMode::name, |_| ""))]
     portals: Option<PortalMode>,
+    /// Scenes in space: openings narrower than this, in scene units, may count as closed. Walls that lie across an axis of the
+    /// building to within half of it are taken to do so exactly, also where the building stands at an angle to the axes of its file. 0
+    /// takes every coordinate as it is [default: the precision of the file, where such walls are many]
+    #[arg(long, help_heading = "Method", value_name = "WIDTH", value_parser = size, allow_hyphen_values = true)]
+    gap: Option<f64>,
     /// Scenes in space: fail if there are more cells than this [default: 65536]
     #[arg(long, help_heading = "Cells", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_cells: Option<u32>,
@@ -64,12 +69,14 @@ impl BakeArgs {
         };
         let subdivide = self.subdivide.unwrap_or_default();
         let portals = self.portals.unwrap_or_default();
-        BakeOptions { subdivide, cut, portals, fast: self.fast, threads: self.threads, ..standard }
+        let gap = self.gap.map_or(Gap::OfFile, Gap::Width);
+        BakeOptions { subdivide, cut, gap, portals, fast: self.fast, threads: self.threads, ..standard }
     }
 
     /// Options that mean something for scenes in space only.
-    fn of_space(&self) -> [(&'static str, bool); 5] {
+    fn of_space(&self) -> [(&'static str, bool); 6] {
         [
+            ("--gap", self.gap.is_some()),
             ("--view-region", self.view_region.is_some()),
             ("--detail-below", self.detail_below.is_some()),
             ("--portals", self.portals.is_some()),

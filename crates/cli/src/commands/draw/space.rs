@@ -44,7 +44,7 @@ fn height_of(table: &Table, view: View<[f64; 3]>, up: Up) -> Option<f64> {
     match view {
         View::Plan => None,
         View::Cell(id) => Some(middle(table, id, up)),
-        View::Eye(eye) => Some(eye[up.axis()]),
+        View::Eye(eye) => Some(table.frame().map_or(eye, |frame| frame.to_frame(eye))[up.axis()]),
     }
 }
 

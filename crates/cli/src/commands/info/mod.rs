@@ -8,7 +8,7 @@ mod wad;
 
 use crate::Answer;
 use crate::error::InputError;
-use crate::facts::{Facts, StabFacts};
+use crate::facts::{Facts, FrameFacts, StabFacts};
 use crate::file_error::{FileError, from_file_error};
 use crate::input;
 use crate::output::{self, bytes};
@@ -76,6 +76,9 @@ struct TableInfo {
     /// If the table has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<StabFacts>,
+    /// If the table stands along axes of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<FrameFacts>,
     /// How the table was made, as it states.
     #[serde(serialize_with = "as_map")]
     info: Vec<(String, String)>,
@@ -93,7 +96,8 @@ impl TableInfo {
             // The boxes are around portals, not around cells: volumes are unknown. Null in JSON.
             (summary.mean_floor_share, summary.floor) = (f64::NAN, f64::NAN);
         }
-        Self { file, kind: "table", summary, stab: StabFacts::of(table), info: table.info().to_vec() }
+        let (stab, frame) = (StabFacts::of(table), table.frame().map(FrameFacts::from));
+        Self { file, kind: "table", summary, stab, frame, info: table.info().to_vec() }
     }
 }
 
@@ -103,6 +107,7 @@ impl fmt::Display for TableInfo {
         writeln!(f, "{}: visibility table in {dimension}D, {}", self.file, bytes(self.summary.n_bytes as u64))?;
         write!(f, "{}", Facts(&self.summary))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
+        self.frame.iter().try_for_each(|frame| write!(f, "{frame}"))?;
         self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
     }
 }

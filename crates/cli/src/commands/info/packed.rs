@@ -3,6 +3,7 @@
 use super::Error;
 use super::as_map;
 use crate::error::InputError;
+use crate::facts::FrameFacts;
 use crate::output::{bytes, percent};
 use crate::tables;
 use serde::Serialize;
@@ -26,6 +27,9 @@ pub(super) struct PackedInfo {
     /// Bytes that stay in memory as they are in the file.
     resident_bytes: usize,
     parts: Vec<Part>,
+    /// If the table stands along axes of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<FrameFacts>,
     /// How the table was made, as it states.
     #[serde(serialize_with = "as_map")]
     info: Vec<(String, String)>,
@@ -42,13 +46,14 @@ struct Part {
 }
 
 /// What the parts are.
-const PARTS: [(&str, &str); 19] = [
+const PARTS: [(&str, &str); 20] = [
     ("HEAD", "numbers"),
     ("BOXS", "boxes of cells"),
     ("POLY", "corners of cells"),
     ("LOCA", "tree to find cells"),
     ("PLAN", "planes to find cells"),
     ("MIRR", "mirrors"),
+    ("FRAM", "axes of its own"),
     ("INFO", "how it was made"),
     ("COAR", "coarse visibility"),
     ("CLAS", "equal rows"),
@@ -86,6 +91,7 @@ impl PackedInfo {
             n_mirror_parts: packed.mirrors().len(),
             resident_bytes: packed.resident_bytes(),
             parts: packed.part_sizes().into_iter().map(part).collect(),
+            frame: packed.frame().map(FrameFacts::from),
             info: packed.info().to_vec(),
         })
     }
@@ -112,6 +118,7 @@ impl fmt::Display for PackedInfo {
             let held = if *resident { ", in memory" } else { "" };
             writeln!(f, "  {name}         {n_bytes:>10} bytes {share:>8}  {what}{held}")?;
         }
+        self.frame.iter().try_for_each(|frame| write!(f, "{frame}"))?;
         self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
     }
 }

@@ -8,7 +8,7 @@ use crate::folder::NewFolder;
 use crate::input;
 use crate::output;
 use crate::progress::Bar;
-use crate::simplification::{HowArgs, ReadScene, SimplificationError, read, written};
+use crate::simplification::{self, HowArgs, ReadScene, SimplificationError, read, written};
 use outcome::Outcome;
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
 use sightlines::multifocal::FromRegion;
@@ -72,7 +72,9 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     let table = input::table(&args.table)?;
     // What was see-through for the table must not count as a wall here.
     let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.info()))?;
-    let scene = &file.scene;
+    let along = simplification::along(&args.scene, &table, &file.scene)?;
+    // A table with a frame is about the scene along its axes.
+    let (table, scene) = along.as_ref().map_or((&table, &file.scene), |(table, scene)| (table, scene));
     let (method, factory) = args.how.prepare(&args.scene, scene)?;
     let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };
     let make: MakeMethod<'_> = &make;
@@ -83,7 +85,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
         LevelOptions { simplify: SimplifyOptions { n_rays: N_RAYS, ..simplify }, memory: args.memory, ..standard };
     let start = Instant::now();
     let bar = Bar::new("levels", show_progress);
-    let made = levels(scene, &table, &by, &options).map_err(|source| {
+    let made = levels(scene, table, &by, &options).map_err(|source| {
         let of_table = matches!(source, SimplifyError::OtherScene(_) | SimplifyError::Views(_));
         let path = if of_table { &args.table } else { &args.scene };
         SimplificationError::Simplify { path: path.clone(), source }
@@ -97,7 +99,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     };
     let mut n_bytes = 0;
     for (k, level) in made.levels.iter().enumerate() {
-        let bytes = written(&args.scene, scene, source.as_ref(), &level.simplified)?;
+        let bytes = written(&args.scene, &file.scene, source.as_ref(), &level.simplified)?;
         let file = format!("level_{k}.glb");
         folder.save(&file, &bytes)?;
         n_bytes += bytes.len() as u64;

@@ -3,7 +3,7 @@
 use super::error::{Error, Unlike};
 use crate::tables::{Cells, Opened};
 use sightlines::cells::Scene;
-use sightlines::geometry::{Aabb, Point3};
+use sightlines::geometry::Point3;
 use sightlines::pvs::{ObjectId, Place, PlaceBuffer};
 use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
 use sightlines::visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull};
@@ -119,9 +119,13 @@ fn unlike<C: Cells>(cells: &C, scene: &Scene) -> Result<Option<Unlike>, C::Error
         if name != object.name {
             return Ok(Some(Unlike::Name { object: id, table: name, scene: object.name.clone() }));
         }
-        let bounds = Aabb::around(object.corners().flatten());
+        // In a table with a frame a corner is within the gap of its place along it.
+        let frame = cells.frame();
+        let along = |p: Point3| frame.map_or([p; 2], |frame| frame.around(p, p).into());
+        let places: Vec<[Point3; 2]> = object.corners().flatten().map(along).collect();
         let known = cells.object_box(ObjectId(id))?;
-        if (0..3).any(|k| bounds.min[k] < known.min[k] || bounds.max[k] > known.max[k]) {
+        let is_off = |[min, max]: &[Point3; 2]| (0..3).any(|k| max[k] < known.min[k] || min[k] > known.max[k]);
+        if places.iter().any(is_off) {
             return Ok(Some(Unlike::Box { object: id, name }));
         }
     }

@@ -30,17 +30,18 @@ pub(super) struct EyesArgs {
 }
 
 impl EyesArgs {
-    /// The table, if there is one, and the places.
-    pub(super) fn read(&self) -> Result<(Option<Table>, Views), Error> {
-        let Some(path) = &self.table else {
+    /// The table, if there is one.
+    pub(super) fn table(&self) -> Result<Option<Table>, Error> {
+        Ok(self.table.as_ref().map(|path| input::table(path)).transpose()?)
+    }
+
+    /// The places: cells of `table`, which is the one that was read, along its axes.
+    pub(super) fn views(&self, table: Option<&Table>) -> Result<Views, Error> {
+        let (Some(path), Some(table)) = (&self.table, table) else {
             let volumes = self.volume.iter().map(|region| Volume::new(region.0)).collect::<Result<Vec<_>, _>>()?;
-            let views = Views::new(volumes).expect("the arguments have a volume");
-            return Ok((None, views));
+            return Ok(Views::new(volumes).expect("the arguments have a volume"));
         };
-        let table = input::table(path)?;
         let cells: Vec<CellId> = self.cell.iter().copied().map(CellId).collect();
-        let failed = |source| Error::Views { path: path.clone(), source };
-        let views = Views::of_cells(&table, &cells).map_err(failed)?;
-        Ok((Some(table), views))
+        Views::of_cells(table, &cells).map_err(|source| Error::Views { path: path.clone(), source })
     }
 }

@@ -8,7 +8,7 @@ use crate::Answer;
 use crate::glb;
 use crate::output;
 use crate::progress::Bar;
-use crate::simplification::{HowArgs, ReadScene, SimplificationError, read, written};
+use crate::simplification::{self, HowArgs, ReadScene, SimplificationError, read, written};
 use error::Error;
 use eyes::EyesArgs;
 use outcome::{Outcome, Report};
@@ -52,15 +52,19 @@ pub(crate) struct SimplifyArgs {
 pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Error> {
     glb::check_name(&args.output).map_err(SimplificationError::from)?;
     output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
-    let (table, views) = args.eyes.read()?;
+    let table = args.eyes.table()?;
     // What was see-through for the table must not count as a wall here.
     let ReadScene { file, source } =
         read(&args.scene, &args.how.surfaces.options_with(table.as_ref().map_or(&[], |table| table.info())))?;
-    let scene = &file.scene;
+    let along =
+        table.as_ref().map(|table| simplification::along(&args.scene, table, &file.scene)).transpose()?.flatten();
+    // A table with a frame is about the scene along its axes, and so are its cells.
+    let (table, scene) = along.as_ref().map_or((table.as_ref(), &file.scene), |(table, scene)| (Some(table), scene));
+    let views = args.eyes.views(table)?;
     let (method, factory) = args.how.prepare(&args.scene, scene)?;
     let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };
     let make: MakeMethod<'_> = &make;
-    let by = HiddenBy { method: factory.is_some().then_some(make), table: table.as_ref() };
+    let by = HiddenBy { method: factory.is_some().then_some(make), table };
     let options = args.how.options(args.parts as usize);
     let failed = |source| match (&source, &args.eyes.table) {
         (SimplifyError::OtherScene(_), Some(table)) => SimplificationError::Simplify { path: table.clone(), source },
@@ -71,7 +75,7 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     let simplified = simplify(scene, &views, &by, &options).map_err(failed)?;
     drop(bar);
     let time = start.elapsed();
-    let bytes = written(&args.scene, scene, source.as_ref(), &simplified)?;
+    let bytes = written(&args.scene, &file.scene, source.as_ref(), &simplified)?;
     let report = if args.report {
         let rays = MeasureOptions { threads: args.how.threads, ..MeasureOptions::default() };
         let measured = measure(scene, &simplified, &views, &rays).map_err(failed)?;

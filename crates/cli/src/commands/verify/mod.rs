@@ -92,14 +92,17 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     } else if args.draw.is_some() {
         input::refuse_without_places(table, &args.table, "no ray can be drawn")?;
     }
+    let failed = |source| Error::Verify { table: args.table.clone(), scene: args.scene.clone(), source };
+    let frame = table.frame().copied();
+    let (along, scene) = scene.along(table).map_err(failed)?;
+    let table = along.as_ref().unwrap_or(table);
     let VerifyArgs { rays, pairs, tries, seed, threads, .. } = *args;
     let start = Instant::now();
     let bar = Bar::new("rays", show_progress);
     let options = VerifyOptions { rays, pairs, tries, seed, threads, progress: Some(&bar) };
     let findings = verify(table, &scene.truth(), &options);
     drop(bar);
-    let findings =
-        findings.map_err(|source| Error::Verify { table: args.table.clone(), scene: args.scene.clone(), source })?;
+    let findings = findings.map_err(failed)?;
     let time = start.elapsed();
     // All that may be refused comes before a file is written.
     let proofs = match own {
@@ -114,6 +117,7 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     let about = own.as_ref().map(|own| own::About::from(&own.about));
     let files = [args.table.as_path(), &args.scene];
     let outcome = Outcome::new(files, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
+    let outcome = outcome.in_frame(frame.as_ref());
     let is_true = outcome.is_true();
     output::print(args.json, &With { outcome, proofs })?;
     Ok(if is_true { Answer::Yes } else { Answer::No })

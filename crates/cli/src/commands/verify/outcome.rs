@@ -3,8 +3,10 @@
 use super::own::About;
 use super::proofs::ProofOutcome;
 use super::violations::{ReportedViolation, Violations};
+use crate::facts::FrameFacts;
 use crate::output::{count, percent, seconds};
 use serde::Serialize;
+use sightlines::pvs::Frame;
 use sightlines::verify::{Confirmed, Findings, Remarks};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,6 +24,9 @@ pub(super) struct Outcome {
     n_portals: usize,
     n_objects: usize,
     n_rays: u64,
+    /// The frame of the table, if it has one: the scene was moved into it, and places are along its axes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<FrameFacts>,
     /// What else than the structure was looked at.
     checked: Checked,
     /// The lump that was checked, of a map's own visibility.
@@ -106,6 +111,7 @@ impl Outcome {
             n_portals: found.n_portals,
             n_objects: found.n_objects,
             n_rays: found.n_rays,
+            frame: None,
             checked,
             own,
             no_rays: found.no_rays,
@@ -121,6 +127,11 @@ impl Outcome {
             picture: None,
             seconds: time.as_secs_f64(),
         }
+    }
+
+    /// The same for a table with a frame.
+    pub(super) fn in_frame(self, frame: Option<&Frame>) -> Self {
+        Self { frame: frame.map(FrameFacts::from), ..self }
     }
 
     /// The same with a picture, if one was drawn.
@@ -150,6 +161,13 @@ impl fmt::Display for Outcome {
         let things = things.map(|(n, noun)| count(n as u64, noun)).join(", ");
         self.own.iter().try_for_each(|own| write!(f, "{own}"))?;
         writeln!(f, "structure      {things}")?;
+        if let Some(frame) = &self.frame {
+            write!(f, "{frame}")?;
+            writeln!(
+                f,
+                "               the scene was moved into it, every corner by less than that; places are along its axes"
+            )?;
+        }
         match self.no_rays {
             Some(why) => writeln!(f, "rays           none: {why}")?,
             None if !self.checked.random_rays && !self.checked.aimed_rays => writeln!(f, "rays           none")?,

@@ -10,7 +10,8 @@ use sightlines::formats::quake::bsp::BspError;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{graph_of_prt, read_prt};
 use sightlines::formats::scene::SceneReadOptions;
-use sightlines::verify::{Truth, WorldTree};
+use sightlines::pvs::Table;
+use sightlines::verify::{Truth, VerifyError, WorldTree, along_frame};
 use std::path::Path;
 
 /// A scene that was read.
@@ -67,6 +68,17 @@ impl Real {
                 Self::Map(graph, WorldTree { faces: Vec::new(), listed, ..tree })
             }
             other => other,
+        }
+    }
+
+    /// The table without its frame, and the scene along its axes; the two as they are if the table has none.
+    pub(super) fn along(self, table: &Table) -> Result<(Option<Table>, Self), VerifyError> {
+        match self {
+            Self::Scene(scene) if table.dimension() == 3 => Ok(match along_frame(table, &scene)? {
+                Some((table, scene)) => (Some(table), Self::Scene(scene)),
+                None => (None, Self::Scene(scene)),
+            }),
+            other => Ok((None, other)),
         }
     }
 

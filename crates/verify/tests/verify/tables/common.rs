@@ -101,7 +101,7 @@ fn grid_case(name: &'static str, sightlines: bool) -> Case {
         let max = [side(0, i + 1, nx), side(1, 1, 2), side(2, j + 1, nz)];
         ViewCell { id: format!("box {k}"), bounds: Aabb { min, max } }
     };
-    let cells = CellsFrom::Boxes(ViewCells { cells: (0..nx * nz).map(cell).collect() });
+    let cells = CellsFrom::Boxes(ViewCells { cells: (0..nx * nz).map(cell).collect(), axes: None });
     let triangles: Vec<[Point3; 3]> = scene.objects().iter().flat_map(|o| o.corners()).collect();
     let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 40));
     let layout = Layout { planes: 3, texels: 48, ..Layout::default() };

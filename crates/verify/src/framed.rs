@@ -1,0 +1,110 @@
+//! Tables with a frame: the scene along the axes of the table, and whether it keeps the premise.
+//!
+//! The scene is moved by the code that moved it for the bake. What that code promises is not taken on trust: how far each corner is from
+//! where the file has it is measured here, in other arithmetic.
+
+use crate::truth::VerifyError;
+use num_rational::BigRational;
+use num_traits::Signed;
+use sightlines_cells::Scene;
+use sightlines_frame::{MoveError, Moved};
+use sightlines_geometry::Point3;
+use sightlines_pvs::{Frame, Table};
+
+/// The table of a scene without its frame, and the scene along the axes of the table: what holds of the one is to hold of the other.
+/// `None` for a table without a frame.
+///
+/// # Errors
+/// [`VerifyError::Frame`] if a coordinate of the moved scene is not within the gap of that of the file, which is
+/// decided exactly; [`VerifyError::Range`] if the scene cannot be taken along the frame at all.
+pub fn along_frame(table: &Table, scene: &Scene) -> Result<Option<(Table, Scene)>, VerifyError> {
+    let Some(frame) = table.frame() else { return Ok(None) };
+    let moved = Moved::new(scene, frame).map_err(|error| match error {
+        MoveError::Gap { object, vertex } => VerifyError::Frame { object, vertex },
+        _ => VerifyError::Range,
+    })?;
+    check_moves(scene, &moved.scene, frame)?;
+    let table = table.clone().with_frame(None).map_err(|_| VerifyError::Range)?;
+    Ok(Some((table, moved.scene)))
+}
+
+/// Whether every corner of `moved` is within the gap of where `frame` puts that of `scene`, and the scenes are the same otherwise. Exact.
+pub(crate) fn check_moves(scene: &Scene, moved: &Scene, frame: &Frame) -> Result<(), VerifyError> {
+    for (object, (from, to)) in scene.objects().iter().zip(moved.objects()).enumerate() {
+        for (vertex, (&p, &q)) in from.vertices.iter().zip(&to.vertices).enumerate() {
+            if !is_within(frame, p, q) {
+                return Err(VerifyError::Frame { object, vertex });
+            }
+        }
+        if from.vertices.len() != to.vertices.len() || from.triangles != to.triangles {
+            return Err(VerifyError::Frame { object, vertex: 0 });
+        }
+    }
+    let roles = |scene: &Scene| (scene.objects().len(), scene.see_through().to_vec(), scene.mirrors().to_vec());
+    if roles(scene) == roles(moved) { Ok(()) } else { Err(VerifyError::Range) }
+}
+
+/// Whether each coordinate of `q` is less than the gap from that of `p` along the frame.
+fn is_within(frame: &Frame, p: Point3, q: Point3) -> bool {
+    frame.axes().iter().zip(q).all(|(axis, q)| {
+        // Fused operations round three times; 2^-50 of the sizes has room for eight.
+        let off = axis[2].mul_add(-p[2], axis[1].mul_add(-p[1], axis[0].mul_add(-p[0], q))).abs();
+        let size = q.abs() + (axis[0] * p[0]).abs() + (axis[1] * p[1]).abs() + (axis[2] * p[2]).abs();
+        let doubt = size * (4.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+        off + doubt < frame.gap() * (1.0 - f64::EPSILON)
+            || (off < 2.0 * frame.gap() && is_within_exactly(axis, p, q, frame.gap()))
+    })
+}
+
+fn is_within_exactly(axis: &Point3, p: Point3, q: f64, gap: f64) -> bool {
+    let exact = |x: f64| BigRational::from_float(x);
+    let products = axis.iter().zip(p).map(|(a, x)| Some(exact(*a)? * exact(x)?));
+    let at = products.collect::<Option<Vec<_>>>().map(|products| products.into_iter().sum::<BigRational>());
+    match (at, exact(q), exact(gap)) {
+        (Some(at), Some(q), Some(gap)) => (q - at).abs() < gap,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sightlines_cells::SceneObject;
+
+    fn frame(gap: f64) -> Frame {
+        Frame::new([[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0], [0.0, 0.0, 1.0]], gap).unwrap()
+    }
+
+    #[test]
+    fn distances_are_exact() {
+        // Exactly along z: the gap itself is not within it, the number before it is.
+        let gap = 0.25;
+        let at = |z: f64| is_within(&frame(gap), [0.0; 3], [0.0, 0.0, z]);
+        assert!(at(0.25f64.next_down()) && !at(0.25) && at(-0.25f64.next_down()) && !at(-0.25));
+        assert!(
+            is_within(&frame(gap), [4.0, 3.0, 1.0], [5.2, -0.2, 1.0])
+                && !is_within(&frame(gap), [4.0, 3.0, 1.0], [5.3, 0.0, 1.0])
+        );
+    }
+
+    /// The impostor: a corner that was moved too far, a triangle that is another one, and an object that hides no more.
+    #[test]
+    fn what_was_moved_too_far_is_found() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+        let object = |vertices: Vec<Point3>, t| SceneObject { name: "t".into(), vertices, triangles: vec![t] };
+        let scene = Scene::new(vec![object(corners.to_vec(), [0, 1, 2])]).unwrap();
+        let frame = frame(1e-3);
+        let turned = |off: f64| {
+            let mut moved = corners.map(|p| frame.to_frame(p)).to_vec();
+            moved[1][2] += off;
+            moved
+        };
+        let found = |moved: Scene| check_moves(&scene, &moved, &frame);
+        assert_eq!(found(Scene::new(vec![object(turned(9e-4), [0, 1, 2])]).unwrap()), Ok(()));
+        let wrong = VerifyError::Frame { object: 0, vertex: 1 };
+        assert_eq!(found(Scene::new(vec![object(turned(1.1e-3), [0, 1, 2])]).unwrap()), Err(wrong));
+        assert!(found(Scene::new(vec![object(turned(0.0), [0, 2, 1])]).unwrap()).is_err());
+        let glass = Scene::new(vec![object(turned(0.0), [0, 1, 2])]).unwrap().with_see_through(vec![0]).unwrap();
+        assert_eq!(found(glass), Err(VerifyError::Range));
+    }
+}
