@@ -33,7 +33,8 @@ pub fn export_json(table: &Table) -> String {
 /// cell has another key behind `id`, `"name"`, as objects have; else none has it. `polygon`: the corners of a
 /// planar cell, counter-clockwise (the corners of its box if it has no others); empty in space.
 /// `group`: a sector or the like, or null. `points`: the left end, then the right end, as seen from the
-/// first of the two cells; a polygon in space. `visible`: for each cell the ids that it may see,
+/// first of the two cells; a polygon in space. A table with a frame has another key behind `dimension`, `"frame"`, with its three
+/// `axes` as unit vectors of the scene and its `gap`: all points are along these axes. `visible`: for each cell the ids that it may see,
 /// ascending, itself included. `cell_objects`: for each cell the objects that it may see,
 /// ascending.
 ///
@@ -48,6 +49,8 @@ struct Export<'a> {
     format: &'static str,
     version: u32,
     dimension: u8,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<FrameExport>,
     #[serde(serialize_with = "cells")]
     cells: &'a Table,
     #[serde(serialize_with = "portals")]
@@ -66,6 +69,7 @@ impl<'a> Export<'a> {
             format: "sightlines-export",
             version: VERSION,
             dimension: table.dimension(),
+            frame: table.frame().map(|frame| FrameExport { axes: frame.axes(), gap: frame.gap() }),
             cells: table,
             portals: table,
             visible: table,
@@ -73,6 +77,12 @@ impl<'a> Export<'a> {
             cell_objects: table,
         }
     }
+}
+
+#[derive(Serialize)]
+struct FrameExport {
+    axes: [[f64; 3]; 3],
+    gap: f64,
 }
 
 #[derive(Serialize)]

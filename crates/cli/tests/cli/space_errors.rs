@@ -142,3 +142,21 @@ fn sizes_and_flat_scenes() {
     assert_eq!(folder.read("out.pvs"), b"precious");
     folder.run(&["build", "floor.obj", "-o", "out.pvs", "--view-region", "0,0,0,4,2,4"]).expect(0);
 }
+
+/// A gap below the rounding of the coordinates cannot be kept, and one that is no width is none.
+#[test]
+fn gaps_that_cannot_be_kept_are_refused() {
+    let folder = Folder::new();
+    let (json, binary) = document(CORNERS);
+    folder.write("wall.glb", glb(&json, &binary));
+    let run = folder.run(&["build", "wall.glb", "-o", "out.pvs", "--gap", "1e-300"]).expect(2);
+    assert_eq!(
+        run.err,
+        "error: wall.glb: object 0, vertex 1: the gap of the frame is within the rounding of doubles\n"
+    );
+    for wrong in ["-1", "NaN", "inf", "wide"] {
+        let run = folder.run(&["build", "wall.glb", "-o", "out.pvs", "--gap", wrong]).expect(2);
+        assert!(run.err.contains("--gap <WIDTH>") && run.err.contains("not a number from 0 on"), "{}", run.err);
+    }
+    assert!(!folder.path("out.pvs").exists());
+}

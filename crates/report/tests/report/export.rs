@@ -1,7 +1,7 @@
 //! The export and the summary say what the table says.
 
 use crate::common::{nothing, rooms};
-use sightlines_pvs::Table;
+use sightlines_pvs::{Frame, Table, TableKind, TableParts};
 use sightlines_report::{Summary, export_json, write_json};
 
 #[test]
@@ -74,4 +74,15 @@ fn the_summary_counts_and_weighs() {
     assert_eq!(Summary::of(&rooms(true)).n_visible_pairs, 2);
     let empty = Summary::of(&nothing());
     assert_eq!((empty.n_cells, empty.mean_cell_share, empty.mean_floor_share), (0, 0.0, 0.0));
+}
+
+/// A frame stands behind the dimension, and changes nothing else.
+#[test]
+fn frames_are_exported() {
+    let plain = Table::new(TableParts::empty(3, TableKind::Unspecified)).unwrap();
+    let frame = Frame::new([[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0], [0.0, 0.0, 1.0]], 0.25).unwrap();
+    let text = export_json(&plain.clone().with_frame(Some(frame)).unwrap());
+    let own = r#","frame":{"axes":[[0.8,0.6,0.0],[-0.6,0.8,0.0],[0.0,0.0,1.0]],"gap":0.25}"#;
+    assert!(text.contains(&format!(r#""dimension":3{own},"cells""#)), "{text}");
+    assert_eq!(text.replacen(own, "", 1), export_json(&plain));
 }

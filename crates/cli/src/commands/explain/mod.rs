@@ -170,6 +170,9 @@ fn in_clusters(args: &ExplainArgs, table: &Table) -> Result<Answer, Error> {
 
 fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {
     let graph = axial_graph(table).ok_or_else(|| InputError::Stripped(args.table.clone()))?;
+    if table.frame().is_some() {
+        tracing::warn!("{}: places are along the axes of the table's frame", args.table.display());
+    }
     // The table does not record what was left out beside its cells, and no answer depends on it.
     let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
     Ok(args.report(table, [a, b], SpaceReason::new(explanation)).print(args.json)?)
