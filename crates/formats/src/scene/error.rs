@@ -197,6 +197,17 @@ pub enum NodeErrorKind {
     /// Its rotation is a quaternion of length zero.
     #[error("its rotation is the zero quaternion")]
     ZeroRotation,
+    /// It is to be drawn many times, and nowhere.
+    #[error("EXT_mesh_gpu_instancing without TRANSLATION, ROTATION or SCALE")]
+    NoInstances,
+    /// An attribute of its instances cannot be read, or has another number of elements than the others.
+    #[error("EXT_mesh_gpu_instancing: {attribute} (accessor {accessor}) does not fit")]
+    Instances {
+        /// The attribute.
+        attribute: &'static str,
+        /// Its accessor.
+        accessor: usize,
+    },
 }
 
 /// What an accessor is used for.

@@ -4,9 +4,10 @@ use super::accessor::Elements;
 use super::buffers::{Buffers, split_glb};
 use super::build::{Builder, Compact};
 use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
+use super::instances::transforms;
 use super::json::{Document, Mesh, Node, Primitive, SceneRoots, TRIANGLES};
 use super::material::{self, see_through};
-use super::motion::{Motions, Vertices};
+use super::motion::{Motions, Moved, Vertices};
 use super::movers::{self, INSTANCING};
 use super::role::{Role, StatedRole, role_of_name};
 use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
@@ -24,9 +25,10 @@ const TRIANGLE_STRIP: u32 = 5;
 const TRIANGLE_FAN: u32 = 6;
 
 /// Extensions that do not change where a triangle is, and quantised meshes, which are understood.
-const HARMLESS: [&str; 12] = [
+const HARMLESS: [&str; 13] = [
     "EXT_lights_",
     "EXT_texture_",
+    INSTANCING,
     "KHR_animation_pointer",
     "KHR_implicit_shapes",
     "KHR_lights_",
@@ -108,9 +110,9 @@ pub(super) fn parse(
     let (text, binary) = split(bytes)?;
     let document: Document = serde_json::from_str(text).map_err(|source| SceneReadError::Json { source })?;
     check_understood(&document)?;
-    let Nodes { placed, above } = place_nodes(&document, options.scene.as_deref())?;
-    check_size(&document, &placed)?;
     let buffers = Buffers::new(&document.buffers, binary, beside);
+    let Nodes { placed, above } = place_nodes(&document, &buffers, options.scene.as_deref())?;
+    check_size(&document, &placed)?;
     let mut classifier = Classifier::new(options);
     let mut builder = build(&document, &Motions::new(&document, &buffers, &above), &placed, &mut classifier, watch)?;
     builder.warnings.extend(unknown_roles(&document));
@@ -142,12 +144,8 @@ fn check_understood(document: &Document) -> Result<(), SceneReadError> {
         return Err(SceneReadError::Version { found: version.clone() });
     }
     let strange = |name: &&String| !HARMLESS.iter().any(|harmless| name.starts_with(harmless));
-    let is_instanced = |node: &Node| node.extensions.as_ref().is_some_and(|extensions| extensions.is_instanced);
-    let is_instanced =
-        document.extensions_used.iter().any(|name| name == INSTANCING) || document.nodes.iter().any(is_instanced);
-    let instancing = is_instanced.then_some(INSTANCING);
-    match document.extensions_required.iter().find(strange).map(String::as_str).or(instancing) {
-        Some(name) => Err(SceneReadError::Extension { name: name.to_owned() }),
+    match document.extensions_required.iter().find(strange) {
+        Some(name) => Err(SceneReadError::Extension { name: name.clone() }),
         None => Ok(()),
     }
 }
@@ -161,6 +159,8 @@ struct Placed<'a> {
     mesh: &'a Mesh,
     world: Transform,
     inherited: Inherited,
+    /// Which of its instances it is, if it has some.
+    instance: Option<usize>,
 }
 
 /// What a node has of those above it, and its children of it.
@@ -198,6 +198,7 @@ impl<'a> Placed<'a> {
 
     fn name(&self, primitive: usize) -> String {
         let name = self.given_name().map_or_else(|| format!("node {}", self.index), str::to_owned);
+        let name = self.instance.map_or(name.clone(), |instance| format!("{name}[{}]", instance + 1));
         if primitive == 0 { name } else { format!("{name}#{primitive}") }
     }
 
@@ -297,7 +298,11 @@ struct Nodes<'a> {
 }
 
 /// The nodes of a scene. Keeps its own stack, so depth costs nothing but memory.
-fn place_nodes<'a>(document: &'a Document, scene: Option<&str>) -> Result<Nodes<'a>, SceneReadError> {
+fn place_nodes<'a>(
+    document: &'a Document,
+    buffers: &Buffers<'_>,
+    scene: Option<&str>,
+) -> Result<Nodes<'a>, SceneReadError> {
     let mut above: Vec<Option<Option<usize>>> = vec![None; document.nodes.len()];
     let start = |node| (node, None, Transform::IDENTITY, Inherited::default());
     let mut stack: Vec<_> = roots(document, scene)?.into_iter().rev().map(start).collect();
@@ -312,7 +317,19 @@ fn place_nodes<'a>(document: &'a Document, scene: Option<&str>) -> Result<Nodes<
         let inherited = inherited.by(node);
         if let Some(mesh_idx) = node.mesh {
             let mesh = document.meshes.get(mesh_idx).ok_or_else(|| fail(NodeErrorKind::NoMesh { mesh: mesh_idx }))?;
-            placed.push(Placed { index, node, mesh_idx, mesh, world, inherited });
+            let at = |world: Transform, instance| Placed { index, node, mesh_idx, mesh, world, inherited, instance };
+            match node.extensions.as_ref().and_then(|extensions| extensions.instances.as_ref()) {
+                None => placed.push(at(world, None)),
+                Some(instances) => {
+                    let instances = instances.as_ref().map_err(|_| fail(NodeErrorKind::NoInstances))?;
+                    let all = transforms(instances, document, buffers).map_err(fail)?;
+                    if placed.len() + all.len() > MAX_OBJECTS {
+                        let kind = PrimitiveErrorKind::TooMany { what: "objects", max: MAX_OBJECTS };
+                        return Err(at(world, None).fail(0, kind));
+                    }
+                    placed.extend(all.iter().enumerate().map(|(k, own)| at(world.after(own), Some(k))));
+                }
+            }
         }
         if let Some(&child) = node.children.iter().find(|&&child| child >= document.nodes.len()) {
             return Err(fail(NodeErrorKind::NoChild { child }));
@@ -372,7 +389,9 @@ fn build(
             let mut class = classifier.classify(evidence);
             let moved = class.as_ref().filter(|class| class.moves).map(|_| {
                 let vertices = Vertices { corners: &local.mesh.corners, positions: &local.positions };
-                motions.moved(at.index, at.mesh, primitive, vertices)
+                let moved = motions.moved(at.index, at.mesh, primitive, vertices);
+                // Boxes are around the mesh of the node, not around its instances.
+                if at.instance.is_some() { Moved { at_rest: None, within: None } } else { moved }
             });
             let placed =
                 |(vertex, p)| check_point(p).map_err(|kind| at.fail(k, PrimitiveErrorKind::Vertex { vertex, kind }));

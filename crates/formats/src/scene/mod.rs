@@ -13,7 +13,8 @@
 //!
 //! Objects keep their order, which gives them their ids, even those that are only points or lines and have no
 //! triangles. Corners that nothing uses are left out, and so are triangles without area. What moves or changes its shape
-//! (animations, physics and other extensions, skins, morph targets) hides nothing. Unknown compressions are refused: a wall in the wrong place
+//! (animations, physics and other extensions, skins, morph targets) hides nothing. Instances (`EXT_mesh_gpu_instancing`) are objects each, with `[1]`,
+//! `[2]` and so on behind the name. Unknown compressions are refused: a wall in the wrong place
 //! would be a silent error.
 
 mod accessor;
@@ -22,6 +23,7 @@ mod build;
 mod closed;
 mod error;
 mod gltf;
+mod instances;
 mod json;
 mod material;
 mod motion;

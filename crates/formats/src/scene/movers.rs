@@ -49,7 +49,7 @@ const STILL: [&str; 34] = [
     "OMI_spawn_point",
 ];
 
-/// Draws a mesh many times where a reader that does not know it draws it once; objects would be missing.
+/// Draws a mesh many times.
 pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Extensions of nodes that move them, or have a part that does: see [`moves`].
@@ -100,13 +100,35 @@ fn moves(name: &str, value: &Value) -> bool {
     }
 }
 
+/// The accessors of the transforms of instances, one element each for each instance: translations, rotations, scales.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Instances {
+    pub(super) attributes: [Option<usize>; 3],
+}
+
+impl Instances {
+    /// `None` for what is not as the extension has it.
+    fn of(value: &Value) -> Option<Self> {
+        let attributes = value.get("attributes")?.as_object()?;
+        let accessor = |name: &str| match attributes.get(name) {
+            None => Some(None),
+            Some(value) => value.as_u64().and_then(|accessor| usize::try_from(accessor).ok()).map(Some),
+        };
+        Some(Self { attributes: [accessor("TRANSLATION")?, accessor("ROTATION")?, accessor("SCALE")?] })
+    }
+}
+
+/// What is there instead of instances.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NotInstances;
+
 /// What the extensions of a node make of it.
 #[derive(Debug, Default)]
 pub(super) struct NodeExtensions {
     /// Whether the node, and all below it, is not drawn at first: a program may show it later.
     pub(super) is_invisible: bool,
-    /// Whether its mesh is drawn many times.
-    pub(super) is_instanced: bool,
+    /// Where its mesh is drawn many times; an error if that is not as the extension has it.
+    pub(super) instances: Option<Result<Instances, NotInstances>>,
     /// The first extension that moves it.
     mover: Option<Box<str>>,
 }
@@ -134,8 +156,9 @@ impl<'de> Deserialize<'de> for NodeExtensions {
                 while let Some(name) = map.next_key::<String>()? {
                     if name == "KHR_node_visibility" {
                         found.is_invisible = map.next_value::<Value>()?.get("visible") == Some(&Value::Bool(false));
+                    } else if name == INSTANCING {
+                        found.instances = Some(Instances::of(&map.next_value::<Value>()?).ok_or(NotInstances));
                     } else if begins_like(&name, &STILL) {
-                        found.is_instanced |= name == INSTANCING;
                         map.next_value::<IgnoredAny>()?;
                     } else if moves(&name, &map.next_value::<Value>()?) {
                         found.mover.get_or_insert(name.into());

@@ -56,7 +56,7 @@ impl Transform {
     }
 
     /// First the scale, then the rotation, then the translation.
-    fn from_parts(translation: Point3, rotation: [f64; 4], scale: Point3) -> Result<Self, NodeErrorKind> {
+    pub(super) fn from_parts(translation: Point3, rotation: [f64; 4], scale: Point3) -> Result<Self, NodeErrorKind> {
         let rotation = rotation_rows(rotation).ok_or(NodeErrorKind::ZeroRotation)?;
         let row = |r: usize| {
             let [x, y, z]: Point3 = rotation[r];

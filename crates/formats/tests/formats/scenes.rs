@@ -4,8 +4,8 @@ use crate::common::glb::{Doc, SMALL_OBJ, glb, small_doc};
 use serde_json::json;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_formats::scene::{
-    Axis, LengthUnit, MAX_ELEMENTS, MAX_OBJECTS, SceneFormat, SceneWriteError, parse_glb, parse_obj, read_scene,
-    write_glb,
+    Axis, LengthUnit, MAX_ELEMENTS, MAX_OBJECTS, SceneFormat, SceneReadOptions, SceneWriteError, parse_glb,
+    parse_glb_with_source, parse_gltf_with, parse_obj, read_scene, write_glb,
 };
 use sightlines_formats::{SceneFile, atomic_write};
 
@@ -296,11 +296,20 @@ fn errors_name_node_and_primitive() {
         json!("EXT_meshopt_compression"),
         "extension EXT_meshopt_compression is not understood; `npx @gltf-transform/cli cp IN.glb OUT.glb` unpacks the file",
     );
-    // Instances would be missing, whether the file lists the extension or not.
-    let instancing = "extension EXT_mesh_gpu_instancing is not understood";
-    with(&|doc| doc.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]), instancing);
-    let instances = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}});
-    with(&|doc| doc.json["nodes"][1]["extensions"] = instances.clone(), instancing);
+    let instances = |attributes: serde_json::Value, text: &str| {
+        let extension = json!({"EXT_mesh_gpu_instancing": attributes});
+        with(&|doc| doc.json["nodes"][1]["extensions"] = extension.clone(), text);
+    };
+    let without = "node 1 (\"wall\"): EXT_mesh_gpu_instancing without TRANSLATION, ROTATION or SCALE";
+    instances(json!({}), without);
+    instances(json!({"attributes": {"COLOR_0": 0}}), without);
+    let unfit = |attribute: &str, accessor: usize| {
+        format!("node 1 (\"wall\"): EXT_mesh_gpu_instancing: {attribute} (accessor {accessor}) does not fit")
+    };
+    instances(json!({"attributes": {"TRANSLATION": 9}}), &unfit("TRANSLATION", 9));
+    instances(json!({"attributes": {"ROTATION": 0}}), &unfit("ROTATION", 0));
+    // Four positions, and three quantised ones.
+    instances(json!({"attributes": {"TRANSLATION": 0, "SCALE": 2}}), &unfit("TRANSLATION", 0));
     set("/meshes/1/primitives/0/mode", json!(7), "node 2, primitive 0: mode 7 does not exist");
     set("/meshes/1/primitives/0/attributes", json!({}), "node 2, primitive 0: no positions");
     set("/meshes/0/primitives/1/mode", json!(4), "node 1 (\"wall\"), primitive 1: 4 corners are no list of triangles");
@@ -573,4 +582,48 @@ fn what_cannot_be_written_is_refused() {
     // Nothing at all can be written, if not read again as a scene with something in it.
     let error = parse_glb(&write_glb(&scene(vec![])).unwrap(), None).unwrap_err();
     assert_eq!(error.to_string(), "no triangles (0 objects, 0 triangles without area)");
+}
+
+/// A node with instances is drawn at each of them and nowhere else.
+#[test]
+fn instances_are_objects() {
+    let mut doc = Doc::new(json!([
+        {"children": [1], "translation": [0, 100, 0]},
+        {"name": "tree", "mesh": 0, "scale": [2, 2, 2], "children": [2]},
+        {"name": "nest", "mesh": 0},
+    ]));
+    doc.triangle();
+    let places = doc.positions(&[[0., 0., 0.], [5., 0., 0.], [0., 0., 5.]]);
+    let h = std::f32::consts::FRAC_1_SQRT_2;
+    let turns: Vec<u8> = [[0., 0., 0., 1.], [0., h, 0., h], [0., 0., 0., 1.]]
+        .iter()
+        .flatten()
+        .flat_map(|x: &f32| x.to_le_bytes())
+        .collect();
+    let turns = doc.accessor(&turns, 5126, "VEC4", 3);
+    let scales = doc.positions(&[[1., 1., 1.], [1., 1., 1.], [-1., 1., 1.]]);
+    let attributes = json!({"TRANSLATION": places, "ROTATION": turns, "SCALE": scales});
+    doc.json["nodes"][1]["extensions"] = json!({"EXT_mesh_gpu_instancing": {"attributes": attributes}});
+    doc.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    doc.json["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+    let scene = parse_glb(&doc.glb(), None).unwrap().scene;
+    let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();
+    assert_eq!(names, ["tree[1]", "tree[2]", "tree[3]", "nest"]);
+    let corners = |k: usize| scene.objects()[k].corners().next().unwrap();
+    assert_eq!(corners(0), [[0., 100., 0.], [2., 100., 0.], [0., 102., 0.]]);
+    // A quarter turn about y, five to the side, and all of it twice as large.
+    assert_eq!(corners(1), [[10., 100., 0.], [10., 100., -2.], [10., 102., 0.]]);
+    // A mirrored one keeps its front.
+    assert_eq!(corners(2), [[0., 100., 10.], [0., 102., 10.], [-2., 100., 10.]]);
+    assert_eq!(corners(3), corners(0));
+    // What has instances and moves may be anywhere; it is not written again with fewer triangles.
+    let mut moving = doc.clone();
+    moving.json["nodes"][0]["extras"] = json!({"sightlines": {"moves": true}});
+    let scene = parse_glb(&moving.glb(), None).unwrap().scene;
+    assert!(scene.moving().len() == 4 && scene.moving().iter().all(|moving| moving.within.is_none()));
+    let (_, source) = parse_glb_with_source(doc.glb(), None).unwrap();
+    let error = source.rewrite(&vec![None; 4], None).unwrap_err().to_string();
+    assert!(error.contains("nodes[1]") && error.contains("EXT_mesh_gpu_instancing"), "{error}");
+    let pattern = SceneReadOptions { see_through: vec!["tree".parse().unwrap()], ..SceneReadOptions::default() };
+    assert_eq!(parse_gltf_with(&doc.glb(), None, &pattern).unwrap().scene.see_through(), [0, 1, 2]);
 }

@@ -14,7 +14,8 @@ pub use error::RewriteError;
 use super::Simplified;
 use super::buffers::Buffers;
 use super::gltf::split;
-use super::json::Document;
+use super::json::{Document, Node};
+use super::movers::INSTANCING;
 use super::source::GltfSource;
 use super::write::container;
 use crate::beside::Neighbours;
@@ -69,6 +70,11 @@ fn rewrite(
     let root = as_object(&mut whole, || "the document".to_owned())?;
     let beside = source.folder.as_ref().map(|folder| folder as &dyn Neighbours);
     let buffers = Buffers::new(&document.buffers, binary, beside).with_loaded(&source.loaded);
+    // An object is one of many instances of its triangles.
+    let is_instanced = |node: &Node| node.extensions.as_ref().is_some_and(|extensions| extensions.instances.is_some());
+    if let Some(k) = document.nodes.iter().position(is_instanced) {
+        return Err(RewriteError::Extension { place: format!("nodes[{k}]"), name: INSTANCING.to_owned() });
+    }
     let keep_all = extensions::any_unknown(root)?;
     let outside = images::outside(root, beside)?;
     let variants = Variants::new(source, &document, triangles);
