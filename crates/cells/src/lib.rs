@@ -14,6 +14,7 @@ pub mod graph;
 pub mod plan;
 pub mod planar;
 pub mod scene;
+pub mod unlike;
 
 pub use axial::{Axial, BoxCell};
 pub use convex::{Convex, ConvexCell3};
@@ -23,3 +24,4 @@ pub use planar::{ConvexCell2, Planar, WellFormedError};
 pub use scene::{ANYWHERE, MovingObject, Scene, SceneError, SceneObject};
 pub use sightlines_geometry::{AxialDoor, Point3, Portal2, Portal3};
 pub use sightlines_pvs::CellId;
+pub use unlike::{Unlike, unlike};

@@ -10,12 +10,13 @@ use crate::select::{Account, kept_faces, least_visible};
 use crate::simplified::{Counts, Simplified};
 use crate::views::{Views, ViewsError};
 use crate::weigh::{Areas, Fronts};
-use sightlines_cells::Scene;
+use sightlines_cells::{Scene, Unlike, unlike};
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::BackendError;
 use sightlines_pvs::Table;
 use sightlines_visible_surface::{Faces, FacesError};
 use std::borrow::Cow;
+use std::convert::Infallible;
 
 /// Why a scene was not simplified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -32,7 +33,7 @@ pub enum SimplifyError {
     Backend(#[from] BackendError),
     /// The table is not of the scene.
     #[error("the table is of another scene: {0}")]
-    OtherScene(String),
+    OtherScene(Unlike),
     /// A view is of a cell that the table does not have, or has elsewhere.
     #[error("the views are cells of another table: cell {cell} of this one is not there")]
     OtherTable {
@@ -197,27 +198,14 @@ fn check_views(views: &Views, table: &Table) -> Result<(), SimplifyError> {
     Ok(())
 }
 
-/// Whether a table has the objects of a scene, by their number, names and boxes; a table does not contain what is
-/// within a box.
+/// Refuses a table of another scene.
 pub(crate) fn check_table(scene: &Scene, table: &Table) -> Result<(), SimplifyError> {
-    let other = |what: String| Err(SimplifyError::OtherScene(what));
-    if table.dimension() != 3 {
-        return other("it is of a plan".to_owned());
-    }
-    let (n, m) = (scene.objects().len(), table.objects().len());
-    if n != m {
-        return other(format!("it has {m} objects, the scene {n}"));
-    }
-    for (id, (object, record)) in scene.objects().iter().zip(table.objects()).enumerate() {
-        let bounds = Aabb::<3>::around(object.corners().flatten());
-        if object.name != record.name {
-            return other(format!("object {id} is called {:?} in it and {:?} in the scene", record.name, object.name));
-        }
-        if (0..3).any(|k| bounds.min[k] < record.min[k] || bounds.max[k] > record.max[k]) {
-            return other(format!("object {id}, {:?}, is somewhere else", object.name));
-        }
-    }
-    Ok(())
+    let object = |id: u32| {
+        let record = &table.objects()[id as usize];
+        Ok::<_, Infallible>((record.name.clone(), Aabb { min: record.min, max: record.max }))
+    };
+    let Ok(found) = unlike(scene, table.dimension(), table.frame(), table.objects().len(), object);
+    found.map_or(Ok(()), |unlike| Err(SimplifyError::OtherScene(unlike)))
 }
 
 /// Simplifies within the budget, given bounds on what faces intercept; `mesh` is that of the whole scene.

@@ -1,8 +1,8 @@
 //! What is left out before anything is drawn.
 
-use super::error::{Error, Unlike};
+use super::error::Error;
 use crate::tables::{Cells, Opened};
-use sightlines::cells::Scene;
+use sightlines::cells::{Scene, unlike};
 use sightlines::geometry::Point3;
 use sightlines::pvs::{ObjectId, Place, PlaceBuffer};
 use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
@@ -88,7 +88,10 @@ pub(super) fn seen_by_table(
 fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point3) -> Result<Option<Vec<bool>>, Error> {
     cells.refuse_without_places(table)?;
     let fail = |error| C::fail(table, error);
-    if let Some(unlike) = unlike(cells, scene).map_err(fail)? {
+    let object = |id| Ok((cells.object_name(id)?, cells.object_box(id)?));
+    let found =
+        unlike(scene, cells.n_dimensions(), cells.frame().as_ref(), cells.counts()[1], |id| object(ObjectId(id)));
+    if let Some(unlike) = found.map_err(fail)? {
         return Err(Error::OtherScene { table: table.to_owned(), scene: path.to_owned(), unlike });
     }
     let mut buffer = PlaceBuffer::new();
@@ -103,31 +106,4 @@ fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point
         objects.iter().for_each(|&object| seen[object.idx()] = true);
     }
     Ok(Some(seen))
-}
-
-/// Why a table is not of a scene, as far as its objects show.
-fn unlike<C: Cells>(cells: &C, scene: &Scene) -> Result<Option<Unlike>, C::Error> {
-    if cells.n_dimensions() != 3 {
-        return Ok(Some(Unlike::Plane));
-    }
-    let [_, n] = cells.counts();
-    if n != scene.objects().len() {
-        return Ok(Some(Unlike::Count { table: n, scene: scene.objects().len() }));
-    }
-    for (id, object) in (0..).zip(scene.objects()) {
-        let name = cells.object_name(ObjectId(id))?;
-        if name != object.name {
-            return Ok(Some(Unlike::Name { object: id, table: name, scene: object.name.clone() }));
-        }
-        // In a table with a frame a corner is within the gap of its place along it.
-        let frame = cells.frame();
-        let along = |p: Point3| frame.map_or([p; 2], |frame| frame.around(p, p).into());
-        let places: Vec<[Point3; 2]> = object.corners().flatten().map(along).collect();
-        let known = cells.object_box(ObjectId(id))?;
-        let is_off = |[min, max]: &[Point3; 2]| (0..3).any(|k| max[k] < known.min[k] || min[k] > known.max[k]);
-        if places.iter().any(is_off) {
-            return Ok(Some(Unlike::Box { object: id, name }));
-        }
-    }
-    Ok(None)
 }

@@ -2,6 +2,7 @@
 
 use crate::eye::EyeError;
 use crate::file_error::{FileError, from_file_error};
+use sightlines::cells::Unlike;
 use sightlines::visible_surface::FacesError;
 use std::path::PathBuf;
 
@@ -41,16 +42,3 @@ pub(crate) enum Error {
 }
 
 from_file_error!(Error);
-
-/// What a table and a scene do not have in common.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(crate) enum Unlike {
-    #[error("the table is of a plan")]
-    Plane,
-    #[error("the table has {table} objects, the scene {scene}")]
-    Count { table: usize, scene: usize },
-    #[error("object {object} is called {table:?} in the table and {scene:?} in the scene")]
-    Name { object: u32, table: String, scene: String },
-    #[error("object {object}, {name:?}, is not where the table has it")]
-    Box { object: u32, name: String },
-}
