@@ -108,6 +108,51 @@ fn pictures_and_simplified_scenes_keep_glass_apart() {
     assert_eq!(scene.see_through().iter().map(|&k| &scene.objects()[k as usize].name).collect::<Vec<_>>(), ["pane"]);
 }
 
+/// What was see-through for a table is so for the picture that it culls, without being named again.
+#[test]
+fn pictures_are_culled_as_their_table_was_built() {
+    let folder = Folder::new();
+    folder.write("room.obj", room());
+    folder.write("room.mtl", "newmtl wall\nnewmtl glass\n");
+    folder.run(&["build", "room.obj", "--grid", "2,1,1", "--see-through", "pane", "-o", "table.pvs"]).expect(0);
+    let view = ["--size", "32x24", "--eye", "2,2,1.5", "--look-at", "7,2,1.5"];
+    let look = [&["render", "room.obj", "--method", "raycast"], &view[..], &["--by-object", "-o"]].concat();
+    let warning = "see-through and not drawn: 1 object";
+    let run = folder.run(&[&look[..], &["all.png"]].concat()).expect(0);
+    assert!(!run.err.contains(warning), "{}", run.err);
+    let run = folder.run(&[&look[..], &["culled.png", "--cull", "pvs", "--table", "table.pvs"]].concat()).expect(0);
+    assert!(run.err.contains(warning), "{}", run.err);
+    folder.run(&["pack", "table.pvs", "-o", "table.pvz"]).expect(0);
+    let run = folder.run(&[&look[..], &["packed.png", "--cull", "pvs", "--table", "table.pvz"]].concat()).expect(0);
+    assert!(run.err.contains(warning), "{}", run.err);
+    assert_eq!(folder.read("culled.png"), folder.read("packed.png"));
+}
+
+#[test]
+fn what_programs_may_move_is_named() {
+    let folder = Folder::new();
+    let data = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let text = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "extensionsUsed": ["KHR_interactivity"], "scenes": [{{"nodes": [0]}}],
+            "nodes": [{{"name": "sun", "mesh": 0}}], "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+            "accessors": [{{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+            "buffers": [{{"byteLength": 36, "uri": "data:;base64,{data}"}}]}}"#
+    );
+    folder.write("sun.gltf", text);
+    let run = folder.run(&["info", "sun.gltf"]).expect(0);
+    assert!(run.err.contains("KHR_interactivity may move everything"), "{}", run.err);
+    assert!(run.out.contains("see-through    1 moving object, classified by KHR_interactivity: sun\n"), "{}", run.out);
+    let run = folder.run(&["info", "sun.gltf", "--still", "*"]).expect(0);
+    assert!(run.out.contains("occluder       1 object, classified by the pattern *: sun\n"), "{}", run.out);
+    folder
+        .run(&["info", "sun.gltf", "--opaque", "*"])
+        .expect(0)
+        .err
+        .find("1 occluder moves and hides nothing")
+        .unwrap();
+}
+
 /// What was see-through for a table is so for whoever removes triangles by it, without being named again.
 #[test]
 fn simplification_reads_a_scene_as_its_table_was_built() {
