@@ -126,7 +126,7 @@ fn rows(case: &Case) -> bool {
         .map(|(name, sightlines, method)| bake(case, name, sightlines, method, Instant::now()))
         .collect();
     let start = Instant::now();
-    let (facts, choice) = choose(&case.scene, case.is_given());
+    let (facts, choice) = choose(&case.scene);
     let method = choice.uses_region_method().then_some((choice.planes, choice.texels, choice.sheets));
     let auto = bake(case, &format!("auto: {choice}"), true, method, start);
     let as_tight = fixed.iter().filter(|f| f.reported <= auto.reported).map(|f| f.time).min();

@@ -4,6 +4,8 @@
 
 use crate::input::BakeInput;
 use crate::options::{BakeOptions, SceneMethod};
+use crate::places::PlaceOptions;
+use crate::region::CellsFrom;
 use sightlines_cells::Scene;
 use sightlines_geometry::vector::{length, normal};
 use sightlines_geometry::{Aabb, Point3, Random};
@@ -53,6 +55,21 @@ impl SceneFacts {
             object_size: if whole > 0.0 { middle / whole } else { 0.0 },
         }
     }
+
+    /// A k-d tree follows walls that are perpendicular to an axis, and no others. Where nothing hides, one cell is enough.
+    fn own_cells(&self) -> CellsFrom {
+        if self.axial >= AXIAL || self.n_triangles == 0 {
+            CellsFrom::KdTree
+        } else {
+            CellsFrom::Places(PlaceOptions::default())
+        }
+    }
+}
+
+/// The cells of a scene for which none are named: those of a k-d tree where nearly all walls are perpendicular to an axis, else
+/// [`places`](crate::places). O(n log n) of objects, O(n) of triangles.
+pub fn own_cells(scene: &Scene) -> CellsFrom {
+    SceneFacts::quick(scene).own_cells()
 }
 
 fn triangles_of(scene: &Scene) -> Vec<[Point3; 3]> {
@@ -113,11 +130,8 @@ const LOOSE: f64 = 0.5;
 /// The openness below which a scene counts as rooms, whose walls are connected.
 const ROOMS: f64 = 0.1;
 
-/// The openness from which a k-d tree finds little to cut along.
-const OPEN: f64 = 0.5;
-
-/// How to bake a scene. Sightlines through the portals of a k-d tree, the default, are always used as well, so no table is looser than
-/// by default.
+/// How to bake a scene. Sightlines, the default, are always used as well, so for the same cells no table is looser than by
+/// default.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneChoice {
     /// Whether sheets are used as well: surfaces in any direction.
@@ -138,12 +152,10 @@ enum Missing {
 }
 
 /// Measures a scene as far as that matters, and chooses. The same scene gives the same choice. O(n log n) of triangles.
-///
-/// * `given_cells`: whether cells are boxes that were given, and not those of a k-d tree
-pub fn choose(scene: &Scene, given_cells: bool) -> (SceneFacts, SceneChoice) {
+pub fn choose(scene: &Scene) -> (SceneFacts, SceneChoice) {
     let mut facts = SceneFacts::quick(scene);
     loop {
-        match SceneChoice::of(&facts, given_cells) {
+        match SceneChoice::of(&facts) {
             Ok(choice) => return (facts, choice),
             Err(Missing::Loose) => facts.loose = Some(loose_share(&triangles_of(scene))),
             Err(Missing::Openness) => facts.openness = Some(openness(scene)),
@@ -153,7 +165,7 @@ pub fn choose(scene: &Scene, given_cells: bool) -> (SceneFacts, SceneChoice) {
 
 impl SceneChoice {
     /// Chooses by the properties of the scene.
-    fn of(facts: &SceneFacts, given_cells: bool) -> Result<Self, Missing> {
+    fn of(facts: &SceneFacts) -> Result<Self, Missing> {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let standard = Layout::default();
         let mut choice = Self { sheets: false, planes: 0, texels: standard.texels, reasons: Vec::new() };
@@ -165,12 +177,6 @@ impl SceneChoice {
         let slanted = percent(1.0 - facts.axial);
         choice.reasons.push(format!("{slanted} of the area is slanted: sheets use it, besides sightlines"));
         choice.sheets = true;
-        if !given_cells && facts.openness.ok_or(Missing::Openness)? >= OPEN {
-            let open = percent(facts.openness.unwrap_or(0.0));
-            choice.reasons.push(format!(
-                "{open} of rays leave: in the open a k-d tree has few cells, and given boxes make tighter tables"
-            ));
-        }
         let loose = facts.loose.ok_or(Missing::Loose)?;
         if loose < LOOSE {
             choice.reasons.push(format!("{} of the area stands alone: no buffers", percent(loose)));
@@ -231,8 +237,8 @@ pub struct Choice {
 
 /// Chooses methods for an input, and returns the options that stand for the choice.
 ///
-/// Only [`BakeOptions::method`] and [`BakeOptions::buffers`] differ from the options given. Plans, portal files and Quake
-/// maps always take sightlines.
+/// Only [`BakeOptions::method`], [`BakeOptions::buffers`] and, in place of a k-d tree, [`BakeOptions::cells`] differ from the
+/// options given. Plans, portal files and Quake maps always take sightlines.
 pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choice, BakeOptions<'a>) {
     let plain = |reason: &str| {
         let choice = Choice { method: "sightlines".to_owned(), reasons: vec![reason.to_owned()], facts: None };
@@ -240,8 +246,11 @@ pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choi
     };
     match input {
         BakeInput::Scene(scene, _) => {
-            let (facts, choice) = choose(scene, options.has_given_cells());
+            let (facts, choice) = choose(scene);
             let mut chosen = options.clone();
+            if chosen.cells == CellsFrom::KdTree {
+                chosen.cells = facts.own_cells();
+            }
             chosen.method = if choice.uses_region_method() { SceneMethod::Both } else { SceneMethod::Sightlines };
             (chosen.buffers.planes, chosen.buffers.texels) = (choice.planes, choice.texels);
             if !choice.sheets {
@@ -311,16 +320,18 @@ mod tests {
             openness: Some(0.9),
             object_size: 0.1,
         };
-        let choose = |facts: SceneFacts, given: bool| SceneChoice::of(&facts, given).expect("all is measured");
-        let choice = choose(room, false);
+        let choose = |facts: SceneFacts| SceneChoice::of(&facts).expect("all is measured");
+        let choice = choose(room);
         assert!(!choice.uses_region_method() && choice.to_string() == "sightlines", "{choice:?}");
-        let slanted = choose(SceneFacts { axial: 0.2, loose: Some(0.1), ..room }, false);
+        let slanted = choose(SceneFacts { axial: 0.2, loose: Some(0.1), ..room });
         assert_eq!(slanted.to_string(), "sightlines and sheets");
-        let screens = choose(SceneFacts { axial: 0.2, ..room }, false);
+        let screens = choose(SceneFacts { axial: 0.2, ..room });
         assert_eq!(screens.to_string(), "sightlines and sheets and buffers of 9 planes with 32 texels");
-        let rooms = choose(SceneFacts { axial: 0.2, openness: Some(0.0), ..room }, true);
+        let rooms = choose(SceneFacts { axial: 0.2, openness: Some(0.0), ..room });
         assert_eq!(rooms.to_string(), "sightlines and sheets");
-        assert_eq!(choose(room, true), choice);
+        assert_eq!(room.own_cells(), CellsFrom::KdTree);
+        let few = SceneFacts { axial: 0.2, ..room };
+        assert_eq!(few.own_cells(), CellsFrom::Places(PlaceOptions::default()));
         assert_eq!([0.5, 0.04, 0.02, 0.001].map(texels), [32, 64, 128, 256]);
         assert!([&choice, &slanted, &screens].iter().all(|c| !c.reasons.is_empty()));
     }
@@ -331,13 +342,12 @@ mod tests {
         let quick =
             SceneFacts { n_triangles: 1, n_objects: 1, axial: 0.95, loose: None, openness: None, object_size: 0.1 };
         let slanted = SceneFacts { axial: 0.2, ..quick };
-        assert!(SceneChoice::of(&quick, false).is_ok() && SceneChoice::of(&quick, true).is_ok());
-        assert_eq!(SceneChoice::of(&slanted, false), Err(Missing::Openness));
-        assert_eq!(SceneChoice::of(&slanted, true), Err(Missing::Loose));
-        assert!(SceneChoice::of(&SceneFacts { loose: Some(0.1), ..slanted }, true).is_ok());
-        assert_eq!(SceneChoice::of(&SceneFacts { loose: Some(0.9), ..slanted }, true), Err(Missing::Openness));
+        assert!(SceneChoice::of(&quick).is_ok());
+        assert_eq!(SceneChoice::of(&slanted), Err(Missing::Loose));
+        assert!(SceneChoice::of(&SceneFacts { loose: Some(0.1), ..slanted }).is_ok());
+        assert_eq!(SceneChoice::of(&SceneFacts { loose: Some(0.9), ..slanted }), Err(Missing::Openness));
         let room = Scene::new(vec![block([0.0; 3], [8.0, 6.0, 3.0], true)]).expect("a scene");
-        let (facts, choice) = choose(&room, true);
+        let (facts, choice) = choose(&room);
         assert!(facts.loose == Some(0.0) && facts.openness.is_none() && choice.sheets, "{facts:?}");
     }
 }

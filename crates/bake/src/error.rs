@@ -1,6 +1,7 @@
 //! Why nothing was baked.
 
 use crate::methods::MethodError;
+use crate::places::PlacesError;
 use crate::quake::PrtBakeError;
 use crate::region::GridError;
 use sightlines_cells::PlanError;
@@ -30,6 +31,9 @@ pub enum BakeError {
     /// A grid of view cells with none or too many.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// Places cannot be cut.
+    #[error(transparent)]
+    Places(#[from] PlacesError),
     /// A view cell is not a volume.
     #[error("view cell {cell}: {error}")]
     Cell {

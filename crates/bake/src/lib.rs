@@ -6,7 +6,8 @@
 //!   [`bake_regions`], [`bake_prt`], [`bake_map`]), all of which return the graph, the table and a report ([`Baked`]); stab
 //!   trees ([`with_stab_trees`]) and proofs ([`certify_table`]) from a graph, and the graph of a stored table ([`from_table`]);
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
-//!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
+//!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); cells for scenes without
+//!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
 //!   search ([`quake`]), the table of a changing scene ([`live`]).
 //! - **Out of scope**: paths, the command line, pictures.
 //! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
@@ -28,6 +29,7 @@ pub mod methods;
 mod mirrors;
 mod objects;
 mod options;
+pub mod places;
 mod plan;
 pub mod quake;
 pub mod region;

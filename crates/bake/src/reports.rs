@@ -1,5 +1,6 @@
 //! What a bake did, for each kind of input. Times and counts of searches vary from run to run.
 
+use crate::places::PlaceSummary;
 use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneSummary;
 use sightlines_multifocal::Effort;
@@ -119,6 +120,8 @@ pub struct SceneReport {
 /// What baking a scene by a from-region method, or for given cells, did.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionReport {
+    /// What was cut, if cells are places.
+    pub places: Option<PlaceSummary>,
     /// Pairs that count as visible because deciding them by sightlines took too much effort.
     pub n_assumed: u64,
     /// Name of the from-region method, if there was one.

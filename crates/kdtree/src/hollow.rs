@@ -98,7 +98,7 @@ fn show(corners: &[Point3; 3], tree: &AxialTree<3>, rooms: &Rooms, hollow: &mut 
 }
 
 /// Whether a triangle and the inside of a box have a point in common as seen along `axis`. Exact.
-fn overlap(corners: &[Point3; 3], cell: &Aabb<3>, axis: usize) -> bool {
+pub(crate) fn overlap(corners: &[Point3; 3], cell: &Aabb<3>, axis: usize) -> bool {
     let [u, v] = others(axis);
     let flat = corners.map(|p| Point2::new(p[u], p[v]));
     let (lo, hi) = (Point2::new(cell.min[u], cell.min[v]), Point2::new(cell.max[u], cell.max[v]));

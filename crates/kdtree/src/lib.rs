@@ -6,7 +6,7 @@
 //!   splitting planes ([`Options`]), the tree with its cells, portals and point location ([`AxialTree`]),
 //!   the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]), and that from a
 //!   [`Scene`](sightlines_cells::Scene): which of its triangles act as walls ([`scene_faces`]), which cells are
-//!   inside solids ([`subdivide_scene`], [`SceneCutter`] for scenes that change).
+//!   inside solids ([`subdivide_scene`], [`SceneCutter`] for scenes that change), which boxes are inside solids of any shape ([`Matter`]).
 //! - **Out of scope**: sight lines, tables, files, walls that are not axis-parallel.
 //! - **Invariants**: the cells tile the bounds without gap or overlap; no coordinate is ever computed, so
 //!   cells and portals have the coordinates of faces and bounds, bit for bit; a portal is an opening of
@@ -35,6 +35,7 @@ mod face;
 mod flat;
 mod hollow;
 mod left_out;
+mod matter;
 mod mesh;
 mod plan;
 mod portals;
@@ -54,6 +55,7 @@ mod union_find;
 pub use build::{Options, bounds_of, subdivide};
 pub use error::{FaceError, KdError};
 pub use face::{AxialFace, AxialPlane, FaceClass, classify, cleaves};
+pub use matter::Matter;
 pub use plan::{PlanFaces, PlanSubdivision, plan_faces, planar_graph, subdivide_plan};
 pub use scene::{SceneCutter, SceneSubdivision, SceneSummary, subdivide_scene};
 pub use scene_faces::{SceneFaces, default_detail_below, scene_faces};

@@ -196,19 +196,23 @@ impl Sheet {
         if p[1] < self.u[0] || p[1] > self.u[1] || p[2] < self.v[0] || p[2] > self.v[1] {
             return 0;
         }
-        let q = Point2::new(p[1], p[2]);
-        let cross = |a: Point2, b: Point2| match (a.y <= q.y, b.y <= q.y) {
-            (true, false) => i32::from(orient2d(a, b, q) > 0.0),
-            (false, true) => -i32::from(orient2d(b, a, q) > 0.0),
-            _ => 0,
-        };
-        let [a, b, c] = self.corners;
-        cross(a, b) + cross(b, c) + cross(c, a)
+        winds(self.corners, Point2::new(p[1], p[2]))
     }
 }
 
+/// How often the outline of a flat triangle winds around a point, counter-clockwise. A point on an edge always belongs to the
+/// triangle on the same side of that edge. Exact.
+pub(crate) fn winds([a, b, c]: [Point2; 3], q: Point2) -> i32 {
+    let cross = |a: Point2, b: Point2| match (a.y <= q.y, b.y <= q.y) {
+        (true, false) => i32::from(orient2d(a, b, q) > 0.0),
+        (false, true) => -i32::from(orient2d(b, a, q) > 0.0),
+        _ => 0,
+    };
+    cross(a, b) + cross(b, c) + cross(c, a)
+}
+
 /// Adds up the values of each key; keys with the sum zero vanish.
-fn sums(parts: impl Iterator<Item = (u32, i32)>) -> Windings {
+pub(crate) fn sums(parts: impl Iterator<Item = (u32, i32)>) -> Windings {
     let mut parts: Windings = parts.filter(|p| p.1 != 0).collect();
     parts.sort_unstable();
     let sum = |same: &[(u32, i32)]| (same[0].0, same.iter().map(|p| p.1).sum());
@@ -216,7 +220,7 @@ fn sums(parts: impl Iterator<Item = (u32, i32)>) -> Windings {
 }
 
 /// A point inside of a box, if there is a double for each of its coordinates.
-fn middle(b: &Aabb<3>) -> Option<Point3> {
+pub(crate) fn middle(b: &Aabb<3>) -> Option<Point3> {
     let m = std::array::from_fn(|k| b.min[k].midpoint(b.max[k]));
     (0..3).all(|k| b.min[k] < m[k] && m[k] < b.max[k]).then_some(m)
 }

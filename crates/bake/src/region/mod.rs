@@ -16,6 +16,7 @@ use crate::baked::{Baked, BakedRegions};
 use crate::error::BakeError;
 use crate::graph::TableGraph;
 use crate::objects::object_lists;
+use crate::places::{PlaceOptions, places};
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
 use crate::table::{object_record, state_file};
@@ -39,6 +40,9 @@ pub enum CellsFrom {
     KdTree,
     /// A grid of so many boxes along each axis, in the view region or else the scene's box; without portals.
     Grid([u32; 3]),
+    /// Boxes for any scene, cut where views differ, in the view region or else the scene's box; without portals. See
+    /// [`places`](crate::places).
+    Places(PlaceOptions),
     /// These boxes, without portals; they may overlap, and leave gaps.
     Boxes(ViewCells),
 }
@@ -109,7 +113,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let start = Instant::now();
     let boxes = extents(scene);
     let by_sightlines = options.sightlines || options.method.is_none();
-    let mut n_assumed = 0;
+    let (mut n_assumed, mut summary) = (0, None);
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
         CellsFrom::KdTree if by_sightlines => {
             let RegionBakeOptions { cut, portals, threads, progress, .. } = *options;
@@ -122,6 +126,11 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         CellsFrom::Grid(n) => {
             let around = options.cut.view_region.unwrap_or_else(|| scene.bounds());
             parts::of_boxes(&grid(&around, *n)?.cells, boxes.len())
+        }
+        CellsFrom::Places(how) => {
+            let cut = places(scene, &options.cut, how)?;
+            summary = Some(cut.summary);
+            parts::of_places(cut.cells, boxes.len())
         }
         CellsFrom::Boxes(cells) => parts::of_boxes(&parts::upright(cells), boxes.len()),
     };
@@ -187,7 +196,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     state_file(&mut parts, options.file);
     let table = Table::new(parts)?;
     let time = start.elapsed();
-    let report = RegionReport { n_assumed, method, effort, n_visible_pairs, n_objects_seen, time };
+    let report = RegionReport { places: summary, n_assumed, method, effort, n_visible_pairs, n_objects_seen, time };
     Ok(Baked { graph, table, report })
 }
 

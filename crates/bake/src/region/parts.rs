@@ -62,6 +62,15 @@ pub(super) fn of_boxes(boxes: &[ViewCell], n_objects: usize) -> Start {
     all_visible(TableGraph::Boxes(cells.clone()), parts, cells, n_objects)
 }
 
+/// Places, of which everything may see everything.
+pub(super) fn of_places(cells: Vec<Aabb<3>>, n_objects: usize) -> Start {
+    let parts = TableParts {
+        info: vec![("subdivide".to_owned(), "places".to_owned())],
+        ..parts_of(&cells, TableKind::SceneGivenCells { hidden_by: SceneMethods::default() })
+    };
+    all_visible(TableGraph::Boxes(cells.clone()), parts, cells, n_objects)
+}
+
 fn parts_of(cells: &[Aabb<3>], kind: TableKind) -> TableParts {
     let bounds: Vec<_> = cells.iter().map(|b| (b.min, b.max)).collect();
     TableParts {

@@ -4,6 +4,7 @@ mod any_input;
 mod bakeable;
 mod live;
 mod mirrors;
+mod places;
 mod plan;
 mod quake;
 mod reject;

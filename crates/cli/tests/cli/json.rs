@@ -265,11 +265,11 @@ fn plans(all: &mut Results) {
     );
 }
 
-/// Four slanted squares, far from one another.
+/// Four slanted, flat squares, far from one another.
 fn slanted() -> String {
     let square = |i: u32| {
         let (z, n) = (3.0 * f64::from(i), 4 * i);
-        let corners = [(0.0, 0.0, z), (2.0, 0.25, z + 1.0), (2.125, 2.0, z + 1.5), (0.25, 1.75, z + 0.25)];
+        let corners = [(0.0, 0.0, z), (2.0, 0.0, z + 1.0), (2.0, 2.0, z + 1.5), (0.0, 2.0, z + 0.5)];
         let corners: String = corners.iter().map(|(x, y, z)| format!("v {x} {y} {z}\n")).collect();
         format!("o s{i}\n{corners}f {} {} {}\nf {} {} {}\n", n + 1, n + 2, n + 3, n + 1, n + 3, n + 4)
     };

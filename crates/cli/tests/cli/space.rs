@@ -83,7 +83,8 @@ fn scenes_and_plans_are_distinguished_by_content_and_name() {
     assert_eq!(folder.read("out.pvs"), folder.read("tower.pvs"));
     // A tent whose floor has an area, in the format without units.
     folder.write("tent.obj", "o tent\nv 0 0 0\nv 4 0 0\nv 0 0 4\nv 1 3 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-    let built = folder.run(&["build", "tent.obj", "-o", "tent.pvs", "--json"]).expect(0).json();
+    let built =
+        folder.run(&["build", "tent.obj", "--method", "sightlines", "-o", "tent.pvs", "--json"]).expect(0).json();
     assert_eq!(
         (&built["format"], &built["up_is_assumed"], &built["unit"]),
         (&json!("OBJ"), &json!(true), &json!(null))

@@ -79,10 +79,15 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     let mut options = args.bake.options();
     args.region.apply(&mut options)?;
     let frame = framed::take(path, &mut source.content, &mut options)?;
+    let portals = args.certify.is_given() || args.stab_trees.is_some();
+    if let Bakeable::Scene(file) = &source.content {
+        args.region.choose_for(&file.scene, portals, &mut options);
+    }
     let mut auto = None;
     if options.method == SceneMethod::Auto {
         let (choice, chosen) = choose_for(&(&source.content).into(), &options);
-        (auto, options) = (Some(auto::Chosen::new(choice)), chosen);
+        let cells = if portals { options.cells } else { chosen.cells.clone() };
+        (auto, options) = (Some(auto::Chosen::new(choice)), BakeOptions { cells, ..chosen });
     }
     args.refuse_for_regions(&source, &options)?;
 

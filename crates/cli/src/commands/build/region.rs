@@ -6,7 +6,10 @@ use crate::facts::{Facts, Stated};
 use crate::named::one_of;
 use crate::output::{bytes, count, percent, seconds};
 use serde::Serialize;
+use sightlines::bake::auto::own_cells;
+use sightlines::bake::places::{PlaceOptions, PlaceSummary};
 use sightlines::bake::{BakeOptions, CellsFrom, RegionReport, SceneMethod};
+use sightlines::cells::Scene;
 use sightlines::formats::{ReadError, SceneFile};
 use sightlines::multifocal::Split;
 use sightlines::pvs::Table;
@@ -28,6 +31,14 @@ pub(crate) struct RegionArgs {
     /// Scenes in space: use a grid of boxes as cells, in the view region or the box of the scene
     #[arg(long, value_name = "NX,NY,NZ", value_parser = counts, conflicts_with = "cells")]
     grid: Option<[u32; 3]>,
+    /// Scenes in space: about so many boxes as cells, cut where rays show that views differ. The default for scenes with few
+    /// axis-aligned walls, with 256 cells
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with_all = ["cells", "grid"])]
+    n_cells: Option<u32>,
+    /// Scenes in space: the same, with no side of a cell longer than SIZE, in scene units [default: such that half of the
+    /// cells are enough for it]
+    #[arg(long, value_name = "SIZE", value_parser = length, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
+    cell_size: Option<f64>,
     #[command(flatten)]
     buffers: BufferArgs,
     /// Multifocal: how often a cell may be halved where much is in doubt
@@ -43,6 +54,13 @@ fn counts(text: &str) -> Result<[u32; 3], String> {
     }
 }
 
+fn length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("not a number above 0".to_owned()),
+    }
+}
+
 impl RegionArgs {
     /// Puts these arguments into the options of a bake. Reads the file of view cells.
     ///
@@ -53,6 +71,9 @@ impl RegionArgs {
         options.cells = match (self.cells.read()?, self.grid) {
             (Some(cells), _) => CellsFrom::Boxes(cells),
             (None, Some(n)) => CellsFrom::Grid(n),
+            (None, None) if self.n_cells.is_some() || self.cell_size.is_some() => {
+                CellsFrom::Places(PlaceOptions { n_cells: self.n_cells, cell_size: self.cell_size })
+            }
             (None, None) => CellsFrom::KdTree,
         };
         options.buffers = self.buffers.options();
@@ -60,12 +81,29 @@ impl RegionArgs {
         Ok(())
     }
 
+    /// Chooses the cells of a scene for which none are named, and without a method also that: scenes with few axis-aligned
+    /// walls have places as cells, and the method that fits them.
+    ///
+    /// * `portals`: whether the table is to have portals; then its cells are those of a k-d tree
+    pub(super) fn choose_for(&self, scene: &Scene, portals: bool, options: &mut BakeOptions<'_>) {
+        let unnamed = options.cells == CellsFrom::KdTree && self.method != Some(SceneMethod::Sightlines);
+        if unnamed && !portals {
+            options.cells = own_cells(scene);
+        }
+        let places = matches!(options.cells, CellsFrom::Places(_));
+        if self.method.is_none() && places && own_cells(scene) != CellsFrom::KdTree {
+            options.method = SceneMethod::Auto;
+        }
+    }
+
     /// Options that mean something for scenes in space only.
-    pub(super) fn of_space(&self) -> [(&'static str, bool); 3] {
+    pub(super) fn of_space(&self) -> [(&'static str, bool); 5] {
         [
             ("--method", self.method.is_some_and(|method| method != SceneMethod::Auto)),
             ("--cells", self.cells.is_given()),
             ("--grid", self.grid.is_some()),
+            ("--n-cells", self.n_cells.is_some()),
+            ("--cell-size", self.cell_size.is_some()),
         ]
     }
 }
@@ -76,8 +114,11 @@ pub(super) struct Outcome {
     out: String,
     #[serde(flatten)]
     stated: Stated,
-    /// `kd` or `boxes`.
+    /// `kd`, `places` or `boxes`.
     subdivide: &'static str,
+    /// What was cut, if cells are places.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    places: Option<Cuts>,
     /// The methods that decided visibility.
     method: String,
     n_triangles: usize,
@@ -94,6 +135,33 @@ pub(super) struct Outcome {
     seconds: f64,
 }
 
+/// How places were cut.
+#[derive(Debug, Serialize)]
+struct Cuts {
+    n_cells: usize,
+    cell_size: f64,
+    n_along_walls: usize,
+    n_by_views: usize,
+    n_by_size: usize,
+    n_solid: usize,
+}
+
+impl Cuts {
+    fn new(cut: PlaceSummary) -> Self {
+        let PlaceSummary { n_cells, cell_size, n_along_walls, n_by_views, n_by_size, n_solid, .. } = cut;
+        Self { n_cells, cell_size, n_along_walls, n_by_views, n_by_size, n_solid }
+    }
+}
+
+impl fmt::Display for Cuts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [walls, views, size] = [self.n_along_walls, self.n_by_views, self.n_by_size];
+        let (size_of, cells) = (self.cell_size, count(self.n_cells as u64, "place"));
+        write!(f, "cells          {cells} of at most {size_of:.4} units: cut {walls} times along walls, ")?;
+        writeln!(f, "{views} where views differ, {size} for size; {} solid", self.n_solid)
+    }
+}
+
 impl Outcome {
     pub(super) fn new(out: &Path, file: &SceneFile, given_cells: bool, table: &Table, report: &RegionReport) -> Self {
         let triangles: Vec<u64> = file.scene.objects().iter().map(|o| o.triangles.len() as u64).collect();
@@ -101,7 +169,12 @@ impl Outcome {
         Self {
             out: out.display().to_string(),
             stated: Stated::new(&file.info),
-            subdivide: if given_cells { "boxes" } else { "kd" },
+            subdivide: match (report.places, given_cells) {
+                (Some(_), _) => "places",
+                (None, true) => "boxes",
+                (None, false) => "kd",
+            },
+            places: report.places.map(Cuts::new),
             method: table.info_value("method").unwrap_or_default().to_owned(),
             n_triangles: file.info.n_triangles,
             table: Summary::of(table),
@@ -118,8 +191,13 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "wrote {}, {}", self.out, bytes(self.table.n_bytes as u64))?;
         writeln!(f, "scene          {}", self.stated)?;
-        let cells = if self.subdivide == "kd" { "the cells of a k-d tree" } else { "boxes as cells" };
+        let cells = match self.subdivide {
+            "kd" => "the cells of a k-d tree",
+            "places" => "places as cells",
+            _ => "boxes as cells",
+        };
         writeln!(f, "method         {}, {cells}", self.method)?;
+        self.places.iter().try_for_each(|cuts| write!(f, "{cuts}"))?;
         writeln!(f, "triangles      {}", self.n_triangles)?;
         write!(f, "{}", Facts(&self.table))?;
         let [polygons, objects, cells] = [self.viewer.polygons, self.viewer.objects, self.viewer.cells].map(percent);

@@ -1,0 +1,194 @@
+//! Cutting a region into places, the most worthwhile cut first.
+
+use super::views::{Cut, Views};
+use super::{PlaceSummary, Places};
+use sightlines_cells::Scene;
+use sightlines_geometry::Aabb;
+use sightlines_kdtree::{KdError, Matter, SceneOptions};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Parts of a side that are looked at for solid matter, apart from walls.
+const SLABS: u32 = 16;
+
+/// A box is not cut thinner than this share of the longest side of the region.
+const THINNEST: f64 = 1.0 / (1u64 << 20) as f64;
+
+pub(super) struct Cutter<'a> {
+    scene: &'a Scene,
+    /// None if the insides of solid things stay.
+    matter: Option<Matter>,
+    cell_size: f64,
+    max_cells: u32,
+}
+
+/// A box that may be cut.
+struct Leaf {
+    bounds: Aabb<3>,
+    /// The longest side, by the bound on it, if that is above 1.
+    too_long: f64,
+    /// How much the cut pays: objects that viewers are spared, weighted.
+    worth: f64,
+    cut: Option<Cut>,
+    /// Its place in the tree: nodes are numbered as they are made.
+    node: usize,
+}
+
+/// A node of the tree of all boxes.
+enum Node {
+    Place(Aabb<3>),
+    Divided([usize; 2]),
+    Solid,
+}
+
+impl Ord for Leaf {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_length = self.too_long.total_cmp(&other.too_long);
+        by_length.then(self.worth.total_cmp(&other.worth)).then(other.node.cmp(&self.node))
+    }
+}
+
+impl PartialOrd for Leaf {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Leaf {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Leaf {}
+
+fn longest_side(b: &Aabb<3>) -> (usize, f64) {
+    let side = |k: usize| b.max[k] - b.min[k];
+    let axis = (1..3).fold(0, |best, k| if side(k) > side(best) { k } else { best });
+    (axis, side(axis))
+}
+
+impl<'a> Cutter<'a> {
+    pub(super) fn new(scene: &'a Scene, options: &SceneOptions, cell_size: f64) -> Self {
+        let matter = (!options.keep_solid).then(|| Matter::of(scene));
+        Self { scene, matter, cell_size, max_cells: options.max_cells }
+    }
+
+    /// Cuts `region` into about `n_cells` places.
+    pub(super) fn run(&self, region: Aabb<3>, n_cells: usize) -> Result<Places, KdError> {
+        let views = Views::of(self.scene, &region);
+        let thinnest = longest_side(&region).1 * THINNEST;
+        let mut summary = PlaceSummary { cell_size: self.cell_size, ..PlaceSummary::default() };
+        let mut nodes = vec![Node::Solid];
+        // Where all is solid, all is a place.
+        let whole = self.place(&views, region, &mut summary).unwrap_or(region);
+        let mut queue = BinaryHeap::from([self.leaf(&views, whole, 0, &mut nodes)]);
+        let mut n_done = 0;
+        while let Some(leaf) = queue.pop() {
+            let full = n_done + queue.len() + 1 >= n_cells && leaf.too_long == 0.0;
+            let Some(cut) = leaf.cut.filter(|_| !full) else {
+                n_done += 1;
+                continue;
+            };
+            let halves = halves(&leaf.bounds, cut.axis, cut.at);
+            if halves.iter().any(|half| half.max[cut.axis] - half.min[cut.axis] < thinnest) {
+                n_done += 1;
+                continue;
+            }
+            let counted = if cut.gain == 0.0 {
+                &mut summary.n_by_size
+            } else if cut.wall {
+                &mut summary.n_along_walls
+            } else {
+                &mut summary.n_by_views
+            };
+            *counted += 1;
+            let children = [nodes.len(), nodes.len() + 1];
+            nodes.extend([Node::Solid, Node::Solid]);
+            nodes[leaf.node] = Node::Divided(children);
+            for (half, node) in halves.into_iter().zip(children) {
+                if let Some(place) = self.place(&views, half, &mut summary) {
+                    queue.push(self.leaf(&views, place, node, &mut nodes));
+                }
+            }
+            if n_done + queue.len() > self.max_cells as usize {
+                return Err(KdError::TooManyCells { limit: self.max_cells });
+            }
+        }
+        let cells = in_order(&nodes);
+        summary.n_cells = cells.len();
+        Ok(Places { cells, summary })
+    }
+
+    fn leaf(&self, views: &Views, bounds: Aabb<3>, node: usize, nodes: &mut [Node]) -> Leaf {
+        nodes[node] = Node::Place(bounds);
+        let (axis, side) = longest_side(&bounds);
+        let too_long = if side > self.cell_size { side / self.cell_size } else { 0.0 };
+        let mut cut = views.best_cut(&bounds);
+        let worth = cut.map_or(0.0, |cut| cut.gain * volume(&bounds).sqrt());
+        if too_long > 0.0 && cut.is_none_or(|cut| cut.axis != axis) {
+            let at = bounds.min[axis].midpoint(bounds.max[axis]);
+            cut = Some(Cut { axis, at, wall: false, gain: 0.0 });
+        }
+        Leaf { bounds, too_long, worth, cut, node }
+    }
+
+    /// A box without the sides of it that are in solid matter; none if all is.
+    fn place(&self, views: &Views, bounds: Aabb<3>, summary: &mut PlaceSummary) -> Option<Aabb<3>> {
+        let Some(matter) = &self.matter else { return Some(bounds) };
+        if matter.holds(&bounds) {
+            summary.n_solid += 1;
+            return None;
+        }
+        let mut place = bounds;
+        for axis in 0..3 {
+            let (low, side) = (place.min[axis], place.max[axis] - place.min[axis]);
+            let mut ends: Vec<f64> = (1..SLABS).map(|i| low + side * (f64::from(i) / f64::from(SLABS))).collect();
+            ends.extend(views.walls_in(axis, &place));
+            ends.retain(|at| place.min[axis] < *at && *at < place.max[axis]);
+            ends.sort_by(f64::total_cmp);
+            ends.dedup();
+            // A part of a slab in solid matter is in it too.
+            let [below, above] = [0, 1].map(|side| {
+                let held = |at: &f64| matter.holds(&halves(&place, axis, *at)[side]);
+                if side == 0 { ends.partition_point(held) } else { ends.len() - ends.partition_point(|at| !held(at)) }
+            });
+            // Both together cannot be all of it: that would be solid as a whole, unless two objects share it.
+            if below + above <= ends.len() {
+                if below > 0 {
+                    place.min[axis] = ends[below - 1];
+                    summary.n_solid += 1;
+                }
+                if above > 0 {
+                    place.max[axis] = ends[ends.len() - above];
+                    summary.n_solid += 1;
+                }
+            }
+        }
+        Some(place)
+    }
+}
+
+fn volume(b: &Aabb<3>) -> f64 {
+    (0..3).map(|k| b.max[k] - b.min[k]).product()
+}
+
+/// The parts of a box below and above a coordinate.
+fn halves(b: &Aabb<3>, axis: usize, at: f64) -> [Aabb<3>; 2] {
+    let (mut low, mut high) = (*b, *b);
+    (low.max[axis], high.min[axis]) = (at, at);
+    [low, high]
+}
+
+/// The places of a tree, depth-first, low before high.
+fn in_order(nodes: &[Node]) -> Vec<Aabb<3>> {
+    let (mut out, mut stack) = (Vec::new(), vec![0]);
+    while let Some(node) = stack.pop() {
+        match &nodes[node] {
+            Node::Place(bounds) => out.push(*bounds),
+            Node::Divided([low, high]) => stack.extend([*high, *low]),
+            Node::Solid => {}
+        }
+    }
+    out
+}

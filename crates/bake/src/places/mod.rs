@@ -1,0 +1,143 @@
+//! Places: cells for any scene, cut where the views of two halves differ.
+//!
+//! A k-d tree along walls needs walls that are perpendicular to an axis, follows each of them, and leaves the open whole.
+//! Places are boxes for scenes without such walls: a castle, a street, a cave. The box of the scene is cut in two, again and
+//! again, first until no box is longer than a bound, then where it pays most: where rays show that one half sees what the other
+//! does not. What lies wholly in solid matter is left out.
+//!
+//! The boxes tile the region, but for solid matter. Rays and rounded numbers only choose among cuts, each of which is right.
+
+mod cut;
+mod views;
+
+use cut::Cutter;
+use sightlines_cells::Scene;
+use sightlines_geometry::{Aabb, check_coordinate};
+use sightlines_kdtree::{KdError, SceneOptions};
+
+/// How many places to cut.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PlaceOptions {
+    /// How many cells to make; none for [`PlaceOptions::N_CELLS`]. There are fewer where cutting pays nowhere, and more where
+    /// the bound on their size needs them.
+    pub n_cells: Option<u32>,
+    /// Longest side of a cell, in scene units; none for a bound that half of the cells are enough for.
+    pub cell_size: Option<f64>,
+}
+
+impl PlaceOptions {
+    /// How many cells are made by default.
+    pub const N_CELLS: u32 = 256;
+}
+
+/// Why cells cannot be cut so.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlacesError {
+    /// The region has no room, or there are more cells than the limit.
+    #[error(transparent)]
+    KdTree(#[from] KdError),
+    /// The bound on the sides of cells is no positive number.
+    #[error("cells of at most {0} units: this is not a number above 0")]
+    CellSize(f64),
+    /// No cells.
+    #[error("0 cells were asked for; there has to be one")]
+    NoCells,
+}
+
+/// What was cut.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PlaceSummary {
+    /// Cells.
+    pub n_cells: usize,
+    /// The bound on the sides of cells, in scene units.
+    pub cell_size: f64,
+    /// Cuts along walls, where views differ.
+    pub n_along_walls: usize,
+    /// Other cuts where views differ.
+    pub n_by_views: usize,
+    /// Cuts of boxes longer than the bound of which rays do not show that views differ.
+    pub n_by_size: usize,
+    /// Boxes that were left out because they are inside of solid matter.
+    pub n_solid: usize,
+}
+
+/// Places of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Places {
+    /// The cells, in the order of the tree: those near to each other have near indices, as a rule. They have insides, which do not overlap.
+    pub cells: Vec<Aabb<3>>,
+    /// What was cut.
+    pub summary: PlaceSummary,
+}
+
+/// Cuts the view region of a scene, or else its box, into places.
+///
+/// Of `cut` the view region, the limit of cells and whether solid matter stays matter. The same scene and options give the
+/// same places. Without solid matter the cells tile the region; everything in it that is outside of all cells is
+/// certainly in [solid matter](sightlines_kdtree::Matter).
+///
+/// Cost: some thousand rays for each cell.
+///
+/// # Errors
+/// [`PlacesError`]
+pub fn places(scene: &Scene, cut: &SceneOptions, options: &PlaceOptions) -> Result<Places, PlacesError> {
+    if let Some(size) = options.cell_size.filter(|s| s.is_nan() || *s <= 0.0) {
+        return Err(PlacesError::CellSize(size));
+    }
+    if options.n_cells == Some(0) {
+        return Err(PlacesError::NoCells);
+    }
+    let region = region(scene, cut.view_region)?;
+    let n_cells = options.n_cells.unwrap_or(PlaceOptions::N_CELLS);
+    let cell_size = options.cell_size.unwrap_or_else(|| default_size(&region, n_cells));
+    Ok(Cutter::new(scene, cut, cell_size).run(region, n_cells as usize)?)
+}
+
+/// Where viewers can be: the view region, or the box around all objects, wherever they move.
+fn region(scene: &Scene, given: Option<Aabb<3>>) -> Result<Aabb<3>, KdError> {
+    let region = match given {
+        Some(region) if region.is_empty() => return Err(KdError::ViewRegion),
+        Some(region) => region,
+        None => {
+            let still = scene.bounds();
+            let moving = scene.moving().iter().filter_map(|moving| moving.within).filter(|b| !b.is_empty());
+            moving.fold(still, |all, b| all.with(b.min).with(b.max))
+        }
+    };
+    if region.is_empty() {
+        return Err(KdError::Empty);
+    }
+    for x in region.min.into_iter().chain(region.max) {
+        check_coordinate(x).map_err(KdError::Bounds)?;
+    }
+    (0..3).find(|&axis| region.min[axis] >= region.max[axis]).map_or(Ok(region), |axis| Err(KdError::Flat { axis }))
+}
+
+/// Most parts of the longest side of the region that the default bound makes.
+const PARTS: u32 = 16;
+
+/// The smallest whole part of the longest side such that half of the cells, as cubes of that size, fill the region.
+fn default_size(region: &Aabb<3>, n_cells: u32) -> f64 {
+    let sides: [f64; 3] = std::array::from_fn(|k| region.max[k] - region.min[k]);
+    let longest = sides.into_iter().fold(0.0, f64::max);
+    let fits = |parts: &u32| {
+        let n: f64 = sides.iter().map(|side| (side / longest * f64::from(*parts)).ceil()).product();
+        n <= f64::from(n_cells) / 2.0
+    };
+    longest / f64::from((2..=PARTS).rev().find(fits).unwrap_or(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_bound_leaves_half_of_the_cells() {
+        let size = |sides: [f64; 3], n| default_size(&Aabb { min: [0.0; 3], max: sides }, n);
+        assert_eq!(size([8.0; 3], 256), 8.0 / 5.0);
+        assert_eq!(size([8.0; 3], 1), 8.0);
+        assert_eq!(size([8.0, 8.0, 0.25], 512), 0.5);
+        assert_eq!(size([160.0, 1.0, 1.0], 4096), 10.0);
+    }
+}

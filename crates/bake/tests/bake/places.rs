@@ -1,0 +1,230 @@
+//! Places: they tile what is not solid, and what viewers in them see is in the table.
+
+use proptest::prelude::*;
+use sightlines_bake::places::{PlaceOptions, Places, places};
+use sightlines_bake::{BakeOptions, CellsFrom, Report, SceneMethod, TableGraph, bake};
+use sightlines_cells::{Scene, SceneObject};
+use sightlines_geometry::{Aabb, Point3, Random};
+use sightlines_kdtree::{Matter, SceneOptions};
+use sightlines_multifocal::RaySampler;
+use sightlines_pvs::BitMatrix;
+use sightlines_scenes::{CityOptions, TowerOptions, city, tower};
+
+const QUADS: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+
+/// A box with its fronts outwards, turned about z by a rotation with rational cosine or not.
+fn block(b: &Aabb<3>, turned: bool) -> SceneObject {
+    let corner = |i: usize| -> Point3 { std::array::from_fn(|k| if i >> k & 1 == 0 { b.min[k] } else { b.max[k] }) };
+    let turn = |p: Point3| if turned { [0.8 * p[0] - 0.6 * p[1], 0.6 * p[0] + 0.8 * p[1], p[2]] } else { p };
+    let triangles = QUADS.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    SceneObject { name: String::new(), vertices: (0..8).map(|i| turn(corner(i))).collect(), triangles }
+}
+
+fn scene(objects: Vec<SceneObject>) -> Scene {
+    Scene::new(objects).expect("a scene")
+}
+
+fn boxed(min: Point3, max: Point3) -> Aabb<3> {
+    Aabb { min, max }
+}
+
+/// Blocks at places of a small grid, upright or turned, which may touch and overlap.
+fn blocks() -> impl Strategy<Value = (Vec<(Aabb<3>, bool)>, u32)> {
+    let one = ([0i32..9, 0i32..9, 0i32..5], [1i32..5, 1i32..5, 1i32..4], any::<bool>());
+    let one = one.prop_map(|(min, size, turned)| {
+        let max = std::array::from_fn(|k| f64::from(min[k] + size[k]));
+        (boxed(min.map(f64::from), max), turned)
+    });
+    (prop::collection::vec(one, 1..8), 1u32..40)
+}
+
+fn cut(scene: &Scene, n_cells: u32) -> Places {
+    let how = PlaceOptions { n_cells: Some(n_cells), cell_size: None };
+    places(scene, &SceneOptions::default(), &how).expect("places")
+}
+
+fn volume(b: &Aabb<3>) -> f64 {
+    (0..3).map(|k| b.max[k] - b.min[k]).product()
+}
+
+/// The cells that overlap, and those longer than the bound.
+fn faults(places: &Places) -> usize {
+    let overlap = |a: &Aabb<3>, b: &Aabb<3>| (0..3).all(|k| a.min[k] < b.max[k] && b.min[k] < a.max[k]);
+    let cells = &places.cells;
+    let pairs = (0..cells.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let size = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
+    pairs.filter(|&(i, j)| overlap(&cells[i], &cells[j])).count()
+        + cells.iter().filter(|b| size(b) > places.summary.cell_size || volume(b) <= 0.0).count()
+}
+
+/// Points of the scene's box that are in no cell and not strictly inside of one of `solids`, of so many.
+fn lost(scene: &Scene, cells: &[Aabb<3>], solids: &[(Aabb<3>, bool)], n: u32) -> usize {
+    let mut random = Random::new(u64::from(n));
+    let bounds = scene.bounds();
+    let inside = |p: Point3| {
+        solids.iter().any(|(b, turned)| {
+            let q = if *turned { [0.8 * p[0] + 0.6 * p[1], 0.8 * p[1] - 0.6 * p[0], p[2]] } else { p };
+            (0..3).all(|k| b.min[k] - 1e-9 < q[k] && q[k] < b.max[k] + 1e-9)
+        })
+    };
+    let points = (0..n).map(|_| random.point(&bounds));
+    points.filter(|p| !cells.iter().any(|b| b.contains(*p)) && !inside(*p)).count()
+}
+
+proptest! {
+    /// Cells do not overlap, none is too long, and every place outside of the blocks is in one.
+    #[test]
+    fn places_tile_what_is_not_solid((solids, n_cells) in blocks()) {
+        let scene = scene(solids.iter().map(|(b, turned)| block(b, *turned)).collect());
+        let places = cut(&scene, n_cells);
+        prop_assert_eq!(faults(&places), 0, "places_tile_what_is_not_solid: {:?}", places);
+        prop_assert_eq!(lost(&scene, &places.cells, &solids, 200), 0, "places_tile_what_is_not_solid: {:?}", places);
+        // The impostor: without one of its cells a scene has places in none, unless that cell is hardly any of it.
+        let largest = places.cells.iter().map(volume).fold(0.0, f64::max);
+        let rest: Vec<Aabb<3>> = places.cells.iter().filter(|b| volume(b) < largest).copied().collect();
+        prop_assert!(lost(&scene, &rest, &[], 2000) > 0, "places_tile_what_is_not_solid: {:?}", places);
+        // What is left out is solid, in parts each of which one query proves.
+        let left_out = volume(&scene.bounds()) - places.cells.iter().map(volume).sum::<f64>();
+        prop_assert!(places.summary.n_solid > 0 || left_out < 1e-9 * volume(&scene.bounds()));
+    }
+}
+
+/// A rock that fills half of the scene, and three trees beside it.
+fn rock(missing: Option<usize>) -> Scene {
+    let mut rock = block(&boxed([0.0; 3], [8.0, 8.0, 4.0]), false);
+    rock.triangles = (0..12).filter(|i| Some(*i) != missing).map(|i| rock.triangles[i]).collect();
+    let tree = |x: f64| block(&boxed([x, 7.0, 4.0], [x + 0.5, 7.5, 8.0]), false);
+    scene(vec![rock, tree(1.0), tree(3.0), tree(5.0)])
+}
+
+#[test]
+fn the_insides_of_solids_are_left_out() {
+    for n_cells in [1, 8, 100] {
+        let places = cut(&rock(None), n_cells);
+        let held: f64 = places.cells.iter().map(volume).sum();
+        // Nothing of the rock stays, and nothing else goes but, at most, the trees.
+        assert!(places.cells.iter().all(|b| b.min[2] >= 4.0), "{places:?}");
+        assert!((253.0..=256.0).contains(&held), "{held}");
+        assert!(places.summary.n_solid > 0 && faults(&places) == 0);
+    }
+    let kept = SceneOptions { keep_solid: true, ..SceneOptions::default() };
+    let kept = places(&rock(None), &kept, &PlaceOptions::default()).expect("places");
+    assert_eq!((kept.cells.iter().map(volume).sum::<f64>(), kept.summary.n_solid), (512.0, 0));
+}
+
+/// A rock without one triangle is no certain solid.
+#[test]
+fn the_insides_of_what_is_open_are_places() {
+    for missing in 0..12 {
+        let open = rock(Some(missing));
+        let places = cut(&open, 20);
+        let in_rock: f64 =
+            places.cells.iter().map(|b| volume(&boxed(b.min, [b.max[0], b.max[1], b.max[2].min(4.0)])).max(0.0)).sum();
+        assert_eq!(in_rock, 256.0, "without triangle {missing}");
+        assert!(!Matter::of(&open).holds(&boxed([1.0; 3], [2.0; 3])));
+    }
+}
+
+/// Rooms in a row behind turned walls with doors, and a thing in each.
+fn rooms() -> Scene {
+    let mut objects = Vec::new();
+    for i in 0..5 {
+        let x = 6.0 * f64::from(i);
+        let side = if i % 2 == 0 { [-12.0, 2.0] } else { [-2.0, 12.0] };
+        objects.push(block(&boxed([x, side[0], 0.0], [x + 0.5, side[1], 3.0]), true));
+        objects.push(block(&boxed([x + 3.0, -0.5, 0.0], [x + 3.5, 0.5, 1.0]), true));
+    }
+    scene(objects)
+}
+
+/// Objects that rays from anywhere in a cell hit first though the table has them hidden there; and how many rays hit.
+fn hidden_wrongly(scene: &Scene, cells: &[Aabb<3>], seen: &BitMatrix) -> (usize, usize) {
+    let objects: Vec<Vec<[Point3; 3]>> = scene.objects().iter().map(|o| o.corners().collect()).collect();
+    let rays = RaySampler::new(objects.iter().map(|o| &o[..]));
+    let mut random = Random::new(1);
+    let (mut wrong, mut n_hits) = (0, 0);
+    for (cell, b) in cells.iter().enumerate() {
+        for _ in 0..400 {
+            if let Some(object) = rays.first_hit(random.point(b), random.direction()) {
+                n_hits += 1;
+                wrong += usize::from(!seen.get(cell, object as usize));
+            }
+        }
+    }
+    (wrong, n_hits)
+}
+
+#[test]
+fn scenes_without_walls_along_axes_have_sound_tables_of_places() {
+    let scene = rooms();
+    let options = |method, threads| BakeOptions { method, threads, ..BakeOptions::default() };
+    let baked = bake(&scene, &options(SceneMethod::Auto, 1)).expect("a table");
+    let (TableGraph::Boxes(cells), Report::Regions(report)) = (&baked.graph, &baked.report) else {
+        panic!("places are boxes")
+    };
+    let summary = report.places.expect("places were cut");
+    assert_eq!((summary.n_cells, summary.n_cells), (cells.len(), baked.table.n_cells()));
+    assert!(cells.len() > 100 && summary.n_by_views + summary.n_along_walls > 20, "{summary:?}");
+    let seen = baked.table.parts().objects_seen.clone().expect("objects are seen");
+    let (wrong, n_hits) = hidden_wrongly(&scene, cells, &seen);
+    assert!(wrong == 0 && n_hits > 5_000, "{wrong} of {n_hits}");
+    // Tight: of all pairs some are hidden, and more than if one cell sees everything.
+    let share = seen.count_ones() as f64 / (cells.len() * scene.objects().len()) as f64;
+    assert!(share < 0.9, "{share}");
+    // The impostor: whatever is seen from a cell in the middle is forgotten.
+    let mut forgotten = seen;
+    (0..scene.objects().len()).for_each(|o| forgotten.set(cells.len() / 2, o, false));
+    assert!(hidden_wrongly(&scene, cells, &forgotten).0 > 0);
+    let again = bake(&scene, &options(SceneMethod::Auto, 3)).expect("a table");
+    assert_eq!(again.table.to_bytes(), baked.table.to_bytes(), "threads change nothing");
+}
+
+/// Walls along axes are cut by a k-d tree unless places are named.
+#[test]
+fn axial_buildings_keep_their_cells() {
+    let tower =
+        tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() }).unwrap();
+    let auto = bake(&tower, &BakeOptions { method: SceneMethod::Auto, ..BakeOptions::default() }).unwrap();
+    assert_eq!(auto.table.to_bytes(), bake(&tower, &BakeOptions::default()).unwrap().table.to_bytes());
+    let cells = CellsFrom::Places(PlaceOptions { n_cells: Some(12), cell_size: None });
+    let named = bake(&tower, &BakeOptions { cells, ..BakeOptions::default() }).unwrap();
+    let Report::Regions(report) = &named.report else { panic!("places are boxes") };
+    let summary = report.places.expect("places were cut");
+    assert!(summary.n_along_walls > summary.n_by_views, "{summary:?}");
+}
+
+#[test]
+fn sizes_and_numbers_are_kept() {
+    let city = city(CityOptions::default()).expect("a city");
+    let how = |n_cells, cell_size| PlaceOptions { n_cells, cell_size };
+    let cut = |how: PlaceOptions| places(&city, &SceneOptions::default(), &how);
+    for n_cells in [1, 7, 64, 300] {
+        let places = cut(how(Some(n_cells), None)).expect("places");
+        assert!(
+            4 * places.cells.len() <= 5 * n_cells as usize && faults(&places) == 0,
+            "{n_cells}: {:?}",
+            places.summary
+        );
+        assert_eq!(places, cut(how(Some(n_cells), None)).expect("places"), "the same again");
+    }
+    let longest = (0..3).map(|k| city.bounds().max[k] - city.bounds().min[k]).fold(0.0, f64::max);
+    let small = cut(how(Some(1), Some(longest / 10.0))).expect("places");
+    assert!(small.cells.len() > 100 && faults(&small) == 0, "{:?}", small.summary);
+    assert_eq!(
+        cut(how(None, Some(0.0))).unwrap_err().to_string(),
+        "cells of at most 0 units: this is not a number above 0"
+    );
+    assert_eq!(cut(how(Some(0), None)).unwrap_err().to_string(), "0 cells were asked for; there has to be one");
+    let few = SceneOptions { max_cells: 50, ..SceneOptions::default() };
+    let error = places(&city, &few, &how(None, Some(longest / 10.0))).unwrap_err().to_string();
+    assert!(error.contains("more than 50 cells"), "{error}");
+    let empty = places(&scene(Vec::new()), &SceneOptions::default(), &PlaceOptions::default()).unwrap_err();
+    assert_eq!(empty.to_string(), "the scene is empty");
+    let flat = SceneObject { triangles: vec![[0, 2, 3]], ..block(&boxed([0.0; 3], [1.0, 1.0, 0.0]), false) };
+    let error = places(&scene(vec![flat]), &SceneOptions::default(), &PlaceOptions::default()).unwrap_err();
+    assert_eq!(error.to_string(), "the scene has no extent along axis 2");
+    let region = boxed([0.0; 3], [5.0, 6.0, 7.0]);
+    let within = SceneOptions { view_region: Some(region), keep_solid: true, ..SceneOptions::default() };
+    let places = places(&city, &within, &PlaceOptions::default()).expect("places");
+    assert_eq!(Aabb::around(places.cells.iter().flat_map(|b| [b.min, b.max])), region);
+}
