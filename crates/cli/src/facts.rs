@@ -98,13 +98,17 @@ impl fmt::Display for FrameFacts {
 
 /// The line about the frame of a table: how it is turned, and its gap.
 fn frame(axes: &[[f64; 3]; 3], gap: f64) -> String {
+    let narrow = format!("openings narrower than {gap:.2e} units may count as closed");
+    if (0..3).all(|k| axes[k][k] == 1.0) {
+        return format!("frame          along the axes of the file; {narrow}");
+    }
     // The angle of a turn from its trace.
     let cosine = (axes[0][0] + axes[1][1] + axes[2][2] - 1.0) / 2.0;
     // Near 1 the cosine tells nothing; the sine is in the differences across the diagonal.
     let [x, y, z] = [axes[1][2] - axes[2][1], axes[2][0] - axes[0][2], axes[0][1] - axes[1][0]];
     let sine = (x * x + y * y + z * z).sqrt() / 2.0;
     let degrees = sine.atan2(cosine).to_degrees();
-    format!("frame          turned by {degrees:.6} degrees; openings narrower than {gap:.2e} units may count as closed")
+    format!("frame          turned by {degrees:.6} degrees; {narrow}")
 }
 
 /// The name of an axis.

@@ -4,12 +4,15 @@
 use sightlines::bake::{BakeOptions, Baked, CellsFrom, Framed, Gap, bake};
 use sightlines::cells::{Point3, Scene, SceneObject};
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
+use sightlines::formats::scene::read_scene;
 use sightlines::formats::{ViewCell, ViewCells};
 use sightlines::geometry::Aabb;
 use sightlines::pvs::{Frame, ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower, tower_rooms};
 use sightlines::verify::{Truth, VerifyOptions, check_walls_in_space, verify};
 use sightlines_testkit::rays::RayScene;
+use sightlines_tests::data_folder;
+use sightlines_tests::scenes::scene_witness;
 
 const SMALL: TowerOptions =
     TowerOptions { seed: 1, floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, windows: true, wall_thickness: 0.25 };
@@ -303,4 +306,42 @@ fn upright_scenes_have_no_frame() {
     assert_eq!(bake(&scene, &with(Gap::OfFile)).unwrap().table.to_bytes(), plain);
     assert_eq!(bake(&scene, &with(Gap::Width(gap_of(&scene)))).unwrap().table.to_bytes(), plain);
     assert!(Framed::of(&scene, None, &with(Gap::OfFile)).unwrap().is_none());
+}
+
+/// Invariant: on a real office, turned and rounded to single precision, each room sees what rays found from it in the building as it was,
+/// and within 5 % as many objects as there.
+#[test]
+fn a_real_office_may_stand_at_any_angle() {
+    let Some(folder) = data_folder("SIGHTLINES_DATA") else { return };
+    let folder = folder.join("scenes/office_a");
+    let upright = read_scene(folder.join("office_a.glb")).unwrap_or_else(|e| panic!("{e}")).scene;
+    let rooms = scene_witness(&folder);
+    let cells: Vec<ViewCell> = rooms
+        .iter()
+        .map(|room| ViewCell { id: room.id.clone(), bounds: Aabb { min: room.min, max: room.max } })
+        .collect();
+    let table = |scene: &Scene, axes: Option<Rows>, gap: f64| {
+        let cells = CellsFrom::Boxes(ViewCells { cells: cells.clone(), axes });
+        bake(scene, &BakeOptions { cells, gap: Gap::Width(gap), threads: 2, ..BakeOptions::default() }).unwrap().table
+    };
+    let n_shown = |table: &Table| -> usize {
+        (0..table.n_cells() as u32).map(|cell| table.visible_objects(sightlines::pvs::CellId(cell)).len()).sum()
+    };
+    let expected = n_shown(&table(&upright, None, 0.0));
+    for (y, x) in [(0.000_06, 0.0), (17.0, 7.0)] {
+        let rows = rotation(y, x);
+        let scene = turned(&upright, &rows);
+        let table = table(&scene, Some(std::array::from_fn(|k| rows.map(|row| row[k]))), gap_of(&scene));
+        let n = n_shown(&table);
+        assert!(n.abs_diff(expected) * 20 <= expected, "{y} {x}: {n} pairs, {expected} upright");
+        let mut n_seen = 0;
+        for (cell, room) in (0u32..).map(sightlines::pvs::CellId).zip(&rooms) {
+            let shown = table.visible_objects(cell);
+            for &object in &room.objects {
+                assert!(shown.contains(&ObjectId(object)), "{y} {x}: {} sees {object}", room.id);
+                n_seen += 1;
+            }
+        }
+        assert!(n_seen > 4000, "{n_seen} pairs seen");
+    }
 }
