@@ -84,10 +84,15 @@ mod tests {
     use num_rational::BigRational;
     use num_traits::{Signed, Zero};
     use proptest::prelude::*;
-    use sightlines_geometry::Aabb;
+    use sightlines_geometry::{Aabb, check_coordinate};
 
     fn point() -> impl Strategy<Value = Point3> {
         [-4i32..5, -4i32..5, -4i32..5].prop_map(|p| p.map(|x| f64::from(x) * 0.3))
+    }
+
+    /// Some are so large that a point lies within rounding of a corner or a side.
+    fn weight() -> impl Strategy<Value = u64> {
+        prop_oneof![1u64..9, Just(1 << 60)]
     }
 
     fn sign(p: [&[BigRational; 3]; 4]) -> i32 {
@@ -109,7 +114,7 @@ mod tests {
     }
 
     /// A point of a triangle whose corners are known exactly.
-    fn mix(corners: &[[BigRational; 3]], weights: [u32; 3]) -> [BigRational; 3] {
+    fn mix(corners: &[[BigRational; 3]], weights: [u64; 3]) -> [BigRational; 3] {
         let sum = BigRational::from_integer((weights[0] + weights[1] + weights[2]).into());
         let part = |i: usize, k: usize| &corners[i][k] * BigRational::from_integer(weights[i].into());
         [0, 1, 2].map(|k| (part(0, k) + part(1, k) + part(2, k)) / &sum)
@@ -122,8 +127,12 @@ mod tests {
         fn all_inner_lines_pass_on_the_side_that_is_reported(
             low in point(), size in [1i32..4, 1i32..4], triangle in [point(), point(), point()], x in point(), y in point(),
             cuts in prop::collection::vec((0usize..3, 1u32..32, any::<bool>()), 0..4),
-            weights in prop::collection::vec([1u32..9, 1u32..9, 1u32..9, 1u32..9, 1u32..9], 12),
+            shift in prop_oneof![Just(0.0), Just(1e6)],
+            near in prop::option::of((0usize..3, [-2i8..3, -2i8..3, -2i8..3])),
+            weights in prop::collection::vec([weight(), weight(), weight(), weight(), weight()], 12),
         ) {
+            let moved = |p: Point3| p.map(|x| x + shift);
+            let (low, triangle, x, y) = (moved(low), triangle.map(moved), moved(x), moved(y));
             let high = [low[0] + f64::from(size[0]), low[1] + f64::from(size[1]), low[2]];
             let from = End::rectangle(&Aabb { min: low, max: high }, 2).expect("it has an area");
             let (mut to, mut truth) = (End::triangle(triangle), triangle.map(exact));
@@ -136,10 +145,16 @@ mod tests {
                 truth[if first { j } else { i }] = middle;
                 to = halves[usize::from(!first)];
             }
+            // An edge may end at a corner, but for a few units in the last place.
+            let step = |x: f64, n: i8| (0..n.abs()).fold(x, |x, _| if n > 0 { x.next_up() } else { x.next_down() });
+            let x = near.map_or(x, |(i, by)| std::array::from_fn(|k| step(to.corners()[i][k], by[k])));
+            if x.iter().any(|&x| check_coordinate(x).is_err()) {
+                return Ok(());
+            }
             let cell = Cell { from, to };
             let mut signs = [0; 2];
             for [a, b, c, d, e] in weights {
-                let part = |a: u32, b: u32| BigRational::new(a.into(), (a + b).into());
+                let part = |a: u64, b: u64| BigRational::new(a.into(), (a + b).into());
                 let (low, high) = (exact(low), exact(high));
                 let at = |k: usize, t: BigRational| &low[k] + (&high[k] - &low[k]) * t;
                 let eye = [at(0, part(a, b)), at(1, part(b, c)), low[2].clone()];

@@ -20,8 +20,8 @@ use crate::hull::{Code, Hull};
 use crate::orient::orient;
 use crate::surface::Surface;
 use crate::touch::{Start, Target};
-use sightlines_geometry::Point3;
 use sightlines_geometry::vector::{cross, dot, sub};
+use sightlines_geometry::{Aabb, Point3};
 
 /// Why a chain does not block a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +42,8 @@ pub(crate) struct Shaft {
     pub(crate) cell: Cell,
     pub(crate) start: Start,
     pub(crate) hull: Hull,
+    /// Around both ends.
+    bounds: Aabb<3>,
     /// Inner points of the ends.
     pub(crate) line: [Point3; 2],
     /// How far the second of them may be from the true end.
@@ -53,7 +55,9 @@ impl Shaft {
     pub(crate) fn new(cell: Cell, start: Start, weights: [[f64; 4]; 2]) -> Option<Self> {
         let (from, _) = cell.from.inner(weights[0])?;
         let (to, rounding) = cell.to.inner(weights[1])?;
-        Some(Self { cell, start, hull: Hull::of(&cell), line: [from, to], rounding })
+        let (a, b) = (cell.from.bounds(), cell.to.bounds());
+        let bounds = a.with(b.min).with(b.max);
+        Some(Self { cell, start, hull: Hull::of(&cell), bounds, line: [from, to], rounding })
     }
 }
 
@@ -143,7 +147,7 @@ impl ChainFinder {
     }
 
     fn add(&mut self, surface: &Surface, shaft: &Shaft, target: &Target, triangle: u32) -> Result<(), Gap> {
-        let (corners, bounds) = (surface.mesh().corners(triangle), surface.bounds(triangle));
+        let (corners, bounds) = (surface.corners(triangle), surface.bounds(triangle));
         if !shaft.start.is_clear_of(&corners, bounds, &shaft.cell.from) {
             return Err(Gap::Start { triangle });
         }
@@ -174,6 +178,12 @@ impl ChainFinder {
         }
         let ends = surface.mesh().edges()[edge as usize];
         let [p, q] = ends.map(|v| surface.mesh().vertices()[v as usize]);
+        // No line leaves the box around the ends; most edges are far from it.
+        let around = &shaft.bounds;
+        if (0..3).any(|k| p[k].max(q[k]) < around.min[k] || p[k].min(q[k]) > around.max[k]) {
+            self.mixed[edge as usize] = (self.epochs.cell, false);
+            return false;
+        }
         let [s, t] = [(ends[0], p), (ends[1], q)].map(|(v, at)| self.code(shaft, v, at));
         let mixed = !shaft.hull.misses(s, t) && shaft.cell.passing(p, q) == Passing::Both;
         self.mixed[edge as usize] = (self.epochs.cell, mixed);
@@ -210,7 +220,7 @@ impl ChainFinder {
             if other == triangle || self.part_of[other as usize] == self.epochs.chain {
                 continue;
             }
-            let (corners, bounds) = (mesh.corners(other), surface.bounds(other));
+            let (corners, bounds) = (surface.corners(other), surface.bounds(other));
             if !shaft.start.is_clear_of(&corners, bounds, &shaft.cell.from)
                 || !target.is_clear_of(&corners, bounds, &shaft.cell.to)
             {
@@ -227,8 +237,16 @@ impl ChainFinder {
     /// Condition 3, of the middle line.
     fn is_crossed_oddly(&self, surface: &Surface, shaft: &Shaft) -> bool {
         let mut n = 0u32;
+        let [p, q] = shaft.line;
+        let far = |b: &Aabb<3>, k: usize| {
+            b.max[k] < p[k].min(q[k] - shaft.rounding[k]).next_down()
+                || b.min[k] > p[k].max(q[k] + shaft.rounding[k]).next_up()
+        };
         for &t in &self.chain {
-            match crosses(shaft, surface.mesh().corners(t)) {
+            if (0..3).any(|k| far(surface.bounds(t), k)) {
+                continue;
+            }
+            match crosses(shaft, surface.corners(t)) {
                 Some(crossed) => n += u32::from(crossed),
                 None => return false,
             }

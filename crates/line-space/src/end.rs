@@ -217,6 +217,9 @@ fn is_sum(x: f64, y: f64, sum: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use num_rational::BigRational;
+    use num_traits::Signed;
+    use proptest::prelude::*;
 
     #[test]
     fn halves_of_rectangles_cover_them() {
@@ -250,5 +253,44 @@ mod tests {
         assert!(inner[2] == 1.0 && radius[2] == 0.0 && radius[0] > 0.0);
         let point = End::triangle([[1.0, 1.0, 1.0], [1.0f64.next_up(), 1.0, 1.0], [1.0, 2.0, 1.0]]);
         assert!(point.cut(0, 0.5).is_none());
+    }
+
+    fn corner() -> impl Strategy<Value = Point3> {
+        [-4i32..5, -4i32..5, -4i32..5].prop_map(|p| p.map(|x| f64::from(x) * 0.3))
+    }
+
+    proptest! {
+        /// Invariant: pieces beyond a plane have corners of the triangle or crossings of its sides, in fractions, as true corners within
+        /// their radius and bounds, and all of these.
+        #[test]
+        fn pieces_beyond_a_plane_are_near_true_ones(
+            triangle in [corner(), corner(), corner()], k in 0usize..3, at in corner(), upward in any::<bool>(),
+            shift in prop_oneof![Just(0.0), Just(1e6)],
+        ) {
+            let moved = |p: Point3| p.map(|x| x + shift);
+            let (triangle, at) = (triangle.map(moved), moved(at)[k]);
+            let exact = |x: f64| BigRational::from_float(x).expect("finite");
+            let inside = |p: &Point3| if upward { p[k] > at } else { p[k] < at };
+            let mut truth: Vec<[BigRational; 3]> =
+                triangle.iter().filter(|p| inside(p) || p[k] == at).map(|p| p.map(exact)).collect();
+            for i in 0..3 {
+                let [a, b] = [triangle[i], triangle[(i + 1) % 3]];
+                if inside(&a) != inside(&b) && a[k] != at && b[k] != at {
+                    let t = (exact(at) - exact(a[k])) / (exact(b[k]) - exact(a[k]));
+                    truth.push([0, 1, 2].map(|j| exact(a[j]) + (exact(b[j]) - exact(a[j])) * &t));
+                }
+            }
+            let pieces: Vec<End> = End::beyond(triangle, k, at, upward).collect();
+            let is_near = |piece: &End, c: &Point3, p: &[BigRational; 3]| {
+                (0..3).all(|j| (exact(c[j]) - &p[j]).abs() <= exact(piece.radius()[j]))
+                    && (0..3).all(|j| exact(piece.bounds().min[j]) <= p[j] && p[j] <= exact(piece.bounds().max[j]))
+            };
+            prop_assert_eq!(pieces.is_empty(), !triangle.iter().any(inside));
+            for piece in &pieces {
+                prop_assert!(piece.corners().iter().all(|c| truth.iter().any(|p| is_near(piece, c, p))), "{:?}", piece);
+            }
+            let has = |p: &[BigRational; 3]| pieces.iter().any(|e| e.corners().iter().any(|c| is_near(e, c, p)));
+            prop_assert!(pieces.is_empty() || truth.iter().all(has), "{:?} {:?}", pieces, truth);
+        }
     }
 }

@@ -162,3 +162,79 @@ impl Hull {
         lateral != 0 || common != 0 && (p.0 | q.0) & BEHIND != 0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::end::End;
+    use num_rational::BigRational;
+    use num_traits::Zero;
+    use proptest::prelude::*;
+    use sightlines_geometry::{Aabb, check_coordinate};
+
+    type Exact = [BigRational; 3];
+
+    fn point() -> impl Strategy<Value = Point3> {
+        [-4i32..5, -4i32..5, -4i32..5].prop_map(|p| p.map(|x| f64::from(x) * 0.3))
+    }
+
+    fn exact(p: Point3) -> Exact {
+        p.map(|x| BigRational::from_float(x).expect("finite"))
+    }
+
+    /// How far inside of the stored border of a half-space a point is, in some unit.
+    fn depth(space: &HalfSpace, p: &Exact) -> BigRational {
+        let [a, b, c] = space.through.map(exact);
+        let [u, v, w] = [&b, &c, p].map(|q| [0, 1, 2].map(|k| &q[k] - &a[k]));
+        let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
+        let det = minor(1, 2) * &w[0] + minor(2, 0) * &w[1] + minor(0, 1) * &w[2];
+        if space.sign > 0.0 { det } else { -det }
+    }
+
+    proptest! {
+        /// Invariant: a point that is said to be on or outside of a border is no deeper inside than any true corner of the ends, which are
+        /// followed in fractions through cuts that were rounded.
+        #[test]
+        fn true_ends_are_inside_of_what_excludes_a_point(
+            low in point(), size in [1i32..4, 1i32..4], triangle in [point(), point(), point()], shift in prop_oneof![Just(0.0), Just(1e6)],
+            cuts in prop::collection::vec((0usize..3, 1u32..32, any::<bool>()), 0..5), others in prop::collection::vec(point(), 6),
+            ulps in prop::collection::vec([-3i8..4, -3i8..4, -3i8..4], 8),
+        ) {
+            let [low, triangle, others] = [vec![low], triangle.to_vec(), others].map(|all| -> Vec<Point3> {
+                all.into_iter().map(|p| p.map(|x| x + shift)).collect()
+            });
+            let (low, triangle) = (low[0], [triangle[0], triangle[1], triangle[2]]);
+            let high = [low[0] + f64::from(size[0]), low[1] + f64::from(size[1]), low[2]];
+            let from = End::rectangle(&Aabb { min: low, max: high }, 2).expect("it has an area");
+            let (mut to, mut truth) = (End::triangle(triangle), triangle.map(exact));
+            for (side, part, first) in cuts {
+                let Some(halves) = to.cut(side, f64::from(part) / 32.0) else { break };
+                let (i, j) = (side, (side + 1) % 3);
+                let part = BigRational::new(part.into(), 32.into());
+                let middle = [0, 1, 2].map(|k| &truth[i][k] + (&truth[j][k] - &truth[i][k]) * &part);
+                truth[if first { j } else { i }] = middle;
+                to = halves[usize::from(!first)];
+            }
+            let hull = Hull::of(&Cell { from, to });
+            let near = |p: &Point3, by: &[i8; 3]| -> Point3 {
+                std::array::from_fn(|k| (0..by[k].abs()).fold(p[k], |x, _| if by[k] > 0 { x.next_up() } else { x.next_down() }))
+            };
+            let corners: Vec<Point3> = from.corners().iter().chain(to.corners()).copied().collect();
+            let mut nearby: Vec<Point3> = corners.iter().zip(&ulps).map(|(p, by)| near(p, by)).collect();
+            nearby.retain(|p| p.iter().all(|&x| check_coordinate(x).is_ok()));
+            for space in &hull.spaces[..hull.n] {
+                let least = from.corners().iter().map(|&p| exact(p)).chain(truth.clone()).map(|p| depth(space, &p)).min();
+                let least = least.expect("there are corners");
+                prop_assert!(space.margin > 0.0 || least >= BigRational::zero());
+                for p in others.iter().chain(&corners).chain(&nearby) {
+                    let depth = depth(space, &exact(*p));
+                    match space.side(*p) {
+                        1 => {}
+                        0 => prop_assert!(depth <= least && depth.is_zero(), "{:?} {:?}", space, p),
+                        _ => prop_assert!(depth < least, "{:?} {:?}", space, p),
+                    }
+                }
+            }
+        }
+    }
+}

@@ -140,8 +140,11 @@ fn box_roots(volume: &Aabb<3>, target: &Aabb<3>) -> Vec<Root> {
             let to = beyond(end, axis, start.min[axis], upward);
             let from = beyond(start, across, end.min[across], outward);
             let ends = from.zip(to).and_then(|(f, t)| End::rectangle(&f, axis).zip(End::rectangle(&t, across)));
-            roots
-                .extend(ends.map(|(from, to)| Root { cell: Cell { from, to }, start: start_at(volume, axis, upward) }));
+            roots.extend(ends.map(|(from, to)| Root {
+                cell: Cell { from, to },
+                start: start_at(volume, axis, upward),
+                share: 0.0,
+            }));
         }
     }
     roots
@@ -153,7 +156,11 @@ fn triangle_roots(volume: &Aabb<3>, triangle: [Point3; 3]) -> Vec<Root> {
     for (axis, upward, start) in sides(volume) {
         let Some(from) = End::rectangle(&start, axis) else { continue };
         let pieces = End::beyond(triangle, axis, start.min[axis], upward);
-        roots.extend(pieces.map(|to| Root { cell: Cell { from, to }, start: start_at(volume, axis, upward) }));
+        roots.extend(pieces.map(|to| Root {
+            cell: Cell { from, to },
+            start: start_at(volume, axis, upward),
+            share: 0.0,
+        }));
     }
     roots
 }

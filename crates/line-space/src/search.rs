@@ -24,11 +24,19 @@ pub enum Outcome {
 pub(crate) struct Root {
     pub(crate) cell: Cell,
     pub(crate) start: Start,
+    /// Its part of all lines, roughly: halves have half of it.
+    pub(crate) share: f64,
 }
 
 /// Hits this near to the end of a line count as its end: the target itself, or what lies on it. So `Reached` may be wrong by that part of a
 /// line, which shows more; what is hidden is never decided by it.
 const AT_END: f64 = 1e-6;
+
+/// A search ends early if the share of lines that is not blocked after n cells is more than this, times the root of the budget, over n.
+///
+/// Of the triangles and boxes that were found hidden in four real scenes, one in ten at most was beyond that before; of the others
+/// one in two.
+const PATIENCE: f64 = 1.25;
 
 /// The search for the lines between two ends, with its memory.
 #[derive(Debug)]
@@ -55,13 +63,17 @@ impl Search {
     ) -> (Outcome, u32) {
         self.queue.clear();
         self.queue.extend(roots);
+        let n_roots = self.queue.len() as f64;
+        self.queue.iter_mut().for_each(|root| root.share = 1.0 / n_roots);
+        let patience = PATIENCE * f64::from(budget).sqrt();
+        let mut open = 1.0;
         if self.queue.is_empty() {
             return (Outcome::Undecided, 0);
         }
         let mut random = Random::new(1);
         let mut n = 0;
         while let Some(root) = self.queue.pop_front() {
-            if n == budget {
+            if n == budget || open * f64::from(n) > patience {
                 return (Outcome::Undecided, n);
             }
             n += 1;
@@ -74,9 +86,11 @@ impl Search {
                 return (Outcome::Reached, n);
             }
             match self.block(surface, &shaft, target) {
-                None => {}
+                None => open -= root.share,
                 Some(gap) => match split(surface, &shaft, &gap) {
-                    Some(halves) => self.queue.extend(halves.map(|cell| Root { cell, ..root })),
+                    Some(halves) => {
+                        self.queue.extend(halves.map(|cell| Root { cell, share: root.share / 2.0, ..root }))
+                    }
                     None => return (Outcome::Undecided, n),
                 },
             }

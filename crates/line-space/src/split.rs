@@ -143,7 +143,7 @@ fn cut_by(values: &Values, end: &End) -> Option<[End; 2]> {
 
 /// Where the corners of an end are to the plane of a triangle, in some unit.
 fn heights<'a>(surface: &Surface, triangle: u32, end: &'a End) -> impl Iterator<Item = f64> + 'a {
-    let corners = surface.mesh().corners(triangle);
+    let corners = surface.corners(triangle);
     let (at, normal): (Point3, Point3) = (corners[0], normal(corners));
     end.corners().iter().map(move |&p| dot(normal, sub(p, at)))
 }
@@ -159,7 +159,7 @@ fn straddles(surface: &Surface, triangle: u32, end: &End) -> bool {
 
 /// Cuts an end where a plane crosses it: exactly along planes across an axis.
 fn at_plane(surface: &Surface, triangle: u32, end: &End) -> Option<[End; 2]> {
-    let [a, b, c] = surface.mesh().corners(triangle);
+    let [a, b, c] = surface.corners(triangle);
     if let Some(k) = (0..3).find(|&k| a[k] == b[k] && b[k] == c[k])
         && let Some(halves) = end.cut_across(k, a[k])
     {

@@ -9,6 +9,7 @@ use sightlines_multifocal::mesh::Mesh;
 #[derive(Debug)]
 pub struct Surface {
     mesh: Mesh,
+    corners: Vec<[Point3; 3]>,
     boxes: Vec<Aabb<3>>,
     tree: BoxTree<3>,
     middles: Vec<Point3>,
@@ -31,17 +32,22 @@ impl Surface {
     /// edges on one face.
     pub fn new(triangles: &[[Point3; 3]]) -> Self {
         let mesh = Mesh::weld(&conform(&Mesh::weld(triangles)));
-        let all = || (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t));
+        let corners: Vec<[Point3; 3]> = (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t)).collect();
+        let all = || corners.iter().copied();
         let boxes: Vec<Aabb<3>> = all().map(Aabb::around).collect();
         let tree = BoxTree::build(&boxes, 4);
         let middles = all().map(|[a, b, c]| scale(add(add(a, b), c), 1.0 / 3.0)).collect();
         let areas = all().map(|t| length(normal(t)) / 2.0).collect();
-        Self { mesh, boxes, tree, middles, areas }
+        Self { mesh, corners, boxes, tree, middles, areas }
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    pub(crate) fn corners(&self, triangle: u32) -> [Point3; 3] {
+        self.corners[triangle as usize]
     }
 
     pub(crate) fn bounds(&self, triangle: u32) -> &Aabb<3> {
@@ -70,7 +76,7 @@ impl Surface {
             first.max(-SLACK) <= last.min(1.0 + SLACK) + SLACK
         };
         self.tree.visit(enters, |triangle| {
-            let [x, y, at] = ray_triangle(&self.mesh.corners(triangle), p, d);
+            let [x, y, at] = ray_triangle(&self.corners[triangle as usize], p, d);
             if x >= -SLACK && y >= -SLACK && x + y <= 1.0 + SLACK && (-SLACK..=1.0).contains(&at) {
                 hits.push(Hit { at, triangle });
             }
