@@ -88,9 +88,12 @@ pub(crate) fn state_file(parts: &mut TableParts, file: Option<&SceneInfo>) {
         parts.info.push(("unit".to_owned(), "metre".to_owned()));
     }
     // Whoever checks the table reads the scene likewise.
-    let SceneReadOptions { opaque, see_through, still, single_sided, scene } = &file.read_with;
+    let SceneReadOptions { opaque, see_through, still, single_sided, both_sides, scene } = &file.read_with;
     if *single_sided {
         parts.info.push(("single-sided".to_owned(), "see-through".to_owned()));
+    }
+    if *both_sides {
+        parts.info.push(("both-sides".to_owned(), "drawn".to_owned()));
     }
     parts.info.extend(scene.iter().map(|scene| ("scene".to_owned(), scene.clone())));
     for (key, patterns) in [("opaque", opaque), ("see-through", see_through), ("still", still)] {

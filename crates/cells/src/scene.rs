@@ -31,7 +31,8 @@ impl SceneObject {
 ///
 /// Every object is seen. An object hides what is behind it, from both sides, unless it is [see-through](Self::see_through):
 /// glass, leaves, and everything that [moves](Self::moving). Whoever looks for occluders takes [`Self::occluders`] or
-/// [`Self::occluding_triangles`]; whoever asks where an object can be seen takes [`Self::extent`].
+/// [`Self::occluding_triangles`]; whoever asks where an object can be seen takes [`Self::extent`]. Objects may be
+/// [single-sided](Self::is_single_sided): nobody sees the backs of their triangles.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     objects: Vec<SceneObject>,
@@ -40,6 +41,8 @@ pub struct Scene {
     see_through: Vec<u32>,
     /// By object, ascending; all of them are see-through.
     moving: Vec<MovingObject>,
+    /// Ascending.
+    single_sided: Vec<u32>,
 }
 
 /// An object that moves or changes its shape at run time. It is drawn, even if none of its triangles has an area at rest, and if
@@ -89,6 +92,12 @@ pub enum SceneError {
     /// What is marked as see-through is no object.
     #[error("object {object} cannot be see-through: there is no such object")]
     SeeThrough {
+        /// Index of the object.
+        object: usize,
+    },
+    /// What is marked as single-sided is no object.
+    #[error("object {object} cannot be single-sided: there is no such object")]
+    SingleSided {
         /// Index of the object.
         object: usize,
     },
@@ -189,6 +198,28 @@ impl Scene {
         }
         let see_through = std::mem::take(&mut self.see_through);
         self.with_see_through(see_through)
+    }
+
+    /// The same scene, in which these objects are seen from the fronts of their triangles only, and no others. They hide from both
+    /// sides all the same.
+    ///
+    /// # Errors
+    /// [`SceneError::SingleSided`] for an object that does not exist.
+    pub fn with_single_sided(mut self, mut single_sided: Vec<u32>) -> Result<Self, SceneError> {
+        single_sided.sort_unstable();
+        single_sided.dedup();
+        if let Some(&object) = single_sided.iter().find(|&&object| object as usize >= self.objects.len()) {
+            return Err(SceneError::SingleSided { object: object as usize });
+        }
+        self.single_sided = single_sided;
+        Ok(self)
+    }
+
+    /// Whether an object is seen from the fronts of its triangles only. What [moves](Self::moving) is not: the box that it does not leave
+    /// stands for it.
+    pub fn is_single_sided(&self, object: u32) -> bool {
+        self.single_sided.binary_search(&object).is_ok()
+            && self.moving.binary_search_by_key(&object, |moving| moving.object).is_err()
     }
 
     /// The objects that are seen and hide nothing, ascending.
@@ -305,6 +336,12 @@ mod tests {
         let bad = SceneObject { triangles: vec![[0, 1, 2], [0, 3, 1]], ..good };
         assert_eq!(Scene::new(vec![bad]).unwrap_err().to_string(), "object 0, triangle 1: there is no vertex 3");
         assert_eq!(scene.clone().with_mirrors(vec![0, 0]).unwrap().mirrors(), [0]);
+        let error = scene.clone().with_single_sided(vec![1]).unwrap_err().to_string();
+        assert_eq!(error, "object 1 cannot be single-sided: there is no such object");
+        let single = scene.clone().with_single_sided(vec![0]).unwrap();
+        assert!(single.is_single_sided(0) && !scene.is_single_sided(0));
+        let moving = single.with_moving(vec![MovingObject { object: 0, within: None }]).unwrap();
+        assert!(!moving.is_single_sided(0), "a box is seen from everywhere");
         let error = scene.with_mirrors(vec![1]).unwrap_err().to_string();
         assert_eq!(error, "object 1 cannot be a mirror: there is no such object");
     }

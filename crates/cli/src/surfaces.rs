@@ -31,6 +31,10 @@ pub(crate) struct SurfaceArgs {
     /// both sides, which is right if no viewer ever gets behind one
     #[arg(long, help_heading = "Input")]
     single_sided: bool,
+    /// glTF: both sides of all faces are drawn. Without it faces that are not doubleSided are not seen from behind, as in
+    /// engines
+    #[arg(long, help_heading = "Input")]
+    both_sides: bool,
     /// A glTF with several scenes: the one to read, by its name or index [default: the default scene]
     #[arg(long, help_heading = "Input", value_name = "NAME")]
     scene_name: Option<String>,
@@ -39,8 +43,8 @@ pub(crate) struct SurfaceArgs {
 impl SurfaceArgs {
     /// These arguments as options of readers.
     pub(crate) fn options(&self) -> SceneReadOptions {
-        let Self { opaque, see_through, still, single_sided, scene_name } = self.clone();
-        SceneReadOptions { opaque, see_through, still, single_sided, scene: scene_name }
+        let Self { opaque, see_through, still, single_sided, both_sides, scene_name } = self.clone();
+        SceneReadOptions { opaque, see_through, still, single_sided, both_sides, scene: scene_name }
     }
 
     /// The same, and what the scene of a table was read with, by the information of that table.
@@ -54,17 +58,19 @@ impl SurfaceArgs {
             patterns.extend(stated.lines().filter_map(|pattern| pattern.parse().ok()));
         }
         options.single_sided |= value("single-sided").is_some();
+        options.both_sides |= value("both-sides").is_some();
         options.scene = options.scene.or_else(|| value("scene").map(str::to_owned));
         options
     }
 
     /// Each argument by its name, and whether it was given.
-    pub(crate) fn given(&self) -> [(&'static str, bool); 5] {
+    pub(crate) fn given(&self) -> [(&'static str, bool); 6] {
         [
             ("--see-through", !self.see_through.is_empty()),
             ("--opaque", !self.opaque.is_empty()),
             ("--still", !self.still.is_empty()),
             ("--single-sided", self.single_sided),
+            ("--both-sides", self.both_sides),
             ("--scene-name", self.scene_name.is_some()),
         ]
     }

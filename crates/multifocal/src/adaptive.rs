@@ -87,7 +87,7 @@ pub fn see_and_note(
     let mut umbra = method.umbra(volume)?;
     also(&mut *umbra);
     let mut search = Search { occludees, sampler, split, effort: &mut effort };
-    search.ask(&mut *umbra, seen, visible);
+    search.ask(&mut *umbra, volume, seen, visible);
     drop(umbra);
     search.see_parts(method, volume, 0, seen, visible)?;
     Ok(effort)
@@ -102,9 +102,9 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Clears what an umbra hides, among objects that no ray hit.
-    fn ask(&mut self, umbra: &mut dyn Umbra, seen: &[bool], visible: &mut [bool]) {
+    fn ask(&mut self, umbra: &mut dyn Umbra, volume: &Volume, seen: &[bool], visible: &mut [bool]) {
         let asked: Vec<bool> = visible.iter().zip(seen).map(|(visible, seen)| *visible && !seen).collect();
-        let did = self.occludees.see(umbra, &asked, visible);
+        let did = self.occludees.see(umbra, volume, &asked, visible);
         self.effort.queries = self.effort.queries + did;
     }
 
@@ -134,7 +134,7 @@ impl Search<'_> {
             self.sampler.see(half, self.split.n_rays, &of_half, seen);
             self.effort.n_volumes += 1;
             let mut umbra = method.umbra(half)?;
-            self.ask(&mut *umbra, seen, &mut of_half);
+            self.ask(&mut *umbra, half, seen, &mut of_half);
             drop(umbra);
             self.see_parts(method, half, depth + 1, seen, &mut of_half)?;
             visible.iter_mut().zip(of_half).for_each(|(visible, of_half)| *visible |= of_half);

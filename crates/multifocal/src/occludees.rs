@@ -1,7 +1,8 @@
 //! Occludees: objects made of triangles, in trees that are tested top-down.
 
-use crate::Umbra;
-use sightlines_geometry::{Aabb, BoxTree, Point3};
+use crate::volume::corners;
+use crate::{Umbra, Volume};
+use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d};
 
 /// Triangles in a leaf of an object's tree: they are tested one by one only if their box is not hidden.
 const PER_LEAF: usize = 4;
@@ -20,6 +21,7 @@ pub struct Occludees {
 struct Object {
     triangles: Vec<[Point3; 3]>,
     tree: BoxTree<3>,
+    is_single_sided: bool,
 }
 
 /// Numbers of queries.
@@ -52,7 +54,7 @@ impl Occludees {
             .into_iter()
             .map(|triangles| {
                 let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
-                Object { tree: BoxTree::build(&boxes, PER_LEAF), triangles }
+                Object { tree: BoxTree::build(&boxes, PER_LEAF), triangles, is_single_sided: false }
             })
             .collect();
         let boxes: Vec<Aabb<3>> = objects.iter().map(|o| o.tree.nodes()[0].bounds).collect();
@@ -60,6 +62,13 @@ impl Occludees {
         let boxes: Vec<Aabb<3>> =
             boxes.iter().map(|b| if b.is_empty() { Aabb { min: [0.0; 3], max: [0.0; 3] } } else { *b }).collect();
         Self { tree: BoxTree::build(&boxes, 1), objects }
+    }
+
+    /// The same, with objects whose triangles are seen from their fronts only. Seen from the front, a triangle turns
+    /// counterclockwise.
+    pub fn with_single_sided(mut self, is_single_sided: impl Fn(u32) -> bool) -> Self {
+        (0..).zip(&mut self.objects).for_each(|(object, o)| o.is_single_sided = is_single_sided(object));
+        self
     }
 
     /// Number of objects.
@@ -82,65 +91,89 @@ impl Occludees {
         &self.objects[object].triangles
     }
 
-    /// Finds the objects that `umbra` does not prove hidden: sets `visible` for them, among the `candidates`; all
-    /// others are left unchanged.
+    /// Finds the objects that `umbra`, that of `volume`, does not prove hidden: sets `visible` for them, among the
+    /// `candidates`; all others are left unchanged, and those that are visible spare questions about boxes around them.
     ///
     /// # Panics
     /// If the lists are shorter than the objects.
-    pub fn see(&self, umbra: &mut dyn Umbra, candidates: &[bool], visible: &mut [bool]) -> QueryCounts {
-        let mut counts = QueryCounts::default();
-        if !self.is_empty() {
-            self.see_node(0, umbra, candidates, visible, &mut counts);
-        }
-        counts
-    }
-
-    fn see_node(
+    pub fn see(
         &self,
-        n: u32,
         umbra: &mut dyn Umbra,
+        volume: &Volume,
         candidates: &[bool],
         visible: &mut [bool],
-        counts: &mut QueryCounts,
-    ) {
+    ) -> QueryCounts {
+        let mut query = Query { umbra, eyes: corners(volume.bounds()), counts: QueryCounts::default() };
+        if !self.is_empty() {
+            self.see_node(0, &mut query, candidates, visible);
+        }
+        query.counts
+    }
+
+    fn see_node(&self, n: u32, query: &mut Query<'_>, candidates: &[bool], visible: &mut [bool]) {
         let node = &self.tree.nodes()[n as usize];
         let order = &self.tree.order()[node.start as usize..node.end as usize];
         if order.iter().all(|&i| !candidates[i as usize]) {
             return;
         }
         if let &[i] = order {
-            visible[i as usize] = self.objects[i as usize].is_seen(umbra, counts);
+            visible[i as usize] = self.objects[i as usize].is_seen(query);
             return;
         }
-        counts.groups += 1;
-        if umbra.hides(&node.bounds) {
+        // A box is not hidden if an object in it is known to be visible.
+        let is_open = order.iter().any(|&i| visible[i as usize] && !candidates[i as usize]);
+        query.counts.groups += u64::from(!is_open);
+        if !is_open && query.umbra.hides(&node.bounds) {
             order.iter().filter(|&&i| candidates[i as usize]).for_each(|&i| visible[i as usize] = false);
             return;
         }
         for child in self.tree.children(n) {
-            self.see_node(child, umbra, candidates, visible, counts);
+            self.see_node(child, query, candidates, visible);
         }
+    }
+}
+
+/// What is asked about objects.
+struct Query<'a> {
+    umbra: &'a mut dyn Umbra,
+    /// The corners of the volume.
+    eyes: [Point3; 8],
+    counts: QueryCounts,
+}
+
+impl Query<'_> {
+    /// Whether no eye is in front of a triangle. Exact.
+    fn is_behind(&self, &[a, b, c]: &[Point3; 3]) -> bool {
+        self.eyes.iter().all(|&eye| orient3d(a, b, c, eye) <= 0.0)
     }
 }
 
 impl Object {
     /// Whether any triangle is not proven hidden.
-    fn is_seen(&self, umbra: &mut dyn Umbra, counts: &mut QueryCounts) -> bool {
-        !self.triangles.is_empty() && self.is_seen_at(0, umbra, counts)
+    fn is_seen(&self, query: &mut Query<'_>) -> bool {
+        !self.triangles.is_empty() && self.is_seen_at(0, query)
     }
 
-    fn is_seen_at(&self, n: u32, umbra: &mut dyn Umbra, counts: &mut QueryCounts) -> bool {
+    fn is_seen_at(&self, n: u32, query: &mut Query<'_>) -> bool {
         let node = &self.tree.nodes()[n as usize];
-        counts.boxes += 1;
-        if umbra.hides(&node.bounds) {
+        let triangles = || {
+            let order = &self.tree.order()[node.start as usize..node.end as usize];
+            order.iter().map(|&i| &self.triangles[i as usize])
+        };
+        if node.is_leaf() && self.is_single_sided && triangles().all(|t| query.is_behind(t)) {
+            return false;
+        }
+        query.counts.boxes += 1;
+        if query.umbra.hides(&node.bounds) {
             return false;
         }
         if !node.is_leaf() {
-            return self.tree.children(n).into_iter().any(|child| self.is_seen_at(child, umbra, counts));
+            return self.tree.children(n).into_iter().any(|child| self.is_seen_at(child, query));
         }
-        self.tree.order()[node.start as usize..node.end as usize].iter().any(|&i| {
-            counts.triangles += 1;
-            !umbra.hides_points(&self.triangles[i as usize])
+        triangles().any(|t| {
+            let is_behind = self.is_single_sided && query.is_behind(t);
+            query.counts.triangles += u64::from(!is_behind);
+            !is_behind && !query.umbra.hides_points(t)
         })
     }
 }

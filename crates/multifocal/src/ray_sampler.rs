@@ -4,6 +4,7 @@
 //! doubles.
 
 use crate::Volume;
+use sightlines_geometry::vector::{dot, normal};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random, ray_box, ray_triangle};
 
 /// Most rays towards one object: what they miss is hidden, or hardly visible.
@@ -17,6 +18,7 @@ pub struct RaySampler {
     /// For each object the start of its triangles, and the end of the last one's.
     first: Vec<usize>,
     tree: BoxTree<3>,
+    is_single_sided: Vec<bool>,
 }
 
 impl RaySampler {
@@ -30,7 +32,14 @@ impl RaySampler {
         }
         let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
         let tree = BoxTree::build(&boxes, 4);
-        Self { triangles, object, first, tree }
+        let is_single_sided = vec![false; first.len() - 1];
+        Self { triangles, object, first, tree, is_single_sided }
+    }
+
+    /// The same, with objects that are seen from the fronts of their triangles only; rays end at the backs, too.
+    pub fn with_single_sided(mut self, is_single_sided: impl Fn(u32) -> bool) -> Self {
+        (0..).zip(&mut self.is_single_sided).for_each(|(object, single)| *single = is_single_sided(object));
+        self
     }
 
     /// Marks objects that rays from points of a volume hit first. A quarter of `n_rays` go in any direction; the others are
@@ -78,23 +87,24 @@ impl RaySampler {
         (0..n_rays).any(|_| {
             let (origin, to) = (random.point(b), random.point(target));
             let way = std::array::from_fn(|k| to[k] - origin[k]);
-            self.first_hit_before(origin, way, 1.0).is_none()
+            self.first_triangle_before(origin, way, 1.0).is_none()
         })
     }
 
     fn mark(&self, origin: Point3, direction: Point3, seen: &mut [bool]) {
-        if let Some(object) = self.first_hit(origin, direction) {
-            seen[object as usize] = true;
-        }
+        let Some(triangle) = self.first_triangle_before(origin, direction, f64::INFINITY) else { return };
+        let object = self.object[triangle as usize] as usize;
+        let shows_back = || dot(normal(self.triangles[triangle as usize]), direction) >= 0.0;
+        seen[object] |= !(self.is_single_sided[object] && shows_back());
     }
 
     /// The object that a ray hits first.
     pub fn first_hit(&self, origin: Point3, direction: Point3) -> Option<u32> {
-        self.first_hit_before(origin, direction, f64::INFINITY)
+        self.first_triangle_before(origin, direction, f64::INFINITY).map(|t| self.object[t as usize])
     }
 
-    /// The object that a ray hits first, before `end` times its direction.
-    fn first_hit_before(&self, origin: Point3, direction: Point3, end: f64) -> Option<u32> {
+    /// The triangle that a ray hits first, before `end` times its direction.
+    fn first_triangle_before(&self, origin: Point3, direction: Point3, end: f64) -> Option<u32> {
         let inverse = direction.map(|d| 1.0 / d);
         let mut best = (end, None);
         let mut pending = vec![0];
@@ -107,7 +117,7 @@ impl RaySampler {
                 for &i in &self.tree.order()[node.start as usize..node.end as usize] {
                     let t = hit(&self.triangles[i as usize], origin, direction);
                     if t < best.0 {
-                        best = (t, Some(self.object[i as usize]));
+                        best = (t, Some(i));
                     }
                 }
                 continue;

@@ -232,3 +232,34 @@ proptest! {
         prop_assert_eq!(n_violations(&table, &scene), 0);
     }
 }
+
+#[test]
+fn single_sided_things_are_seen_from_the_front_only() {
+    // A sign in the middle of the hall that looks to the east.
+    let sign = |turned: bool| {
+        let at: Vec<Point3> = vec![[5.0, 1.0, 1.0], [5.0, 3.0, 1.0], [5.0, 3.0, 2.0], [5.0, 1.0, 2.0]];
+        let triangles = if turned { vec![[0, 2, 1], [0, 3, 2]] } else { vec![[0, 1, 2], [0, 2, 3]] };
+        let mut objects = hall();
+        objects.push(SceneObject { name: "sign".to_owned(), vertices: at, triangles });
+        Scene::new(objects).unwrap()
+    };
+    let (both, single) = (sign(false), sign(false).with_single_sided(vec![3]).unwrap());
+    let turned = sign(true).with_single_sided(vec![3]).unwrap();
+    const EAST: Point3 = [11.5, 3.5, 2.5];
+    let (mut n_hidden, mut n_caught) = (0, 0);
+    for ((name, of_single), (_, of_both)) in tables(&single).into_iter().zip(tables(&both)) {
+        assert!(sees(&of_single, EAST, 3) && sees(&of_both, EAST, 3) && sees(&of_both, WEST, 3), "{name}");
+        // It hides from both sides all the same, and nothing but itself is seen less.
+        for object in 0..3 {
+            assert_eq!(sees(&of_single, WEST, object), sees(&of_both, WEST, object), "{name}: {object}");
+        }
+        let is_hidden = !sees(&of_single, WEST, 3);
+        n_hidden += u32::from(is_hidden);
+        assert_eq!(n_violations(&of_single, &single), 0, "{name}");
+        assert_eq!(n_violations(&of_both, &both), 0, "{name}");
+        // Whoever takes the back for the front, or believes that nobody sees the back of what has two sides, is caught.
+        n_caught +=
+            u32::from(is_hidden && n_violations(&of_single, &turned) > 0 && n_violations(&of_single, &both) > 0);
+    }
+    assert!(n_hidden >= 7 && n_caught == n_hidden, "{n_hidden} {n_caught}");
+}

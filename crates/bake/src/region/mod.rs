@@ -150,8 +150,8 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
             // What is see-through stops no ray.
             let none: &[[Point3; 3]] = &[];
             let in_the_way = (0u32..).zip(&triangles).map(|(k, of)| if scene.is_opaque(k) { &of[..] } else { none });
-            let witness = RaySampler::new(in_the_way);
-            let occludees = Occludees::new(triangles);
+            let witness = RaySampler::new(in_the_way).with_single_sided(|object| scene.is_single_sided(object));
+            let occludees = Occludees::new(triangles).with_single_sided(|object| scene.is_single_sided(object));
             let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes };
             let seen = see::see(&scene, make, options, rows, objects)?;
             proven = seen.proven;

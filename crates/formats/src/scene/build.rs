@@ -42,6 +42,7 @@ pub(super) struct Builder {
     surfaces: Vec<Classified>,
     n_degenerate: usize,
     n_single_sided: usize,
+    fronts_only: Vec<u32>,
     simplified: Option<Simplified>,
     /// What a user should hear of the file.
     pub(super) warnings: Vec<String>,
@@ -88,6 +89,11 @@ impl Builder {
         self.mirrors.extend(self.last());
     }
 
+    /// Marks the object that was added last as one that is seen from the fronts of its triangles only.
+    pub(super) fn mark_fronts_only(&mut self) {
+        self.fronts_only.extend(self.last());
+    }
+
     /// Counts the triangles of the object that was added last as single-sided. If such things are to hide nothing, and it is not
     /// closed, returns what it is instead.
     pub(super) fn count_single_sided(&mut self, hides_nothing: bool) -> Option<Classification> {
@@ -124,6 +130,7 @@ impl Builder {
         let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let scene = scene.with_see_through(self.see_through)?.with_moving(self.moving)?;
+        let scene = scene.with_single_sided(self.fronts_only)?;
         let n_triangles = scene.n_triangles();
         if n_triangles == 0 {
             return Err(SceneReadError::NoTriangles { n_objects, n_degenerate });

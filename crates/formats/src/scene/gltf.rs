@@ -407,6 +407,9 @@ fn build(
             if at.is_mirror(document, primitive) {
                 builder.mark_mirror();
             }
+            if !classifier.shows_both_sides() && materials.iter().all(|&m| is_single_sided(document, m)) {
+                builder.mark_fronts_only();
+            }
             if class.as_ref().is_none_or(Classification::hides)
                 && materials.iter().any(|&m| is_single_sided(document, m))
             {

@@ -21,6 +21,9 @@ pub struct SceneReadOptions {
     /// an eye behind a single wall of that kind looks through it. By default they hide from both sides, which holds for eyes
     /// that see the back of none. glTF: materials that are not `doubleSided`; an OBJ does not say.
     pub single_sided: bool,
+    /// Whether both sides of all faces are drawn, whatever the file says. By default faces of which engines draw the fronts only are not
+    /// seen from behind.
+    pub both_sides: bool,
     /// Of a glTF with several scenes the one to read, by its name, or by its index if none has that name; without it the
     /// default scene.
     pub scene: Option<String>,
@@ -201,6 +204,11 @@ impl<'a> Classifier<'a> {
                 }
             },
         }
+    }
+
+    /// Whether everything is seen from both sides.
+    pub(super) fn shows_both_sides(&self) -> bool {
+        self.options.both_sides
     }
 
     /// Whether single-sided things that are not closed hide nothing.

@@ -10,8 +10,8 @@ use sightlines_cells::{Scene, SceneObject};
 ///
 /// Reading it again gives the same objects in the same order with the same triangles; corners that no
 /// triangle uses are gone then, unless the object has no triangles at all: its corners are written as points. Objects that
-/// hide nothing get a material with `alphaMode` `BLEND`; of those that move the shape at rest is written, and extras that state
-/// that they move: read again, they may be anywhere.
+/// hide nothing get a material with `alphaMode` `BLEND`, those that are seen from both sides one that is `doubleSided`. Of those that move
+/// the shape at rest is written, and extras that state that they move: read again, they may be anywhere.
 ///
 /// # Errors
 /// [`SceneWriteError`]: a coordinate that single precision cannot hold exactly is refused, not rounded.
@@ -32,9 +32,11 @@ fn write(scene: &Scene, simplified: Option<Simplified>) -> Result<Vec<u8>, Scene
     for (k, object) in scene.objects().iter().enumerate() {
         let id = u32::try_from(k);
         let is_mirror = id.is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
-        let is_opaque = id.is_ok_and(|k| scene.is_opaque(k));
+        let alpha_mode = if id.is_ok_and(|k| scene.is_opaque(k)) { None } else { Some("BLEND") };
+        let double_sided = !id.is_ok_and(|k| scene.is_single_sided(k));
+        let material = Material { alpha_mode, double_sided };
         let moves = id.is_ok_and(|k| scene.moving().binary_search_by_key(&k, |moving| moving.object).is_ok());
-        parts.add(k, object, Marks { is_mirror, is_opaque, moves })?;
+        parts.add(k, object, Marks { is_mirror, moves, material })?;
     }
     parts.into_glb(simplified)
 }
@@ -74,11 +76,11 @@ struct Stated {
 }
 
 /// What an object is in its scene.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 struct Marks {
     is_mirror: bool,
-    is_opaque: bool,
     moves: bool,
+    material: Material,
 }
 
 #[derive(Debug, Serialize)]
@@ -96,11 +98,14 @@ struct Primitive {
     material: Option<usize>,
 }
 
-/// The material of what hides nothing.
-#[derive(Debug, Serialize)]
+/// The material of objects that are seen alike.
+#[derive(Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Material {
-    alpha_mode: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alpha_mode: Option<&'static str>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    double_sided: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -163,7 +168,7 @@ struct Document<'a> {
 struct Parts<'a> {
     nodes: Vec<Node<'a>>,
     meshes: Vec<Mesh>,
-    /// None, or the one of what hides nothing.
+    /// All different.
     materials: Vec<Material>,
     accessors: Vec<Accessor>,
     views: Vec<BufferView>,
@@ -173,11 +178,8 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     fn add(&mut self, k: usize, object: &'a SceneObject, marks: Marks) -> Result<(), SceneWriteError> {
         let position = self.positions(k, object)?;
-        let Marks { is_mirror, is_opaque, moves } = marks;
-        if !is_opaque && self.materials.is_empty() {
-            self.materials.push(Material { alpha_mode: "BLEND" });
-        }
-        let material = (!is_opaque).then_some(0);
+        let Marks { is_mirror, moves, material } = marks;
+        let material = self.material(material);
         let indices = (!object.triangles.is_empty()).then(|| self.indices(object));
         let mode = if indices.is_some() { 4 } else { 0 };
         let primitive = Primitive { attributes: Attributes { position }, indices, mode, material };
@@ -186,6 +188,18 @@ impl<'a> Parts<'a> {
         let extras = (is_mirror || moves).then_some(Extras { sightlines: stated });
         self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1, extras });
         Ok(())
+    }
+
+    /// The index of a material; none for the one that holds where none is stated.
+    fn material(&mut self, material: Material) -> Option<usize> {
+        if material == (Material { alpha_mode: None, double_sided: false }) {
+            return None;
+        }
+        let known = self.materials.iter().position(|m| *m == material);
+        Some(known.unwrap_or_else(|| {
+            self.materials.push(material);
+            self.materials.len() - 1
+        }))
     }
 
     fn positions(&mut self, object: usize, o: &SceneObject) -> Result<usize, SceneWriteError> {

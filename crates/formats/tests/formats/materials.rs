@@ -254,6 +254,10 @@ fn single_sides_hide_by_default_and_not_if_asked() {
     doc.json["meshes"][2]["primitives"][0] = json!({"attributes": {"POSITION": closed}, "indices": sides});
     let file = read(&doc);
     assert_eq!((file.scene.see_through().len(), file.info.n_single_sided_triangles), (0, 5));
+    let single_sided = |file: &SceneFile| (0..3).filter(|&k| file.scene.is_single_sided(k)).collect::<Vec<_>>();
+    assert_eq!(single_sided(&file), [0, 2], "what is not doubleSided is seen from the front");
+    let both_sides = SceneReadOptions { both_sides: true, ..options(&[], &[]) };
+    assert!(single_sided(&read_with(&doc, &both_sides)).is_empty());
     let asked = SceneReadOptions { single_sided: true, ..options(&[], &[]) };
     let file = read_with(&doc, &asked);
     assert_eq!(classified(&file), [(0, Role::SeeThrough, "single sides")]);

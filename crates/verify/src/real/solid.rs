@@ -19,6 +19,8 @@ pub(crate) struct SolidWorld {
     of_object: Vec<[u32; 2]>,
     /// For each object whether its triangles stop sight.
     is_opaque: Vec<bool>,
+    /// For each object whether only the fronts of its triangles are seen.
+    is_single_sided: Vec<bool>,
     /// The objects that move, ascending, and the boxes that they do not leave.
     movers: Vec<(u32, Aabb<3>)>,
     mover_tree: BoxTree<3>,
@@ -61,6 +63,7 @@ impl SolidWorld {
             object_of,
             of_object,
             is_opaque: (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_opaque(object)).collect(),
+            is_single_sided: (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_single_sided(object)).collect(),
             cells,
             next: neighbours_of(table),
             slack: scale * 2f64.powi(-40),
@@ -86,6 +89,13 @@ impl SolidWorld {
     /// Visits the triangles near the segment from `p` to `p + limit d`, until the limit is lowered below them.
     fn near(&self, p: Point3, d: Point3, limit: &Cell<f64>, each: impl FnMut(u32)) {
         self.tree.visit(|b| clip(p, d, b, [0.0, limit.get()], self.slack).is_some(), each);
+    }
+
+    /// Whether a triangle shows an eye a side that is seen. Exact.
+    fn shows(&self, triangle: u32, eye: Point3) -> bool {
+        let [a, b, c] = self.triangles[triangle as usize];
+        !self.is_single_sided[self.object_of[triangle as usize] as usize]
+            || sightlines_geometry::orient3d(a, b, c, eye) > 0.0
     }
 
     fn stops_sight(&self, triangle: u32) -> bool {
@@ -126,7 +136,7 @@ impl SolidWorld {
     }
 
     /// Whether nothing that stops sight touches the closed segment but triangles of one object, of which it crosses one
-    /// properly, or nothing at all, if there is no such object. Exact.
+    /// properly, or nothing at all, if there is no such object. Backs of a single-sided object are obstacles. Exact.
     fn is_free(&self, p: Point3, q: Point3, but: Option<u32>) -> bool {
         let d = sub(q, p);
         let limit = Cell::new(1.0);
@@ -136,7 +146,7 @@ impl SolidWorld {
             if !free {
                 return;
             }
-            if but == Some(self.object_of[i as usize]) {
+            if but == Some(self.object_of[i as usize]) && self.shows(i, p) {
                 crosses |= segment_crosses_triangle(p, q, triangle);
             } else if self.stops_sight(i) && !segment_and_triangle_apart(p, q, triangle) {
                 free = false;
