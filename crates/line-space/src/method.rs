@@ -2,7 +2,7 @@
 
 use crate::cell::Cell;
 use crate::end::End;
-use crate::search::{Outcome, Root, Search};
+use crate::search::{Outcome, Patience, Root, Search};
 use crate::surface::Surface;
 use crate::touch::{Start, Target};
 use sightlines_geometry::coordinate::MIN_MAGNITUDE;
@@ -59,29 +59,37 @@ impl LineSpace {
     /// Decides whether a box can be seen from another one: about the lines from all points of `volume` to all points of
     /// `target`.
     pub fn see_box(&mut self, volume: &Aabb<3>, target: &Aabb<3>, budget: u32) -> Outcome {
+        self.box_from(volume, target, budget, Patience::Full)
+    }
+
+    fn box_from(&mut self, volume: &Aabb<3>, target: &Aabb<3>, budget: u32, patience: Patience) -> Outcome {
         let Some((volume, target)) = with_area(volume).zip(with_area(target)) else { return Outcome::Undecided };
         if (0..3).all(|k| volume.min[k] <= target.max[k] && target.min[k] <= volume.max[k]) {
             return Outcome::Undecided;
         }
-        self.run(box_roots(&volume, &target), &Target::Box, budget)
+        self.run(box_roots(&volume, &target), &Target::Box, budget, patience)
     }
 
     /// Decides whether a triangle can be seen from a box: about the lines from all points of `volume` to all inner points of the
     /// triangle.
     pub fn see_triangle(&mut self, volume: &Aabb<3>, triangle: [Point3; 3], budget: u32) -> Outcome {
+        self.triangle_from(volume, triangle, budget, Patience::Full)
+    }
+
+    fn triangle_from(&mut self, volume: &Aabb<3>, triangle: [Point3; 3], budget: u32, patience: Patience) -> Outcome {
         let Some(volume) = with_area(volume) else { return Outcome::Undecided };
         if triangle.iter().flatten().any(|&x| check_coordinate(x).is_err()) || !avoids(&triangle, &volume, false) {
             return Outcome::Undecided;
         }
         let [a, b, c] = triangle;
         if collinear(a, b, c) {
-            return self.see_box(&volume, &Aabb::around(triangle), budget);
+            return self.box_from(&volume, &Aabb::around(triangle), budget, patience);
         }
-        self.run(triangle_roots(&volume, triangle), &Target::Triangle(triangle), budget)
+        self.run(triangle_roots(&volume, triangle), &Target::Triangle(triangle), budget, patience)
     }
 
-    fn run(&mut self, roots: Vec<Root>, target: &Target, budget: u32) -> Outcome {
-        let (outcome, n) = self.search.run(&self.surface, roots, target, budget);
+    fn run(&mut self, roots: Vec<Root>, target: &Target, budget: u32, patience: Patience) -> Outcome {
+        let (outcome, n) = self.search.run(&self.surface, roots, target, budget, patience);
         self.n_cells += u64::from(n);
         outcome
     }
@@ -189,13 +197,15 @@ struct LineUmbra<'a> {
 impl Umbra for LineUmbra<'_> {
     fn hides(&mut self, target: &Aabb<3>) -> bool {
         let budget = self.method.effort.box_cells;
-        self.method.see_box(&self.volume, target, budget) == Outcome::Hidden
+        self.method.box_from(&self.volume, target, budget, Patience::WhileItPays) == Outcome::Hidden
     }
 
     fn hides_points(&mut self, points: &[Point3]) -> bool {
         let budget = self.method.effort.triangle_cells;
         match *points {
-            [a, b, c] => self.method.see_triangle(&self.volume, [a, b, c], budget) == Outcome::Hidden,
+            [a, b, c] => {
+                self.method.triangle_from(&self.volume, [a, b, c], budget, Patience::WhileItPays) == Outcome::Hidden
+            }
             _ => self.hides(&Aabb::around(points.iter().copied())),
         }
     }
