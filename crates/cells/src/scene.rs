@@ -215,6 +215,11 @@ impl Scene {
         Ok(self)
     }
 
+    /// The objects that were marked as seen from the fronts of their triangles only, ascending, whether they move or not.
+    pub fn single_sided(&self) -> &[u32] {
+        &self.single_sided
+    }
+
     /// Whether an object is seen from the fronts of its triangles only. What [moves](Self::moving) is not: the box that it does not leave
     /// stands for it.
     pub fn is_single_sided(&self, object: u32) -> bool {

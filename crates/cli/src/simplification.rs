@@ -171,6 +171,7 @@ pub(crate) fn written(
 fn left(scene: &Scene, simplified: &Simplified) -> Scene {
     let is_mirror = |k: usize| scene.mirrors().iter().any(|&mirror| mirror as usize == k);
     let (mut objects, mut mirrors, mut see_through, mut moving) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut single_sided = Vec::new();
     for (k, (o, triangles)) in scene.objects().iter().zip(&simplified.triangles).enumerate() {
         if triangles.is_empty() {
             continue;
@@ -185,6 +186,9 @@ fn left(scene: &Scene, simplified: &Simplified) -> Scene {
         if !scene.is_opaque(k as u32) {
             see_through.push(objects.len() as u32);
         }
+        if scene.single_sided().binary_search(&(k as u32)).is_ok() {
+            single_sided.push(objects.len() as u32);
+        }
         let found = scene.moving().iter().find(|moving| moving.object as usize == k);
         moving.extend(found.map(|found| MovingObject { object: objects.len() as u32, ..*found }));
         objects.push(SceneObject {
@@ -196,5 +200,6 @@ fn left(scene: &Scene, simplified: &Simplified) -> Scene {
     let scene = Scene::new(objects).expect("coordinates and indices are those of a scene");
     let scene = scene.with_mirrors(mirrors).expect("mirrors are objects");
     let scene = scene.with_see_through(see_through).expect("what is see-through is an object");
-    scene.with_moving(moving).expect("what moves is an object, and its box is that of a scene")
+    let scene = scene.with_moving(moving).expect("what moves is an object, and its box is that of a scene");
+    scene.with_single_sided(single_sided).expect("what has one side is an object")
 }

@@ -95,7 +95,8 @@ impl Moved {
         let moved = Scene::new(objects)
             .and_then(|moved| moved.with_mirrors(scene.mirrors().to_vec()))
             .and_then(|moved| moved.with_moving(scene.moving().iter().map(moving).collect()))
-            .and_then(|moved| moved.with_see_through(scene.see_through().to_vec()));
+            .and_then(|moved| moved.with_see_through(scene.see_through().to_vec()))
+            .and_then(|moved| moved.with_single_sided(scene.single_sided().to_vec()));
         Ok(Self { scene: moved.map_err(MoveError::Scene)?, snaps, n_corners, n_snapped, most })
     }
 
