@@ -198,8 +198,12 @@ fn check_views(views: &Views, table: &Table) -> Result<(), SimplifyError> {
     Ok(())
 }
 
-/// Refuses a table of another scene.
+/// Refuses a table of another scene, and one with a frame.
 pub(crate) fn check_table(scene: &Scene, table: &Table) -> Result<(), SimplifyError> {
+    // Its cells are along other axes than the scene, whose objects may still be where it says.
+    if table.frame().is_some() {
+        return Err(ViewsError::Frame.into());
+    }
     let object = |id: u32| {
         let record = &table.objects()[id as usize];
         Ok::<_, Infallible>((record.name.clone(), Aabb { min: record.min, max: record.max }))

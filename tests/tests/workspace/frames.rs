@@ -9,7 +9,8 @@ use sightlines::formats::{ViewCell, ViewCells};
 use sightlines::geometry::Aabb;
 use sightlines::pvs::{Frame, ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower, tower_rooms};
-use sightlines::verify::{Truth, VerifyOptions, check_walls_in_space, verify};
+use sightlines::simplify::{HiddenBy, LevelOptions, SimplifyError, ViewsError, levels};
+use sightlines::verify::{Truth, VerifyOptions, along_frame, check_walls_in_space, verify};
 use sightlines_testkit::rays::RayScene;
 use sightlines_tests::data_folder;
 use sightlines_tests::scenes::scene_witness;
@@ -145,9 +146,21 @@ fn without_a_frame_little_is_hidden() {
 fn walls_of_turned_cells_are_covered() {
     let scene = turned(&small_tower(), &rotation(17.0, 0.0));
     let baked = bake(&scene, &with(Gap::Width(gap_of(&scene)))).unwrap();
-    let (table, along) = sightlines::verify::along_frame(&baked.table, &scene).unwrap().expect("it has a frame");
+    let (table, along) = along_frame(&baked.table, &scene).unwrap().expect("it has a frame");
     let walls = check_walls_in_space(&table, &along);
     assert!(walls.n_bare == 0 && walls.n_walls > 100, "{walls:?}");
+}
+
+/// Levels are made along the frame: of a table without it and the scene along it. The table with its frame is refused.
+#[test]
+fn levels_are_made_along_the_frame() {
+    let scene = turned(&slit(0.25), &rotation(20.0, 0.0));
+    let framed = bake(&scene, &with(Gap::Width(1e-4))).unwrap().table;
+    let (table, along) = along_frame(&framed, &scene).unwrap().expect("it has a frame");
+    let (by, options) = (HiddenBy { method: None, table: None }, LevelOptions::default());
+    assert!(levels(&along, &table, &by, &options).is_ok());
+    let error = levels(&scene, &framed, &by, &options).map(|_| ()).unwrap_err();
+    assert_eq!(error, SimplifyError::Views(ViewsError::Frame));
 }
 
 /// A hall, divided by a wall with a slit, and a thing at either end.
