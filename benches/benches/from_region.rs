@@ -185,8 +185,9 @@ fn ask(case: &Case, seen: &[Vec<bool>], contender: &Contender) -> Found {
     let mut method = (contender.make)(case);
     found.make = start.elapsed();
     let objects: Vec<Vec<[Point3; 3]>> = case.scene.objects().iter().map(|o| o.corners().collect()).collect();
-    let witness = RaySampler::new(objects.iter().map(|o| &o[..]));
-    let occludees = Occludees::new(objects);
+    let is_single_sided = |object: u32| case.scene.is_single_sided(object);
+    let witness = RaySampler::new(objects.iter().map(|o| &o[..])).with_single_sided(is_single_sided);
+    let occludees = Occludees::new(objects).with_single_sided(is_single_sided);
     for (cell, seen) in case.cells.iter().zip(seen) {
         let volume = Volume::new(*cell).expect("cells are boxes");
         let mut visible = vec![true; occludees.len()];
