@@ -158,14 +158,15 @@ fn real_quake_maps_give_the_same_bytes() {
 fn real_buildings_give_the_same_bytes() {
     let Some(data) = data("real_buildings_give_the_same_bytes") else { return };
     let (folder, mut found) = (Folder::new(), BTreeMap::new());
-    for scene in ["whale_tall", "whale_large", "delft"] {
-        let path = data.join("scenes").join(scene).join(scene).with_extension("glb").display().to_string();
-        table(&folder, &format!("scenes/{scene}"), &path, &[], &mut found);
+    let path = |scene: &str| data.join("scenes").join(scene).join(scene).with_extension("glb").display().to_string();
+    // A street of slanted houses is cut into places by default, which takes long.
+    for (scene, options) in [("whale_tall", &[][..]), ("whale_large", &[]), ("delft", &["--method", "sightlines"])] {
+        table(&folder, &format!("scenes/{scene}"), &path(scene), options, &mut found);
         picture(&folder, &format!("scenes/{scene}"), &["--height", "1.5"], &mut found);
     }
+    table(&folder, "scenes/whale_large-exact", &path("whale_large"), &["--gap", "0"], &mut found);
     let rooms = data.join("scenes/duplex/cells_rooms.json").display().to_string();
-    let duplex = data.join("scenes/duplex/duplex.glb").display().to_string();
-    table(&folder, "scenes/duplex-rooms", &duplex, &["--cells", &rooms], &mut found);
+    table(&folder, "scenes/duplex-rooms", &path("duplex"), &["--cells", &rooms], &mut found);
     compare("scenes/", &found);
 }
 
