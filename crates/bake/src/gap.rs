@@ -1,6 +1,6 @@
 //! How precise the coordinates of a scene are.
 
-use sightlines_cells::Scene;
+use sightlines_cells::{Point3, Scene};
 use sightlines_formats::SceneInfo;
 use sightlines_formats::scene::SceneFormat;
 
@@ -18,19 +18,65 @@ pub enum Gap {
 impl Gap {
     /// The precision of a scene from a file, in scene units; 0 for what is in doubles or in decimals.
     ///
-    /// glTF stores coordinates in single precision. Let M be the largest magnitude of a coordinate and u = 2^-24, so that
+    /// glTF stores coordinates in single precision. Let M be the magnitude of coordinates and u = 2^-24, so that
     /// rounding a coordinate moves it by at most u M. Whoever turns a building in single precision has rounded the entries of
     /// the rotation (3 u M for a sum of three products with them), the products and their sums (3 u M more), and the place in the end
     /// (u M): below 7 u M along each axis of the file, and so below √3 × 7 u M < 13 u M along any other. Coordinates of one plane then
     /// differ by no more than 26 u M from each other; that is what half the gap has to hold in the worst case, but these bounds are
     /// far from what is met: errors are of either sign, and most programs turn in double precision and round once (√3 u M). Half the gap is
-    /// therefore 8 u M, and the gap 16 u M = 2^-20 M: 0.03 mm for a building of 30 m.
+    /// therefore 8 u M, and the gap 16 u M = 2^-20 M: about 0.02 mm for a building of 30 m.
+    ///
+    /// M is twice the distance from the middle within which half of the corners lie, and never more than the largest coordinate. So neither a
+    /// sky around a building nor its place far from the origin, which nodes have in double precision, makes the gap wide. Where M is less
+    /// than what was rounded, fewer walls become flat, and nothing is wrongly closed.
     pub fn of_file(scene: &Scene, file: &SceneInfo) -> f64 {
-        let bounds = scene.bounds();
-        if file.format != SceneFormat::Gltf || bounds.is_empty() {
+        if file.format != SceneFormat::Gltf {
             return 0.0;
         }
-        let largest = bounds.min.iter().chain(&bounds.max).fold(0.0f64, |m, x| m.max(x.abs()));
-        largest / f64::from(1 << 20)
+        let corners: Vec<Point3> = scene.occluding_triangles().flatten().collect();
+        let middle = [0, 1, 2].map(|k| median(corners.iter().map(|p| p[k]).collect()));
+        let far = |p: &Point3| (0..3).map(|k| (p[k] - middle[k]).abs()).fold(0.0, f64::max);
+        let spread = median(corners.iter().map(far).collect());
+        let largest = corners.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        largest.min(2.0 * spread) / f64::from(1 << 20)
+    }
+}
+
+/// The value in the middle; 0 of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    let half = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(half, f64::total_cmp).1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sightlines_cells::SceneObject;
+    use sightlines_formats::scene::{parse_glb, write_glb};
+
+    /// Many small triangles around a place, and one large one around that.
+    fn gap(place: f64, sky: f64) -> f64 {
+        let triangle = |at: f64, size: f64| SceneObject {
+            name: String::new(),
+            vertices: vec![[at, 0.0, 0.0], [at + size, 0.0, 0.0], [at, size, 0.0]],
+            triangles: vec![[0, 1, 2]],
+        };
+        let mut objects: Vec<SceneObject> = (0..32).map(|k| triangle(place + f64::from(k), 1.0)).collect();
+        objects.push(triangle(place - sky, 2.0 * sky));
+        let scene = Scene::new(objects).expect("a scene");
+        let file = parse_glb(&write_glb(&scene).expect("single precision"), None).expect("a scene");
+        Gap::of_file(&file.scene, &file.info)
+    }
+
+    #[test]
+    fn neither_a_sky_nor_the_distance_from_the_origin_makes_the_gap_wide() {
+        let here = gap(0.0, 1.0);
+        assert!((8.0..33.0).contains(&(here * f64::from(1 << 20))), "{here}");
+        for (place, sky) in [(0.0, 65536.0), (4194304.0, 1.0), (4194304.0, 1024.0)] {
+            let there = gap(place, sky);
+            assert!(there <= 1.2 * here && there >= 0.8 * here, "{place} {sky}: {there} {here}");
+        }
+        // The impostor: what takes the largest coordinate would have closed openings of 4 units.
+        assert!(4194304.0 / f64::from(1 << 20) > 1e5 * here);
     }
 }
