@@ -63,7 +63,12 @@ impl Framed {
             Err(error) if is_stated => return Err(error),
             Err(_) => return Ok(None),
         };
-        if axes == PLAIN && moved.n_snapped == 0 {
+        // All walls in one plane leave no room for cells along the frame; along the file's axes they may.
+        let is_flat = |scene: &Scene| {
+            let b = scene.bounds();
+            (0..3).any(|k| b.min[k] >= b.max[k])
+        };
+        if axes == PLAIN && moved.n_snapped == 0 || is_flat(&moved.scene) && !is_flat(scene) {
             return Ok(None);
         }
         let after = Areas::of(&moved.scene);
