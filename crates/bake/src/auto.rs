@@ -136,6 +136,8 @@ const ROOMS: f64 = 0.1;
 pub struct SceneChoice {
     /// Whether sheets are used as well: surfaces in any direction.
     pub sheets: bool,
+    /// Whether line space is used in place of sheets: it also finds what several surfaces hide only together, and takes longer.
+    pub line_space: bool,
     /// Planes of buffers on each side of a cell; 0 for none.
     pub planes: u32,
     /// Texels along the longer side of such a plane.
@@ -168,7 +170,8 @@ impl SceneChoice {
     fn of(facts: &SceneFacts) -> Result<Self, Missing> {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let standard = Layout::default();
-        let mut choice = Self { sheets: false, planes: 0, texels: standard.texels, reasons: Vec::new() };
+        let mut choice =
+            Self { sheets: false, line_space: false, planes: 0, texels: standard.texels, reasons: Vec::new() };
         if facts.axial >= AXIAL {
             let axial = percent(facts.axial);
             choice.reasons.push(format!("{axial} of the area is perpendicular to an axis: sightlines use these walls"));
@@ -200,9 +203,14 @@ impl SceneChoice {
         Ok(choice)
     }
 
+    fn use_line_space(&mut self) {
+        (self.sheets, self.line_space) = (false, true);
+        self.reasons.push("cells are given: line space finds what surfaces hide only together".to_owned());
+    }
+
     /// Whether a from-region method is used besides sight lines.
     pub fn uses_region_method(&self) -> bool {
-        self.sheets || self.planes > 0
+        self.sheets || self.line_space || self.planes > 0
     }
 }
 
@@ -216,6 +224,9 @@ impl fmt::Display for SceneChoice {
         f.write_str("sightlines")?;
         if self.sheets {
             f.write_str(" and sheets")?;
+        }
+        if self.line_space {
+            f.write_str(" and line space")?;
         }
         if self.planes > 0 {
             write!(f, " and buffers of {} planes with {} texels", self.planes, self.texels)?;
@@ -237,6 +248,8 @@ pub struct Choice {
 
 /// Chooses methods for an input, and returns the options that stand for the choice.
 ///
+/// Cells that are given are few, and worth more work: line space takes the place of sheets for them.
+///
 /// Only [`BakeOptions::method`], [`BakeOptions::buffers`] and, in place of a k-d tree, [`BakeOptions::cells`] differ from the
 /// options given. Plans, portal files and Quake maps always take sightlines.
 pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choice, BakeOptions<'a>) {
@@ -246,8 +259,12 @@ pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choi
     };
     match input {
         BakeInput::Scene(scene, _) => {
-            let (facts, choice) = choose(scene);
+            let (facts, mut choice) = choose(scene);
             let mut chosen = options.clone();
+            let are_given = matches!(options.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_));
+            if choice.sheets && are_given {
+                choice.use_line_space();
+            }
             if chosen.cells == CellsFrom::KdTree {
                 chosen.cells = facts.own_cells();
             }
@@ -256,6 +273,7 @@ pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choi
             if !choice.sheets {
                 chosen.buffers.sheets = 0;
             }
+            chosen.buffers.line_space = choice.line_space;
             (Choice { method: choice.to_string(), reasons: choice.reasons, facts: Some(facts) }, chosen)
         }
         BakeInput::Plan(_) => {

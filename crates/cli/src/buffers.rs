@@ -56,6 +56,6 @@ impl BufferArgs {
     pub(crate) fn options(&self) -> BufferOptions {
         let Self { measure, planes, texels, occluders, no_carry, sheets, backend } = *self;
         let warn = |text: &str| tracing::warn!("{text}");
-        BufferOptions { measure, planes, texels, occluders, carry: !no_carry, sheets, backend, warn }
+        BufferOptions { measure, planes, texels, occluders, carry: !no_carry, sheets, line_space: false, backend, warn }
     }
 }

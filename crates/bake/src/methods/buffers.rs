@@ -28,6 +28,8 @@ pub struct BufferOptions {
     pub carry: bool,
     /// The most edges of triangles visited to find a sheet between a cell and an object; 0 for no sheets.
     pub sheets: u32,
+    /// Whether [line space](super::OcclusionMethod::LineSpace) is used as well.
+    pub line_space: bool,
     /// What draws the buffers.
     pub backend: Backend,
     /// Called with one line when a backend takes over from another one.
@@ -44,6 +46,7 @@ impl Default for BufferOptions {
             occluders: 500,
             carry: layout.carry,
             sheets: SheetMethod::DEFAULT_LIMIT as u32,
+            line_space: false,
             backend: Backend::Cpu,
             warn: |_| {},
         }
@@ -89,6 +92,7 @@ impl BufferOptions {
 struct Buffers {
     chosen: Arc<OccluderSelection>,
     sheets: Option<(Arc<Sheets>, usize)>,
+    line_space: Option<Box<dyn Prepared>>,
     scene: Aabb<3>,
     layout: Layout,
     backend: OpenBackend,
@@ -103,6 +107,7 @@ impl Buffers {
         Ok(Self {
             chosen: Arc::new(OccluderSelection::new(patches, options.occluders as usize)),
             sheets,
+            line_space: options.line_space.then(|| super::line_space::prepared(&triangles)),
             scene: scene.bounds(),
             layout: options.layout(),
             backend,
@@ -112,7 +117,8 @@ impl Buffers {
 
 impl Prepared for Buffers {
     fn instance(&self) -> Box<dyn FromRegion + Send> {
-        let mut methods: Vec<Box<dyn FromRegion + Send>> = Vec::new();
+        // The first method is the one that decides about single triangles.
+        let mut methods: Vec<_> = self.line_space.iter().map(|line_space| line_space.instance()).collect();
         if self.layout.planes > 0 {
             let chosen = Arc::clone(&self.chosen);
             methods.push(Box::new(Multifocal::new(self.backend.instance(), chosen, self.scene, self.layout)));
