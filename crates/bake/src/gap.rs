@@ -3,6 +3,7 @@
 use sightlines_cells::{Point3, Scene};
 use sightlines_formats::SceneInfo;
 use sightlines_formats::scene::SceneFormat;
+use sightlines_geometry::Aabb;
 
 /// How precise the coordinates of a scene are: openings narrower than this may count as closed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -26,8 +27,9 @@ impl Gap {
     /// far from what is met: errors are of either sign, and most programs turn in double precision and round once (√3 u M). Half the gap is
     /// therefore 8 u M, and the gap 16 u M = 2^-20 M: about 0.02 mm for a building of 30 m.
     ///
-    /// M is twice the distance from the middle within which half of the corners lie, and never more than the largest coordinate. So neither a
-    /// sky around a building nor its place far from the origin, which nodes have in double precision, makes the gap wide. Where M is less
+    /// M is twice the distance from the middle within which half of the corners lie, and never more than the largest coordinate or twice
+    /// the extent of the largest object. So neither a sky around a building, nor its place far from the origin or from other buildings,
+    /// which nodes have in double precision, makes the gap wide. Where M is less
     /// than what was rounded, fewer walls become flat, and nothing is wrongly closed.
     pub fn of_file(scene: &Scene, file: &SceneInfo) -> f64 {
         if file.format != SceneFormat::Gltf {
@@ -38,7 +40,9 @@ impl Gap {
         let far = |p: &Point3| (0..3).map(|k| (p[k] - middle[k]).abs()).fold(0.0, f64::max);
         let spread = median(corners.iter().map(far).collect());
         let largest = corners.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
-        largest.min(2.0 * spread) / f64::from(1 << 20)
+        let extent = |b: Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
+        let object = scene.occluders().map(|(_, o)| extent(o.bounds())).fold(0.0, f64::max);
+        largest.min(2.0 * spread).min(2.0 * object) / f64::from(1 << 20)
     }
 }
 
@@ -61,7 +65,7 @@ mod tests {
             vertices: vec![[at, 0.0, 0.0], [at + size, 0.0, 0.0], [at, size, 0.0]],
             triangles: vec![[0, 1, 2]],
         };
-        let mut objects: Vec<SceneObject> = (0..32).map(|k| triangle(place + f64::from(k), 1.0)).collect();
+        let mut objects: Vec<SceneObject> = (0..32).map(|k| triangle(place + f64::from(k), 16.0)).collect();
         objects.push(triangle(place - sky, 2.0 * sky));
         let scene = Scene::new(objects).expect("a scene");
         let file = parse_glb(&write_glb(&scene).expect("single precision"), None).expect("a scene");

@@ -2,6 +2,7 @@
 
 use crate::snap::Snaps;
 use sightlines_cells::{MovingObject, Scene, SceneError, SceneObject};
+use sightlines_geometry::vector::{dot, normal};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_pvs::Frame;
 
@@ -87,6 +88,9 @@ impl Moved {
             }
             objects.push(SceneObject { name: o.name.clone(), vertices, triangles: o.triangles.clone() });
         }
+        let keeps =
+            |object: &&u32| keeps_fronts(frame, &scene.objects()[**object as usize], &objects[**object as usize]);
+        let single_sided = scene.single_sided().iter().filter(keeps).copied().collect();
         let n_corners = objects.iter().map(|o| o.vertices.len()).sum();
         let moving = |moving: &MovingObject| {
             let within = moving.within.map(|b| if b.is_empty() { b } else { around(frame, &b) });
@@ -96,7 +100,7 @@ impl Moved {
             .and_then(|moved| moved.with_mirrors(scene.mirrors().to_vec()))
             .and_then(|moved| moved.with_moving(scene.moving().iter().map(moving).collect()))
             .and_then(|moved| moved.with_see_through(scene.see_through().to_vec()))
-            .and_then(|moved| moved.with_single_sided(scene.single_sided().to_vec()));
+            .and_then(|moved| moved.with_single_sided(single_sided));
         Ok(Self { scene: moved.map_err(MoveError::Scene)?, snaps, n_corners, n_snapped, most })
     }
 
@@ -125,4 +129,11 @@ fn around(frame: &Frame, b: &Aabb<3>) -> Aabb<3> {
 /// Bound on the distance of `to` from what `at` is rounded from: the difference and the sum round by a unit each.
 fn distance(at: f64, to: f64, rounding: f64) -> f64 {
     ((to - at).abs() + rounding) * (1.0 + 4.0 * f64::EPSILON)
+}
+
+/// Whether every triangle of an object looks the same way after its corners were moved; one that became flat or turned over has no
+/// front any more.
+fn keeps_fronts(frame: &Frame, object: &SceneObject, moved: &SceneObject) -> bool {
+    let fronts = |(t, m): ([Point3; 3], [Point3; 3])| dot(normal(t.map(|p| frame.to_frame(p))), normal(m)) > 0.0;
+    object.corners().zip(moved.corners()).all(fronts)
 }

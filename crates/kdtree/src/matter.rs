@@ -11,15 +11,12 @@ use sightlines_cells::{Point3, Scene};
 use sightlines_geometry::{Aabb, BoxTree, Point2, orient3d};
 use std::sync::OnceLock;
 
-/// Most corners of a thing that are looked for inside of a closed piece.
-const CORNERS: usize = 16;
-
 /// What is solid in a scene, for queries about boxes.
 ///
 /// Solid is the inside of a closed piece of an object that hides: each of its edges is passed as often in one direction as
 /// in the other, and it winds around what is inside counter-clockwise as seen from outside, less what hollows of the same object take
-/// away. A piece in which a corner of another thing lies is a house and no wall, and does not count. Where that is in doubt,
-/// nothing is solid.
+/// away. A piece is a house and no wall, and does not count, if a triangle of anything else, but for the same object's closed pieces and copies,
+/// has a point in its box, or something that moves comes there.
 #[derive(Debug)]
 pub struct Matter {
     /// Triangles of closed pieces.
@@ -37,6 +34,8 @@ pub struct Matter {
 struct Shell {
     object: u32,
     bounds: Aabb<3>,
+    /// The same piece among the things.
+    thing: u32,
     /// Whether something lies in it; looked for when it is first asked.
     contains: OnceLock<bool>,
 }
@@ -44,9 +43,13 @@ struct Shell {
 /// A piece of an object that may lie in a shell.
 #[derive(Debug)]
 struct Thing {
+    object: u32,
+    /// Around all places that it moves to.
     bounds: Aabb<3>,
     corners: Vec<Point3>,
     shell: Option<u32>,
+    /// Whether it is closed, and its fronts look inwards.
+    is_hollow: bool,
 }
 
 impl Matter {
@@ -63,7 +66,7 @@ impl Matter {
                 let is_shell = piece.closed && scene.is_opaque(id);
                 of_piece.push(is_shell.then(|| first + of_piece.iter().flatten().count() as u32));
                 if is_shell {
-                    shells.push(Shell { object: id, bounds: piece.bounds, contains: OnceLock::new() });
+                    shells.push(Shell { object: id, bounds: piece.bounds, thing: 0, contains: OnceLock::new() });
                 }
             }
             for (&piece, t) in mesh.piece_of.iter().zip(object.corners()) {
@@ -74,12 +77,13 @@ impl Matter {
                 }
             }
             for ((piece, corners), shell) in mesh.pieces.iter().zip(corners).zip(of_piece) {
-                // Hollows are no things.
-                if !(piece.closed && piece.inverted) {
-                    let step = corners.len().div_ceil(CORNERS).max(1);
-                    let corners = corners.into_iter().step_by(step).collect();
-                    things.push(Thing { bounds: piece.bounds, corners, shell });
+                let moves = scene.moving().iter().any(|moving| moving.object == id);
+                let bounds = if moves { scene.extent(id) } else { piece.bounds };
+                if let Some(shell) = shell {
+                    shells[shell as usize].thing = things.len() as u32;
                 }
+                let is_hollow = piece.closed && piece.inverted;
+                things.push(Thing { object: id, bounds, corners, shell, is_hollow });
             }
         }
         let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
@@ -94,7 +98,7 @@ impl Matter {
     pub fn holds(&self, b: &Aabb<3>) -> bool {
         let Some(p) = middle(b) else { return false };
         let Some(around) = self.around(p) else { return false };
-        let counted = around.iter().filter(|(shell, _)| !self.contains(*shell));
+        let counted = around.iter().filter(|(shell, n)| *n < 0 || !self.contains(*shell));
         let of_objects = sums(counted.map(|&(shell, n)| (self.shells[shell as usize].object, n)));
         let inside: Vec<u32> = of_objects.iter().filter(|(_, n)| *n > 0).map(|(object, _)| *object).collect();
         inside.iter().any(|&object| !self.enters(object, b))
@@ -121,21 +125,22 @@ impl Matter {
         (!on_surface).then(|| sums(parts.into_iter()))
     }
 
-    /// Whether another thing lies in a shell: within its box, and with a corner that the shell winds around. A copy in the
-    /// same place is none.
+    /// Whether the box of another thing overlaps that of a shell: then it may lie in it. A copy in the same place is none, nor is a
+    /// hollow of the same object, which is taken away.
     fn contains(&self, shell: u32) -> bool {
         let of = &self.shells[shell as usize];
         *of.contains.get_or_init(|| {
-            let meets = |b: &Aabb<3>| (0..3).all(|k| b.min[k] <= of.bounds.max[k] && of.bounds.min[k] <= b.max[k]);
+            let overlaps = |b: &Aabb<3>| (0..3).all(|k| b.min[k] < of.bounds.max[k] && of.bounds.min[k] < b.max[k]);
+            let own = &self.things[of.thing as usize];
             let mut found = false;
-            self.things_tree.visit(meets, |i| {
-                let thing = &self.things[i as usize];
-                let within = of.bounds.contains(thing.bounds.min) && of.bounds.contains(thing.bounds.max);
-                if !found && within && thing.shell != Some(shell) && thing.bounds != of.bounds {
-                    let wound = |p: &Point3| self.around(*p).is_some_and(|w| w.iter().any(|w| w.0 == shell));
-                    found = thing.corners.iter().any(wound);
-                }
-            });
+            self.things_tree.visit(
+                |b| (0..3).all(|k| b.min[k] <= of.bounds.max[k] && of.bounds.min[k] <= b.max[k]),
+                |i| {
+                    let thing = &self.things[i as usize];
+                    let is_own = thing.shell == Some(shell) || thing.is_hollow && thing.object == of.object;
+                    found |= !is_own && overlaps(&thing.bounds) && thing.corners != own.corners;
+                },
+            );
             found
         })
     }
@@ -222,6 +227,24 @@ mod tests {
         let with = |other| matter(vec![cube(false), other]).holds(&inner);
         assert!(with(tiny([9.0; 3])) && with(cube(false)), "things outside and copies change nothing");
         assert!(!with(tiny([6.0; 3])), "a house with a thing in it");
+        let mut wall = tiny([0.0; 3]);
+        wall.vertices = vec![[4.0, 0.0, 0.0], [4.0, 8.0, 0.0], [4.0, 8.0, 8.0]];
+        assert!(!with(wall.clone()), "a house with a wall from side to side");
+        wall.vertices = vec![[0.0, 0.0, 0.0], [8.0, 8.0, 0.0], [8.0, 8.0, 8.0]];
+        assert!(!with(wall), "a house with a thing as large as the house");
+        let mut shaft = tiny([6.0; 3]);
+        shaft.vertices[2] = [6.0, 6.0, 20.0];
+        assert!(!with(shaft), "a house with a thing that leaves it");
+        let mut room = cube(false);
+        room.vertices.iter_mut().for_each(|p| *p = p.map(|x| x / 2.0 + 2.0));
+        room.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+        assert!(!with(room), "a house with a room in it");
+        let lift = Scene::new(vec![cube(false), tiny([20.0, 1.0, 1.0])]).expect("a scene");
+        let moves = |within| sightlines_cells::MovingObject { object: 1, within: Some(within) };
+        let within = Aabb { min: [20.0, 0.0, 0.0], max: [21.0, 2.0, 2.0] };
+        assert!(Matter::of(&lift.clone().with_moving(vec![moves(within)]).expect("a scene")).holds(&inner));
+        let within = Aabb { min: [1.0, 0.0, 0.0], ..within };
+        assert!(!Matter::of(&lift.with_moving(vec![moves(within)]).expect("a scene")).holds(&inner), "a lift comes in");
         let scene = Scene::new(vec![cube(false)]).expect("a scene").with_see_through(vec![0]).expect("an object");
         assert!(!Matter::of(&scene).holds(&inner), "water");
     }

@@ -142,9 +142,10 @@ struct Query<'a> {
 }
 
 impl Query<'_> {
-    /// Whether no eye is in front of a triangle. Exact.
+    /// Whether no eye is in front of a triangle, and some are behind it. Exact. A triangle without area has no back.
     fn is_behind(&self, &[a, b, c]: &[Point3; 3]) -> bool {
-        self.eyes.iter().all(|&eye| orient3d(a, b, c, eye) <= 0.0)
+        let sides = self.eyes.map(|eye| orient3d(a, b, c, eye));
+        sides.iter().all(|&side| side <= 0.0) && sides.iter().any(|&side| side < 0.0)
     }
 }
 

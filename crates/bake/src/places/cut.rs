@@ -80,7 +80,6 @@ impl<'a> Cutter<'a> {
         let thinnest = longest_side(&region).1 * THINNEST;
         let mut summary = PlaceSummary { cell_size: self.cell_size, ..PlaceSummary::default() };
         let mut nodes = vec![Node::Solid];
-        // Where all is solid, all is a place.
         let whole = self.place(&views, region, &mut summary).unwrap_or(region);
         let mut queue = BinaryHeap::from([self.leaf(&views, whole, 0, &mut nodes)]);
         let mut n_done = 0;
@@ -116,6 +115,10 @@ impl<'a> Cutter<'a> {
             }
         }
         let cells = in_order(&nodes);
+        // Where all is solid, all is a place.
+        if cells.is_empty() && self.matter.is_some() {
+            return Self { scene: self.scene, matter: None, ..*self }.run(region, n_cells);
+        }
         summary.n_cells = cells.len();
         Ok(Places { cells, summary })
     }

@@ -112,6 +112,16 @@ fn the_insides_of_solids_are_left_out() {
     assert_eq!((kept.cells.iter().map(volume).sum::<f64>(), kept.summary.n_solid), (512.0, 0));
 }
 
+/// Where all is solid, all is a place, whether it is cut or not.
+#[test]
+fn a_region_in_solid_matter_has_cells() {
+    let cube = scene(vec![block(&boxed([0.0; 3], [8.0; 3]), false)]);
+    for n_cells in [1, 64] {
+        let held: f64 = cut(&cube, n_cells).cells.iter().map(volume).sum();
+        assert_eq!(held, 512.0, "{n_cells}");
+    }
+}
+
 /// A rock without one triangle is no certain solid.
 #[test]
 fn the_insides_of_what_is_open_are_places() {

@@ -6,7 +6,7 @@ use super::build::{Builder, Compact};
 use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
 use super::instances::transforms;
 use super::json::{Document, Mesh, Node, Primitive, SceneRoots, TRIANGLES};
-use super::material::{self, see_through};
+use super::material::{self, see_through, shows_fronts_only};
 use super::motion::{Motions, Moved, Vertices};
 use super::movers::{self, INSTANCING};
 use super::role::{Role, StatedRole, role_of_name};
@@ -407,7 +407,8 @@ fn build(
             if at.is_mirror(document, primitive) {
                 builder.mark_mirror();
             }
-            if !classifier.shows_both_sides() && materials.iter().all(|&m| is_single_sided(document, m)) {
+            let fronts_only = |&m: &Option<usize>| m.is_none_or(|m| shows_fronts_only(document, m));
+            if !classifier.shows_both_sides() && at.world.keeps_sides() && materials.iter().all(fronts_only) {
                 builder.mark_fronts_only();
             }
             if class.as_ref().is_none_or(Classification::hides)

@@ -98,7 +98,8 @@ impl Node {
         if self.stated.moves {
             return Some("extras".to_owned());
         }
-        self.extensions.as_ref()?.reason()
+        let by_name = || Some(format!("the name ending in {}", super::role::body_of_name(self.name.as_deref()?)?));
+        self.extensions.as_ref().and_then(|extensions| extensions.reason()).or_else(by_name)
     }
 }
 

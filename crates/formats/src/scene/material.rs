@@ -40,6 +40,15 @@ const SEE_THROUGH: [&str; 4] = [
     "ADOBE_materials_thin_transparency",
 ];
 
+/// Whether engines certainly draw only the fronts of what has a material.
+///
+/// # Source
+/// glTF 2.0 Specification, section 3.9.6. `KHR_materials_volume`: `doubleSided` has no effect on the borders of volumes.
+pub(super) fn shows_fronts_only(document: &Document, material: usize) -> bool {
+    let Some(Some(m)) = document.materials.get(material) else { return false };
+    !m.double_sided && !m.extensions.contains_key("KHR_materials_volume") && unknown_extensions(m).next().is_none()
+}
+
 /// Why a material of a glTF lets light through; `None` if it is opaque.
 ///
 /// # Source

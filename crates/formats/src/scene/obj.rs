@@ -192,6 +192,8 @@ struct Group {
 
 impl Obj {
     fn read(bytes: &[u8]) -> Result<Self, SceneReadError> {
+        // A byte order mark.
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let divider = if lines(bytes).any(|(_, line)| keyword(&line) == b"o") { b"o" } else { b"g" };
         let mut obj = Self::default();
         obj.groups.push(Group { name: "object 0".to_owned(), first_face: 0 });

@@ -85,6 +85,9 @@ impl StatedRole {
 /// out hides nothing; `occ` and `occonly`, by which an object hides more, only after `-` and as they are written.
 const HINTS: [&str; 7] = ["colonly", "convcolonly", "noimp", "navmesh", "rigid", "vehicle", "wheel"];
 
+/// Those of the hints that make a body that moves.
+const BODIES: [&str; 3] = ["rigid", "vehicle", "wheel"];
+
 /// Hints that something hides.
 const OCCLUDERS: [&str; 2] = ["-occ", "-occonly"];
 
@@ -98,6 +101,11 @@ pub(super) fn role_of_name(name: &str) -> Option<(Role, &'static str)> {
         return Some((Role::Occluder, ending));
     }
     HINTS.into_iter().find(|hint| has_hint(name, hint)).map(|hint| (Role::SeeThrough, hint))
+}
+
+/// The hint in the name of a node that physics move it.
+pub(super) fn body_of_name(name: &str) -> Option<&'static str> {
+    BODIES.into_iter().find(|hint| has_hint(without_number(name), hint))
 }
 
 /// Whether the name of a material says that it lets light through: `-alpha`, as importers of Godot read it.

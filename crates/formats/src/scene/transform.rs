@@ -66,6 +66,14 @@ impl Transform {
         Ok(Self { rows: [row(0), row(1), row(2)], hand })
     }
 
+    /// Whether it is certain which sides of triangles are their fronts: not if it mirrors, which engines treat differently for instances,
+    /// or flattens.
+    pub(super) fn keeps_sides(&self) -> bool {
+        let det = determinant(&self.rows);
+        let size: f64 = self.rows.iter().map(|r| r[..3].iter().map(|x| x * x).sum::<f64>().sqrt()).product();
+        self.hand > 0 && det > size * f64::from(f32::EPSILON)
+    }
+
     /// Whether fronts become backs.
     pub(super) fn mirrors(&self) -> bool {
         self.hand < 0

@@ -267,6 +267,32 @@ fn single_sides_hide_by_default_and_not_if_asked() {
     assert!(file.scene.see_through().is_empty());
 }
 
+#[test]
+fn sides_are_left_out_only_where_that_is_certain() {
+    let flat = json!({"scale": [-1.0, 1.0, 0.0]});
+    let nodes = [
+        json!({}),
+        json!({}),
+        json!({}),
+        json!({}),
+        json!({"scale": [-1.0, 1.0, 1.0]}),
+        flat,
+        json!({"name": "crate-rigid"}),
+    ];
+    let materials = [
+        json!({}),
+        json!({"extensions": {"KHR_materials_volume": {"thicknessFactor": 1.0}}}),
+        json!({"extensions": {"NEEDLE_techniques_webgl": {}}}),
+        json!({"name": 5}),
+    ];
+    let file = read(&doc(&nodes, &materials));
+    let single: Vec<u32> = (0..7).filter(|&k| file.scene.is_single_sided(k)).collect();
+    // The first is the twin: nothing speaks against it.
+    assert_eq!(single, [0], "volumes, unknown extensions, what cannot be read, mirrored, flat, and what physics move");
+    assert_eq!(file.scene.moving().len(), 1);
+    assert!(!file.scene.is_opaque(6));
+}
+
 /// Files beside an OBJ.
 #[derive(Debug)]
 struct Files<'a>(&'a [(&'a str, &'a str)]);

@@ -147,3 +147,14 @@ fn only_narrow_cracks_close() {
         assert!(left.max[0] <= right.min[0], "{width}");
     }
 }
+
+/// A rod that becomes a line, and a sliver, have no fronts any more; what is wider keeps them.
+#[test]
+fn what_becomes_flat_is_seen_from_both_sides() {
+    let rod = |width: f64| block("rod", &Aabb { min: [0.0; 3], max: [width, width, 4.0] });
+    let scene = Scene::new(vec![rod(1.0), rod(4e-4)]).expect("a scene").with_single_sided(vec![0, 1]).expect("objects");
+    let frame = Frame::new([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 1e-3).expect("a frame");
+    let moved = Moved::new(&scene, &frame).expect("moved").scene;
+    assert_eq!(moved.objects()[1].bounds().max[0], moved.objects()[1].bounds().min[0], "a line");
+    assert_eq!(moved.single_sided(), [0]);
+}

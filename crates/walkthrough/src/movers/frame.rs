@@ -142,7 +142,7 @@ impl<P: CellLocator> Movers<P> {
                 continue;
             };
             self.counters.tried += 1;
-            if is_within(&volume, &self.solid_within) && self.find_cells(&volume, |cell| seen.has_cell(cell)) {
+            if self.is_enclosed(&volume) && self.find_cells(&volume, |cell| seen.has_cell(cell)) {
                 self.leave_awake(slot);
                 let mover = self.at(slot);
                 (mover.state, mover.level) = (State::Asleep(volume), level);
@@ -194,7 +194,7 @@ impl<P: CellLocator> Movers<P> {
 
     /// Whether a box is visible if these cells are.
     fn is_seen(&mut self, bounds: &Aabb<3>, sees: impl Fn(CellId) -> bool) -> bool {
-        let mut hit = !is_within(bounds, &self.solid_within);
+        let mut hit = !self.is_enclosed(bounds);
         if !hit {
             self.places.touching(bounds, &mut self.pending, &mut |cell| {
                 hit = sees(cell);

@@ -17,6 +17,11 @@ pub trait CellLocator {
     /// The box of the scene around all cells; [`Aabb::EMPTY`] without cells. May be slow; it is called once.
     fn bounds(&self) -> Aabb<3>;
 
+    /// The axes of the cells, if they are not those of the scene, and the box along them around all cells. May be slow; it is called once.
+    fn along(&self) -> (Option<Frame>, Aabb<3>) {
+        (None, self.bounds())
+    }
+
     /// Calls `visit` with every cell that the closed box of the scene touches (z is 0 in the plane), until it returns `false`. A
     /// cell may be visited more than once, in any order. `pending` is scratch space.
     ///
@@ -34,8 +39,13 @@ impl<T: Borrow<Table>> CellLocator for TableCells<T> {
     }
 
     fn bounds(&self) -> Aabb<3> {
-        let along = self.table().cells().iter().fold(Aabb::EMPTY, |all, cell| all.with(cell.min).with(cell.max));
-        in_scene(self.table().frame(), along)
+        let (frame, along) = self.along();
+        in_scene(frame.as_ref(), along)
+    }
+
+    fn along(&self) -> (Option<Frame>, Aabb<3>) {
+        let around = self.table().cells().iter().fold(Aabb::EMPTY, |all, cell| all.with(cell.min).with(cell.max));
+        (self.table().frame().copied(), around)
     }
 
     fn touching(&self, bounds: &Aabb<3>, pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool) {
@@ -65,6 +75,10 @@ impl<P: CellLocator + ?Sized> CellLocator for Arc<P> {
 
     fn bounds(&self) -> Aabb<3> {
         (**self).bounds()
+    }
+
+    fn along(&self) -> (Option<Frame>, Aabb<3>) {
+        (**self).along()
     }
 
     fn touching(&self, bounds: &Aabb<3>, pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool) {
@@ -112,6 +126,10 @@ impl CellLocator for CellBoxes {
 
     fn bounds(&self) -> Aabb<3> {
         in_scene(self.frame.as_ref(), self.tree.nodes()[0].bounds)
+    }
+
+    fn along(&self) -> (Option<Frame>, Aabb<3>) {
+        (self.frame, self.tree.nodes()[0].bounds)
     }
 
     fn touching(&self, bounds: &Aabb<3>, _pending: &mut Vec<u32>, visit: &mut dyn FnMut(CellId) -> bool) {

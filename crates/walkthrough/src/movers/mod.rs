@@ -30,7 +30,7 @@ use expiry::Expiries;
 use lists::Lists;
 use motion::{flat, is_box, is_within};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, Frame};
 use std::fmt;
 
 /// Parameters of [`Movers`].
@@ -112,6 +112,8 @@ pub struct Movers<P> {
     /// Number of levels that are not forever.
     n_levels: u8,
     solid_within: Aabb<3>,
+    /// The box along the cells' axes, if these are not those of the scene, within which space outside every cell is solid.
+    along: Option<(Frame, Aabb<3>)>,
     slots: Vec<Slot>,
     free: Vec<u32>,
     n_movers: usize,
@@ -136,11 +138,18 @@ pub struct Movers<P> {
     counters: MoverCounters,
 }
 
+/// The axes of the cells and the box along them, unless options say where space is solid or the axes are those of the scene.
+fn along(options: &MoverOptions, places: &impl CellLocator) -> Option<(Frame, Aabb<3>)> {
+    let (frame, within) = options.solid_within.is_none().then(|| places.along())?;
+    Some((frame?, within))
+}
+
 impl<P: CellLocator> Movers<P> {
     /// No movers yet, in the cells of `places`.
     pub fn new(places: P, options: MoverOptions) -> Self {
         let n_cells = places.n_cells();
         let solid_within = options.solid_within.unwrap_or_else(|| places.bounds());
+        let along = along(&options, &places);
         let steps = std::iter::successors(Some(options.least), |time| Some(2.0 * time));
         let is_time = options.least > 0.0 && options.least.is_finite();
         // A double has some 2000 doublings; 64 are more than any frame rate and game need.
@@ -149,6 +158,7 @@ impl<P: CellLocator> Movers<P> {
             options,
             n_levels: n_levels as u8,
             solid_within: flat(solid_within, places.dimension()),
+            along,
             slots: Vec::new(),
             free: Vec::new(),
             n_movers: 0,
@@ -257,6 +267,7 @@ impl<P: CellLocator> Movers<P> {
     pub fn replace(&mut self, places: P) {
         let is_other_space = places.dimension() != self.places.dimension();
         self.solid_within = flat(self.options.solid_within.unwrap_or_else(|| places.bounds()), places.dimension());
+        self.along = along(&self.options, &places);
         self.lists = Lists::new(places.n_cells());
         self.marks = vec![0; places.n_cells()];
         self.places = places;
@@ -270,12 +281,21 @@ impl<P: CellLocator> Movers<P> {
                 (mover.motion, mover.is_lost, mover.bounds) = (mover.motion.anywhere(), true, everywhere);
             }
             let Some(Mover { state: State::Asleep(volume), .. }) = self.slots[slot as usize].mover else { continue };
-            if !is_other_space && is_within(&volume, &self.solid_within) && self.find_cells(&volume, |_| false) {
+            if !is_other_space && self.is_enclosed(&volume) && self.find_cells(&volume, |_| false) {
                 self.lists.enter(slot, &self.found);
             } else {
                 self.rise(slot);
             }
         }
+    }
+
+    /// Whether space outside every cell is solid all around a box.
+    fn is_enclosed(&self, bounds: &Aabb<3>) -> bool {
+        let along = self.along.as_ref().is_none_or(|(frame, within)| {
+            let (min, max) = frame.around(bounds.min, bounds.max);
+            is_within(&Aabb { min, max }, within)
+        });
+        along && is_within(bounds, &self.solid_within)
     }
 
     /// The cells in which the movers are registered.
@@ -412,5 +432,54 @@ impl<P> fmt::Debug for Movers<P> {
             .field("options", &self.options)
             .field("counters", &self.counters)
             .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One cell of 8 by 8 by 8 along these axes.
+    struct One(Option<Frame>);
+
+    impl CellLocator for One {
+        fn dimension(&self) -> u8 {
+            3
+        }
+
+        fn n_cells(&self) -> usize {
+            1
+        }
+
+        fn bounds(&self) -> Aabb<3> {
+            let (_, along) = self.along();
+            self.0.map_or(along, |frame| {
+                let (min, max) = frame.around_in_scene(along.min, along.max);
+                Aabb { min, max }
+            })
+        }
+
+        fn along(&self) -> (Option<Frame>, Aabb<3>) {
+            (self.0, Aabb { min: [-4.0; 3], max: [4.0; 3] })
+        }
+
+        fn touching(&self, _: &Aabb<3>, _: &mut Vec<u32>, _: &mut dyn FnMut(CellId) -> bool) {}
+    }
+
+    /// The corners of the box around a turned box are beyond it: what moves there is in no wall.
+    #[test]
+    fn beside_a_turned_building_nothing_is_solid() {
+        let r = 0.5f64.sqrt();
+        let frame = Frame::new([[r, r, 0.0], [-r, r, 0.0], [0.0, 0.0, 1.0]], 1e-6).expect("a frame");
+        let encloses = |frame, at: Point3, options: MoverOptions| {
+            Movers::new(One(frame), options).is_enclosed(&Aabb { min: at, max: at.map(|x| x + 0.1) })
+        };
+        type Point3 = [f64; 3];
+        let (corner, middle) = ([5.0, 5.0, 0.0], [0.0; 3]);
+        let plain = MoverOptions::default;
+        assert!(encloses(Some(frame), middle, plain()) && !encloses(Some(frame), corner, plain()));
+        assert!(!encloses(None, corner, plain()), "without a frame that is beyond, too");
+        let stated = MoverOptions { solid_within: Some(Aabb { min: [-9.0; 3], max: [9.0; 3] }), ..plain() };
+        assert!(encloses(Some(frame), corner, stated), "who says where space is solid is believed");
     }
 }

@@ -86,7 +86,10 @@ impl RegionArgs {
     ///
     /// * `portals`: whether the table is to have portals; then its cells are those of a k-d tree
     pub(super) fn choose_for(&self, scene: &Scene, portals: bool, options: &mut BakeOptions<'_>) {
-        let unnamed = options.cells == CellsFrom::KdTree && self.method != Some(SceneMethod::Sightlines);
+        // Mirrors reflect the cells of a k-d tree.
+        let unnamed = options.cells == CellsFrom::KdTree
+            && self.method != Some(SceneMethod::Sightlines)
+            && scene.mirrors().is_empty();
         if unnamed && !portals {
             options.cells = own_cells(scene);
         }
