@@ -144,14 +144,19 @@ impl Scene {
     ///
     /// # Errors
     /// [`SceneError::Mirror`] for an object that does not exist.
-    pub fn with_mirrors(mut self, mut mirrors: Vec<u32>) -> Result<Self, SceneError> {
-        mirrors.sort_unstable();
-        mirrors.dedup();
-        if let Some(&object) = mirrors.iter().find(|&&object| object as usize >= self.objects.len()) {
-            return Err(SceneError::Mirror { object: object as usize });
-        }
-        self.mirrors = mirrors;
+    pub fn with_mirrors(mut self, mirrors: Vec<u32>) -> Result<Self, SceneError> {
+        self.mirrors = self.ascending(mirrors, |object| SceneError::Mirror { object })?;
         Ok(self)
+    }
+
+    /// Marked objects in ascending order, each once; an error for the first that does not exist.
+    fn ascending(&self, mut marked: Vec<u32>, error: fn(usize) -> SceneError) -> Result<Vec<u32>, SceneError> {
+        marked.sort_unstable();
+        marked.dedup();
+        match marked.iter().find(|&&object| object as usize >= self.objects.len()) {
+            Some(&object) => Err(error(object as usize)),
+            None => Ok(marked),
+        }
     }
 
     /// The objects that are mirrors, ascending.
@@ -165,12 +170,7 @@ impl Scene {
     /// [`SceneError::SeeThrough`] for an object that does not exist.
     pub fn with_see_through(mut self, mut see_through: Vec<u32>) -> Result<Self, SceneError> {
         see_through.extend(self.moving.iter().map(|moving| moving.object));
-        see_through.sort_unstable();
-        see_through.dedup();
-        if let Some(&object) = see_through.iter().find(|&&object| object as usize >= self.objects.len()) {
-            return Err(SceneError::SeeThrough { object: object as usize });
-        }
-        self.see_through = see_through;
+        self.see_through = self.ascending(see_through, |object| SceneError::SeeThrough { object })?;
         Ok(self)
     }
 
@@ -205,13 +205,8 @@ impl Scene {
     ///
     /// # Errors
     /// [`SceneError::SingleSided`] for an object that does not exist.
-    pub fn with_single_sided(mut self, mut single_sided: Vec<u32>) -> Result<Self, SceneError> {
-        single_sided.sort_unstable();
-        single_sided.dedup();
-        if let Some(&object) = single_sided.iter().find(|&&object| object as usize >= self.objects.len()) {
-            return Err(SceneError::SingleSided { object: object as usize });
-        }
-        self.single_sided = single_sided;
+    pub fn with_single_sided(mut self, single_sided: Vec<u32>) -> Result<Self, SceneError> {
+        self.single_sided = self.ascending(single_sided, |object| SceneError::SingleSided { object })?;
         Ok(self)
     }
 
