@@ -41,7 +41,11 @@ pub(crate) fn check_moves(scene: &Scene, moved: &Scene, frame: &Frame) -> Result
         }
     }
     let roles = |scene: &Scene| (scene.objects().len(), scene.see_through().to_vec(), scene.mirrors().to_vec());
-    if roles(scene) == roles(moved) { Ok(()) } else { Err(VerifyError::Range) }
+    // Fewer objects with one side show more.
+    let sides = moved.single_sided().iter().all(|object| scene.single_sided().binary_search(object).is_ok());
+    let movers = |scene: &Scene| scene.moving().iter().map(|m| (m.object, m.within.is_some())).collect::<Vec<_>>();
+    let is_same = roles(scene) == roles(moved) && sides && movers(scene) == movers(moved);
+    if is_same { Ok(()) } else { Err(VerifyError::Range) }
 }
 
 /// Whether each coordinate of `q` is less than the gap from that of `p` along the frame.
@@ -106,5 +110,15 @@ mod tests {
         assert!(found(Scene::new(vec![object(turned(0.0), [0, 2, 1])]).unwrap()).is_err());
         let glass = Scene::new(vec![object(turned(0.0), [0, 1, 2])]).unwrap().with_see_through(vec![0]).unwrap();
         assert_eq!(found(glass), Err(VerifyError::Range));
+        // What had two sides has one; the other way round more is seen.
+        let plain = Scene::new(vec![object(turned(0.0), [0, 1, 2])]).unwrap();
+        let single = |scene: &Scene| scene.clone().with_single_sided(vec![0]).unwrap();
+        assert_eq!(found(single(&plain)), Err(VerifyError::Range));
+        assert_eq!(check_moves(&single(&scene), &plain, &frame), Ok(()));
+        // What moved stands still.
+        let moving = sightlines_cells::MovingObject { object: 0, within: None };
+        let moving = scene.clone().with_moving(vec![moving]).unwrap();
+        let still = plain.with_see_through(vec![0]).unwrap();
+        assert_eq!(check_moves(&moving, &still, &frame), Err(VerifyError::Range));
     }
 }
