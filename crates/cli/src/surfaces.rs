@@ -143,7 +143,7 @@ impl fmt::Display for Surfaces {
         }
         if self.n_single_sided_triangles > 0 {
             let triangles = count(self.n_single_sided_triangles as u64, "triangle");
-            writeln!(f, "single-sided   {triangles}, which hide from both sides; engines may draw their fronts only")?;
+            writeln!(f, "single-sided   {triangles}, which hide from both sides; engines draw their fronts only")?;
         }
         Ok(())
     }
