@@ -43,6 +43,8 @@ pub struct Scene {
     moving: Vec<MovingObject>,
     /// Ascending.
     single_sided: Vec<u32>,
+    /// Ascending.
+    doors: Vec<u32>,
 }
 
 /// An object that moves or changes its shape at run time. It is drawn, even if none of its triangles has an area at rest, and if
@@ -98,6 +100,12 @@ pub enum SceneError {
     /// What is marked as single-sided is no object.
     #[error("object {object} cannot be single-sided: there is no such object")]
     SingleSided {
+        /// Index of the object.
+        object: usize,
+    },
+    /// What is marked as a door is no object.
+    #[error("object {object} cannot be a door: there is no such object")]
+    Door {
         /// Index of the object.
         object: usize,
     },
@@ -208,6 +216,21 @@ impl Scene {
     pub fn with_single_sided(mut self, single_sided: Vec<u32>) -> Result<Self, SceneError> {
         self.single_sided = self.ascending(single_sided, |object| SceneError::SingleSided { object })?;
         Ok(self)
+    }
+
+    /// The same scene, in which these objects are doors that stand shut, and no others. That alone changes nothing of what they hide: they
+    /// are open for who asks what is seen, and shut where the run time shuts them.
+    ///
+    /// # Errors
+    /// [`SceneError::Door`] for an object that does not exist.
+    pub fn with_doors(mut self, doors: Vec<u32>) -> Result<Self, SceneError> {
+        self.doors = self.ascending(doors, |object| SceneError::Door { object })?;
+        Ok(self)
+    }
+
+    /// The objects that are doors, ascending.
+    pub fn doors(&self) -> &[u32] {
+        &self.doors
     }
 
     /// The objects that were marked as seen from the fronts of their triangles only, ascending, whether they move or not.
@@ -338,6 +361,10 @@ mod tests {
         assert_eq!(scene.clone().with_mirrors(vec![0, 0]).unwrap().mirrors(), [0]);
         let error = scene.clone().with_single_sided(vec![1]).unwrap_err().to_string();
         assert_eq!(error, "object 1 cannot be single-sided: there is no such object");
+        let error = scene.clone().with_doors(vec![0, 1]).unwrap_err().to_string();
+        assert_eq!(error, "object 1 cannot be a door: there is no such object");
+        let door = scene.clone().with_doors(vec![0, 0]).unwrap();
+        assert!(door.doors() == [0] && door.is_opaque(0) && scene.doors().is_empty());
         let single = scene.clone().with_single_sided(vec![0]).unwrap();
         assert!(single.is_single_sided(0) && !scene.is_single_sided(0));
         let moving = single.with_moving(vec![MovingObject { object: 0, within: None }]).unwrap();

@@ -39,6 +39,7 @@ pub const HEAD: usize = 4096;
 /// What a file holds.
 #[derive(Debug)]
 #[non_exhaustive]
+#[expect(clippy::large_enum_variant, reason = "there is one for each file that is read")]
 pub enum Input {
     /// A scene in the plane.
     Plan(Plan),

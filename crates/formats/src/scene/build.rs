@@ -2,6 +2,7 @@
 
 use super::closed::is_closed_outwards;
 use super::error::SceneReadError;
+use super::role::Role;
 use super::surface::{Classification, Classified, SceneReadOptions};
 use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplified};
 use crate::point::are_collinear;
@@ -43,6 +44,8 @@ pub(super) struct Builder {
     n_degenerate: usize,
     n_single_sided: usize,
     fronts_only: Vec<u32>,
+    view_volumes: Vec<Aabb<3>>,
+    doors: Vec<u32>,
     simplified: Option<Simplified>,
     /// What a user should hear of the file.
     pub(super) warnings: Vec<String>,
@@ -106,6 +109,15 @@ impl Builder {
         None
     }
 
+    /// Marks the object that was added last as a door that hides what is behind it while it is shut; if `only_closed`, only if it is closed,
+    /// with its fronts outwards.
+    pub(super) fn mark_door(&mut self, only_closed: bool) {
+        let shuts = |o: &SceneObject| !o.triangles.is_empty() && (!only_closed || is_closed_outwards(o));
+        if self.objects.last().is_some_and(shuts) {
+            self.doors.extend(self.last());
+        }
+    }
+
     /// Notes how the object that was added last is classified. `within` is the box that it does not leave if it moves, `None` if
     /// it may be anywhere.
     pub(super) fn classify(&mut self, class: Classification, within: Option<Aabb<3>>) {
@@ -113,7 +125,10 @@ impl Builder {
         if !class.hides() {
             self.see_through.push(object);
         }
-        let triangles = &mut self.objects[object as usize].triangles;
+        let SceneObject { vertices, triangles, .. } = &mut self.objects[object as usize];
+        if class.role == Role::ViewVolume && !triangles.is_empty() {
+            self.view_volumes.push(Aabb::around(vertices.iter().copied()));
+        }
         if !class.role.is_drawn() {
             triangles.clear();
         }
@@ -130,7 +145,7 @@ impl Builder {
         let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let scene = scene.with_see_through(self.see_through)?.with_moving(self.moving)?;
-        let scene = scene.with_single_sided(self.fronts_only)?;
+        let scene = scene.with_single_sided(self.fronts_only)?.with_doors(self.doors)?;
         let n_triangles = scene.n_triangles();
         if n_triangles == 0 {
             return Err(SceneReadError::NoTriangles { n_objects, n_degenerate });
@@ -149,6 +164,7 @@ impl Builder {
             simplified,
             read_with: read_with.clone(),
             surfaces: self.surfaces,
+            view_volumes: self.view_volumes,
             warnings: self.warnings,
         };
         Ok(SceneFile { scene, info })

@@ -1,28 +1,26 @@
 //! glTF 2.0: from a document to objects in world coordinates.
 
-use super::accessor::Elements;
 use super::buffers::{Buffers, split_glb};
-use super::build::{Builder, Compact};
-use super::error::{AccessorErrorKind, AccessorRole, NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
-use super::instances::transforms;
-use super::json::{Document, Mesh, Node, Primitive, SceneRoots, TRIANGLES};
-use super::material::{self, see_through, shows_fronts_only};
+use super::build::Builder;
+use super::error::{PrimitiveErrorKind, SceneReadError};
+use super::extras::{Stated, StatedMoves, StatedRole};
+use super::json::Document;
+use super::material::{self, shows_fronts_only};
 use super::motion::{Motions, Moved, Vertices};
 use super::movers::{self, INSTANCING};
-use super::role::{Role, StatedRole, role_of_name};
-use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
-use super::transform::Transform;
+use super::nodes::{Nodes, Placed, place_nodes, scene_names};
+use super::primitive::{LocalMesh, n_triangles_of};
+use super::range::{Range, RangeBox, bounded, box_of, united};
+use super::role::Role;
+use super::surface::{Classification, Classifier, SceneReadOptions};
 use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
 use crate::beside::{Folder, Neighbours};
 use crate::point::check_point;
+use sightlines_cells::Point3;
+use sightlines_geometry::Aabb;
 use std::path::Path;
 
 pub(crate) use super::buffers::MAGIC;
-
-/// Modes from here on make triangles; those before are points and lines.
-pub(super) const FIRST_OF_TRIANGLES: u32 = TRIANGLES;
-const TRIANGLE_STRIP: u32 = 5;
-const TRIANGLE_FAN: u32 = 6;
 
 /// Extensions that do not change where a triangle is, and quantised meshes, which are understood.
 const HARMLESS: [&str; 13] = [
@@ -111,11 +109,17 @@ pub(super) fn parse(
     let document: Document = serde_json::from_str(text).map_err(|source| SceneReadError::Json { source })?;
     check_understood(&document)?;
     let buffers = Buffers::new(&document.buffers, binary, beside);
-    let Nodes { placed, above } = place_nodes(&document, &buffers, options.scene.as_deref())?;
+    let Nodes { placed, above, n_coarser } = place_nodes(&document, &buffers, options.scene.as_deref())?;
     check_size(&document, &placed)?;
     let mut classifier = Classifier::new(options);
     let mut builder = build(&document, &Motions::new(&document, &buffers, &above), &placed, &mut classifier, watch)?;
-    builder.warnings.extend(unknown_roles(&document));
+    builder.warnings.extend(unclear_extras(&document));
+    if n_coarser > 0 {
+        let nodes = if n_coarser == 1 { "node is a coarser level" } else { "nodes are coarser levels" };
+        builder
+            .warnings
+            .push(format!("{n_coarser} {nodes} of others (MSFT_lod): left out, the finest stands for them"));
+    }
     if options.scene.is_none() && document.scenes.len() > 1 {
         let read = scene_names(&document).swap_remove(document.scene.unwrap_or(0));
         let n = document.scenes.len();
@@ -148,195 +152,6 @@ fn check_understood(document: &Document) -> Result<(), SceneReadError> {
         Some(name) => Err(SceneReadError::Extension { name: name.clone() }),
         None => Ok(()),
     }
-}
-
-/// A node that has a mesh, and where it is in the world.
-#[derive(Debug)]
-struct Placed<'a> {
-    index: usize,
-    node: &'a Node,
-    mesh_idx: usize,
-    mesh: &'a Mesh,
-    world: Transform,
-    inherited: Inherited,
-    /// Which of its instances it is, if it has some.
-    instance: Option<usize>,
-}
-
-/// What a node has of those above it, and its children of it.
-#[derive(Debug, Clone, Copy, Default)]
-struct Inherited {
-    /// The role of the nearest node that has one, and the ending of the name that states it, if its extras do not.
-    role: Option<(Role, Option<&'static str>)>,
-    /// Whether one of them is not drawn at first.
-    is_invisible: bool,
-}
-
-impl Inherited {
-    /// What `node` has, below what has `self`.
-    fn by(self, node: &Node) -> Self {
-        let of_name = node.name.as_deref().and_then(role_of_name).map(|(role, ending)| (role, Some(ending)));
-        let own = node.stated.role.role().map(|role| (role, None)).filter(|own| own.0 != Role::Mirror);
-        let own = own.or(of_name.filter(|own| own.0 != Role::Mirror));
-        Self { role: own.or(self.role), is_invisible: self.is_invisible || node.is_invisible() }
-    }
-
-    /// What of it holds for the children: that a name promises more hiding is said of one node.
-    fn for_children(self) -> Self {
-        Self { role: self.role.filter(|role| !matches!(role, (Role::Occluder, Some(_)))), ..self }
-    }
-}
-
-impl<'a> Placed<'a> {
-    fn id(&self) -> NodeId {
-        id_of(self.index, self.node)
-    }
-
-    fn given_name(&self) -> Option<&'a str> {
-        self.node.name.as_deref().or(self.mesh.name.as_deref())
-    }
-
-    fn name(&self, primitive: usize) -> String {
-        let name = self.given_name().map_or_else(|| format!("node {}", self.index), str::to_owned);
-        let name = self.instance.map_or(name.clone(), |instance| format!("{name}[{}]", instance + 1));
-        if primitive == 0 { name } else { format!("{name}#{primitive}") }
-    }
-
-    /// Whether extras of the node, the mesh or the material, or the name of the node, state that a primitive is a mirror.
-    fn is_mirror(&self, document: &Document, primitive: &Primitive) -> bool {
-        let by_name = self.node.name.as_deref().and_then(role_of_name).map(|(role, _)| role);
-        let material = primitive.material.and_then(|m| document.materials.get(m)?.as_ref());
-        let stated =
-            [self.node.stated.role.role(), self.mesh.role.role(), material.and_then(|m| m.role.role()), by_name];
-        stated.contains(&Some(Role::Mirror))
-    }
-
-    /// What is known of one of its objects if it has a material. `name` is that of the object. Of several roles the one that is
-    /// stated of the least counts: of the material, the mesh, the node, or the nearest node above it that has one.
-    fn evidence<'e>(
-        &'e self,
-        document: &'e Document,
-        motions: &Motions<'_, '_>,
-        primitive: &Primitive,
-        material: Option<usize>,
-        name: &'e str,
-    ) -> Evidence<'e> {
-        let see_through = material.and_then(|m| see_through(document, m));
-        let material = material.and_then(|m| document.materials.get(m)?.as_ref());
-        let names = [Some(name), self.node.name.as_deref(), self.mesh.name.as_deref()];
-        let names = names.into_iter().chain([material.and_then(|m| m.name.as_deref())]).flatten().collect();
-        let own = [material.and_then(|m| m.role.role()), self.mesh.role.role()].into_iter().flatten();
-        let mut own = own.filter(|role| *role != Role::Mirror).map(|role| (role, None));
-        let role = own.next().or(self.inherited.role);
-        let reason =
-            |ending: Option<&str>| ending.map_or_else(|| "extras".to_owned(), |ending| format!("a name with {ending}"));
-        let is_invisible = self.inherited.is_invisible || motions.appears(self.index);
-        let invisible = is_invisible.then(|| "KHR_node_visibility".to_owned());
-        let moves = motions.why(self.index, self.mesh, primitive);
-        Evidence {
-            names,
-            role: role.map(|(role, ending)| (role, reason(ending))),
-            see_through: see_through.or(invisible),
-            deforms: moves.as_ref().is_some_and(|moves| moves.deforms),
-            moves: moves.map(|moves| moves.reason),
-        }
-    }
-
-    fn fail(&self, primitive: usize, kind: PrimitiveErrorKind) -> SceneReadError {
-        SceneReadError::Primitive { node: self.id(), primitive, kind: Box::new(kind) }
-    }
-}
-
-fn id_of(index: usize, node: &Node) -> NodeId {
-    NodeId { index, name: node.name.as_deref().map(str::to_owned) }
-}
-
-/// The scene of a document that has this name, or else this index.
-fn scene_called(document: &Document, name: &str) -> Result<usize, SceneReadError> {
-    let of_name = document.scenes.iter().position(|scene| scene.name.as_deref() == Some(name));
-    let of_index = || name.parse().ok().filter(|&index: &usize| index < document.scenes.len());
-    of_name
-        .or_else(of_index)
-        .ok_or_else(|| SceneReadError::NoSuchScene { name: name.to_owned(), names: scene_names(document) })
-}
-
-/// The names of all scenes; the index of one without.
-fn scene_names(document: &Document) -> Vec<String> {
-    let name = |(k, scene): (usize, &SceneRoots)| scene.name.as_deref().map_or_else(|| k.to_string(), str::to_owned);
-    document.scenes.iter().enumerate().map(name).collect()
-}
-
-/// The nodes where a scene begins: the one that is asked for, or the default.
-fn roots(document: &Document, asked: Option<&str>) -> Result<Vec<usize>, SceneReadError> {
-    let asked = asked.map(|name| scene_called(document, name)).transpose()?;
-    let scene = asked.or(document.scene).unwrap_or(0);
-    match document.scenes.get(scene) {
-        Some(roots) => match roots.nodes.iter().find(|&&node| node >= document.nodes.len()) {
-            Some(&node) => Err(SceneReadError::NoRoot { scene, node }),
-            None => Ok(roots.nodes.clone()),
-        },
-        None if document.scene.is_some() => Err(SceneReadError::NoScene { scene }),
-        None => {
-            let mut is_child = vec![false; document.nodes.len()];
-            for &child in document.nodes.iter().flat_map(|n| &n.children) {
-                // A child that does not exist is reported when its parent is placed.
-                if let Some(is_child) = is_child.get_mut(child) {
-                    *is_child = true;
-                }
-            }
-            Ok((0..is_child.len()).filter(|&node| !is_child[node]).collect())
-        }
-    }
-}
-
-/// The nodes of a scene.
-struct Nodes<'a> {
-    /// Those with meshes, parents before children.
-    placed: Vec<Placed<'a>>,
-    /// The parent of each node of the scene, `Some(None)` for a root; `None` for nodes that are of no or another scene.
-    above: Vec<Option<Option<usize>>>,
-}
-
-/// The nodes of a scene. Keeps its own stack, so depth costs nothing but memory.
-fn place_nodes<'a>(
-    document: &'a Document,
-    buffers: &Buffers<'_>,
-    scene: Option<&str>,
-) -> Result<Nodes<'a>, SceneReadError> {
-    let mut above: Vec<Option<Option<usize>>> = vec![None; document.nodes.len()];
-    let start = |node| (node, None, Transform::IDENTITY, Inherited::default());
-    let mut stack: Vec<_> = roots(document, scene)?.into_iter().rev().map(start).collect();
-    let mut placed = Vec::new();
-    while let Some((index, parent_idx, parent, inherited)) = stack.pop() {
-        let node = &document.nodes[index];
-        let fail = |kind| SceneReadError::Node { node: id_of(index, node), kind };
-        if above[index].replace(parent_idx).is_some() {
-            return Err(fail(NodeErrorKind::ReachedTwice));
-        }
-        let world = parent.after(&Transform::of_node(node).map_err(fail)?);
-        let inherited = inherited.by(node);
-        if let Some(mesh_idx) = node.mesh {
-            let mesh = document.meshes.get(mesh_idx).ok_or_else(|| fail(NodeErrorKind::NoMesh { mesh: mesh_idx }))?;
-            let at = |world: Transform, instance| Placed { index, node, mesh_idx, mesh, world, inherited, instance };
-            match node.extensions.as_ref().and_then(|extensions| extensions.instances.as_ref()) {
-                None => placed.push(at(world, None)),
-                Some(instances) => {
-                    let instances = instances.as_ref().map_err(|_| fail(NodeErrorKind::NoInstances))?;
-                    let all = transforms(instances, document, buffers).map_err(fail)?;
-                    if placed.len() + all.len() > MAX_OBJECTS {
-                        let kind = PrimitiveErrorKind::TooMany { what: "objects", max: MAX_OBJECTS };
-                        return Err(at(world, None).fail(0, kind));
-                    }
-                    placed.extend(all.iter().enumerate().map(|(k, own)| at(world.after(own), Some(k))));
-                }
-            }
-        }
-        if let Some(&child) = node.children.iter().find(|&&child| child >= document.nodes.len()) {
-            return Err(fail(NodeErrorKind::NoChild { child }));
-        }
-        stack.extend(node.children.iter().rev().map(|&child| (child, Some(index), world, inherited.for_children())));
-    }
-    Ok(Nodes { placed, above })
 }
 
 /// Refuses scenes that are too large before any object is made: a small file can describe a large scene.
@@ -384,7 +199,7 @@ fn build(
         watch(Origin { node: at.index, mesh: at.mesh_idx, mirrors: at.world.mirrors(), locals: mesh });
         for (k, local) in mesh.iter().enumerate() {
             let (name, primitive) = (at.name(k), &at.mesh.primitives[k]);
-            let materials = materials_of(primitive);
+            let materials = primitive.materials();
             let evidence = materials.iter().map(|&m| at.evidence(document, motions, primitive, m, &name));
             let mut class = classifier.classify(evidence);
             let moved = class.as_ref().filter(|class| class.moves).map(|_| {
@@ -396,16 +211,24 @@ fn build(
             let placed =
                 |(vertex, p)| check_point(p).map_err(|kind| at.fail(k, PrimitiveErrorKind::Vertex { vertex, kind }));
             let corners = local.mesh.corners.iter().copied();
-            let vertices = match moved.as_ref().and_then(|moved| moved.at_rest.as_ref()) {
+            let vertices: Vec<Point3> = match moved.as_ref().and_then(|moved| moved.at_rest.as_ref()) {
                 Some(at_rest) => corners.zip(at_rest.iter().copied()).map(placed).collect::<Result<_, _>>()?,
                 None => {
                     let world = local.positions.iter().map(|&p| at.world.apply(p));
                     corners.zip(world).map(placed).collect::<Result<_, _>>()?
                 }
             };
+            let moved = match &class {
+                Some(class) if class.opens => Some(Moved { at_rest: None, within: opened(&vertices) }),
+                _ => moved,
+            };
             builder.add(name, vertices, local.mesh.triangles.iter().copied(), at.world.mirrors(), moved.is_some());
             if at.is_mirror(document, primitive) {
                 builder.mark_mirror();
+            }
+            if class.as_ref().is_some_and(|class| class.shuts) {
+                let is_single_sided = materials.iter().any(|&m| is_single_sided(document, m));
+                builder.mark_door(classifier.hides_no_single_sides() && is_single_sided);
             }
             let fronts_only = |&m: &Option<usize>| m.is_none_or(|m| shows_fronts_only(document, m));
             if !classifier.shows_both_sides() && at.world.keeps_sides() && materials.iter().all(fronts_only) {
@@ -428,9 +251,14 @@ fn build(
     Ok(builder)
 }
 
-/// The material of a primitive, and those that it may have instead; `None` for the standard one.
-fn materials_of(primitive: &Primitive) -> Vec<Option<usize>> {
-    std::iter::once(primitive.material).chain(primitive.variants.iter().copied().map(Some)).collect()
+/// A box that a door does not leave that stands shut with these corners: wherever it turns about a line through the box around them, or
+/// slides by the diagonal of that box, each of its points stays within a diagonal of the box. `None` if there is no such box.
+fn opened(corners: &[Point3]) -> Option<Aabb<3>> {
+    let sides: RangeBox = corners.iter().copied().map(box_of).reduce(united)?;
+    let [x, y, z] = sides.map(|side| Range::of(side.high).minus(Range::of(side.low)).square());
+    let diagonal = x.plus(y).plus(z).high.sqrt().next_up();
+    let off = Range { low: -diagonal, high: diagonal };
+    bounded(sides.map(|side| side.plus(off)))
 }
 
 /// Whether engines draw only the fronts of what has a material.
@@ -439,83 +267,29 @@ fn is_single_sided(document: &Document, material: Option<usize>) -> bool {
     material.is_none_or(|material| !material.double_sided)
 }
 
-/// Warnings of extras that state a role that there is not.
-fn unknown_roles(document: &Document) -> Vec<String> {
-    fn of<'a>(what: &str, said: impl Iterator<Item = (StatedRole, Option<&'a str>)>) -> Option<String> {
-        let names: Vec<&str> =
-            said.filter(|(role, _)| *role == StatedRole::Unknown).map(|(_, name)| name.unwrap_or_default()).collect();
-        let (first, n) = (names.first()?, names.len());
+/// Warnings of extras that state a role that there is not, or that state motion as something that is neither true nor false.
+fn unclear_extras(document: &Document) -> Vec<String> {
+    fn of<'a>(
+        what: &str,
+        said: impl Iterator<Item = (Stated, Option<&'a str>)> + Clone,
+    ) -> impl Iterator<Item = String> {
+        let list = |is_unclear: fn(&Stated) -> bool, state: String| {
+            let names: Vec<&str> = said
+                .clone()
+                .filter(|(stated, _)| is_unclear(stated))
+                .map(|(_, name)| name.unwrap_or_default())
+                .collect();
+            let (first, n) = (names.first()?, names.len());
+            Some(format!("extras of {what} state {state}: {n}, the first called {first:?}"))
+        };
         let roles = Role::ALL.map(Role::name).join(", ");
-        Some(format!("extras of {what} state a role that is none of {roles}: {n}, the first called {first:?}"))
+        let role = list(|stated| stated.role == StatedRole::Unknown, format!("a role that is none of {roles}"));
+        let moves = "a \"moves\" that is neither true nor false, which counts as true".to_owned();
+        let moves = list(|stated| stated.moves == StatedMoves::Unclear, moves);
+        role.into_iter().chain(moves)
     }
-    let nodes = document.nodes.iter().map(|node| (node.stated.role, node.name.as_deref()));
-    let meshes = document.meshes.iter().map(|mesh| (mesh.role, mesh.name.as_deref()));
-    let materials = document.materials.iter().flatten().map(|material| (material.role, material.name.as_deref()));
-    [of("nodes", nodes), of("meshes", meshes), of("materials", materials)].into_iter().flatten().collect()
-}
-
-/// A primitive as it is in its mesh.
-#[derive(Debug)]
-pub(super) struct LocalMesh {
-    pub(super) mesh: Compact,
-    /// Of each corner of `mesh`.
-    positions: Vec<[f64; 3]>,
-}
-
-impl LocalMesh {
-    fn read(document: &Document, buffers: &Buffers<'_>, primitive: &Primitive) -> Result<Self, PrimitiveErrorKind> {
-        let positions = primitive.attributes.position.ok_or(PrimitiveErrorKind::NoPositions)?;
-        let elements = |accessor, role| {
-            let fail = |kind: AccessorErrorKind| PrimitiveErrorKind::Accessor { role, accessor, kind };
-            Elements::new(document, buffers, accessor, role).map_err(fail)
-        };
-        let positions = elements(positions, AccessorRole::Positions)?;
-        let corners = match primitive.indices {
-            Some(indices) => read_indices(&elements(indices, AccessorRole::Indices)?, positions.count)?,
-            None => (0..positions.count).collect(),
-        };
-        check_mode(primitive.mode, corners.len())?;
-        let n_triangles = n_triangles_of(primitive.mode, corners.len());
-        let triangles = (0..n_triangles).map(|k| triangle_of(primitive.mode, k).map(|place| corners[place]));
-        let mesh = Compact::new(corners.clone(), triangles);
-        let positions = mesh.corners.iter().map(|&k| positions.position(k)).collect();
-        Ok(Self { mesh, positions })
-    }
-}
-
-pub(super) fn read_indices(indices: &Elements<'_>, n_positions: usize) -> Result<Vec<usize>, PrimitiveErrorKind> {
-    let check = |position| {
-        let index = indices.index(position);
-        let fail = PrimitiveErrorKind::Index { position, index, n_positions };
-        usize::try_from(index).ok().filter(|&i| i < n_positions).ok_or(fail)
-    };
-    (0..indices.count).map(check).collect()
-}
-
-/// Refuses modes that do not exist, and lists of triangles that end in a part of one.
-fn check_mode(mode: u32, n_corners: usize) -> Result<(), PrimitiveErrorKind> {
-    match mode {
-        TRIANGLES if !n_corners.is_multiple_of(3) => Err(PrimitiveErrorKind::Corners { n_corners }),
-        0..=TRIANGLE_FAN => Ok(()),
-        _ => Err(PrimitiveErrorKind::Mode { mode }),
-    }
-}
-
-/// Triangles that `n` corners make; points and lines make none.
-fn n_triangles_of(mode: u32, n: usize) -> usize {
-    match mode {
-        TRIANGLES => n / 3,
-        TRIANGLE_STRIP | TRIANGLE_FAN => n.saturating_sub(2),
-        _ => 0,
-    }
-}
-
-/// Which corners triangle `k` has, in the order of the specification (section 3.7.2.1).
-fn triangle_of(mode: u32, k: usize) -> [usize; 3] {
-    match mode {
-        // Every other triangle of a strip runs the other way round.
-        TRIANGLE_STRIP => [k, k + 1 + k % 2, k + 2 - k % 2],
-        TRIANGLE_FAN => [k + 1, k + 2, 0],
-        _ => [3 * k, 3 * k + 1, 3 * k + 2],
-    }
+    let nodes = document.nodes.iter().map(|node| (node.stated, node.name.as_deref()));
+    let meshes = document.meshes.iter().map(|mesh| (mesh.stated, mesh.name.as_deref()));
+    let materials = document.materials.iter().flatten().map(|material| (material.stated, material.name.as_deref()));
+    of("nodes", nodes).chain(of("meshes", meshes)).chain(of("materials", materials)).collect()
 }

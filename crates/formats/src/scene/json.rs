@@ -4,8 +4,8 @@
 //! that is written 10,000 km from the origin would have its walls moved against each other.
 
 use super::Simplified;
+use super::extras::Stated;
 use super::movers::{NodeExtensions, moves_everything};
-use super::role::{Stated, StatedRole};
 use serde::de::{Deserializer, IgnoredAny};
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
@@ -56,7 +56,7 @@ impl Document {
 pub(super) struct Asset {
     pub(super) version: String,
     /// Whether its extras mark it as simplified: `{"sightlines": {"simplified": {"occluder": false}}}`.
-    #[serde(default, rename = "extras", deserialize_with = "super::role::simplified")]
+    #[serde(default, rename = "extras", deserialize_with = "super::extras::simplified")]
     pub(super) simplified: Option<Simplified>,
 }
 
@@ -81,7 +81,7 @@ pub(super) struct Node {
     pub(super) skin: Option<usize>,
     pub(super) weights: Option<Box<[f64]>>,
     /// What its extras state: `{"sightlines": {"role": "mirror", "moves": true}}`.
-    #[serde(default, rename = "extras", deserialize_with = "super::role::stated")]
+    #[serde(default, rename = "extras", deserialize_with = "super::extras::stated")]
     pub(super) stated: Stated,
     #[serde(default)]
     pub(super) extensions: Option<Box<NodeExtensions>>,
@@ -93,9 +93,14 @@ impl Node {
         self.extensions.as_ref().is_some_and(|extensions| extensions.is_invisible)
     }
 
+    /// The nodes that are coarser levels of it.
+    pub(super) fn coarser(&self) -> &[usize] {
+        self.extensions.as_ref().map_or(&[], |extensions| &extensions.coarser)
+    }
+
     /// Why programs may move it, and all below it, anywhere.
     pub(super) fn loose(&self) -> Option<String> {
-        if self.stated.moves {
+        if self.stated.moves() {
             return Some("extras".to_owned());
         }
         let by_name = || Some(format!("the name ending in {}", super::role::body_of_name(self.name.as_deref()?)?));
@@ -110,8 +115,8 @@ pub(super) struct Mesh {
     pub(super) primitives: Vec<Primitive>,
     pub(super) weights: Option<Box<[f64]>>,
     /// As that of a node, for all nodes with this mesh.
-    #[serde(default, rename = "extras", deserialize_with = "super::role::said")]
-    pub(super) role: StatedRole,
+    #[serde(default, rename = "extras", deserialize_with = "super::extras::stated")]
+    pub(super) stated: Stated,
 }
 
 #[derive(Debug, Deserialize)]
@@ -128,6 +133,13 @@ pub(super) struct Primitive {
     /// Materials that it may have instead, by `KHR_materials_variants`.
     #[serde(default, rename = "extensions", deserialize_with = "variants")]
     pub(super) variants: Vec<usize>,
+}
+
+impl Primitive {
+    /// Its material, and those that it may have instead; `None` for the standard one.
+    pub(super) fn materials(&self) -> Vec<Option<usize>> {
+        std::iter::once(self.material).chain(self.variants.iter().copied().map(Some)).collect()
+    }
 }
 
 /// The materials that a primitive may have instead of its own, by `KHR_materials_variants`. A list that is not as it
@@ -162,8 +174,8 @@ pub(super) struct Material {
     #[serde(default)]
     pub(super) extensions: BTreeMap<Box<str>, IgnoredAny>,
     /// As that of a node, for all primitives with this material.
-    #[serde(default, rename = "extras", deserialize_with = "super::role::said")]
-    pub(super) role: StatedRole,
+    #[serde(default, rename = "extras", deserialize_with = "super::extras::stated")]
+    pub(super) stated: Stated,
 }
 
 #[derive(Debug, Default, Deserialize)]

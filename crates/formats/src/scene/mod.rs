@@ -22,6 +22,7 @@ mod buffers;
 mod build;
 mod closed;
 mod error;
+mod extras;
 mod gltf;
 mod instances;
 mod json;
@@ -29,9 +30,11 @@ mod material;
 mod motion;
 mod movers;
 mod mtl;
+mod nodes;
 mod obj;
 mod pattern;
 mod polygon;
+mod primitive;
 mod range;
 mod rewrite;
 mod role;
@@ -57,6 +60,7 @@ pub use write::{write_glb, write_simplified_glb};
 use crate::ReadError;
 use crate::beside::{Folder, Neighbours};
 use sightlines_cells::Scene;
+use sightlines_geometry::Aabb;
 pub use sightlines_pvs::Axis;
 use std::fs;
 use std::path::Path;
@@ -79,7 +83,7 @@ pub struct SceneFile {
 }
 
 /// What a file states about its scene.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SceneInfo {
     /// How it was written.
     pub format: SceneFormat,
@@ -105,8 +109,18 @@ pub struct SceneInfo {
     pub read_with: SceneReadOptions,
     /// The objects that are not simply walls, ascending.
     pub surfaces: Vec<Classified>,
+    /// The boxes around objects that show where viewers can be ([`Role::ViewVolume`]), in their order, in scene units.
+    pub view_volumes: Vec<Aabb<3>>,
     /// What a user should hear of the file, a sentence each.
     pub warnings: Vec<String>,
+}
+
+impl SceneInfo {
+    /// The box around all places where viewers can be, as the file states them; `None` if it states none.
+    pub fn view_region(&self) -> Option<Aabb<3>> {
+        let corners = self.view_volumes.iter().flat_map(|volume| [volume.min, volume.max]);
+        (!self.view_volumes.is_empty()).then(|| Aabb::around(corners))
+    }
 }
 
 /// How a scene with fewer triangles is related to the one that it was made from.

@@ -11,7 +11,7 @@ use std::fmt;
 
 /// Extensions of nodes and documents that leave nodes where they are, by how their names begin.
 ///
-/// `MSFT_lod` shows other meshes in the same place; levels that reach beyond the finest one are not looked at.
+/// `MSFT_lod` shows other meshes in the same place: the finest one stands for all, and levels that reach beyond it are not looked at.
 const STILL: [&str; 34] = [
     "AGI_stk_metadata",
     "CESIUM_",
@@ -51,6 +51,9 @@ const STILL: [&str; 34] = [
 
 /// Draws a mesh many times.
 pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// Shows coarser nodes instead of a node where it is small.
+const LEVELS: &str = "MSFT_lod";
 
 /// Extensions of nodes that move them, or have a part that does: see [`moves`].
 const MOVING: [&str; 7] = [
@@ -129,6 +132,8 @@ pub(super) struct NodeExtensions {
     pub(super) is_invisible: bool,
     /// Where its mesh is drawn many times; an error if that is not as the extension has it.
     pub(super) instances: Option<Result<Instances, NotInstances>>,
+    /// The nodes that are coarser levels of it, by `MSFT_lod`; empty if that is not as the extension has it.
+    pub(super) coarser: Vec<usize>,
     /// The first extension that moves it.
     mover: Option<Box<str>>,
 }
@@ -158,6 +163,8 @@ impl<'de> Deserialize<'de> for NodeExtensions {
                         found.is_invisible = map.next_value::<Value>()?.get("visible") == Some(&Value::Bool(false));
                     } else if name == INSTANCING {
                         found.instances = Some(Instances::of(&map.next_value::<Value>()?).ok_or(NotInstances));
+                    } else if name == LEVELS {
+                        found.coarser = levels(&map.next_value::<Value>()?).unwrap_or_default();
                     } else if begins_like(&name, &STILL) {
                         map.next_value::<IgnoredAny>()?;
                     } else if moves(&name, &map.next_value::<Value>()?) {
@@ -169,6 +176,12 @@ impl<'de> Deserialize<'de> for NodeExtensions {
         }
         deserializer.deserialize_map(Extensions)
     }
+}
+
+/// The nodes that are listed as levels.
+fn levels(value: &Value) -> Option<Vec<usize>> {
+    let ids = value.get("ids")?.as_array()?;
+    ids.iter().map(|id| id.as_u64().and_then(|id| usize::try_from(id).ok())).collect()
 }
 
 /// The names of the extensions of a document; none where they are not as the specification has them.

@@ -3,9 +3,9 @@
 use super::buffers::load_file;
 use super::build::{Builder, Compact};
 use super::error::{ObjErrorKind, SceneReadError};
-use super::mtl::parse_mtl;
+use super::mtl::{before_comment, parse_mtl};
 use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
-use super::role::{Role, role_of_name};
+use super::role::{MeshNames, Role, role_of_name};
 use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
 use super::{MAX_ELEMENTS, SceneFile, SceneFormat};
 use crate::beside::Neighbours;
@@ -55,6 +55,7 @@ pub fn parse_obj_with(
     let mut builder = Builder::default();
     let mut classifier = Classifier::new(options);
     let surfaces = Surfaces::read(&obj, beside, &mut builder.warnings);
+    let names: MeshNames<'_> = obj.groups.iter().map(|group| group.name.as_str()).collect();
     for (k, group) in obj.groups.iter().enumerate() {
         let end = obj.groups.get(k + 1).map_or(obj.faces.len(), |next| next.first_face);
         let faces = &obj.faces[group.first_face..end];
@@ -63,7 +64,7 @@ pub fn parse_obj_with(
         for face in faces {
             classes.entry(face.material).or_insert_with(|| {
                 let material = face.material.map(|m| obj.materials[m].as_str());
-                let role = role_of_name(&group.name).filter(|(role, _)| *role != Role::Mirror);
+                let role = names.role_of(&group.name).filter(|(role, _)| *role != Role::Mirror);
                 classifier.classify([Evidence {
                     names: [Some(group.name.as_str()), material].into_iter().flatten().collect(),
                     role: role.map(|(role, ending)| (role, format!("a name with {ending}"))),
@@ -96,6 +97,8 @@ pub fn parse_obj_with(
 struct Surfaces {
     /// Why each lets light through; `None` for one that is opaque.
     known: BTreeMap<String, Option<String>>,
+    /// The same by what stands in their names before a `#`, which may begin a comment.
+    before_comments: BTreeMap<String, Option<String>>,
     /// What is said of one that is not known; `None` if the file names no library, so that there are none.
     unknown: Option<String>,
 }
@@ -103,6 +106,7 @@ struct Surfaces {
 impl Surfaces {
     fn read(obj: &Obj, beside: Option<&dyn Neighbours>, warnings: &mut Vec<String>) -> Self {
         let mut known: BTreeMap<String, Option<String>> = BTreeMap::new();
+        let mut before_comments = known.clone();
         let mut missing = Vec::new();
         for library in &obj.libraries {
             let Some(files) = read_libraries(library, beside) else {
@@ -110,8 +114,11 @@ impl Surfaces {
                 continue;
             };
             for (name, why) in files.iter().flat_map(|bytes| parse_mtl(bytes)) {
-                let entry = known.entry(name).or_default();
-                *entry = entry.take().or(why);
+                let short = before_comment(&name).to_owned();
+                for (names, name) in [(&mut before_comments, short), (&mut known, name)] {
+                    let entry = names.entry(name).or_default();
+                    *entry = entry.take().or_else(|| why.clone());
+                }
             }
         }
         if let Some(first) = missing.first() {
@@ -136,11 +143,12 @@ impl Surfaces {
             Some(library) => Some(format!("a material of the missing {library}")),
             None => (!obj.libraries.is_empty()).then(|| "a material that is in no library".to_owned()),
         };
-        Self { known, unknown }
+        Self { known, before_comments, unknown }
     }
 
     fn see_through(&self, material: &str) -> Option<String> {
-        match self.known.get(material) {
+        let found = self.known.get(material).or_else(|| self.before_comments.get(before_comment(material)));
+        match found {
             Some(why) => why.clone(),
             None => self.unknown.clone(),
         }
@@ -152,9 +160,10 @@ impl Surfaces {
 fn read_libraries(line: &str, beside: Option<&dyn Neighbours>) -> Option<Vec<Vec<u8>>> {
     // Names from Windows may have backslashes.
     let read = |name: &str| load_file(beside, name).or_else(|_| load_file(beside, &name.replace('\\', "/"))).ok();
-    match read(line) {
+    let one = read(line).or_else(|| read(before_comment(line)));
+    match one {
         Some(bytes) => Some(vec![bytes]),
-        None => line.split_ascii_whitespace().map(read).collect(),
+        None => before_comment(line).split_ascii_whitespace().map(read).collect(),
     }
 }
 
@@ -305,7 +314,7 @@ impl Obj {
     }
 }
 
-/// Lines with their numbers from 1. Comments are gone, and lines that end in a backslash have the next one
+/// Lines with their numbers from 1. Comments are gone, but for those behind names, which may have a `#`, and lines that end in a backslash have the next one
 /// behind them.
 fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     let mut rest = bytes.split(|&b| b == b'\n').enumerate();
@@ -318,7 +327,8 @@ fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
             joined.extend_from_slice(rest.next().map_or(&[], |(_, next)| next));
             whole = Cow::Owned(joined);
         }
-        if let Some(comment) = whole.iter().position(|&b| b == b'#') {
+        let has_name = matches!(keyword(&whole), b"o" | b"g" | b"usemtl" | b"mtllib");
+        if let Some(comment) = whole.iter().position(|&b| b == b'#').filter(|_| !has_name) {
             match &mut whole {
                 Cow::Borrowed(line) => *line = &line[..comment],
                 Cow::Owned(line) => line.truncate(comment),

@@ -1,9 +1,7 @@
-//! Roles of objects: in the extras of a node, a mesh or a material, and by how a name ends; and whether a document is
-//! simplified. Extras may contain anything.
+//! Roles of objects, and which of them a name states by how it begins or ends.
 
-use super::{MIRROR_SUFFIX, Simplified};
-use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
-use std::fmt;
+use super::MIRROR_SUFFIX;
+use std::collections::BTreeSet;
 
 /// What an object is for, as extras say it: `{"sightlines": {"role": "see-through"}}`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -15,7 +13,8 @@ pub enum Role {
     SeeThrough,
     /// Is seen, and hides nothing, because it is small.
     Detail,
-    /// Is seen, and hides nothing, because it opens.
+    /// Hides nothing, because it opens, and is seen wherever it may open to: if nothing in the file moves it, in the box around it, wider by
+    /// its diagonal on all sides.
     Door,
     /// Shows where an opening is; is not seen, and hides nothing.
     Portal,
@@ -60,22 +59,6 @@ impl Role {
     }
 }
 
-/// What extras say of a role.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum StatedRole {
-    #[default]
-    Nothing,
-    Role(Role),
-    /// A text that is no role.
-    Unknown,
-}
-
-impl StatedRole {
-    pub(super) fn role(self) -> Option<Role> {
-        if let Self::Role(role) = self { Some(role) } else { None }
-    }
-}
-
 /// How a name ends that says what an object is for, as importers of Godot read it: what they do not draw, and what they
 /// make a body that moves, hides nothing.
 ///
@@ -103,6 +86,43 @@ pub(super) fn role_of_name(name: &str) -> Option<(Role, &'static str)> {
     HINTS.into_iter().find(|hint| has_hint(name, hint)).map(|hint| (Role::SeeThrough, hint))
 }
 
+/// How a name begins of a hull for collisions, as importers of Unreal read it: a box, a capsule, a sphere, a convex body.
+///
+/// # Source
+/// Unreal Engine documentation, "FBX Static Mesh Pipeline". Chosen here: such a hull belongs to the mesh with the name behind the prefix,
+/// to which `_` or `.` and more may be added; what is called so without belonging to a mesh is seen, and hides nothing.
+const HULLS: [&str; 4] = ["UBX_", "UCP_", "USP_", "UCX_"];
+
+/// The names of all meshes of a file that are no hulls.
+#[derive(Debug, Default)]
+pub(super) struct MeshNames<'a>(BTreeSet<&'a str>);
+
+impl<'a> FromIterator<&'a str> for MeshNames<'a> {
+    fn from_iter<T: IntoIterator<Item = &'a str>>(names: T) -> Self {
+        Self(names.into_iter().filter(|name| hull_of(name).is_none()).collect())
+    }
+}
+
+impl MeshNames<'_> {
+    /// The role that a name states by how it begins or ends, and the beginning or ending.
+    pub(super) fn role_of(&self, name: &str) -> Option<(Role, &'static str)> {
+        self.hull(name).or_else(|| role_of_name(name))
+    }
+
+    /// The role of a hull for collisions, and how its name begins; `None` for what is none.
+    pub(super) fn hull(&self, name: &str) -> Option<(Role, &'static str)> {
+        let (prefix, of) = hull_of(name)?;
+        let ends = of.match_indices(['_', '.']).map(|(end, _)| end).chain([of.len()]);
+        let is_of_mesh = ends.into_iter().any(|end| self.0.contains(&of[..end]));
+        Some((if is_of_mesh { Role::Ignore } else { Role::SeeThrough }, prefix))
+    }
+}
+
+/// The prefix of a hull, and the name behind it.
+pub(super) fn hull_of(name: &str) -> Option<(&'static str, &str)> {
+    HULLS.into_iter().find_map(|prefix| Some((prefix, name.strip_prefix(prefix)?)))
+}
+
 /// The hint in the name of a node that physics move it.
 pub(super) fn body_of_name(name: &str) -> Option<&'static str> {
     BODIES.into_iter().find(|hint| has_hint(without_number(name), hint))
@@ -125,169 +145,9 @@ fn has_hint(name: &str, hint: &str) -> bool {
     before.ends_with(['-', '_']) || name.split('$').skip(1).any(|part| part.starts_with(hint))
 }
 
-/// What extras of a node state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Stated {
-    pub(super) role: StatedRole,
-    /// Whether the node, and all below it, moves, and may be anywhere.
-    pub(super) moves: bool,
-}
-
-/// Where the role of a node stands.
-const ROLE: [&str; 2] = ["sightlines", "role"];
-/// What stands beside it if the node moves.
-const MOVES: &str = "moves";
-
-/// Where a document states whether it may hide what its original did not hide.
-const OCCLUDER: [&str; 3] = ["sightlines", "simplified", "occluder"];
-
-/// The role that extras state. Extras of any other form are ignored.
-pub(super) fn said<'de, D: Deserializer<'de>>(deserializer: D) -> Result<StatedRole, D::Error> {
-    stated(deserializer).map(|stated| stated.role)
-}
-
-/// The role that extras state, and whether they state that the node moves.
-pub(super) fn stated<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Stated, D::Error> {
-    let found = Path(&ROLE).deserialize(deserializer)?;
-    let role = match found {
-        Found { n_keys: 2, leaf: Leaf::Role(role), .. } => StatedRole::Role(role),
-        Found { n_keys: 2, leaf: Leaf::Text, .. } => StatedRole::Unknown,
-        _ => StatedRole::Nothing,
-    };
-    Ok(Stated { role, moves: found.moves })
-}
-
-/// Whether extras state that a scene was simplified; if they do not state how, the worst is assumed.
-pub(super) fn simplified<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Simplified>, D::Error> {
-    let found = Path(&OCCLUDER).deserialize(deserializer)?;
-    let occluder = matches!(found, Found { n_keys: 3, leaf: Leaf::True, .. });
-    Ok((found.n_keys >= 2).then_some(Simplified { occluder }))
-}
-
-/// The value at the end of a path, and how many keys of the path exist.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Found {
-    n_keys: usize,
-    leaf: Leaf,
-    /// Whether [`MOVES`] is true beside the last key.
-    moves: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Leaf {
-    Role(Role),
-    True,
-    /// A text that is no role.
-    Text,
-    Other,
-}
-
-/// A value, with the keys that lead from there to what is sought.
-struct Path(&'static [&'static str]);
-
-impl Path {
-    fn found(leaf: Leaf) -> Found {
-        Found { n_keys: 0, leaf, moves: false }
-    }
-}
-
-impl<'de> DeserializeSeed<'de> for Path {
-    type Value = Found;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Found, D::Error> {
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for Path {
-    type Value = Found;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a JSON value")
-    }
-
-    fn visit_unit<E>(self) -> Result<Found, E> {
-        Ok(Self::found(Leaf::Other))
-    }
-
-    fn visit_bool<E>(self, value: bool) -> Result<Found, E> {
-        Ok(Self::found(if value { Leaf::True } else { Leaf::Other }))
-    }
-
-    fn visit_u64<E>(self, _: u64) -> Result<Found, E> {
-        Ok(Self::found(Leaf::Other))
-    }
-
-    fn visit_i64<E>(self, _: i64) -> Result<Found, E> {
-        Ok(Self::found(Leaf::Other))
-    }
-
-    fn visit_f64<E>(self, _: f64) -> Result<Found, E> {
-        Ok(Self::found(Leaf::Other))
-    }
-
-    fn visit_str<E>(self, value: &str) -> Result<Found, E> {
-        let role = Role::ALL.into_iter().find(|role| role.name() == value);
-        Ok(Self::found(role.map_or(Leaf::Text, Leaf::Role)))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Found, A::Error> {
-        while seq.next_element::<IgnoredAny>()?.is_some() {}
-        Ok(Self::found(Leaf::Other))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Found, A::Error> {
-        let mut found = Self::found(Leaf::Other);
-        while let Some(key) = map.next_key::<String>()? {
-            match self.0.split_first() {
-                Some((first, rest)) if *first == key => {
-                    let inner = map.next_value_seed(Path(rest))?;
-                    found = Found { n_keys: inner.n_keys + 1, leaf: inner.leaf, moves: found.moves | inner.moves };
-                }
-                Some((_, [])) if key == MOVES => found.moves |= map.next_value_seed(Path(&[]))?.leaf == Leaf::True,
-                _ => _ = map.next_value::<IgnoredAny>()?,
-            }
-        }
-        Ok(found)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn read(text: &str) -> bool {
-        said(&mut serde_json::Deserializer::from_str(text)).unwrap() == StatedRole::Role(Role::Mirror)
-    }
-
-    #[test]
-    fn roles_are_read_as_they_are_named() {
-        for role in Role::ALL {
-            let text = format!(r#"{{"sightlines": {{"role": "{}"}}}}"#, role.name());
-            assert_eq!(said(&mut serde_json::Deserializer::from_str(&text)).unwrap(), StatedRole::Role(role));
-        }
-        let unknown = r#"{"sightlines": {"role": "seethrough"}}"#;
-        assert_eq!(said(&mut serde_json::Deserializer::from_str(unknown)).unwrap(), StatedRole::Unknown);
-        let other = r#"{"sightlines": {"role": 3}}"#;
-        assert_eq!(said(&mut serde_json::Deserializer::from_str(other)).unwrap(), StatedRole::Nothing);
-    }
-
-    #[test]
-    fn what_moves_is_stated_beside_its_role() {
-        let read = |text: &str| stated(&mut serde_json::Deserializer::from_str(text)).unwrap();
-        let door = StatedRole::Role(Role::Door);
-        for text in
-            [r#"{"sightlines": {"role": "door", "moves": true}}"#, r#"{"sightlines": {"moves": true, "role": "door"}}"#]
-        {
-            assert_eq!(read(text), Stated { role: door, moves: true });
-        }
-        assert!(read(r#"{"sightlines": {"moves": true}}"#).moves);
-        for text in
-            [r#"{"moves": true}"#, r#"{"sightlines": {"moves": 1}}"#, r#"{"sightlines": {"x": {"moves": true}}}"#]
-        {
-            assert!(!read(text).moves, "{text}");
-        }
-    }
 
     #[test]
     fn names_say_what_importers_make_of_them() {
@@ -306,44 +166,20 @@ mod tests {
     }
 
     #[test]
-    fn what_is_simplified_is_no_occluder_unless_it_says_so() {
-        let read = |text: &str| {
-            simplified(&mut serde_json::Deserializer::from_str(text)).unwrap().map(|simplified| simplified.occluder)
-        };
-        assert_eq!(read(r#"{"sightlines": {"simplified": {"occluder": true, "x": 1}}, "y": null}"#), Some(true));
-        assert_eq!(read(r#"{"sightlines": {"simplified": {"occluder": false}}}"#), Some(false));
-        for unclear in ["{}", "null", "true", "[]", r#"{"occluder": "true"}"#, r#"{"occluder": 1}"#, r#"{"x": true}"#] {
-            let text = format!(r#"{{"sightlines": {{"simplified": {unclear}}}}}"#);
-            assert_eq!(read(&text), Some(false), "{text}");
+    fn hulls_of_meshes_are_not_there() {
+        let names: MeshNames<'_> = ["SM_Chair", "Wall.001", "UCX_Lamp", "Box"].into_iter().collect();
+        let role = |name: &str| names.role_of(name).map(|found| found.0);
+        for name in ["UCX_SM_Chair", "UCX_SM_Chair_01", "UBX_Wall.001", "USP_Wall.001_2", "UCP_Box.003", "UCX_Box_a_b"]
+        {
+            assert_eq!(role(name), Some(Role::Ignore), "{name}");
         }
-        for other in ["null", "3", "[]", "{}", r#"{"sightlines": true}"#, r#"{"simplified": {"occluder": false}}"#] {
-            assert_eq!(read(other), None, "{other}");
+        // Of no mesh of the file: UCX_Lamp is a hull itself.
+        for name in ["UCX_Lamp", "UCX_SM", "UCX_", "UBX_Wall", "UCX_Boxes", "USP_box"] {
+            assert_eq!(role(name), Some(Role::SeeThrough), "{name}");
         }
-    }
-
-    #[test]
-    fn extras_of_any_form_are_read() {
-        assert!(read(r#"{"a": [1], "sightlines": {"x": null, "role": "mirror"}, "b": {"sightlines": 3}}"#));
-        for other in [
-            "null",
-            "true",
-            "-1",
-            "1.5",
-            "7",
-            "\"mirror\"",
-            "[\"mirror\", {}]",
-            "{}",
-            r#"{"role": "mirror"}"#,
-            r#"{"sightlines": "mirror"}"#,
-            r#"{"sightlines": {"role": "Mirror"}}"#,
-            r#"{"sightlines": {"role": ["mirror"]}}"#,
-            r#"{"sightlines": {"role": {"mirror": "mirror"}}}"#,
-            r#"{"x": {"sightlines": {"role": "mirror"}}}"#,
-        ] {
-            assert!(!read(other), "{other}");
+        for name in ["ucx_Box", "Box", "A UCX_Box", "UCX"] {
+            assert_eq!(role(name), None, "{name}");
         }
-        // Nested more deeply than is read.
-        let deep = format!("{{\"x\": {}{}}}", "[".repeat(5000), "]".repeat(5000));
-        assert!(!read(&deep));
+        assert_eq!(names.role_of("Wall-noimp"), Some((Role::SeeThrough, "noimp")));
     }
 }

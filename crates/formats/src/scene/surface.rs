@@ -4,7 +4,7 @@
 //! So whatever is not certain to be opaque hides nothing, and only a user says otherwise.
 
 use super::pattern::NamePattern;
-use super::role::Role;
+use super::role::{Role, hull_of};
 
 /// How to read a scene, beside what its file says. By default the file alone decides.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -62,6 +62,10 @@ pub(super) struct Evidence<'a> {
 pub(super) struct Classification {
     pub(super) role: Role,
     pub(super) moves: bool,
+    /// Whether it is a door that stands still in the file, and moves when somebody opens it.
+    pub(super) opens: bool,
+    /// Whether it is a door that hides what is behind it while it is shut: not one of glass, or of changing shape.
+    pub(super) shuts: bool,
     pub(super) reason: String,
     /// Whether a role or an option calls it an occluder, which it is not, because it moves.
     pub(super) is_overruled: bool,
@@ -72,7 +76,15 @@ pub(super) struct Classification {
 impl Classification {
     /// Of what stands still, is seen, and hides nothing.
     pub(super) fn see_through(reason: String) -> Self {
-        Self { role: Role::SeeThrough, moves: false, reason, is_overruled: false, is_vouched_for: false }
+        Self {
+            role: Role::SeeThrough,
+            moves: false,
+            opens: false,
+            shuts: false,
+            reason,
+            is_overruled: false,
+            is_vouched_for: false,
+        }
     }
 
     /// Whether the object hides what is behind it.
@@ -85,6 +97,8 @@ impl Classification {
 /// if it does with all of them, and is seen if it is with one. `None` is simply a wall. The first counts where all are alike.
 pub(super) fn least_hiding(mut all: Vec<Option<Classification>>) -> Option<Classification> {
     let moves = all.iter().flatten().any(|c| c.moves);
+    let opens = all.iter().flatten().any(|c| c.opens);
+    let shuts = all.iter().all(|c| c.as_ref().is_some_and(|c| c.shuts));
     let is_overruled = all.iter().flatten().any(|c| c.is_overruled);
     let is_vouched_for = all.iter().all(|c| c.as_ref().is_some_and(|c| c.is_vouched_for));
     let is_drawn = |c: &Option<Classification>| c.as_ref().is_none_or(|c| c.role.is_drawn());
@@ -105,7 +119,15 @@ pub(super) fn least_hiding(mut all: Vec<Option<Classification>>) -> Option<Class
     };
     let found = all.into_iter().nth(chosen)??;
     let of = if chosen == 0 { "" } else { " of a variant" };
-    Some(Classification { moves, is_overruled, is_vouched_for, reason: format!("{}{of}", found.reason), ..found })
+    Some(Classification {
+        moves,
+        opens,
+        shuts,
+        is_overruled,
+        is_vouched_for,
+        reason: format!("{}{of}", found.reason),
+        ..found
+    })
 }
 
 /// Options with a note of which of them were of use.
@@ -167,17 +189,27 @@ impl<'a> Classifier<'a> {
     fn with_material(&mut self, evidence: Evidence<'_>) -> Option<Classification> {
         let Evidence { names, role, see_through, moves, deforms } = evidence;
         let [opaque, glass, still] = self.find(&names);
+        // What the file does not move, and is a door all the same.
+        let is_shut = moves.is_none() && still.is_none() && matches!(role, Some((Role::Door, _)));
         let still = still.filter(|_| !deforms && moves.is_some());
         let moves = moves.filter(|_| still.is_none());
         let is_overruled =
             moves.is_some() && (opaque.is_some() || matches!(role, Some((Role::Occluder, _)))) && glass.is_none();
-        let is_moving = moves.is_some();
+        let (is_moving, is_solid) = (moves.is_some(), see_through.is_none() && !deforms);
         let class = |role: Role, reason: String| {
             let is_vouched_for = role == Role::Occluder;
-            Some(Classification { role, moves: is_moving, reason, is_overruled, is_vouched_for })
+            let opens = is_shut && !is_vouched_for;
+            let shuts = role == Role::Door && is_solid;
+            Some(Classification { role, moves: is_moving || opens, opens, shuts, reason, is_overruled, is_vouched_for })
         };
         let by = |pattern: &NamePattern| format!("the pattern {pattern}");
         match role {
+            // A name alone says that it is a hull: who names it in a pattern sees it. It hides nothing, for it may be a hull.
+            Some((Role::Ignore, _))
+                if names.iter().any(|name| hull_of(name).is_some()) && opaque.or(glass).is_some() =>
+            {
+                return class(Role::SeeThrough, opaque.or(glass).map(by).unwrap_or_default());
+            }
             Some((role, reason)) if !role.is_drawn() => return class(role, reason),
             _ => {}
         }
@@ -294,6 +326,29 @@ mod tests {
         let mut classifier = Classifier::new(&both);
         classifier.classify([wall(&["frontage"])]);
         assert_eq!(classifier.warnings(), ["no object, node, mesh or material is called *glass"]);
+    }
+
+    /// A door moves although nothing in the file moves it; who says that it never opens, or that it hides, has the last word.
+    #[test]
+    fn doors_open_unless_they_are_still() {
+        let door = |moves: Option<&str>| Evidence {
+            names: vec!["gate"],
+            role: Some((Role::Door, String::new())),
+            moves: moves.map(str::to_owned),
+            ..Evidence::default()
+        };
+        let found = |options: &SceneReadOptions, evidence: Evidence<'_>| {
+            let class = Classifier::new(options).classify([evidence]).unwrap();
+            (class.role, class.moves, class.opens)
+        };
+        let none = SceneReadOptions::default();
+        assert_eq!(found(&none, door(None)), (Role::Door, true, true));
+        assert_eq!(found(&none, door(Some("an animation"))), (Role::Door, true, false));
+        assert_eq!(found(&options(&[], &["gate"]), door(None)), (Role::SeeThrough, true, true));
+        assert_eq!(found(&options(&["gate"], &[]), door(None)), (Role::Occluder, false, false));
+        let still = SceneReadOptions { still: vec!["gate".parse().unwrap()], ..none };
+        assert_eq!(found(&still, door(None)), (Role::Door, false, false));
+        assert_eq!(found(&still, door(Some("an animation"))), (Role::Door, false, false));
     }
 
     #[test]

@@ -12,6 +12,7 @@ mod quake_world;
 mod real;
 mod registry;
 mod rewrite;
+mod roles;
 mod scene_mutations;
 mod scene_oracles;
 mod scenes;

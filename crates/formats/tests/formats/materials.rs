@@ -13,7 +13,7 @@ use std::io;
 use std::path::Path;
 
 /// A document of a triangle for each of some nodes, with a material each.
-fn doc(nodes: &[Value], materials: &[Value]) -> Doc {
+pub(crate) fn doc(nodes: &[Value], materials: &[Value]) -> Doc {
     let list: Vec<Value> = nodes
         .iter()
         .enumerate()
@@ -35,21 +35,21 @@ fn doc(nodes: &[Value], materials: &[Value]) -> Doc {
     doc
 }
 
-fn read(doc: &Doc) -> SceneFile {
+pub(crate) fn read(doc: &Doc) -> SceneFile {
     parse_glb(&doc.glb(), None).unwrap()
 }
 
-fn options(opaque: &[&str], see_through: &[&str]) -> SceneReadOptions {
+pub(crate) fn options(opaque: &[&str], see_through: &[&str]) -> SceneReadOptions {
     let parse = |list: &[&str]| list.iter().map(|text| text.parse().unwrap()).collect();
     SceneReadOptions { opaque: parse(opaque), see_through: parse(see_through), ..SceneReadOptions::default() }
 }
 
-fn read_with(doc: &Doc, options: &SceneReadOptions) -> SceneFile {
+pub(crate) fn read_with(doc: &Doc, options: &SceneReadOptions) -> SceneFile {
     parse_gltf_with(&doc.glb(), None, options).unwrap()
 }
 
 /// How each object that is not simply a wall is classified, and why.
-fn classified(file: &SceneFile) -> Vec<(u32, Role, &str)> {
+pub(crate) fn classified(file: &SceneFile) -> Vec<(u32, Role, &str)> {
     file.info.surfaces.iter().map(|t| (t.object, t.role, t.reason.as_str())).collect()
 }
 
@@ -379,4 +379,25 @@ fn what_is_written_hides_no_more() {
     let anywhere = |object| MovingObject { object, within: None };
     assert_eq!((again.moving(), again.mirrors()), (&[anywhere(2), anywhere(3)][..], &[2][..]));
     assert_eq!(again.objects(), moving.objects());
+}
+
+/// Programs write names such as `Material #25`; two of them are two, in the OBJ and in its library. Comments behind names are still
+/// understood.
+#[test]
+fn names_of_an_obj_may_have_a_hash() {
+    let none = SceneReadOptions::default();
+    let library =
+        "newmtl Material #25\nd 0.5\nnewmtl Material #26\nd 1 # solid\nnewmtl pane\nd 0.1\nnewmtl brick # red\nd 1\n";
+    let face = |object: &str, material: &str| format!("o {object}\nusemtl {material}\nf 1 2 3 # a face\n");
+    let text = ["#1 Wall", "Wall #2", "Wall #3", "Wall", "Rest"];
+    let materials = ["Material #26", "Material #25", "pane # of glass", "brick", "Material #27"];
+    let all: String = text.iter().zip(materials).map(|(object, material)| face(object, material)).collect();
+    let file = obj(&format!("mtllib a#1.mtl\n{all}"), &[("a#1.mtl", library)], &none).unwrap();
+    // Of what is called only like the beginning of others, the one that lets light through counts.
+    assert_eq!(
+        hiding(&file),
+        [("#1 Wall", true), ("Wall #2", false), ("Wall #3", false), ("Wall", true), ("Rest", false)]
+    );
+    let file = obj(&format!("mtllib a.mtl # materials\n{all}"), &[("a.mtl", library)], &none).unwrap();
+    assert_eq!((hiding(&file).len(), file.info.warnings), (5, vec![]));
 }

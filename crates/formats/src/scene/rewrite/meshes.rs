@@ -6,7 +6,7 @@ use super::error::RewriteError;
 use super::variants::{Plan, Variant, Variants};
 use crate::scene::accessor::Elements;
 use crate::scene::error::AccessorRole;
-use crate::scene::gltf::read_indices;
+use crate::scene::primitive::read_indices;
 use crate::scene::source::GltfSource;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;

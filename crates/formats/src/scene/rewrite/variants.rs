@@ -1,7 +1,7 @@
 //! Meshes whose nodes want different triangles.
 
-use crate::scene::gltf::FIRST_OF_TRIANGLES;
 use crate::scene::json::Document;
+use crate::scene::primitive::FIRST_OF_TRIANGLES;
 use crate::scene::source::GltfSource;
 use std::borrow::Cow;
 use std::collections::BTreeMap;

@@ -1,0 +1,82 @@
+//! Primitives of a glTF: from accessors to corners and triangles.
+
+use super::accessor::Elements;
+use super::buffers::Buffers;
+use super::build::Compact;
+use super::error::{AccessorErrorKind, AccessorRole, PrimitiveErrorKind};
+use super::json::{Document, Primitive, TRIANGLES};
+
+/// Modes from here on make triangles; those before are points and lines.
+pub(super) const FIRST_OF_TRIANGLES: u32 = TRIANGLES;
+const TRIANGLE_STRIP: u32 = 5;
+const TRIANGLE_FAN: u32 = 6;
+
+/// A primitive as it is in its mesh.
+#[derive(Debug)]
+pub(super) struct LocalMesh {
+    pub(super) mesh: Compact,
+    /// Of each corner of `mesh`.
+    pub(super) positions: Vec<[f64; 3]>,
+}
+
+impl LocalMesh {
+    pub(super) fn read(
+        document: &Document,
+        buffers: &Buffers<'_>,
+        primitive: &Primitive,
+    ) -> Result<Self, PrimitiveErrorKind> {
+        let positions = primitive.attributes.position.ok_or(PrimitiveErrorKind::NoPositions)?;
+        let elements = |accessor, role| {
+            let fail = |kind: AccessorErrorKind| PrimitiveErrorKind::Accessor { role, accessor, kind };
+            Elements::new(document, buffers, accessor, role).map_err(fail)
+        };
+        let positions = elements(positions, AccessorRole::Positions)?;
+        let corners = match primitive.indices {
+            Some(indices) => read_indices(&elements(indices, AccessorRole::Indices)?, positions.count)?,
+            None => (0..positions.count).collect(),
+        };
+        check_mode(primitive.mode, corners.len())?;
+        let n_triangles = n_triangles_of(primitive.mode, corners.len());
+        let triangles = (0..n_triangles).map(|k| triangle_of(primitive.mode, k).map(|place| corners[place]));
+        let mesh = Compact::new(corners.clone(), triangles);
+        let positions = mesh.corners.iter().map(|&k| positions.position(k)).collect();
+        Ok(Self { mesh, positions })
+    }
+}
+
+pub(super) fn read_indices(indices: &Elements<'_>, n_positions: usize) -> Result<Vec<usize>, PrimitiveErrorKind> {
+    let check = |position| {
+        let index = indices.index(position);
+        let fail = PrimitiveErrorKind::Index { position, index, n_positions };
+        usize::try_from(index).ok().filter(|&i| i < n_positions).ok_or(fail)
+    };
+    (0..indices.count).map(check).collect()
+}
+
+/// Refuses modes that do not exist, and lists of triangles that end in a part of one.
+fn check_mode(mode: u32, n_corners: usize) -> Result<(), PrimitiveErrorKind> {
+    match mode {
+        TRIANGLES if !n_corners.is_multiple_of(3) => Err(PrimitiveErrorKind::Corners { n_corners }),
+        0..=TRIANGLE_FAN => Ok(()),
+        _ => Err(PrimitiveErrorKind::Mode { mode }),
+    }
+}
+
+/// Triangles that `n` corners make; points and lines make none.
+pub(super) fn n_triangles_of(mode: u32, n: usize) -> usize {
+    match mode {
+        TRIANGLES => n / 3,
+        TRIANGLE_STRIP | TRIANGLE_FAN => n.saturating_sub(2),
+        _ => 0,
+    }
+}
+
+/// Which corners triangle `k` has, in the order of the specification (section 3.7.2.1).
+fn triangle_of(mode: u32, k: usize) -> [usize; 3] {
+    match mode {
+        // Every other triangle of a strip runs the other way round.
+        TRIANGLE_STRIP => [k, k + 1 + k % 2, k + 2 - k % 2],
+        TRIANGLE_FAN => [k + 1, k + 2, 0],
+        _ => [3 * k, 3 * k + 1, 3 * k + 2],
+    }
+}
