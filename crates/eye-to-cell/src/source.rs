@@ -37,6 +37,9 @@ pub trait CellSource {
     /// The axes along which all coordinates of the source are; `None`: those of the scene. Views are always those of the scene.
     fn frame(&self) -> Option<Frame>;
 
+    /// Whether there may be air outside every cell in the box around them.
+    fn leaves_gaps(&self) -> bool;
+
     /// Number of cells; ids are below it.
     fn n_cells(&self) -> usize;
 

@@ -62,6 +62,10 @@ impl<T: Borrow<Table>> CellSource for TableCells<T> {
         self.table().frame().copied()
     }
 
+    fn leaves_gaps(&self) -> bool {
+        self.table().kind().leaves_gaps()
+    }
+
     fn n_cells(&self) -> usize {
         self.table().n_cells()
     }

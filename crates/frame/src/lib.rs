@@ -2,7 +2,8 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: finding the three directions at right angles in which most of the surfaces of a scene lie ([`find_axes`]); taking a scene,
+//! - **Owns**: finding the three directions at right angles in which most of the surfaces of a scene lie ([`find_axes`]), or of
+//!   boxes that stand in it ([`axes_near`]); taking a scene,
 //!   and boxes with it, into a frame, where coordinates that differ by less than the stated gap become equal ([`Moved`]); what is gained by
 //!   it ([`Areas`]).
 //! - **Out of scope**: the frame itself and what queries do with it (`pvs`), files, what is hidden.
@@ -18,6 +19,6 @@ mod moved;
 mod snap;
 
 pub use area::Areas;
-pub use fit::{FoundAxes, find_axes};
+pub use fit::{FoundAxes, NEAR_SINE, are_near, axes_near, find_axes};
 pub use moved::{MoveError, Moved};
 pub use snap::Snaps;

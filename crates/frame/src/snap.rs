@@ -29,7 +29,7 @@ impl Snaps {
     /// From the triangles of a scene along the axes of a frame.
     ///
     /// Values of one plane differ by at most half the gap, and nothing is moved farther than that, so two surfaces that are more than the gap
-    /// apart stay apart. O(n log n) for n triangles.
+    /// apart along an axis stay apart; across a diagonal, those that are more than √3 times the gap apart. O(n log n) for n triangles.
     pub(crate) fn of(triangles: impl Iterator<Item = [Point3; 3]>, gap: f64) -> Self {
         let mut values: [Vec<f64>; 3] = Default::default();
         let most = gap / 2.0;

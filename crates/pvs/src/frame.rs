@@ -11,7 +11,8 @@ const OFF: f64 = 1.0 / (1u64 << 48) as f64;
 /// Cells, portals, objects and mirrors of a table with a frame have coordinates along these axes. Points and boxes that
 /// *queries* take are those of the scene; the queries take them into the frame. What a table
 /// with a frame hides is hidden in *some* scene of which each coordinate, along the axes of the frame, is within
-/// [`Frame::gap`] of that of the scene: openings narrower than the gap may count as closed.
+/// [`Frame::gap`] of that of the scene: openings narrower than the gap may count as closed, and what is
+/// thinner, or stands out by less, as hidden. Along a diagonal that is up to √3 times the gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     axes: [[f64; 3]; 3],
@@ -86,7 +87,7 @@ impl Frame {
     }
 
     /// A box of the frame, lower and upper corner, that contains everything that lies within the gap of a box of the scene. It
-    /// is the smallest one but for rounding.
+    /// is the smallest one but for rounding. A NaN bounds nothing: where one is in the way, a side of the result is infinite or NaN.
     #[inline]
     pub fn around(&self, min: [f64; 3], max: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         self.box_along(self.axes, min, max)
@@ -106,10 +107,15 @@ impl Frame {
         for (k, a) in axes.iter().enumerate() {
             let (mut low, mut high, mut size) = (0.0, 0.0, 0.0);
             for i in 0..3 {
-                let ends = [a[i] * min[i], a[i] * max[i]];
-                low += ends[0].min(ends[1]);
-                high += ends[0].max(ends[1]);
-                size += ends[0].abs().max(ends[1].abs());
+                if a[i] == 0.0 {
+                    continue;
+                }
+                let [from, to] = if a[i] > 0.0 { [min[i], max[i]] } else { [max[i], min[i]] };
+                let (from, to) = (a[i] * from, a[i] * to);
+                // A NaN bounds nothing; of two numbers, one of them NaN, `min` and `max` take the other.
+                low += if from.is_nan() { f64::NEG_INFINITY } else { from.min(to) };
+                high += if to.is_nan() { f64::INFINITY } else { to.max(from) };
+                size += from.abs().max(to.abs());
             }
             // As in `rounding`; widening rounds once more, by a unit of the size and of the gap. The rest is for axes that are not quite
             // at right angles.
@@ -165,6 +171,19 @@ mod tests {
             let (at, off) = (frame.to_frame(p), frame.rounding(p));
             assert!((0..3).all(|k| min[k] <= at[k] - off[k] && at[k] + off[k] <= max[k]), "{p:?}");
         }
+    }
+
+    /// A box that is open to one side is open along every axis that has a part of it, and bounded along the others.
+    #[test]
+    fn a_nan_bounds_nothing() {
+        let is_open = |x: f64| !x.is_finite();
+        let (min, max) = turned(0.5).around([f64::NAN, 0.0, 0.0], [1.0; 3]);
+        assert_eq!(min.map(is_open), [true, false, false], "{min:?}");
+        assert_eq!(max.map(is_open), [false, true, false], "{max:?}");
+        let (min, max) = turned(0.5).around([f64::NAN, 0.0, 0.0], [f64::NAN, 1.0, 1.0]);
+        assert_eq!((min.map(is_open), max.map(is_open)), ([true, true, false], [true, true, false]));
+        let (min, max) = turned(0.5).around([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+        assert!(min.iter().chain(&max).all(|&x| is_open(x)), "{min:?} {max:?}");
     }
 
     #[test]

@@ -64,6 +64,12 @@ impl TableKind {
         matches!(self, Self::SceneKdTree { .. })
     }
 
+    /// Whether there may be air outside every cell in the box around them: given boxes may leave gaps, and places leave out what is
+    /// behind the backs of faces.
+    pub const fn leaves_gaps(self) -> bool {
+        matches!(self, Self::SceneGivenCells { .. })
+    }
+
     /// Whether nothing is promised for eyes inside solid matter.
     pub const fn only_in_air(self) -> bool {
         match self {

@@ -44,6 +44,10 @@ impl<S: Source> CellSource for PackedCells<S> {
         self.0.frame().copied()
     }
 
+    fn leaves_gaps(&self) -> bool {
+        self.0.kind().leaves_gaps()
+    }
+
     fn n_cells(&self) -> usize {
         self.0.n_cells()
     }

@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 type Corners = Vec<[u64; 3]>;
 
 /// For each portal of `old`, by number, the portal of `new` with the same corners, bit for bit; in any direction.
-/// `None` if there is none, or several, or several in `old`. Zeros of both signs are equal.
+/// `None` if there is none, or several, or several in `old`; and for all of them if the tables stand along different axes
+/// ([`CellSource::frame`]), where equal numbers are different places. Zeros of both signs are equal.
 ///
 /// Reads the exits of all cells of both tables: O(portals · log portals); too slow for every frame.
 ///
@@ -23,12 +24,21 @@ where
     let (before, after) = (by_corners(old)?, by_corners(new)?);
     let n = before.values().flatten().map(|&portal| portal.idx() + 1).max().unwrap_or(0);
     let mut same = vec![None; n];
+    if axes(old) != axes(new) {
+        return Ok(same);
+    }
     for (corners, portals) in &before {
         if let ([portal], Some([other])) = (&portals[..], after.get(corners).map(|list| &list[..])) {
             same[portal.idx()] = Some(*other);
         }
     }
     Ok(same)
+}
+
+/// The axes along which the corners of a source are.
+fn axes<S: CellSource + ?Sized>(source: &S) -> [[f64; 3]; 3] {
+    const PLAIN: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    source.frame().map_or(PLAIN, |frame| frame.axes())
 }
 
 /// The portals of each outline, ascending.
@@ -64,7 +74,7 @@ fn canonical(corners: &[[f64; 3]]) -> Corners {
 mod tests {
     use super::*;
     use sightlines_eye_to_cell::TableCells;
-    use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
+    use sightlines_pvs::{BitMatrix, CellRecord, Frame, Locator, PortalRecord, Table, TableKind, TableParts};
 
     /// Rooms in a row with these doors: their lower ends, and whether they are listed from the other side.
     fn row(doors: &[(u32, f64, bool)]) -> TableCells<Table> {
@@ -107,6 +117,34 @@ mod tests {
         assert_eq!(same_portals(&twice, &old).unwrap(), [None, None]);
         assert_eq!(same_portals(&old, &twice).unwrap(), [None, None, None]);
         assert_eq!(same_portals(&row(&[]), &old).unwrap(), []);
+    }
+
+    /// Equal numbers along other axes are other places; a frame along the axes of the scene moves none.
+    #[test]
+    fn portals_along_other_axes_are_others() {
+        let plain = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let turned = [[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0], [0.0, 0.0, 1.0]];
+        let along = |axes| {
+            let cell = CellRecord { min: [0.0; 3], max: [1.0; 3], group: None, polygon: vec![] };
+            let next = CellRecord { min: [1.0, 0.0, 0.0], max: [2.0, 1.0, 1.0], ..cell.clone() };
+            let points = vec![[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [1.0, 0.0, 1.0]];
+            let portal = PortalRecord { cells: [CellId(0), CellId(1)], sides: [0, 1], points };
+            let cells = vec![cell, next];
+            let bounds: Vec<_> = cells.iter().map(|cell| (cell.min, cell.max)).collect();
+            let parts = TableParts {
+                rows: BitMatrix::identity(2),
+                portals: vec![portal],
+                cell_objects: vec![vec![]; 2],
+                locator: Locator::build(&bounds, 3),
+                cells,
+                ..TableParts::empty(3, TableKind::Unspecified)
+            };
+            let frame = Frame::new(axes, 0.25).unwrap();
+            TableCells::new(Table::new(parts).unwrap().with_frame(Some(frame)).unwrap())
+        };
+        let same = |a, b| same_portals(&along(a), &along(b)).unwrap();
+        assert_eq!(same(turned, turned), [Some(PortalId(0))]);
+        assert_eq!(same(plain, turned), [None]);
     }
 
     #[test]

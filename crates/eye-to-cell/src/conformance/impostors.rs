@@ -92,6 +92,10 @@ impl<S: CellSource> CellSource for Impostor<S> {
         self.source.frame()
     }
 
+    fn leaves_gaps(&self) -> bool {
+        self.source.leaves_gaps()
+    }
+
     fn n_cells(&self) -> usize {
         self.source.n_cells()
     }

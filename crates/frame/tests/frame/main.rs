@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_exact::{BigRational, rational};
-use sightlines_frame::{Areas, Moved, find_axes};
+use sightlines_frame::{Areas, Moved, are_near, axes_near, find_axes};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_pvs::Frame;
 
@@ -157,4 +157,46 @@ fn what_becomes_flat_is_seen_from_both_sides() {
     let moved = Moved::new(&scene, &frame).expect("moved").scene;
     assert_eq!(moved.objects()[1].bounds().max[0], moved.objects()[1].bounds().min[0], "a line");
     assert_eq!(moved.single_sided(), [0]);
+}
+
+/// As users write axes: in any order and with any signs, left-handed too, rounded to single precision.
+fn written() -> impl Strategy<Value = [Point3; 3]> {
+    let orders = [[0usize, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+    (rotation(), prop::sample::select(orders.to_vec()), [any::<bool>(), any::<bool>(), any::<bool>()]).prop_map(
+        |(axes, order, flips)| {
+            std::array::from_fn(|k| {
+                let sign = if flips[k] { -1.0 } else { 1.0 };
+                axes[order[k]].map(|x| f64::from((sign * x) as f32))
+            })
+        },
+    )
+}
+
+proptest! {
+    /// Invariant: from axes as users write them comes a frame, which stands along them but for their rounding; and the more of a scene is across
+    /// it, the better.
+    #[test]
+    fn written_axes_bring_a_frame(blocks in blocks(), axes in written()) {
+        let objects = blocks.iter().map(|b| block("block", b)).collect();
+        let upright = Scene::new(objects).expect("a scene");
+        let gap = 1e-5;
+        let found = axes_near(&upright, gap, axes);
+        let frame = Frame::new(found.axes, gap);
+        prop_assert!(frame.is_ok(), "{found:?}");
+        prop_assert!(are_near(axes, found.axes), "{axes:?} {found:?}");
+        // The twin: what stands along the axes is flat, though these are rounded.
+        let columns = std::array::from_fn(|k| found.axes.map(|axis| axis[k]));
+        let along = axes_near(&turned(&upright, &columns), gap, axes);
+        prop_assert!(along.flat > 0.999 * along.all, "{along:?}");
+        prop_assert!(Frame::new(along.axes, gap).is_ok());
+    }
+}
+
+/// The impostors: axes a thousandth away, and half a right angle, are others; order and signs make no difference.
+#[test]
+fn other_axes_are_not_near() {
+    let plain = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let about_z = |s: f64| [[(1.0 - s * s).sqrt(), s, 0.0], [-s, (1.0 - s * s).sqrt(), 0.0], [0.0, 0.0, 1.0]];
+    assert!(are_near(plain, [[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]));
+    assert!(are_near(about_z(5e-5), plain) && !are_near(about_z(1e-3), plain) && !are_near(about_z(0.7), plain));
 }

@@ -17,6 +17,9 @@ pub trait CellLocator {
     /// The box of the scene around all cells; [`Aabb::EMPTY`] without cells. May be slow; it is called once.
     fn bounds(&self) -> Aabb<3>;
 
+    /// Whether there may be air outside every cell in the box around them.
+    fn leaves_gaps(&self) -> bool;
+
     /// The axes of the cells, if they are not those of the scene, and the box along them around all cells. May be slow; it is called once.
     fn along(&self) -> (Option<Frame>, Aabb<3>) {
         (None, self.bounds())
@@ -36,6 +39,10 @@ impl<T: Borrow<Table>> CellLocator for TableCells<T> {
 
     fn n_cells(&self) -> usize {
         self.table().n_cells()
+    }
+
+    fn leaves_gaps(&self) -> bool {
+        self.table().kind().leaves_gaps()
     }
 
     fn bounds(&self) -> Aabb<3> {
@@ -73,6 +80,10 @@ impl<P: CellLocator + ?Sized> CellLocator for Arc<P> {
         (**self).n_cells()
     }
 
+    fn leaves_gaps(&self) -> bool {
+        (**self).leaves_gaps()
+    }
+
     fn bounds(&self) -> Aabb<3> {
         (**self).bounds()
     }
@@ -95,6 +106,7 @@ pub struct CellBoxes {
     dimension: u8,
     /// The axes of the boxes.
     frame: Option<Frame>,
+    leaves_gaps: bool,
     boxes: Vec<Aabb<3>>,
     tree: BoxTree<3>,
 }
@@ -107,7 +119,8 @@ impl CellBoxes {
     pub fn read<S: CellSource + ?Sized>(source: &S) -> Result<Self, S::Error> {
         let boxes = (0..source.n_cells() as u32).map(|i| source.cell_box(CellId(i))).collect::<Result<Vec<_>, _>>()?;
         let tree = BoxTree::build(&boxes, 4);
-        Ok(Self { dimension: source.dimension(), frame: source.frame(), boxes, tree })
+        let leaves_gaps = source.leaves_gaps();
+        Ok(Self { dimension: source.dimension(), frame: source.frame(), leaves_gaps, boxes, tree })
     }
 }
 
@@ -122,6 +135,10 @@ impl CellLocator for CellBoxes {
 
     fn n_cells(&self) -> usize {
         self.boxes.len()
+    }
+
+    fn leaves_gaps(&self) -> bool {
+        self.leaves_gaps
     }
 
     fn bounds(&self) -> Aabb<3> {

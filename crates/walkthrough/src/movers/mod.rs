@@ -50,9 +50,9 @@ pub struct MoverOptions {
     /// Maximum number of movers for which volumes are attempted in a frame; the others stay awake until their turn.
     pub tries: usize,
     /// Within this box, space outside every cell is solid and nothing there is visible; beyond it everything may be
-    /// visible from everywhere. `None`: the box around all cells. That is correct if the cells fill that box except for
-    /// solids, or if walls enclose them. It is wrong for cells whose border is open to space outside every cell, such
-    /// as the hull of a plan without outer walls.
+    /// visible from everywhere. `None`: the box around all cells, or no box if they [may leave gaps](CellLocator::leaves_gaps), as given
+    /// boxes and places do. The box is correct if the cells fill it except for solids, or if walls enclose them. It is wrong for cells
+    /// whose border is open to space outside every cell, such as the hull of a plan without outer walls.
     pub solid_within: Option<Aabb<3>>,
 }
 
@@ -148,7 +148,8 @@ impl<P: CellLocator> Movers<P> {
     /// No movers yet, in the cells of `places`.
     pub fn new(places: P, options: MoverOptions) -> Self {
         let n_cells = places.n_cells();
-        let solid_within = options.solid_within.unwrap_or_else(|| places.bounds());
+        let around = || if places.leaves_gaps() { Aabb::EMPTY } else { places.bounds() };
+        let solid_within = options.solid_within.unwrap_or_else(around);
         let along = along(&options, &places);
         let steps = std::iter::successors(Some(options.least), |time| Some(2.0 * time));
         let is_time = options.least > 0.0 && options.least.is_finite();
@@ -304,7 +305,7 @@ impl<P: CellLocator> Movers<P> {
     }
 
     /// The box within which space outside every cell is solid, in scene units: [`MoverOptions::solid_within`], or the
-    /// box around all cells. This is the region to promise ([`Motion::within`]) for movers that do not leave the scene.
+    /// box around all cells; empty if they may leave gaps. This is the region to promise ([`Motion::within`]) for movers that do not leave the scene.
     pub fn bounds(&self) -> Aabb<3> {
         self.solid_within
     }
@@ -439,8 +440,8 @@ impl<P> fmt::Debug for Movers<P> {
 mod tests {
     use super::*;
 
-    /// One cell of 8 by 8 by 8 along these axes.
-    struct One(Option<Frame>);
+    /// One cell of 8 by 8 by 8 along these axes, and whether it leaves gaps.
+    struct One(Option<Frame>, bool);
 
     impl CellLocator for One {
         fn dimension(&self) -> u8 {
@@ -449,6 +450,10 @@ mod tests {
 
         fn n_cells(&self) -> usize {
             1
+        }
+
+        fn leaves_gaps(&self) -> bool {
+            self.1
         }
 
         fn bounds(&self) -> Aabb<3> {
@@ -472,7 +477,7 @@ mod tests {
         let r = 0.5f64.sqrt();
         let frame = Frame::new([[r, r, 0.0], [-r, r, 0.0], [0.0, 0.0, 1.0]], 1e-6).expect("a frame");
         let encloses = |frame, at: Point3, options: MoverOptions| {
-            Movers::new(One(frame), options).is_enclosed(&Aabb { min: at, max: at.map(|x| x + 0.1) })
+            Movers::new(One(frame, false), options).is_enclosed(&Aabb { min: at, max: at.map(|x| x + 0.1) })
         };
         type Point3 = [f64; 3];
         let (corner, middle) = ([5.0, 5.0, 0.0], [0.0; 3]);
@@ -480,6 +485,8 @@ mod tests {
         assert!(encloses(Some(frame), middle, plain()) && !encloses(Some(frame), corner, plain()));
         assert!(!encloses(None, corner, plain()), "without a frame that is beyond, too");
         let stated = MoverOptions { solid_within: Some(Aabb { min: [-9.0; 3], max: [9.0; 3] }), ..plain() };
+        let gaps = |options| Movers::new(One(None, true), options).is_enclosed(&Aabb { min: middle, max: [0.1; 3] });
+        assert!(gaps(stated) && !gaps(plain()), "what moves between cells that leave gaps may be in air");
         assert!(encloses(Some(frame), corner, stated), "who says where space is solid is believed");
     }
 }

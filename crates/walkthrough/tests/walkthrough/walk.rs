@@ -82,6 +82,10 @@ impl CellSource for Slow {
     fn frame(&self) -> Option<Frame> {
         self.table.frame()
     }
+    fn leaves_gaps(&self) -> bool {
+        CellSource::leaves_gaps(&self.table)
+    }
+
     fn n_cells(&self) -> usize {
         CellSource::n_cells(&self.table)
     }
