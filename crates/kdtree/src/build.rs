@@ -4,7 +4,7 @@ use crate::error::KdError;
 use crate::face::AxialFace;
 use crate::portals::portals_of;
 use crate::ranks::{Piece, RankBox, Ranks};
-use crate::region::{Rect, uncovered, unite};
+use crate::region::{Rect, covers, uncovered, unite};
 use crate::skeleton::{RankNode, Skeleton};
 use crate::split::choose;
 use crate::tree::{AxialCell, AxialTree};
@@ -63,13 +63,27 @@ pub fn subdivide<const D: usize>(
     bounds: Aabb<D>,
     options: &Options,
 ) -> Result<AxialTree<D>, KdError> {
+    subdivide_with(faces, &[], bounds, options)
+}
+
+/// As [`subdivide`], with rectangles that hide nothing: where those of a plane cover the whole cross-section of a cell that no face divides
+/// any more, they divide it.
+pub(crate) fn subdivide_with<const D: usize>(
+    faces: &[AxialFace<D>],
+    dividers: &[AxialFace<D>],
+    bounds: Aabb<D>,
+    options: &Options,
+) -> Result<AxialTree<D>, KdError> {
     const { assert!(D == 2 || D == 3, "axial subdivisions have two or three dimensions") };
-    let (faces, bounds) = (checked_faces(faces)?, checked_bounds(bounds)?);
+    let (mut faces, bounds) = (checked_faces(faces)?, checked_bounds(bounds)?);
+    let n_faces = faces.len();
+    faces.extend(checked_faces(dividers)?);
     if !(0.0..=1.0).contains(&options.tau) {
         return Err(KdError::Tau(options.tau));
     }
-    let (ranks, pieces) = Ranks::compress(&faces, &bounds);
-    let builder = Builder { ranks: &ranks, options, n_cells: 0, skeleton: Skeleton::new() };
+    let (ranks, [pieces, dividers]) = Ranks::compress(&faces, n_faces, &bounds);
+    let dividers = united(dividers);
+    let builder = Builder { ranks: &ranks, dividers: &dividers, options, n_cells: 0, skeleton: Skeleton::new() };
     let skeleton = builder.run(united(pieces))?;
     let portals = portals_of(&ranks, &skeleton);
     let cells = skeleton.cells.iter().map(|c| AxialCell { bounds: scene_box(&ranks, c) }).collect();
@@ -127,6 +141,8 @@ struct Pending<const D: usize> {
 
 struct Builder<'a, const D: usize> {
     ranks: &'a Ranks<D>,
+    /// What divides without hiding, disjoint in each plane, planes ascending.
+    dividers: &'a [Piece<D>],
     options: &'a Options,
     n_cells: u32,
     skeleton: Skeleton<D>,
@@ -141,12 +157,26 @@ impl<const D: usize> Builder<'_, D> {
             if let Some(RankNode::Inner { high, .. }) = high_of.map(|i| &mut self.skeleton.nodes[i as usize]) {
                 *high = node;
             }
-            match choose(self.ranks, &cell, &pieces, self.options.tau) {
+            match choose(self.ranks, &cell, &pieces, self.options.tau).or_else(|| self.divider_of(&cell)) {
                 Some((axis, rank)) => stack.extend(self.divide(cell, pieces, axis, rank)),
                 None => self.finish(cell, &pieces)?,
             }
         }
         Ok(self.skeleton)
+    }
+
+    /// The first plane of dividers that fill the cross-section of a cell.
+    fn divider_of(&self, cell: &RankBox<D>) -> Option<(usize, u32)> {
+        let fills = |plane: &&[Piece<D>]| {
+            let (axis, rank) = plane[0].plane();
+            let axis = usize::from(axis);
+            let section = Rect::across(cell, axis);
+            let inside = plane.iter().filter_map(|piece| Rect::across(&piece.extent, axis).common(section));
+            cell.lo[axis] < rank && rank < cell.hi[axis] && covers(section, inside)
+        };
+        let plane = self.dividers.chunk_by(|a, b| a.plane() == b.plane()).find(fills)?;
+        let (axis, rank) = plane[0].plane();
+        Some((usize::from(axis), rank))
     }
 
     fn finish(&mut self, cell: RankBox<D>, pieces: &[Piece<D>]) -> Result<(), KdError> {

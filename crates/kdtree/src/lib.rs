@@ -6,7 +6,8 @@
 //!   splitting planes ([`Options`]), the tree with its cells, portals and point location ([`AxialTree`]),
 //!   the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]), and that from a
 //!   [`Scene`](sightlines_cells::Scene): which of its triangles act as walls ([`scene_faces`]), which cells are
-//!   inside solids ([`subdivide_scene`], [`SceneCutter`] for scenes that change), which boxes are inside solids of any shape ([`Matter`]).
+//!   inside solids ([`subdivide_scene`], [`SceneCutter`] for scenes that change), which boxes are inside solids of any shape ([`Matter`]),
+//!   which portals a door of the scene closes ([`shut_doors`]).
 //! - **Out of scope**: sight lines, tables, files, walls that are not axis-parallel.
 //! - **Invariants**: the cells tile the bounds without gap or overlap; no coordinate is ever computed, so
 //!   cells and portals have the coordinates of faces and bounds, bit for bit; a portal is an opening of
@@ -30,6 +31,7 @@
 mod build;
 mod cache;
 mod coplanar;
+mod doors;
 mod error;
 mod face;
 mod flat;
@@ -53,6 +55,7 @@ mod tree;
 mod union_find;
 
 pub use build::{Options, bounds_of, subdivide};
+pub use doors::{ShutDoor, shut_doors};
 pub use error::{FaceError, KdError};
 pub use face::{AxialFace, AxialPlane, FaceClass, classify, cleaves};
 pub use matter::Matter;

@@ -34,19 +34,21 @@ impl<const D: usize> Piece<D> {
 }
 
 impl<const D: usize> Ranks<D> {
-    /// Ranks for `bounds` and everything of `faces` that is inside, and those faces in ranks, clipped.
-    /// Faces that only lie on the border of the bounds, or outside, are left out. O(n log n).
-    pub(crate) fn compress(faces: &[AxialFace<D>], bounds: &Aabb<D>) -> (Self, Vec<Piece<D>>) {
-        let inside: Vec<AxialFace<D>> = faces.iter().filter_map(|face| clipped(face, bounds)).collect();
+    /// Ranks for `bounds` and everything of `faces` that is inside, and those faces in ranks, clipped: the first `n_first` of them, and the
+    /// others. Faces that only lie on the border of the bounds, or outside, are left out. O(n log n).
+    pub(crate) fn compress(faces: &[AxialFace<D>], n_first: usize, bounds: &Aabb<D>) -> (Self, [Vec<Piece<D>>; 2]) {
+        let [first, others] = [&faces[..n_first], &faces[n_first..]]
+            .map(|faces| faces.iter().filter_map(|face| clipped(face, bounds)).collect::<Vec<AxialFace<D>>>());
+        let inside = || first.iter().chain(&others);
         let axes = std::array::from_fn(|k| {
-            let ends = inside.iter().flat_map(|f| [f.min[k], f.max[k]]);
+            let ends = inside().flat_map(|f| [f.min[k], f.max[k]]);
             let mut all: Vec<f64> = ends.chain([bounds.min[k], bounds.max[k]]).collect();
             all.sort_unstable_by(f64::total_cmp);
             all.dedup();
             all
         });
         let ranks = Self { axes };
-        let pieces = inside.iter().map(|f| ranks.piece(f)).collect();
+        let pieces = [&first, &others].map(|faces| faces.iter().map(|f| ranks.piece(f)).collect());
         (ranks, pieces)
     }
 

@@ -1,7 +1,8 @@
 //! From a scene in space to a graph of boxes and rectangular portals.
 
-use crate::build::{Options, subdivide};
+use crate::build::{Options, subdivide_with};
 use crate::cache::FaceCache;
+use crate::doors::shut_doors;
 use crate::error::KdError;
 use crate::left_out::{LeftOut, left_out};
 use crate::scene_faces::{SceneFaces, Survey};
@@ -62,6 +63,8 @@ pub struct SceneSubdivision {
 /// The faces are those of [`scene_faces`](crate::scene_faces); all other triangles hide nothing. Errs
 /// towards "visible" only.
 ///
+/// Where a face of a [door](Scene::doors) fills an opening, the cells are divided along it, so that there is a portal that the door closes.
+///
 /// # What is left out
 /// Cells inside solid things would be rows of a table that are never queried. Cells joined by portals are left out
 /// together, and only if no portal leads to them from others, so nothing changes for the cells that stay. They are left
@@ -75,7 +78,7 @@ pub struct SceneSubdivision {
 ///
 /// A closed room that shows the front of any triangle stays. If no cell would stay, all do.
 ///
-/// Cost: as [`scene_faces`](crate::scene_faces) and [`subdivide`]; to leave out cells, O(log n) for each
+/// Cost: as [`scene_faces`](crate::scene_faces) and [`subdivide`](crate::subdivide); to leave out cells, O(log n) for each
 /// pair of a triangle and a cell that it lies against, as a rule.
 ///
 /// # Errors
@@ -109,7 +112,9 @@ impl SceneCutter {
         let survey = Survey::of(scene, options, &mut self.cache);
         let bounds = root_box(survey.bounds(), options.view_region)?;
         let found = survey.faces(&mut self.cache);
-        let tree = subdivide(&found.faces, bounds, &Options { tau: options.tau, max_cells: options.max_cells })?;
+        let doors: Vec<_> = shut_doors(scene).into_iter().flat_map(|door| door.faces).collect();
+        let how = Options { tau: options.tau, max_cells: options.max_cells };
+        let tree = subdivide_with(&found.faces, &doors, bounds, &how)?;
         let out = match options.keep_solid {
             true => vec![None; tree.cells().len()],
             false => left_out(scene, &survey, &found, &tree, options.view_region),

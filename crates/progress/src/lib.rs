@@ -3,8 +3,12 @@
 //! # Scope
 //!
 //! - **Owns**: the [`Observer`] trait, its reports ([`Progress`]), the error of a cancelled search ([`Cancelled`]), and
-//!   the counter that threads of a search share ([`Counter`]).
+//!   the counter that threads of a search share ([`Counter`]), and what a search may spend ([`Budget`]).
 //! - **Out of scope**: time, terminals, what is searched.
+
+mod budget;
+
+pub use budget::{Allowance, Budget, Shares, scattered};
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};

@@ -17,12 +17,12 @@
 //! spirit of the "might see" vectors of Quake's vis, made exact and symmetric.
 
 use crate::network::{NO_ZONE, Network, Step};
-use sightlines_progress::{Cancelled, Counter, Observer};
+use sightlines_progress::{Allowance, Cancelled, Counter, Observer};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Stabber;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 
-/// Options of a search. None of them affects the answer.
+/// Options of a search. None of them but a budget affects the answer.
 #[derive(Clone, Copy)]
 pub struct SearchOptions<'a> {
     /// Number of threads; 0 for one per core.
@@ -31,11 +31,14 @@ pub struct SearchOptions<'a> {
     pub chords: u32,
     /// Receives a report for each finished unit (zone, box, or group of pairs and object), and may cancel the search.
     pub progress: Option<&'a dyn Observer>,
+    /// Searches in space: what may be spent. Pairs that are not decided then count as visible, and are listed; without a limit the
+    /// answer is always the same. Other searches ignore it.
+    pub budget: Allowance<'a>,
 }
 
 impl Default for SearchOptions<'_> {
     fn default() -> Self {
-        Self { threads: 0, chords: 8, progress: None }
+        Self { threads: 0, chords: 8, progress: None, budget: Allowance::default() }
     }
 }
 

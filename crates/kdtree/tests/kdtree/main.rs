@@ -4,6 +4,7 @@ mod cells;
 mod common;
 mod cutter;
 mod degenerate;
+mod doors;
 mod meshes;
 mod openings;
 mod rooms;

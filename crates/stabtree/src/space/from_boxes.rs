@@ -17,9 +17,10 @@ use crate::search::{SearchOptions, ones};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_progress::{Cancelled, Counter};
+use sightlines_progress::{Allowance, Cancelled, Counter, Shares};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Blockers, FreeLine, Shaft, ShaftCounters, Target, Verdict};
+use std::collections::VecDeque;
 
 /// The pairs to decide: of two boxes, which has to be symmetric, and of a box and an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,6 +43,8 @@ pub struct BoxVisibility {
     /// Pairs that count as visible because deciding them would take too much effort, or more digits than doubles have.
     /// Like `counters`, it varies with threads, as a line for another pair may prove such a pair visible first.
     pub n_assumed: u64,
+    /// The visible pairs that were not decided because the budget was spent; none if all were.
+    pub left: Option<PairMask>,
     /// The work done. With several threads the counts vary from run to run; the answer does not.
     pub counters: ShaftCounters,
 }
@@ -89,34 +92,51 @@ pub fn box_visibility(
         of_objects: &of_objects,
         blockers: &blockers,
     };
-    let counter = Counter::new(options.progress, "boxes", boxes.len());
-    let one = |shaft: &mut Shaft<'_>, eye: usize| {
+    let counter = Counter::new(options.progress, "boxes past walls", boxes.len());
+    let one = |shaft: &mut Shaft<'_>, Unfinished { eye, of_boxes, of_objects }: Unfinished, unit: Allowance<'_>| {
         let before = shaft.counters();
-        let mut from = BoxSearch { own: &boxes[eye], thick: &thick[eye], id: eye, known: &known, shaft, n_assumed: 0 };
+        let (own, thick, all) = (&boxes[eye], &thick[eye], options.budget);
+        let mut from = BoxSearch { own, thick, id: eye, known: &known, shaft, all, n_assumed: 0 };
         // Each pair is decided once, from the lower number.
         let later = asked.boxes.iter_ones(eye).filter(|&other| other > eye);
-        from.settle_all(Kind::Box, &places, later);
-        from.settle_all(Kind::Object, &places, asked.objects.iter_ones(eye));
+        // Objects have half of what there is.
+        let of_boxes = from.settle_all(Kind::Box, &places, later, of_boxes, unit.part(0.5));
+        let of_objects = from.settle_all(Kind::Object, &places, asked.objects.iter_ones(eye), of_objects, unit);
         let n_assumed = from.n_assumed;
-        counter.step()?;
-        Ok((n_assumed, shaft.counters() - before))
+        (Unfinished { eye, of_boxes, of_objects }, n_assumed, shaft.counters() - before)
     };
-    let found = on_threads(options.threads, |_| {
-        known.mark_within(graph, &places);
-        (0..boxes.len())
-            .into_par_iter()
-            .with_max_len(1)
-            .map_init(|| Shaft::new(&blockers), one)
-            .collect::<Result<_, Cancelled>>()
-    });
-    let found: Vec<(u64, ShaftCounters)> = found?;
     let mut answer = BoxVisibility {
         boxes: asked.boxes.clone(),
         objects: asked.objects.clone(),
         n_blockers: blockers.len(),
-        n_assumed: found.iter().map(|found| found.0).sum(),
-        counters: found.iter().fold(ShaftCounters::default(), |sum, found| sum + found.1),
+        n_assumed: 0,
+        left: None,
+        counters: ShaftCounters::default(),
     };
+    let mut unfinished: Vec<Unfinished> = (0..boxes.len()).map(Unfinished::all_of).collect();
+    on_threads(options.threads, |threads| {
+        known.mark_within(graph, &places);
+        // What a box was refused for the sake of the others it gets when they are done.
+        let mut is_first = true;
+        while is_first || (!unfinished.is_empty() && !options.budget.is_over()) {
+            let shares = Shares::new(options.budget, unfinished.len(), threads);
+            let found = std::mem::take(&mut unfinished).into_par_iter().with_max_len(1).map_init(
+                || Shaft::new(&blockers),
+                |shaft, from| {
+                    let found = one(shaft, from, shares.next_unit());
+                    if is_first { counter.step() } else { counter.check() }.map(|()| found)
+                },
+            );
+            for (rest, n_assumed, counters) in found.collect::<Result<Vec<_>, Cancelled>>()? {
+                answer.n_assumed += n_assumed;
+                answer.counters = answer.counters + counters;
+                unfinished.extend(Some(rest).filter(Unfinished::is_some));
+            }
+            is_first = false;
+        }
+        Ok(())
+    })?;
+    answer.left = known.give_up(&unfinished, asked, &places, boxes);
     for eye in 0..boxes.len() {
         for (matrix, marks) in [(&mut answer.boxes, &known.boxes), (&mut answer.objects, &known.objects)] {
             let hidden: Vec<usize> = matrix.iter_ones(eye).filter(|&other| !marks.get(eye, other)).collect();
@@ -135,6 +155,24 @@ struct FoundVisible<'a> {
     of_boxes: &'a Targets<'a>,
     of_objects: &'a Targets<'a>,
     blockers: &'a Blockers,
+}
+
+/// A box, and the nodes of the trees of targets that were not visited for it.
+struct Unfinished {
+    eye: usize,
+    of_boxes: Vec<u32>,
+    of_objects: Vec<u32>,
+}
+
+impl Unfinished {
+    /// A box for which nothing was visited.
+    fn all_of(eye: usize) -> Self {
+        Self { eye, of_boxes: vec![0], of_objects: vec![0] }
+    }
+
+    fn is_some(&self) -> bool {
+        !self.of_boxes.is_empty() || !self.of_objects.is_empty()
+    }
 }
 
 /// The kind of target.
@@ -181,6 +219,74 @@ impl FoundVisible<'_> {
             Kind::Box => &self.boxes,
             Kind::Object => &self.objects,
         }
+    }
+
+    fn targets(&self, kind: Kind) -> &Targets<'_> {
+        match kind {
+            Kind::Box => self.of_boxes,
+            Kind::Object => self.of_objects,
+        }
+    }
+
+    /// Which of the asked targets have to be decided; marks those that are visible at once.
+    fn in_doubt(
+        &self,
+        kind: Kind,
+        eye: usize,
+        own: &Aabb<3>,
+        places: &CellLocator,
+        asked: impl Iterator<Item = usize>,
+    ) -> Vec<bool> {
+        let (targets, marks) = (self.targets(kind), self.marks(kind));
+        let mut in_doubt = vec![false; targets.boxes.len()];
+        let all = !places.holds(own);
+        let near = places.components(own);
+        for i in asked.filter(|&i| !marks.get(eye, i)) {
+            if all || targets.outside[i] || touch(own, &targets.own[i]) {
+                self.see(kind, eye, i);
+            } else {
+                let is_joined = || targets.components[i].iter().any(|c| near.binary_search(c).is_ok());
+                in_doubt[i] = targets.can_be_reached(i) && is_joined();
+            }
+        }
+        in_doubt
+    }
+
+    /// Marks as visible what was not decided, and returns it.
+    fn give_up(
+        &self,
+        unfinished: &[Unfinished],
+        asked: &PairMask,
+        places: &CellLocator,
+        boxes: &[Aabb<3>],
+    ) -> Option<PairMask> {
+        let mut left = PairMask {
+            boxes: BitMatrix::new(asked.boxes.n_rows(), asked.boxes.n_cols()),
+            objects: BitMatrix::new(asked.objects.n_rows(), asked.objects.n_cols()),
+        };
+        for Unfinished { eye, of_boxes, of_objects } in unfinished {
+            for (kind, nodes) in [(Kind::Box, of_boxes), (Kind::Object, of_objects)] {
+                let (targets, marks) = (self.targets(kind), self.marks(kind));
+                let asked: Vec<usize> = match kind {
+                    Kind::Box => asked.boxes.iter_ones(*eye).filter(|other| other > eye).collect(),
+                    Kind::Object => asked.objects.iter_ones(*eye).collect(),
+                };
+                let in_doubt = self.in_doubt(kind, *eye, &boxes[*eye], places, asked.into_iter());
+                let nodes = nodes.iter().map(|&n| &targets.tree.nodes()[n as usize]);
+                let within = nodes.flat_map(|node| &targets.tree.order()[node.start as usize..node.end as usize]);
+                for i in within.map(|&i| i as usize).filter(|&i| in_doubt[i] && !marks.get(*eye, i)) {
+                    match kind {
+                        Kind::Box => [(*eye, i), (i, *eye)].iter().for_each(|&(a, b)| left.boxes.set(a, b, true)),
+                        Kind::Object => left.objects.set(*eye, i, true),
+                    }
+                }
+            }
+        }
+        for eye in 0..boxes.len() {
+            left.boxes.iter_ones(eye).for_each(|i| self.see(Kind::Box, eye, i));
+            left.objects.iter_ones(eye).for_each(|i| self.see(Kind::Object, eye, i));
+        }
+        (left.boxes.count_ones() + left.objects.count_ones() > 0).then_some(left)
     }
 
     /// Marks that a box sees something of a kind.
@@ -309,30 +415,39 @@ struct BoxSearch<'a, 's, 'b> {
     id: usize,
     known: &'a FoundVisible<'a>,
     shaft: &'s mut Shaft<'b>,
+    /// What all boxes together may spend.
+    all: Allowance<'a>,
     n_assumed: u64,
 }
 
 impl BoxSearch<'_, '_, '_> {
     /// Marks which of the given targets may be visible.
-    fn settle_all(&mut self, kind: Kind, places: &CellLocator, asked: impl Iterator<Item = usize>) {
+    ///
+    /// Below the nodes `start` only; returns those that were not visited because the allowance was over.
+    fn settle_all(
+        &mut self,
+        kind: Kind,
+        places: &CellLocator,
+        asked: impl Iterator<Item = usize>,
+        start: Vec<u32>,
+        allowance: Allowance<'_>,
+    ) -> Vec<u32> {
         let known = self.known;
-        let (targets, marks) = match kind {
-            Kind::Box => (known.of_boxes, &known.boxes),
-            Kind::Object => (known.of_objects, &known.objects),
-        };
-        let mut in_doubt = vec![false; targets.boxes.len()];
-        let all = !places.holds(self.own);
-        let near = places.components(self.own);
-        for i in asked.filter(|&i| !marks.get(self.id, i)) {
-            if all || targets.outside[i] || touch(self.own, &targets.own[i]) {
-                known.see(kind, self.id, i);
-            } else {
-                let is_joined = || targets.components[i].iter().any(|c| near.binary_search(c).is_ok());
-                in_doubt[i] = targets.can_be_reached(i) && is_joined();
-            }
+        let (targets, marks) = (known.targets(kind), known.marks(kind));
+        if start.is_empty() || targets.boxes.is_empty() {
+            return Vec::new();
         }
-        let mut stack = if targets.boxes.is_empty() { Vec::new() } else { vec![0u32] };
-        while let Some(n) = stack.pop() {
+        let in_doubt = known.in_doubt(kind, self.id, self.own, places, asked);
+        let (mut next, mut is_first) = (VecDeque::from(start), true);
+        // With a limit the largest groups come first.
+        let take = |next: &mut VecDeque<u32>| if allowance.is_limited() { next.pop_front() } else { next.pop_back() };
+        while let Some(n) = take(&mut next) {
+            // Each turn visits a node at least, unless all is spent, so turns come to an end.
+            if allowance.is_over() && (!is_first || self.all.is_over()) {
+                next.push_front(n);
+                break;
+            }
+            is_first = false;
             let node = &targets.tree.nodes()[n as usize];
             let within = &targets.tree.order()[node.start as usize..node.end as usize];
             let is_left = |i: u32| in_doubt[i as usize] && !marks.get(self.id, i as usize);
@@ -354,8 +469,9 @@ impl BoxSearch<'_, '_, '_> {
                     Verdict::Undecided(_) => {}
                 }
             }
-            stack.extend(targets.tree.children(n));
+            next.extend(targets.tree.children(n));
         }
+        next.into()
     }
 
     fn settle(&mut self, kind: Kind, targets: &Targets<'_>, i: usize) {

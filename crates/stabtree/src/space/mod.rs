@@ -12,6 +12,7 @@
 mod atomic_bits;
 mod explain;
 mod from_boxes;
+mod limited;
 mod live;
 mod objects;
 mod opaque;
@@ -27,16 +28,17 @@ use crate::search::SearchOptions;
 pub(crate) use atomic_bits::AtomicBitMatrix;
 use opaque::opaque_rectangles;
 pub(crate) use opaque::opaque_without_solid;
+use pairs::Pair;
 pub(crate) use pairs::halves_first;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_geometry::BoxTree;
-use sightlines_progress::{Cancelled, Counter};
+use sightlines_progress::{Allowance, Cancelled, Counter, scattered};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Shaft;
 use sightlines_sightline::{Blockers, ShaftCounters};
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use witness_log::{WitnessLog, Worker};
 
 /// The answer for a graph in space.
@@ -54,6 +56,9 @@ pub struct SpaceVisibility {
     /// more digits than doubles have. Like `counters`, it varies with threads, as a line for another pair may prove
     /// such a pair visible first.
     pub n_assumed: u64,
+    /// The visible pairs that were not decided because the budget was spent; none if all were. Cells that are too thin to be decided
+    /// have those of their neighbours.
+    pub left: Option<PairMask>,
     /// The work done. With several threads the counts vary from run to run; the answer does not.
     pub counters: ShaftCounters,
 }
@@ -101,6 +106,8 @@ struct SpaceSearch<'a> {
     maybe: AtomicBitMatrix,
     /// The only pairs to decide; `None` for all pairs.
     doubt: Option<PairsInDoubt>,
+    /// What was not decided because the budget was spent: places by places, and objects by places.
+    left: Option<[AtomicBitMatrix; 2]>,
     /// Whether lines are kept for later.
     logging: bool,
     n_assumed: AtomicU64,
@@ -120,6 +127,9 @@ fn components(graph: &CellGraph<Axial>) -> Vec<u32> {
     }
     of
 }
+
+/// The share of a budget that pairs of cells may spend; the rest is for objects.
+const PAIRS: f64 = 0.6;
 
 /// The index of a cell that is too thin to be decided.
 const SLIVER: u32 = u32::MAX;
@@ -153,7 +163,10 @@ pub fn space_visibility(
     options: &SearchOptions<'_>,
 ) -> Result<SpaceVisibility, Cancelled> {
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
-    let search = SpaceSearch::new(graph, objects, &blockers);
+    let mut search = SpaceSearch::new(graph, objects, &blockers);
+    if options.budget.is_limited() {
+        search.expect_to_leave_pairs();
+    }
     let (counters, _) = on_threads(options.threads, |threads| search.answer(threads, options))?;
     Ok(search.into_seen(counters))
 }
@@ -226,6 +239,7 @@ impl<'a> SpaceSearch<'a> {
             objects,
             maybe,
             doubt: None,
+            left: None,
             logging: false,
             n_assumed: AtomicU64::new(0),
         }
@@ -247,13 +261,15 @@ impl<'a> SpaceSearch<'a> {
     /// Decides all requested pairs; returns the effort, and the log of lines.
     fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> Result<(ShaftCounters, WitnessLog), Cancelled> {
         let n = self.cell_at.len();
+        // Who keeps lines for later has room for no pairs that are left.
+        let budget = if self.left.is_some() { options.budget } else { Allowance::default() };
         if n == 0 {
             return Ok((ShaftCounters::default(), WitnessLog::default()));
         }
         let mut first = self.worker();
         let mut tasks = vec![[0, 0]];
         let per_thread = if self.doubt.is_some() { FEW_TASKS_PER_THREAD } else { TASKS_PER_THREAD };
-        while tasks.len() < per_thread * threads {
+        while tasks.len() < per_thread * threads && !budget.is_over() {
             let mut smaller = Vec::new();
             tasks.iter().for_each(|&pair| self.settle(pair, &mut first, &mut |p| smaller.push(p)));
             tasks = smaller;
@@ -261,36 +277,16 @@ impl<'a> SpaceSearch<'a> {
                 break;
             }
         }
+        let tasks: Vec<Pair> = scattered(tasks.len()).map(|i| tasks[i]).collect();
         let counter = Counter::new(options.progress, "pairs and objects", tasks.len() + self.boxes.len());
-        let pairs = tasks.into_par_iter().with_max_len(1).map_init(
-            || self.worker(),
-            |worker, task| {
-                let before = worker.shaft.counters();
-                let mut stack = vec![task];
-                while let Some(pair) = stack.pop() {
-                    self.settle(pair, worker, &mut |p| stack.push(p));
-                }
-                counter.step()?;
-                Ok((worker.shaft.counters() - before, worker.take_log()))
-            },
-        );
-        let pairs: Vec<(ShaftCounters, WitnessLog)> = pairs.collect::<Result<_, Cancelled>>()?;
+        let pairs = self.settle_pairs(tasks, threads, budget.part(PAIRS), &counter)?;
         let survey = (0..n).into_par_iter().map(|place| {
             let mut log = self.logging.then(WitnessLog::default);
             self.survey_objects(place, log.as_mut());
             (ShaftCounters::default(), log.unwrap_or_default())
         });
         let survey: Vec<(ShaftCounters, WitnessLog)> = survey.collect();
-        let objects = (0..self.boxes.len()).into_par_iter().with_max_len(4).map_init(
-            || (self.worker(), Vec::new()),
-            |(worker, stack), object| {
-                let before = worker.shaft.counters();
-                self.settle_object(object, worker, stack);
-                counter.step()?;
-                Ok((worker.shaft.counters() - before, worker.take_log()))
-            },
-        );
-        let objects: Vec<(ShaftCounters, WitnessLog)> = objects.collect::<Result<_, Cancelled>>()?;
+        let objects = self.settle_objects(threads, budget, &counter)?;
         let mut all = (first.shaft.counters(), first.take_log());
         for (counters, log) in pairs.into_iter().chain(survey).chain(objects) {
             all.0 = all.0 + counters;
@@ -314,13 +310,15 @@ impl<'a> SpaceSearch<'a> {
             }
         }
         slivers::fill(self.graph, |cell| self.place[cell] == SLIVER, &self.touching, &mut cells, &mut objects);
-        let n_assumed = self.n_assumed.into_inner();
+        let n_assumed = self.n_assumed.load(Relaxed);
+        let left = self.left_pairs();
         SpaceVisibility {
             cells,
             objects,
             touching: self.touching,
             n_blockers: self.blockers.len(),
             n_assumed,
+            left,
             counters,
         }
     }

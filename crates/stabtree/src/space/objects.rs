@@ -4,7 +4,9 @@ use super::SpaceSearch;
 use super::pairs::{CELL_BUDGET, FEW, GROUP_BUDGET, apart};
 use super::witness_log::{FoundFor, WitnessLog, Worker};
 use sightlines_geometry::Aabb;
+use sightlines_progress::Allowance;
 use sightlines_sightline::{Target, Verdict};
+use std::collections::VecDeque;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Whether two closed boxes have a point in common.
@@ -60,12 +62,27 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// Decides which cells see an object: groups of cells first, then their halves.
-    pub(super) fn settle_object(&self, object: usize, worker: &mut Worker<'_>, stack: &mut Vec<u32>) {
+    /// Decides which cells of some groups see an object: groups of cells first, then their halves. Returns the groups that `unit`, a part
+    /// of `all`, was not enough for.
+    pub(super) fn settle_object(
+        &self,
+        object: usize,
+        worker: &mut Worker<'_>,
+        nodes: Vec<u32>,
+        unit: Allowance<'_>,
+        all: Allowance<'_>,
+    ) -> Vec<u32> {
         let (target, row) = (&self.boxes[object], [object, object + 1]);
-        stack.clear();
-        stack.push(0);
-        while let Some(n) = stack.pop() {
+        let (mut next, mut is_first) = (VecDeque::from(nodes), true);
+        // With a limit the largest groups come first.
+        let take = |next: &mut VecDeque<u32>| if unit.is_limited() { next.pop_front() } else { next.pop_back() };
+        while let Some(n) = take(&mut next) {
+            // As for pairs, turns come to an end.
+            if unit.is_over() && (!is_first || all.is_over()) {
+                next.push_front(n);
+                break;
+            }
+            is_first = false;
             let node = &self.tree.nodes()[n as usize];
             let places = [node.start as usize, node.end as usize];
             if !self.maybe.any_beyond(&self.objects, row, places) {
@@ -94,9 +111,10 @@ impl SpaceSearch<'_> {
                 }
             }
             if !node.is_leaf() {
-                stack.extend(self.tree.children(n));
+                next.extend(self.tree.children(n));
             }
         }
+        next.into()
     }
 
     /// For a search in which only some pairs are in doubt and so not all groups are tested: whether an object is hidden

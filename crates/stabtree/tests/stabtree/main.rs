@@ -5,6 +5,7 @@ mod certify;
 mod explain_convex;
 mod explain_space;
 mod from_boxes;
+mod limited;
 mod live_space;
 mod search;
 mod space;

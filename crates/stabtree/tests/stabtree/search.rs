@@ -108,7 +108,7 @@ fn enumerate<S: Stabber<Portal = Portal2>>(graph: &CellGraph<Planar>, stabber: &
 }
 
 fn search(graph: &CellGraph<Planar>, threads: usize, chords: u32) -> BitMatrix {
-    let options = SearchOptions { threads, chords, progress: None };
+    let options = SearchOptions { threads, chords, ..SearchOptions::default() };
     plan_visibility(graph, &Zones::cells(graph), &options).expect("nobody cancels").0
 }
 

@@ -153,7 +153,7 @@ fn cut_plan(plan: &Plan) -> CellGraph<Planar> {
 }
 
 fn rows_of_plan(graph: &CellGraph<Planar>) -> BitMatrix {
-    let options = SearchOptions { threads: 1, chords: 8, progress: None };
+    let options = SearchOptions { threads: 1, ..SearchOptions::default() };
     plan_visibility(graph, &Zones::cells(graph), &options).expect("nobody cancels").0
 }
 

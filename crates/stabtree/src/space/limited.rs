@@ -1,0 +1,168 @@
+//! The search in turns: all of it in one, or, with a budget, fair shares of it.
+//!
+//! With a budget each group of pairs has a share of it, in which it is decided coarsely first. What one leaves goes to those that were
+//! not done, in further turns. What is left when the budget is spent counts as visible.
+
+use super::pairs::Pair;
+use super::witness_log::{WitnessLog, Worker};
+use super::{AtomicBitMatrix, PairMask, SLIVER, SpaceSearch, slivers};
+use rayon::prelude::*;
+use sightlines_progress::{Allowance, Cancelled, Counter, Shares};
+use sightlines_pvs::BitMatrix;
+use sightlines_sightline::ShaftCounters;
+use std::collections::VecDeque;
+
+/// The work of some units, and the lines that were found.
+type Done = Vec<(ShaftCounters, WitnessLog)>;
+
+impl SpaceSearch<'_> {
+    /// Makes room for pairs that are not decided.
+    pub(super) fn expect_to_leave_pairs(&mut self) {
+        let n = self.cell_at.len();
+        self.left = Some([AtomicBitMatrix::new(n, n), AtomicBitMatrix::new(self.boxes.len(), n)]);
+    }
+
+    /// Decides pairs of groups. What is left when the allowance is over counts as visible.
+    pub(super) fn settle_pairs(
+        &self,
+        mut tasks: Vec<Pair>,
+        threads: usize,
+        allowance: Allowance<'_>,
+        counter: &Counter<'_>,
+    ) -> Result<Done, Cancelled> {
+        let (mut done, mut is_first) = (Vec::new(), true);
+        while is_first || (!tasks.is_empty() && !allowance.is_over()) {
+            let shares = Shares::new(allowance, tasks.len(), threads);
+            let turn = std::mem::take(&mut tasks).into_par_iter().with_max_len(1).map_init(
+                || self.worker(),
+                |worker, task| {
+                    let before = worker.shaft.counters();
+                    let rest = self.settle_below(task, worker, shares.next_unit(), allowance);
+                    if is_first {
+                        counter.step()?
+                    } else {
+                        counter.check()?
+                    }
+                    Ok((rest, (worker.shaft.counters() - before, worker.take_log())))
+                },
+            );
+            for (rest, did) in turn.collect::<Result<Vec<_>, Cancelled>>()? {
+                tasks.extend(rest);
+                done.push(did);
+            }
+            is_first = false;
+        }
+        self.give_up_pairs(&tasks);
+        Ok(done)
+    }
+
+    /// Decides a pair of groups, and returns the parts that the allowance was not enough for.
+    fn settle_below(&self, task: Pair, worker: &mut Worker<'_>, unit: Allowance<'_>, all: Allowance<'_>) -> Vec<Pair> {
+        let mut next = VecDeque::from([task]);
+        let mut is_first = true;
+        // With a limit the largest groups come first.
+        let take = |next: &mut VecDeque<Pair>| if unit.is_limited() { next.pop_front() } else { next.pop_back() };
+        while let Some(pair) = take(&mut next) {
+            // Each turn decides a pair at least, unless all is spent, so turns come to an end.
+            if unit.is_over() && (!is_first || all.is_over()) {
+                next.push_front(pair);
+                break;
+            }
+            is_first = false;
+            self.settle(pair, worker, &mut |smaller| next.push_back(smaller));
+        }
+        next.into()
+    }
+
+    /// Marks as visible, and as left, all cells of pairs of groups that may see each other and are not known to.
+    fn give_up_pairs(&self, pairs: &[Pair]) {
+        let Some([left, _]) = &self.left else { return };
+        let places = |n: u32| {
+            let node = &self.tree.nodes()[n as usize];
+            node.start as usize..node.end as usize
+        };
+        for &[a, b] in pairs {
+            for a in places(a) {
+                for b in places(b).filter(|&b| b != a && self.may_see_cell(a, b) && !self.cells.get(a, b)) {
+                    left.set(a, b);
+                    left.set(b, a);
+                }
+            }
+        }
+        for a in 0..self.cell_at.len() {
+            left.ones(a).for_each(|b| {
+                self.cells.set(a, b);
+            });
+        }
+    }
+
+    /// Decides which cells see each object, among those that may.
+    pub(super) fn settle_objects(
+        &self,
+        threads: usize,
+        allowance: Allowance<'_>,
+        counter: &Counter<'_>,
+    ) -> Result<Done, Cancelled> {
+        let (mut done, mut is_first) = (Vec::new(), true);
+        let mut tasks: Vec<(usize, Vec<u32>)> = (0..self.boxes.len()).map(|object| (object, vec![0])).collect();
+        while is_first || (!tasks.is_empty() && !allowance.is_over()) {
+            let shares = Shares::new(allowance, tasks.len(), threads);
+            let turn = std::mem::take(&mut tasks).into_par_iter().with_max_len(4).map_init(
+                || self.worker(),
+                |worker, (object, nodes)| {
+                    let before = worker.shaft.counters();
+                    let rest = self.settle_object(object, worker, nodes, shares.next_unit(), allowance);
+                    if is_first {
+                        counter.step()?
+                    } else {
+                        counter.check()?
+                    }
+                    Ok(((object, rest), (worker.shaft.counters() - before, worker.take_log())))
+                },
+            );
+            for (rest, did) in turn.collect::<Result<Vec<_>, Cancelled>>()? {
+                tasks.extend(Some(rest).filter(|(_, nodes)| !nodes.is_empty()));
+                done.push(did);
+            }
+            is_first = false;
+        }
+        self.give_up_objects(&tasks);
+        Ok(done)
+    }
+
+    /// Marks as visible, and as left, objects that cells in groups may see and are not known to.
+    fn give_up_objects(&self, tasks: &[(usize, Vec<u32>)]) {
+        let Some([_, left]) = &self.left else { return };
+        for (object, nodes) in tasks {
+            for node in nodes.iter().map(|&n| &self.tree.nodes()[n as usize]) {
+                let places = node.start as usize..node.end as usize;
+                for place in places.filter(|&p| self.maybe.get(*object, p) && !self.objects.get(*object, p)) {
+                    left.set(*object, place);
+                }
+            }
+            left.ones(*object).for_each(|place| {
+                self.objects.set(*object, place);
+            });
+        }
+    }
+
+    /// What was left, by cells.
+    pub(super) fn left_pairs(&self) -> Option<PairMask> {
+        let n = self.graph.n_cells();
+        let [of_cells, of_objects] = self.left.as_ref()?;
+        let (mut boxes, mut objects) = (BitMatrix::new(n, n), BitMatrix::new(n, self.boxes.len()));
+        for (place, &cell) in self.cell_at.iter().enumerate() {
+            of_cells.ones(place).for_each(|other| boxes.set(cell as usize, self.cell_at[other] as usize, true));
+        }
+        for object in 0..self.boxes.len() {
+            of_objects.ones(object).for_each(|place| objects.set(self.cell_at[place] as usize, object, true));
+        }
+        if boxes.count_ones() + objects.count_ones() == 0 {
+            return None;
+        }
+        let none = vec![Vec::new(); n];
+        slivers::fill(self.graph, |cell| self.place[cell] == SLIVER, &none, &mut boxes, &mut objects);
+        (0..n).for_each(|cell| boxes.set(cell, cell, false));
+        Some(PairMask { boxes, objects })
+    }
+}
