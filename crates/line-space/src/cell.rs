@@ -35,32 +35,13 @@ impl Cell {
     /// values at pairs of corners with positive weights: if none of these is negative and one is positive, it is positive. Exact
     /// for exact ends; for others a value that is not certain counts as both sides.
     pub(crate) fn passing(&self, x: Point3, y: Point3) -> Passing {
-        let (from, to) = (self.from.corners(), self.to.corners());
-        let mut extent = [0.0f64; 3];
-        let (mut low, mut high) = (x, x);
-        for p in from.iter().chain(to).chain([&y]) {
-            for k in 0..3 {
-                low[k] = low[k].min(p[k]);
-                high[k] = high[k].max(p[k]);
-                extent[k] = high[k] - low[k];
-            }
-        }
-        let bound = ROUNDING * 6.0 * extent[0] * extent[1] * extent[2];
-        let (radius, is_exact) = (self.to.radius(), self.to.is_exact());
+        let (rounding, is_exact) = (self.rounding(x, y), self.to.is_exact());
         let (mut positive, mut negative) = (false, false);
-        for &a in from {
-            let normal = cross(sub(x, a), sub(y, a));
-            let slack = if is_exact {
-                0.0
-            } else {
-                let size = |i: usize, j: usize| {
-                    (normal[3 - i - j].abs() + ROUNDING * extent[i] * extent[j]) * radius[3 - i - j]
-                };
-                MORE * (size(0, 1) + size(1, 2) + size(0, 2))
-            };
-            for &b in to {
-                let value = dot(normal, sub(b, a));
-                let sign = if value.abs() > bound + slack {
+        for &a in self.from.corners() {
+            let here = rounding.of_lines_from(a, x, y);
+            for &b in self.to.corners() {
+                let value = here.value(b);
+                let sign = if value.abs() > here.error {
                     value
                 } else if is_exact {
                     orient(a, b, x, y)
@@ -75,6 +56,66 @@ impl Cell {
             }
         }
         if positive || negative { Passing::OneSide } else { Passing::Both }
+    }
+
+    /// How far off the sides on which lines between corners pass an edge may be.
+    pub(crate) fn rounding(&self, x: Point3, y: Point3) -> Rounding {
+        let mut extent = [0.0f64; 3];
+        let (mut low, mut high) = (x, x);
+        for p in self.from.corners().iter().chain(self.to.corners()).chain([&y]) {
+            for k in 0..3 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+                extent[k] = high[k] - low[k];
+            }
+        }
+        let bound = ROUNDING * 6.0 * extent[0] * extent[1] * extent[2];
+        Rounding { extent, bound, radius: self.to.radius(), is_exact: self.to.is_exact() }
+    }
+}
+
+/// What rounding costs for an edge, as [`Cell::rounding`] finds it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rounding {
+    /// Of the box around both ends and the edge.
+    extent: Point3,
+    /// Of the determinant in doubles.
+    bound: f64,
+    /// Of the corners of the second end.
+    radius: Point3,
+    is_exact: bool,
+}
+
+/// The sides on which lines from one corner pass an edge.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LinesFrom {
+    corner: Point3,
+    normal: Point3,
+    /// How far a value may be from that of the true corner.
+    pub(crate) error: f64,
+}
+
+impl Rounding {
+    /// Lines from `a`, a corner of the first end, and the edge from `x` to `y`.
+    pub(crate) fn of_lines_from(&self, a: Point3, x: Point3, y: Point3) -> LinesFrom {
+        let normal = cross(sub(x, a), sub(y, a));
+        let slack = if self.is_exact {
+            0.0
+        } else {
+            let extent = &self.extent;
+            let size = |i: usize, j: usize| {
+                (normal[3 - i - j].abs() + ROUNDING * extent[i] * extent[j]) * self.radius[3 - i - j]
+            };
+            MORE * (size(0, 1) + size(1, 2) + size(0, 2))
+        };
+        LinesFrom { corner: a, normal, error: self.bound + slack }
+    }
+}
+
+impl LinesFrom {
+    /// `orient3d(a, b, x, y)` for a corner of the second end, rounded.
+    pub(crate) fn value(&self, b: Point3) -> f64 {
+        dot(self.normal, sub(b, self.corner))
     }
 }
 

@@ -3,25 +3,30 @@
 //! Let `F` be a set of triangles of a mesh, and its *rim* the edges at which an odd number of them end. If
 //! 1. no triangle of `F` has a point in the relative interior of either end, but for triangles on the plane where lines begin or
 //!    beyond it, which lines cross as they begin,
-//! 2. no line between inner points of the ends meets the rim, because all pass it on one side or it lies outside of their hull,
+//! 2. no line between inner points of the ends meets the rim, because all pass it on one side, or it lies outside of their hull or off
+//!    their [side](crate::side) of an edge,
 //! 3. one such line crosses `F` an odd number of times, nowhere at an edge,
 //!
-//! then every line of the cell meets `F`. Lines between inner points can be moved into each other without passing the rim (2) or having an
-//! end on `F` (1), so the number of crossings stays odd (3); all others are limits of these, and `F` is closed.
+//! then every line of the cell meets `F`. Lines between inner points can be moved into each other without passing the rim (2) or
+//! having an end on `F` (1), so the number of crossings stays odd (3); all others are limits of these, and `F` is closed. For the lines
+//! on one side of an edge all three are needed only of those, if they are connected: then they too can be moved into each other.
 //!
 //! `F` is found by growth: from a triangle that the middle line hits, over every edge of the rim that lines pass on both sides, to
-//! the next triangle. Growth is a heuristic; the conditions are checked exactly.
+//! the next triangle. Where there is none, or only one that folds back, as at a silhouette, the lines on the far side of that edge are left to other
+//! chains. Growth is a heuristic; the conditions are checked exactly.
 //!
 //! Source: parity as for the ShieldTester of Navazo, Rossignac, Jou and Shariff, Computer Graphics Forum 22(3), 2003; cells of
 //! line space and the growth within them were chosen here.
 
 use crate::cell::{Cell, Passing};
+use crate::end::End;
 use crate::hull::{Code, Hull};
 use crate::orient::orient;
+use crate::side::{Limit, Side};
 use crate::surface::Surface;
 use crate::touch::{Start, Target};
 use sightlines_geometry::vector::{cross, dot, sub};
-use sightlines_geometry::{Aabb, Point3};
+use sightlines_geometry::{Aabb, Point3, Random};
 
 /// Why a chain does not block a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +41,33 @@ pub(crate) enum Gap {
     Other,
 }
 
+/// What a chain blocks.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Blocked {
+    /// All lines in question.
+    All,
+    /// Those on this side of an edge, roughly such a share of the lines of the cell.
+    Side { limit: Limit, share: f64 },
+}
+
+/// Why a chain blocks nothing.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Failure {
+    /// Where.
+    pub(crate) gap: Gap,
+    /// Whether it met a silhouette where it could have folded back.
+    pub(crate) can_fold: bool,
+}
+
+/// How a chain goes on at a silhouette.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AtFold {
+    /// At one edge it leaves the lines beyond to other chains; not in a cell that is limited to a side already.
+    Leave,
+    /// It folds back, and has at most so many triangles from the first fold on.
+    Follow(usize),
+}
+
 /// A cell with what its chains share.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shaft {
@@ -48,18 +80,56 @@ pub(crate) struct Shaft {
     pub(crate) line: [Point3; 2],
     /// How far the second of them may be from the true end.
     pub(crate) rounding: Point3,
+    /// The lines in question, if not all: they are connected, and the middle line is one.
+    side: Option<Side>,
 }
 
 impl Shaft {
     /// None for ends without inner points.
-    pub(crate) fn new(cell: Cell, start: Start, weights: [[f64; 4]; 2]) -> Option<Self> {
-        let (from, _) = cell.from.inner(weights[0])?;
-        let (to, rounding) = cell.to.inner(weights[1])?;
+    pub(crate) fn new(cell: Cell, start: Start, random: &mut Random) -> Option<Self> {
+        let mut weights = || [0; 4].map(|_| 0.7 + 0.6 * random.unit());
+        let (from, _) = cell.from.inner(weights())?;
+        let (to, rounding) = cell.to.inner(weights())?;
         let (a, b) = (cell.from.bounds(), cell.to.bounds());
         let bounds = a.with(b.min).with(b.max);
-        Some(Self { cell, start, hull: Hull::of(&cell), bounds, line: [from, to], rounding })
+        Some(Self { cell, start, hull: Hull::of(&cell), bounds, line: [from, to], rounding, side: None })
+    }
+
+    /// Of the lines of the cell those on a side; says whether they are certainly connected, and one was found.
+    pub(crate) fn limit(&mut self, side: Side, random: &mut Random) -> bool {
+        if !side.is_connected() {
+            return false;
+        }
+        let [i, j] = side.farthest();
+        let mut others = 1.0;
+        while self.sign_of_middle(side.limit.edge) != side.limit.sign {
+            others /= 4.0;
+            let mut near = |end: &End, corner: usize| {
+                end.inner(end.weights_near(corner, others).map(|w| w * (0.7 + 0.6 * random.unit())))
+            };
+            let ends = near(&self.cell.from, i).zip(near(&self.cell.to, j));
+            let Some(((from, _), (to, rounding))) = ends.filter(|_| others > NEAREST) else { return false };
+            (self.line, self.rounding) = ([from, to], rounding);
+        }
+        self.side = Some(side);
+        true
+    }
+
+    /// The sign of the side on which the middle line passes an edge; 0 if that is not certain.
+    fn sign_of_middle(&self, [x, y]: [Point3; 2]) -> f64 {
+        let [p, q] = self.line;
+        f64::from(sign(x, y, p, q, self.rounding))
+    }
+
+    /// The lines of the cell that pass an edge on the same side as the middle line, if that is certain.
+    fn side_of_middle(&self, edge: [Point3; 2]) -> Option<Side> {
+        let sign = self.sign_of_middle(edge);
+        (sign != 0.0).then(|| Side::new(&self.cell, Limit { edge, sign }))
     }
 }
+
+/// How near to corners of the ends lines are tried to find one on a side.
+const NEAREST: f64 = 1.0 / (1u64 << 24) as f64;
 
 /// Marks that are forgotten all at once.
 #[derive(Debug, Default)]
@@ -123,27 +193,65 @@ impl ChainFinder {
         self.open.clear();
     }
 
-    /// Grows a chain from a triangle; whether it blocks all lines of the cell.
-    pub(crate) fn block(&mut self, surface: &Surface, shaft: &Shaft, target: &Target, start: u32) -> Result<(), Gap> {
+    /// Grows a chain from a triangle; what it blocks of the lines of the cell, or of those on a side of it.
+    pub(crate) fn block(
+        &mut self,
+        surface: &Surface,
+        shaft: &Shaft,
+        target: &Target,
+        start: u32,
+        at_fold: AtFold,
+    ) -> Result<Blocked, Failure> {
         self.next_chain();
-        let mut folded = None;
-        self.add(surface, shaft, target, start)?;
+        let mut longest = self.longest;
+        let (mut folded, mut left, mut can_fold) = (None, None, false);
+        let failure = |gap, can_fold| Failure { gap, can_fold };
+        self.add(surface, shaft, target, start).map_err(|gap| failure(gap, can_fold))?;
         while let Some((edge, triangle)) = self.open.pop() {
             if !self.is_odd(edge) || !self.is_mixed(surface, shaft, edge) {
                 continue;
             }
+            let ends = surface.edge(edge);
+            if left.is_some_and(|side: Side| side.misses(&shaft.cell, ends)) {
+                continue;
+            }
             let gap = Gap::Edge { edge, triangle };
-            let (next, folds) =
-                self.next_triangle(surface, shaft, target, edge, triangle).ok_or(folded.unwrap_or(gap))?;
-            if folds {
-                folded = folded.or(Some(gap));
+            let next = self.next_triangle(surface, shaft, target, edge, triangle);
+            match (next, at_fold) {
+                (None, AtFold::Follow(_)) => return Err(failure(folded.unwrap_or(gap), false)),
+                (Some((next, false)), _) => {
+                    if self.chain.len() >= longest {
+                        return Err(failure(folded.unwrap_or(Gap::Other), can_fold));
+                    }
+                    self.add(surface, shaft, target, next).map_err(|gap| failure(gap, can_fold))?;
+                }
+                (Some((next, true)), AtFold::Follow(most)) => {
+                    if folded.is_none() {
+                        folded = Some(gap);
+                        longest = longest.min(self.chain.len() + most);
+                    }
+                    if self.chain.len() >= longest {
+                        return Err(failure(folded.unwrap_or(Gap::Other), can_fold));
+                    }
+                    self.add(surface, shaft, target, next).map_err(|gap| failure(gap, can_fold))?;
+                }
+                (_, AtFold::Leave) => {
+                    can_fold |= next.is_some();
+                    folded = folded.or(Some(gap));
+                    let is_first = shaft.side.is_none() && left.is_none();
+                    let on_side = if is_first { shaft.side_of_middle(ends) } else { None };
+                    let Some(on_side) = on_side.filter(|side| side.is_connected() && !side.is_nearly_all()) else {
+                        return Err(failure(folded.unwrap_or(gap), can_fold));
+                    };
+                    left = Some(on_side);
+                }
             }
-            if self.chain.len() == self.longest {
-                return Err(folded.unwrap_or(Gap::Other));
-            }
-            self.add(surface, shaft, target, next)?;
         }
-        if self.is_crossed_oddly(surface, shaft) { Ok(()) } else { Err(folded.unwrap_or(Gap::Other)) }
+        if !self.is_crossed_oddly(surface, shaft) {
+            return Err(failure(folded.unwrap_or(Gap::Other), can_fold));
+        }
+        let of_side = |side: Side| Blocked::Side { limit: side.limit, share: side.share() };
+        Ok(left.map_or(Blocked::All, of_side))
     }
 
     fn add(&mut self, surface: &Surface, shaft: &Shaft, target: &Target, triangle: u32) -> Result<(), Gap> {
@@ -166,18 +274,23 @@ impl ChainFinder {
         Ok(())
     }
 
+    /// Whether a triangle was part of the last chain.
+    pub(crate) fn has(&self, triangle: u32) -> bool {
+        self.part_of[triangle as usize] == self.epochs.chain
+    }
+
     fn is_odd(&self, edge: u32) -> bool {
         self.odd[edge as usize] == (self.epochs.chain, true)
     }
 
-    /// Whether lines may pass an edge on both sides.
+    /// Whether the lines in question may pass an edge on both sides, and meet it.
     fn is_mixed(&mut self, surface: &Surface, shaft: &Shaft, edge: u32) -> bool {
         let (cell, mixed) = self.mixed[edge as usize];
         if cell == self.epochs.cell {
             return mixed;
         }
         let ends = surface.mesh().edges()[edge as usize];
-        let [p, q] = ends.map(|v| surface.mesh().vertices()[v as usize]);
+        let [p, q] = surface.edge(edge);
         // No line leaves the box around the ends; most edges are far from it.
         let around = &shaft.bounds;
         if (0..3).any(|k| p[k].max(q[k]) < around.min[k] || p[k].min(q[k]) > around.max[k]) {
@@ -185,7 +298,9 @@ impl ChainFinder {
             return false;
         }
         let [s, t] = [(ends[0], p), (ends[1], q)].map(|(v, at)| self.code(shaft, v, at));
-        let mixed = !shaft.hull.misses(s, t) && shaft.cell.passing(p, q) == Passing::Both;
+        let mixed = !shaft.hull.misses(s, t)
+            && shaft.cell.passing(p, q) == Passing::Both
+            && shaft.side.is_none_or(|side| !side.misses(&shaft.cell, [p, q]));
         self.mixed[edge as usize] = (self.epochs.cell, mixed);
         mixed
     }
@@ -217,7 +332,7 @@ impl ChainFinder {
         let here = side(triangle);
         let mut best: Option<(bool, f64, u32)> = None;
         for &other in mesh.triangles_at(edge) {
-            if other == triangle || self.part_of[other as usize] == self.epochs.chain {
+            if other == triangle || self.has(other) {
                 continue;
             }
             let (corners, bounds) = (surface.corners(other), surface.bounds(other));

@@ -147,6 +147,21 @@ impl End {
         Some((point, rounding))
     }
 
+    /// Weights for [`Self::inner`] of a point near a corner: those of other corners are `others`, if that of this one is 1.
+    pub(crate) fn weights_near(&self, corner: usize, others: f64) -> [f64; 4] {
+        let mut weights = [1.0; 4];
+        if self.n == 4 {
+            let [low, high] = [self.corners[0], self.corners[2]];
+            for (i, k) in (0..3).filter(|&k| low[k] != high[k]).enumerate().take(2) {
+                weights[2 * i + usize::from(self.corners[corner][k] == high[k])] = others;
+            }
+        } else {
+            weights = [others; 4];
+            weights[corner] = 1.0;
+        }
+        weights
+    }
+
     /// Cuts it across side `i` at about the part `t` of that side, between 0 and 1; none where doubles leave no room.
     ///
     /// The two pieces cover it, and share the border between them.
@@ -235,6 +250,10 @@ mod tests {
         }
         assert!(End::rectangle(&b, 1).is_none());
         assert!(end.inner([1.0; 4]).is_some());
+        for (i, c) in end.corners().iter().enumerate() {
+            let (near, _) = end.inner(end.weights_near(i, 1e-3)).expect("it has an area");
+            assert!((0..3).all(|k| (near[k] - c[k]).abs() < 0.005), "{i}: {near:?} {c:?}");
+        }
         let thin = Aabb { max: [1.0f64.next_up(), 2.0, 5.0], ..b };
         assert_eq!(End::rectangle(&thin, 2).expect("it has an area").inner([1.0; 4]), None);
     }
@@ -251,6 +270,8 @@ mod tests {
         assert!(!p.is_exact() && p.radius()[2] == 0.0 && p.radius()[0] < 1e-14, "{p:?}");
         let (inner, radius) = p.inner([1.0, 2.0, 3.0, 0.0]).expect("triangles have inner points");
         assert!(inner[2] == 1.0 && radius[2] == 0.0 && radius[0] > 0.0);
+        let (near, _) = p.inner(p.weights_near(2, 1e-3)).expect("triangles have inner points");
+        assert!((0..3).all(|k| (near[k] - p.corners()[2][k]).abs() < 0.005), "{near:?}");
         let point = End::triangle([[1.0, 1.0, 1.0], [1.0f64.next_up(), 1.0, 1.0], [1.0, 2.0, 1.0]]);
         assert!(point.cut(0, 0.5).is_none());
     }

@@ -2,16 +2,17 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: cells of line space, their halves, the chains of triangles that block them ([`LineSpace`]), and the surface they are taken
+//! - **Owns**: cells of line space, their halves and sides of edges, the chains of triangles that block them ([`LineSpace`]), and the surface they are taken
 //!   from ([`Surface`]).
 //! - **Out of scope**: targets in trees, rays that spare questions, threads, files.
-//! - **Invariants**: data flows `end` → `cell` → `hull` → `chain` → `split` → `search` → `method`; where to cut and which chain to try are
+//! - **Invariants**: data flows `end` → `cell` → `hull`, `side` → `chain` → `split` → `search` → `method`; where to cut and which chain to try are
 //!   heuristics in doubles; that a chain blocks is decided by exact predicates on input coordinates, or with bounds for corners that
 //!   were rounded.
 //!
 //! # Source
 //! Lines between two boxes as four parameters: Bittner and Přikryl, "Exact Regional Visibility using Line Space Partitioning", TR 2001;
-//! parity of chains: see the module `chain`. That signs at corners decide for a whole cell, and how chains grow, was worked out here.
+//! parity of chains: see the module `chain`. That signs at corners decide for a whole cell, or for the lines of it on one side of an edge, and how
+//! chains grow, was worked out here.
 
 mod cell;
 mod chain;
@@ -21,6 +22,7 @@ mod hull;
 mod method;
 mod orient;
 mod search;
+mod side;
 mod split;
 mod surface;
 mod touch;

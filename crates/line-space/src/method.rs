@@ -26,7 +26,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { box_cells: 40, triangle_cells: 1000, attempts: 8, longest_chain: 300 }
+        Self { box_cells: 40, triangle_cells: 400, attempts: 5, longest_chain: 300 }
     }
 }
 
@@ -151,6 +151,7 @@ fn box_roots(volume: &Aabb<3>, target: &Aabb<3>) -> Vec<Root> {
             roots.extend(ends.map(|(from, to)| Root {
                 cell: Cell { from, to },
                 start: start_at(volume, axis, upward),
+                limit: None,
                 share: 0.0,
             }));
         }
@@ -167,6 +168,7 @@ fn triangle_roots(volume: &Aabb<3>, triangle: [Point3; 3]) -> Vec<Root> {
         roots.extend(pieces.map(|to| Root {
             cell: Cell { from, to },
             start: start_at(volume, axis, upward),
+            limit: None,
             share: 0.0,
         }));
     }

@@ -1,7 +1,8 @@
 //! The search: cells of line space are blocked by chains or cut in two, until none is left or one has a free line.
 
 use crate::cell::Cell;
-use crate::chain::{ChainFinder, Gap, Shaft};
+use crate::chain::{AtFold, Blocked, ChainFinder, Gap, Shaft};
+use crate::side::{Limit, Part, Side};
 use crate::split::{promise, split};
 use crate::surface::{Hit, Surface};
 use crate::touch::{Start, Target};
@@ -24,6 +25,8 @@ pub enum Outcome {
 pub(crate) struct Root {
     pub(crate) cell: Cell,
     pub(crate) start: Start,
+    /// The side of an edge on which the lines in question pass, if not all are left.
+    pub(crate) limit: Option<Limit>,
     /// Its part of all lines, roughly: halves have half of it.
     pub(crate) share: f64,
 }
@@ -45,6 +48,10 @@ pub(crate) enum Patience {
 /// Of the boxes and triangles that were found hidden in two real scenes at most one in ten was beyond that before; of the others
 /// one in two.
 const HOPELESS: f64 = 1.25;
+
+/// How many triangles a chain has beyond its first fold. Chains that fold once and block are short as a rule; most others go
+/// around what they began on.
+const MOST_BEYOND_FOLD: usize = 32;
 
 /// The search for the lines between two ends, with its memory.
 #[derive(Debug)]
@@ -89,46 +96,95 @@ impl Search {
                 return (Outcome::Undecided, n);
             }
             n += 1;
-            let mut weights = || [0; 4].map(|_| 0.7 + 0.6 * random.unit());
-            let Some(shaft) = Shaft::new(root.cell, root.start, [weights(), weights()]) else {
+            let Some(mut shaft) = Shaft::new(root.cell, root.start, &mut random) else {
                 return (Outcome::Undecided, n);
             };
-            surface.hits(shaft.line[0], shaft.line[1], &mut self.hits);
-            if self.hits.iter().all(|hit| hit.at > 1.0 - AT_END) {
-                return (Outcome::Reached, n);
+            let mut limit = None;
+            let side = root.limit.map(|limit| Side::new(&root.cell, limit));
+            match side.map_or(Part::All, |side| side.part()) {
+                Part::None => {
+                    open -= root.share;
+                    continue;
+                }
+                // Asks a little more, never less.
+                Part::All => {}
+                Part::Some => limit = root.limit,
             }
-            match self.block(surface, &shaft, target) {
-                None => open -= root.share,
-                Some(gap) => match split(surface, &shaft, &gap) {
-                    Some(halves) => {
-                        self.queue.extend(halves.map(|cell| Root { cell, share: root.share / 2.0, ..root }))
+            let root = Root { limit, ..root };
+            let is_ready = limit.and(side).is_none_or(|side| shaft.limit(side, &mut random));
+            let gap = if is_ready {
+                surface.hits(shaft.line[0], shaft.line[1], &mut self.hits);
+                if self.hits.iter().all(|hit| hit.at > 1.0 - AT_END) {
+                    return (Outcome::Reached, n);
+                }
+                match self.block(surface, &shaft, target) {
+                    Ok(Blocked::All) => {
+                        open -= root.share;
+                        continue;
                     }
-                    None => return (Outcome::Undecided, n),
-                },
-            }
+                    Ok(Blocked::Side { limit, share }) => {
+                        let blocked = share * root.share;
+                        open -= blocked;
+                        let limit = Some(limit.opposite());
+                        self.queue.push_back(Root { limit, share: root.share - blocked, ..root });
+                        continue;
+                    }
+                    Err(gap) => gap,
+                }
+            } else {
+                Gap::Other
+            };
+            let Some(halves) = split(surface, &shaft, &gap) else { return (Outcome::Undecided, n) };
+            self.queue.extend(halves.map(|cell| Root { cell, share: root.share / 2.0, ..root }));
         }
         (Outcome::Hidden, n)
     }
 
-    /// Blocks a cell by one of several chains, or says where best to cut.
-    fn block(&mut self, surface: &Surface, shaft: &Shaft, target: &Target) -> Option<Gap> {
+    /// Blocks the lines of a cell, or those on one side of an edge, by one of several chains, or says where best to cut.
+    fn block(&mut self, surface: &Surface, shaft: &Shaft, target: &Target) -> Result<Blocked, Gap> {
         self.hits.sort_unstable_by(|a, b| {
             surface.area(b.triangle).total_cmp(&surface.area(a.triangle)).then(a.triangle.cmp(&b.triangle))
         });
         self.hits.dedup_by_key(|hit| hit.triangle);
+        self.hits.truncate(self.attempts);
         self.finder.next_cell();
-        let mut best = (f64::NEG_INFINITY, Gap::Other);
-        for hit in self.hits.iter().take(self.attempts) {
-            match self.finder.block(surface, shaft, target, hit.triangle) {
-                Ok(()) => return None,
-                Err(gap) => {
-                    let promise = promise(surface, shaft, &gap);
-                    if promise > best.0 {
-                        best = (promise, gap);
+        let (mut best, mut most) = ((f64::NEG_INFINITY, Gap::Other), None::<(f64, Blocked)>);
+        let mut note = |gap: Gap| {
+            let promise = promise(surface, shaft, &gap);
+            if promise > best.0 {
+                best = (promise, gap);
+            }
+        };
+        let finder = &mut self.finder;
+        let mut folding = Vec::new();
+        for hit in &self.hits {
+            match finder.block(surface, shaft, target, hit.triangle, AtFold::Leave) {
+                Ok(Blocked::All) => return Ok(Blocked::All),
+                Ok(part @ Blocked::Side { share, .. }) => {
+                    if most.is_none_or(|most| share > most.0) {
+                        most = Some((share, part));
                     }
+                }
+                Err(failure) => {
+                    if failure.can_fold {
+                        folding.push(hit.triangle);
+                    }
+                    note(failure.gap);
                 }
             }
         }
-        Some(best.1)
+        if let Some((_, part)) = most {
+            return Ok(part);
+        }
+        folding.reverse();
+        while let Some(triangle) = folding.pop() {
+            match finder.block(surface, shaft, target, triangle, AtFold::Follow(MOST_BEYOND_FOLD)) {
+                Ok(blocked) => return Ok(blocked),
+                Err(failure) => note(failure.gap),
+            }
+            // A chain that has gone around to another hit is the one from there, as a rule.
+            folding.retain(|&other| !finder.has(other));
+        }
+        Err(best.1)
     }
 }

@@ -61,8 +61,7 @@ struct Values {
 
 impl Values {
     fn of_edge(surface: &Surface, shaft: &Shaft, edge: u32, triangle: u32) -> Self {
-        let mesh = surface.mesh();
-        let [x, y] = mesh.edges()[edge as usize].map(|v| mesh.vertices()[v as usize]);
+        let [x, y] = surface.edge(edge);
         let eye = shaft.line[0];
         let side = dot(cross(sub(x, eye), sub(y, eye)), sub(surface.middle(triangle), eye));
         let sign = if side > 0.0 { 1.0 } else { -1.0 };

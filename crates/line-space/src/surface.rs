@@ -46,6 +46,11 @@ impl Surface {
         &self.mesh
     }
 
+    /// The ends of an edge.
+    pub(crate) fn edge(&self, edge: u32) -> [Point3; 2] {
+        self.mesh.edges()[edge as usize].map(|v| self.mesh.vertices()[v as usize])
+    }
+
     pub(crate) fn corners(&self, triangle: u32) -> [Point3; 3] {
         self.corners[triangle as usize]
     }

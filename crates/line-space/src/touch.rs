@@ -8,7 +8,7 @@ use sightlines_multifocal::mesh::avoids as avoids_box;
 /// What the lines of a search end at.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Target {
-    /// A box: no point of it may be touched, as what is in it is not known.
+    /// A box: the insides of its sides may not be touched, by which lines enter it.
     Box,
     /// A triangle: its inside may not be touched.
     Triangle([Point3; 3]),
@@ -22,7 +22,7 @@ impl Target {
             return true;
         }
         match self {
-            Self::Box => avoids(triangle, end, false),
+            Self::Box => avoids(triangle, end, true),
             Self::Triangle(whole) => {
                 let inside_of = |piece: &[Point3; 3]| avoids_inside(triangle, piece);
                 inside_of(whole)

@@ -2,10 +2,14 @@
 
 use crate::volume::corners;
 use crate::{Umbra, Volume};
+use sightlines_geometry::vector::{length, normal};
 use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d};
 
 /// Triangles in a leaf of an object's tree: they are tested one by one only if their box is not hidden.
 const PER_LEAF: usize = 4;
+
+/// One of the largest triangles of an object is tested before its tree, by all methods: if that is not hidden, nothing else has to be.
+const LARGEST: usize = 8;
 
 /// Objects as occludees: a tree over their boxes, and for each object a tree over its triangles.
 ///
@@ -22,6 +26,8 @@ struct Object {
     triangles: Vec<[Point3; 3]>,
     tree: BoxTree<3>,
     is_single_sided: bool,
+    /// The largest triangles, largest first: most likely to be seen.
+    largest: Vec<u32>,
 }
 
 /// Numbers of queries.
@@ -54,7 +60,11 @@ impl Occludees {
             .into_iter()
             .map(|triangles| {
                 let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
-                Object { tree: BoxTree::build(&boxes, PER_LEAF), triangles, is_single_sided: false }
+                let area: Vec<f64> = triangles.iter().map(|t| length(normal(*t))).collect();
+                let mut largest: Vec<u32> = (0..triangles.len() as u32).collect();
+                largest.sort_by(|&i, &j| area[j as usize].total_cmp(&area[i as usize]).then(i.cmp(&j)));
+                largest.truncate(LARGEST);
+                Object { tree: BoxTree::build(&boxes, PER_LEAF), triangles, is_single_sided: false, largest }
             })
             .collect();
         let boxes: Vec<Aabb<3>> = objects.iter().map(|o| o.tree.nodes()[0].bounds).collect();
@@ -152,7 +162,17 @@ impl Query<'_> {
 impl Object {
     /// Whether any triangle is not proven hidden.
     fn is_seen(&self, query: &mut Query<'_>) -> bool {
-        !self.triangles.is_empty() && self.is_seen_at(0, query)
+        if self.triangles.is_empty() {
+            return false;
+        }
+        let largest = self.largest.iter().map(|&i| &self.triangles[i as usize]);
+        if let Some(t) = largest.into_iter().find(|t| !self.is_single_sided || !query.is_behind(t)) {
+            query.counts.triangles += 1;
+            if !query.umbra.hides_points_by_any(t) {
+                return true;
+            }
+        }
+        self.is_seen_at(0, query)
     }
 
     fn is_seen_at(&self, n: u32, query: &mut Query<'_>) -> bool {

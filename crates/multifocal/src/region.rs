@@ -38,12 +38,18 @@ pub trait FromRegion: fmt::Debug {
 /// What is hidden from one volume.
 pub trait Umbra {
     /// Whether all of `target`, a closed box, is certainly hidden from all of the volume: every segment from
-    /// an eye to a point of it meets an occluder before that point. A box that meets the volume never is.
+    /// an eye to a point of it meets an occluder before that point, or at it where an occluder touches the border of the box; no open set
+    /// of segments gets through. A box that meets the volume never is.
     fn hides(&mut self, target: &Aabb<3>) -> bool;
 
     /// Whether all of a polygon, or of the convex hull of points, is certainly hidden. By default tests the box around
     /// it.
     fn hides_points(&mut self, points: &[sightlines_geometry::Point3]) -> bool {
         self.hides(&Aabb::around(points.iter().copied()))
+    }
+
+    /// The same by every method, if there are several of which only some are asked about points.
+    fn hides_points_by_any(&mut self, points: &[sightlines_geometry::Point3]) -> bool {
+        self.hides_points(points)
     }
 }

@@ -58,4 +58,8 @@ impl Umbra for AnyUmbra<'_> {
     fn hides_points(&mut self, points: &[Point3]) -> bool {
         self.umbrae.iter_mut().take(self.n_about_points).any(|umbra| umbra.hides_points(points))
     }
+
+    fn hides_points_by_any(&mut self, points: &[Point3]) -> bool {
+        self.umbrae.iter_mut().any(|umbra| umbra.hides_points(points))
+    }
 }
