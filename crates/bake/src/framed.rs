@@ -1,27 +1,43 @@
-//! Scenes that do not stand along the axes of their file: finding their frame before they are baked.
+//! Scenes, or cells given for them, that do not stand along the axes of the file: finding a frame before they are baked.
 
 use crate::gap::Gap;
 use crate::input::BakeInput;
-use crate::options::BakeOptions;
-use crate::region::CellsFrom;
+use crate::options::{BakeOptions, SceneMethod};
+use crate::region::{CellsFrom, upright};
 use sightlines_cells::Scene;
-use sightlines_formats::SceneInfo;
-use sightlines_frame::{Areas, MoveError, Moved, find_axes};
+use sightlines_formats::{SceneInfo, ViewCell, ViewCells};
+use sightlines_frame::{Areas, FoundAxes, MoveError, Moved, are_near, axes_near, find_axes};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::Frame;
 
+/// Unit vectors of the scene.
+type Axes = [[f64; 3]; 3];
+
 /// The axes of the scene.
-const PLAIN: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const PLAIN: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// Without a stated gap, a frame has to bring at least this share of the area across an axis that was not.
 const LEAST_GAIN: f64 = 0.05;
+/// The share of the area across the axes of the walls from which on other axes, of given cells, are as good.
+const AS_GOOD: f64 = 0.8;
 /// Without a stated gap, at least this share of the area has to lie across an axis of the frame.
 const LEAST_FLAT: f64 = 0.5;
 
-/// A scene along the axes in which most of its walls lie.
+/// What a frame is along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// The axes in which most of the walls lie.
+    Walls,
+    /// The axes of the given cells, as few walls lie along any.
+    Cells,
+}
+
+/// A scene along the axes in which most of its walls lie, or along those of the cells that are given for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Framed {
     /// The axes, and the premise.
     pub frame: Frame,
+    /// What the axes are.
+    pub along: Along,
     /// The scene along them.
     pub moved: Moved,
     /// What of the scene lay across an axis of its file, to the last bit.
@@ -35,7 +51,13 @@ impl Framed {
     /// that it is in already, or because nothing is gained.
     ///
     /// With [`Gap::OfFile`], something is gained if at least half of the area of what hides lies across an axis of the frame, and a
-    /// twentieth did not lie across one before. With a stated width, if any corner moves.
+    /// twentieth did not lie across one before; or if a side of a given cell is on a wall but for the rounding of the file. With a stated width, if
+    /// any corner moves, or such a side.
+    ///
+    /// Cells that are given along axes of their own ([`ViewCells::axes`](sightlines_formats::ViewCells)) are a gain: the frame is along
+    /// these where less than half of the area lies across the axes of any frame, unless sightlines alone are used, and where nearly as much lies
+    /// across theirs. If the file is as precise as doubles, the gap is then what taking the scene along the frame rounds ([`Gap::of_rounding`]); a stated gap of 0 leaves the
+    /// scene as it is, and boxes around the cells are taken.
     ///
     /// # Errors
     /// [`MoveError`] if a stated gap is below the rounding of the coordinates, or these become too large.
@@ -44,19 +66,11 @@ impl Framed {
             Gap::OfFile => (file.map_or(0.0, |file| Gap::of_file(scene, file)), false),
             Gap::Width(width) => (width, true),
         };
-        if options.frame.is_some() || gap <= 0.0 || !gap.is_finite() {
+        if options.frame.is_some() || !gap.is_finite() || gap <= 0.0 && is_stated {
             return Ok(None);
         }
         let before = Areas::of(scene);
-        if !is_stated && before.axial_share() > 1.0 - LEAST_GAIN {
-            return Ok(None);
-        }
-        let Some(found) = find_axes(scene, gap) else { return Ok(None) };
-        let gained = found.flat - before.axial;
-        if !is_stated && (gained < LEAST_GAIN * before.all || found.flat < LEAST_FLAT * before.all) {
-            return Ok(None);
-        }
-        let axes = if gained > 0.0 { found.axes } else { PLAIN };
+        let Some((axes, gap, along)) = axes(scene, gap, is_stated, before, options) else { return Ok(None) };
         let Ok(frame) = Frame::new(axes, gap) else { return Ok(None) };
         let moved = match Moved::new(scene, &frame) {
             Ok(moved) => moved,
@@ -68,11 +82,13 @@ impl Framed {
             let b = scene.bounds();
             (0..3).any(|k| b.min[k] >= b.max[k])
         };
-        if axes == PLAIN && moved.n_snapped == 0 || is_flat(&moved.scene) && !is_flat(scene) {
-            return Ok(None);
-        }
+        let is_upright = axes == PLAIN;
         let after = Areas::of(&moved.scene);
-        Ok(Some(Self { frame, moved, before, after }))
+        let framed = Self { frame, along, moved, before, after };
+        // Of a scene with walls along the axes of its file, by default the cells alone are a reason.
+        let has_walls = !is_stated && before.axial_share() > 1.0 - LEAST_GAIN;
+        let stays = is_upright && (has_walls || framed.moved.n_snapped == 0) && !framed.moves_cells(&options.cells);
+        Ok(if stays || is_flat(&framed.moved.scene) && !is_flat(scene) { None } else { Some(framed) })
     }
 
     /// The scene along the frame as an input.
@@ -84,12 +100,102 @@ impl Framed {
     pub fn options<'o>(&self, options: &BakeOptions<'o>) -> BakeOptions<'o> {
         let mut framed = options.clone();
         framed.frame = Some(self.frame);
-        let around = |b: &Aabb<3>, axes| self.moved.box_around(&self.frame, b, axes);
-        framed.cut.view_region = framed.cut.view_region.map(|region| around(&region, &PLAIN));
-        if let CellsFrom::Boxes(cells) = &mut framed.cells {
-            let axes = cells.axes.take().unwrap_or(PLAIN);
-            cells.cells.iter_mut().for_each(|cell| cell.bounds = around(&cell.bounds, &axes));
+        let region = |region: Aabb<3>| self.moved.box_around(&self.frame, &region, &PLAIN);
+        framed.cut.view_region = framed.cut.view_region.map(region);
+        if let CellsFrom::Boxes(given) = &mut framed.cells {
+            *given = ViewCells { cells: self.cells(given), axes: None };
         }
         framed
     }
+
+    /// Whether the frame, which is along the axes of the file, puts sides of given cells on walls that they are near: sides of cells are
+    /// decimals, and corners of single precision are not.
+    fn moves_cells(&self, cells: &CellsFrom) -> bool {
+        let CellsFrom::Boxes(given) = cells else { return false };
+        cell_axes(cells).is_none() && self.cells(given) != upright(given)
+    }
+
+    /// Boxes along the frame around given cells.
+    fn cells(&self, given: &ViewCells) -> Vec<ViewCell> {
+        let axes = given.axes.unwrap_or(PLAIN);
+        let around = |bounds: &Aabb<3>| self.moved.box_around(&self.frame, bounds, &axes);
+        given.cells.iter().map(|cell| ViewCell { id: cell.id.clone(), bounds: around(&cell.bounds) }).collect()
+    }
+}
+
+/// How many times the surface of given cells the boxes have that are taken in their place: those along the frame, or without one along the axes
+/// of the scene. 1, but for rounding and the gap, where the cells stand along these, and exactly 1 where none are given.
+pub fn growth_of_cells(cells: &CellsFrom, framed: Option<&Framed>) -> f64 {
+    let CellsFrom::Boxes(given) = cells else { return 1.0 };
+    let around = match framed {
+        Some(framed) => framed.cells(given),
+        None => upright(given),
+    };
+    let surface = |cells: &[ViewCell]| {
+        let of = |b: &Aabb<3>| {
+            let [x, y, z]: [f64; 3] = std::array::from_fn(|k| b.max[k] - b.min[k]);
+            x * y + y * z + z * x
+        };
+        cells.iter().map(|cell| of(&cell.bounds)).sum::<f64>()
+    };
+    let before = surface(&given.cells);
+    if before > 0.0 { surface(&around) / before } else { 1.0 }
+}
+
+/// The axes of the frame, its gap, and what it is along.
+fn axes(
+    scene: &Scene,
+    gap: f64,
+    is_stated: bool,
+    before: Areas,
+    options: &BakeOptions<'_>,
+) -> Option<(Axes, f64, Along)> {
+    let given = matches!(options.cells, CellsFrom::Boxes(_));
+    if gap == 0.0 {
+        // Nothing is known of cracks, but the cells are turned.
+        let (cells, gap) = (cell_axes(&options.cells)?, Gap::of_rounding(scene));
+        let cells = axes_near(scene, gap, cells);
+        let follows = suits(&cells, None, before.axial, options) && is_turned(&cells, before);
+        return follows.then_some((cells.axes, gap, Along::Cells));
+    }
+    if !is_stated && before.axial_share() > 1.0 - LEAST_GAIN {
+        return given.then_some((PLAIN, gap, Along::Walls));
+    }
+    let found = find_axes(scene, gap);
+    let (mut axes, mut flat) = found.map_or((PLAIN, 0.0), |found| (found.axes, found.flat));
+    if given {
+        let cells = axes_near(scene, gap, cell_axes(&options.cells).unwrap_or(PLAIN));
+        if suits(&cells, found.map(|found| found.axes), flat.max(before.axial), options) {
+            if is_turned(&cells, before) && cell_axes(&options.cells).is_some() {
+                return Some((cells.axes, gap, Along::Cells));
+            }
+            (axes, flat) = (if are_near(cells.axes, PLAIN) { PLAIN } else { axes }, cells.flat);
+        }
+    }
+    let gained = flat - before.axial;
+    if !is_stated && (gained < LEAST_GAIN * before.all || flat < LEAST_FLAT * before.all) {
+        return None;
+    }
+    Some((if gained > 0.0 { axes } else { PLAIN }, gap, Along::Walls))
+}
+
+/// Whether the axes of given cells suit a scene, across the axes of whose walls lies an area of `flat`: if the cells are along other axes, across which
+/// nearly as much lies, as in one of several buildings; or if there are no such walls, unless they are all that is used.
+fn suits(cells: &FoundAxes, walls: Option<Axes>, flat: f64, options: &BakeOptions<'_>) -> bool {
+    let others = walls.is_none_or(|walls| !are_near(cells.axes, walls));
+    let no_walls = flat < LEAST_FLAT * cells.all && options.method != SceneMethod::Sightlines;
+    others && cells.flat >= AS_GOOD * flat || no_walls
+}
+
+/// Whether axes are turned: by more than next to nothing, unless that brings walls.
+fn is_turned(axes: &FoundAxes, before: Areas) -> bool {
+    !are_near(axes.axes, PLAIN) || axes.flat - before.axial >= LEAST_GAIN * before.all
+}
+
+/// The axes of given cells that do not stand along those of the scene.
+fn cell_axes(cells: &CellsFrom) -> Option<Axes> {
+    let CellsFrom::Boxes(cells) = cells else { return None };
+    // Along the axes of the scene in another order or with other signs is along them.
+    let is_along = |axis: &[f64; 3]| axis.iter().filter(|x| **x != 0.0).count() == 1;
+    cells.axes.filter(|axes| !axes.iter().all(is_along))
 }

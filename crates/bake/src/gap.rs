@@ -5,7 +5,8 @@ use sightlines_formats::SceneInfo;
 use sightlines_formats::scene::SceneFormat;
 use sightlines_geometry::Aabb;
 
-/// How precise the coordinates of a scene are: openings narrower than this may count as closed.
+/// How precise the coordinates of a scene are: openings narrower than this may count as closed, and things that
+/// are thinner as hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Gap {
     /// As precise as the format of the file is ([`Gap::of_file`]), where a frame makes walls of much that is none without it; else
@@ -43,6 +44,18 @@ impl Gap {
         let extent = |b: Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
         let object = scene.occluders().map(|(_, o)| extent(o.bounds())).fold(0.0, f64::max);
         largest.min(2.0 * spread).min(2.0 * object) / f64::from(1 << 20)
+    }
+
+    /// The least gap, in scene units, with which a scene can be taken along any frame: 2^-45 of the largest coordinate M.
+    ///
+    /// A coordinate along a frame is off by at most 2^-49 √3 M ([`Frame::rounding`](sightlines_pvs::Frame::rounding)), and is then moved by at
+    /// most half the gap to where others are: together less than 2^-48 M + 2^-46 M.
+    pub fn of_rounding(scene: &Scene) -> f64 {
+        let b = scene.bounds();
+        if b.is_empty() {
+            return 0.0;
+        }
+        b.min.iter().chain(&b.max).fold(0.0f64, |m, x| m.max(x.abs())) / (1u64 << 45) as f64
     }
 }
 

@@ -7,7 +7,7 @@ use crate::scene::PortalMode;
 use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneOptions;
 use sightlines_multifocal::Split;
-use sightlines_progress::Observer;
+use sightlines_progress::{Budget, Observer};
 use sightlines_pvs::Frame;
 use sightlines_stabtree::SearchOptions;
 use std::fmt;
@@ -120,6 +120,9 @@ pub struct BakeOptions<'a> {
     pub threads: usize,
     /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,
+    /// Scenes: what may be spent, such as time. What is not decided then counts as visible, and the table depends on when that was; see
+    /// [`LimitReport`](crate::LimitReport). Without a budget the table is always the same.
+    pub budget: Option<&'a dyn Budget>,
 }
 
 impl Default for BakeOptions<'_> {
@@ -138,6 +141,7 @@ impl Default for BakeOptions<'_> {
             fast: false,
             threads: 0,
             progress: None,
+            budget: None,
         }
     }
 }

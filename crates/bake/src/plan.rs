@@ -60,7 +60,12 @@ pub fn bake_plan(plan: &Plan, options: &PlanBakeOptions<'_>) -> Result<BakedPlan
     let start = Instant::now();
     let (graph, mut report) = cut(plan, options)?;
     report.cut_time = start.elapsed();
-    let search = SearchOptions { threads: options.threads, chords: options.chords, progress: options.progress };
+    let search = SearchOptions {
+        threads: options.threads,
+        chords: options.chords,
+        progress: options.progress,
+        ..SearchOptions::default()
+    };
     let start = Instant::now();
     let (rows, found) = plan_visibility(&graph, &Zones::cells(&graph), &search)?;
     report.see_time = start.elapsed();

@@ -1,5 +1,7 @@
 //! What a bake did, for each kind of input. Times and counts of searches vary from run to run.
 
+use crate::doors::DoorPortals;
+use crate::limit::LimitReport;
 use crate::places::PlaceSummary;
 use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneSummary;
@@ -108,6 +110,8 @@ pub struct SceneReport {
     pub n_other_mirror_triangles: usize,
     /// Mirrors that move, and do not reflect.
     pub n_moving_mirrors: usize,
+    /// The doors of the scene, by object, and the portals that they close.
+    pub doors: Vec<DoorPortals>,
     /// Rectangles that the walls between the cells were merged into.
     pub n_blockers: usize,
     /// Pairs of a cell and a cell or object that count as visible because deciding them took too much effort, or more
@@ -115,6 +119,8 @@ pub struct SceneReport {
     pub n_assumed: u64,
     /// How pairs were decided. Varies from run to run with several threads.
     pub counters: ShaftCounters,
+    /// What was not decided because the budget was spent; none if everything was.
+    pub limit: Option<LimitReport>,
 }
 
 /// What baking a scene by a from-region method, or for given cells, did.
@@ -132,6 +138,10 @@ pub struct RegionReport {
     pub n_visible_pairs: u64,
     /// Pairs of a cell and an object that it may see.
     pub n_objects_seen: u64,
+    /// What was not decided because the budget was spent; none if everything was.
+    pub limit: Option<LimitReport>,
+    /// Time to cut cells.
+    pub cut_time: Duration,
     /// Time for everything.
     pub time: Duration,
 }

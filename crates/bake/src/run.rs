@@ -13,6 +13,7 @@ use crate::region::{RegionBakeOptions, bake_regions};
 use crate::scene::{SceneBakeOptions, bake_scene};
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
+use sightlines_progress::Allowance;
 use sightlines_stabtree::ConvexOptions;
 
 /// Bakes an input: cuts it into cells where it has none, decides what they see, and makes the table.
@@ -50,8 +51,9 @@ pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> R
             let mut baked = if options.takes_regions() {
                 by_regions(scene, options, file)?
             } else {
-                let BakeOptions { cut, portals, .. } = *options;
-                bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress })?.into_any()
+                let BakeOptions { cut, portals, budget, .. } = *options;
+                let budget = Allowance::all(budget);
+                bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget })?.into_any()
             };
             baked.table = baked.table.with_frame(options.frame)?;
             Ok(baked)
@@ -66,7 +68,7 @@ pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> R
 }
 
 fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>) -> Result<Baked, BakeError> {
-    let BakeOptions { method, buffers, split, cut, portals, threads, progress, ref cells, .. } = *options;
+    let BakeOptions { method, buffers, split, cut, portals, threads, progress, budget, ref cells, .. } = *options;
     buffers.check().map_err(crate::methods::MethodError::from)?;
     let prepare = |method| OcclusionMethodFactory::new(method, scene, &buffers);
     let factory = method.region_method().map(prepare).transpose()?;
@@ -81,6 +83,7 @@ fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>
         threads,
         file,
         progress,
+        budget: Allowance::all(budget),
     };
     Ok(bake_regions(scene, &options)?.into_any())
 }

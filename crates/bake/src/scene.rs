@@ -1,7 +1,9 @@
 //! Baking a scene in space: subdivide, see, tabulate.
 
 use crate::baked::{Baked, BakedScene};
+use crate::doors;
 use crate::error::BakeError;
+use crate::limit::{LimitReport, state_limit};
 use crate::mirrors;
 use crate::objects::object_lists;
 use crate::reports::SceneReport;
@@ -10,9 +12,9 @@ use sightlines_cells::{Axial, AxialDoor, CellGraph, Portal, Scene, SceneObject};
 use sightlines_formats::SceneInfo;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
-use sightlines_progress::Observer;
+use sightlines_progress::{Allowance, Observer};
 use sightlines_pvs::{CellRecord, Locator, MirrorRecord, SceneMethods, Table, TableKind, TableParts};
-use sightlines_stabtree::{SearchOptions, SpaceVisibility, space_visibility};
+use sightlines_stabtree::{PairMask, SearchOptions, SpaceVisibility, space_visibility};
 use std::time::Instant;
 
 /// Which portals the search goes through.
@@ -51,6 +53,8 @@ pub struct SceneBakeOptions<'a> {
     pub file: Option<&'a SceneInfo>,
     /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,
+    /// What may be spent; what is not decided then counts as visible.
+    pub budget: Allowance<'a>,
 }
 
 impl std::fmt::Debug for SceneBakeOptions<'_> {
@@ -73,7 +77,12 @@ impl std::fmt::Debug for SceneBakeOptions<'_> {
 /// # Errors
 /// [`BakeError::KdTree`] for scenes without room, options out of range, and too many cells.
 pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<BakedScene, BakeError> {
-    let (graph, parts, report) = see_scene(scene, options)?;
+    let (graph, mut parts, mut report, left) = see_scene(scene, options)?;
+    if let (Some(left), Some(objects)) = (left, &parts.objects_seen) {
+        let limit = LimitReport::of(&left, objects);
+        state_limit(&mut parts, &limit);
+        report.limit = Some(limit);
+    }
     Ok(Baked { table: Table::new(parts)?, graph, report })
 }
 
@@ -81,21 +90,24 @@ pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<Baked
 pub(crate) fn see_scene(
     scene: &Scene,
     options: &SceneBakeOptions<'_>,
-) -> Result<(CellGraph<Axial>, TableParts, SceneReport), BakeError> {
+) -> Result<(CellGraph<Axial>, TableParts, SceneReport, Option<PairMask>), BakeError> {
     let start = Instant::now();
     let cut = subdivide_scene(scene, &options.cut)?;
     let cut_time = start.elapsed();
     let start = Instant::now();
     let boxes = extents(scene);
     let solid = cut.left_out();
-    let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
+    let SceneBakeOptions { threads, progress, budget, .. } = *options;
+    let search = SearchOptions { threads, progress, budget, ..SearchOptions::default() };
     let graph = match options.portals {
         PortalMode::Bounding => merge_portals(&cut.graph),
         PortalMode::Exact => cut.graph,
     };
-    let seen = space_visibility(&graph, &solid, &boxes, &search)?;
+    let mut seen = space_visibility(&graph, &solid, &boxes, &search)?;
+    let left = seen.left.take();
     let see_time = start.elapsed();
     let found = mirrors::of_scene(&graph, scene);
+    let doors = doors::of_scene(&graph, scene);
     let report = SceneReport {
         n_visible_pairs: (seen.cells.count_ones() - graph.n_cells() as u64) / 2,
         n_objects_seen: seen.objects.count_ones(),
@@ -103,16 +115,18 @@ pub(crate) fn see_scene(
         n_lost_mirrors: found.n_lost,
         n_other_mirror_triangles: found.n_other_triangles,
         n_moving_mirrors: found.n_moving,
+        doors,
         n_blockers: seen.n_blockers,
         n_assumed: seen.n_assumed,
         counters: seen.counters,
+        limit: None,
         cut_time,
         see_time,
         cut: cut.summary,
     };
     let mut parts = scene_parts(&graph, seen, scene, &boxes, info(options, &report.cut), found.parts);
     state_file(&mut parts, options.file);
-    Ok((graph, parts, report))
+    Ok((graph, parts, report, left))
 }
 
 /// The boxes outside of which nothing of an object is drawn; empty, and so never seen, for those that are not drawn.

@@ -39,7 +39,7 @@ impl<S: Source, const D: usize> PackedQuery<'_, S, D> {
 }
 
 impl<S: Source> Packed<S> {
-    /// The box around a cell, in scene units; z is 0 in a plane.
+    /// The box around a cell, in scene units, along the [frame](Self::frame) if there is one; z is 0 in a plane.
     ///
     /// # Errors
     /// If there is no such cell.
@@ -250,7 +250,7 @@ impl<S: Source> Packed<S> {
         self.with_record((format::OBJECTS, self.objects), object.0, |mut r| visit(&mut r))
     }
 
-    /// The box around an object, in scene units; z is 0 in a plane.
+    /// The box around an object, in scene units, along the [frame](Self::frame) if there is one; z is 0 in a plane.
     ///
     /// # Errors
     /// If there is no such object, or its block cannot be read.

@@ -9,6 +9,8 @@ use std::io;
 
 /// Version of the export; a new one if a key changes its meaning or goes.
 const VERSION: u32 = 1;
+/// Version of the export of a table with a frame: whoever does not read `frame` would take its points for those of the scene.
+const VERSION_WITH_FRAME: u32 = 2;
 
 /// A table as JSON text, in one line; see [`write_json`].
 ///
@@ -34,7 +36,7 @@ pub fn export_json(table: &Table) -> String {
 /// planar cell, counter-clockwise (the corners of its box if it has no others); empty in space.
 /// `group`: a sector or the like, or null. `points`: the left end, then the right end, as seen from the
 /// first of the two cells; a polygon in space. A table with a frame has another key behind `dimension`, `"frame"`, with its three
-/// `axes` as unit vectors of the scene and its `gap`: all points are along these axes. `visible`: for each cell the ids that it may see,
+/// `axes` as unit vectors of the scene and its `gap`: all points are along these axes, so its `version` is 2. `visible`: for each cell the ids that it may see,
 /// ascending, itself included. `cell_objects`: for each cell the objects that it may see,
 /// ascending.
 ///
@@ -67,7 +69,7 @@ impl<'a> Export<'a> {
     fn of(table: &'a Table) -> Self {
         Self {
             format: "sightlines-export",
-            version: VERSION,
+            version: if table.frame().is_some() { VERSION_WITH_FRAME } else { VERSION },
             dimension: table.dimension(),
             frame: table.frame().map(|frame| FrameExport { axes: frame.axes(), gap: frame.gap() }),
             cells: table,

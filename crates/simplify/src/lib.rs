@@ -20,7 +20,8 @@
 //! faces of the sphere of directions, each counted where it is not proven hidden; and this holds for every eye of a box
 //! if each term is a bound for every eye of it. A face is hidden in terms of the original scene; this may be used for a
 //! new face as well, as a ray that reaches it although it is hidden passes a place where a face was removed, and is
-//! counted there. Merging faces in one plane changes no surface, and so it changes first hits only in name.
+//! counted there. A table takes the backs of single-sided faces to be unseen, so with one the promise is about eyes that see the back of
+//! no such face. Merging faces in one plane changes no surface, and so it changes first hits only in name.
 
 mod aimed;
 pub mod bound;

@@ -13,7 +13,7 @@ pub struct Simplified {
     /// For each object which of its triangles were removed because they are proven hidden, ascending.
     pub hidden: Vec<Vec<u32>>,
     /// For every eye of the views that lies on no surface: an upper bound of the share of directions whose first hit
-    /// changed. Proven; infinite for [`geometric`](crate::geometric), which has no bound.
+    /// changed. Proven, if a table had a part in it for eyes that see the back of no single-sided face; infinite for [`geometric`](crate::geometric), which has no bound.
     pub bound: f64,
     /// Upper bound, in scene units, of how far collapsing has moved the surface: changed points, before and after, are
     /// no farther than this from the other surface. 0 if nothing was collapsed. Holes where faces were left out are not

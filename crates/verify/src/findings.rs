@@ -228,6 +228,11 @@ pub struct Remarks {
     pub listed_apart: u64,
     /// Cells from which no ray was shot: too thin to have a place, or without a portal where only portals are known.
     pub cells_without_places: u64,
+    /// Hidden pairs of a table with a frame that a ray joins in the scene as the file has it, and not in the scene along the frame: what they
+    /// see of each other, they see through openings narrower than the gap or past things thinner than it, which the premise allows.
+    pub cracks: u64,
+    /// Triangles that have an area in the file and none along the frame: they are thinner than the gap.
+    pub flattened: u64,
 }
 
 /// What was looked at, and what was found.

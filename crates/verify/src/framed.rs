@@ -3,13 +3,20 @@
 //! The scene is moved by the code that moved it for the bake. What that code promises is not taken on trust: how far each corner is from
 //! where the file has it is measured here, in other arithmetic.
 
-use crate::truth::VerifyError;
+use crate::findings::{Findings, Violation};
+use crate::options::VerifyOptions;
+use crate::rays;
+use crate::real::{RayOracle, SolidWorld};
+use crate::sight::{Sight, Target};
+use crate::truth::{Truth, VerifyError};
 use num_rational::BigRational;
 use num_traits::Signed;
-use sightlines_cells::Scene;
+use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_frame::{MoveError, Moved};
-use sightlines_geometry::Point3;
-use sightlines_pvs::{Frame, Table};
+use sightlines_geometry::vector::normal;
+use sightlines_geometry::{Aabb, Point3};
+use sightlines_pvs::{CellId, Frame, Table};
+use std::collections::BTreeSet;
 
 /// The table of a scene without its frame, and the scene along the axes of the table: what holds of the one is to hold of the other.
 /// `None` for a table without a frame.
@@ -26,6 +33,75 @@ pub fn along_frame(table: &Table, scene: &Scene) -> Result<Option<(Table, Scene)
     check_moves(scene, &moved.scene, frame)?;
     let table = table.clone().with_frame(None).map_err(|_| VerifyError::Range)?;
     Ok(Some((table, moved.scene)))
+}
+
+/// Adds what a table with a frame may hide by its premise alone: shoots the rays once more, in the scene as the file has it. What the segment of such a ray
+/// joins in the moved scene too is a violation that the first rays did not find.
+///
+/// * `table`: without its frame
+/// * `scenes`: as the file has it, and along the frame
+///
+/// # Errors
+/// If the observer cancels, and [`VerifyError::Range`] if coordinates become too large.
+pub(crate) fn add_remarks(
+    table: &Table,
+    [file, along]: [&Scene; 2],
+    frame: &Frame,
+    options: &VerifyOptions<'_>,
+    findings: &mut Findings,
+) -> Result<(), VerifyError> {
+    let has_area = |t: [Point3; 3]| normal(t) != [0.0; 3];
+    let triangles =
+        |scene: &Scene| scene.objects().iter().flat_map(SceneObject::corners).map(has_area).collect::<Vec<_>>();
+    let flattened = triangles(file).into_iter().zip(triangles(along)).filter(|areas| *areas == (true, false));
+    findings.remarks.flattened = flattened.count() as u64;
+    if findings.no_rays.is_some() {
+        return Ok(());
+    }
+    let turned = turned(file, frame)?;
+    let mut seen = Findings::default();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
+    pool.install(|| rays::check(table, &Truth::Scene(&turned), options, &mut seen))?;
+    let pair = |violation: &Violation| match *violation {
+        Violation::HiddenCell { cells: [from, to], segment } => Some((from, Target::Cell(to), segment)),
+        Violation::HiddenObject { cell, object, segment } => Some((cell, Target::Object(object), segment)),
+        _ => None,
+    };
+    let known: BTreeSet<(CellId, Target)> =
+        findings.violations.iter().filter_map(pair).map(|(from, target, _)| (from, target)).collect();
+    let world = SolidWorld::new(table, along);
+    for violation in seen.violations {
+        let Some((from, target, segment)) = pair(&violation) else { continue };
+        if known.contains(&(from, target)) {
+            continue;
+        }
+        if world.proves(&Sight { from, target, segment }) {
+            findings.add(violation);
+        } else {
+            findings.remarks.cracks += 1;
+        }
+    }
+    Ok(())
+}
+
+/// The scene along the frame, and nothing else: every coordinate is off by its rounding alone.
+fn turned(scene: &Scene, frame: &Frame) -> Result<Scene, VerifyError> {
+    let object = |o: &SceneObject| SceneObject {
+        vertices: o.vertices.iter().map(|&p| frame.to_frame(p)).collect(),
+        ..o.clone()
+    };
+    let moving = |moving: &MovingObject| {
+        let around = |b: Aabb<3>| {
+            let (min, max) = frame.around(b.min, b.max);
+            Aabb { min, max }
+        };
+        MovingObject { within: moving.within.map(|b| if b.is_empty() { b } else { around(b) }), ..*moving }
+    };
+    Scene::new(scene.objects().iter().map(object).collect())
+        .and_then(|turned| turned.with_moving(scene.moving().iter().map(moving).collect()))
+        .and_then(|turned| turned.with_see_through(scene.see_through().to_vec()))
+        .and_then(|turned| turned.with_single_sided(scene.single_sided().to_vec()))
+        .map_err(|_| VerifyError::Range)
 }
 
 /// Whether every corner of `moved` is within the gap of where `frame` puts that of `scene`, and the scenes are the same otherwise. Exact.

@@ -46,7 +46,8 @@ use sightlines_pvs::Table;
 /// first [`VerifyOptions::MOST_VIOLATIONS`] violations of each kind, and stops shooting rays once there are that many.
 ///
 /// A table with a frame is checked along its axes, against the scene as [`along_frame`] moves it: that every corner is within the gap that the
-/// table states is checked exactly, and the rays are shot in the moved scene. Places in the findings are along the axes of the table.
+/// table states is checked exactly, and the rays are shot in the moved scene. As many are shot in the scene as the file has it: what these alone
+/// reach is counted apart, as [`Remarks::cracks`]. Places in the findings are along the axes of the table.
 ///
 /// # Errors
 /// [`VerifyError`] for a table that cannot be of such a scene, because it is of another dimension or another kind; or if the observer
@@ -56,9 +57,12 @@ use sightlines_pvs::Table;
 pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> Result<Findings, VerifyError> {
     truth.check_kind(table)?;
     if let Truth::Scene(scene) = truth
-        && let Some((table, scene)) = along_frame(table, scene)?
+        && let Some(&frame) = table.frame()
+        && let Some((table, along)) = along_frame(table, scene)?
     {
-        return verify(&table, &Truth::Scene(&scene), options);
+        let mut findings = verify(&table, &Truth::Scene(&along), options)?;
+        framed::add_remarks(&table, [scene, &along], &frame, options, &mut findings)?;
+        return Ok(findings);
     }
     let mut findings = structure::check(table, truth);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");

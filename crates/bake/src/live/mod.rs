@@ -53,7 +53,7 @@ struct How {
 impl How {
     fn options(&self) -> SceneBakeOptions<'_> {
         let Self { cut, portals, threads, ref file } = *self;
-        SceneBakeOptions { cut, portals, threads, file: file.as_ref(), progress: None }
+        SceneBakeOptions { cut, portals, threads, file: file.as_ref(), ..SceneBakeOptions::default() }
     }
 }
 
@@ -72,12 +72,12 @@ pub struct LiveUpdate {
 }
 
 impl LiveScene {
-    /// Bakes a scene as [`bake_scene`](crate::bake_scene) does, and keeps what updates need.
+    /// Bakes a scene as [`bake_scene`](crate::bake_scene) does, and keeps what updates need. Ignores a budget.
     ///
     /// # Errors
     /// As [`bake_scene`](crate::bake_scene).
     pub fn new(scene: Scene, options: &SceneBakeOptions<'_>) -> Result<Self, BakeError> {
-        let SceneBakeOptions { cut, portals, threads, file, progress } = *options;
+        let SceneBakeOptions { cut, portals, threads, file, progress, .. } = *options;
         let how = How { cut, portals, threads, file: file.cloned() };
         let mut cutter = SceneCutter::default();
         let cut = Cut::of(&mut cutter, &scene, &how.cut, portals)?;

@@ -4,7 +4,7 @@ use super::views::{Cut, Views};
 use super::{PlaceSummary, Places};
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
-use sightlines_kdtree::{KdError, Matter, SceneOptions};
+use sightlines_kdtree::{Matter, SceneOptions};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -18,9 +18,26 @@ pub(super) struct Cutter<'a> {
     scene: &'a Scene,
     /// None if the insides of solid things stay.
     matter: Option<Matter>,
-    cell_size: f64,
-    max_cells: u32,
+    goal: Goal,
 }
+
+/// How far to cut.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Goal {
+    /// How many cells to make.
+    pub(super) n_cells: usize,
+    /// Whether boxes are halved where no cut pays, rather than that there are fewer cells.
+    pub(super) all: bool,
+    /// Longer boxes are cut first.
+    pub(super) cell_size: f64,
+    /// Whether no cell may be longer, so that there may be more cells.
+    pub(super) is_bound: bool,
+    /// The most cells.
+    pub(super) max_cells: u32,
+}
+
+/// More cells than the limit.
+pub(super) struct TooMany;
 
 /// A box that may be cut.
 struct Leaf {
@@ -29,6 +46,8 @@ struct Leaf {
     too_long: f64,
     /// How much the cut pays: objects that viewers are spared, weighted.
     worth: f64,
+    /// The longest side.
+    side: f64,
     cut: Option<Cut>,
     /// Its place in the tree: nodes are numbered as they are made.
     node: usize,
@@ -44,7 +63,8 @@ enum Node {
 impl Ord for Leaf {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_length = self.too_long.total_cmp(&other.too_long);
-        by_length.then(self.worth.total_cmp(&other.worth)).then(other.node.cmp(&self.node))
+        let by_worth = by_length.then(self.worth.total_cmp(&other.worth));
+        by_worth.then(self.side.total_cmp(&other.side)).then(other.node.cmp(&self.node))
     }
 }
 
@@ -69,22 +89,23 @@ fn longest_side(b: &Aabb<3>) -> (usize, f64) {
 }
 
 impl<'a> Cutter<'a> {
-    pub(super) fn new(scene: &'a Scene, options: &SceneOptions, cell_size: f64) -> Self {
+    pub(super) fn new(scene: &'a Scene, options: &SceneOptions, goal: Goal) -> Self {
         let matter = (!options.keep_solid).then(|| Matter::of(scene));
-        Self { scene, matter, cell_size, max_cells: options.max_cells }
+        Self { scene, matter, goal }
     }
 
-    /// Cuts `region` into about `n_cells` places.
-    pub(super) fn run(&self, region: Aabb<3>, n_cells: usize) -> Result<Places, KdError> {
+    /// Cuts `region` into places.
+    pub(super) fn run(&self, region: Aabb<3>) -> Result<Places, TooMany> {
         let views = Views::of(self.scene, &region);
         let thinnest = longest_side(&region).1 * THINNEST;
-        let mut summary = PlaceSummary { cell_size: self.cell_size, ..PlaceSummary::default() };
+        let mut summary = PlaceSummary::default();
         let mut nodes = vec![Node::Solid];
         let whole = self.place(&views, region, &mut summary).unwrap_or(region);
         let mut queue = BinaryHeap::from([self.leaf(&views, whole, 0, &mut nodes)]);
         let mut n_done = 0;
         while let Some(leaf) = queue.pop() {
-            let full = n_done + queue.len() + 1 >= n_cells && leaf.too_long == 0.0;
+            let is_enough = n_done + queue.len() + 1 >= self.goal.n_cells;
+            let full = is_enough && !(self.goal.is_bound && leaf.too_long > 0.0);
             let Some(cut) = leaf.cut.filter(|_| !full) else {
                 n_done += 1;
                 continue;
@@ -110,35 +131,47 @@ impl<'a> Cutter<'a> {
                     queue.push(self.leaf(&views, place, node, &mut nodes));
                 }
             }
-            if n_done + queue.len() > self.max_cells as usize {
-                return Err(KdError::TooManyCells { limit: self.max_cells });
+            if n_done + queue.len() > self.goal.max_cells as usize {
+                return Err(TooMany);
             }
         }
         let cells = in_order(&nodes);
-        // Where all is solid, all is a place.
+        // Where nothing is a place, all is one.
         if cells.is_empty() && self.matter.is_some() {
-            return Self { scene: self.scene, matter: None, ..*self }.run(region, n_cells);
+            return Self { scene: self.scene, matter: None, goal: self.goal }.run(region);
         }
         summary.n_cells = cells.len();
+        summary.cell_size = cells.iter().map(|cell| longest_side(cell).1).fold(0.0, f64::max);
         Ok(Places { cells, summary })
     }
 
     fn leaf(&self, views: &Views, bounds: Aabb<3>, node: usize, nodes: &mut [Node]) -> Leaf {
         nodes[node] = Node::Place(bounds);
+        let Goal { cell_size, all, .. } = self.goal;
         let (axis, side) = longest_side(&bounds);
-        let too_long = if side > self.cell_size { side / self.cell_size } else { 0.0 };
+        let too_long = if side > cell_size { side / cell_size } else { 0.0 };
         let mut cut = views.best_cut(&bounds);
         let worth = cut.map_or(0.0, |cut| cut.gain * volume(&bounds).sqrt());
-        if too_long > 0.0 && cut.is_none_or(|cut| cut.axis != axis) {
-            let at = bounds.min[axis].midpoint(bounds.max[axis]);
+        if (too_long > 0.0 && cut.is_none_or(|cut| cut.axis != axis)) || (all && cut.is_none()) {
+            // As many parts as the bound needs, in equal halves or nearly so.
+            let parts = too_long.ceil().max(2.0);
+            let at = bounds.min[axis] + side * ((parts / 2.0).floor() / parts);
             cut = Some(Cut { axis, at, wall: false, gain: 0.0 });
         }
-        Leaf { bounds, too_long, worth, cut, node }
+        Leaf { bounds, too_long, worth, side, cut, node }
     }
 
-    /// A box without the sides of it that are in solid matter; none if all is.
+    /// A box without the sides of it that are in solid matter, or behind the backs of things; none if all is.
     fn place(&self, views: &Views, bounds: Aabb<3>, summary: &mut PlaceSummary) -> Option<Aabb<3>> {
         let Some(matter) = &self.matter else { return Some(bounds) };
+        let Some(before) = views.before_fronts(&bounds) else {
+            summary.n_behind += 1;
+            return None;
+        };
+        summary.n_behind += (0..3)
+            .map(|k| usize::from(before.min[k] > bounds.min[k]) + usize::from(before.max[k] < bounds.max[k]))
+            .sum::<usize>();
+        let bounds = before;
         if matter.holds(&bounds) {
             summary.n_solid += 1;
             return None;

@@ -3,14 +3,13 @@
 //! A k-d tree along walls needs walls that are perpendicular to an axis, follows each of them, and leaves the open whole.
 //! Places are boxes for scenes without such walls: a castle, a street, a cave. The box of the scene is cut in two, again and
 //! again, first until no box is longer than a bound, then where it pays most: where rays show that one half sees what the other
-//! does not. What lies wholly in solid matter is left out.
-//!
-//! The boxes tile the region, but for solid matter. Rays and rounded numbers only choose among cuts, each of which is right.
+//! does not. What lies wholly in solid matter is left out, and so is what rays show to lie behind the backs of single-sided faces: nobody
+//! sees those. Rays and rounded numbers choose among cuts, each of which is right; a viewer who is in no cell sees everything.
 
 mod cut;
 mod views;
 
-use cut::Cutter;
+use cut::{Cutter, Goal};
 use sightlines_cells::Scene;
 use sightlines_geometry::{Aabb, check_coordinate};
 use sightlines_kdtree::{KdError, SceneOptions};
@@ -18,25 +17,48 @@ use sightlines_kdtree::{KdError, SceneOptions};
 /// How many places to cut.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlaceOptions {
-    /// How many cells to make; none for [`PlaceOptions::N_CELLS`]. There are fewer where cutting pays nowhere, and more where
-    /// the bound on their size needs them.
+    /// How many cells to make, exactly, unless the bound on their size needs more. None for [`PlaceOptions::N_CELLS`] or the limit of cells, if
+    /// that is lower; there are fewer where cutting pays nowhere.
     pub n_cells: Option<u32>,
-    /// Longest side of a cell, in scene units; none for a bound that half of the cells are enough for.
+    /// Longest side of a cell, in scene units. None for no bound; then longer boxes are cut first until about half of the cells are made.
     pub cell_size: Option<f64>,
 }
 
 impl PlaceOptions {
     /// How many cells are made by default.
     pub const N_CELLS: u32 = 256;
+
+    /// How many cells to make.
+    pub fn n_cells(&self) -> u32 {
+        self.n_cells.unwrap_or(Self::N_CELLS)
+    }
 }
 
 /// Why cells cannot be cut so.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlacesError {
-    /// The region has no room, or there are more cells than the limit.
+    /// The region has no room.
     #[error(transparent)]
     KdTree(#[from] KdError),
+    /// More cells were asked for than the limit.
+    #[error("{n_cells} cells were asked for, and {limit} are the limit: raise the limit, or ask for fewer")]
+    TooMany {
+        /// Cells that were asked for.
+        n_cells: u32,
+        /// The limit.
+        limit: u32,
+    },
+    /// The bound on the sides of cells needs more cells than the limit.
+    #[error(
+        "cells of at most {cell_size} units are more than {limit}, which is the limit: raise the limit, or take larger cells"
+    )]
+    TooSmall {
+        /// The bound.
+        cell_size: f64,
+        /// The limit.
+        limit: u32,
+    },
     /// The bound on the sides of cells is no positive number.
     #[error("cells of at most {0} units: this is not a number above 0")]
     CellSize(f64),
@@ -50,16 +72,18 @@ pub enum PlacesError {
 pub struct PlaceSummary {
     /// Cells.
     pub n_cells: usize,
-    /// The bound on the sides of cells, in scene units.
+    /// The longest side of a cell, in scene units.
     pub cell_size: f64,
     /// Cuts along walls, where views differ.
     pub n_along_walls: usize,
     /// Other cuts where views differ.
     pub n_by_views: usize,
-    /// Cuts of boxes longer than the bound of which rays do not show that views differ.
+    /// Cuts of long boxes of which rays do not show that views differ.
     pub n_by_size: usize,
     /// Boxes that were left out because they are inside of solid matter.
     pub n_solid: usize,
+    /// Boxes that were left out because viewers in them would see mostly the backs of single-sided faces.
+    pub n_behind: usize,
 }
 
 /// Places of a scene.
@@ -74,24 +98,40 @@ pub struct Places {
 /// Cuts the view region of a scene, or else its box, into places.
 ///
 /// Of `cut` the view region, the limit of cells and whether solid matter stays matter. The same scene and options give the
-/// same places. Without solid matter the cells tile the region; everything in it that is outside of all cells is
-/// certainly in [solid matter](sightlines_kdtree::Matter).
+/// same places. If solid matter stays, the cells tile the region. Else what is in it and outside of all cells is certainly in
+/// [solid matter](sightlines_kdtree::Matter), or, in scenes with [single-sided](Scene::is_single_sided) faces, behind their backs as far as rays show.
 ///
 /// Cost: some thousand rays for each cell.
 ///
 /// # Errors
-/// [`PlacesError`]
+/// [`PlacesError`]; what is likely to be many more cells than the limit is refused before any work.
 pub fn places(scene: &Scene, cut: &SceneOptions, options: &PlaceOptions) -> Result<Places, PlacesError> {
     if let Some(size) = options.cell_size.filter(|s| s.is_nan() || *s <= 0.0) {
         return Err(PlacesError::CellSize(size));
     }
-    if options.n_cells == Some(0) {
-        return Err(PlacesError::NoCells);
+    let limit = cut.max_cells;
+    match options.n_cells {
+        Some(0) => return Err(PlacesError::NoCells),
+        Some(n_cells) if n_cells > limit => return Err(PlacesError::TooMany { n_cells, limit }),
+        _ => {}
     }
     let region = region(scene, cut.view_region)?;
-    let n_cells = options.n_cells.unwrap_or(PlaceOptions::N_CELLS);
+    if let Some(cell_size) = options.cell_size.filter(|&size| n_boxes(&region, size) > MOST_SOLID * f64::from(limit)) {
+        return Err(PlacesError::TooSmall { cell_size, limit });
+    }
+    let n_cells = options.n_cells.unwrap_or(PlaceOptions::N_CELLS.min(limit));
     let cell_size = options.cell_size.unwrap_or_else(|| default_size(&region, n_cells));
-    Ok(Cutter::new(scene, cut, cell_size).run(region, n_cells as usize)?)
+    let (is_bound, all) = (options.cell_size.is_some(), options.n_cells.is_some());
+    let goal = Goal { n_cells: n_cells as usize, all, cell_size, is_bound, max_cells: limit };
+    Cutter::new(scene, cut, goal).run(region).map_err(|_| PlacesError::TooSmall { cell_size, limit })
+}
+
+/// Solid matter may take most of a region, but a bound that needs so many times the limit of cells is refused before any work.
+const MOST_SOLID: f64 = 8.0;
+
+/// So many boxes without a longer side fill a region, and no fewer do: as many points in it are farther than that apart.
+fn n_boxes(region: &Aabb<3>, size: f64) -> f64 {
+    (0..3).map(|k| ((region.max[k] - region.min[k]) / size).ceil()).product()
 }
 
 /// Where viewers can be: the view region, or the box around all objects, wherever they move.
@@ -119,13 +159,10 @@ const PARTS: u32 = 16;
 
 /// The smallest whole part of the longest side such that half of the cells, as cubes of that size, fill the region.
 fn default_size(region: &Aabb<3>, n_cells: u32) -> f64 {
-    let sides: [f64; 3] = std::array::from_fn(|k| region.max[k] - region.min[k]);
-    let longest = sides.into_iter().fold(0.0, f64::max);
-    let fits = |parts: &u32| {
-        let n: f64 = sides.iter().map(|side| (side / longest * f64::from(*parts)).ceil()).product();
-        n <= f64::from(n_cells) / 2.0
-    };
-    longest / f64::from((2..=PARTS).rev().find(fits).unwrap_or(1))
+    let longest = (0..3).map(|k| region.max[k] - region.min[k]).fold(0.0, f64::max);
+    let size = |parts: u32| longest / f64::from(parts);
+    let fits = |parts: &u32| n_boxes(region, size(*parts)) <= f64::from(n_cells) / 2.0;
+    size((2..=PARTS).rev().find(fits).unwrap_or(1))
 }
 
 #[cfg(test)]

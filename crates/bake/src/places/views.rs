@@ -1,9 +1,10 @@
 //! What the places of a box see, by rays, and where a cut of it pays.
 
 use sightlines_cells::Scene;
-use sightlines_geometry::vector::{length, normal};
+use sightlines_geometry::vector::{dot, length, normal};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
 use sightlines_multifocal::RaySampler;
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// Rays from each box. With half as many, places of real scenes saw a twentieth more; with twice as many, as much.
@@ -21,6 +22,15 @@ const LEAST_SHARE: f64 = 0.1;
 /// An axis is cut if the box is at least this share as long along it as along its longest side.
 const LEAST_SIDE: f64 = 0.5;
 
+/// Points of a box from which it is found out whether viewers are there.
+const N_VIEWERS: u32 = 256;
+
+/// Rays from each of them.
+const RAYS_OF_A_VIEWER: usize = 8;
+
+/// So many of them see mostly backs, and none mostly fronts, where nobody is.
+const ENOUGH: usize = 8;
+
 /// What blocks rays and stands along axes in a scene.
 pub(super) struct Views {
     /// Each triangle is an object of the sampler.
@@ -32,6 +42,8 @@ pub(super) struct Views {
     walls: [Walls; 3],
     /// Whether backs are seen like fronts: in scenes that show mostly backs.
     backs: bool,
+    /// For each triangle whether nobody sees its back.
+    single_sided: Vec<bool>,
 }
 
 /// Triangles perpendicular to an axis.
@@ -59,16 +71,22 @@ struct Seen {
     max: Point3,
 }
 
+/// Each box has random numbers of its own.
+fn seed(b: &Aabb<3>) -> u64 {
+    [b.min, b.max].as_flattened().iter().fold(0u64, |seed, x| seed.rotate_left(11) ^ x.to_bits())
+}
+
 impl Views {
     pub(super) fn of(scene: &Scene, region: &Aabb<3>) -> Self {
-        let (mut triangles, mut object) = (Vec::new(), Vec::new());
+        let (mut triangles, mut object, mut single_sided) = (Vec::new(), Vec::new(), Vec::new());
         for (id, o) in scene.occluders() {
             triangles.extend(o.corners());
             object.resize(triangles.len(), id);
+            single_sided.resize(triangles.len(), scene.is_single_sided(id));
         }
         let rays = RaySampler::new(triangles.iter().map(std::slice::from_ref));
         let walls = std::array::from_fn(|axis| Walls::of(axis, &triangles));
-        let mut views = Self { rays, triangles, object, walls, backs: true };
+        let mut views = Self { rays, triangles, object, walls, backs: true, single_sided };
         let mut random = Random::new(0);
         let fronts = (0..N_RAYS).filter_map(|_| views.ray(region, &mut random)).filter(|hit| hit.front).count();
         let all = (0..N_RAYS).filter_map(|_| views.ray(region, &mut random)).count();
@@ -80,9 +98,54 @@ impl Views {
     fn ray(&self, b: &Aabb<3>, random: &mut Random) -> Option<Hit> {
         let (origin, way) = (random.point(b), random.direction());
         let triangle = self.rays.first_hit(origin, way)? as usize;
-        let n = normal(self.triangles[triangle]);
-        let front = n[0] * way[0] + n[1] * way[1] + n[2] * way[2] < 0.0;
+        let front = dot(normal(self.triangles[triangle]), way) < 0.0;
         Some(Hit { object: self.object[triangle], origin, front })
+    }
+
+    /// A box without the sides of it that are behind the backs of single-sided faces, such as the ground seen from below; none if all of
+    /// it is. Nobody sees such backs, so no viewer is there.
+    ///
+    /// By rays: a viewer in what is left out by chance is in no cell, and sees everything. In scenes that show mostly backs they say nothing.
+    pub(super) fn before_fronts(&self, b: &Aabb<3>) -> Option<Aabb<3>> {
+        if self.backs || !self.single_sided.contains(&true) {
+            return Some(*b);
+        }
+        let mut random = Random::new(seed(b) ^ 1);
+        let (mut before, mut behind) = (Vec::new(), Vec::new());
+        for _ in 0..N_VIEWERS {
+            let viewer = random.point(b);
+            let (mut fronts, mut backs) = (0, 0);
+            for way in [0; RAYS_OF_A_VIEWER].map(|_| random.direction()) {
+                let Some(triangle) = self.rays.first_hit(viewer, way).map(|t| t as usize) else { continue };
+                let shows_back = dot(normal(self.triangles[triangle]), way) >= 0.0;
+                *if shows_back && self.single_sided[triangle] { &mut backs } else { &mut fronts } += 1;
+            }
+            match fronts.cmp(&backs) {
+                Ordering::Less => behind.push(viewer),
+                Ordering::Greater => before.push(viewer),
+                // Nothing around, or both: such a viewer says nothing.
+                Ordering::Equal => {}
+            }
+        }
+        if before.is_empty() && behind.len() >= ENOUGH {
+            return None;
+        }
+        let mut place = *b;
+        for axis in 0..3 {
+            let side = b.max[axis] - b.min[axis];
+            let at = |i: u32| b.min[axis] + side * (f64::from(i) / f64::from(N_CUTS));
+            let n_behind = |from: f64, to: f64| behind.iter().filter(|p| from <= p[axis] && p[axis] <= to).count();
+            let is_behind = |from: f64, to: f64| {
+                !before.iter().any(|p| from <= p[axis] && p[axis] <= to) && n_behind(from, to) >= ENOUGH
+            };
+            let low = (1..N_CUTS).rev().map(at).find(|&at| is_behind(b.min[axis], at));
+            let high = (1..N_CUTS).map(at).find(|&at| is_behind(at, b.max[axis]));
+            let (low, high) = (low.unwrap_or(b.min[axis]), high.unwrap_or(b.max[axis]));
+            if low < high {
+                (place.min[axis], place.max[axis]) = (low, high);
+            }
+        }
+        Some(place)
     }
 
     /// The cut of a box that pays most; none if none pays.
@@ -90,8 +153,7 @@ impl Views {
     /// A cut spares the viewers on one side all objects that only the other side sees. An object that n rays hit may be hit
     /// from one side alone by chance; what is expected of rays that see it from everywhere is taken away.
     pub(super) fn best_cut(&self, b: &Aabb<3>) -> Option<Cut> {
-        let seed = [b.min, b.max].as_flattened().iter().fold(0u64, |seed, x| seed.rotate_left(11) ^ x.to_bits());
-        let mut random = Random::new(seed);
+        let mut random = Random::new(seed(b));
         let mut seen: BTreeMap<u32, Seen> = BTreeMap::new();
         for hit in (0..N_RAYS).filter_map(|_| self.ray(b, &mut random)).filter(|hit| hit.front || self.backs) {
             let nothing = Seen { n: 0, min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };

@@ -29,3 +29,25 @@ pub(super) fn in_doubt(rows: &BitMatrix, objects: &BitMatrix, proven: &PairMask,
     }
     doubt
 }
+
+/// Adds pairs to others.
+pub(super) fn add(all: &mut PairMask, more: &PairMask) {
+    for (all, more) in [(&mut all.boxes, &more.boxes), (&mut all.objects, &more.objects)] {
+        for row in 0..more.n_rows() {
+            all.row_mut(row).iter_mut().zip(more.row(row)).for_each(|(word, more)| *word |= more);
+        }
+    }
+}
+
+/// Removes pairs that are not visible, or need no decision.
+pub(super) fn keep_visible(left: &mut PairMask, rows: &BitMatrix, objects: &BitMatrix, touching: &[Vec<u32>]) {
+    for (left, visible) in [(&mut left.boxes, rows), (&mut left.objects, objects)] {
+        for row in 0..visible.n_rows() {
+            left.row_mut(row).iter_mut().zip(visible.row(row)).for_each(|(word, visible)| *word &= visible);
+        }
+    }
+    for (row, touched) in touching.iter().enumerate() {
+        left.boxes.set(row, row, false);
+        touched.iter().for_each(|&o| left.objects.set(row, o as usize, false));
+    }
+}

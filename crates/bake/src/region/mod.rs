@@ -7,6 +7,7 @@
 //! what one seems to reach through the crack between two surfaces is left visible.
 
 mod boxes;
+mod limited;
 mod parts;
 mod see;
 
@@ -15,18 +16,20 @@ pub use crate::grid::{GridError, grid};
 use crate::baked::{Baked, BakedRegions};
 use crate::error::BakeError;
 use crate::graph::TableGraph;
+use crate::limit::{LimitReport, state_limit};
 use crate::objects::object_lists;
 use crate::places::{PlaceOptions, places};
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
 use crate::table::{object_record, state_file};
 use parts::Start;
+pub(crate) use parts::upright;
 use sightlines_cells::{ANYWHERE, Scene};
 use sightlines_formats::{SceneInfo, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_kdtree::{SceneOptions, subdivide_scene};
+use sightlines_kdtree::{KdError, SceneOptions, subdivide_scene};
 use sightlines_multifocal::{Effort, FromRegion, Occludees, RaySampler, Split, Volume};
-use sightlines_progress::Observer;
+use sightlines_progress::{Allowance, Observer};
 use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
@@ -46,6 +49,9 @@ pub enum CellsFrom {
     /// These boxes, without portals; they may overlap, and leave gaps.
     Boxes(ViewCells),
 }
+
+/// The share of a budget for sightlines, if there is also a from-region method.
+const SIGHTLINES: f64 = 0.25;
 
 /// Makes a from-region method, for one thread.
 pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
@@ -72,6 +78,8 @@ pub struct RegionBakeOptions<'a> {
     pub file: Option<&'a SceneInfo>,
     /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,
+    /// What may be spent; what is not decided then counts as visible.
+    pub budget: Allowance<'a>,
 }
 
 impl<'a> RegionBakeOptions<'a> {
@@ -87,6 +95,7 @@ impl<'a> RegionBakeOptions<'a> {
             threads: 0,
             file: None,
             progress: None,
+            budget: Allowance::default(),
         }
     }
 }
@@ -112,14 +121,16 @@ impl fmt::Debug for RegionBakeOptions<'_> {
 pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
     let start = Instant::now();
     let boxes = extents(scene);
-    let by_sightlines = options.sightlines || options.method.is_none();
-    let (mut n_assumed, mut summary) = (0, None);
+    let mut by_sightlines = options.sightlines || options.method.is_none();
+    let (mut n_assumed, mut summary, mut left) = (0, None, None);
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
         CellsFrom::KdTree if by_sightlines => {
             let RegionBakeOptions { cut, portals, threads, progress, .. } = *options;
-            let options = SceneBakeOptions { cut, portals, threads, file: None, progress };
-            let (graph, parts, report) = see_scene(scene, &options)?;
+            let budget = if options.method.is_some() { options.budget.part(SIGHTLINES) } else { options.budget };
+            let options = SceneBakeOptions { cut, portals, threads, file: None, progress, budget };
+            let (graph, parts, report, not_decided) = see_scene(scene, &options)?;
             n_assumed = report.n_assumed;
+            left = not_decided;
             parts::of_seen(graph, parts)
         }
         CellsFrom::KdTree => parts::of_cut(scene, subdivide_scene(scene, &options.cut)?, boxes.len()),
@@ -132,11 +143,14 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
             summary = Some(cut.summary);
             parts::of_places(cut.cells, boxes.len())
         }
-        CellsFrom::Boxes(cells) => parts::of_boxes(&parts::upright(cells), boxes.len()),
+        CellsFrom::Boxes(cells) => parts::of_boxes(&upright(cells), boxes.len()),
     };
     let volumes = volumes(&cells)?;
     let touching = see::touching(&cells, &boxes);
     let n = cells.len();
+    let cut_time = start.elapsed();
+    let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, boxes.len()) };
+    let mut left = left.unwrap_or_else(none);
     let mut proven = PairMask { boxes: BitMatrix::identity(n), objects: BitMatrix::new(n, boxes.len()) };
     let (mut rows, mut objects, effort, method) = match options.method {
         Some(make) => {
@@ -153,8 +167,11 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
             let witness = RaySampler::new(in_the_way).with_single_sided(|object| scene.is_single_sided(object));
             let occludees = Occludees::new(triangles).with_single_sided(|object| scene.is_single_sided(object));
             let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes };
-            let seen = see::see(&scene, make, options, rows, objects)?;
+            let takes_turns = by_sightlines && matches!(graph, TableGraph::Boxes(_));
+            let allowance = if takes_turns { options.budget.part(1.0 - SIGHTLINES) } else { options.budget };
+            let seen = see::see(&scene, make, options, allowance, rows, objects)?;
             proven = seen.proven;
+            boxes::add(&mut left, &seen.left);
             (seen.rows, seen.objects, seen.effort, Some(method))
         }
         None => (rows, objects, Effort::default(), None),
@@ -162,13 +179,27 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     if by_sightlines && matches!(graph, TableGraph::Boxes(_)) {
         let doubt = boxes::in_doubt(&rows, &objects, &proven, &touching);
         // Where no doubt is left the scene need not be cut.
-        if doubt.boxes.count_ones() + doubt.objects.count_ones() > 0 {
-            let answer = past_walls(scene, options, &cells, &boxes, &doubt)?;
-            n_assumed = answer.n_assumed;
-            boxes::clear_hidden([&mut rows, &mut objects], &doubt, &answer);
+        let is_any = doubt.boxes.count_ones() + doubt.objects.count_ones() > 0;
+        if is_any && options.budget.is_over() {
+            boxes::add(&mut left, &doubt);
+        } else if is_any {
+            match past_walls(scene, options, &cells, &boxes, &doubt) {
+                Ok(answer) => {
+                    n_assumed = answer.n_assumed;
+                    answer.left.iter().for_each(|more| boxes::add(&mut left, more));
+                    boxes::clear_hidden([&mut rows, &mut objects], &doubt, &answer);
+                }
+                // Scenes that are cut into places may have too many walls for a k-d tree; what is in doubt stays visible.
+                Err(BakeError::KdTree(KdError::TooManyCells { .. })) if summary.is_some() && method.is_some() => {
+                    by_sightlines = false;
+                }
+                Err(error) => return Err(error),
+            }
         }
     }
+    boxes::keep_visible(&mut left, &rows, &objects, &touching);
     see::add(&mut objects, &touching);
+    let limit = Some(LimitReport::of(&left, &objects)).filter(LimitReport::is_any);
     let (n_visible_pairs, n_objects_seen) = ((rows.count_ones() - n as u64) / 2, objects.count_ones());
     parts.rows = rows;
     parts.cell_objects = object_lists(touching);
@@ -193,10 +224,21 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     };
     parts.info.push(("method".to_owned(), format!("{by}{text}")));
     parts.info.sort();
+    limit.iter().for_each(|limit| state_limit(&mut parts, limit));
     state_file(&mut parts, options.file);
     let table = Table::new(parts)?;
     let time = start.elapsed();
-    let report = RegionReport { places: summary, n_assumed, method, effort, n_visible_pairs, n_objects_seen, time };
+    let report = RegionReport {
+        places: summary,
+        n_assumed,
+        method,
+        effort,
+        n_visible_pairs,
+        n_objects_seen,
+        limit,
+        cut_time,
+        time,
+    };
     Ok(Baked { graph, table, report })
 }
 
@@ -209,10 +251,14 @@ fn past_walls(
     doubt: &PairMask,
 ) -> Result<BoxVisibility, BakeError> {
     let ends = [scene.bounds().min, scene.bounds().max].into_iter().chain(cells.iter().flat_map(|b| [b.min, b.max]));
-    let cut = SceneOptions { keep_solid: true, view_region: Some(Aabb::around(ends)), ..options.cut };
+    // The limit of places is not one of the cells that sightlines need.
+    let max_cells = options.cut.max_cells.max(SceneOptions::default().max_cells);
+    let max_cells = if matches!(options.cells, CellsFrom::Places(_)) { max_cells } else { options.cut.max_cells };
+    let cut = SceneOptions { keep_solid: true, view_region: Some(Aabb::around(ends)), max_cells, ..options.cut };
     let cut = subdivide_scene(scene, &cut)?;
     let loose = (options.portals == PortalMode::Bounding).then(|| merge_portals(&cut.graph));
-    let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
+    let RegionBakeOptions { threads, progress, budget, .. } = *options;
+    let search = SearchOptions { threads, progress, budget, ..SearchOptions::default() };
     let graph = loose.as_ref().unwrap_or(&cut.graph);
     Ok(box_visibility(graph, &cut.left_out(), cells, objects, doubt, &search)?)
 }

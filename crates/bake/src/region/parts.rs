@@ -86,9 +86,14 @@ fn all_visible(graph: TableGraph, parts: TableParts, cells: Vec<Aabb<3>>, n_obje
 }
 
 /// Boxes along the axes of the scene around view cells that may stand along others.
-pub(super) fn upright(cells: &ViewCells) -> Vec<ViewCell> {
+pub(crate) fn upright(cells: &ViewCells) -> Vec<ViewCell> {
     let Some(axes) = cells.axes else { return cells.cells.clone() };
-    // What was turned into axes of the file is taken back into those of the scene, widened by the rounding.
+    // What was turned into axes of the file is taken back into those of the scene, widened by the rounding. Along the axes of the scene
+    // in another order or with other signs nothing is rounded.
+    let is_exact = |k: usize| {
+        let parts = axes.map(|axis| axis[k].abs());
+        parts.iter().all(|&x| x == 0.0 || x == 1.0) && parts.iter().filter(|&&x| x > 0.0).count() < 2
+    };
     let turn = |cell: &ViewCell| {
         let (min, max) = (cell.bounds.min, cell.bounds.max);
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
@@ -100,8 +105,10 @@ pub(super) fn upright(cells: &ViewCells) -> Vec<ViewCell> {
                 high[k] += ends[0].max(ends[1]);
                 size += ends[0].abs().max(ends[1].abs());
             }
-            low[k] -= size * (8.0 * f64::EPSILON);
-            high[k] += size * (8.0 * f64::EPSILON);
+            if !is_exact(k) {
+                low[k] -= size * (8.0 * f64::EPSILON);
+                high[k] += size * (8.0 * f64::EPSILON);
+            }
         }
         ViewCell { id: cell.id.clone(), bounds: Aabb { min: low, max: high } }
     };

@@ -2,6 +2,7 @@
 
 mod any_input;
 mod bakeable;
+mod limit;
 mod live;
 mod mirrors;
 mod places;

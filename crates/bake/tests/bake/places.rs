@@ -104,12 +104,13 @@ fn the_insides_of_solids_are_left_out() {
         let held: f64 = places.cells.iter().map(volume).sum();
         // Nothing of the rock stays, and nothing else goes but, at most, the trees.
         assert!(places.cells.iter().all(|b| b.min[2] >= 4.0), "{places:?}");
-        assert!((253.0..=256.0).contains(&held), "{held}");
+        assert!((253.0..=256.0 + 1e-9).contains(&held), "{held}");
         assert!(places.summary.n_solid > 0 && faults(&places) == 0);
     }
     let kept = SceneOptions { keep_solid: true, ..SceneOptions::default() };
     let kept = places(&rock(None), &kept, &PlaceOptions::default()).expect("places");
-    assert_eq!((kept.cells.iter().map(volume).sum::<f64>(), kept.summary.n_solid), (512.0, 0));
+    let held: f64 = kept.cells.iter().map(volume).sum();
+    assert!((held - 512.0).abs() < 1e-9 && kept.summary.n_solid == 0, "{held}");
 }
 
 /// Where all is solid, all is a place, whether it is cut or not.
@@ -118,7 +119,7 @@ fn a_region_in_solid_matter_has_cells() {
     let cube = scene(vec![block(&boxed([0.0; 3], [8.0; 3]), false)]);
     for n_cells in [1, 64] {
         let held: f64 = cut(&cube, n_cells).cells.iter().map(volume).sum();
-        assert_eq!(held, 512.0, "{n_cells}");
+        assert!((held - 512.0).abs() < 1e-9, "{n_cells}: {held}");
     }
 }
 
@@ -133,6 +134,56 @@ fn the_insides_of_what_is_open_are_places() {
         assert_eq!(in_rock, 256.0, "without triangle {missing}");
         assert!(!Matter::of(&open).holds(&boxed([1.0; 3], [2.0; 3])));
     }
+}
+
+/// Hilly ground halfway up a box, with posts on it.
+fn ground(upwards: bool) -> Scene {
+    let at = |x: i32, y: i32| [f64::from(x), f64::from(y), 3.5 + 0.5 * f64::from((x * 5 + y * 3) % 3 - 1)];
+    let mut land = SceneObject { name: String::new(), vertices: Vec::new(), triangles: Vec::new() };
+    for (x, y) in (0..8).flat_map(|x| (0..8).map(move |y| (x, y))) {
+        let first = land.vertices.len() as u32;
+        land.vertices.extend([at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)]);
+        land.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+    if !upwards {
+        land.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+    }
+    let post = |x: f64, z: [f64; 2]| block(&boxed([x, 1.0, z[0]], [x + 0.5, 1.5, z[1]]), false);
+    scene(vec![
+        land,
+        post(1.0, [3.5, 8.0]),
+        post(6.0, [3.5, 6.0]),
+        block(&boxed([7.5, 7.5, 0.0], [8.0, 8.0, 8.0]), false),
+    ])
+}
+
+/// Nobody is below ground that has a front alone.
+#[test]
+fn what_is_behind_backs_is_left_out() {
+    let below = |places: &Places| -> f64 {
+        places.cells.iter().map(|b| volume(&boxed(b.min, [b.max[0], b.max[1], b.max[2].min(2.9)])).max(0.0)).sum()
+    };
+    let single = ground(true).with_single_sided(vec![0]).expect("an object");
+    let places = cut(&single, 40);
+    assert_eq!((places.cells.len(), faults(&places)), (40, 0));
+    assert!(below(&places) < 40.0 && places.summary.n_behind > 0, "{places:?}");
+    // Above ground nothing is lost.
+    let mut random = Random::new(5);
+    let above = boxed([0.0, 0.0, 4.25], [8.0; 3]);
+    let is_in = |p: Point3| places.cells.iter().any(|b| b.contains(p));
+    assert!((0..2000).all(|_| is_in(random.point(&above))));
+    // Two sides, mostly backs, or the wish to keep it: all is a place, but for what is in the posts.
+    let inside_out = ground(false).with_single_sided(vec![0]).expect("an object");
+    let kept = SceneOptions { keep_solid: true, ..SceneOptions::default() };
+    let how = PlaceOptions { n_cells: Some(40), cell_size: None };
+    for (name, other) in [
+        ("two sides", cut(&ground(true), 40)),
+        ("kept", sightlines_bake::places::places(&single, &kept, &how).expect("places")),
+    ] {
+        assert!(below(&other) > 180.0 && other.summary.n_behind == 0, "{name}: {:?}", other.summary);
+    }
+    let seen_from_below = cut(&inside_out, 40);
+    assert!(below(&seen_from_below) > 150.0, "{:?}", seen_from_below.summary);
 }
 
 /// Rooms in a row behind turned walls with doors, and a thing in each.
@@ -210,11 +261,7 @@ fn sizes_and_numbers_are_kept() {
     let cut = |how: PlaceOptions| places(&city, &SceneOptions::default(), &how);
     for n_cells in [1, 7, 64, 300] {
         let places = cut(how(Some(n_cells), None)).expect("places");
-        assert!(
-            4 * places.cells.len() <= 5 * n_cells as usize && faults(&places) == 0,
-            "{n_cells}: {:?}",
-            places.summary
-        );
+        assert_eq!((places.cells.len(), faults(&places)), (n_cells as usize, 0), "{n_cells}: {:?}", places.summary);
         assert_eq!(places, cut(how(Some(n_cells), None)).expect("places"), "the same again");
     }
     let longest = (0..3).map(|k| city.bounds().max[k] - city.bounds().min[k]).fold(0.0, f64::max);
@@ -226,8 +273,12 @@ fn sizes_and_numbers_are_kept() {
     );
     assert_eq!(cut(how(Some(0), None)).unwrap_err().to_string(), "0 cells were asked for; there has to be one");
     let few = SceneOptions { max_cells: 50, ..SceneOptions::default() };
-    let error = places(&city, &few, &how(None, Some(longest / 10.0))).unwrap_err().to_string();
-    assert!(error.contains("more than 50 cells"), "{error}");
+    let refused = |how: PlaceOptions| places(&city, &few, &how).unwrap_err().to_string();
+    assert!(refused(how(None, Some(longest / 10.0))).contains("units are more than 50, which is the limit"));
+    // Before any work: there is no time for so many.
+    assert!(refused(how(None, Some(longest / 1e6))).contains("units are more than 50, which is the limit"));
+    assert!(refused(how(Some(u32::MAX), None)).starts_with("4294967295 cells were asked for, and 50 are the limit"));
+    assert_eq!(places(&city, &few, &how(None, None)).expect("places").cells.len(), 50);
     let empty = places(&scene(Vec::new()), &SceneOptions::default(), &PlaceOptions::default()).unwrap_err();
     assert_eq!(empty.to_string(), "the scene is empty");
     let flat = SceneObject { triangles: vec![[0, 2, 3]], ..block(&boxed([0.0; 3], [1.0, 1.0, 0.0]), false) };

@@ -1,0 +1,74 @@
+//! What a bake has not decided because its budget was spent.
+
+use sightlines_pvs::{BitMatrix, TableParts};
+use sightlines_stabtree::PairMask;
+use std::fmt;
+
+/// What was not decided because the budget was spent. The table is right all the same, and looser: such pairs count as visible.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct LimitReport {
+    /// Cells about which everything was decided.
+    pub n_cells_decided: usize,
+    /// Cells about which a part was decided.
+    pub n_cells_in_part: usize,
+    /// Cells about which nothing was decided.
+    pub n_cells_undecided: usize,
+    /// Unordered pairs of different cells that count as visible for that reason. An upper bound, where a from-region method was stopped:
+    /// it includes pairs that the method would have left visible.
+    pub n_cell_pairs: u64,
+    /// Pairs of a cell and an object that count as visible for that reason; likewise.
+    pub n_object_pairs: u64,
+}
+
+impl LimitReport {
+    /// Counts what was left. `objects`: cells by objects, what is visible.
+    pub(crate) fn of(left: &PairMask, objects: &BitMatrix) -> Self {
+        let n = left.boxes.n_rows();
+        let mut seen_anywhere = vec![0u64; objects.n_cols().div_ceil(64)];
+        for cell in 0..n {
+            seen_anywhere.iter_mut().zip(objects.row(cell)).for_each(|(all, word)| *all |= word);
+        }
+        let mut report = Self::default();
+        for cell in 0..n {
+            let n_cells = left.boxes.iter_ones(cell).filter(|&other| other != cell).count();
+            let n_objects = left.objects.iter_ones(cell).count();
+            // Objects that no cell sees are not drawn, or out of reach, which needs no decision.
+            let none_hidden = || objects.row(cell).iter().zip(&seen_anywhere).all(|(word, all)| word == all);
+            *if n_cells + n_objects == 0 {
+                &mut report.n_cells_decided
+            } else if n_cells + 1 == n && none_hidden() {
+                &mut report.n_cells_undecided
+            } else {
+                &mut report.n_cells_in_part
+            } += 1;
+            report.n_cell_pairs += n_cells as u64;
+            report.n_object_pairs += n_objects as u64;
+        }
+        report.n_cell_pairs /= 2;
+        report
+    }
+
+    /// Whether the table is looser than it would be without a limit.
+    pub(crate) const fn is_any(&self) -> bool {
+        self.n_cells_in_part + self.n_cells_undecided > 0
+    }
+}
+
+impl fmt::Display for LimitReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [all, part, none] = [self.n_cells_decided, self.n_cells_in_part, self.n_cells_undecided];
+        let [cells, objects] = [self.n_cell_pairs, self.n_object_pairs];
+        let s = if all == 1 { "" } else { "s" };
+        write!(f, "{all} cell{s} decided in full, {part} in part, {none} not at all; ")?;
+        write!(f, "{cells} pairs of cells and {objects} of a cell and an object assumed visible")
+    }
+}
+
+/// The key under which a table states it.
+const KEY: &str = "time-limit";
+
+/// Lets the table state what was not decided.
+pub(crate) fn state_limit(parts: &mut TableParts, limit: &LimitReport) {
+    parts.info.push((KEY.to_owned(), limit.to_string()));
+    parts.info.sort();
+}
