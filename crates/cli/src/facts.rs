@@ -98,7 +98,7 @@ impl fmt::Display for FrameFacts {
 
 /// The line about the frame of a table: how it is turned, and its gap.
 fn frame(axes: &[[f64; 3]; 3], gap: f64) -> String {
-    let narrow = format!("openings narrower than {gap:.2e} units may count as closed");
+    let narrow = format!("openings and things narrower than {gap:.2e} units may count as closed or hidden");
     if (0..3).all(|k| axes[k][k] == 1.0) {
         return format!("frame          along the axes of the file; {narrow}");
     }

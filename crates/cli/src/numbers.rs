@@ -1,5 +1,7 @@
 //! Numbers as arguments.
 
+use std::time::Duration;
+
 /// Number of threads of a command; 0 stands for one for each core.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
     const MOST: usize = 1024;
@@ -14,5 +16,33 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
         _ => Err("not a number from 0 to 1".to_owned()),
+    }
+}
+
+/// A duration: a number of seconds, or one with the unit s, m or h.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    let (number, unit) = match text.trim() {
+        t if t.ends_with('s') => (&t[..t.len() - 1], 1.0),
+        t if t.ends_with('m') => (&t[..t.len() - 1], 60.0),
+        t if t.ends_with('h') => (&t[..t.len() - 1], 3600.0),
+        t => (t, 1.0),
+    };
+    let wrong = || "not a duration such as 90s, 10m or 2h".to_owned();
+    let seconds = number.parse::<f64>().map_err(|_| wrong())? * unit;
+    Duration::try_from_secs_f64(seconds).map_err(|_| wrong())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_have_units() {
+        let seconds = |text: &str| duration(text).map(|time| time.as_secs_f64());
+        let times = ["90s", "10m", "2h", "45", "0", "0.5m"].map(|text| seconds(text).expect(text));
+        assert_eq!(times, [90.0, 600.0, 7200.0, 45.0, 0.0, 30.0]);
+        for text in ["", "s", "-1", "1d", "1 hour", "inf", "nan", "1e30h"] {
+            assert_eq!(seconds(text), Err("not a duration such as 90s, 10m or 2h".to_owned()), "{text}");
+        }
     }
 }

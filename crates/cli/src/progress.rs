@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use sightlines::progress::{Observer, Progress};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -35,6 +35,12 @@ impl Bar {
     /// `done` of `all` are done; from any thread.
     pub(crate) fn set(&self, done: usize, all: usize) {
         self.show(Progress::new("", done as u64, all as u64));
+    }
+
+    /// Prints a line above the bar, whether that is visible or not.
+    pub(crate) fn say(&self, line: &str) {
+        // Nothing is left to do if standard error is closed.
+        self.bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}")));
     }
 
     fn show(&self, Progress { share, .. }: Progress) {
@@ -79,7 +85,7 @@ impl Pace {
 }
 
 /// A duration, rounded as an estimate should be.
-fn rough(time: Duration) -> String {
+pub(crate) fn rough(time: Duration) -> String {
     match time.as_secs() {
         s @ 0..90 => format!("{s} s"),
         s @ 90..5400 => format!("{} min", (s + 30) / 60),

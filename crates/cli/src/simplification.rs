@@ -19,6 +19,11 @@ use sightlines::simplify::{Simplified, SimplifyOptions};
 use sightlines::verify::{VerifyError, along_frame};
 use std::path::{Path, PathBuf};
 
+/// What a promise for every eye does not hold for, if a scene has faces that are drawn from one side only.
+pub(crate) fn of_fronts(single_sided: bool) -> &'static str {
+    if single_sided { " that sees the back of no single-sided face" } else { "" }
+}
+
 /// Why a scene was not simplified.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum SimplificationError {
@@ -143,14 +148,23 @@ pub(crate) fn along(path: &Path, table: &Table, scene: &Scene) -> Result<Option<
     along_frame(table, scene).map_err(|source| SimplificationError::Frame { path: path.to_owned(), source })
 }
 
+/// Whether what is left may be used to hide. Faces that are merged along a frame are in one plane there; with the corners of the file they are
+/// so only within the gap, and a merged face may be off the surface by as much.
+pub(crate) fn is_occluder(simplified: &Simplified, is_framed: bool) -> bool {
+    simplified.is_part_of_the_original() && !(is_framed && simplified.counts.merged > 0)
+}
+
 /// What is left of a scene, as GLB.
+///
+/// * `is_framed`: whether it was simplified along a frame, with other corners than those of the file
 pub(crate) fn written(
     path: &Path,
     scene: &Scene,
     source: Option<&GltfSource>,
     simplified: &Simplified,
+    is_framed: bool,
 ) -> Result<Vec<u8>, SimplificationError> {
-    let said = scene::Simplified { occluder: simplified.is_part_of_the_original() };
+    let said = scene::Simplified { occluder: is_occluder(simplified, is_framed) };
     match source {
         Some(source) => {
             let change = |(k, list): (usize, &Vec<[u32; 3]>)| simplified.changes(scene, k).then(|| list.clone());

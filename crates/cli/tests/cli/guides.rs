@@ -1,7 +1,7 @@
 //! The guides: every command in them works, in order, on input of the kind that they speak of.
 
-use crate::common::Folder;
 use crate::common::quake::row_of_leafs;
+use crate::common::{Folder, levels};
 use sightlines::formats::quake::BspFormat;
 use std::path::{Path, PathBuf};
 
@@ -43,7 +43,8 @@ fn follow(folder: &Folder, name: &str) -> usize {
             // What stands behind `#` is a comment, as for a shell.
             let mut words = line.split_whitespace().take_while(|word| *word != "#");
             assert_eq!(words.next(), Some("sightlines"), "{name}: {line}");
-            let args: Vec<&str> = words.collect();
+            // Quotes keep patterns from the shell.
+            let args: Vec<&str> = words.map(|word| word.trim_matches('\'')).collect();
             let run = folder.run(&args);
             // The answer may be no: two cells that do not see each other.
             let may_say_no = args[0] == "explain";
@@ -66,6 +67,87 @@ fn the_guide_for_engines_works() {
     // The picture of the guide is the one that its commands make, but for its size.
     folder.run(&["draw", "level.pvs", "--eye", "9,1.7,5", "--size", "900", "-o", "small.svg"]).expect(0);
     assert_same_picture("floor.svg", &folder.read("small.svg"));
+}
+
+/// The share of the polygons that a viewer has on average, in a line of `build`.
+fn polygons_of_a_viewer(folder: &Folder, args: &[&str]) -> f64 {
+    let out = folder.run(&[&["build"], args, &["-o", "measured.pvs"]].concat()).expect(0).out;
+    let line = out.lines().find_map(|line| line.strip_prefix("a viewer has")).expect("a line of its own");
+    line.split_whitespace().next().and_then(|number| number.parse().ok()).expect("a number")
+}
+
+/// What a point of a scene sees of others in a table: whether the cells of both see each other.
+fn see_each_other(folder: &Folder, table: &str, a: &str, b: &str) -> bool {
+    folder.run(&["explain", table, a, b]).code == 0
+}
+
+/// What the pictures of the guide show: behind the pane is a room, and only one of the tables has it.
+#[test]
+fn the_guide_for_blender_works() {
+    let folder = Folder::new();
+    folder.write("level.glb", levels::blender());
+    assert_eq!(follow(&folder, "blender.md"), 6);
+    for name in ["blender-before.svg", "blender-after.svg"] {
+        assert_same_picture(name, &folder.read(name));
+    }
+    let behind_glass = |table: &str| see_each_other(&folder, table, "2,1.7,2", "5,1.7,3");
+    assert_eq!((behind_glass("before.pvs"), behind_glass("level.pvs")), (false, true));
+    let info = folder.run(&["info", "level.glb"]).expect(0).out;
+    assert!(info.contains("classified by a name with noimp: Alarm-noimp"), "{info}");
+    // The impostor: a table that takes glass for a wall is found by who knows better.
+    folder.run(&["verify", "before.pvs", "level.glb", "--see-through", "*glass*", "--rays", "20000"]).expect(1);
+}
+
+#[test]
+fn the_guide_for_bim_works() {
+    let folder = Folder::new();
+    folder.write("building.glb", levels::bim());
+    assert_eq!(follow(&folder, "bim.md"), 8);
+    for name in ["bim-before.svg", "bim-after.svg"] {
+        assert_same_picture(name, &folder.read(name));
+    }
+    folder.run(&["build", "building.glb", "--gap", "25", "-o", "shut.pvs"]).expect(0);
+    // From the first room: the last one in its row, and the corridor before its door.
+    let [eye, last, corridor] = ["2732,-732,1700", "10526,3768,1700", "3674,-3290,1700"];
+    let sees = |table: &str| [last, corridor].map(|place| see_each_other(&folder, table, eye, place));
+    assert_eq!(["before.pvs", "shut.pvs", "building.pvs"].map(sees), [[true, true], [false, false], [false, true]]);
+}
+
+/// The commands of the guide on buildings that were exported by others.
+#[test]
+fn the_guide_for_bim_works_on_a_real_building() {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
+        eprintln!("SKIPPED the_guide_for_bim_works_on_a_real_building: SIGHTLINES_DATA is not set");
+        return;
+    };
+    let folder = Folder::new();
+    let scene = Path::new(&data).join("scenes/duplex/duplex.glb");
+    let scene = scene.to_str().expect("a path in UTF-8");
+    let options = ["--see-through", "*Window*", "--gap", "0.003"];
+    let run = folder.run(&[&["build", scene, "-o", "duplex.pvs"][..], &options].concat()).expect(0);
+    assert!(
+        run.out.contains("see-through    24 objects, classified by the pattern *Window*: IfcWindow_"),
+        "{}",
+        run.out
+    );
+    folder.run(&["verify", "duplex.pvs", scene, "--rays", "20000"]).expect(0);
+}
+
+#[test]
+fn the_guide_for_scans_works() {
+    let folder = Folder::new();
+    folder.write("scan.glb", levels::scan(false));
+    folder.write("pieces.glb", levels::scan(true));
+    assert_eq!(follow(&folder, "scans.md"), 8);
+    for name in ["scan-before.svg", "scan-after.svg"] {
+        assert_same_picture(name, &folder.read(name));
+    }
+    let cells = ["--view-region", "0,0.5,0,32,3,32", "--grid", "12,1,12", "--method"];
+    let polygons = |scene: &'static str, method: &'static str| {
+        polygons_of_a_viewer(&folder, &[&[scene][..], &cells, &[method]].concat())
+    };
+    assert_eq!((polygons("pieces.glb", "sightlines"), polygons("scan.glb", "auto")), (100.0, 100.0));
+    assert!((50.0..70.0).contains(&polygons("pieces.glb", "auto")));
 }
 
 /// A picture of the documents is the one that the program draws.

@@ -3,7 +3,7 @@
 use crate::common::looks::table;
 use crate::common::picture::DRAWN;
 use crate::common::quake::{rooms, row_of_leafs};
-use crate::common::{Folder, doom_map, maze_text};
+use crate::common::{Folder, doom_map, levels, maze_text};
 use serde_json::{Map, Value};
 use sightlines::formats::LumpName;
 use sightlines::formats::doom::{DoomMapSource, write_doom_map};
@@ -282,7 +282,12 @@ fn scenes(all: &mut Results) {
     folder.write("triangles.obj", TRIANGLES);
     folder.write("slanted.obj", slanted());
     folder.write("turned.obj", TURNED);
+    folder.write("extras.glb", levels::blender_with_extras());
+    folder.write("doors.glb", levels::with_doors());
     folder.write("path.json", r#"{"frames": [{"eye": [1, 1, 1], "dir": [1, 0, 0]}]}"#);
+    let cell = r#"{"id": "a", "min": [1, 4, 1], "max": [2, 5, 2]}"#;
+    folder
+        .write("across.json", format!(r#"{{"axes": [[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]], "cells": [{cell}]}}"#));
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     let least = "--floors 1 --rooms-x 1 --rooms-y 1 --furniture 0";
     add("generate tower", &format!("generate tower -o least.glb {least}"));
@@ -293,7 +298,14 @@ fn scenes(all: &mut Results) {
     add("build of a scene by regions", "build triangles.obj -o r.pvs --method shafts --stab-trees=16");
     add("info of a scene", "info tower.glb");
     add("build of a scene", "build turned.obj -o turned.pvs --gap 1e-5");
+    add("info of a scene", "info extras.glb");
+    add("build of a scene", "build doors.glb -o doors.pvs");
+    add("build of a scene", "build doors.glb -o doors.pvs --time-limit 0");
+    add("build of a scene by regions", "build slanted.obj -o s.pvs --method auto --time-limit 0");
+    add("build of a scene", "build extras.glb -o extras.pvs");
+    add("build of a scene by regions", "build extras.glb -o extras.pvs --method shafts --grid 2,1,1");
     add("build of a scene by regions", "build turned.obj -o g.pvs --gap 1e-5 --method shafts --grid 2,1,1");
+    add("build of a scene by regions", "build turned.obj -o c.pvs --gap 1e-5 --cells across.json");
     add("verify", "verify turned.pvs turned.obj --rays 100 --pairs 10");
     add("info of a table", "info turned.pvs");
     add("pack", "pack turned.pvs -o turned.pvz");

@@ -1,7 +1,9 @@
 //! Glass, roles and options in scenes, from the file to the report and back.
 
-use crate::common::Folder;
+use crate::common::looks::table;
+use crate::common::{Folder, levels};
 use sightlines::formats::scene::{parse_glb, read_scene};
+use sightlines::geometry::Aabb;
 
 /// A room of 8 by 4 by 3 with a pane across its middle, and a thing on either side; quads, in the order of `f`.
 fn room() -> String {
@@ -213,4 +215,77 @@ fn scenes_of_a_file_are_chosen_by_name() {
     assert!(run.out.contains("if it was modelled in millimetres, it is 9 metres: scale it by 0.001\n"), "{}", run.out);
     let run = folder.run(&["info", "two.gltf", "--scene-name", "dusk"]).expect(2);
     assert!(run.err.contains("there is no scene \"dusk\", but day, 1"), "{}", run.err);
+}
+
+/// Where viewers can be is cut into cells, unless somebody names another region; what moves is listed with its box.
+#[test]
+fn view_volumes_and_movers_of_a_file_are_taken() {
+    let folder = Folder::new();
+    folder.write("level.glb", levels::blender_with_extras());
+    let grid = ["--method", "shafts", "--grid", "2,1,1"];
+    let run = folder.run(&[&["build", "level.glb", "-o", "level.pvs"], &grid[..]].concat()).expect(0);
+    let line = "viewers        in the view volume of the file: (4.5, 0, 4) to (7.5, 3, 5.5)\n";
+    assert!(run.out.contains(line), "{}", run.out);
+    let bounds = |name: &str| Aabb::around(table(&folder, name).cells().iter().flat_map(|cell| [cell.min, cell.max]));
+    assert_eq!(bounds("level.pvs"), Aabb { min: [4.5, 0.0, 4.0], max: [7.5, 3.0, 5.5] });
+    // Cells by views, too.
+    let places = ["build", "level.glb", "-o", "places.pvs", "--n-cells", "8", "--method", "auto"];
+    assert!(folder.run(&places).expect(0).out.contains(line));
+    assert_eq!(bounds("places.pvs"), bounds("level.pvs"));
+    // Of a k-d tree, what cannot be reached from there is left out, as with the option.
+    let build = ["build", "level.glb", "-o"];
+    folder.run(&[&build[..], &["tree.pvs"]].concat()).expect(0);
+    folder.run(&[&build[..], &["same.pvs", "--view-region", "4.5,0,4,7.5,3,5.5"]].concat()).expect(0);
+    assert_eq!(folder.read("tree.pvs"), folder.read("same.pvs"));
+    // Who names a region, or the cells, is believed.
+    let region = ["--view-region", "1,0,1,2,2,2"];
+    let run = folder.run(&[&build[..], &["other.pvs"], &grid, &region].concat()).expect(0);
+    assert!(!run.out.contains("viewers  "), "{}", run.out);
+    assert_eq!(bounds("other.pvs"), Aabb { min: [1.0, 0.0, 1.0], max: [2.0; 3] });
+    let info = folder.run(&["info", "level.glb"]).expect(0).out;
+    assert!(info.contains("moving         2 objects: 1 within a box, 1 anywhere\n"), "{info}");
+    let info = folder.run(&["info", "level.glb", "--json"]).expect(0).json();
+    let movers = info["movers"].as_array().expect("a list");
+    let is_anywhere = |mover: &serde_json::Value| mover["min"].is_null() && mover["max"].is_null();
+    assert_eq!(movers.iter().map(is_anywhere).collect::<Vec<_>>(), [true, false]);
+    // The box of the door: as wide around it as its diagonal, a bit more than 2.23.
+    assert_eq!(movers[1]["name"], "Window glass.033");
+    let low = movers[1]["min"][0].as_f64().expect("a number");
+    assert!((low - (4.1 - 2.2366)).abs() < 1e-3, "{low}");
+    assert_eq!(info["view_volumes"][0]["max"], serde_json::json!([7.5, 3.0, 5.5]));
+}
+
+/// A door that stands shut in its file is open for the table, and there is a portal that a program may close.
+#[test]
+fn doors_close_portals_of_their_table() {
+    let folder = Folder::new();
+    folder.write("level.glb", levels::with_doors());
+    let build = ["build", "level.glb", "-o", "level.pvs"];
+    let run = folder.run(&build).expect(0);
+    assert!(run.out.contains("doors          6, open; 6 close portals when shut\n"), "{}", run.out);
+    let doors = folder.run(&[&build[..], &["--json"]].concat()).expect(0).json()["doors"].clone();
+    let portals: Vec<String> = doors
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|door| {
+            let [portal] = &door["portals"].as_array().expect("a list")[..] else { panic!("{door}") };
+            portal.to_string()
+        })
+        .collect();
+    assert_eq!(portals.len(), 6);
+    // From the first room with open doors, with its own door shut, and with another one shut.
+    let sees = |shut: &[&str], place: &str| {
+        let closed = shut.iter().flat_map(|portal| ["--closed", portal]).collect::<Vec<_>>();
+        let look = ["query", "level.pvs", "--eye", "2,1.7,2", "--method", "exact", "--json"];
+        let found = folder.run(&[&look[..], &closed].concat()).expect(0).json();
+        let place = folder.run(&["query", "level.pvs", "--eye", place, "--json"]).expect(0).json()["cell"].clone();
+        let cells = found["visible"].as_array().unwrap_or_else(|| panic!("{found}")).clone();
+        cells.contains(&place)
+    };
+    let (corridor, own) = ("1.5,1.7,4.5", "3.5,1.7,3");
+    assert!(sees(&[], corridor) && sees(&[], own));
+    assert!(!sees(&[&portals[0]], corridor) && sees(&[&portals[0]], own));
+    assert!(sees(&[&portals[1]], corridor));
+    folder.run(&["verify", "level.pvs", "level.glb", "--rays", "5000"]).expect(0);
 }

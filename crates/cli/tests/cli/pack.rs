@@ -22,6 +22,8 @@ fn tables_are_packed_and_come_back() {
             (&json!("packed"), &json!(table.n_cells()), &json!(packed.len()))
         );
         let parts = info["parts"].as_array().unwrap();
+        let unknown: Vec<_> = parts.iter().filter(|part| part["what"] == "unknown").collect();
+        assert!(unknown.is_empty() && parts.iter().any(|part| part["name"] == "KIND"), "{unknown:?}");
         let sum = |resident: bool| -> u64 {
             let of = parts.iter().filter(|part| part["resident"] == resident);
             of.map(|part| part["n_bytes"].as_u64().unwrap()).sum()

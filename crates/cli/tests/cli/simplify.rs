@@ -1,6 +1,6 @@
 //! `simplify` and `levels`: scenes with fewer triangles, what they may be used for, and what is refused.
 
-use crate::common::{Folder, names};
+use crate::common::{Folder, levels, names};
 use serde_json::{Value, json};
 use sightlines::cells::Scene;
 use sightlines::formats::levels::read_levels_index;
@@ -109,6 +109,47 @@ fn cells_of_a_table_are_views_too() {
     assert_eq!(by_table["report"]["changed"], json!(0.0));
     let by_both = simplified(&folder, "t.glb", &cells);
     assert!(by_both["n_hidden"].as_u64() >= by_table["n_hidden"].as_u64());
+}
+
+/// A closed room with a floor of many squares, turned about z, in single precision.
+fn room(degrees: f64) -> String {
+    let (s, c) = degrees.to_radians().sin_cos();
+    let vertex = |x: f64, y: f64, z: f64| {
+        let [x, y, z] = [c * x - s * y, s * x + c * y, z].map(|x| f64::from(x as f32));
+        format!("v {x} {y} {z}\n")
+    };
+    let grid = (0..25u32).map(|k| vertex(f64::from(k % 5) * 2.0, f64::from(k / 5) * 1.25, 0.0));
+    let ceiling = [[0.0, 0.0], [8.0, 0.0], [8.0, 5.0], [0.0, 5.0]].map(|[x, y]| vertex(x, y, 3.0));
+    let vertices: String = grid.chain(ceiling).collect();
+    let squares: String = (0..16u32)
+        .map(|k| {
+            let a = k / 4 * 5 + k % 4 + 1;
+            format!("f {a} {} {}\nf {a} {} {}\n", a + 1, a + 6, a + 6, a + 5)
+        })
+        .collect();
+    format!("{vertices}o room\n{squares}f 26 29 28 27\nf 1 26 27 5\nf 5 27 28 25\nf 25 28 29 21\nf 21 29 26 1\n")
+}
+
+/// What is flat along a frame is so only nearly with the corners of the file: merged, it must not hide. The twins: not merged, and of a room that needs no
+/// frame, it may.
+#[test]
+fn what_is_merged_along_a_frame_hides_nothing() {
+    let folder = Folder::new();
+    for (name, degrees) in [("turned", 20.0), ("upright", 0.0)] {
+        let [obj, pvs, glb] = ["obj", "pvs", "glb"].map(|ending| format!("{name}.{ending}"));
+        folder.write(&obj, room(degrees));
+        folder.run(&["build", &obj, "-o", &pvs, "--gap", "1e-4", "-q"]).expect(0);
+        for flat in [true, false] {
+            let args =
+                ["simplify", &obj, "--table", &pvs, "--cell", "0", "--method", "none", "-o", &glb, "--json", "-q"];
+            let reply = folder.run(&[&args[..], if flat { &["--flat"] } else { &[] }].concat()).expect(0).json();
+            assert_eq!(reply["n_merged"].as_u64() > Some(0), flat, "{name}: {reply}");
+            let may_hide = !flat || name == "upright";
+            assert_eq!(reply["occluder"], json!(may_hide), "{name}: {reply}");
+            let said = read_scene(folder.path(&glb)).unwrap().info.simplified.map(|s| s.occluder);
+            assert_eq!(said, Some(may_hide), "{name}");
+        }
+    }
 }
 
 #[test]
@@ -247,4 +288,25 @@ fn levels_are_written_and_walked_with() {
     folder.write("l/index.json", "{\"sightlines_levels\": 1,\n \"triangles\": x}");
     let error = folder.refused(&["walk", "tower.pvs", "--random", "9", "--levels", "l"]);
     assert_eq!(error, "l/index.json: line 2 column 15: expected value");
+}
+
+/// What is promised for every eye is promised for those that see no back of a single-sided face, and said so where there are some.
+#[test]
+fn promises_name_the_eyes_that_they_are_for() {
+    let folder = Folder::new();
+    folder.write("both.glb", levels::blender());
+    folder.write("single.glb", levels::scan(true));
+    let promise = |scene: &str, command: &[&str]| {
+        let args = [&[command[0], scene], &command[1..], &["-o", "out.glb"]].concat();
+        let line = |out: &str| out.lines().find(|line| line.starts_with("promised")).expect("a promise").to_owned();
+        let json = folder.run(&[&args[..], &["--json"]].concat()).expect(0).json();
+        (line(&folder.run(&args).expect(0).out), json["single_sided"].as_bool().expect("a truth value"))
+    };
+    let volume = ["simplify", "--volume=1.5,1.5,1.5,2.5,1.9,2.5", "--method", "none"];
+    let (both, is_single) = promise("both.glb", &volume);
+    assert!(both.contains("for every eye; ") && !is_single, "{both}");
+    let (single, is_single) = promise("single.glb", &volume);
+    assert!(single.contains("for every eye that sees the back of no single-sided face; ") && is_single, "{single}");
+    let (drawn, is_single) = promise("single.glb", &[&volume[..], &["--both-sides"]].concat());
+    assert!(drawn.contains("for every eye; ") && !is_single, "{drawn}");
 }

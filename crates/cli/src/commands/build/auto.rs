@@ -41,6 +41,13 @@ impl Chosen {
     }
 }
 
+impl Chosen {
+    /// The methods, in words.
+    pub(super) fn method(&self) -> &str {
+        &self.method
+    }
+}
+
 impl fmt::Display for Chosen {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "chosen         {}", self.method)?;

@@ -1,29 +1,57 @@
-//! The frame in which a scene is baked, and what it brought.
+//! The frame in which a scene is baked, what it brought, and what became of cells that stand along other axes.
 
 use super::Error;
 use crate::facts::FrameFacts;
 use crate::output::percent;
 use serde::Serialize;
-use sightlines::bake::{BakeError, BakeOptions, Bakeable, Framed};
+use sightlines::bake::{Along, BakeError, BakeOptions, Bakeable, Framed, growth_of_cells};
 use std::fmt;
 use std::path::Path;
 
 /// Takes a scene into its frame, with the cells and the view region of `options`, if it has one.
-pub(super) fn take(path: &Path, content: &mut Bakeable, options: &mut BakeOptions<'_>) -> Result<Option<Taken>, Error> {
-    let Bakeable::Scene(file) = content else { return Ok(None) };
+pub(super) fn take(path: &Path, content: &mut Bakeable, options: &mut BakeOptions<'_>) -> Result<Placed, Error> {
+    let Bakeable::Scene(file) = content else { return Ok(Placed::default()) };
     let failed = |error| Error::Bake { path: path.to_owned(), map: None, source: Box::new(BakeError::Move(error)) };
-    let Some(framed) = Framed::of(&file.scene, Some(&file.info), options).map_err(failed)? else { return Ok(None) };
-    *options = framed.options(options);
-    let taken = Taken::new(&framed);
-    file.scene = framed.moved.scene;
-    Ok(Some(taken))
+    let framed = Framed::of(&file.scene, Some(&file.info), options).map_err(failed)?;
+    let growth = growth_of_cells(&options.cells, framed.as_ref());
+    let mut placed = Placed { frame: None, cells_growth: (growth > TOLD).then_some(growth) };
+    if let Some(framed) = framed {
+        *options = framed.options(options);
+        placed.frame = Some(Taken::new(&framed));
+        file.scene = framed.moved.scene;
+    }
+    Ok(placed)
+}
+
+/// From when on it is told that boxes around given cells are larger than these.
+const TOLD: f64 = 1.01;
+
+/// How a scene and its cells stand in the table.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub(super) struct Placed {
+    /// The frame of a scene that does not stand along the axes of its file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<Taken>,
+    /// How many times the surface of the given cells the boxes around them have, where these stand along other axes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cells_growth: Option<f64>,
+}
+
+impl fmt::Display for Placed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.frame.iter().try_for_each(|frame| write!(f, "{frame}"))?;
+        let Some(growth) = self.cells_growth else { return Ok(()) };
+        writeln!(f, "given cells    stand along other axes: boxes around them, of {growth:.2} times the surface")
+    }
 }
 
 /// The frame of a scene, and what it brought.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct Taken {
+struct Taken {
     #[serde(flatten)]
     frame: FrameFacts,
+    /// `walls` or `cells`: what stands along the axes of the frame.
+    along: &'static str,
     /// The largest distance of a coordinate from that of the file, along the axes of the frame, in scene units.
     largest_move: f64,
     n_corners: usize,
@@ -37,9 +65,13 @@ pub(super) struct Taken {
 
 impl Taken {
     fn new(framed: &Framed) -> Self {
-        let Framed { frame, moved, before, after } = framed;
+        let Framed { frame, along, moved, before, after } = framed;
         Self {
             frame: frame.into(),
+            along: match along {
+                Along::Walls => "walls",
+                Along::Cells => "cells",
+            },
             largest_move: moved.most,
             n_corners: moved.n_corners,
             n_snapped_corners: moved.n_snapped,
@@ -52,6 +84,9 @@ impl Taken {
 impl fmt::Display for Taken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.frame)?;
+        if self.along == "cells" {
+            writeln!(f, "               along the given cells")?;
+        }
         let [before, after] = [self.axial_before, self.axial_after].map(percent);
         writeln!(f, "               {before} of the wall area was across an axis, {after} is")?;
         let (snapped, n) = (self.n_snapped_corners, self.n_corners);

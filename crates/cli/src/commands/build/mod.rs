@@ -1,9 +1,11 @@
 //! `build`: from a plan, a scene in space, a portal file or a Quake map to its table.
 
+mod announce;
 mod auto;
 mod certify;
 mod error;
 mod framed;
+mod limit;
 mod options;
 pub(crate) mod plan;
 mod portals;
@@ -13,12 +15,14 @@ mod source;
 pub(crate) mod space;
 mod stab;
 mod view_cells;
+mod viewers;
 
 pub(crate) use error::Error;
 pub(crate) use source::bake_visibly;
 
 use crate::Answer;
 use crate::input::{self, refuse};
+use crate::numbers::duration;
 use crate::output;
 use crate::surfaces::{SurfaceArgs, Surfaces};
 use options::BakeArgs;
@@ -26,9 +30,10 @@ use serde::Serialize;
 use sightlines::bake::auto::choose_for;
 use sightlines::bake::{BakeOptions, Bakeable, Baked, Report, SceneMethod};
 use sightlines::formats::Input;
-use source::Source;
+use source::{Source, bake_announced};
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Arguments of `build`.
 #[derive(Debug, clap::Args)]
@@ -48,6 +53,11 @@ pub(crate) struct BuildArgs {
     bake: BakeArgs,
     #[command(flatten, next_help_heading = "Method")]
     region: region::RegionArgs,
+    /// Scenes in space: decide for about this long, such as 90s, 10m or 2h; a plain number is in seconds. What is not decided by then
+    /// counts as visible, so the table is right, and looser. Reading the file and cutting cells count, and are done in full; so
+    /// is what comes after, such as writing. With a limit that is reached, the table depends on the machine and differs from run to run
+    #[arg(long, help_heading = "Method", value_name = "DURATION", value_parser = duration)]
+    time_limit: Option<Duration>,
     /// The table to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     output: PathBuf,
@@ -67,6 +77,7 @@ pub(crate) struct BuildArgs {
 
 pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
     let BuildArgs { input: path, output: out, .. } = args;
+    let clock = limit::Clock::new(args.time_limit);
     if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
         return Err(Error::Json { out: out.clone() });
     }
@@ -76,9 +87,11 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
     let mut source = Source::new(path, input, chosen, out, &args.bake)?;
-    let mut options = args.bake.options();
+    let mut options: BakeOptions<'_> = args.bake.options();
+    options.budget = clock.budget();
     args.region.apply(&mut options)?;
-    let frame = framed::take(path, &mut source.content, &mut options)?;
+    let viewers = viewers::take(&source.content, &mut options);
+    let placed = framed::take(path, &mut source.content, &mut options)?;
     let portals = args.certify.is_given() || args.stab_trees.is_some();
     if let Bakeable::Scene(file) = &source.content {
         args.region.choose_for(&file.scene, portals, &mut options);
@@ -91,15 +104,17 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     }
     args.refuse_for_regions(&source, &options)?;
 
-    let baked = bake_visibly(path, (&source.content).into(), &options, show_progress);
+    let plan = announce::Plan::new(&source.content, &options, auto.as_ref());
+    let baked = bake_announced(path, (&source.content).into(), &options, plan, show_progress);
     let baked = baked.map_err(|error| source.failed(path, error))?;
+    clock.warn(path, &baked.report);
     let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, show_progress)?;
     let bytes = baked.table.to_bytes();
     output::save(out, &bytes)?;
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
     let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
     let surfaces = if let Bakeable::Scene(file) = &source.content { Some(Surfaces::new(file)) } else { None };
-    output::print(args.json, &Built { auto, outcome, frame, surfaces, stab, proofs })?;
+    output::print(args.json, &Built { auto, outcome, viewers, placed, surfaces, stab, proofs })?;
     Ok(Answer::Yes)
 }
 
@@ -112,6 +127,7 @@ impl BuildArgs {
         if !matches!(input, Input::Scene(_)) {
             refuse(&self.input, &self.region.of_space(), "scenes in space", "none")?;
             refuse(&self.input, &self.surfaces.given(), "scenes in space", "none")?;
+            refuse(&self.input, &[("--time-limit", self.time_limit.is_some())], "scenes in space", "none")?;
         }
         Ok(())
     }
@@ -193,9 +209,11 @@ struct Built {
     auto: Option<auto::Chosen>,
     #[serde(flatten)]
     outcome: Outcome,
-    /// The frame of a scene that does not stand along the axes of its file.
+    /// The region of viewers that a scene states.
     #[serde(skip_serializing_if = "Option::is_none")]
-    frame: Option<framed::Taken>,
+    viewers: Option<viewers::Viewers>,
+    #[serde(flatten)]
+    placed: framed::Placed,
     /// Of a scene in space.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     surfaces: Option<Surfaces>,
@@ -209,7 +227,8 @@ impl fmt::Display for Built {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.auto.iter().try_for_each(|auto| write!(f, "{auto}"))?;
         write!(f, "{}", self.outcome)?;
-        self.frame.iter().try_for_each(|frame| write!(f, "{frame}"))?;
+        self.viewers.iter().try_for_each(|viewers| write!(f, "{viewers}"))?;
+        write!(f, "{}", self.placed)?;
         self.surfaces.iter().try_for_each(|surfaces| write!(f, "{surfaces}"))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))

@@ -30,7 +30,7 @@ pub(crate) struct BakeArgs {
     /// through one rectangle around each, which shows more
     #[arg(long, help_heading = "Method", value_name = "HOW", value_parser = one_of(&PortalMode::ALL, PortalMode::name, |_| ""))]
     portals: Option<PortalMode>,
-    /// Scenes in space: openings narrower than this, in scene units, may count as closed. Walls that lie across an axis of the
+    /// Scenes in space: openings narrower than this, in scene units, may count as closed, and things as thin as hidden. Walls that lie across an axis of the
     /// building to within half of it are taken to do so exactly, also where the building stands at an angle to the axes of its file. 0
     /// takes every coordinate as it is [default: the precision of the file, where such walls are many]
     #[arg(long, help_heading = "Method", value_name = "WIDTH", value_parser = size, allow_hyphen_values = true)]

@@ -1,5 +1,6 @@
 //! How a scene in space is baked, as arguments, and what was built by from-region queries.
 
+use super::limit::Undecided;
 use super::view_cells::ViewCellsArgs;
 use crate::buffers::BufferArgs;
 use crate::facts::{Facts, Stated};
@@ -23,7 +24,9 @@ pub(crate) struct RegionArgs {
     /// Scenes in space: sightlines (through portals; axis-aligned walls occlude), multifocal (from whole cells; any
     /// surfaces occlude), both (hides what either hides), line-space (from whole cells; surfaces that meet or overlap occlude
     /// together; slower), or shafts and voxels (older methods, for comparison). auto,
-    /// for any input, measures it, chooses the methods and prints the reasons [default: sightlines]
+    /// for any input, measures it, chooses the methods and prints the reasons. Cells depend on the scene, whatever the method: those of a k-d
+    /// tree, or boxes where few walls are axis-aligned; but sightlines alone take those of a k-d tree, unless others are named
+    /// [default: sightlines, or auto where cells are boxes of the scene's own]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
     method: Option<SceneMethod>,
     #[command(flatten)]
@@ -31,12 +34,12 @@ pub(crate) struct RegionArgs {
     /// Scenes in space: use a grid of boxes as cells, in the view region or the box of the scene
     #[arg(long, value_name = "NX,NY,NZ", value_parser = counts, conflicts_with = "cells")]
     grid: Option<[u32; 3]>,
-    /// Scenes in space: about so many boxes as cells, cut where rays show that views differ. The default for scenes with few
-    /// axis-aligned walls, with 256 cells
+    /// Scenes in space: so many boxes as cells, cut where rays show that views differ; solid matter, and what is behind the backs of
+    /// single-sided faces, is in none. The default for scenes with few axis-aligned walls, with up to 256 cells
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with_all = ["cells", "grid"])]
     n_cells: Option<u32>,
-    /// Scenes in space: the same, with no side of a cell longer than SIZE, in scene units [default: such that half of the
-    /// cells are enough for it]
+    /// Scenes in space: the same, with no side of a cell longer than SIZE, in scene units; there are as many cells as that needs, if it
+    /// is more than otherwise
     #[arg(long, value_name = "SIZE", value_parser = length, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
     cell_size: Option<f64>,
     #[command(flatten)]
@@ -135,6 +138,9 @@ pub(super) struct Outcome {
     n_volumes: u64,
     /// Queries whether a box, or a triangle, is hidden.
     n_asked: u64,
+    /// If there was a time limit and it was reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_limit: Option<Undecided>,
     seconds: f64,
 }
 
@@ -147,12 +153,13 @@ struct Cuts {
     n_by_views: usize,
     n_by_size: usize,
     n_solid: usize,
+    n_behind: usize,
 }
 
 impl Cuts {
     fn new(cut: PlaceSummary) -> Self {
-        let PlaceSummary { n_cells, cell_size, n_along_walls, n_by_views, n_by_size, n_solid, .. } = cut;
-        Self { n_cells, cell_size, n_along_walls, n_by_views, n_by_size, n_solid }
+        let PlaceSummary { n_cells, cell_size, n_along_walls, n_by_views, n_by_size, n_solid, n_behind, .. } = cut;
+        Self { n_cells, cell_size, n_along_walls, n_by_views, n_by_size, n_solid, n_behind }
     }
 }
 
@@ -161,7 +168,11 @@ impl fmt::Display for Cuts {
         let [walls, views, size] = [self.n_along_walls, self.n_by_views, self.n_by_size];
         let (size_of, cells) = (self.cell_size, count(self.n_cells as u64, "place"));
         write!(f, "cells          {cells} of at most {size_of:.4} units: cut {walls} times along walls, ")?;
-        writeln!(f, "{views} where views differ, {size} for size; {} solid", self.n_solid)
+        writeln!(
+            f,
+            "{views} where views differ, {size} for size; {} solid, {} behind backs",
+            self.n_solid, self.n_behind
+        )
     }
 }
 
@@ -185,6 +196,7 @@ impl Outcome {
             n_objects_seen: report.n_objects_seen,
             n_volumes: report.effort.n_volumes,
             n_asked: asked.groups + asked.boxes + asked.triangles,
+            time_limit: report.limit.map(Undecided::from),
             seconds: report.time.as_secs_f64(),
         }
     }
@@ -212,6 +224,7 @@ impl fmt::Display for Outcome {
         if self.n_volumes > 0 {
             writeln!(f, "effort         {}, {} questions", count(self.n_volumes, "volume"), self.n_asked)?;
         }
+        self.time_limit.iter().try_for_each(|left| write!(f, "{left}"))?;
         writeln!(f, "time           {}", seconds(std::time::Duration::from_secs_f64(self.seconds)))
     }
 }

@@ -1,5 +1,6 @@
 //! What is built: an input with all files that belong to it.
 
+use super::announce::{Announcer, Plan};
 use super::{BakeArgs, Error, plan, quake, space};
 use crate::buffers::MethodFailed;
 use crate::input;
@@ -62,12 +63,24 @@ pub(crate) fn bake_visibly(
     options: &BakeOptions<'_>,
     show_progress: bool,
 ) -> Result<Baked, BakeError> {
+    bake_announced(path, input, options, Plan::default(), show_progress)
+}
+
+/// The same; says before what is going to be done.
+pub(super) fn bake_announced(
+    path: &Path,
+    input: BakeInput<'_>,
+    options: &BakeOptions<'_>,
+    plan: Plan,
+    show_progress: bool,
+) -> Result<Baked, BakeError> {
     let what = match input {
         BakeInput::Portals(_) | BakeInput::Map(..) => "visibility of clusters",
         BakeInput::Plan(_) | BakeInput::Scene(..) => "visibility",
     };
     let bar = Bar::new(what, show_progress);
-    let baked = bake(input, &BakeOptions { progress: Some(&bar), ..options.clone() })?;
+    let announcer = Announcer::new(&bar, &plan, show_progress);
+    let baked = bake(input, &BakeOptions { progress: Some(&announcer), ..options.clone() })?;
     drop(bar);
     match &baked.report {
         Report::Plan(report) => plan::warn(path, report),

@@ -1,9 +1,10 @@
 //! What was built from a scene in space, by sightlines.
 
+use super::limit::Undecided;
 use crate::facts::{Facts, Stated, times};
 use crate::output::{bytes, count, percent};
 use serde::Serialize;
-use sightlines::bake::{PortalMode, SceneReport};
+use sightlines::bake::{DoorPortals, PortalMode, SceneReport};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::SceneFile;
 use sightlines::pvs::Table;
@@ -21,6 +22,22 @@ pub(super) fn warn(path: &Path, report: &SceneReport) {
     say(report.n_other_mirror_triangles, "triangle", "do not reflect: they are not perpendicular to an axis");
     say(report.n_moving_mirrors, "object", "do not reflect: they move");
     say(report.n_lost_mirrors, "rectangle", "do not reflect everywhere: a part is in no cell");
+}
+
+/// A door, and the portals that it closes while it stands as it does in the file.
+#[derive(Debug, Serialize)]
+struct Door {
+    object: u32,
+    name: String,
+    portals: Vec<u32>,
+}
+
+impl Door {
+    fn new(scene: &Scene, found: &DoorPortals) -> Self {
+        let DoorPortals { object, portals } = found;
+        let name = scene.objects()[*object as usize].name.clone();
+        Self { object: *object, name, portals: portals.iter().map(|portal| portal.0).collect() }
+    }
 }
 
 /// What was built. Of the triangles, each is either axis-aligned or hides nothing; those that are detail are
@@ -55,6 +72,8 @@ pub(crate) struct Outcome {
     pub(crate) table: Summary,
     /// What a viewer sees on average, each place of the same weight.
     pub(crate) viewer: ViewerShare,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    doors: Vec<Door>,
     /// Rectangles that walls were merged into.
     n_blockers: usize,
     /// Queries whether one box sees another; these counts vary from run to run with several threads.
@@ -65,6 +84,9 @@ pub(crate) struct Outcome {
     n_exact: u64,
     /// Pairs that count as visible because deciding about them would have taken too much.
     n_assumed: u64,
+    /// If there was a time limit and it was reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_limit: Option<Undecided>,
     cut_seconds: f64,
     see_seconds: f64,
 }
@@ -92,11 +114,13 @@ impl Outcome {
             n_unreachable: cut.n_unreachable,
             table: Summary::of(table),
             viewer: ViewerShare::of(table, &triangles),
+            doors: report.doors.iter().map(|door| Door::new(&file.scene, door)).collect(),
             n_blockers: report.n_blockers,
             n_asked: did.n_asked,
             n_programs: did.n_programs,
             n_exact: did.n_exact,
             n_assumed: report.n_assumed,
+            time_limit: report.limit.map(Undecided::from),
             cut_seconds: report.cut_time.as_secs_f64(),
             see_seconds: report.see_time.as_secs_f64(),
         }
@@ -146,6 +170,10 @@ impl fmt::Display for SpaceFacts<'_> {
         let [solid, hollow, far] = [o.n_solid, o.n_hollow, o.n_unreachable];
         writeln!(f, "not cells      {solid} boxes of solid matter, {hollow} hollow, {far} out of reach")?;
         write!(f, "{}", Facts(&o.table))?;
+        if !o.doors.is_empty() {
+            let n_closing = o.doors.iter().filter(|door| !door.portals.is_empty()).count();
+            writeln!(f, "doors          {}, open; {n_closing} close portals when shut", o.doors.len())?;
+        }
         let [polygons, objects, cells] = [o.viewer.polygons, o.viewer.objects, o.viewer.cells].map(percent);
         writeln!(
             f,
@@ -156,6 +184,7 @@ impl fmt::Display for SpaceFacts<'_> {
         if assumed > 0 {
             writeln!(f, "assumed        {} visible, as too hard to decide", count(assumed, "pair"))?;
         }
+        o.time_limit.iter().try_for_each(|left| write!(f, "{left}"))?;
         writeln!(f, "time           {}", times(o.cut_seconds, "scene", o.see_seconds))
     }
 }

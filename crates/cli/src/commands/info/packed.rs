@@ -46,7 +46,7 @@ struct Part {
 }
 
 /// What the parts are.
-const PARTS: [(&str, &str); 20] = [
+const PARTS: [(&str, &str); 21] = [
     ("HEAD", "numbers"),
     ("BOXS", "boxes of cells"),
     ("POLY", "corners of cells"),
@@ -54,6 +54,7 @@ const PARTS: [(&str, &str); 20] = [
     ("PLAN", "planes to find cells"),
     ("MIRR", "mirrors"),
     ("FRAM", "axes of its own"),
+    ("KIND", "kind of its subdivision"),
     ("INFO", "how it was made"),
     ("COAR", "coarse visibility"),
     ("CLAS", "equal rows"),

@@ -3,9 +3,12 @@
 use super::Error;
 use crate::facts::Stated;
 use crate::input;
+use crate::output::count;
 use crate::surfaces::Surfaces;
 use serde::Serialize;
+use sightlines::cells::{MovingObject, Scene};
 use sightlines::formats::scene::SceneReadOptions;
+use sightlines::geometry::Aabb;
 use std::fmt;
 use std::path::Path;
 
@@ -25,6 +28,37 @@ pub(super) struct SceneInfo {
     n_degenerate_triangles: usize,
     min: [f64; 3],
     max: [f64; 3],
+    /// What moves, for the moving objects of the run time.
+    movers: Vec<Mover>,
+    view_volumes: Vec<Volume>,
+}
+
+/// An object that moves.
+#[derive(Debug, Serialize)]
+struct Mover {
+    object: u32,
+    name: String,
+    /// The box that it never leaves; none if it may be anywhere.
+    min: Option<[f64; 3]>,
+    max: Option<[f64; 3]>,
+}
+
+/// A box where viewers can be.
+#[derive(Debug, Serialize)]
+struct Volume {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+/// What moves in a scene, in the order of the objects.
+fn movers(scene: &Scene) -> Vec<Mover> {
+    let mover = |moving: &MovingObject| Mover {
+        object: moving.object,
+        name: scene.objects()[moving.object as usize].name.clone(),
+        min: moving.within.map(|within| within.min),
+        max: moving.within.map(|within| within.max),
+    };
+    scene.moving().iter().map(mover).collect()
 }
 
 impl SceneInfo {
@@ -42,6 +76,8 @@ impl SceneInfo {
             n_degenerate_triangles: file.info.n_degenerate_triangles,
             min: bounds.min,
             max: bounds.max,
+            movers: movers(&file.scene),
+            view_volumes: file.info.view_volumes.iter().map(|&Aabb { min, max }| Volume { min, max }).collect(),
         })
     }
 }
@@ -60,6 +96,18 @@ impl fmt::Display for SceneInfo {
         };
         writeln!(f, "triangles      {}{degenerate}", self.n_triangles)?;
         write!(f, "{}", self.surfaces)?;
+        if !self.movers.is_empty() {
+            let n_bounded = self.movers.iter().filter(|mover| mover.min.is_some()).count();
+            let anywhere = match self.movers.len() - n_bounded {
+                0 => String::new(),
+                n => format!(", {n} anywhere"),
+            };
+            writeln!(
+                f,
+                "moving         {}: {n_bounded} within a box{anywhere}",
+                count(self.movers.len() as u64, "object")
+            )?;
+        }
         let ([x0, y0, z0], [x1, y1, z1]) = (self.min, self.max);
         writeln!(f, "extent         ({x0}, {y0}, {z0}) to ({x1}, {y1}, {z1})")?;
         let size: [f64; 3] = std::array::from_fn(|k| self.max[k] - self.min[k]);

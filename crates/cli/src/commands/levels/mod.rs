@@ -8,7 +8,7 @@ use crate::folder::NewFolder;
 use crate::input;
 use crate::output;
 use crate::progress::Bar;
-use crate::simplification::{self, HowArgs, ReadScene, SimplificationError, read, written};
+use crate::simplification::{self, HowArgs, ReadScene, SimplificationError, is_occluder, read, written};
 use outcome::Outcome;
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
 use sightlines::multifocal::FromRegion;
@@ -74,6 +74,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.info()))?;
     let along = simplification::along(&args.scene, &table, &file.scene)?;
     // A table with a frame is about the scene along its axes.
+    let is_framed = along.is_some();
     let (table, scene) = along.as_ref().map_or((&table, &file.scene), |(table, scene)| (table, scene));
     let (method, factory) = args.how.prepare(&args.scene, scene)?;
     let make = || -> Box<dyn FromRegion + Send> { factory.as_ref().expect("only called if there is one").instance() };
@@ -99,7 +100,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     };
     let mut n_bytes = 0;
     for (k, level) in made.levels.iter().enumerate() {
-        let bytes = written(&args.scene, &file.scene, source.as_ref(), &level.simplified)?;
+        let bytes = written(&args.scene, &file.scene, source.as_ref(), &level.simplified, is_framed)?;
         let file = format!("level_{k}.glb");
         folder.save(&file, &bytes)?;
         n_bytes += bytes.len() as u64;
@@ -108,11 +109,11 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
             n_triangles: level.simplified.counts.left as u64,
             n_bytes: level.n_bytes,
             bound: level.simplified.bound,
-            occluder: level.simplified.is_part_of_the_original(),
+            occluder: is_occluder(&level.simplified, is_framed),
         });
     }
     folder.save(INDEX_NAME, write_levels_index(&index).as_bytes())?;
-    let outcome = Outcome::new(args, method, &index, n_bytes, start.elapsed());
+    let outcome = Outcome::new(args, method, &index, n_bytes, start.elapsed()).with_sides_of(scene);
     folder.finish()?;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)

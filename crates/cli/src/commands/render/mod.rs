@@ -35,7 +35,9 @@ const MOST_PIXELS: u64 = 1 << 27;
                   that the ray through its centre meets first, and of faces at equal depth the first one in the scene. \
                   With --compare the sheet has one numbered picture for each method, as in the printed table: faces \
                   are darkened, and pixels that differ from the ray caster (run with back-face culling at most) are \
-                  magenta, except where its ray meets both faces at equal depth."
+                  magenta, except where its ray meets both faces at equal depth. Faces are drawn from both sides; a table takes \
+                  the backs of single-sided ones to be unseen, so for an eye that sees one, --cull pvs may change the picture \
+                  where an engine would draw nothing: compare with --cull backface,pvs, or build the table with --both-sides."
 )]
 pub(crate) struct RenderArgs {
     /// The scene: GLB, glTF or OBJ

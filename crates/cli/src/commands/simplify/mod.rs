@@ -22,9 +22,11 @@ use std::time::Instant;
 #[command(
     after_help = "Triangles that no eye in the boxes can see are always removed. The budget is a share of the sphere \
                   of directions: for every eye in the boxes, at most that share of the view shows another face than \
-                  before. This bound is proven. Materials, textures, names and everything else in a glTF are kept; \
+                  before. This bound is proven, of eyes that see the back of no single-sided face: such faces hide from \
+                  both sides, and a table takes their backs to be unseen. Materials, textures, names and everything else in a glTF are kept; \
                   textures in separate files are embedded. A result with moved triangles is marked, and is refused \
-                  wherever a scene is used as an occluder."
+                  wherever a scene is used as an occluder. With a table that has a frame, the bound is of the scene \
+                  along the frame, and a result with merged triangles is marked too."
 )]
 pub(crate) struct SimplifyArgs {
     /// The scene: GLB or glTF; from an OBJ only triangles and names are kept
@@ -75,7 +77,7 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     let simplified = simplify(scene, &views, &by, &options).map_err(failed)?;
     drop(bar);
     let time = start.elapsed();
-    let bytes = written(&args.scene, &file.scene, source.as_ref(), &simplified)?;
+    let bytes = written(&args.scene, &file.scene, source.as_ref(), &simplified, along.is_some())?;
     let report = if args.report {
         let rays = MeasureOptions { threads: args.how.threads, ..MeasureOptions::default() };
         let measured = measure(scene, &simplified, &views, &rays).map_err(failed)?;
@@ -83,7 +85,9 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     } else {
         None
     };
-    let outcome = Outcome::new(args, method, &simplified, views.parts().len(), bytes.len(), report, time);
+    let outcome =
+        Outcome::new(args, method, (&simplified, along.is_some()), views.parts().len(), bytes.len(), report, time)
+            .with_sides_of(scene);
     output::save(&args.output, &bytes)?;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)

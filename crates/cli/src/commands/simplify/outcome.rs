@@ -2,6 +2,7 @@
 
 use super::SimplifyArgs;
 use crate::output::{bytes, count, percent, seconds};
+use crate::simplification::{is_occluder, of_fronts};
 use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::geometry::Point3;
@@ -33,8 +34,11 @@ pub(super) struct Outcome {
     n_merged_away: usize,
     n_merged: usize,
     n_left: usize,
-    /// The share of the sphere of directions that changes at most, for every eye.
+    /// The share of the sphere of directions that changes at most, for every eye; if the scene has single-sided faces, for every eye that
+    /// sees the back of none.
     bound: f64,
+    /// Whether the scene has single-sided faces.
+    single_sided: bool,
     /// How far surfaces were moved at most, in scene units.
     deviation: f64,
     /// Whether the result may be used to hide.
@@ -98,7 +102,7 @@ impl Outcome {
     pub(super) fn new(
         args: &SimplifyArgs,
         method: &'static str,
-        simplified: &Simplified,
+        (simplified, is_framed): (&Simplified, bool),
         n_volumes: usize,
         n_bytes: usize,
         report: Option<Report>,
@@ -123,11 +127,19 @@ impl Outcome {
             n_merged: counts.merged,
             n_left: counts.left,
             bound: simplified.bound,
+            single_sided: false,
             deviation: simplified.deviation,
-            occluder: simplified.is_part_of_the_original(),
+            occluder: is_occluder(simplified, is_framed),
             report,
             seconds: time.as_secs_f64(),
         }
+    }
+}
+
+impl Outcome {
+    /// The same, with a note whether a scene has faces of which engines draw the fronts only: the table takes their backs to be unseen.
+    pub(super) fn with_sides_of(self, scene: &Scene) -> Self {
+        Self { single_sided: !scene.single_sided().is_empty(), ..self }
     }
 }
 
@@ -152,8 +164,9 @@ impl fmt::Display for Outcome {
         writeln!(f, "left           {}, {}", self.n_left, share(self.n_left))?;
         writeln!(
             f,
-            "promised       {} of the view changes at most, for every eye; {} were allowed",
+            "promised       {} of the view changes at most, for every eye{}; {} were allowed",
             parts(self.bound),
+            of_fronts(self.single_sided),
             parts(self.budget)
         )?;
         if let Some(report) = &self.report {

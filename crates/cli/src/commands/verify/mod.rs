@@ -93,9 +93,6 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
         input::refuse_without_places(table, &args.table, "no ray can be drawn")?;
     }
     let failed = |source| Error::Verify { table: args.table.clone(), scene: args.scene.clone(), source };
-    let frame = table.frame().copied();
-    let (along, scene) = scene.along(table).map_err(failed)?;
-    let table = along.as_ref().unwrap_or(table);
     let VerifyArgs { rays, pairs, tries, seed, threads, .. } = *args;
     let start = Instant::now();
     let bar = Bar::new("rays", show_progress);
@@ -104,6 +101,10 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     drop(bar);
     let findings = findings.map_err(failed)?;
     let time = start.elapsed();
+    // Places in the findings, and proofs, are along the frame.
+    let frame = table.frame().copied();
+    let along = scene.along(table).map_err(failed)?;
+    let (table, scene) = along.as_ref().map_or((table, &scene), |(table, scene)| (table, scene));
     // All that may be refused comes before a file is written.
     let proofs = match own {
         Some(_) => None,
@@ -117,7 +118,7 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     let about = own.as_ref().map(|own| own::About::from(&own.about));
     let files = [args.table.as_path(), &args.scene];
     let outcome = Outcome::new(files, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
-    let outcome = outcome.in_frame(frame.as_ref());
+    let outcome = outcome.in_frame(frame.as_ref(), frame.map_or(0.0, |frame| scene.times_single(frame.gap())));
     let is_true = outcome.is_true();
     output::print(args.json, &With { outcome, proofs })?;
     Ok(if is_true { Answer::Yes } else { Answer::No })

@@ -40,6 +40,15 @@ pub(super) struct Outcome {
     n_portals_in_walls: u64,
     n_listed_apart: u64,
     n_cells_without_places: u64,
+    /// With a frame: hidden pairs that only openings narrower than the gap join.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    n_cracks: Option<u64>,
+    /// With a frame: triangles that are thinner than the gap.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    n_flattened: Option<u64>,
+    /// Whether the gap is much wider than single precision explains.
+    #[serde(skip)]
+    wide_gap: Option<f64>,
     n_violations: usize,
     /// Whether there were so many that no more rays were shot.
     has_more_violations: bool,
@@ -102,7 +111,7 @@ impl Outcome {
             aimed_rays: found.cells.aimed + found.objects.aimed > 0,
             proofs: proofs.is_some_and(|proofs| !proofs.is_stale),
         };
-        let Remarks { portals_in_walls, listed_apart, cells_without_places } = found.remarks;
+        let Remarks { portals_in_walls, listed_apart, cells_without_places, cracks, flattened } = found.remarks;
         Self {
             table: table.display().to_string(),
             scene: scene.display().to_string(),
@@ -120,6 +129,9 @@ impl Outcome {
             n_portals_in_walls: portals_in_walls,
             n_listed_apart: listed_apart,
             n_cells_without_places: cells_without_places,
+            n_cracks: Some(cracks),
+            n_flattened: Some(flattened),
+            wide_gap: None,
             n_violations: violations.n,
             has_more_violations: violations.has_more,
             n_violations_by_kind: violations.by_kind,
@@ -129,9 +141,13 @@ impl Outcome {
         }
     }
 
-    /// The same for a table with a frame.
-    pub(super) fn in_frame(self, frame: Option<&Frame>) -> Self {
-        Self { frame: frame.map(FrameFacts::from), ..self }
+    /// The same for a table with a frame, whose gap is so many times what single precision rounds.
+    pub(super) fn in_frame(self, frame: Option<&Frame>, times_single: f64) -> Self {
+        let wide_gap = (times_single > MUCH).then_some(times_single);
+        match frame {
+            Some(frame) => Self { frame: Some(frame.into()), wide_gap, ..self },
+            None => Self { n_cracks: None, n_flattened: None, ..self },
+        }
     }
 
     /// The same with a picture, if one was drawn.
@@ -150,6 +166,9 @@ impl Outcome {
         writeln!(f, "               {} of {} hidden pairs aimed at", p.n_aimed_at, p.n_hidden)
     }
 }
+
+/// From how many times the rounding of single precision on a gap is remarked.
+const MUCH: f64 = 16.0;
 
 /// Violations of each kind that people are shown.
 const SHOWN: usize = 5;
@@ -183,7 +202,19 @@ impl fmt::Display for Outcome {
             (self.n_portals_in_walls, "portal", "with a wall in it: more is shown there"),
             (self.n_listed_apart, "object", "listed in a cell that it does not touch"),
             (self.n_cells_without_places, "cell", "from which no ray was shot: too thin, or without a portal"),
+            (self.n_flattened.unwrap_or(0), "triangle", "thinner than the gap, which the table takes to be none"),
+            (
+                self.n_cracks.unwrap_or(0),
+                "hidden pair",
+                "joined by rays through openings narrower than the gap, or past things thinner than it",
+            ),
         ];
+        if let Some(times) = self.wide_gap {
+            writeln!(
+                f,
+                "remark         the gap is {times:.0} times the rounding of single precision: no ray tells of what is narrower"
+            )?;
+        }
         for (n, noun, what) in remarks.into_iter().filter(|(n, ..)| *n > 0) {
             writeln!(f, "remark         {} {what}", count(n, noun))?;
         }

@@ -71,15 +71,22 @@ impl Real {
         }
     }
 
-    /// The table without its frame, and the scene along its axes; the two as they are if the table has none.
-    pub(super) fn along(self, table: &Table) -> Result<(Option<Table>, Self), VerifyError> {
+    /// The table without its frame, and the scene along its axes; none if the table has none.
+    pub(super) fn along(&self, table: &Table) -> Result<Option<(Table, Self)>, VerifyError> {
         match self {
-            Self::Scene(scene) if table.dimension() == 3 => Ok(match along_frame(table, &scene)? {
-                Some((table, scene)) => (Some(table), Self::Scene(scene)),
-                None => (None, Self::Scene(scene)),
-            }),
-            other => Ok((None, other)),
+            Self::Scene(scene) if table.dimension() == 3 => {
+                Ok(along_frame(table, scene)?.map(|(table, scene)| (table, Self::Scene(scene))))
+            }
+            _ => Ok(None),
         }
+    }
+
+    /// How many times the rounding of single precision a gap is: 2^-20 of the longest side of a scene, as the default gap of `build`.
+    pub(super) fn times_single(&self, gap: f64) -> f64 {
+        let Self::Scene(scene) = self else { return 0.0 };
+        let b = scene.bounds();
+        let longest = (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
+        if longest > 0.0 { gap / longest * f64::from(1 << 20) } else { 0.0 }
     }
 
     pub(super) fn truth(&self) -> Truth<'_> {

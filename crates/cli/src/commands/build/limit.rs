@@ -1,0 +1,73 @@
+//! A limit of time, and what was not decided within it.
+
+use crate::output::seconds;
+use serde::Serialize;
+use sightlines::bake::{LimitReport, Report};
+use sightlines::progress::Budget;
+use std::fmt;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// The time since the start of the program, as a share of the limit.
+#[derive(Debug)]
+pub(super) struct Clock {
+    start: Instant,
+    limit: Option<Duration>,
+}
+
+impl Budget for Clock {
+    fn spent(&self) -> f64 {
+        self.limit.map_or(0.0, |limit| self.start.elapsed().as_secs_f64() / limit.as_secs_f64())
+    }
+}
+
+impl Clock {
+    pub(super) fn new(limit: Option<Duration>) -> Self {
+        Self { start: Instant::now(), limit }
+    }
+
+    /// None without a limit.
+    pub(super) fn budget(&self) -> Option<&dyn Budget> {
+        self.limit.map(|_| self as &dyn Budget)
+    }
+
+    /// Warns if something was not decided in time.
+    pub(super) fn warn(&self, path: &Path, report: &Report) {
+        let left = match report {
+            Report::Scene(report) => report.limit,
+            Report::Regions(report) => report.limit,
+            _ => None,
+        };
+        if let (Some(limit), Some(left)) = (self.limit, left) {
+            tracing::warn!("{}: the limit of {} was reached: {left}", path.display(), seconds(limit));
+        }
+    }
+}
+
+/// What was not decided in time.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Undecided {
+    n_cells_decided: usize,
+    n_cells_in_part: usize,
+    n_cells_undecided: usize,
+    /// Pairs of cells that count as visible for that reason, at most.
+    n_cell_pairs: u64,
+    /// The same of a cell and an object.
+    n_object_pairs: u64,
+    #[serde(skip)]
+    report: LimitReport,
+}
+
+impl From<LimitReport> for Undecided {
+    fn from(report: LimitReport) -> Self {
+        let LimitReport { n_cells_decided, n_cells_in_part, n_cells_undecided, n_cell_pairs, n_object_pairs, .. } =
+            report;
+        Self { n_cells_decided, n_cells_in_part, n_cells_undecided, n_cell_pairs, n_object_pairs, report }
+    }
+}
+
+impl fmt::Display for Undecided {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "time limit     {}", self.report)
+    }
+}
