@@ -54,8 +54,7 @@ fn by_method(scene: &Scene, method: OcclusionMethod, cells: &CellsFrom, sightlin
         cut: cut(),
         portals: Default::default(),
         threads: 2,
-        file: None,
-        progress: None,
+        ..RegionBakeOptions::new(cells)
     };
     bake_regions(scene, &options).unwrap().table
 }

@@ -79,6 +79,10 @@ impl CellSource for Garbage {
         None
     }
 
+    fn leaves_gaps(&self) -> bool {
+        false
+    }
+
     fn n_cells(&self) -> usize {
         self.cells.len()
     }
