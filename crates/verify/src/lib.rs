@@ -28,15 +28,19 @@ mod sight;
 mod structure;
 mod truth;
 mod walls;
+mod witness;
 
 pub use findings::{Confirmed, Findings, Remarks, Violation};
 pub use framed::along_frame;
 pub use options::VerifyOptions;
 pub use own::{LumpKind, OwnError, OwnSummary, OwnViolation, OwnVisibility};
-pub use proofs::{ProofError, ProofFindings, ProofViolation, boxes_of, check_proofs, convex_of, plan_of};
+pub use proofs::{
+    ProofError, ProofFindings, ProofViolation, boxes_of, can_be_proven, check_proofs, convex_of, plan_of,
+};
 pub use sight::{Sight, Target};
 pub use truth::{Truth, VerifyError, WorldChild, WorldFace, WorldNode, WorldTree};
 pub use walls::{WallFindings, check_walls_in_space, check_walls_of_plan};
+pub use witness::sight_between;
 
 use sightlines_pvs::Table;
 

@@ -7,7 +7,7 @@ use sightlines_certificates::convex::{ConvexNetwork, ConvexNetworkError, ConvexP
 use sightlines_certificates::plan::{NetworkError, PlanNetwork, PlanPortal, PlanProofs};
 use sightlines_certificates::space::{BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs};
 use sightlines_certificates::{Kind, Proven, ReadError, Refusal, kind_of};
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, SceneMethods, Table, TableKind};
 use std::fmt;
 
 /// Why proofs cannot be compared with a table.
@@ -82,6 +82,9 @@ pub struct ProofFindings {
     pub n_unproven_hidden: u64,
     /// The first of those, [`ProofFindings::MOST_LISTED`] at most.
     pub unproven_hidden: Vec<[CellId; 2]>,
+    /// Of the pairs that are hidden without a proof: those that a line through portals joins. Only of tables that a from-region method took part
+    /// in: it hides by walls that are no borders of cells, of which proofs do not speak. In other tables such a pair is a violation.
+    pub n_hidden_past_portals: u64,
     /// Number of violations.
     pub n_violations: u64,
     /// The first of them, [`ProofFindings::MOST_LISTED`] at most.
@@ -104,20 +107,34 @@ impl ProofFindings {
         }
     }
 
+    /// Everything that a table states, as far as nothing of it is proven. For tables that cannot have proofs: their counts of what rests on methods
+    /// and rays alone. O(cells²).
+    pub fn without_proofs(table: &Table) -> Self {
+        Self::of(table, |_, _| [false; 2])
+    }
+
     fn compared(table: &Table, proven: &Proven) -> Self {
+        Self::of(table, |a, b| [proven.visible.has(a, b), proven.hidden.has(a, b)])
+    }
+
+    /// Compares with what is proven visible and hidden of each pair.
+    fn of(table: &Table, proven: impl Fn(u32, u32) -> [bool; 2]) -> Self {
         let mut findings = Self::default();
+        let by_regions = has_from_region(table.kind());
         let n = table.n_cells() as u32;
         for a in 0..n {
             for b in a + 1..n {
                 let pair = [CellId(a), CellId(b)];
-                match (table.sees(pair[0], pair[1]), proven.visible.has(a, b), proven.hidden.has(a, b)) {
+                let [joined, apart] = proven(a, b);
+                match (table.sees(pair[0], pair[1]), joined, apart) {
                     (true, true, false) => findings.n_visible += 1,
                     (false, false, true) => findings.n_hidden += 1,
                     (true, _, true) => findings.add(ProofViolation::Apart(pair)),
-                    (false, true, _) => findings.add(ProofViolation::Joined(pair)),
+                    (false, true, _) if !by_regions => findings.add(ProofViolation::Joined(pair)),
                     (true, false, false) => findings.n_unproven_visible += 1,
-                    (false, false, false) => {
+                    (false, ..) => {
                         findings.n_unproven_hidden += 1;
+                        findings.n_hidden_past_portals += u64::from(joined);
                         if findings.unproven_hidden.len() < Self::MOST_LISTED {
                             findings.unproven_hidden.push(pair);
                         }
@@ -127,6 +144,23 @@ impl ProofFindings {
         }
         findings
     }
+}
+
+/// Whether a from-region method took part in a table, whose reasons are no walls between cells.
+const fn has_from_region(kind: TableKind) -> bool {
+    match kind {
+        TableKind::SceneKdTree { hidden_by } | TableKind::SceneGivenCells { hidden_by } => {
+            let SceneMethods { from_region, .. } = hidden_by;
+            from_region
+        }
+        _ => false,
+    }
+}
+
+/// Whether proofs can speak of a table: not if its cells are boxes that were given or cut without portals, between which anything may
+/// stand, and which may overlap. [`ProofFindings::without_proofs`] counts what such a table states.
+pub fn can_be_proven(table: &Table) -> bool {
+    !matches!(table.kind(), TableKind::SceneGivenCells { .. })
 }
 
 /// Checks all proofs, and compares what they prove with a table. Exact.
@@ -183,7 +217,8 @@ pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
     if table.kind().is_quake() {
         return Err(ProofError::Kind { proofs: "a scene in space", table: "of a Quake map" });
     }
-    if is_stripped(table) {
+    // Without portals nothing says that a gap between given boxes is a wall.
+    if is_stripped(table) || !can_be_proven(table) {
         return Err(ProofError::NoGraph);
     }
     let cells: Vec<[[f64; 3]; 2]> = table.cells().iter().map(|cell| [cell.min, cell.max]).collect();

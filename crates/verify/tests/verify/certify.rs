@@ -9,13 +9,14 @@ use sightlines_certificates::convex::ConvexProofs;
 use sightlines_formats::quake::Prt;
 use sightlines_formats::quake::prt::parse_prt;
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, Table, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, SceneMethods, Table, TableKind, TableParts};
 use sightlines_scenes::world::{BspWorldOptions, QuakeLikeOptions, World, bsp_world, corridor, quake_like};
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines_stabtree::CertifyOptions;
 use sightlines_testkit::{draw, small_grid_plan};
 use sightlines_verify::{
-    ProofError, ProofFindings, ProofViolation, check_proofs, check_walls_in_space, check_walls_of_plan, convex_of,
+    ProofError, ProofFindings, ProofViolation, can_be_proven, check_proofs, check_walls_in_space, check_walls_of_plan,
+    convex_of,
 };
 
 fn proofs_of(table: &Table) -> Vec<u8> {
@@ -168,6 +169,61 @@ fn what_is_not_proven_is_counted() {
         let found = check_proofs(&table, &bytes).unwrap();
         assert!(found.is_true(false) && !found.is_true(true), "{found:?}");
         assert!(found.n_unproven_hidden > 0 && found.n_violations == 0 && !found.unproven_hidden.is_empty());
+    }
+}
+
+/// The same table, as if a from-region method had taken part, of the kind of cells that is asked for.
+fn by_regions(table: &Table, kind: fn(SceneMethods) -> TableKind) -> Table {
+    let hidden_by = SceneMethods { sightlines: true, from_region: true, only_in_air: false };
+    Table::new(TableParts { kind: kind(hidden_by), ..table.parts().clone() }).expect("a table of a scene in space")
+}
+
+/// What a from-region method hides past portals is no contradiction: it is counted, and only strict mode refuses it. What is shown though it is
+/// proven hidden is one all the same.
+#[test]
+fn what_regions_hide_is_proven_or_counted() {
+    let table = by_regions(&storey(), |hidden_by| TableKind::SceneKdTree { hidden_by });
+    let bytes = proofs_of(&table);
+    let whole = check_proofs(&table, &bytes).expect("proofs of the table");
+    assert!(whole.is_true(true) && whole.n_hidden > 20 && whole.n_hidden_past_portals == 0, "{whole:?}");
+    let n = table.n_cells() as u32;
+    let (mut n_counted, mut n_caught) = (0, 0);
+    for (a, b) in (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b))) {
+        let pair = [CellId(a), CellId(b)];
+        let found = check_proofs(&flipped(&table, a, b), &bytes).expect("proofs of a table with these cells");
+        if table.sees(pair[0], pair[1]) {
+            assert!(found.is_true(false) && !found.is_true(true), "{found:?}");
+            assert_eq!((found.n_unproven_hidden, found.n_hidden_past_portals), (1, 1));
+            assert_eq!((&found.unproven_hidden[..], found.n_hidden), (&[pair][..], whole.n_hidden));
+            n_counted += 1;
+        } else {
+            assert_eq!(found.violations, [ProofViolation::Apart(pair)]);
+            n_caught += 1;
+        }
+    }
+    assert!(n_counted > 20 && n_caught > 20, "{n_counted} {n_caught}");
+}
+
+/// Nothing is known of what is between given boxes, so no proof about portals is one about them, and all is counted.
+#[test]
+fn nothing_is_proven_of_given_boxes() {
+    let storey = storey();
+    assert!(can_be_proven(&storey));
+    let mut parts = storey.parts().clone();
+    parts.portals.clear();
+    // Even where nothing is seen, so that no portal is missed.
+    let dark = TableParts { rows: BitMatrix::identity(storey.n_cells()), ..parts.clone() };
+    let (n, proofs) = (storey.n_cells() as u64, proofs_of(&storey));
+    for (parts, n_seen) in [(parts, None), (dark, Some(0))] {
+        let table =
+            by_regions(&Table::new(parts).expect("a table"), |hidden_by| TableKind::SceneGivenCells { hidden_by });
+        assert!(!can_be_proven(&table));
+        assert_eq!(check_proofs(&table, &proofs).unwrap_err(), ProofError::NoGraph);
+        let found = ProofFindings::without_proofs(&table);
+        assert_eq!(found.n_unproven_visible + found.n_unproven_hidden, n * (n - 1) / 2);
+        assert_eq!((found.n_visible, found.n_hidden, found.n_violations), (0, 0, 0));
+        assert!(n_seen.is_none_or(|n_seen| found.n_unproven_visible == n_seen));
+        assert!(found.is_true(false) && !found.is_true(true));
     }
 }
 
