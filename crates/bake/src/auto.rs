@@ -11,6 +11,7 @@ use sightlines_geometry::vector::{length, normal};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_multifocal::mesh::Mesh;
 use sightlines_multifocal::{Layout, RaySampler};
+use sightlines_progress::{Observer, Progress};
 use std::fmt;
 
 /// Properties of what hides in a scene in space. Shares are of the area of all its triangles, unless stated otherwise.
@@ -80,14 +81,27 @@ fn area(t: &[Point3; 3]) -> f64 {
     length(normal(*t)) / 2.0
 }
 
+/// Triangles between two reports.
+const STEP: usize = 1 << 12;
+
+/// Tells an observer how far a measurement is; it cannot cancel.
+fn tell(progress: Option<&dyn Observer>, phase: &'static str, done: usize, total: usize) {
+    if let Some(observer) = progress {
+        let _ = observer.report(Progress::new(phase, done as u64, total as u64));
+    }
+}
+
 /// The share of the area in connected surfaces that lie in one plane.
-fn loose_share(triangles: &[[Point3; 3]]) -> f64 {
+fn loose_share(triangles: &[[Point3; 3]], progress: Option<&dyn Observer>) -> f64 {
     let total: f64 = triangles.iter().map(area).sum();
     let mesh = Mesh::weld(triangles);
     let n = mesh.triangles().len();
     let mut loose = 0.0;
     let mut done = vec![false; n];
     for first in 0..n as u32 {
+        if (first as usize).is_multiple_of(STEP) {
+            tell(progress, "loose surfaces", first as usize, n);
+        }
         let (mut stack, mut flat, mut here) = (vec![first], true, 0.0);
         let plane = mesh.corners(first);
         while let Some(t) = stack.pop() {
@@ -155,12 +169,20 @@ enum Missing {
 
 /// Measures a scene as far as that matters, and chooses. The same scene gives the same choice. O(n log n) of triangles.
 pub fn choose(scene: &Scene) -> (SceneFacts, SceneChoice) {
+    choose_observed(scene, None)
+}
+
+/// The same; an observer is told of each measurement, and cannot cancel.
+fn choose_observed(scene: &Scene, progress: Option<&dyn Observer>) -> (SceneFacts, SceneChoice) {
     let mut facts = SceneFacts::quick(scene);
     loop {
         match SceneChoice::of(&facts) {
             Ok(choice) => return (facts, choice),
-            Err(Missing::Loose) => facts.loose = Some(loose_share(&triangles_of(scene))),
-            Err(Missing::Openness) => facts.openness = Some(openness(scene)),
+            Err(Missing::Loose) => facts.loose = Some(loose_share(&triangles_of(scene), progress)),
+            Err(Missing::Openness) => {
+                tell(progress, "openness", 0, 1);
+                facts.openness = Some(openness(scene));
+            }
         }
     }
 }
@@ -251,7 +273,8 @@ pub struct Choice {
 /// Cells that are given are few, and worth more work: line space takes the place of sheets for them.
 ///
 /// Only [`BakeOptions::method`], [`BakeOptions::buffers`] and, in place of a k-d tree, [`BakeOptions::cells`] differ from the
-/// options given. Plans, portal files and Quake maps always take sightlines.
+/// options given. Plans, portal files and Quake maps always take sightlines. [`BakeOptions::progress`] receives a report of each measurement, and
+/// cannot cancel.
 pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choice, BakeOptions<'a>) {
     let plain = |reason: &str| {
         let choice = Choice { method: "sightlines".to_owned(), reasons: vec![reason.to_owned()], facts: None };
@@ -259,7 +282,7 @@ pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choi
     };
     match input {
         BakeInput::Scene(scene, _) => {
-            let (facts, mut choice) = choose(scene);
+            let (facts, mut choice) = choose_observed(scene, options.progress);
             let mut chosen = options.clone();
             let are_given = matches!(options.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_));
             if choice.sheets && are_given {
@@ -305,7 +328,7 @@ mod tests {
 
     fn facts(objects: Vec<SceneObject>) -> (SceneFacts, f64, f64) {
         let scene = Scene::new(objects).expect("a scene");
-        (SceneFacts::quick(&scene), loose_share(&triangles_of(&scene)), openness(&scene))
+        (SceneFacts::quick(&scene), loose_share(&triangles_of(&scene), None), openness(&scene))
     }
 
     #[test]

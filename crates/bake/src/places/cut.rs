@@ -5,6 +5,7 @@ use super::{PlaceSummary, Places};
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{Matter, SceneOptions};
+use sightlines_progress::{Cancelled, Observer, Progress};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -19,6 +20,7 @@ pub(super) struct Cutter<'a> {
     /// None if the insides of solid things stay.
     matter: Option<Matter>,
     goal: Goal,
+    progress: Option<&'a dyn Observer>,
 }
 
 /// How far to cut.
@@ -36,8 +38,13 @@ pub(super) struct Goal {
     pub(super) max_cells: u32,
 }
 
-/// More cells than the limit.
-pub(super) struct TooMany;
+/// Why cutting ends without places.
+pub(super) enum Stop {
+    /// More cells than the limit.
+    TooMany,
+    /// The observer cancelled.
+    Cancelled(Cancelled),
+}
 
 /// A box that may be cut.
 struct Leaf {
@@ -82,6 +89,11 @@ impl PartialEq for Leaf {
 
 impl Eq for Leaf {}
 
+fn report(progress: Option<&dyn Observer>, now: Progress) -> Result<(), Cancelled> {
+    let is_cancelled = progress.is_some_and(|observer| observer.report(now).is_break());
+    if is_cancelled { Err(Cancelled) } else { Ok(()) }
+}
+
 fn longest_side(b: &Aabb<3>) -> (usize, f64) {
     let side = |k: usize| b.max[k] - b.min[k];
     let axis = (1..3).fold(0, |best, k| if side(k) > side(best) { k } else { best });
@@ -89,13 +101,20 @@ fn longest_side(b: &Aabb<3>) -> (usize, f64) {
 }
 
 impl<'a> Cutter<'a> {
-    pub(super) fn new(scene: &'a Scene, options: &SceneOptions, goal: Goal) -> Self {
+    /// Finds what is solid, which takes a while for large scenes.
+    pub(super) fn new(
+        scene: &'a Scene,
+        options: &SceneOptions,
+        goal: Goal,
+        progress: Option<&'a dyn Observer>,
+    ) -> Result<Self, Cancelled> {
+        report(progress, Progress::new("solid matter", 0, 1))?;
         let matter = (!options.keep_solid).then(|| Matter::of(scene));
-        Self { scene, matter, goal }
+        Ok(Self { scene, matter, goal, progress })
     }
 
     /// Cuts `region` into places.
-    pub(super) fn run(&self, region: Aabb<3>) -> Result<Places, TooMany> {
+    pub(super) fn run(&self, region: Aabb<3>) -> Result<Places, Stop> {
         let views = Views::of(self.scene, &region);
         let thinnest = longest_side(&region).1 * THINNEST;
         let mut summary = PlaceSummary::default();
@@ -104,7 +123,10 @@ impl<'a> Cutter<'a> {
         let mut queue = BinaryHeap::from([self.leaf(&views, whole, 0, &mut nodes)]);
         let mut n_done = 0;
         while let Some(leaf) = queue.pop() {
-            let is_enough = n_done + queue.len() + 1 >= self.goal.n_cells;
+            let n_cells = n_done + queue.len() + 1;
+            let total = self.goal.n_cells.max(n_cells) as u64;
+            report(self.progress, Progress::new("places", n_cells as u64, total)).map_err(Stop::Cancelled)?;
+            let is_enough = n_cells >= self.goal.n_cells;
             let full = is_enough && !(self.goal.is_bound && leaf.too_long > 0.0);
             let Some(cut) = leaf.cut.filter(|_| !full) else {
                 n_done += 1;
@@ -132,13 +154,13 @@ impl<'a> Cutter<'a> {
                 }
             }
             if n_done + queue.len() > self.goal.max_cells as usize {
-                return Err(TooMany);
+                return Err(Stop::TooMany);
             }
         }
         let cells = in_order(&nodes);
         // Where nothing is a place, all is one.
         if cells.is_empty() && self.matter.is_some() {
-            return Self { scene: self.scene, matter: None, goal: self.goal }.run(region);
+            return Self { matter: None, ..*self }.run(region);
         }
         summary.n_cells = cells.len();
         summary.cell_size = cells.iter().map(|cell| longest_side(cell).1).fold(0.0, f64::max);

@@ -9,10 +9,11 @@
 mod cut;
 mod views;
 
-use cut::{Cutter, Goal};
+use cut::{Cutter, Goal, Stop};
 use sightlines_cells::Scene;
 use sightlines_geometry::{Aabb, check_coordinate};
 use sightlines_kdtree::{KdError, SceneOptions};
+use sightlines_progress::{Cancelled, Observer};
 
 /// How many places to cut.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -65,6 +66,9 @@ pub enum PlacesError {
     /// No cells.
     #[error("0 cells were asked for; there has to be one")]
     NoCells,
+    /// The observer cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// What was cut.
@@ -106,6 +110,19 @@ pub struct Places {
 /// # Errors
 /// [`PlacesError`]; what is likely to be many more cells than the limit is refused before any work.
 pub fn places(scene: &Scene, cut: &SceneOptions, options: &PlaceOptions) -> Result<Places, PlacesError> {
+    observed_places(scene, cut, options, None)
+}
+
+/// The same places; tells an observer of each cut, in the phase `places`. Its total is the number of cells to make, as far as that is known.
+///
+/// # Errors
+/// As [`places`]; [`PlacesError::Cancelled`] if the observer cancels.
+pub fn observed_places(
+    scene: &Scene,
+    cut: &SceneOptions,
+    options: &PlaceOptions,
+    progress: Option<&dyn Observer>,
+) -> Result<Places, PlacesError> {
     if let Some(size) = options.cell_size.filter(|s| s.is_nan() || *s <= 0.0) {
         return Err(PlacesError::CellSize(size));
     }
@@ -123,7 +140,10 @@ pub fn places(scene: &Scene, cut: &SceneOptions, options: &PlaceOptions) -> Resu
     let cell_size = options.cell_size.unwrap_or_else(|| default_size(&region, n_cells));
     let (is_bound, all) = (options.cell_size.is_some(), options.n_cells.is_some());
     let goal = Goal { n_cells: n_cells as usize, all, cell_size, is_bound, max_cells: limit };
-    Cutter::new(scene, cut, goal).run(region).map_err(|_| PlacesError::TooSmall { cell_size, limit })
+    Cutter::new(scene, cut, goal, progress)?.run(region).map_err(|stop| match stop {
+        Stop::TooMany => PlacesError::TooSmall { cell_size, limit },
+        Stop::Cancelled(cancelled) => cancelled.into(),
+    })
 }
 
 /// Solid matter may take most of a region, but a bound that needs so many times the limit of cells is refused before any work.

@@ -18,7 +18,7 @@ use crate::error::BakeError;
 use crate::graph::TableGraph;
 use crate::limit::{LimitReport, state_limit};
 use crate::objects::object_lists;
-use crate::places::{PlaceOptions, places};
+use crate::places::{PlaceOptions, PlacesError, observed_places};
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
 use crate::table::{object_record, state_file};
@@ -139,7 +139,10 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
             parts::of_boxes(&grid(&around, *n)?.cells, boxes.len())
         }
         CellsFrom::Places(how) => {
-            let cut = places(scene, &options.cut, how)?;
+            let cut = observed_places(scene, &options.cut, how, options.progress).map_err(|error| match error {
+                PlacesError::Cancelled(cancelled) => cancelled.into(),
+                error => BakeError::from(error),
+            })?;
             summary = Some(cut.summary);
             parts::of_places(cut.cells, boxes.len())
         }

@@ -1,14 +1,19 @@
 //! Places: they tile what is not solid, and what viewers in them see is in the table.
 
 use proptest::prelude::*;
-use sightlines_bake::places::{PlaceOptions, Places, places};
-use sightlines_bake::{BakeOptions, CellsFrom, Report, SceneMethod, TableGraph, bake};
+use sightlines_bake::auto::choose_for;
+use sightlines_bake::places::{PlaceOptions, Places, PlacesError, observed_places, places};
+use sightlines_bake::{BakeError, BakeOptions, CellsFrom, Report, SceneMethod, TableGraph, bake};
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_kdtree::{Matter, SceneOptions};
 use sightlines_multifocal::RaySampler;
+use sightlines_progress::{Cancelled, Progress};
 use sightlines_pvs::BitMatrix;
 use sightlines_scenes::{CityOptions, TowerOptions, city, tower};
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 const QUADS: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
@@ -288,4 +293,57 @@ fn sizes_and_numbers_are_kept() {
     let within = SceneOptions { view_region: Some(region), keep_solid: true, ..SceneOptions::default() };
     let places = places(&city, &within, &PlaceOptions::default()).expect("places");
     assert_eq!(Aabb::around(places.cells.iter().flat_map(|b| [b.min, b.max])), region);
+}
+
+/// Long cuts tell how far they are, and can be cancelled; who looks on changes nothing.
+#[test]
+fn cutting_is_observed() {
+    let city = city(CityOptions::default()).expect("a city");
+    let how = PlaceOptions { n_cells: Some(40), cell_size: None };
+    let seen = Mutex::new(Vec::new());
+    let stop_at = AtomicU64::new(u64::MAX);
+    let observer = |progress: Progress| {
+        seen.lock().expect("no panic").push(progress);
+        let is_over = progress.phase == "places" && progress.done >= stop_at.load(Relaxed);
+        if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let cut = || observed_places(&city, &SceneOptions::default(), &how, Some(&observer));
+    assert_eq!(cut(), places(&city, &SceneOptions::default(), &how), "nobody changes what they see");
+    let reports = std::mem::take(&mut *seen.lock().expect("no panic"));
+    assert_eq!(reports[0].phase, "solid matter");
+    let shares: Vec<f64> = reports.iter().filter(|p| p.phase == "places").map(|p| p.share).collect();
+    assert!(shares.len() >= 40 && shares[0] < 0.1 && shares.last() == Some(&1.0), "{shares:?}");
+    assert!(reports.iter().all(|p| p.done <= p.total && (0.0..=1.0).contains(&p.share)));
+    stop_at.store(7, Relaxed);
+    assert_eq!(cut(), Err(PlacesError::Cancelled(Cancelled)));
+    assert!(seen.lock().expect("no panic").iter().all(|p| p.done <= 7), "not a cut more");
+    // The bake ends as it does when any other stage is cancelled.
+    let options = BakeOptions {
+        cells: CellsFrom::Places(how),
+        method: SceneMethod::Auto,
+        progress: Some(&observer),
+        ..BakeOptions::default()
+    };
+    assert_eq!(bake(&city, &options).map(|_| ()), Err(BakeError::Cancelled(Cancelled)));
+}
+
+/// A choice by measurements that take long tells which is being made.
+#[test]
+fn choices_are_observed() {
+    let seen = Mutex::new(Vec::new());
+    let observer = |progress: Progress| {
+        seen.lock().expect("no panic").push(progress.phase);
+        ControlFlow::Break(())
+    };
+    // Screens that stand alone in the open: all is measured.
+    let screen = |x: f64| SceneObject {
+        name: String::new(),
+        vertices: vec![[x, 0.0, 0.0], [x + 1.0, 2.0, 0.0], [x, 0.0, 3.0], [x + 1.0, 2.0, 3.0]],
+        triangles: vec![[0, 1, 2], [1, 3, 2]],
+    };
+    let screens = scene((0..4).map(|i| screen(f64::from(i))).collect());
+    let options = BakeOptions { progress: Some(&observer), ..BakeOptions::default() };
+    let (choice, _) = choose_for(&(&screens).into(), &options);
+    assert_eq!(choice, choose_for(&(&screens).into(), &BakeOptions::default()).0, "it cannot be cancelled");
+    assert_eq!(*seen.lock().expect("no panic"), ["loose surfaces", "openness"]);
 }
