@@ -67,7 +67,28 @@ impl Clusters {
         Pairs(&self.undecided)
     }
 
+    /// How many there are, with their portals.
+    pub(crate) fn brief(&self) -> String {
+        let (clusters, portals) = (self.n_clusters as u64, self.n_portals as u64);
+        format!("{}, {}", count(clusters, "cluster"), count(portals, "portal"))
+    }
+
+    /// How many pairs see each other.
+    pub(crate) fn brief_pairs(&self) -> String {
+        let undecided = match self.undecided.len() {
+            0 => String::new(),
+            n => format!(", {n} of them undecided"),
+        };
+        let [seen, all] = [self.n_visible_pairs, self.n_pairs];
+        format!("{seen} of {} visible{undecided}", count(all, "pair"))
+    }
+
     /// Time of the search.
+    pub(crate) fn see_seconds(&self) -> f64 {
+        self.see_seconds
+    }
+
+    /// Time of the search, in words.
     pub(crate) fn time(&self) -> String {
         seconds(Duration::from_secs_f64(self.see_seconds))
     }

@@ -96,19 +96,34 @@ impl fmt::Display for FrameFacts {
     }
 }
 
+impl FrameFacts {
+    /// The same in few words.
+    pub(crate) fn brief(&self) -> String {
+        let turned = degrees(&self.axes).map_or(String::new(), |degrees| format!("turned by {degrees:.6} degrees, "));
+        format!("{turned}openings and things below {:.2e} units may count as closed or hidden", self.gap)
+    }
+}
+
 /// The line about the frame of a table: how it is turned, and its gap.
 fn frame(axes: &[[f64; 3]; 3], gap: f64) -> String {
     let narrow = format!("openings and things narrower than {gap:.2e} units may count as closed or hidden");
+    match degrees(axes) {
+        Some(degrees) => format!("frame          turned by {degrees:.6} degrees; {narrow}"),
+        None => format!("frame          along the axes of the file; {narrow}"),
+    }
+}
+
+/// By how much axes are turned; none if they are those of the file.
+fn degrees(axes: &[[f64; 3]; 3]) -> Option<f64> {
     if (0..3).all(|k| axes[k][k] == 1.0) {
-        return format!("frame          along the axes of the file; {narrow}");
+        return None;
     }
     // The angle of a turn from its trace.
     let cosine = (axes[0][0] + axes[1][1] + axes[2][2] - 1.0) / 2.0;
     // Near 1 the cosine tells nothing; the sine is in the differences across the diagonal.
     let [x, y, z] = [axes[1][2] - axes[2][1], axes[2][0] - axes[0][2], axes[0][1] - axes[1][0]];
     let sine = (x * x + y * y + z * z).sqrt() / 2.0;
-    let degrees = sine.atan2(cosine).to_degrees();
-    format!("frame          turned by {degrees:.6} degrees; {narrow}")
+    Some(sine.atan2(cosine).to_degrees())
 }
 
 /// The name of an axis.

@@ -27,6 +27,7 @@ mod region;
 mod simplification;
 mod surfaces;
 mod tables;
+mod unproven;
 mod view;
 
 use args::{Arguments, Command};

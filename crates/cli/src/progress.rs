@@ -43,14 +43,22 @@ impl Bar {
         self.bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}")));
     }
 
-    fn show(&self, Progress { share, .. }: Progress) {
+    /// Removes it from the screen.
+    pub(crate) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn show(&self, Progress { share, phase, .. }: Progress) {
         let now = Instant::now();
         let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
-        // The first report gives the share that was done before.
-        let pace = pace.get_or_insert(Pace { since: now, before: share });
-        let left = pace.left(share, now - pace.since);
+        // The first report, of each phase, gives the share that was done before.
+        if pace.is_none_or(|pace| pace.phase != phase) {
+            *pace = Some(Pace { phase, since: now, before: share });
+        }
+        let left = pace.and_then(|pace| pace.left(share, now - pace.since));
+        let left = left.map_or_else(String::new, |left| format!("about {} left", rough(left)));
         self.bar.set_position((share.clamp(0.0, 1.0) * Self::STEPS as f64) as u64);
-        self.bar.set_message(left.map_or_else(String::new, |left| format!("about {} left", rough(left))));
+        self.bar.set_message(if phase.is_empty() { left } else { format!("{phase} {left}") });
     }
 }
 
@@ -63,13 +71,14 @@ impl Observer for Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.bar.finish_and_clear();
+        self.finish();
     }
 }
 
-/// The pace of this run.
+/// The pace of this run in a phase.
 #[derive(Debug, Clone, Copy)]
 struct Pace {
+    phase: &'static str,
     since: Instant,
     /// The share that was done before this run.
     before: f64,
@@ -100,7 +109,7 @@ mod tests {
     #[test]
     fn the_time_left_is_estimated_from_this_run() {
         let left = |before: f64, share: f64, seconds: u64| {
-            let pace = Pace { since: Instant::now(), before };
+            let pace = Pace { phase: "", since: Instant::now(), before };
             pace.left(share, Duration::from_secs(seconds)).map(|left| left.as_secs_f64())
         };
         assert_eq!(left(0.0, 0.25, 10), Some(30.0));

@@ -133,6 +133,33 @@ impl Surfaces {
     }
 }
 
+impl Surfaces {
+    /// The same in few words: how many objects are what, and how many triangles have one side.
+    pub(crate) fn brief(&self) -> Vec<String> {
+        let mut kinds: Vec<(&str, usize)> = Vec::new();
+        for group in &self.surfaces {
+            // Doors are doors, whether they move or not.
+            let kind = if group.moves && group.role == "see-through" { "moving" } else { group.role };
+            match kinds.iter_mut().find(|(known, _)| *known == kind) {
+                Some((_, n)) => *n += group.n_objects,
+                None => kinds.push((kind, group.n_objects)),
+            }
+        }
+        let words = |(kind, n): (&str, usize)| match kind {
+            "occluder" => format!("{n} taken for occluders"),
+            "door" | "portal" => count(n as u64, kind),
+            "view-volume" => count(n as u64, "view volume"),
+            "ignore" => format!("{n} ignored"),
+            kind => format!("{n} {kind}"),
+        };
+        let mut all: Vec<String> = kinds.into_iter().map(words).collect();
+        if self.n_single_sided_triangles > 0 {
+            all.push(count(self.n_single_sided_triangles as u64, "single-sided triangle"));
+        }
+        all
+    }
+}
+
 impl fmt::Display for Surfaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for group in &self.surfaces {

@@ -44,7 +44,10 @@ fn axial_scenes_ask_sightlines_alone() {
     assert_eq!(method(&answer), "sightlines");
     assert!(answer["auto"]["facts"]["axial_share"].as_f64().expect("a share") > 0.9, "{answer}");
     assert_eq!(folder.read("auto.pvs"), folder.read("tower.pvs"), "the default's table, byte for byte");
-    let text = folder.run(&["build", "tower.glb", "--method", "auto", "-o", "auto.pvs"]).expect(0).out;
+    let build = ["build", "tower.glb", "--method", "auto", "-o", "auto.pvs"];
+    let text = folder.run(&build).expect(0).out;
+    assert!(text.contains("\nmethod         sightlines (") && text.contains("perpendicular to an axis"), "{text}");
+    let text = folder.run(&[&build[..], &["-v"]].concat()).expect(0).out;
     assert!(text.starts_with("chosen         sightlines\n") && text.contains("perpendicular to an axis"), "{text}");
 }
 

@@ -131,10 +131,6 @@ fn the_text_has_the_counts() {
 #[test]
 fn what_cannot_be_proven_or_checked_is_refused() {
     let folder = Folder::with_tower();
-    let grid = ["build", "tower.glb", "--grid", "3,1,3", "-o", "t.pvs", "--certify"];
-    let error = folder.refused(&grid);
-    assert!(error.contains("--certify is for scenes by sightlines alone"), "{error}");
-    assert!(!folder.path("t.pvs").exists() && !folder.path("t.cert").exists());
     let error = folder.refused(&["build", "tower.glb", "-o", "t.pvs", "--certify=tower.glb"]);
     assert!(error.contains("tower.glb"), "{error}");
     let error = folder.refused(&["build", "tower.glb", "-o", "t.pvs", "--certify=t.pvs"]);
@@ -146,6 +142,63 @@ fn what_cannot_be_proven_or_checked_is_refused() {
     assert!(error.contains("none.cert"), "{error}");
     let error = folder.refused(&["verify", "t.pvs", "tower.glb", "--proofs", "tower.glb"]);
     assert!(error.contains("these are no proofs of a table"), "{error}");
+}
+
+/// What a from-region method hides is proven where walls hide it as well; the rest is counted by `build` and `verify`, and refused by `--strict`
+/// alone.
+#[test]
+fn what_regions_hide_is_proven_or_counted() {
+    let folder = Folder::with_tower();
+    // The method alone, of which the walls prove all; and with a pair less, as if it had hidden it.
+    let build = ["build", "tower.glb", "--method", "both", "-o", "t.pvs", "--certify"];
+    let built = folder.run(&[&build[..], &["--json"]].concat()).expect(0).json();
+    assert_eq!((&built["unproven"]["n_hidden"], &built["proofs"]), (&json!(0), &json!("t.cert")), "{built}");
+    let of_objects = built["unproven"]["n_hidden_objects"].as_u64().expect("a count");
+    assert!(of_objects > 100, "{built}");
+    let text = folder.run(&build).expect(0).out;
+    assert!(text.contains("\nunproven       0 hidden pairs and "), "{text}");
+    assert!(text.contains(&format!("\n               {of_objects} hidden pairs of a cell and an object\n")), "{text}");
+    let few = ["--rays", "0", "--pairs", "0"];
+    folder.run(&[&["verify", "t.pvs", "tower.glb", "--strict"][..], &few].concat()).expect(0);
+    let table = Table::from_bytes(&folder.read("t.pvs")).expect("a sound table");
+    let apart =
+        |b: &u32| table.sees(CellId(0), CellId(*b)) && !table.portals().iter().any(|p| p.cells.contains(&CellId(*b)));
+    let seen = (1..table.n_cells() as u32).find(|b| table.sees(CellId(0), CellId(*b)));
+    let other = (1..table.n_cells() as u32).rev().find(apart).or(seen).expect("a cell that is seen");
+    flip(&folder, 0, other);
+    let verify = [&["verify", "flipped.pvs", "tower.glb", "--proofs", "t.cert"][..], &few].concat();
+    let answer = folder.run(&[&verify[..], &["--strict", "--json"]].concat()).expect(1).json();
+    let proofs = &answer["proofs"];
+    assert_eq!((&proofs["n_unproven_hidden"], &proofs["n_violations"]), (&json!(1), &json!(0)), "{proofs}");
+    assert_eq!(proofs["n_hidden_past_portals"], 1, "{proofs}");
+}
+
+/// About cells without portals there are no proofs: all is counted, in words and for programs, and an old file is not taken for theirs.
+#[test]
+fn cells_without_portals_are_counted_as_unproven() {
+    let folder = Folder::with_tower();
+    folder.run(&["build", "tower.glb", "-o", "t.pvs", "--certify"]).expect(0);
+    let grid = ["build", "tower.glb", "--method", "both", "--grid", "6,4,6", "-o", "t.pvs", "--certify"];
+    let run = folder.run(&grid).expect(0);
+    assert!(run.err.contains("no proofs are written: there are none about cells without portals"), "{}", run.err);
+    assert!(run.out.contains("\nproofs         none: ") && run.out.contains("\nunproven       all "), "{}", run.out);
+    let built = folder.run(&[&grid[..], &["--json"]].concat()).expect(0).json();
+    assert!(built["proofs"].is_null() && built["unproven"]["n_hidden_past_portals"] == 0, "{built}");
+    let counts = ["n_hidden", "n_visible", "n_hidden_objects"].map(|key| built["unproven"][key].as_u64());
+    assert_eq!(counts[0].zip(counts[1]).map(|(hidden, visible)| hidden + visible), Some(144 * 143 / 2), "{built}");
+    assert!(counts.iter().all(|n| *n > Some(0)), "{built}");
+    // The proofs that are there are those of the table before.
+    let verify = ["verify", "t.pvs", "tower.glb", "--rays", "1000", "--json"];
+    let answer = folder.run(&verify).expect(0).json();
+    assert_eq!((&answer["proofs"]["is_stale"], &answer["unproven"]), (&json!(true), &built["unproven"]));
+    std::fs::remove_file(folder.path("t.cert")).expect("the old proofs");
+    let answer = folder.run(&verify).expect(0).json();
+    assert_eq!((&answer["proofs"], &answer["unproven"]), (&Value::Null, &built["unproven"]));
+    // Who wants proofs is not content with rays.
+    let answer = folder.run(&[&verify[..], &["--strict"]].concat()).expect(1).json();
+    assert_eq!((&answer["is_true"], &answer["n_violations"]), (&json!(false), &json!(0)));
+    let text = folder.run(&verify[..5]).expect(0).out;
+    assert!(text.starts_with("unproven       all "), "{text}");
 }
 
 #[test]

@@ -295,7 +295,8 @@ fn scenes(all: &mut Results) {
     add("build of a scene", "build triangles.obj -o t.pvs --method auto --certify --stab-trees=16");
     add("build of a scene by regions", "build slanted.obj -o s.pvs --method auto");
     add("build of a scene by regions", "build least.glb -o r.pvs --method shafts --grid 2,1,2");
-    add("build of a scene by regions", "build triangles.obj -o r.pvs --method shafts --stab-trees=16");
+    add("verify", "verify r.pvs least.glb --rays 100 --pairs 10");
+    add("build of a scene by regions", "build triangles.obj -o r.pvs --method shafts --stab-trees=16 --certify");
     add("info of a scene", "info tower.glb");
     add("build of a scene", "build turned.obj -o turned.pvs --gap 1e-5");
     add("info of a scene", "info extras.glb");
@@ -317,6 +318,12 @@ fn scenes(all: &mut Results) {
     for cell in some_cells(&table(&folder, "tower.pvs")) {
         add("explain in a scene", &format!("explain tower.pvs 0 {cell}"));
         add("explain in a scene", &format!("explain tower.pvs 0 {cell} --max-programs 0"));
+    }
+    folder.run(&["build", "tower.glb", "--grid", "6,3,6", "-o", "boxes.pvs"]).expect(0);
+    for cell in some_cells(&table(&folder, "boxes.pvs")) {
+        for scene in ["", " --scene tower.glb --rays 100"] {
+            add("explain of cells without portals", &format!("explain boxes.pvs 0 {cell}{scene}"));
+        }
     }
     add("levels", "levels least.glb --table least.pvs -o levels --method none");
     add("walk", "walk least.pvs --path path.json --levels levels");

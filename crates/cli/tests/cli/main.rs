@@ -5,6 +5,7 @@ mod cell_names;
 mod certify;
 mod common;
 mod errors;
+mod explain_boxes;
 mod explain_portals;
 mod far;
 mod guides;

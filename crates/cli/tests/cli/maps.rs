@@ -21,8 +21,16 @@ fn maps_become_tables_that_can_be_asked() {
         let quake2 = format == BspFormat::Quake2;
         assert_eq!((&built["n_clusters"], &built["n_planes"]), (&json!(if quake2 { 3 } else { 4 }), &json!(4)));
         assert_eq!((&built["n_faces"], &built["n_portals"]), (&json!(6), &json!(3)));
-        let text = folder.run(&["build", "map.bsp", "-o", "again.pvs"]).expect(0).out;
+        let text = folder.run(&["build", "map.bsp", "-o", "again.pvs", "-v"]).expect(0).out;
         assert!(text.contains("objects        6 faces of the world"), "{text}");
+        let text = folder.run(&["build", "map.bsp", "-o", "again.pvs"]).expect(0).out;
+        let starts =
+            ["map            a ", "method         exact stabbing of convex portals; ", "wrote          again.pvs, "];
+        assert!(
+            text.lines().count() == 3 && text.lines().zip(starts).all(|(line, start)| line.starts_with(start)),
+            "{text}"
+        );
+        assert!(text.contains(": 6 faces of the world\n") && text.contains(" of 6 pairs visible") != quake2, "{text}");
         assert_eq!(folder.read("map.pvs"), folder.read("again.pvs"));
 
         // In the second leaf, away from its faces; on a plane; in what is solid behind the last.

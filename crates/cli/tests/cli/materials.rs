@@ -40,7 +40,10 @@ fn glass_is_reported_and_hides_nothing() {
     let folder = Folder::new();
     folder.write("room.obj", room());
     folder.write("room.mtl", "newmtl wall\nd 1\nnewmtl glass\nd 0.2\n");
-    let build = ["build", "room.obj", "--detail-below", "0", "-o"];
+    let brief = folder.run(&["build", "room.obj", "--detail-below", "0", "-o", "glass.pvs"]).expect(0).out;
+    assert!(brief.starts_with("scene          OBJ in 3D, y up (assumed), unit unknown: 9 objects, "), "{brief}");
+    assert!(brief.lines().count() == 3 && brief.contains(" triangles hide, 1 see-through\n"), "{brief}");
+    let build = ["build", "room.obj", "--detail-below", "0", "--verbose", "-o"];
     let run = folder.run(&[&build[..], &["glass.pvs"]].concat()).expect(0);
     assert!(run.out.contains("see-through    1 object, classified by d 0.2: pane\n"), "{}", run.out);
     assert!(seen(&folder, "glass.pvs").contains("east picture"));
@@ -223,13 +226,17 @@ fn view_volumes_and_movers_of_a_file_are_taken() {
     let folder = Folder::new();
     folder.write("level.glb", levels::blender_with_extras());
     let grid = ["--method", "shafts", "--grid", "2,1,1"];
-    let run = folder.run(&[&["build", "level.glb", "-o", "level.pvs"], &grid[..]].concat()).expect(0);
+    let build = [&["build", "level.glb", "-o", "level.pvs"], &grid[..]].concat();
+    let brief = folder.run(&build).expect(0).out;
+    assert!(brief.contains("2 given cells, in the view volume of the file\n"), "{brief}");
+    assert!(brief.contains(", 1 moving, 1 door, 1 view volume\n"), "{brief}");
+    let run = folder.run(&[&build[..], &["-v"]].concat()).expect(0);
     let line = "viewers        in the view volume of the file: (4.5, 0, 4) to (7.5, 3, 5.5)\n";
     assert!(run.out.contains(line), "{}", run.out);
     let bounds = |name: &str| Aabb::around(table(&folder, name).cells().iter().flat_map(|cell| [cell.min, cell.max]));
     assert_eq!(bounds("level.pvs"), Aabb { min: [4.5, 0.0, 4.0], max: [7.5, 3.0, 5.5] });
     // Cells by views, too.
-    let places = ["build", "level.glb", "-o", "places.pvs", "--n-cells", "8", "--method", "auto"];
+    let places = ["build", "level.glb", "-o", "places.pvs", "--n-cells", "8", "--method", "auto", "-v"];
     assert!(folder.run(&places).expect(0).out.contains(line));
     assert_eq!(bounds("places.pvs"), bounds("level.pvs"));
     // Of a k-d tree, what cannot be reached from there is left out, as with the option.
@@ -239,7 +246,7 @@ fn view_volumes_and_movers_of_a_file_are_taken() {
     assert_eq!(folder.read("tree.pvs"), folder.read("same.pvs"));
     // Who names a region, or the cells, is believed.
     let region = ["--view-region", "1,0,1,2,2,2"];
-    let run = folder.run(&[&build[..], &["other.pvs"], &grid, &region].concat()).expect(0);
+    let run = folder.run(&[&build[..], &["other.pvs", "-v"], &grid, &region].concat()).expect(0);
     assert!(!run.out.contains("viewers  "), "{}", run.out);
     assert_eq!(bounds("other.pvs"), Aabb { min: [1.0, 0.0, 1.0], max: [2.0; 3] });
     let info = folder.run(&["info", "level.glb"]).expect(0).out;
@@ -262,6 +269,8 @@ fn doors_close_portals_of_their_table() {
     folder.write("level.glb", levels::with_doors());
     let build = ["build", "level.glb", "-o", "level.pvs"];
     let run = folder.run(&build).expect(0);
+    assert!(run.out.lines().next().is_some_and(|line| line.contains(", 6 doors")), "{}", run.out);
+    let run = folder.run(&[&build[..], &["-v"]].concat()).expect(0);
     assert!(run.out.contains("doors          6, open; 6 close portals when shut\n"), "{}", run.out);
     let doors = folder.run(&[&build[..], &["--json"]].concat()).expect(0).json()["doors"].clone();
     let portals: Vec<String> = doors

@@ -41,7 +41,10 @@ fn names_of_given_cells_are_in_the_export_and_every_method_runs() {
     let [lines, region, both, ..] = counts[..] else { panic!("five methods") };
     assert!(both <= lines && both <= region && both > 0, "{counts:?}");
     let grid = ["build", "scene.glb", "--method", "multifocal", "--grid", "2,1,2", "-o", "g.pvs"];
-    assert!(folder.run(&grid).expect(0).out.contains("cells          4, with names\n"));
+    let text = folder.run(&grid).expect(0).out;
+    assert!(text.lines().count() == 3 && text.contains("; 4 given cells\n"), "{text}");
+    let text = folder.run(&[&grid[..], &["-v"]].concat()).expect(0).out;
+    assert!(text.contains("cells          4, with names\n"), "{text}");
 }
 
 #[test]

@@ -33,7 +33,16 @@ fn build_says_what_it_built() {
     assert_eq!([&built["subdivide"], &built["portals"]], ["kd", "exact"]);
     let share = |key: &str| built["viewer"][key].as_f64().unwrap();
     assert!(["cells", "objects", "polygons"].iter().all(|key| share(key) > 0.0 && share(key) < 1.0), "{built}");
-    let reply = folder.run(&["build", "tower.glb", "-o", "again.pvs"]).expect(0).out;
+    let build = ["build", "tower.glb", "-o", "again.pvs"];
+    let reply = folder.run(&build).expect(0).out;
+    let [taken, method, result] = reply.lines().collect::<Vec<_>>()[..] else { panic!("three lines: {reply}") };
+    let (objects, triangles) = (scene.objects().len(), scene.n_triangles());
+    assert!(taken.starts_with(&format!("scene          glTF in 3D, y up, in metres: {objects} objects, ")), "{taken}");
+    assert!(taken.contains(&format!(" of {triangles} triangles hide")), "{taken}");
+    let cells = format!("{} cells, {} portals along walls", made.n_cells(), made.portals().len());
+    assert_eq!(method, format!("method         sightlines; {cells}"));
+    assert!(result.starts_with("wrote          again.pvs, ") && result.contains(": a viewer has "), "{result}");
+    let reply = folder.run(&[&build[..], &["--verbose"]].concat()).expect(0).out;
     for line in [
         "scene          glTF in 3D, y up, in metres\n",
         "method         a k-d tree in space, exact axial stabbing of exact portals\n",

@@ -22,7 +22,14 @@ fn build_says_what_it_built() {
     assert_eq!(built["n_portals"], table.portals().len());
     assert_eq!(built["n_bytes"], folder.read("again.pvs").len());
     assert_eq!((&built["subdivide"], &built["map"], &built["out"]), (&json!("kd"), &Value::Null, &json!("again.pvs")));
-    let reply = folder.run(&["build", "office.geojson", "-o", "again.pvs"]).expect(0).out;
+    let build = ["build", "office.geojson", "-o", "again.pvs"];
+    let reply = folder.run(&build).expect(0).out;
+    let cells = format!("{} cells, {} portals", table.n_cells(), table.portals().len());
+    assert_eq!(reply.lines().count(), 3, "{reply}");
+    assert!(reply.starts_with("plan           a plan"), "{reply}");
+    assert!(reply.contains(&format!("\nmethod         a k-d tree, exact planar stabbing; {cells}\n")), "{reply}");
+    assert!(reply.contains("\nwrote          again.pvs, ") && reply.contains(" of the floor on average\n"), "{reply}");
+    let reply = folder.run(&[&build[..], &["--verbose"]].concat()).expect(0).out;
     assert!(
         reply.starts_with("wrote again.pvs, ")
             && reply.contains("\nmethod         a k-d tree in the plane, ")

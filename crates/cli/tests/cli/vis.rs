@@ -137,7 +137,7 @@ fn files_are_recognized_by_their_content() {
 #[test]
 fn tables_of_portals_answer_what_they_can() {
     let folder = with(&rooms(3, 2));
-    let reply = folder.run(&["build", "map.prt", "-o", "map.pvs"]).expect(0).out;
+    let reply = folder.run(&["build", "map.prt", "-o", "map.pvs", "--verbose"]).expect(0).out;
     assert!(reply.starts_with("wrote map.pvs, ") && reply.contains("\nclusters       6\n"), "{reply}");
     let reply = folder.run(&["info", "map.pvs"]).expect(0).out;
     assert!(reply.contains("\nsource         portal file PRT1\n") && !reply.contains("volume"), "{reply}");

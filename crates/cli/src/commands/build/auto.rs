@@ -46,6 +46,12 @@ impl Chosen {
     pub(super) fn method(&self) -> &str {
         &self.method
     }
+
+    /// The same, and the first reason.
+    pub(super) fn brief(&self) -> String {
+        let reason = self.reasons.first().map_or(String::new(), |reason| format!(" ({reason})"));
+        format!("{}{reason}", self.method)
+    }
 }
 
 impl fmt::Display for Chosen {

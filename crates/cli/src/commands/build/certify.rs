@@ -4,19 +4,22 @@ use super::Error;
 use crate::error::OutputError;
 use crate::output::{self, bytes, seconds};
 use crate::progress::Bar;
+use crate::unproven::Unproven;
 use serde::Serialize;
 use sightlines::bake::Baked;
 use sightlines::stabtree::CertifyOptions;
+use sightlines::verify::{ProofFindings, can_be_proven, check_proofs};
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Whether proofs are written, and where.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct CertifyArgs {
     /// Also write proofs, to FILE or beside the table with the extension .cert: a line for each visible pair, a reason
     /// for each hidden one, for `verify` to check with independent code. May take ten times as long as the table, and
-    /// much longer for large Quake maps, where pairs that take too long stay without a proof. In space only for
-    /// --method sightlines
+    /// much longer for large Quake maps, where pairs that take too long stay without a proof. What from-region methods hide is proven
+    /// where walls hide it too, else counted as unproven, as is all that cells without portals see and do not see
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     certify: Option<Option<PathBuf>>,
 }
@@ -39,7 +42,8 @@ impl CertifyArgs {
         Some(given.clone().unwrap_or_else(|| table.with_extension("cert")))
     }
 
-    /// Finds and writes proofs for what was baked from `path` and written to `out`, if they are wanted.
+    /// Finds and writes proofs for what was baked from `path` and written to `out`, if they are wanted, and counts what has none. For cells without
+    /// portals there is nothing to write.
     pub(super) fn write(
         &self,
         path: &Path,
@@ -49,24 +53,43 @@ impl CertifyArgs {
         show_progress: bool,
     ) -> Result<Option<Certified>, Error> {
         let Some(file) = self.file(out) else { return Ok(None) };
+        if !can_be_proven(&baked.table) {
+            tracing::warn!("{}: no proofs are written: there are none about cells without portals", path.display());
+            let found = ProofFindings::without_proofs(&baked.table);
+            return Ok(Some(Certified { file: None, unproven: Unproven::new(&baked.table, &found) }));
+        }
         let bar = Bar::new("proofs", show_progress);
         let made = baked.certify(&CertifyOptions { threads, progress: Some(&bar), ..CertifyOptions::default() });
         drop(bar);
         let made = made.map_err(|source| Error::Certify { path: path.to_owned(), source })?;
         let content = made.proofs.to_bytes();
+        let found = check_proofs(&baked.table, &content).map_err(|error| error.to_string());
+        let found = found.and_then(|found| match found.violations.first() {
+            Some(violation) => Err(violation.to_string()),
+            None => Ok(found),
+        });
+        let found = found.map_err(|text| Error::Contradiction { path: path.to_owned(), text })?;
         output::save(&file, &content)?;
-        let n_bytes = content.len();
-        Ok(Some(Certified {
+        let file = ProofFile {
             proofs: file.display().to_string(),
-            n_proof_bytes: n_bytes,
+            n_proof_bytes: content.len(),
             certify_seconds: made.time.as_secs_f64(),
-        }))
+        };
+        Ok(Some(Certified { file: Some(file), unproven: Unproven::new(&baked.table, &found) }))
     }
 }
 
-/// What was written.
+/// What was written, and what has no proof.
 #[derive(Debug, Serialize)]
 pub(super) struct Certified {
+    /// None for cells without portals.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    file: Option<ProofFile>,
+    unproven: Unproven,
+}
+
+#[derive(Debug, Serialize)]
+struct ProofFile {
     proofs: String,
     n_proof_bytes: usize,
     certify_seconds: f64,
@@ -74,7 +97,13 @@ pub(super) struct Certified {
 
 impl fmt::Display for Certified {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let time = std::time::Duration::try_from_secs_f64(self.certify_seconds).unwrap_or_default();
-        writeln!(f, "proofs         {}, {}, in {}", self.proofs, bytes(self.n_proof_bytes as u64), seconds(time))
+        match &self.file {
+            Some(ProofFile { proofs, n_proof_bytes, certify_seconds }) => {
+                let time = Duration::try_from_secs_f64(*certify_seconds).unwrap_or_default();
+                writeln!(f, "proofs         {proofs}, {}, in {}", bytes(*n_proof_bytes as u64), seconds(time))?;
+            }
+            None => writeln!(f, "proofs         none: there are none about cells without portals")?,
+        }
+        write!(f, "{}", self.unproven)
     }
 }

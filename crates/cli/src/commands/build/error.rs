@@ -31,6 +31,9 @@ pub(crate) enum Error {
     /// A table cannot have proofs.
     #[error("{}: {source}", path.display())]
     Certify { path: PathBuf, source: CertifyError },
+    /// What is proven is not what the table states: our bug.
+    #[error("{}: the proofs contradict the table: {text}", path.display())]
+    Contradiction { path: PathBuf, text: String },
     /// A table cannot have stab trees.
     #[error("{}: {source}", path.display())]
     Stab { path: PathBuf, source: StabBakeError },

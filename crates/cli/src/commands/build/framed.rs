@@ -37,6 +37,17 @@ pub(super) struct Placed {
     cells_growth: Option<f64>,
 }
 
+impl Placed {
+    /// What a report in few words says of cells.
+    pub(super) fn brief(&self) -> String {
+        let frame = self.frame.map_or(String::new(), |taken| format!(", {}", taken.frame.brief()));
+        let growth = self.cells_growth.map_or(String::new(), |growth| {
+            format!(", boxes around the given ones, which stand along other axes, of {growth:.2} times the surface")
+        });
+        frame + &growth
+    }
+}
+
 impl fmt::Display for Placed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.frame.iter().try_for_each(|frame| write!(f, "{frame}"))?;

@@ -33,13 +33,14 @@ impl Clock {
 
     /// Warns if something was not decided in time.
     pub(super) fn warn(&self, path: &Path, report: &Report) {
-        let left = match report {
-            Report::Scene(report) => report.limit,
-            Report::Regions(report) => report.limit,
-            _ => None,
+        let (left, cut_time) = match report {
+            Report::Scene(report) => (report.limit, report.cut_time),
+            Report::Regions(report) => (report.limit, report.cut_time),
+            _ => (None, Duration::ZERO),
         };
         if let (Some(limit), Some(left)) = (self.limit, left) {
-            tracing::warn!("{}: the limit of {} was reached: {left}", path.display(), seconds(limit));
+            let [limit, cut] = [limit, cut_time].map(seconds);
+            tracing::warn!("{}: the limit of {limit} was reached, {cut} of it to cut cells: {left}", path.display());
         }
     }
 }
@@ -56,6 +57,12 @@ pub(crate) struct Undecided {
     n_object_pairs: u64,
     #[serde(skip)]
     report: LimitReport,
+}
+
+/// What a report in few words says of a limit, if it was reached.
+pub(super) fn brief(left: Option<Undecided>) -> String {
+    let Some(Undecided { n_cell_pairs: cells, n_object_pairs: objects, .. }) = left else { return String::new() };
+    format!("; not decided in time, and so visible: {cells} pairs of cells, {objects} of a cell and an object")
 }
 
 impl From<LimitReport> for Undecided {

@@ -2,6 +2,7 @@
 
 mod announce;
 mod auto;
+mod brief;
 mod certify;
 mod error;
 mod framed;
@@ -24,6 +25,7 @@ use crate::Answer;
 use crate::input::{self, refuse};
 use crate::numbers::duration;
 use crate::output;
+use crate::progress::Bar;
 use crate::surfaces::{SurfaceArgs, Surfaces};
 use options::BakeArgs;
 use serde::Serialize;
@@ -54,8 +56,8 @@ pub(crate) struct BuildArgs {
     #[command(flatten, next_help_heading = "Method")]
     region: region::RegionArgs,
     /// Scenes in space: decide for about this long, such as 90s, 10m or 2h; a plain number is in seconds. What is not decided by then
-    /// counts as visible, so the table is right, and looser. Reading the file and cutting cells count, and are done in full; so
-    /// is what comes after, such as writing. With a limit that is reached, the table depends on the machine and differs from run to run
+    /// counts as visible, so the table is right, and looser. Reading the file, cutting cells and preparing methods count, and are done in full, however
+    /// long they take; so is what comes after, such as writing, which does not count. With a limit that is reached, the table depends on the machine and differs from run to run
     #[arg(long, help_heading = "Method", value_name = "DURATION", value_parser = duration)]
     time_limit: Option<Duration>,
     /// The table to write
@@ -97,14 +99,18 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
         args.region.choose_for(&file.scene, portals, &mut options);
     }
     let mut auto = None;
+    let choosing = Bar::new("choice of methods", show_progress && options.method == SceneMethod::Auto);
     if options.method == SceneMethod::Auto {
-        let (choice, chosen) = choose_for(&(&source.content).into(), &options);
+        let observed = BakeOptions { progress: Some(&choosing), ..options.clone() };
+        let (choice, chosen) = choose_for(&(&source.content).into(), &observed);
+        choosing.finish();
+        let chosen = BakeOptions { progress: None, ..chosen };
         let cells = if portals { options.cells } else { chosen.cells.clone() };
         (auto, options) = (Some(auto::Chosen::new(choice)), BakeOptions { cells, ..chosen });
     }
     args.refuse_for_regions(&source, &options)?;
 
-    let plan = announce::Plan::new(&source.content, &options, auto.as_ref());
+    let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
     let baked = bake_announced(path, (&source.content).into(), &options, plan, show_progress);
     let baked = baked.map_err(|error| source.failed(path, error))?;
     clock.warn(path, &baked.report);
@@ -114,7 +120,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
     let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
     let surfaces = if let Bakeable::Scene(file) = &source.content { Some(Surfaces::new(file)) } else { None };
-    output::print(args.json, &Built { auto, outcome, viewers, placed, surfaces, stab, proofs })?;
+    output::print(args.json, &Built { auto, outcome, viewers, placed, surfaces, stab, proofs, verbose })?;
     Ok(Answer::Yes)
 }
 
@@ -137,8 +143,6 @@ impl BuildArgs {
         if !matches!(source.content, Bakeable::Scene(_)) || !options.takes_regions() {
             return Ok(());
         }
-        let of_certify = [("--certify", self.certify.is_given())];
-        refuse(&self.input, &of_certify, "scenes by sightlines alone", "one by another method, or of boxes")?;
         if options.has_given_cells() {
             let of_trees = [("--stab-trees", self.stab_trees.is_some())];
             refuse(&self.input, &of_trees, "cells with portals", "to have boxes as cells")?;
@@ -221,10 +225,16 @@ struct Built {
     stab: Option<stab::Added>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     proofs: Option<certify::Certified>,
+    /// Whether people get all facts, rather than three lines; programs always do.
+    #[serde(skip)]
+    verbose: bool,
 }
 
 impl fmt::Display for Built {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.verbose {
+            return write!(f, "{}", self.brief());
+        }
         self.auto.iter().try_for_each(|auto| write!(f, "{auto}"))?;
         write!(f, "{}", self.outcome)?;
         self.viewers.iter().try_for_each(|viewers| write!(f, "{viewers}"))?;

@@ -1,7 +1,8 @@
 //! What was built from a plan.
 
+use super::brief::{Brief, of_cells};
 use crate::facts::{Facts, times};
-use crate::output::{bytes, count};
+use crate::output::{bytes, count, percent};
 use serde::Serialize;
 use sightlines::bake::PlanReport;
 use sightlines::pvs::Table;
@@ -64,6 +65,24 @@ impl Outcome {
     /// Cells, portals, visible pairs, and what has to be drawn.
     pub(crate) fn facts(&self) -> impl fmt::Display + '_ {
         Facts(&self.table)
+    }
+
+    pub(super) fn brief(&self) -> Brief {
+        let table = &self.table;
+        let map = self.map.as_ref().map_or("a plan".to_owned(), |name| format!("map {name}"));
+        let groups = |n: usize| if n > 0 { format!(", in {}", count(n as u64, "group")) } else { String::new() };
+        let objects = |n: usize| if n > 0 { format!(", {}", count(n as u64, "object")) } else { String::new() };
+        let cells = of_cells(table.n_cells, "cell", table.n_portals);
+        Brief {
+            kind: "plan",
+            taken: format!("{map}{}", objects(table.n_objects)),
+            method: format!("{}, exact planar stabbing", self.subdivision()),
+            cells: format!("{cells}{}", groups(table.n_groups)),
+            out: self.out.clone(),
+            n_bytes: table.n_bytes,
+            visible: format!("a viewer has {} of the floor on average", percent(table.mean_floor_share)),
+            seconds: self.cut_seconds + self.see_seconds,
+        }
     }
 
     /// The name of the subdivision that was used.

@@ -1,5 +1,6 @@
 //! What was built from a portal file.
 
+use super::brief::Brief;
 use crate::clusters::Clusters;
 use crate::output::bytes;
 use serde::Serialize;
@@ -16,12 +17,16 @@ pub(super) fn write_method(
     clusters: &Clusters,
     verbose: bool,
 ) -> fmt::Result {
-    let how = if fast { "the first, coarse bound only" } else { "exact stabbing of convex portals" };
-    write!(f, "method         {how}, of {of}\n{clusters}")?;
+    write!(f, "method         {}, of {of}\n{clusters}", method(fast))?;
     if verbose {
         write!(f, "{}", clusters.undecided_pairs())?;
     }
     Ok(())
+}
+
+/// The method, in words.
+pub(super) const fn method(fast: bool) -> &'static str {
+    if fast { "the first, coarse bound only" } else { "exact stabbing of convex portals" }
 }
 
 /// What was built.
@@ -46,6 +51,19 @@ impl Outcome {
             clusters: Clusters::new(found),
             n_bytes,
             verbose: false,
+        }
+    }
+
+    pub(super) fn brief(&self) -> Brief {
+        Brief {
+            kind: "map",
+            taken: format!("a {} file", self.portal_format),
+            method: method(self.fast).to_owned(),
+            cells: self.clusters.brief(),
+            out: self.out.clone(),
+            n_bytes: self.n_bytes,
+            visible: self.clusters.brief_pairs(),
+            seconds: self.clusters.see_seconds(),
         }
     }
 

@@ -1,7 +1,8 @@
 //! What was built from a Quake map with its portal file.
 
 use super::Error;
-use super::portals::write_method;
+use super::brief::Brief;
+use super::portals::{method, write_method};
 use crate::clusters::Clusters;
 use crate::error::InputError;
 use crate::output::{bytes, count};
@@ -68,6 +69,20 @@ impl Outcome {
             slack,
             n_bytes,
             verbose: false,
+        }
+    }
+
+    pub(super) fn brief(&self) -> Brief {
+        let faces = count(self.n_faces as u64, "face");
+        Brief {
+            kind: "map",
+            taken: format!("a {} map with its {} file: {faces} of the world", self.format, self.portal_format),
+            method: method(self.fast).to_owned(),
+            cells: self.clusters.brief(),
+            out: self.out.clone(),
+            n_bytes: self.n_bytes,
+            visible: self.clusters.brief_pairs(),
+            seconds: self.clusters.see_seconds(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! How a scene in space is baked, as arguments, and what was built by from-region queries.
 
-use super::limit::Undecided;
+use super::brief::{Brief, of_cells, of_viewer};
+use super::limit::{Undecided, brief};
 use super::view_cells::ViewCellsArgs;
 use crate::buffers::BufferArgs;
 use crate::facts::{Facts, Stated};
@@ -24,7 +25,7 @@ pub(crate) struct RegionArgs {
     /// Scenes in space: sightlines (through portals; axis-aligned walls occlude), multifocal (from whole cells; any
     /// surfaces occlude), both (hides what either hides), line-space (from whole cells; surfaces that meet or overlap occlude
     /// together; slower), or shafts and voxels (older methods, for comparison). auto,
-    /// for any input, measures it, chooses the methods and prints the reasons. Cells depend on the scene, whatever the method: those of a k-d
+    /// for any input, measures it and chooses the methods; -v prints the reasons. Cells depend on the scene, whatever the method: those of a k-d
     /// tree, or boxes where few walls are axis-aligned; but sightlines alone take those of a k-d tree, unless others are named
     /// [default: sightlines, or auto where cells are boxes of the scene's own]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
@@ -141,6 +142,8 @@ pub(super) struct Outcome {
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     time_limit: Option<Undecided>,
+    /// Of all seconds.
+    cut_seconds: f64,
     seconds: f64,
 }
 
@@ -197,7 +200,28 @@ impl Outcome {
             n_volumes: report.effort.n_volumes,
             n_asked: asked.groups + asked.boxes + asked.triangles,
             time_limit: report.limit.map(Undecided::from),
+            cut_seconds: report.cut_time.as_secs_f64(),
             seconds: report.time.as_secs_f64(),
+        }
+    }
+
+    pub(super) fn brief(&self) -> Brief {
+        let Summary { n_cells, n_portals, n_objects, n_bytes, .. } = self.table;
+        let cells = match (self.subdivide, &self.places) {
+            ("kd", _) => of_cells(n_cells, "cell", n_portals) + " along walls",
+            (_, Some(cut)) => format!("{} of at most {:.4} units", of_cells(n_cells, "place", 0), cut.cell_size),
+            _ => of_cells(n_cells, "given cell", 0),
+        };
+        let objects = count(n_objects as u64, "object");
+        Brief {
+            kind: "scene",
+            taken: format!("{}: {objects}, {}", self.stated, count(self.n_triangles as u64, "triangle")),
+            method: self.method.clone(),
+            cells,
+            out: self.out.clone(),
+            n_bytes,
+            visible: of_viewer(&self.viewer) + &brief(self.time_limit),
+            seconds: self.seconds,
         }
     }
 }
@@ -225,6 +249,7 @@ impl fmt::Display for Outcome {
             writeln!(f, "effort         {}, {} questions", count(self.n_volumes, "volume"), self.n_asked)?;
         }
         self.time_limit.iter().try_for_each(|left| write!(f, "{left}"))?;
-        writeln!(f, "time           {}", seconds(std::time::Duration::from_secs_f64(self.seconds)))
+        let [cut, all] = [self.cut_seconds, self.seconds].map(|s| seconds(std::time::Duration::from_secs_f64(s)));
+        writeln!(f, "time           {all}, {cut} of it to cut cells")
     }
 }

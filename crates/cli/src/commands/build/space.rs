@@ -1,6 +1,7 @@
 //! What was built from a scene in space, by sightlines.
 
-use super::limit::Undecided;
+use super::brief::{Brief, of_cells, of_viewer};
+use super::limit::{Undecided, brief};
 use crate::facts::{Facts, Stated, times};
 use crate::output::{bytes, count, percent};
 use serde::Serialize;
@@ -123,6 +124,22 @@ impl Outcome {
             time_limit: report.limit.map(Undecided::from),
             cut_seconds: report.cut_time.as_secs_f64(),
             see_seconds: report.see_time.as_secs_f64(),
+        }
+    }
+
+    pub(super) fn brief(&self) -> Brief {
+        let objects = count(self.table.n_objects as u64, "object");
+        let [walls, triangles] = [self.n_axial_triangles, self.n_triangles];
+        let openings = if self.portals == "exact" { "" } else { " of rectangles around portals" };
+        Brief {
+            kind: "scene",
+            taken: format!("{}: {objects}, {walls} of {triangles} triangles hide", self.stated),
+            method: format!("sightlines{openings}"),
+            cells: of_cells(self.table.n_cells, "cell", self.table.n_portals) + " along walls",
+            out: self.out.clone(),
+            n_bytes: self.table.n_bytes,
+            visible: of_viewer(&self.viewer) + &brief(self.time_limit),
+            seconds: self.cut_seconds + self.see_seconds,
         }
     }
 

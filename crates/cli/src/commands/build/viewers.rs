@@ -24,10 +24,21 @@ pub(super) fn take(content: &Bakeable, options: &mut BakeOptions<'_>) -> Option<
     Some(Viewers { n_volumes: file.info.view_volumes.len(), min: region.min, max: region.max })
 }
 
+impl Viewers {
+    const fn volumes(&self) -> &'static str {
+        if self.n_volumes == 1 { "the view volume" } else { "the view volumes" }
+    }
+
+    /// What a report in few words says of cells.
+    pub(super) fn brief(&self) -> String {
+        format!(", in {} of the file", self.volumes())
+    }
+}
+
 impl fmt::Display for Viewers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { n_volumes, min: [x0, y0, z0], max: [x1, y1, z1] } = self;
-        let volumes = if *n_volumes == 1 { "the view volume" } else { "the view volumes" };
+        let Self { min: [x0, y0, z0], max: [x1, y1, z1], .. } = self;
+        let volumes = self.volumes();
         writeln!(f, "viewers        in {volumes} of the file: ({x0}, {y0}, {z0}) to ({x1}, {y1}, {z1})")
     }
 }

@@ -43,6 +43,7 @@ impl ClusterQuery<'_> {
             from: from.0,
             to: to.0,
             listed: listed(from, to),
+            has_regions: false,
             checked: Some(check_convex(self.graph, from, to, &explanation)),
             reason: reason(self.graph, from, &explanation),
             n_shown: self.n_shown,

@@ -1,5 +1,6 @@
 //! `explain`: the line of sight between two cells, or why there is none.
 
+mod boxes;
 mod convex;
 mod error;
 mod line;
@@ -11,7 +12,9 @@ use crate::Answer;
 use crate::error::InputError;
 use crate::picture::{PictureKind, draw_plan, save_picture};
 use crate::place::Place;
+use crate::surfaces::SurfaceArgs;
 use crate::{input, output};
+use boxes::BoxReason;
 use convex::ClusterQuery;
 use error::Error;
 use plan::PlanReason;
@@ -54,6 +57,13 @@ pub(crate) struct ExplainArgs {
     /// Portal files: stop after testing this many sequences of portals [default: 100000]
     #[arg(long, help_heading = "Method", value_name = "N")]
     max_questions: Option<u64>,
+    /// Cells without portals, such as those that were given or cut where views differ: the scene that the table was made of, to look for a line
+    /// between them
+    #[arg(long, help_heading = "Method", value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// With --scene: rays to aim from each cell at the other [default: 4096]
+    #[arg(long, help_heading = "Method", value_name = "N", requires = "scene")]
+    rays: Option<u32>,
     /// Plans: draw the line, or what blocks it
     #[arg(long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
     draw: Option<PathBuf>,
@@ -81,6 +91,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
     match of {
         Of::Plan => args.pair(&table)?.map_or(Ok(Answer::No), |pair| in_plan(args, &table, pair)),
         Of::Space => args.pair(&table)?.map_or(Ok(Answer::No), |pair| in_space(args, &table, pair)),
+        Of::Boxes => args.pair(&table)?.map_or(Ok(Answer::No), |pair| in_boxes(args, &table, pair)),
         Of::Portals => in_clusters(args, &table),
     }
 }
@@ -93,6 +104,7 @@ impl ExplainArgs {
             (self.max_visits.is_some(), "--max-visits", Of::Plan, "plans"),
             (self.max_programs.is_some(), "--max-programs", Of::Space, "scenes in space"),
             (self.max_questions.is_some(), "--max-questions", Of::Portals, "portal files"),
+            (self.scene.is_some(), "--scene", Of::Boxes, "cells without portals"),
         ];
         match given.into_iter().find(|&(is_given, _, meant, _)| is_given && meant != of) {
             Some((_, option, _, meant)) => {
@@ -118,7 +130,8 @@ impl ExplainArgs {
     /// The report on two cells of a table.
     fn report<R>(&self, table: &Table, [a, b]: [CellId; 2], reason: R) -> ExplanationReport<R> {
         let listed = Some(table.sees(a, b));
-        ExplanationReport { from: a.0, to: b.0, listed, checked: None, reason, n_shown: self.proofs }
+        let has_regions = matches!(table.kind(), TableKind::SceneKdTree { hidden_by } if hidden_by.from_region);
+        ExplanationReport { from: a.0, to: b.0, listed, has_regions, checked: None, reason, n_shown: self.proofs }
     }
 
     fn query<'a>(&'a self, graph: &'a CellGraph<Convex>) -> ClusterQuery<'a> {
@@ -138,6 +151,8 @@ impl ExplainArgs {
 enum Of {
     Plan,
     Space,
+    /// Cells of a scene in space without portals.
+    Boxes,
     Portals,
 }
 
@@ -148,9 +163,8 @@ impl Of {
             TableKind::QuakeMap => (Self::Portals, "the table of a Quake map"),
             TableKind::QuakePortalFile => (Self::Portals, "the table of a portal file"),
             TableKind::PlanKdTree | TableKind::PlanTriangulation => (Self::Plan, "the table of a plan"),
-            TableKind::SceneKdTree { .. } | TableKind::SceneGivenCells { .. } => {
-                (Self::Space, "the table of a scene in space")
-            }
+            TableKind::SceneKdTree { .. } => (Self::Space, "the table of a scene in space"),
+            TableKind::SceneGivenCells { .. } => (Self::Boxes, "the table of cells without portals"),
             _ if table.dimension() == 2 => (Self::Plan, "the table of a plan"),
             _ => (Self::Space, "the table of a scene in space"),
         }
@@ -176,6 +190,21 @@ fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Resu
     // The table does not record what was left out beside its cells, and no answer depends on it.
     let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
     Ok(args.report(table, [a, b], SpaceReason::new(explanation)).print(args.json)?)
+}
+
+/// Rays from each of two cells without portals.
+const N_RAYS: u32 = 4096;
+
+fn in_boxes(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {
+    let read = |path: &PathBuf| input::scene(path, &SurfaceArgs::default().options_with(table.info()));
+    let file = args.scene.as_ref().map(read).transpose()?;
+    if table.frame().is_some() && file.is_some() {
+        tracing::warn!("{}: places are along the axes of the table's frame", args.table.display());
+    }
+    let scene = file.as_ref().map(|file| &file.scene);
+    let reason = BoxReason::find(table, scene, [a, b], args.rays.unwrap_or(N_RAYS));
+    let failed = |source| Error::OtherScene { table: args.table.clone(), source };
+    Ok(args.report(table, [a, b], reason.map_err(failed)?).print(args.json)?)
 }
 
 fn in_plan(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Result<Answer, Error> {

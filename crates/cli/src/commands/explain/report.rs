@@ -26,6 +26,9 @@ pub(super) struct ExplanationReport<R> {
     pub(super) to: u32,
     /// What the table lists for the pair; null without a table.
     pub(super) listed: Option<bool>,
+    /// Whether a from-region method took part: it may hide what portals let through.
+    #[serde(skip)]
+    pub(super) has_regions: bool,
     /// Whether an independent checker accepts the reason; left out where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) checked: Option<bool>,
@@ -40,8 +43,16 @@ impl<R: Reason> ExplanationReport<R> {
     /// Prints the report. The answer is that of the engine, else that of the table, and yes without one.
     pub(super) fn print(&self, json: bool) -> Result<Answer, OutputError> {
         output::print(json, self)?;
-        let is_visible = self.reason.verdict().or(self.listed).unwrap_or(true);
+        let verdict = self.reason.verdict().filter(|_| !self.is_hidden_by_region());
+        let is_visible = verdict.or(self.listed).unwrap_or(true);
         Ok(if is_visible { Answer::Yes } else { Answer::No })
+    }
+}
+
+impl<R: Reason> ExplanationReport<R> {
+    /// Whether the table hides what portals let through, past walls that are no borders of cells.
+    fn is_hidden_by_region(&self) -> bool {
+        self.has_regions && self.reason.verdict() == Some(true) && self.listed == Some(false)
     }
 }
 
@@ -53,6 +64,12 @@ impl<R: Reason> fmt::Display for ExplanationReport<R> {
             (None, Some(true)) => writeln!(f, "{}", R::UNDECIDED_BUT_LISTED)?,
             (None, Some(false)) => writeln!(f, "the table says that they do not see each other")?,
             (Some(false), Some(true)) => writeln!(f, "the table lists them as visible all the same")?,
+            (Some(true), Some(false)) if self.has_regions => {
+                writeln!(
+                    f,
+                    "the table hides them: a from-region method found walls that are no borders of cells in the way"
+                )?;
+            }
             (Some(true), Some(false)) => writeln!(f, "the table says that they do not: it is wrong")?,
             _ => {}
         }

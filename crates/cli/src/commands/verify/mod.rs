@@ -15,12 +15,13 @@ use crate::input::refuse;
 use crate::picture::PictureKind;
 use crate::progress::Bar;
 use crate::surfaces::SurfaceArgs;
+use crate::unproven::Unproven;
 use crate::{output, tables};
 use error::Error;
 use outcome::{Outcome, With};
 use sightlines::formats::InputKind;
 use sightlines::pvs::Table;
-use sightlines::verify::{VerifyOptions, verify};
+use sightlines::verify::{ProofFindings, VerifyOptions, can_be_proven, verify};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use violations::Violations;
@@ -110,6 +111,7 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
         Some(_) => None,
         None => proofs::check(&args.proofs, &args.table, table, &scene.truth())?,
     };
+    let unproven = unproven(table).filter(|_| own.is_none());
     let drawn = match &args.draw {
         Some(out) => drawing::draw(&args.table, table, &findings, out)?,
         None => None,
@@ -119,9 +121,17 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     let files = [args.table.as_path(), &args.scene];
     let outcome = Outcome::new(files, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
     let outcome = outcome.in_frame(frame.as_ref(), frame.map_or(0.0, |frame| scene.times_single(frame.gap())));
+    let is_proven = unproven.is_none_or(|unproven| unproven.hides_none());
+    let outcome = outcome.only_if(is_proven || !args.proofs.is_strict());
     let is_true = outcome.is_true();
-    output::print(args.json, &With { outcome, proofs })?;
+    output::print(args.json, &With { outcome, proofs, unproven })?;
     Ok(if is_true { Answer::Yes } else { Answer::No })
+}
+
+/// What a table states that can have no proofs.
+fn unproven(table: &Table) -> Option<Unproven> {
+    let found = || ProofFindings::without_proofs(table);
+    (!can_be_proven(table)).then(|| Unproven::new(table, &found()))
 }
 
 /// Reads a table of either kind.

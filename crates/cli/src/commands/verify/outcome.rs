@@ -5,6 +5,7 @@ use super::proofs::ProofOutcome;
 use super::violations::{ReportedViolation, Violations};
 use crate::facts::FrameFacts;
 use crate::output::{count, percent, seconds};
+use crate::unproven::Unproven;
 use serde::Serialize;
 use sightlines::pvs::Frame;
 use sightlines::verify::{Confirmed, Findings, Remarks};
@@ -155,6 +156,11 @@ impl Outcome {
         Self { picture: picture.map(|p| p.display().to_string()), ..self }
     }
 
+    /// The same, but not true unless that holds.
+    pub(super) fn only_if(self, holds: bool) -> Self {
+        Self { is_true: self.is_true && holds, ..self }
+    }
+
     /// Whether nothing was found that a true table must not have.
     pub(super) fn is_true(&self) -> bool {
         self.is_true
@@ -256,11 +262,15 @@ pub(super) struct With {
     pub(super) outcome: Outcome,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) proofs: Option<ProofOutcome>,
+    /// Of a table that can have no proofs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) unproven: Option<Unproven>,
 }
 
 impl fmt::Display for With {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))?;
+        self.unproven.iter().try_for_each(|unproven| write!(f, "{unproven}"))?;
         write!(f, "{}", self.outcome)
     }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use sightlines::certificates::Refusal;
 use sightlines::pvs::Table;
 use sightlines::verify::{
-    ProofError, ProofFindings, ProofViolation, Truth, WallFindings, check_proofs, check_walls_in_space,
+    ProofError, ProofFindings, ProofViolation, Truth, WallFindings, can_be_proven, check_proofs, check_walls_in_space,
     check_walls_of_plan,
 };
 use std::fmt;
@@ -21,13 +21,18 @@ pub(super) struct ProofArgs {
     /// exists]
     #[arg(long, value_name = "FILE.cert")]
     proofs: Option<PathBuf>,
-    /// With proofs: hidden pairs without a proof are violations, and so are walls of cells that nothing in the scene
-    /// covers
+    /// With proofs, and for cells without portals, which have none: hidden pairs of cells without a proof are violations, and so are walls
+    /// of cells that nothing in the scene covers
     #[arg(long)]
     strict: bool,
 }
 
 impl ProofArgs {
+    /// Whether what has no proof is a violation.
+    pub(super) fn is_strict(&self) -> bool {
+        self.strict
+    }
+
     /// Whether proofs were requested.
     pub(super) fn is_given(&self) -> bool {
         self.proofs.is_some() || self.strict
@@ -56,6 +61,8 @@ pub(super) struct ProofOutcome {
     n_unproven_visible: u64,
     /// Pairs that the table hides without a proof.
     n_unproven_hidden: u64,
+    /// Of these, pairs that a line through portals joins: only a from-region method hides them.
+    n_hidden_past_portals: u64,
     unproven_hidden: Vec<[u32; 2]>,
     n_violations: u64,
     violations: Vec<String>,
@@ -83,6 +90,8 @@ pub(super) fn check(
     let file = match &args.proofs {
         Some(file) => file.clone(),
         None if beside.is_file() => beside,
+        // What has no proofs is counted, and that is all.
+        None if !can_be_proven(table) => return Ok(None),
         None if args.strict => return Err(Error::NoProofs { path: path.to_owned(), beside }),
         None => return Ok(None),
     };
@@ -91,7 +100,7 @@ pub(super) fn check(
     let found = check_proofs(table, &content);
     let is_of_other = match &found {
         Ok(found) => found.violations.contains(&ProofViolation::Refused(Refusal::OtherTable)),
-        Err(error) => matches!(error, ProofError::Kind { .. }),
+        Err(error) => matches!(error, ProofError::Kind { .. }) || !can_be_proven(table),
     };
     // They were not named, only found beside the table: most likely it was built again without proofs.
     if is_of_other && !is_asked_for {
@@ -133,6 +142,7 @@ impl ProofOutcome {
             n_hidden: found.n_hidden,
             n_unproven_visible: found.n_unproven_visible,
             n_unproven_hidden: found.n_unproven_hidden,
+            n_hidden_past_portals: found.n_hidden_past_portals,
             unproven_hidden: pairs.map(|pair| pair.map(|cell| cell.0)).collect(),
             n_violations: found.n_violations,
             violations: found.violations.iter().take(LISTED).map(ToString::to_string).collect(),
@@ -163,6 +173,10 @@ impl fmt::Display for ProofOutcome {
             if n > 0 {
                 writeln!(f, "unproven       {}", count(n, &format!("{what} pair")))?;
             }
+        }
+        if self.n_hidden_past_portals > 0 {
+            let n = self.n_hidden_past_portals;
+            writeln!(f, "               {n} of these are joined through portals: a from-region method hides them")?;
         }
         let pairs = self.unproven_hidden.iter().take(SHOWN).map(|[a, b]| format!("{a} and {b}"));
         let pairs: Vec<String> = pairs.collect();

@@ -1,0 +1,63 @@
+//! What of a table no proof speaks of.
+
+use crate::output::count;
+use serde::Serialize;
+use sightlines::pvs::{CellId, Table};
+use sightlines::verify::{ProofFindings, can_be_proven};
+use std::fmt;
+
+/// Pairs without a proof.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Unproven {
+    /// Unordered pairs of different cells that the table hides.
+    n_hidden: u64,
+    /// Of these, pairs that a line through portals joins: only a from-region method hides them.
+    n_hidden_past_portals: u64,
+    /// Unordered pairs of different cells that the table shows.
+    n_visible: u64,
+    /// Pairs of a cell and an object that the table hides; no proof speaks of objects.
+    n_hidden_objects: u64,
+    /// Whether there can be proofs at all.
+    #[serde(skip)]
+    has_proofs: bool,
+}
+
+impl Unproven {
+    /// Counts, after the proofs were checked.
+    pub(crate) fn new(table: &Table, found: &ProofFindings) -> Self {
+        let n_objects = table.objects().len() as u64;
+        let hidden = |cell| n_objects - table.visible_objects(CellId(cell)).len() as u64;
+        Self {
+            n_hidden: found.n_unproven_hidden,
+            n_hidden_past_portals: found.n_hidden_past_portals,
+            n_visible: found.n_unproven_visible,
+            n_hidden_objects: (0u32..).take(table.n_cells()).map(hidden).sum(),
+            has_proofs: can_be_proven(table),
+        }
+    }
+
+    /// Whether all that is hidden from cells is proven to be.
+    pub(crate) fn hides_none(&self) -> bool {
+        self.n_hidden == 0
+    }
+}
+
+impl fmt::Display for Unproven {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { n_hidden, n_hidden_past_portals, n_visible, n_hidden_objects, has_proofs } = *self;
+        let all = if has_proofs { "" } else { "all " };
+        let [hidden, visible] =
+            [(n_hidden, "hidden pair"), (n_visible, "visible pair")].map(|(n, what)| count(n, what));
+        writeln!(f, "unproven       {all}{hidden} and {visible} of cells")?;
+        if n_hidden_past_portals > 0 {
+            writeln!(
+                f,
+                "               {n_hidden_past_portals} of the hidden ones are joined through portals: a from-region method hides them"
+            )?;
+        }
+        if n_hidden_objects > 0 {
+            writeln!(f, "               {} of a cell and an object", count(n_hidden_objects, "hidden pair"))?;
+        }
+        Ok(())
+    }
+}
