@@ -19,6 +19,12 @@ pub(crate) struct End {
 /// numbers of at most twice that size.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// How far off a coordinate of the point is where a segment crosses a plane, if its ends have the coordinates `x` and `y`: the parameter has three
+/// roundings more.
+pub(crate) fn crossing_error(x: f64, y: f64) -> f64 {
+    2.0 * ROUNDING * (x.abs() + y.abs())
+}
+
 impl End {
     /// The rectangle of a box that is flat along `axis`; none if it is flat along another axis, too.
     pub(crate) fn rectangle(b: &Aabb<3>, axis: usize) -> Option<Self> {
@@ -72,7 +78,7 @@ impl End {
                 let mut p = [0, 1, 2].map(|j| a[j] + (b[j] - a[j]) * t);
                 p[k] = at;
                 for j in (0..3).filter(|&j| j != k && a[j] != b[j]) {
-                    radius[j] = radius[j].max(2.0 * ROUNDING * (a[j].abs() + b[j].abs()));
+                    radius[j] = radius[j].max(crossing_error(a[j], b[j]));
                 }
                 if n < 4 {
                     (ring[n], n) = (p, n + 1);

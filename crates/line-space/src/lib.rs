@@ -21,6 +21,7 @@ mod end;
 mod hull;
 mod method;
 mod orient;
+mod roots;
 mod search;
 mod side;
 mod split;

@@ -1,10 +1,9 @@
 //! The method: what is hidden from a box, target by target.
 
-use crate::cell::Cell;
-use crate::end::End;
-use crate::search::{Outcome, Patience, Root, Search};
+use crate::roots::Roots;
+use crate::search::{Outcome, Patience, Search};
 use crate::surface::Surface;
-use crate::touch::{Start, Target};
+use crate::touch::Target;
 use sightlines_geometry::coordinate::MIN_MAGNITUDE;
 use sightlines_geometry::{Aabb, Point3, check_coordinate};
 use sightlines_multifocal::mesh::{avoids, collinear};
@@ -67,7 +66,7 @@ impl LineSpace {
         if (0..3).all(|k| volume.min[k] <= target.max[k] && target.min[k] <= volume.max[k]) {
             return Outcome::Undecided;
         }
-        self.run(box_roots(&volume, &target), &Target::Box, budget, patience)
+        self.run(&Roots::to_box(&volume, &target), &Target::Box, budget, patience)
     }
 
     /// Decides whether a triangle can be seen from a box: about the lines from all points of `volume` to all inner points of the
@@ -85,10 +84,10 @@ impl LineSpace {
         if collinear(a, b, c) {
             return self.box_from(&volume, &Aabb::around(triangle), budget, patience);
         }
-        self.run(triangle_roots(&volume, triangle), &Target::Triangle(triangle), budget, patience)
+        self.run(&Roots::to_triangle(&volume, triangle), &Target::Triangle(triangle), budget, patience)
     }
 
-    fn run(&mut self, roots: Vec<Root>, target: &Target, budget: u32, patience: Patience) -> Outcome {
+    fn run(&mut self, roots: &Roots, target: &Target, budget: u32, patience: Patience) -> Outcome {
         let (outcome, n) = self.search.run(&self.surface, roots, target, budget, patience);
         self.n_cells += u64::from(n);
         outcome
@@ -110,69 +109,6 @@ fn with_area(b: &Aabb<3>) -> Option<Aabb<3>> {
     }
     let usable = |x: &f64| check_coordinate(*x).is_ok();
     (!b.is_empty() && larger.min.iter().chain(&larger.max).all(usable)).then_some(larger)
-}
-
-/// The sides of a box: axis, whether it is the upper one, and the rectangle.
-fn sides(b: &Aabb<3>) -> impl Iterator<Item = (usize, bool, Aabb<3>)> + '_ {
-    (0..6).map(|i| {
-        let (axis, upper) = (i / 2, i % 2 == 1);
-        let mut side = *b;
-        let at = if upper { b.max[axis] } else { b.min[axis] };
-        (side.min[axis], side.max[axis]) = (at, at);
-        (axis, upper, side)
-    })
-}
-
-fn start_at(volume: &Aabb<3>, axis: usize, upward: bool) -> Start {
-    Start { axis, upward, from_behind: volume.min[axis] < volume.max[axis] }
-}
-
-/// The part of a rectangle beyond a plane across an axis.
-fn beyond(mut side: Aabb<3>, axis: usize, at: f64, upward: bool) -> Option<Aabb<3>> {
-    if upward {
-        side.min[axis] = side.min[axis].max(at);
-    } else {
-        side.max[axis] = side.max[axis].min(at);
-    }
-    let inside = if upward { side.max[axis] > at } else { side.min[axis] < at };
-    inside.then_some(side)
-}
-
-/// All lines from a box to another: for each side by which they leave the one and each by which they enter the other.
-///
-/// Lines that leave or enter through an edge, or run within a side, are limits of these.
-fn box_roots(volume: &Aabb<3>, target: &Aabb<3>) -> Vec<Root> {
-    let mut roots = Vec::new();
-    for (axis, upward, start) in sides(volume) {
-        for (across, outward, end) in sides(target) {
-            let to = beyond(end, axis, start.min[axis], upward);
-            let from = beyond(start, across, end.min[across], outward);
-            let ends = from.zip(to).and_then(|(f, t)| End::rectangle(&f, axis).zip(End::rectangle(&t, across)));
-            roots.extend(ends.map(|(from, to)| Root {
-                cell: Cell { from, to },
-                start: start_at(volume, axis, upward),
-                limit: None,
-                share: 0.0,
-            }));
-        }
-    }
-    roots
-}
-
-/// All lines from a box to a triangle beside it.
-fn triangle_roots(volume: &Aabb<3>, triangle: [Point3; 3]) -> Vec<Root> {
-    let mut roots = Vec::new();
-    for (axis, upward, start) in sides(volume) {
-        let Some(from) = End::rectangle(&start, axis) else { continue };
-        let pieces = End::beyond(triangle, axis, start.min[axis], upward);
-        roots.extend(pieces.map(|to| Root {
-            cell: Cell { from, to },
-            start: start_at(volume, axis, upward),
-            limit: None,
-            share: 0.0,
-        }));
-    }
-    roots
 }
 
 impl FromRegion for LineSpace {

@@ -1,11 +1,11 @@
 //! The search: cells of line space are blocked by chains or cut in two, until none is left or one has a free line.
 
-use crate::cell::Cell;
 use crate::chain::{AtFold, Blocked, ChainFinder, Gap, Shaft};
-use crate::side::{Limit, Part, Side};
+use crate::side::{Part, Side};
+use crate::roots::{Root, Roots};
 use crate::split::{promise, split};
 use crate::surface::{Hit, Surface};
-use crate::touch::{Start, Target};
+use crate::touch::Target;
 use sightlines_geometry::Random;
 use std::collections::VecDeque;
 
@@ -18,17 +18,6 @@ pub enum Outcome {
     Reached,
     /// Neither, within the effort allowed.
     Undecided,
-}
-
-/// A cell that waits, and where its lines begin.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Root {
-    pub(crate) cell: Cell,
-    pub(crate) start: Start,
-    /// The side of an edge on which the lines in question pass, if not all are left.
-    pub(crate) limit: Option<Limit>,
-    /// Its part of all lines, roughly: halves have half of it.
-    pub(crate) share: f64,
 }
 
 /// Hits this near to the end of a line count as its end: the target itself, or what lies on it. So `Reached` may be wrong by that part of a
@@ -72,13 +61,13 @@ impl Search {
     pub(crate) fn run(
         &mut self,
         surface: &Surface,
-        roots: impl IntoIterator<Item = Root>,
+        roots: &Roots,
         target: &Target,
         budget: u32,
         patience: Patience,
     ) -> (Outcome, u32) {
         self.queue.clear();
-        self.queue.extend(roots);
+        self.queue.extend(roots.whole());
         let n_roots = self.queue.len() as f64;
         self.queue.iter_mut().for_each(|root| root.share = 1.0 / n_roots);
         let hopeless = match patience {
@@ -99,25 +88,26 @@ impl Search {
             let Some(mut shaft) = Shaft::new(root.cell, root.start, &mut random) else {
                 return (Outcome::Undecided, n);
             };
-            let mut limit = None;
             let side = root.limit.map(|limit| Side::new(&root.cell, limit));
-            match side.map_or(Part::All, |side| side.part()) {
-                Part::None => {
+            let side = match side.map(|side| (side, side.part())) {
+                Some((_, Part::None)) => {
                     open -= root.share;
                     continue;
                 }
+                Some((side, Part::Some)) => Some(side),
                 // Asks a little more, never less.
-                Part::All => {}
-                Part::Some => limit = root.limit,
-            }
-            let root = Root { limit, ..root };
-            let is_ready = limit.and(side).is_none_or(|side| shaft.limit(side, &mut random));
+                Some((_, Part::All)) | None => None,
+            };
+            let root = Root { limit: side.map(|side| side.limit), ..root };
+            let is_ready = side.is_none_or(|side| shaft.limit(side, &mut random));
             let gap = if is_ready {
                 surface.hits(shaft.line[0], shaft.line[1], &mut self.hits);
-                if self.hits.iter().all(|hit| hit.at > 1.0 - AT_END) {
+                let is_free = self.hits.iter().all(|hit| hit.at > 1.0 - AT_END);
+                // A line of a root with parts may be none of those in question.
+                if is_free && roots.parts(&root).is_empty() {
                     return (Outcome::Reached, n);
                 }
-                match self.block(surface, &shaft, target) {
+                match if is_free { Err(Gap::Other) } else { self.block(surface, &shaft, target) } {
                     Ok(Blocked::All) => {
                         open -= root.share;
                         continue;
@@ -134,6 +124,12 @@ impl Search {
             } else {
                 Gap::Other
             };
+            let parts = roots.parts(&root);
+            if !parts.is_empty() {
+                let share = root.share / parts.len() as f64;
+                self.queue.extend(parts.iter().map(|part| Root { limit: root.limit, share, ..*part }));
+                continue;
+            }
             let Some(halves) = split(surface, &shaft, &gap) else { return (Outcome::Undecided, n) };
             self.queue.extend(halves.map(|cell| Root { cell, share: root.share / 2.0, ..root }));
         }
