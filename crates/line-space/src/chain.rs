@@ -86,13 +86,15 @@ pub(crate) struct Shaft {
 
 impl Shaft {
     /// None for ends without inner points.
-    pub(crate) fn new(cell: Cell, start: Start, random: &mut Random) -> Option<Self> {
+    ///
+    /// * `reach`: the largest magnitudes of coordinates of the surface
+    pub(crate) fn new(cell: Cell, start: Start, reach: Point3, random: &mut Random) -> Option<Self> {
         let mut weights = || [0; 4].map(|_| 0.7 + 0.6 * random.unit());
         let (from, _) = cell.from.inner(weights())?;
         let (to, rounding) = cell.to.inner(weights())?;
         let (a, b) = (cell.from.bounds(), cell.to.bounds());
         let bounds = a.with(b.min).with(b.max);
-        Some(Self { cell, start, hull: Hull::of(&cell), bounds, line: [from, to], rounding, side: None })
+        Some(Self { cell, start, hull: Hull::of(&cell, reach), bounds, line: [from, to], rounding, side: None })
     }
 
     /// Of the lines of the cell those on a side; says whether they are certainly connected, and one was found.

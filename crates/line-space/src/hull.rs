@@ -66,10 +66,60 @@ impl HalfSpace {
     }
 }
 
+/// The same half-spaces side by side, for points whose coordinates are not larger than a given magnitude: what is far enough from every border is
+/// decided for all of them at once.
+#[derive(Debug, Clone, Copy)]
+struct Quick {
+    /// `normal[0] x + normal[1] y + normal[2] z + offset` is how far inside a point is.
+    normal: [[f64; MOST]; 3],
+    offset: [f64; MOST],
+    /// Above this value it is inside.
+    inside: [f64; MOST],
+    /// Below this value it is outside.
+    outside: [f64; MOST],
+}
+
+impl Quick {
+    /// Without half-spaces everything is inside.
+    const NONE: Self = Self {
+        normal: [[0.0; MOST]; 3],
+        offset: [0.0; MOST],
+        inside: [-1.0; MOST],
+        outside: [-1.0; MOST],
+    };
+
+    /// Another half-space. To the rounding of `normal · (p - a)`, as a share of `weight · (|p| + |a|)`, this order of the sums adds
+    /// four roundings of terms of that size.
+    fn set(&mut self, i: usize, space: &HalfSpace, reach: Point3) {
+        let a = space.through[0];
+        let bound = 2.0 * ROUNDING * (0..3).map(|k| space.weight[k] * (reach[k] + a[k].abs())).sum::<f64>();
+        (0..3).for_each(|k| self.normal[k][i] = space.normal[k]);
+        self.offset[i] = -dot(space.normal, a);
+        (self.inside[i], self.outside[i]) = (bound, -(bound + space.margin));
+    }
+
+    /// For each half-space a bit if the point is outside, and a bit if that is not certain.
+    fn sides(&self, p: Point3) -> [u16; 2] {
+        let [x, y, z] = &self.normal;
+        let mut value = [0.0; MOST];
+        for i in 0..MOST {
+            value[i] = x[i] * p[0] + y[i] * p[1] + z[i] * p[2] + self.offset[i];
+        }
+        let (mut outside, mut open) = (0, 0);
+        for i in 0..MOST {
+            let is_outside = value[i] < self.outside[i];
+            outside |= u16::from(is_outside) << i;
+            open |= u16::from(!is_outside && value[i] <= self.inside[i]) << i;
+        }
+        [outside, open]
+    }
+}
+
 /// The half-spaces of a cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hull {
     spaces: [HalfSpace; MOST],
+    quick: Quick,
     n: usize,
     /// Whether the first one is that of the end where lines begin.
     begins: bool,
@@ -84,8 +134,9 @@ pub(crate) struct Code(u16);
 const BEHIND: u16 = 1 << 15;
 
 impl Hull {
-    pub(crate) fn of(cell: &Cell) -> Self {
-        let mut hull = Self { spaces: [HalfSpace::default(); MOST], n: 0, begins: false };
+    /// * `reach`: the largest magnitudes of coordinates of points that are asked about
+    pub(crate) fn of(cell: &Cell, reach: Point3) -> Self {
+        let mut hull = Self { spaces: [HalfSpace::default(); MOST], quick: Quick::NONE, n: 0, begins: false };
         let (from, to) = (cell.from.corners(), cell.to.corners());
         let radius = cell.to.radius();
         hull.begins = hull.add([from[0], from[1], from[2]], cell, radius);
@@ -103,6 +154,9 @@ impl Hull {
                 }
                 hull.add([a, b, best], cell, radius);
             }
+        }
+        for (i, space) in hull.spaces[..hull.n].iter().enumerate() {
+            hull.quick.set(i, space, reach);
         }
         hull
     }
@@ -142,9 +196,14 @@ impl Hull {
 
     /// Where a point is.
     pub(crate) fn code(&self, p: Point3) -> Code {
-        let mut code = 0;
-        for (i, space) in self.spaces[..self.n].iter().enumerate() {
-            let side = space.side(p);
+        let [mut code, mut open] = self.quick.sides(p);
+        if self.begins && code & 1 != 0 {
+            code |= BEHIND;
+        }
+        while open != 0 {
+            let i = open.trailing_zeros() as usize;
+            open &= open - 1;
+            let side = self.spaces[i].side(p);
             code |= u16::from(side <= 0) << i;
             if i == 0 && self.begins && side < 0 {
                 code |= BEHIND;
@@ -215,13 +274,21 @@ mod tests {
                 truth[if first { j } else { i }] = middle;
                 to = halves[usize::from(!first)];
             }
-            let hull = Hull::of(&Cell { from, to });
+            let points = || others.iter().chain(from.corners()).chain(to.corners());
+            let reach = [0, 1, 2].map(|k| points().map(|p| p[k].abs().next_up().next_up().next_up()).fold(0.0, f64::max));
+            let hull = Hull::of(&Cell { from, to }, reach);
             let near = |p: &Point3, by: &[i8; 3]| -> Point3 {
                 std::array::from_fn(|k| (0..by[k].abs()).fold(p[k], |x, _| if by[k] > 0 { x.next_up() } else { x.next_down() }))
             };
             let corners: Vec<Point3> = from.corners().iter().chain(to.corners()).copied().collect();
             let mut nearby: Vec<Point3> = corners.iter().zip(&ulps).map(|(p, by)| near(p, by)).collect();
             nearby.retain(|p| p.iter().all(|&x| check_coordinate(x).is_ok()));
+            for p in others.iter().chain(&corners).chain(&nearby) {
+                let sides: Vec<i8> = hull.spaces[..hull.n].iter().map(|space| space.side(*p)).collect();
+                let outside = sides.iter().enumerate().map(|(i, side)| u16::from(*side <= 0) << i).sum::<u16>();
+                let is_behind = hull.begins && sides[0] < 0;
+                prop_assert_eq!(hull.code(*p), Code(outside | if is_behind { BEHIND } else { 0 }));
+            }
             for space in &hull.spaces[..hull.n] {
                 let least = from.corners().iter().map(|&p| exact(p)).chain(truth.clone()).map(|p| depth(space, &p)).min();
                 let least = least.expect("there are corners");

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// How much is done for one target at most. More finds more hidden; nothing is ever hidden wrongly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
-    /// Cells of line space for a box.
+    /// Cells of line space for a box. A box around triangles that are looked at one by one otherwise has at most half as many as there are triangles.
     pub box_cells: u32,
     /// Cells of line space for a triangle.
     pub triangle_cells: u32,
@@ -25,7 +25,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { box_cells: 40, triangle_cells: 400, attempts: 5, longest_chain: 300 }
+        Self { box_cells: 16, triangle_cells: 400, attempts: 4, longest_chain: 300 }
     }
 }
 
@@ -58,6 +58,7 @@ impl LineSpace {
     /// Decides whether a box can be seen from another one: about the lines from all points of `volume` to all points of
     /// `target`.
     pub fn see_box(&mut self, volume: &Aabb<3>, target: &Aabb<3>, budget: u32) -> Outcome {
+        self.search.forget();
         self.box_from(volume, target, budget, Patience::Full)
     }
 
@@ -72,6 +73,7 @@ impl LineSpace {
     /// Decides whether a triangle can be seen from a box: about the lines from all points of `volume` to all inner points of the
     /// triangle.
     pub fn see_triangle(&mut self, volume: &Aabb<3>, triangle: [Point3; 3], budget: u32) -> Outcome {
+        self.search.forget();
         self.triangle_from(volume, triangle, budget, Patience::Full)
     }
 
@@ -122,6 +124,7 @@ impl FromRegion for LineSpace {
 
     fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError> {
         let volume = *volume.bounds();
+        self.search.forget();
         Ok(Box::new(LineUmbra { method: self, volume }))
     }
 }
@@ -135,6 +138,11 @@ struct LineUmbra<'a> {
 impl Umbra for LineUmbra<'_> {
     fn hides(&mut self, target: &Aabb<3>) -> bool {
         let budget = self.method.effort.box_cells;
+        self.method.box_from(&self.volume, target, budget, Patience::WhileItPays) == Outcome::Hidden
+    }
+
+    fn hides_box_of(&mut self, target: &Aabb<3>, n_triangles: usize) -> bool {
+        let budget = u32::try_from(n_triangles / 2).unwrap_or(u32::MAX).min(self.method.effort.box_cells);
         self.method.box_from(&self.volume, target, budget, Patience::WhileItPays) == Outcome::Hidden
     }
 

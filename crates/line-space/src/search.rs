@@ -50,11 +50,45 @@ pub(crate) struct Search {
     hits: Vec<Hit>,
     /// How many hits of a line are tried as starts of chains.
     attempts: usize,
+    successes: Successes,
+}
+
+/// How often chains blocked lines, by the triangle where they began. What blocks the lines to one target often blocks those to the next.
+#[derive(Debug)]
+struct Successes {
+    epoch: u32,
+    /// The epoch that the number is of.
+    of: Vec<(u32, u32)>,
+}
+
+impl Successes {
+    fn forget(&mut self) {
+        if self.epoch == u32::MAX {
+            self.of.fill((0, 0));
+            self.epoch = 0;
+        }
+        self.epoch += 1;
+    }
+
+    fn count(&self, triangle: u32) -> u32 {
+        let (epoch, n) = self.of[triangle as usize];
+        if epoch == self.epoch { n } else { 0 }
+    }
+
+    fn add(&mut self, triangle: u32) {
+        self.of[triangle as usize] = (self.epoch, self.count(triangle).saturating_add(1));
+    }
 }
 
 impl Search {
     pub(crate) fn new(surface: &Surface, attempts: usize, longest: usize) -> Self {
-        Self { finder: ChainFinder::new(surface, longest), queue: VecDeque::new(), hits: Vec::new(), attempts }
+        let successes = Successes { epoch: 1, of: vec![(0, 0); surface.mesh().triangles().len()] };
+        Self { finder: ChainFinder::new(surface, longest), queue: VecDeque::new(), hits: Vec::new(), attempts, successes }
+    }
+
+    /// Forgets which chains blocked lines. Until then the outcome of a search may depend on those before.
+    pub(crate) fn forget(&mut self) {
+        self.successes.forget();
     }
 
     /// Decides about all lines of the roots, with at most `budget` cells of line space, or fewer by `patience`.
@@ -85,7 +119,7 @@ impl Search {
                 return (Outcome::Undecided, n);
             }
             n += 1;
-            let Some(mut shaft) = Shaft::new(root.cell, root.start, &mut random) else {
+            let Some(mut shaft) = Shaft::new(root.cell, root.start, surface.reach(), &mut random) else {
                 return (Outcome::Undecided, n);
             };
             let side = root.limit.map(|limit| Side::new(&root.cell, limit));
@@ -138,8 +172,11 @@ impl Search {
 
     /// Blocks the lines of a cell, or those on one side of an edge, by one of several chains, or says where best to cut.
     fn block(&mut self, surface: &Surface, shaft: &Shaft, target: &Target) -> Result<Blocked, Gap> {
+        let successes = &self.successes;
         self.hits.sort_unstable_by(|a, b| {
-            surface.area(b.triangle).total_cmp(&surface.area(a.triangle)).then(a.triangle.cmp(&b.triangle))
+            let by_success = successes.count(b.triangle).cmp(&successes.count(a.triangle));
+            let by_area = || surface.area(b.triangle).total_cmp(&surface.area(a.triangle));
+            by_success.then_with(by_area).then(a.triangle.cmp(&b.triangle))
         });
         self.hits.dedup_by_key(|hit| hit.triangle);
         self.hits.truncate(self.attempts);
@@ -155,7 +192,10 @@ impl Search {
         let mut folding = Vec::new();
         for hit in &self.hits {
             match finder.block(surface, shaft, target, hit.triangle, AtFold::Leave) {
-                Ok(Blocked::All) => return Ok(Blocked::All),
+                Ok(Blocked::All) => {
+                    self.successes.add(hit.triangle);
+                    return Ok(Blocked::All);
+                }
                 Ok(part @ Blocked::Side { share, .. }) => {
                     if most.is_none_or(|most| share > most.0) {
                         most = Some((share, part));

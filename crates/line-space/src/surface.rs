@@ -14,6 +14,7 @@ pub struct Surface {
     tree: BoxTree<3>,
     middles: Vec<Point3>,
     areas: Vec<f64>,
+    reach: Point3,
 }
 
 /// A triangle that a segment meets, as doubles have it.
@@ -38,12 +39,19 @@ impl Surface {
         let tree = BoxTree::build(&boxes, 4);
         let middles = all().map(|[a, b, c]| scale(add(add(a, b), c), 1.0 / 3.0)).collect();
         let areas = all().map(|t| length(normal(t)) / 2.0).collect();
-        Self { mesh, corners, boxes, tree, middles, areas }
+        let size = |k: usize| mesh.vertices().iter().map(|p| p[k].abs()).fold(0.0, f64::max);
+        let reach = [0, 1, 2].map(size);
+        Self { mesh, corners, boxes, tree, middles, areas, reach }
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// The largest magnitudes of coordinates.
+    pub(crate) fn reach(&self) -> Point3 {
+        self.reach
     }
 
     /// The ends of an edge.

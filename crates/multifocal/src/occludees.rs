@@ -185,7 +185,7 @@ impl Object {
             return false;
         }
         query.counts.boxes += 1;
-        if query.umbra.hides(&node.bounds) {
+        if query.umbra.hides_box_of(&node.bounds, (node.end - node.start) as usize) {
             return false;
         }
         if !node.is_leaf() {

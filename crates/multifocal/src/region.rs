@@ -42,6 +42,12 @@ pub trait Umbra {
     /// of segments gets through. A box that meets the volume never is.
     fn hides(&mut self, target: &Aabb<3>) -> bool;
 
+    /// The same of a box around so many triangles, whose number says how much the answer may cost: unless the box is hidden, each of
+    /// them is looked at.
+    fn hides_box_of(&mut self, target: &Aabb<3>, _n_triangles: usize) -> bool {
+        self.hides(target)
+    }
+
     /// Whether all of a polygon, or of the convex hull of points, is certainly hidden. By default tests the box around
     /// it.
     fn hides_points(&mut self, points: &[sightlines_geometry::Point3]) -> bool {

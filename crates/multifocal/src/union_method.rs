@@ -55,6 +55,10 @@ impl Umbra for AnyUmbra<'_> {
         self.umbrae.iter_mut().any(|umbra| umbra.hides(target))
     }
 
+    fn hides_box_of(&mut self, target: &Aabb<3>, n_triangles: usize) -> bool {
+        self.umbrae.iter_mut().any(|umbra| umbra.hides_box_of(target, n_triangles))
+    }
+
     fn hides_points(&mut self, points: &[Point3]) -> bool {
         self.umbrae.iter_mut().take(self.n_about_points).any(|umbra| umbra.hides_points(points))
     }

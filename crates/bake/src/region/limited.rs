@@ -72,6 +72,10 @@ impl Umbra for LimitedUmbra<'_, '_> {
         !self.limit.refuses() && self.inner.as_mut().is_some_and(|umbra| umbra.hides(target))
     }
 
+    fn hides_box_of(&mut self, target: &Aabb<3>, n_triangles: usize) -> bool {
+        !self.limit.refuses() && self.inner.as_mut().is_some_and(|umbra| umbra.hides_box_of(target, n_triangles))
+    }
+
     fn hides_points(&mut self, points: &[Point3]) -> bool {
         !self.limit.refuses() && self.inner.as_mut().is_some_and(|umbra| umbra.hides_points(points))
     }
