@@ -122,8 +122,9 @@ impl LinesFrom {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::truth::{Exact, cut_triangle, cuts, det, exact, mix};
     use num_rational::BigRational;
-    use num_traits::{Signed, Zero};
+    use num_traits::Signed;
     use proptest::prelude::*;
     use sightlines_geometry::{Aabb, check_coordinate};
 
@@ -136,29 +137,9 @@ mod tests {
         prop_oneof![1u64..9, Just(1 << 60)]
     }
 
-    fn sign(p: [&[BigRational; 3]; 4]) -> i32 {
-        let d = |i: usize| [0, 1, 2].map(|k| &p[i][k] - &p[0][k]);
-        let [u, v, w] = [d(1), d(2), d(3)];
-        let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
-        let det = minor(1, 2) * &w[0] + minor(2, 0) * &w[1] + minor(0, 1) * &w[2];
-        if det.is_zero() {
-            0
-        } else if det.is_positive() {
-            1
-        } else {
-            -1
-        }
-    }
-
-    fn exact(p: Point3) -> [BigRational; 3] {
-        p.map(|x| BigRational::from_float(x).expect("finite"))
-    }
-
-    /// A point of a triangle whose corners are known exactly.
-    fn mix(corners: &[[BigRational; 3]], weights: [u64; 3]) -> [BigRational; 3] {
-        let sum = BigRational::from_integer((weights[0] + weights[1] + weights[2]).into());
-        let part = |i: usize, k: usize| &corners[i][k] * BigRational::from_integer(weights[i].into());
-        [0, 1, 2].map(|k| (part(0, k) + part(1, k) + part(2, k)) / &sum)
+    fn sign(a: &Exact, b: &Exact, x: &Exact, y: &Exact) -> i32 {
+        let det = det(a, b, x, y);
+        i32::from(det.is_positive()) - i32::from(det.is_negative())
     }
 
     proptest! {
@@ -167,7 +148,7 @@ mod tests {
         #[test]
         fn all_inner_lines_pass_on_the_side_that_is_reported(
             low in point(), size in [1i32..4, 1i32..4], triangle in [point(), point(), point()], x in point(), y in point(),
-            cuts in prop::collection::vec((0usize..3, 1u32..32, any::<bool>()), 0..4),
+            cuts in cuts(4),
             shift in prop_oneof![Just(0.0), Just(1e6)],
             near in prop::option::of((0usize..3, [-2i8..3, -2i8..3, -2i8..3])),
             weights in prop::collection::vec([weight(), weight(), weight(), weight(), weight()], 12),
@@ -176,16 +157,7 @@ mod tests {
             let (low, triangle, x, y) = (moved(low), triangle.map(moved), moved(x), moved(y));
             let high = [low[0] + f64::from(size[0]), low[1] + f64::from(size[1]), low[2]];
             let from = End::rectangle(&Aabb { min: low, max: high }, 2).expect("it has an area");
-            let (mut to, mut truth) = (End::triangle(triangle), triangle.map(exact));
-            for (side, part, first) in cuts {
-                let t = f64::from(part) / 32.0;
-                let Some(halves) = to.cut(side, t) else { break };
-                let (i, j) = (side, (side + 1) % 3);
-                let part = BigRational::new(part.into(), 32.into());
-                let middle = [0, 1, 2].map(|k| &truth[i][k] + (&truth[j][k] - &truth[i][k]) * &part);
-                truth[if first { j } else { i }] = middle;
-                to = halves[usize::from(!first)];
-            }
+            let (to, truth) = cut_triangle(triangle, cuts);
             // An edge may end at a corner, but for a few units in the last place.
             let step = |x: f64, n: i8| (0..n.abs()).fold(x, |x, _| if n > 0 { x.next_up() } else { x.next_down() });
             let x = near.map_or(x, |(i, by)| std::array::from_fn(|k| step(to.corners()[i][k], by[k])));
@@ -199,7 +171,7 @@ mod tests {
                 let (low, high) = (exact(low), exact(high));
                 let at = |k: usize, t: BigRational| &low[k] + (&high[k] - &low[k]) * t;
                 let eye = [at(0, part(a, b)), at(1, part(b, c)), low[2].clone()];
-                let s = sign([&eye, &mix(&truth, [c, d, e]), &exact(x), &exact(y)]);
+                let s = sign(&eye, &mix(&truth, &[c, d, e]), &exact(x), &exact(y));
                 signs[0] |= i32::from(s <= 0);
                 signs[1] |= i32::from(s >= 0);
             }

@@ -81,12 +81,8 @@ struct Quick {
 
 impl Quick {
     /// Without half-spaces everything is inside.
-    const NONE: Self = Self {
-        normal: [[0.0; MOST]; 3],
-        offset: [0.0; MOST],
-        inside: [-1.0; MOST],
-        outside: [-1.0; MOST],
-    };
+    const NONE: Self =
+        Self { normal: [[0.0; MOST]; 3], offset: [0.0; MOST], inside: [-1.0; MOST], outside: [-1.0; MOST] };
 
     /// Another half-space. To the rounding of `normal · (p - a)`, as a share of `weight · (|p| + |a|)`, this order of the sums adds
     /// four roundings of terms of that size.
@@ -101,15 +97,12 @@ impl Quick {
     /// For each half-space a bit if the point is outside, and a bit if that is not certain.
     fn sides(&self, p: Point3) -> [u16; 2] {
         let [x, y, z] = &self.normal;
-        let mut value = [0.0; MOST];
-        for i in 0..MOST {
-            value[i] = x[i] * p[0] + y[i] * p[1] + z[i] * p[2] + self.offset[i];
-        }
+        let value: [f64; MOST] = std::array::from_fn(|i| x[i] * p[0] + y[i] * p[1] + z[i] * p[2] + self.offset[i]);
         let (mut outside, mut open) = (0, 0);
-        for i in 0..MOST {
-            let is_outside = value[i] < self.outside[i];
+        for (i, value) in value.into_iter().enumerate() {
+            let is_outside = value < self.outside[i];
             outside |= u16::from(is_outside) << i;
-            open |= u16::from(!is_outside && value[i] <= self.inside[i]) << i;
+            open |= u16::from(!is_outside && value <= self.inside[i]) << i;
         }
         [outside, open]
     }
@@ -226,27 +219,20 @@ impl Hull {
 mod tests {
     use super::*;
     use crate::end::End;
+    use crate::truth::{Exact, cut_triangle, cuts, det, exact};
     use num_rational::BigRational;
     use num_traits::Zero;
     use proptest::prelude::*;
     use sightlines_geometry::{Aabb, check_coordinate};
 
-    type Exact = [BigRational; 3];
-
     fn point() -> impl Strategy<Value = Point3> {
         [-4i32..5, -4i32..5, -4i32..5].prop_map(|p| p.map(|x| f64::from(x) * 0.3))
-    }
-
-    fn exact(p: Point3) -> Exact {
-        p.map(|x| BigRational::from_float(x).expect("finite"))
     }
 
     /// How far inside of the stored border of a half-space a point is, in some unit.
     fn depth(space: &HalfSpace, p: &Exact) -> BigRational {
         let [a, b, c] = space.through.map(exact);
-        let [u, v, w] = [&b, &c, p].map(|q| [0, 1, 2].map(|k| &q[k] - &a[k]));
-        let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
-        let det = minor(1, 2) * &w[0] + minor(2, 0) * &w[1] + minor(0, 1) * &w[2];
+        let det = det(&a, &b, &c, p);
         if space.sign > 0.0 { det } else { -det }
     }
 
@@ -256,7 +242,7 @@ mod tests {
         #[test]
         fn true_ends_are_inside_of_what_excludes_a_point(
             low in point(), size in [1i32..4, 1i32..4], triangle in [point(), point(), point()], shift in prop_oneof![Just(0.0), Just(1e6)],
-            cuts in prop::collection::vec((0usize..3, 1u32..32, any::<bool>()), 0..5), others in prop::collection::vec(point(), 6),
+            cuts in cuts(5), others in prop::collection::vec(point(), 6),
             ulps in prop::collection::vec([-3i8..4, -3i8..4, -3i8..4], 8),
         ) {
             let [low, triangle, others] = [vec![low], triangle.to_vec(), others].map(|all| -> Vec<Point3> {
@@ -265,15 +251,7 @@ mod tests {
             let (low, triangle) = (low[0], [triangle[0], triangle[1], triangle[2]]);
             let high = [low[0] + f64::from(size[0]), low[1] + f64::from(size[1]), low[2]];
             let from = End::rectangle(&Aabb { min: low, max: high }, 2).expect("it has an area");
-            let (mut to, mut truth) = (End::triangle(triangle), triangle.map(exact));
-            for (side, part, first) in cuts {
-                let Some(halves) = to.cut(side, f64::from(part) / 32.0) else { break };
-                let (i, j) = (side, (side + 1) % 3);
-                let part = BigRational::new(part.into(), 32.into());
-                let middle = [0, 1, 2].map(|k| &truth[i][k] + (&truth[j][k] - &truth[i][k]) * &part);
-                truth[if first { j } else { i }] = middle;
-                to = halves[usize::from(!first)];
-            }
+            let (to, truth) = cut_triangle(triangle, cuts);
             let points = || others.iter().chain(from.corners()).chain(to.corners());
             let reach = [0, 1, 2].map(|k| points().map(|p| p[k].abs().next_up().next_up().next_up()).fold(0.0, f64::max));
             let hull = Hull::of(&Cell { from, to }, reach);

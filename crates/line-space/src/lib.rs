@@ -27,6 +27,8 @@ mod side;
 mod split;
 mod surface;
 mod touch;
+#[cfg(test)]
+mod truth;
 
 pub use method::{Effort, LineSpace};
 pub use search::Outcome;

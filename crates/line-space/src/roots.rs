@@ -1,9 +1,9 @@
 //! All lines from a box to a target, as cells of line space: coarse ones first, exact ones where these are not enough.
 //!
-//! Lines leave a box by up to three of its sides and enter another by up to three, so nine cells hold them, and no others. As many lines
-//! cross two parallel planes: one behind the first box and one before the second. All that run from box to box cross these
-//! within a rectangle each, and the cell from one rectangle to the other holds them with some others. Often one chain blocks even
-//! that cell. Where none does, the parts of a root are tried instead of it, and its halves where it has no parts.
+//! Lines leave a box by up to five of its sides and enter another by up to five, mostly three each, so some nine cells hold them, and no
+//! others. But all of them also cross two planes across an axis, the nearest to each other that have the boxes on either
+//! side, within a rectangle on each. The cell from one rectangle to the other holds them with some others, and often one chain blocks
+//! even that. Where none does, the parts of a root are tried instead of it; a cell without others is cut in halves.
 
 use crate::cell::Cell;
 use crate::end::{End, crossing_error};
@@ -171,7 +171,8 @@ impl Planes {
                 let t = (at - a[k]) / (b[k] - a[k]);
                 let (mut low, mut high) = ([at; 3], [at; 3]);
                 for j in (0..3).filter(|&j| j != k) {
-                    let (x, error) = if a[j] == b[j] { (a[j], 0.0) } else { (a[j] + (b[j] - a[j]) * t, crossing_error(a[j], b[j])) };
+                    let (x, error) =
+                        if a[j] == b[j] { (a[j], 0.0) } else { (a[j] + (b[j] - a[j]) * t, crossing_error(a[j], b[j])) };
                     (low[j], high[j]) = (x - error, x + error);
                 }
                 crossed = crossed.with(low).with(high);
@@ -209,4 +210,147 @@ fn beyond(mut side: Aabb<3>, axis: usize, at: f64, upward: bool) -> Option<Aabb<
     }
     let inside = if upward { side.max[axis] > at } else { side.min[axis] < at };
     inside.then_some(side)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::truth::{Exact, exact, mix};
+    use num_rational::BigRational;
+    use proptest::prelude::*;
+    use proptest::test_runner::TestRunner;
+    use std::cell::Cell as Count;
+
+    fn point() -> impl Strategy<Value = Point3> {
+        [-6i32..7, -6i32..7, -6i32..7].prop_map(|p| p.map(|x| f64::from(x) * 0.3))
+    }
+
+    /// A box, flat along some axes perhaps.
+    fn block() -> impl Strategy<Value = Aabb<3>> {
+        (point(), [0i32..4, 0i32..4, 0i32..4]).prop_map(|(min, size)| {
+            let max = [0, 1, 2].map(|k| min[k] + f64::from(size[k]) * 0.7);
+            Aabb { min, max }
+        })
+    }
+
+    /// A point of a box, at parts of eighths.
+    fn at(b: &Aabb<3>, parts: [i64; 3]) -> Exact {
+        let [low, high] = [exact(b.min), exact(b.max)];
+        [0, 1, 2].map(|k| &low[k] + (&high[k] - &low[k]) * BigRational::new(parts[k].into(), 8.into()))
+    }
+
+    /// Whether a segment meets the box around an end, which is a rectangle.
+    fn crosses(b: &Aabb<3>, axis: usize, eye: &Exact, point: &Exact) -> bool {
+        let plane = exact(b.min)[axis].clone();
+        let rise = &point[axis] - &eye[axis];
+        let t = (&plane - &eye[axis]) / rise;
+        let zero = BigRational::from_integer(0.into());
+        let one = BigRational::from_integer(1.into());
+        let [low, high] = [exact(b.min), exact(b.max)];
+        let within = |k: usize| {
+            let x = &eye[k] + (&point[k] - &eye[k]) * &t;
+            low[k] <= x && x <= high[k]
+        };
+        t >= zero && t <= one && (0..3).all(|k| k == axis || within(k))
+    }
+
+    fn flat_axis(end: &End) -> usize {
+        let b = end.bounds();
+        (0..3).find(|&k| b.min[k] == b.max[k]).expect("it is a rectangle")
+    }
+
+    /// How many roots at the bottom hold a segment; a root that holds it has to have a part that does.
+    fn n_holding(roots: &Roots, some: &[Root], eye: &Exact, point: &Exact) -> usize {
+        let holds = |root: &Root| {
+            [&root.cell.from, &root.cell.to].into_iter().all(|end| crosses(end.bounds(), flat_axis(end), eye, point))
+        };
+        let of = |root: &Root| match roots.parts(root) {
+            [] => 1,
+            parts => {
+                let n = n_holding(roots, parts, eye, point);
+                assert!(n > 0, "none of the parts of {root:?}");
+                n
+            }
+        };
+        some.iter().filter(|root| holds(root)).map(of).sum()
+    }
+
+    /// Invariant: every segment from a point of one box to a point inside of the other is held by a root, by a part of that, and so on.
+    #[test]
+    fn every_line_is_held_by_a_root_and_by_its_parts() {
+        let (joined, split) = (Count::new(0), Count::new(0));
+        let parts = || [0i64..9, 0i64..9, 0i64..9];
+        let inner = || [1i64..8, 1i64..8, 1i64..8];
+        let shift = prop_oneof![Just(0.0), Just(1e6 / 3.0)];
+        let strategy = (block(), block(), parts(), inner(), shift);
+        let check = |(volume, target, from, to, shift): (Aabb<3>, Aabb<3>, [i64; 3], [i64; 3], f64)| {
+            let moved = |b: Aabb<3>| Aabb { min: b.min.map(|x| x + shift), max: b.max.map(|x| x + shift) };
+            let (volume, target) = (moved(volume), moved(target));
+            let flat = |b: &Aabb<3>| (0..3).filter(|&k| b.min[k] == b.max[k]).count();
+            let meet = (0..3).all(|k| volume.min[k] <= target.max[k] && target.min[k] <= volume.max[k]);
+            prop_assume!(!meet && flat(&volume) < 2 && flat(&target) < 2);
+            let (eye, point) = (at(&volume, from), at(&target, to));
+            // Lines along an axis may run within sides; they are limits of others.
+            prop_assume!((0..3).all(|k| eye[k] != point[k]));
+            let roots = Roots::to_box(&volume, &target);
+            prop_assert!(n_holding(&roots, roots.whole(), &eye, &point) > 0, "{:?} {:?}", volume, target);
+            let n = if roots.parts(&roots.whole()[0]).is_empty() { &split } else { &joined };
+            n.set(n.get() + 1);
+            Ok(())
+        };
+        TestRunner::new(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })
+            .run(&strategy, check)
+            .expect("the invariant holds");
+        assert!(joined.get() > 50, "{} joined, {} not", joined.get(), split.get());
+    }
+
+    proptest! {
+        /// Invariant: every segment from a point of a box to a point of a triangle apart from it begins within its one root.
+        #[test]
+        fn every_line_to_a_triangle_is_held_by_the_first_root(
+            volume in block(), triangle in [point(), point(), point()], away in 0usize..3, parts in [0i64..9, 0i64..9, 0i64..9],
+            weights in [1u64..9, 1u64..9, 1u64..9],
+        ) {
+            let triangle = triangle.map(|p| { let mut p = p; p[away] += 7.0; p });
+            prop_assume!((0..3).filter(|&k| volume.min[k] == volume.max[k]).count() < 2);
+            let roots = Roots::to_triangle(&volume, triangle);
+            let (eye, point) = (at(&volume, parts), mix(&triangle.map(exact), &weights));
+            for root in roots.whole().iter().filter(|root| !roots.parts(root).is_empty()) {
+                let axis = flat_axis(&root.cell.from);
+                prop_assert!(eye[axis] != point[axis] && crosses(root.cell.from.bounds(), axis, &eye, &point));
+            }
+        }
+    }
+
+    #[test]
+    fn boxes_apart_have_one_root_that_is_hardly_larger() {
+        let volume = Aabb { min: [0.0; 3], max: [1.0; 3] };
+        let target = Aabb { min: [9.0, 9.0, 20.0], max: [10.0, 10.0, 21.0] };
+        let roots = Roots::to_box(&volume, &target);
+        let [whole] = roots.whole() else { panic!("{:?}", roots.whole()) };
+        assert_eq!((whole.start.axis, whole.start.upward), (2, true));
+        let size = |b: &Aabb<3>| [0, 1].map(|k| b.max[k] - b.min[k]);
+        // What is one long is seen at a slope of half: half of its depth comes to it.
+        for end in [&whole.cell.from, &whole.cell.to] {
+            assert!(size(end.bounds()).iter().all(|&x| x > 1.4 && x < 1.6), "{end:?}");
+        }
+        assert_eq!(roots.parts(whole).len(), 3);
+        assert!(roots.parts(whole).iter().all(|part| roots.parts(part).len() == 3));
+        let triangle = [[9.0, 9.0, 20.0], [10.0, 9.0, 20.0], [9.0, 10.0, 21.0]];
+        let roots = Roots::to_triangle(&volume, triangle);
+        assert!(roots.whole().len() == 1 && roots.parts(&roots.whole()[0]).len() == 3);
+        assert_eq!(roots.whole()[0].cell.to, End::triangle(triangle));
+    }
+
+    /// The impostor: the sides of the boxes alone do not hold all lines.
+    #[test]
+    fn impostor_sides_alone_are_caught() {
+        let volume = Aabb { min: [0.0; 3], max: [1.0; 3] };
+        let target = Aabb { min: [9.0, 9.0, 20.0], max: [10.0, 10.0, 21.0] };
+        let roots = Roots::to_box(&volume, &target);
+        let (eye, point) = (at(&volume, [7, 7, 1]), at(&target, [4, 4, 4]));
+        let whole = &roots.whole()[0].cell.from;
+        assert!(crosses(whole.bounds(), 2, &eye, &point));
+        assert!(!crosses(&Aabb { min: [0.0, 0.0, 1.0], max: [1.0; 3] }, 2, &eye, &point));
+    }
 }

@@ -1,8 +1,8 @@
 //! The search: cells of line space are blocked by chains or cut in two, until none is left or one has a free line.
 
 use crate::chain::{AtFold, Blocked, ChainFinder, Gap, Shaft};
-use crate::side::{Part, Side};
 use crate::roots::{Root, Roots};
+use crate::side::{Part, Side};
 use crate::split::{promise, split};
 use crate::surface::{Hit, Surface};
 use crate::touch::Target;
@@ -83,7 +83,13 @@ impl Successes {
 impl Search {
     pub(crate) fn new(surface: &Surface, attempts: usize, longest: usize) -> Self {
         let successes = Successes { epoch: 1, of: vec![(0, 0); surface.mesh().triangles().len()] };
-        Self { finder: ChainFinder::new(surface, longest), queue: VecDeque::new(), hits: Vec::new(), attempts, successes }
+        Self {
+            finder: ChainFinder::new(surface, longest),
+            queue: VecDeque::new(),
+            hits: Vec::new(),
+            attempts,
+            successes,
+        }
     }
 
     /// Forgets which chains blocked lines. Until then the outcome of a search may depend on those before.
