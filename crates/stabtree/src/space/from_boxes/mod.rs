@@ -7,20 +7,23 @@
 //! targets are tested first, then their halves; targets that share a cell with the box, or lie on a line found earlier,
 //! are visible.
 
+mod found;
+mod targets;
+
 use super::atomic_bits::AtomicBitMatrix;
-use super::objects::touch;
+use super::on_threads;
 use super::opaque::opaque_rectangles;
 use super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
-use super::slivers::THIN;
-use super::{components, on_threads};
-use crate::search::{SearchOptions, ones};
+use crate::search::SearchOptions;
+use found::FoundVisible;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
-use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_geometry::Aabb;
 use sightlines_progress::{Allowance, Cancelled, Counter, Shares};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Blockers, FreeLine, Shaft, ShaftCounters, Target, Verdict};
+use sightlines_sightline::{Blockers, Shaft, ShaftCounters, Target, Verdict};
 use std::collections::VecDeque;
+use targets::{CellLocator, Targets};
 
 /// The pairs to decide: of two boxes, which has to be symmetric, and of a box and an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -148,15 +151,6 @@ pub fn box_visibility(
     Ok(answer)
 }
 
-/// What is known to be visible: shared by all threads, and only ever extended.
-struct FoundVisible<'a> {
-    boxes: AtomicBitMatrix,
-    objects: AtomicBitMatrix,
-    of_boxes: &'a Targets<'a>,
-    of_objects: &'a Targets<'a>,
-    blockers: &'a Blockers,
-}
-
 /// A box, and the nodes of the trees of targets that were not visited for it.
 struct Unfinished {
     eye: usize,
@@ -180,232 +174,6 @@ impl Unfinished {
 enum Kind {
     Box,
     Object,
-}
-
-impl FoundVisible<'_> {
-    /// Marks what lies in one cell: nothing is between two points in it.
-    fn mark_within(&self, graph: &CellGraph<Axial>, places: &CellLocator) {
-        // A box of eyes overlaps the interior of the cell; an object may be flat along an axis, but not within the
-        // cell's border.
-        let shares = |b: &Aabb<3>, cell: &Aabb<3>| (0..3).all(|k| b.min[k] < cell.max[k] && cell.min[k] < b.max[k]);
-        (0..graph.n_cells()).into_par_iter().for_each(|cell| {
-            let bounds = &places.extents[cell];
-            let within = |targets: &Targets<'_>| {
-                let mut row = vec![0u64; targets.boxes.len().div_ceil(64)];
-                targets.tree.visit(
-                    |node| shares(node, bounds),
-                    |i| {
-                        if shares(&targets.boxes[i as usize], bounds) && targets.can_be_reached(i as usize) {
-                            row[i as usize / 64] |= 1 << (i % 64);
-                        }
-                    },
-                );
-                row
-            };
-            let boxes = within(self.of_boxes);
-            if boxes.iter().all(|word| *word == 0) {
-                return;
-            }
-            let objects = within(self.of_objects);
-            for eye in boxes.iter().enumerate().flat_map(|(i, word)| ones(*word).map(move |bit| i * 64 + bit)) {
-                self.boxes.set_all(eye, &boxes);
-                self.objects.set_all(eye, &objects);
-            }
-        });
-    }
-
-    fn marks(&self, kind: Kind) -> &AtomicBitMatrix {
-        match kind {
-            Kind::Box => &self.boxes,
-            Kind::Object => &self.objects,
-        }
-    }
-
-    fn targets(&self, kind: Kind) -> &Targets<'_> {
-        match kind {
-            Kind::Box => self.of_boxes,
-            Kind::Object => self.of_objects,
-        }
-    }
-
-    /// Which of the asked targets have to be decided; marks those that are visible at once.
-    fn in_doubt(
-        &self,
-        kind: Kind,
-        eye: usize,
-        own: &Aabb<3>,
-        places: &CellLocator,
-        asked: impl Iterator<Item = usize>,
-    ) -> Vec<bool> {
-        let (targets, marks) = (self.targets(kind), self.marks(kind));
-        let mut in_doubt = vec![false; targets.boxes.len()];
-        let all = !places.holds(own);
-        let near = places.components(own);
-        for i in asked.filter(|&i| !marks.get(eye, i)) {
-            if all || targets.outside[i] || touch(own, &targets.own[i]) {
-                self.see(kind, eye, i);
-            } else {
-                let is_joined = || targets.components[i].iter().any(|c| near.binary_search(c).is_ok());
-                in_doubt[i] = targets.can_be_reached(i) && is_joined();
-            }
-        }
-        in_doubt
-    }
-
-    /// Marks as visible what was not decided, and returns it.
-    fn give_up(
-        &self,
-        unfinished: &[Unfinished],
-        asked: &PairMask,
-        places: &CellLocator,
-        boxes: &[Aabb<3>],
-    ) -> Option<PairMask> {
-        let mut left = PairMask {
-            boxes: BitMatrix::new(asked.boxes.n_rows(), asked.boxes.n_cols()),
-            objects: BitMatrix::new(asked.objects.n_rows(), asked.objects.n_cols()),
-        };
-        for Unfinished { eye, of_boxes, of_objects } in unfinished {
-            for (kind, nodes) in [(Kind::Box, of_boxes), (Kind::Object, of_objects)] {
-                let (targets, marks) = (self.targets(kind), self.marks(kind));
-                let asked: Vec<usize> = match kind {
-                    Kind::Box => asked.boxes.iter_ones(*eye).filter(|other| other > eye).collect(),
-                    Kind::Object => asked.objects.iter_ones(*eye).collect(),
-                };
-                let in_doubt = self.in_doubt(kind, *eye, &boxes[*eye], places, asked.into_iter());
-                let nodes = nodes.iter().map(|&n| &targets.tree.nodes()[n as usize]);
-                let within = nodes.flat_map(|node| &targets.tree.order()[node.start as usize..node.end as usize]);
-                for i in within.map(|&i| i as usize).filter(|&i| in_doubt[i] && !marks.get(*eye, i)) {
-                    match kind {
-                        Kind::Box => [(*eye, i), (i, *eye)].iter().for_each(|&(a, b)| left.boxes.set(a, b, true)),
-                        Kind::Object => left.objects.set(*eye, i, true),
-                    }
-                }
-            }
-        }
-        for eye in 0..boxes.len() {
-            left.boxes.iter_ones(eye).for_each(|i| self.see(Kind::Box, eye, i));
-            left.objects.iter_ones(eye).for_each(|i| self.see(Kind::Object, eye, i));
-        }
-        (left.boxes.count_ones() + left.objects.count_ones() > 0).then_some(left)
-    }
-
-    /// Marks that a box sees something of a kind.
-    fn see(&self, kind: Kind, eye: usize, other: usize) {
-        self.marks(kind).set(eye, other);
-        if kind == Kind::Box {
-            self.boxes.set(other, eye);
-        }
-    }
-
-    /// Marks all boxes that a free line passes as seeing each other, and the objects on it.
-    fn follow(&self, line: &FreeLine, [from, to]: [&Aabb<3>; 2]) {
-        let span = line.span(from, to, self.blockers);
-        let mut passed: Vec<usize> = Vec::new();
-        self.of_boxes.tree.visit(
-            |node| span.may_meet(node),
-            |i| {
-                if span.passes_some_of(&self.of_boxes.boxes[i as usize]) {
-                    passed.push(i as usize);
-                }
-            },
-        );
-        for (k, &a) in passed.iter().enumerate() {
-            passed[..k].iter().for_each(|&b| self.see(Kind::Box, a, b));
-        }
-        self.of_objects.tree.visit(
-            |node| span.may_meet(node),
-            |i| {
-                if span.meets(&self.of_objects.boxes[i as usize]) {
-                    passed.iter().for_each(|&eye| self.see(Kind::Object, eye, i as usize));
-                }
-            },
-        );
-    }
-}
-
-/// Locates boxes among the cells.
-struct CellLocator {
-    all: Aabb<3>,
-    /// Half of the minimum thickness of a box.
-    thin: f64,
-    extents: Vec<Aabb<3>>,
-    tree: BoxTree<3>,
-    /// For each cell, its connected component through portals, given by the least cell in it.
-    component: Vec<u32>,
-}
-
-impl CellLocator {
-    fn new(graph: &CellGraph<Axial>) -> Self {
-        let extents: Vec<Aabb<3>> = graph.cells().iter().map(|c| c.bounds).collect();
-        let all = Aabb::<3>::around(extents.iter().flat_map(|b| [b.min, b.max]));
-        let longest = (0..3).map(|k| all.max[k] - all.min[k]).fold(0.0, f64::max);
-        let tree = BoxTree::build(&extents, 4);
-        Self { all, thin: longest * THIN, extents, tree, component: components(graph) }
-    }
-
-    /// The box, widened slightly along axes on which it is too thin to be decided.
-    fn thickened(&self, b: &Aabb<3>) -> Aabb<3> {
-        let mut thick = *b;
-        for k in 0..3 {
-            if b.max[k] - b.min[k] < self.thin {
-                thick.min[k] = (b.min[k] - self.thin).next_down();
-                thick.max[k] = (b.max[k] + self.thin).next_up();
-            }
-        }
-        thick
-    }
-
-    fn holds(&self, b: &Aabb<3>) -> bool {
-        self.all.contains(b.min) && self.all.contains(b.max)
-    }
-
-    /// The components of the cells that a box touches, ascending.
-    fn components(&self, b: &Aabb<3>) -> Vec<u32> {
-        let mut found = Vec::new();
-        self.tree.visit(
-            |node| touch(node, b),
-            |cell| {
-                if touch(&self.extents[cell as usize], b) {
-                    found.push(self.component[cell as usize]);
-                }
-            },
-        );
-        found.sort_unstable();
-        found.dedup();
-        found
-    }
-}
-
-/// Targets, all of one kind.
-struct Targets<'a> {
-    /// What has to be reached.
-    boxes: &'a [Aabb<3>],
-    /// Boxes that are visible if they are touched.
-    own: &'a [Aabb<3>],
-    target: Target,
-    tree: BoxTree<3>,
-    components: Vec<Vec<u32>>,
-    /// Whether each extends beyond the cells.
-    outside: Vec<bool>,
-}
-
-impl<'a> Targets<'a> {
-    fn new(boxes: &'a [Aabb<3>], own: &'a [Aabb<3>], target: Target, places: &CellLocator) -> Self {
-        Self {
-            boxes,
-            own,
-            target,
-            tree: BoxTree::build(boxes, 1),
-            components: own.par_iter().map(|b| places.components(b)).collect(),
-            outside: own.iter().map(|b| !b.is_empty() && !places.holds(b)).collect(),
-        }
-    }
-
-    /// Whether lines can reach it at all: not if it is empty, or, for objects, flat along two axes.
-    fn can_be_reached(&self, i: usize) -> bool {
-        let b = &self.boxes[i];
-        !b.is_empty() && (0..3).filter(|&k| b.min[k] == b.max[k]).count() < 2
-    }
 }
 
 /// A box that contains eyes, and its solver.
