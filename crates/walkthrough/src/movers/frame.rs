@@ -1,7 +1,7 @@
 //! One frame: which movers are queried, which are visible, which may sleep.
 
-use super::motion::is_box;
-use super::{Broken, BrokenPromise, CellLocator, Mover, MoverError, MoverId, Movers, State, flat, is_within};
+use super::motion::{is_box, is_within};
+use super::{Broken, BrokenPromise, CellLocator, Mover, MoverError, MoverId, Movers, State, flat};
 use crate::walkthrough::{Answer, Frame};
 use sightlines_eye_to_cell::VisibleSet;
 use sightlines_geometry::Aabb;
@@ -142,7 +142,7 @@ impl<P: CellLocator> Movers<P> {
                 continue;
             };
             self.counters.tried += 1;
-            if self.is_enclosed(&volume) && self.find_cells(&volume, |cell| seen.has_cell(cell)) {
+            if self.solid.encloses(&volume) && self.find_cells(&volume, |cell| seen.has_cell(cell)) {
                 self.leave_awake(slot);
                 let mover = self.at(slot);
                 (mover.state, mover.level) = (State::Asleep(volume), level);
@@ -194,7 +194,7 @@ impl<P: CellLocator> Movers<P> {
 
     /// Whether a box is visible if these cells are.
     fn is_seen(&mut self, bounds: &Aabb<3>, sees: impl Fn(CellId) -> bool) -> bool {
-        let mut hit = !self.is_enclosed(bounds);
+        let mut hit = !self.solid.encloses(bounds);
         if !hit {
             self.places.touching(bounds, &mut self.pending, &mut |cell| {
                 hit = sees(cell);

@@ -20,48 +20,22 @@ mod frame;
 mod lists;
 mod locator;
 mod motion;
+mod options;
 mod report;
+mod solid;
 
 pub use locator::{CellBoxes, CellLocator};
 pub use motion::{Motion, MotionError};
+pub use options::MoverOptions;
 pub use report::{Broken, BrokenPromise, MoverCounters, MoverError, MoverId};
 
 use expiry::Expiries;
 use lists::Lists;
-use motion::{flat, is_box, is_within};
+use motion::{flat, is_box};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::{CellId, Frame};
+use sightlines_pvs::CellId;
+use solid::Solid;
 use std::fmt;
-
-/// Parameters of [`Movers`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MoverOptions {
-    /// Shortest duration of a volume, in the units of [`Movers::frame`]; longer ones last twice, four times, … as long.
-    /// Making and registering a volume costs as much as querying a mover in some fifty frames, so shorter durations do
-    /// not pay. If this is not positive and finite, only movers whose region is out of sight sleep.
-    pub least: f64,
-    /// Longest duration; regions that are out of sight last forever.
-    pub most: f64,
-    /// Maximum number of cells in which a volume is registered; a volume that touches more is not made.
-    pub cells: usize,
-    /// Number of frames out of sight before a volume is made for a mover, and between attempts, so that a view that
-    /// turns back finds it awake.
-    pub patience: u32,
-    /// Maximum number of movers for which volumes are attempted in a frame; the others stay awake until their turn.
-    pub tries: usize,
-    /// Within this box, space outside every cell is solid and nothing there is visible; beyond it everything may be
-    /// visible from everywhere. `None`: the box around all cells, or no box if they [may leave gaps](CellLocator::leaves_gaps), as given
-    /// boxes and places do. The box is correct if the cells fill it except for solids, or if walls enclose them. It is wrong for cells
-    /// whose border is open to space outside every cell, such as the hull of a plan without outer walls.
-    pub solid_within: Option<Aabb<3>>,
-}
-
-impl Default for MoverOptions {
-    /// For times in seconds.
-    fn default() -> Self {
-        Self { least: 0.5, most: 120.0, cells: 64, patience: 8, tries: 2000, solid_within: None }
-    }
-}
 
 /// The state of a mover.
 #[derive(Debug, Clone)]
@@ -111,9 +85,7 @@ pub struct Movers<P> {
     options: MoverOptions,
     /// Number of levels that are not forever.
     n_levels: u8,
-    solid_within: Aabb<3>,
-    /// The box along the cells' axes, if these are not those of the scene, within which space outside every cell is solid.
-    along: Option<(Frame, Aabb<3>)>,
+    solid: Solid,
     slots: Vec<Slot>,
     free: Vec<u32>,
     n_movers: usize,
@@ -138,19 +110,10 @@ pub struct Movers<P> {
     counters: MoverCounters,
 }
 
-/// The axes of the cells and the box along them, unless options say where space is solid or the axes are those of the scene.
-fn along(options: &MoverOptions, places: &impl CellLocator) -> Option<(Frame, Aabb<3>)> {
-    let (frame, within) = options.solid_within.is_none().then(|| places.along())?;
-    Some((frame?, within))
-}
-
 impl<P: CellLocator> Movers<P> {
     /// No movers yet, in the cells of `places`.
     pub fn new(places: P, options: MoverOptions) -> Self {
         let n_cells = places.n_cells();
-        let around = || if places.leaves_gaps() { Aabb::EMPTY } else { places.bounds() };
-        let solid_within = options.solid_within.unwrap_or_else(around);
-        let along = along(&options, &places);
         let steps = std::iter::successors(Some(options.least), |time| Some(2.0 * time));
         let is_time = options.least > 0.0 && options.least.is_finite();
         // A double has some 2000 doublings; 64 are more than any frame rate and game need.
@@ -158,8 +121,7 @@ impl<P: CellLocator> Movers<P> {
         Self {
             options,
             n_levels: n_levels as u8,
-            solid_within: flat(solid_within, places.dimension()),
-            along,
+            solid: Solid::new(&options, &places),
             slots: Vec::new(),
             free: Vec::new(),
             n_movers: 0,
@@ -267,8 +229,7 @@ impl<P: CellLocator> Movers<P> {
     /// O(cells + entries of the volumes).
     pub fn replace(&mut self, places: P) {
         let is_other_space = places.dimension() != self.places.dimension();
-        self.solid_within = flat(self.options.solid_within.unwrap_or_else(|| places.bounds()), places.dimension());
-        self.along = along(&self.options, &places);
+        self.solid = Solid::new(&self.options, &places);
         self.lists = Lists::new(places.n_cells());
         self.marks = vec![0; places.n_cells()];
         self.places = places;
@@ -282,21 +243,12 @@ impl<P: CellLocator> Movers<P> {
                 (mover.motion, mover.is_lost, mover.bounds) = (mover.motion.anywhere(), true, everywhere);
             }
             let Some(Mover { state: State::Asleep(volume), .. }) = self.slots[slot as usize].mover else { continue };
-            if !is_other_space && self.is_enclosed(&volume) && self.find_cells(&volume, |_| false) {
+            if !is_other_space && self.solid.encloses(&volume) && self.find_cells(&volume, |_| false) {
                 self.lists.enter(slot, &self.found);
             } else {
                 self.rise(slot);
             }
         }
-    }
-
-    /// Whether space outside every cell is solid all around a box.
-    fn is_enclosed(&self, bounds: &Aabb<3>) -> bool {
-        let along = self.along.as_ref().is_none_or(|(frame, within)| {
-            let (min, max) = frame.around(bounds.min, bounds.max);
-            is_within(&Aabb { min, max }, within)
-        });
-        along && is_within(bounds, &self.solid_within)
     }
 
     /// The cells in which the movers are registered.
@@ -307,7 +259,7 @@ impl<P: CellLocator> Movers<P> {
     /// The box within which space outside every cell is solid, in scene units: [`MoverOptions::solid_within`], or the
     /// box around all cells; empty if they may leave gaps. This is the region to promise ([`Motion::within`]) for movers that do not leave the scene.
     pub fn bounds(&self) -> Aabb<3> {
-        self.solid_within
+        self.solid.within()
     }
 
     /// Number of movers.
@@ -433,60 +385,5 @@ impl<P> fmt::Debug for Movers<P> {
             .field("options", &self.options)
             .field("counters", &self.counters)
             .finish_non_exhaustive()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// One cell of 8 by 8 by 8 along these axes, and whether it leaves gaps.
-    struct One(Option<Frame>, bool);
-
-    impl CellLocator for One {
-        fn dimension(&self) -> u8 {
-            3
-        }
-
-        fn n_cells(&self) -> usize {
-            1
-        }
-
-        fn leaves_gaps(&self) -> bool {
-            self.1
-        }
-
-        fn bounds(&self) -> Aabb<3> {
-            let (_, along) = self.along();
-            self.0.map_or(along, |frame| {
-                let (min, max) = frame.around_in_scene(along.min, along.max);
-                Aabb { min, max }
-            })
-        }
-
-        fn along(&self) -> (Option<Frame>, Aabb<3>) {
-            (self.0, Aabb { min: [-4.0; 3], max: [4.0; 3] })
-        }
-
-        fn touching(&self, _: &Aabb<3>, _: &mut Vec<u32>, _: &mut dyn FnMut(CellId) -> bool) {}
-    }
-
-    /// The corners of the box around a turned box are beyond it: what moves there is in no wall.
-    #[test]
-    fn beside_a_turned_building_nothing_is_solid() {
-        let r = 0.5f64.sqrt();
-        let frame = Frame::new([[r, r, 0.0], [-r, r, 0.0], [0.0, 0.0, 1.0]], 1e-6).expect("a frame");
-        let encloses = |frame, at: Point3, options: MoverOptions| {
-            Movers::new(One(frame, false), options).is_enclosed(&Aabb { min: at, max: at.map(|x| x + 0.1) })
-        };
-        type Point3 = [f64; 3];
-        let (corner, middle) = ([5.0, 5.0, 0.0], [0.0; 3]);
-        let plain = MoverOptions::default;
-        assert!(encloses(Some(frame), middle, plain()) && !encloses(Some(frame), corner, plain()));
-        assert!(!encloses(None, corner, plain()), "without a frame that is beyond, too");
-        let stated = MoverOptions { solid_within: Some(Aabb { min: [-9.0; 3], max: [9.0; 3] }), ..plain() };
-        let gaps = |options| Movers::new(One(None, true), options).is_enclosed(&Aabb { min: middle, max: [0.1; 3] });
-        assert!(gaps(stated) && !gaps(plain()), "what moves between cells that leave gaps may be in air");
-        assert!(encloses(Some(frame), corner, stated), "who says where space is solid is believed");
     }
 }
