@@ -14,6 +14,7 @@
 //!   threads; every approximation on the way errs towards visible.
 
 pub mod auto;
+mod backs;
 mod bakeable;
 mod baked;
 mod certify;
@@ -44,6 +45,7 @@ mod stab;
 mod subdivide;
 mod table;
 
+pub use backs::Backs;
 pub use bakeable::{Bakeable, BakeableError};
 pub use baked::{Baked, BakedMap, BakedPlan, BakedPrt, BakedRegions, BakedScene};
 pub use certify::{Certified, CertifyError, Proofs, certify_table};

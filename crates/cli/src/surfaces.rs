@@ -2,8 +2,11 @@
 
 use crate::output::count;
 use serde::Serialize;
+use sightlines::bake::Backs;
+use sightlines::cells::Scene;
 use sightlines::formats::SceneFile;
 use sightlines::formats::scene::{NamePattern, Role, SceneInfo, SceneReadOptions};
+use sightlines::pvs::Table;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
@@ -110,6 +113,16 @@ pub(crate) struct Surfaces {
     surfaces: Vec<ClassGroup>,
     /// Triangles that hide, of which engines draw the fronts only.
     n_single_sided_triangles: usize,
+    /// Of these, what viewers in the cells of a table can see from behind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    backs: Option<SeenBacks>,
+}
+
+/// How many single-sided triangles can be seen from behind.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct SeenBacks {
+    n_at_most: usize,
+    n_by_rays: usize,
 }
 
 impl Surfaces {
@@ -129,7 +142,13 @@ impl Surfaces {
         };
         let mut surfaces: Vec<ClassGroup> = groups.into_iter().map(group).collect();
         surfaces.sort_by_key(|group| std::cmp::Reverse(group.n_objects));
-        Self { surfaces, n_single_sided_triangles: *n_single_sided_triangles }
+        Self { surfaces, n_single_sided_triangles: *n_single_sided_triangles, backs: None }
+    }
+
+    /// The same, with what viewers in the cells of a table of the scene can see from behind, unless both sides are drawn.
+    pub(crate) fn with_backs(self, table: &Table, scene: &Scene) -> Self {
+        let Backs { n_triangles, n_at_most, n_by_rays } = Backs::of(table, scene);
+        Self { backs: (n_triangles > 0).then_some(SeenBacks { n_at_most, n_by_rays }), ..self }
     }
 }
 
@@ -154,7 +173,14 @@ impl Surfaces {
         };
         let mut all: Vec<String> = kinds.into_iter().map(words).collect();
         if self.n_single_sided_triangles > 0 {
-            all.push(count(self.n_single_sided_triangles as u64, "single-sided triangle"));
+            let behind = match self.backs {
+                Some(SeenBacks { n_at_most: 0, .. }) => ", none seen from behind".to_owned(),
+                Some(SeenBacks { n_at_most, n_by_rays }) => {
+                    format!(", {n_by_rays} to {n_at_most} of them seen from behind")
+                }
+                None => String::new(),
+            };
+            all.push(count(self.n_single_sided_triangles as u64, "single-sided triangle") + &behind);
         }
         all
     }
@@ -171,6 +197,12 @@ impl fmt::Display for Surfaces {
         if self.n_single_sided_triangles > 0 {
             let triangles = count(self.n_single_sided_triangles as u64, "triangle");
             writeln!(f, "single-sided   {triangles}, which hide from both sides; engines draw their fronts only")?;
+            if let Some(SeenBacks { n_at_most, n_by_rays }) = self.backs {
+                writeln!(
+                    f,
+                    "               from behind, viewers in cells see at most {n_at_most} of them; rays met {n_by_rays}"
+                )?;
+            }
         }
         Ok(())
     }

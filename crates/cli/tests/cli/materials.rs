@@ -2,7 +2,8 @@
 
 use crate::common::looks::table;
 use crate::common::{Folder, levels};
-use sightlines::formats::scene::{parse_glb, read_scene};
+use sightlines::cells::{Scene, SceneObject};
+use sightlines::formats::scene::{parse_glb, read_scene, write_glb};
 use sightlines::geometry::Aabb;
 
 /// A room of 8 by 4 by 3 with a pane across its middle, and a thing on either side; quads, in the order of `f`.
@@ -260,6 +261,49 @@ fn view_volumes_and_movers_of_a_file_are_taken() {
     let low = movers[1]["min"][0].as_f64().expect("a number");
     assert!((low - (4.1 - 2.2366)).abs() < 1e-3, "{low}");
     assert_eq!(info["view_volumes"][0]["max"], serde_json::json!([7.5, 3.0, 5.5]));
+}
+
+/// What is drawn from the front only is counted, and how much of it viewers in cells see from behind: nothing of closed things, everything of a single
+/// sheet in the middle of a room.
+#[test]
+fn backs_that_viewers_see_are_counted() {
+    let folder = Folder::with_tower();
+    let scene = read_scene(folder.path("tower.glb")).unwrap().scene;
+    let n_objects = scene.objects().len() as u32;
+    let single = scene.clone().with_single_sided((0..n_objects).collect()).unwrap();
+    folder.write("single.glb", write_glb(&single).unwrap());
+    let build = |file: &str, more: &[&str]| folder.run(&[&["build", file, "-o", "t.pvs"], more].concat()).expect(0).out;
+    let backs = |file: &str| {
+        let built: serde_json::Value = serde_json::from_str(&build(file, &["--json"])).unwrap();
+        let count = |key: &str| built["backs"][key].as_u64().expect("a count");
+        assert_eq!(
+            built["n_single_sided_triangles"].as_u64(),
+            Some(read_scene(folder.path(file)).unwrap().scene.n_triangles() as u64)
+        );
+        [count("n_at_most"), count("n_by_rays")]
+    };
+    let [at_most, by_rays] = backs("single.glb");
+    // The impostor: a sheet across a room, of which both sides are in cells.
+    let b = scene.bounds();
+    // In single precision, as the file has it.
+    let at = |u: f64, k: usize| f64::from((b.min[k] + u * (b.max[k] - b.min[k])) as f32);
+    let x = at(0.3, 0);
+    let corners = [[x, at(0.2, 1), at(0.2, 2)], [x, at(0.8, 1), at(0.2, 2)], [x, at(0.8, 1), at(0.3, 2)]];
+    let sheet = SceneObject { name: "sheet".to_owned(), vertices: corners.to_vec(), triangles: vec![[0, 1, 2]] };
+    let objects = [scene.objects(), &[sheet]].concat();
+    let with = Scene::new(objects).unwrap().with_single_sided((0..=n_objects).collect()).unwrap();
+    folder.write("sheet.glb", write_glb(&with).unwrap());
+    let [more, met] = backs("sheet.glb");
+    assert!(more > at_most && met > by_rays, "{more} after {at_most}, {met} after {by_rays}");
+    assert!(at_most < scene.n_triangles() as u64, "{at_most} of {}", scene.n_triangles());
+    let text = build("sheet.glb", &[]);
+    assert!(text.contains(&format!(" single-sided triangles, {met} to {more} of them seen from behind\n")), "{text}");
+    let text = build("sheet.glb", &["-v"]);
+    let line = format!("               from behind, viewers in cells see at most {more} of them; rays met {met}\n");
+    assert!(text.contains(&line), "{text}");
+    // Both sides are drawn, so nothing is said of backs.
+    let text = build("sheet.glb", &["--both-sides", "--json"]);
+    assert!(!text.contains("backs"), "{text}");
 }
 
 /// A door that stands shut in its file is open for the table, and there is a portal that a program may close.

@@ -40,7 +40,7 @@ impl Clock {
         };
         if let (Some(limit), Some(left)) = (self.limit, left) {
             let [limit, cut] = [limit, cut_time].map(seconds);
-            tracing::warn!("{}: the limit of {limit} was reached, {cut} of it to cut cells: {left}", path.display());
+            tracing::warn!("{}: the limit of {limit} was reached (cutting cells took {cut}): {left}", path.display());
         }
     }
 }

@@ -119,7 +119,10 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     output::save(out, &bytes)?;
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
     let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
-    let surfaces = if let Bakeable::Scene(file) = &source.content { Some(Surfaces::new(file)) } else { None };
+    let surfaces = match &source.content {
+        Bakeable::Scene(file) => Some(Surfaces::new(file).with_backs(&baked.table, &file.scene)),
+        _ => None,
+    };
     output::print(args.json, &Built { auto, outcome, viewers, placed, surfaces, stab, proofs, verbose })?;
     Ok(Answer::Yes)
 }
