@@ -123,8 +123,7 @@ fn loose_share(triangles: &[[Point3; 3]], progress: Option<&dyn Observer>) -> f6
 }
 
 fn openness(scene: &Scene) -> f64 {
-    let triangles = triangles_of(scene);
-    let witness = RaySampler::new([&triangles[..]]);
+    let witness = RaySampler::of(triangles_of(scene));
     let mut random = Random::new(0);
     let bounds = scene.bounds();
     let leaves = |_: &u32| {

@@ -25,7 +25,7 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    fn of(object: &SceneObject) -> Self {
+    pub(crate) fn of(object: &SceneObject) -> Self {
         let (mut flat, mut n_empty, mut n_other) = (Vec::new(), 0, 0);
         for (triangle, corners) in (0u32..).zip(object.corners()) {
             match kind_of(&corners) {

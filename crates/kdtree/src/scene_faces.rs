@@ -53,8 +53,9 @@ pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
     Survey::of(scene, options, &mut cache).faces(&mut cache)
 }
 
-/// A size below which things are detail, from the scene alone: the smaller of
-/// * a twentieth of the middle one of the three sides of the scene's box (1.5 m for a floor or a tower
+/// A size below which things are detail, from the scene alone. Only objects count at least half of whose triangles lie across an axis, if there are
+/// some: others, as those of a building that is turned, have hardly any face here. It is the smaller of
+/// * a twentieth of the middle one of the three sides of the box around them (1.5 m for a floor or a tower
 ///   30 m wide and 50 m long), which keeps it below the size of rooms;
 /// * the largest size such that smaller objects make up at most a quarter of what can hide, counting for
 ///   each object the largest side of its box, and no object that is half as long as the middle one of the
@@ -63,12 +64,15 @@ pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
 /// 0 for a scene without corners. Computed in rounded arithmetic, the same on every machine; no choice of
 /// it is unsound. O(n log n) for n objects.
 pub fn default_detail_below(scene: &Scene) -> f64 {
-    let boxes: Vec<Aabb<3>> = scene.occluders().map(|(_, object)| object.bounds()).collect();
-    detail_below_of(&boxes)
+    let shapes: Vec<Shape> = scene.occluders().map(|(_, object)| Shape::of(object)).collect();
+    detail_below_of(&shapes.iter().collect::<Vec<_>>())
 }
 
-/// The same from the boxes of all objects that hide.
-fn detail_below_of(objects: &[Aabb<3>]) -> f64 {
+/// The same from the shapes of all objects that hide.
+fn detail_below_of(shapes: &[&Shape]) -> f64 {
+    let across: Vec<Aabb<3>> = shapes.iter().filter(|s| s.flat.len() >= s.n_other).map(|s| s.bounds).collect();
+    let all = || shapes.iter().map(|s| s.bounds).collect();
+    let objects = if across.is_empty() { all() } else { across };
     let bounds = objects.iter().copied().fold(Aabb::EMPTY, Aabb::united);
     if bounds.is_empty() {
         return 0.0;
@@ -115,9 +119,10 @@ impl Survey {
     pub(crate) fn of(scene: &Scene, options: &SceneOptions, cache: &mut FaceCache) -> Self {
         let shapes = cache.shapes_of(scene);
         let of_shapes = (0u32..).zip(&shapes).map(|(object, shape)| (scene.is_opaque(object), shape.bounds));
-        let boxes: Vec<Aabb<3>> = of_shapes.clone().filter(|(hides, _)| *hides).map(|(_, bounds)| bounds).collect();
-        let detail_below = options.detail_below.unwrap_or_else(|| detail_below_of(&boxes));
-        let n_detail = boxes.iter().filter(|b| largest_side(b) < detail_below).count();
+        let that_hide =
+            || (0u32..).zip(&shapes).filter(|(object, _)| scene.is_opaque(*object)).map(|(_, shape)| &**shape);
+        let detail_below = options.detail_below.unwrap_or_else(|| detail_below_of(&that_hide().collect::<Vec<_>>()));
+        let n_detail = that_hide().filter(|shape| largest_side(&shape.bounds) < detail_below).count();
         let detail: Vec<bool> = of_shapes.map(|(hides, b)| !hides || largest_side(&b) < detail_below).collect();
         let moving = scene.moving().iter().filter_map(|moving| moving.within);
         let bounds = shapes.iter().map(|shape| shape.bounds).chain(moving).fold(Aabb::EMPTY, Aabb::united);

@@ -13,11 +13,12 @@ use spade::{ConstrainedDelaunayTriangulation, Intersection, LineIntersectionIter
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The same surface, in which open edges that lie on a flat region are edges of it, except where they cross each other or its
-/// border. Errs towards less surface: what is covered an even number of times by one region may be left out.
-pub(crate) fn conform(mesh: &Mesh) -> Vec<[Point3; 3]> {
+/// border; none if nothing is to be cut. Errs towards less surface: what is covered an even number of times by one region may be left
+/// out.
+pub(crate) fn conform(mesh: &Mesh) -> Option<Vec<[Point3; 3]>> {
     let standing = edges_on_faces(mesh);
     let n = mesh.triangles().len();
-    let mut all = Vec::with_capacity(n);
+    let mut all = Vec::new();
     let mut done = vec![false; n];
     for &seed in standing.keys() {
         if done[seed as usize] {
@@ -35,8 +36,13 @@ pub(crate) fn conform(mesh: &Mesh) -> Vec<[Point3; 3]> {
             all.extend(triangles);
         }
     }
-    all.extend((0..n as u32).filter(|&t| !done[t as usize]).map(|t| mesh.corners(t)));
-    all
+    if !done.contains(&true) {
+        return None;
+    }
+    let rest = || (0..n as u32).filter(|&t| !done[t as usize]);
+    all.reserve_exact(rest().count());
+    all.extend(rest().map(|t| mesh.corners(t)));
+    Some(all)
 }
 
 /// Whether an odd number of triangles ends at an edge.
@@ -171,6 +177,11 @@ fn cut(mesh: &Mesh, region: &[u32], own: &BTreeSet<u32>, on_it: &BTreeSet<u32>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The surface, cut or not.
+    fn conformed(mesh: &Mesh) -> Vec<[Point3; 3]> {
+        conform(mesh).unwrap_or_else(|| (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t)).collect())
+    }
     use sightlines_geometry::vector::length;
 
     fn area(triangles: &[[Point3; 3]]) -> f64 {
@@ -196,21 +207,21 @@ mod tests {
         soup.extend(wall([1., 2.], [6., 3.]));
         soup.extend(wall([6., 3.], [6., 7.]));
         let before = Mesh::weld(&soup);
-        let after = Mesh::weld(&conform(&before));
+        let after = Mesh::weld(&conformed(&before));
         let on_floor = |mesh: &Mesh| {
             let flat = |v: u32| mesh.vertices()[v as usize][2] == 0.0;
             let all = (0..mesh.edges().len() as u32).filter(|&e| mesh.edges()[e as usize].iter().all(|&v| flat(v)));
             all.filter(|&e| mesh.triangles_at(e).len() == 3).count()
         };
         assert_eq!((on_floor(&before), on_floor(&after)), (0, 2));
-        assert_eq!(area(&conform(&before)), area(&soup));
+        assert_eq!(area(&conformed(&before)), area(&soup));
     }
 
     /// The twin: nothing is changed where nothing stands, and the surface stays where it was.
     #[test]
     fn regions_with_holes_keep_them() {
         let soup = floor();
-        assert_eq!(conform(&Mesh::weld(&soup)).len(), 2);
+        assert_eq!(conformed(&Mesh::weld(&soup)).len(), 2);
         // A ring of eight squares around a hole, and a wall across one of them and beyond.
         let square = |i: i32, j: i32| {
             let [x, y] = [f64::from(i), f64::from(j)];
@@ -220,7 +231,7 @@ mod tests {
         let mut soup: Vec<[Point3; 3]> = ring.collect();
         soup.extend(wall([0.25, 0.25], [0.75, 2.5]));
         soup.extend(wall([1.25, 1.25], [1.75, 1.75]));
-        let all = conform(&Mesh::weld(&soup));
+        let all = conformed(&Mesh::weld(&soup));
         assert!((area(&all) - area(&soup)).abs() < 1e-12, "{} {}", area(&all), area(&soup));
         let inside = |t: &[Point3; 3]| {
             let middle = [0, 1].map(|k| (t[0][k] + t[1][k] + t[2][k]) / 3.0);
@@ -236,14 +247,14 @@ mod tests {
         let mut soup = floor();
         soup.extend(wall([1., 2.], [6., 3.]));
         let exact: Vec<[Point3; 3]> = soup.iter().map(|&t| slanted(t)).collect();
-        assert!(conform(&Mesh::weld(&exact)).len() > 4);
+        assert!(conformed(&Mesh::weld(&exact)).len() > 4);
         let rounded: Vec<[Point3; 3]> = exact.iter().map(|t| t.map(|p| p.map(|x| x * 0.1))).collect();
-        let all = conform(&Mesh::weld(&rounded));
+        let all = conformed(&Mesh::weld(&rounded));
         assert!((area(&all) - area(&rounded)).abs() < 1e-12);
         // What is nearly flat is not cut: the floor's two triangles are still there.
         assert!(
             rounded[..2].iter().all(|t| all.contains(t))
-                && !exact[..2].iter().any(|t| conform(&Mesh::weld(&exact)).contains(t))
+                && !exact[..2].iter().any(|t| conformed(&Mesh::weld(&exact)).contains(t))
         );
     }
 }

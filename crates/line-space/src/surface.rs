@@ -12,7 +12,6 @@ pub struct Surface {
     corners: Vec<[Point3; 3]>,
     boxes: Vec<Aabb<3>>,
     tree: BoxTree<3>,
-    middles: Vec<Point3>,
     areas: Vec<f64>,
     reach: Point3,
 }
@@ -32,16 +31,19 @@ impl Surface {
     /// Welds the triangles, and cuts flat faces along the edges that stand on them. O(n log² n), and quadratic at worst in the
     /// edges on one face.
     pub fn new(triangles: &[[Point3; 3]]) -> Self {
-        let mesh = Mesh::weld(&conform(&Mesh::weld(triangles)));
+        let mut mesh = Mesh::weld(triangles);
+        if let Some(cut) = conform(&mesh) {
+            drop(mesh);
+            mesh = Mesh::weld(&cut);
+        }
         let corners: Vec<[Point3; 3]> = (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t)).collect();
         let all = || corners.iter().copied();
         let boxes: Vec<Aabb<3>> = all().map(Aabb::around).collect();
         let tree = BoxTree::build(&boxes, 4);
-        let middles = all().map(|[a, b, c]| scale(add(add(a, b), c), 1.0 / 3.0)).collect();
         let areas = all().map(|t| length(normal(t)) / 2.0).collect();
         let size = |k: usize| mesh.vertices().iter().map(|p| p[k].abs()).fold(0.0, f64::max);
         let reach = [0, 1, 2].map(size);
-        Self { mesh, corners, boxes, tree, middles, areas, reach }
+        Self { mesh, corners, boxes, tree, areas, reach }
     }
 
     /// The mesh.
@@ -68,7 +70,8 @@ impl Surface {
     }
 
     pub(crate) fn middle(&self, triangle: u32) -> Point3 {
-        self.middles[triangle as usize]
+        let [a, b, c] = self.corners(triangle);
+        scale(add(add(a, b), c), 1.0 / 3.0)
     }
 
     pub(crate) fn area(&self, triangle: u32) -> f64 {

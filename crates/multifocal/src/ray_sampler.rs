@@ -30,10 +30,25 @@ impl RaySampler {
             object.resize(triangles.len(), id);
             first.push(triangles.len());
         }
+        Self::build(triangles, object, first)
+    }
+
+    /// One object, whose triangles are not copied.
+    pub fn of(triangles: Vec<[Point3; 3]>) -> Self {
+        let (object, first) = (vec![0; triangles.len()], vec![0, triangles.len()]);
+        Self::build(triangles, object, first)
+    }
+
+    fn build(triangles: Vec<[Point3; 3]>, object: Vec<u32>, first: Vec<usize>) -> Self {
         let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
         let tree = BoxTree::build(&boxes, 4);
         let is_single_sided = vec![false; first.len() - 1];
         Self { triangles, object, first, tree, is_single_sided }
+    }
+
+    /// All triangles, object by object.
+    pub fn triangles(&self) -> &[[Point3; 3]] {
+        &self.triangles
     }
 
     /// The same, with objects that are seen from the fronts of their triangles only; rays end at the backs, too.
@@ -92,7 +107,7 @@ impl RaySampler {
     }
 
     fn mark(&self, origin: Point3, direction: Point3, seen: &mut [bool]) {
-        let Some(triangle) = self.first_triangle_before(origin, direction, f64::INFINITY) else { return };
+        let Some(triangle) = self.first_triangle(origin, direction) else { return };
         let object = self.object[triangle as usize] as usize;
         let shows_back = || dot(normal(self.triangles[triangle as usize]), direction) >= 0.0;
         seen[object] |= !(self.is_single_sided[object] && shows_back());
@@ -100,7 +115,12 @@ impl RaySampler {
 
     /// The object that a ray hits first.
     pub fn first_hit(&self, origin: Point3, direction: Point3) -> Option<u32> {
-        self.first_triangle_before(origin, direction, f64::INFINITY).map(|t| self.object[t as usize])
+        self.first_triangle(origin, direction).map(|t| self.object[t as usize])
+    }
+
+    /// The triangle that a ray hits first, as an index of all.
+    pub fn first_triangle(&self, origin: Point3, direction: Point3) -> Option<u32> {
+        self.first_triangle_before(origin, direction, f64::INFINITY)
     }
 
     /// The triangle that a ray hits first, before `end` times its direction.

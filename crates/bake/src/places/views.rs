@@ -33,9 +33,8 @@ const ENOUGH: usize = 8;
 
 /// What blocks rays and stands along axes in a scene.
 pub(super) struct Views {
-    /// Each triangle is an object of the sampler.
+    /// All triangles are one object of the sampler.
     rays: RaySampler,
-    triangles: Vec<[Point3; 3]>,
     /// The object of each triangle.
     object: Vec<u32>,
     /// For each axis its walls.
@@ -84,9 +83,9 @@ impl Views {
             object.resize(triangles.len(), id);
             single_sided.resize(triangles.len(), scene.is_single_sided(id));
         }
-        let rays = RaySampler::new(triangles.iter().map(std::slice::from_ref));
         let walls = std::array::from_fn(|axis| Walls::of(axis, &triangles));
-        let mut views = Self { rays, triangles, object, walls, backs: true, single_sided };
+        let rays = RaySampler::of(triangles);
+        let mut views = Self { rays, object, walls, backs: true, single_sided };
         let mut random = Random::new(0);
         let fronts = (0..N_RAYS).filter_map(|_| views.ray(region, &mut random)).filter(|hit| hit.front).count();
         let all = (0..N_RAYS).filter_map(|_| views.ray(region, &mut random)).count();
@@ -97,8 +96,8 @@ impl Views {
     /// What a ray from anywhere in a box hits.
     fn ray(&self, b: &Aabb<3>, random: &mut Random) -> Option<Hit> {
         let (origin, way) = (random.point(b), random.direction());
-        let triangle = self.rays.first_hit(origin, way)? as usize;
-        let front = dot(normal(self.triangles[triangle]), way) < 0.0;
+        let triangle = self.rays.first_triangle(origin, way)? as usize;
+        let front = dot(normal(self.rays.triangles()[triangle]), way) < 0.0;
         Some(Hit { object: self.object[triangle], origin, front })
     }
 
@@ -116,8 +115,8 @@ impl Views {
             let viewer = random.point(b);
             let (mut fronts, mut backs) = (0, 0);
             for way in [0; RAYS_OF_A_VIEWER].map(|_| random.direction()) {
-                let Some(triangle) = self.rays.first_hit(viewer, way).map(|t| t as usize) else { continue };
-                let shows_back = dot(normal(self.triangles[triangle]), way) >= 0.0;
+                let Some(triangle) = self.rays.first_triangle(viewer, way).map(|t| t as usize) else { continue };
+                let shows_back = dot(normal(self.rays.triangles()[triangle]), way) >= 0.0;
                 *if shows_back && self.single_sided[triangle] { &mut backs } else { &mut fronts } += 1;
             }
             match fronts.cmp(&backs) {
