@@ -31,7 +31,11 @@ impl Surface {
     /// Welds the triangles, and cuts flat faces along the edges that stand on them. O(n log² n), and quadratic at worst in the
     /// edges on one face.
     pub fn new(triangles: &[[Point3; 3]]) -> Self {
-        let mut mesh = Mesh::weld(triangles);
+        Self::of(Mesh::weld(triangles))
+    }
+
+    /// The same of triangles that are welded already.
+    pub fn of(mut mesh: Mesh) -> Self {
         if let Some(cut) = conform(&mesh) {
             drop(mesh);
             mesh = Mesh::weld(&cut);

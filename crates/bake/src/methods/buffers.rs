@@ -3,7 +3,7 @@
 use super::{Backend, Entry, OpenBackend, Prepared, triangles};
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
-use sightlines_multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
+use sightlines_multifocal::mesh::{Mesh, PatchOptions, SheetMethod, Sheets, patches};
 use sightlines_multifocal::{FromRegion, Layout, Measure, Multifocal, OccluderSelection, UnionMethod};
 use std::sync::Arc;
 
@@ -104,10 +104,13 @@ impl Buffers {
         let triangles = triangles(scene);
         let patches = if options.planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
         let sheets = (options.sheets > 0).then(|| (Arc::new(Sheets::new(&triangles)), options.sheets as usize));
+        let mesh = options.line_space.then(|| Mesh::weld(&triangles));
+        // Large scenes need the room for what line space prepares.
+        drop(triangles);
         Ok(Self {
             chosen: Arc::new(OccluderSelection::new(patches, options.occluders as usize)),
             sheets,
-            line_space: options.line_space.then(|| super::line_space::prepared(&triangles)),
+            line_space: mesh.map(super::line_space::prepared),
             scene: scene.bounds(),
             layout: options.layout(),
             backend,

@@ -4,17 +4,18 @@ use super::{Entry, Prepared, triangles};
 use sightlines_geometry::Point3;
 use sightlines_line_space::{Effort, LineSpace, Surface};
 use sightlines_multifocal::FromRegion;
+use sightlines_multifocal::mesh::Mesh;
 use std::sync::Arc;
 
 pub(super) const ENTRY: Entry = Entry {
     name: "line-space",
     about: "Surfaces in any direction, several together: line space subdivided",
-    prepare: |scene, _| Ok(prepared(&triangles(scene))),
+    prepare: |scene, _| Ok(prepared(Mesh::weld(&triangles(scene)))),
 };
 
 /// Line space for these triangles.
-pub(super) fn prepared(triangles: &[[Point3; 3]]) -> Box<dyn Prepared> {
-    Box::new(Shared(Arc::new(Surface::new(triangles))))
+pub(super) fn prepared(mesh: Mesh) -> Box<dyn Prepared> {
+    Box::new(Shared(Arc::new(Surface::of(mesh))))
 }
 
 /// What the instances of all threads share.
