@@ -1,7 +1,6 @@
 //! Line space as a method by name.
 
 use super::{Entry, Prepared, triangles};
-use sightlines_geometry::Point3;
 use sightlines_line_space::{Effort, LineSpace, Surface};
 use sightlines_multifocal::FromRegion;
 use sightlines_multifocal::mesh::Mesh;
