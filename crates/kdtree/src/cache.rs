@@ -25,6 +25,17 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
+    /// Whether at least half of its triangles are axis-parallel.
+    pub(crate) fn is_mostly_flat(&self) -> bool {
+        self.flat.len() >= self.n_other
+    }
+
+    /// The same, and they are not all across one axis.
+    pub(crate) fn stands_along_axes(&self) -> bool {
+        let mut axes = self.flat.iter().map(|(_, triangle)| triangle.axis);
+        self.is_mostly_flat() && axes.next().is_some_and(|first| axes.any(|axis| axis != first))
+    }
+
     pub(crate) fn of(object: &SceneObject) -> Self {
         let (mut flat, mut n_empty, mut n_other) = (Vec::new(), 0, 0);
         for (triangle, corners) in (0u32..).zip(object.corners()) {

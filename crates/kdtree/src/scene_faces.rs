@@ -53,9 +53,9 @@ pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
     Survey::of(scene, options, &mut cache).faces(&mut cache)
 }
 
-/// A size below which things are detail, from the scene alone. Only objects count at least half of whose triangles lie across an axis, if there are
-/// some: others, as those of a building that is turned, have hardly any face here. It is the smaller of
-/// * a twentieth of the middle one of the three sides of the box around them (1.5 m for a floor or a tower
+/// A size below which things are detail, from the scene alone. Only objects count half of whose triangles lie across an axis, within the box around those
+/// that have some across two axes, if there are such objects: a building that is turned about the vertical has little but floors here. It is the smaller of
+/// * a twentieth of the middle one of the three sides of that box (1.5 m for a floor or a tower
 ///   30 m wide and 50 m long), which keeps it below the size of rooms;
 /// * the largest size such that smaller objects make up at most a quarter of what can hide, counting for
 ///   each object the largest side of its box, and no object that is half as long as the middle one of the
@@ -70,10 +70,16 @@ pub fn default_detail_below(scene: &Scene) -> f64 {
 
 /// The same from the shapes of all objects that hide.
 fn detail_below_of(shapes: &[&Shape]) -> f64 {
-    let across: Vec<Aabb<3>> = shapes.iter().filter(|s| s.flat.len() >= s.n_other).map(|s| s.bounds).collect();
-    let all = || shapes.iter().map(|s| s.bounds).collect();
-    let objects = if across.is_empty() { all() } else { across };
-    let bounds = objects.iter().copied().fold(Aabb::EMPTY, Aabb::united);
+    let around =
+        |shapes: &mut dyn Iterator<Item = &&Shape>| shapes.fold(Aabb::EMPTY, |b, shape| b.united(shape.bounds));
+    let across = around(&mut shapes.iter().filter(|shape| shape.stands_along_axes()));
+    let (bounds, objects): (Aabb<3>, Vec<Aabb<3>>) = if across.is_empty() {
+        (around(&mut shapes.iter()), shapes.iter().map(|shape| shape.bounds).collect())
+    } else {
+        let meets = |b: &Aabb<3>| (0..3).all(|k| b.min[k] <= across.max[k] && across.min[k] <= b.max[k]);
+        let counts = |shape: &&&Shape| shape.is_mostly_flat() && meets(&shape.bounds);
+        (across, shapes.iter().filter(counts).map(|shape| shape.bounds).collect())
+    };
     if bounds.is_empty() {
         return 0.0;
     }

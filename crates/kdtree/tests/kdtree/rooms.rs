@@ -98,6 +98,21 @@ fn furniture_is_detail() {
 }
 
 #[test]
+fn a_turned_building_beside_another_does_not_count_for_what_is_detail() {
+    let alone = || vec![hull([0.; 3], [40., 30., 3.]), chair(6., 1.), wall_with_door()];
+    // Twice as large, by 3 and 4 of 5, and with a floor of its own.
+    let turned = |[x, y, z]: Point3| [100. + 2. * (0.6 * x - 0.8 * y), 100. + 2. * (0.8 * x + 0.6 * y), z];
+    let floor = quad(2, [0., 0., 0.], [40., 30., 0.], true);
+    let beside = |o: SceneObject| object("beside", &o.corners().map(|t| t.map(turned)).collect::<Vec<_>>());
+    let both: Vec<SceneObject> =
+        alone().into_iter().chain(alone().into_iter().chain([object("floor", &floor)]).map(beside)).collect();
+    assert_eq!(default_detail_below(&scene(alone())), 1.5);
+    assert_eq!(default_detail_below(&scene(both.clone())), 1.5);
+    // What stands alone counts, although it is turned.
+    assert!(default_detail_below(&scene(both[3..].to_vec())) > 1.5);
+}
+
+#[test]
 fn detail_leaves_most_of_the_surface() {
     // A large campus of small houses: a twentieth of its extent is more than a house.
     let house = |i: u32| {
