@@ -164,7 +164,7 @@ fn contenders(args: &Args) -> Vec<Contender> {
     add("sheets".to_owned(), 0, Box::new(|case| Box::new(SheetMethod::new(&triangles(case)))));
     add("default: height, carried, and sheets".to_owned(), 0, Box::new(shipped));
     add("the same, cells cut up to 2 times".to_owned(), 2, Box::new(shipped));
-    for (box_cells, triangle_cells) in [(16, 100), (16, 400)] {
+    for (box_cells, triangle_cells) in [(32, 100), (32, 400)] {
         let effort = Effort { box_cells, triangle_cells, ..Effort::default() };
         let lines = move |case: &Case| LineSpace::shared(Arc::new(Surface::new(&triangles(case))), effort);
         let name = format!("line space, {box_cells} and {triangle_cells} cells");

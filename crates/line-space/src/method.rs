@@ -25,7 +25,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { box_cells: 16, triangle_cells: 400, attempts: 4, longest_chain: 300 }
+        Self { box_cells: 32, triangle_cells: 400, attempts: 4, longest_chain: 300 }
     }
 }
 
