@@ -134,6 +134,8 @@ pub struct RegionReport {
     pub method: Option<String>,
     /// What the method did.
     pub effort: Effort,
+    /// The doors of the scene, by object, and the portals that they close; none for cells without portals.
+    pub doors: Vec<DoorPortals>,
     /// Unordered pairs of different cells that may see each other.
     pub n_visible_pairs: u64,
     /// Pairs of a cell and an object that it may see.

@@ -14,6 +14,7 @@ mod see;
 pub use crate::grid::{GridError, grid};
 
 use crate::baked::{Baked, BakedRegions};
+use crate::doors;
 use crate::error::BakeError;
 use crate::graph::TableGraph;
 use crate::limit::{LimitReport, state_limit};
@@ -122,14 +123,14 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let start = Instant::now();
     let boxes = extents(scene);
     let mut by_sightlines = options.sightlines || options.method.is_none();
-    let (mut n_assumed, mut summary, mut left) = (0, None, None);
+    let (mut n_assumed, mut summary, mut left, mut cut_time) = (0, None, None, None);
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
         CellsFrom::KdTree if by_sightlines => {
             let RegionBakeOptions { cut, portals, threads, progress, .. } = *options;
             let budget = if options.method.is_some() { options.budget.part(SIGHTLINES) } else { options.budget };
             let options = SceneBakeOptions { cut, portals, threads, file: None, progress, budget };
             let (graph, parts, report, not_decided) = see_scene(scene, &options)?;
-            n_assumed = report.n_assumed;
+            (n_assumed, cut_time) = (report.n_assumed, Some(report.cut_time));
             left = not_decided;
             parts::of_seen(graph, parts)
         }
@@ -151,7 +152,11 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let volumes = volumes(&cells)?;
     let touching = see::touching(&cells, &boxes);
     let n = cells.len();
-    let cut_time = start.elapsed();
+    let cut_time = cut_time.unwrap_or_else(|| start.elapsed());
+    let doors = match &graph {
+        TableGraph::Axial(graph) => doors::of_scene(graph, scene),
+        _ => Vec::new(),
+    };
     let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, boxes.len()) };
     let mut left = left.unwrap_or_else(none);
     let mut proven = PairMask { boxes: BitMatrix::identity(n), objects: BitMatrix::new(n, boxes.len()) };
@@ -226,6 +231,10 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         _ => TableKind::SceneKdTree { hidden_by },
     };
     parts.info.push(("method".to_owned(), format!("{by}{text}")));
+    // Those of a k-d tree state it whether it was chosen or not.
+    if let Some(size) = options.cut.detail_below.filter(|_| by_sightlines && matches!(graph, TableGraph::Boxes(_))) {
+        parts.info.push(("detail-below".to_owned(), size.to_string()));
+    }
     parts.info.sort();
     limit.iter().for_each(|limit| state_limit(&mut parts, limit));
     state_file(&mut parts, options.file);
@@ -236,6 +245,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         n_assumed,
         method,
         effort,
+        doors,
         n_visible_pairs,
         n_objects_seen,
         limit,

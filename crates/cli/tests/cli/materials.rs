@@ -327,6 +327,10 @@ fn doors_close_portals_of_their_table() {
         })
         .collect();
     assert_eq!(portals.len(), 6);
+    // Whatever method hides beside sightlines.
+    let both = folder.run(&["build", "level.glb", "-o", "both.pvs", "--method", "both", "--json"]).expect(0).json();
+    assert_eq!(both["doors"], doors);
+    assert!(both["cut_seconds"].as_f64() < both["seconds"].as_f64());
     // From the first room with open doors, with its own door shut, and with another one shut.
     let sees = |shut: &[&str], place: &str| {
         let closed = shut.iter().flat_map(|portal| ["--closed", portal]).collect::<Vec<_>>();

@@ -26,7 +26,7 @@ impl Plan {
             return Self::default();
         }
         let cells = match &options.cells {
-            CellsFrom::KdTree => "rooms along walls".to_owned(),
+            CellsFrom::KdTree => "cells along walls".to_owned(),
             CellsFrom::Places(how) => format!("about {} places", how.n_cells()),
             CellsFrom::Grid(n) => format!("{} boxes of a grid", n.iter().map(|&n| u64::from(n)).product::<u64>()),
             CellsFrom::Boxes(given) => format!("{} given boxes", given.cells.len()),

@@ -116,8 +116,9 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     clock.warn(path, &baked.report);
     let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, show_progress)?;
     let bytes = baked.table.to_bytes();
-    output::save(out, &bytes)?;
+    // Proofs that contradict the table leave an older one untouched.
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
+    output::save(out, &bytes)?;
     let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
     let surfaces = match &source.content {
         Bakeable::Scene(file) => Some(Surfaces::new(file).with_backs(&baked.table, &file.scene)),

@@ -2,6 +2,7 @@
 
 use super::brief::{Brief, of_cells, of_viewer};
 use super::limit::{Undecided, brief};
+use super::space::Door;
 use super::view_cells::ViewCellsArgs;
 use crate::buffers::BufferArgs;
 use crate::facts::{Facts, Stated};
@@ -139,6 +140,8 @@ pub(super) struct Outcome {
     n_volumes: u64,
     /// Queries whether a box, or a triangle, is hidden.
     n_asked: u64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    doors: Vec<Door>,
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     time_limit: Option<Undecided>,
@@ -199,6 +202,7 @@ impl Outcome {
             n_objects_seen: report.n_objects_seen,
             n_volumes: report.effort.n_volumes,
             n_asked: asked.groups + asked.boxes + asked.triangles,
+            doors: report.doors.iter().map(|door| Door::new(&file.scene, door)).collect(),
             time_limit: report.limit.map(Undecided::from),
             cut_seconds: report.cut_time.as_secs_f64(),
             seconds: report.time.as_secs_f64(),

@@ -27,14 +27,14 @@ pub(super) fn warn(path: &Path, report: &SceneReport) {
 
 /// A door, and the portals that it closes while it stands as it does in the file.
 #[derive(Debug, Serialize)]
-struct Door {
+pub(super) struct Door {
     object: u32,
     name: String,
     portals: Vec<u32>,
 }
 
 impl Door {
-    fn new(scene: &Scene, found: &DoorPortals) -> Self {
+    pub(super) fn new(scene: &Scene, found: &DoorPortals) -> Self {
         let DoorPortals { object, portals } = found;
         let name = scene.objects()[*object as usize].name.clone();
         Self { object: *object, name, portals: portals.iter().map(|portal| portal.0).collect() }

@@ -7,6 +7,7 @@ use sightlines::bake::{BakeOptions, CellsFrom, Gap, SceneMethod, bake};
 use sightlines::cells::Scene;
 use sightlines::formats::{ViewCell, ViewCells};
 use sightlines::geometry::Aabb;
+use sightlines::kdtree::SceneOptions;
 use sightlines::pvs::{CellId, SceneMethods, Table, TableKind};
 use sightlines::verify::{VerifyError, along_frame, sight_between};
 use std::fmt;
@@ -82,15 +83,28 @@ fn hidden_by(table: &Table, [a, b]: [CellId; 2], scene: Option<&Scene>) -> Vec<S
     }
 }
 
-/// Whether sightlines alone hide two cells from each other; none if that takes too many cells.
+/// Whether sightlines alone hide two cells from each other; none if that cannot be told: they were not finished in time, or cannot
+/// cut the scene.
 fn is_hidden_by_sightlines(table: &Table, scene: &Scene, pair: [CellId; 2]) -> Option<bool> {
     let cell = |id: CellId| {
         let record = &table.cells()[id.idx()];
         ViewCell { id: id.to_string(), bounds: Aabb { min: record.min, max: record.max } }
     };
+    if table.info_value("time-limit").is_some() {
+        return None;
+    }
+    let mut options = SceneOptions::default();
+    if let Some(size) = table.info_value("detail-below") {
+        options.detail_below = Some(size.parse().ok()?);
+    }
     let cells = CellsFrom::Boxes(ViewCells { cells: pair.map(cell).to_vec(), axes: None });
-    let options =
-        BakeOptions { cells, method: SceneMethod::Sightlines, gap: Gap::Width(0.0), ..BakeOptions::default() };
+    let options = BakeOptions {
+        cells,
+        method: SceneMethod::Sightlines,
+        gap: Gap::Width(0.0),
+        cut: options,
+        ..BakeOptions::default()
+    };
     let two = bake(scene, &options).ok()?.table;
     Some(!two.sees(CellId(0), CellId(1)))
 }

@@ -143,8 +143,8 @@ impl Outcome {
     }
 
     /// The same for a table with a frame, whose gap is so many times what single precision rounds.
-    pub(super) fn in_frame(self, frame: Option<&Frame>, times_single: f64) -> Self {
-        let wide_gap = (times_single > MUCH).then_some(times_single);
+    pub(super) fn in_frame(self, frame: Option<&Frame>, times_usual: f64) -> Self {
+        let wide_gap = (times_usual > MUCH).then_some(times_usual);
         match frame {
             Some(frame) => Self { frame: Some(frame.into()), wide_gap, ..self },
             None => Self { n_cracks: None, n_flattened: None, ..self },
@@ -173,7 +173,7 @@ impl Outcome {
     }
 }
 
-/// From how many times the rounding of single precision on a gap is remarked.
+/// From how many times 2^-20 of a scene's size on a gap is remarked; only decides what is printed.
 const MUCH: f64 = 16.0;
 
 /// Violations of each kind that people are shown.
@@ -218,7 +218,7 @@ impl fmt::Display for Outcome {
         if let Some(times) = self.wide_gap {
             writeln!(
                 f,
-                "remark         the gap is {times:.0} times the rounding of single precision: no ray tells of what is narrower"
+                "remark         the gap is {times:.0} times what single precision explains in a scene of this size: no ray tells of what is narrower"
             )?;
         }
         for (n, noun, what) in remarks.into_iter().filter(|(n, ..)| *n > 0) {
@@ -248,7 +248,9 @@ impl fmt::Display for Outcome {
                 writeln!(f, "               is known of whether what the table hides is hidden")
             }
             0 if self.is_true => writeln!(f, "result         nothing found that contradicts the table"),
-            0 => writeln!(f, "result         nothing found by structure and rays, but see the proofs"),
+            0 => {
+                writeln!(f, "result         nothing found by structure and rays, but not all that is hidden is proven")
+            }
             n if self.has_more_violations => writeln!(f, "result         at least {}", count(n as u64, "violation")),
             n => writeln!(f, "result         {}", count(n as u64, "violation")),
         }

@@ -81,8 +81,9 @@ impl Real {
         }
     }
 
-    /// How many times the rounding of single precision a gap is: 2^-20 of the longest side of a scene, as the default gap of `build`.
-    pub(super) fn times_single(&self, gap: f64) -> f64 {
+    /// How many times 2^-20 of the longest side of a scene a gap is: that is 16 times the rounding of single precision, as much as the
+    /// default gap of `build` allows for.
+    pub(super) fn times_usual(&self, gap: f64) -> f64 {
         let Self::Scene(scene) = self else { return 0.0 };
         let b = scene.bounds();
         let longest = (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
