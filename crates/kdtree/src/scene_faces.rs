@@ -53,7 +53,7 @@ pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
     Survey::of(scene, options, &mut cache).faces(&mut cache)
 }
 
-/// A size below which things are detail, from the scene alone. Only objects count half of whose triangles lie across an axis, within the box around those
+/// A size below which things are detail, from the scene alone. Only objects count half of whose triangles lie across an axis, if they meet the box around those
 /// that have some across two axes, if there are such objects: a building that is turned about the vertical has little but floors here. It is the smaller of
 /// * a twentieth of the middle one of the three sides of that box (1.5 m for a floor or a tower
 ///   30 m wide and 50 m long), which keeps it below the size of rooms;

@@ -10,7 +10,7 @@ use sightlines_multifocal::mesh::{avoids, collinear};
 use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use std::sync::Arc;
 
-/// How much is done for one target at most. More finds more hidden; nothing is ever hidden wrongly.
+/// How much is done for one target at most. More finds more hidden, as a rule; nothing is ever hidden wrongly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
     /// Cells of line space for a box. A box around triangles that are looked at one by one otherwise has at most half as many as there are triangles.

@@ -29,7 +29,7 @@ const AT_END: f64 = 1e-6;
 pub(crate) enum Patience {
     /// Never.
     Full,
-    /// When little was blocked by many cells: if the share of lines that is open after n cells is more than [`HOPELESS`], times the root
+    /// When more cells wait than are left, or little was blocked by many cells: if the share of lines that is open after n cells is more than [`HOPELESS`], times the root
     /// of the budget, over n.
     WhileItPays,
 }
@@ -53,7 +53,7 @@ pub(crate) struct Search {
     successes: Successes,
 }
 
-/// How often chains blocked lines, by the triangle where they began. What blocks the lines to one target often blocks those to the next.
+/// How often chains blocked all lines of a cell, by the triangle where they began. What blocks the lines to one target often blocks those to the next.
 #[derive(Debug)]
 struct Successes {
     epoch: u32,
@@ -121,10 +121,13 @@ impl Search {
         let mut random = Random::new(1);
         let mut n = 0;
         while let Some(root) = self.queue.pop_front() {
-            if n == budget || open * f64::from(n) > hopeless {
+            // Each cell that waits costs one at least.
+            let is_too_long = patience == Patience::WhileItPays && self.queue.len() as u32 >= budget.saturating_sub(n);
+            if n == budget || open * f64::from(n) > hopeless || is_too_long {
                 return (Outcome::Undecided, n);
             }
             n += 1;
+            let parts = roots.parts(&root);
             let Some(mut shaft) = Shaft::new(root.cell, root.start, surface.reach(), &mut random) else {
                 return (Outcome::Undecided, n);
             };
@@ -144,7 +147,7 @@ impl Search {
                 surface.hits(shaft.line[0], shaft.line[1], &mut self.hits);
                 let is_free = self.hits.iter().all(|hit| hit.at > 1.0 - AT_END);
                 // A line of a root with parts may be none of those in question.
-                if is_free && roots.parts(&root).is_empty() {
+                if is_free && parts.is_empty() {
                     return (Outcome::Reached, n);
                 }
                 match if is_free { Err(Gap::Other) } else { self.block(surface, &shaft, target) } {
@@ -164,7 +167,6 @@ impl Search {
             } else {
                 Gap::Other
             };
-            let parts = roots.parts(&root);
             if !parts.is_empty() {
                 let share = root.share / parts.len() as f64;
                 self.queue.extend(parts.iter().map(|part| Root { limit: root.limit, share, ..*part }));

@@ -8,7 +8,7 @@ use sightlines_multifocal::mesh::avoids as avoids_box;
 /// What the lines of a search end at.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Target {
-    /// A box: the insides of its sides may not be touched, by which lines enter it.
+    /// A box: the inside of the end may not be touched, a side of the box or a rectangle before it.
     Box,
     /// A triangle: its inside may not be touched.
     Triangle([Point3; 3]),

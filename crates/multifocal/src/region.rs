@@ -43,7 +43,7 @@ pub trait Umbra {
     fn hides(&mut self, target: &Aabb<3>) -> bool;
 
     /// The same of a box around so many triangles, whose number says how much the answer may cost: unless the box is hidden, each of
-    /// them is looked at.
+    /// them is looked at, up to the first that is not hidden.
     fn hides_box_of(&mut self, target: &Aabb<3>, _n_triangles: usize) -> bool {
         self.hides(target)
     }

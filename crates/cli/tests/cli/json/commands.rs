@@ -166,6 +166,7 @@ fn scenes(all: &mut Results) {
     add("info of a scene", "info extras.glb");
     add("build of a scene", "build doors.glb -o doors.pvs");
     add("build of a scene", "build doors.glb -o doors.pvs --time-limit 0");
+    add("build of a scene by regions", "build doors.glb -o doors.pvs --method both");
     add("build of a scene by regions", "build slanted.obj -o s.pvs --method auto --time-limit 0");
     add("build of a scene", "build extras.glb -o extras.pvs");
     add("build of a scene by regions", "build extras.glb -o extras.pvs --method shafts --grid 2,1,1");
