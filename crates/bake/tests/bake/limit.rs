@@ -19,7 +19,7 @@ fn calls(n: u64) -> impl Fn() -> f64 + Sync {
 }
 
 /// A tower with walls along axes, turned about z by a rotation with rational cosine or not.
-fn building(turned: bool) -> Scene {
+pub(crate) fn building(turned: bool) -> Scene {
     let upright = tower(TowerOptions { floors: 1, rooms_x: 3, rooms_y: 2, furniture: 1, ..TowerOptions::default() });
     let turn = |p: &Point3| if turned { [0.8 * p[0] - 0.6 * p[1], 0.6 * p[0] + 0.8 * p[1], p[2]] } else { *p };
     let object = |o: &SceneObject| SceneObject { vertices: o.vertices.iter().map(turn).collect(), ..o.clone() };

@@ -3,6 +3,7 @@
 mod any_input;
 mod bakeable;
 mod limit;
+mod line_space;
 mod live;
 mod mirrors;
 mod places;

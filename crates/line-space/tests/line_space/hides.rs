@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_line_space::{LineSpace, Outcome};
 use sightlines_multifocal::mesh::Sheets;
+use sightlines_multifocal::{FromRegion, Volume};
 use sightlines_testkit::meshes::{Soup, boxes, free_segment, scene, soup};
 use sightlines_testkit::{RayScene, draw};
 
@@ -83,6 +84,23 @@ proptest! {
         let again: Vec<Outcome> = pairs.iter().map(|[v, e]| lines.see_box(v, e, 60)).collect();
         let fresh: Vec<Outcome> = pairs.iter().map(|[v, e]| LineSpace::new(&soup).see_box(v, e, 60)).collect();
         prop_assert_eq!(again, fresh);
+    }
+
+    /// Invariant: an umbra does as much for its targets whatever other umbrae were asked before it.
+    #[test]
+    fn umbrae_do_not_depend_on_earlier_ones(soup in turned_soup(), pairs in prop::collection::vec(boxes(), 4)) {
+        let ask = |lines: &mut LineSpace, eyes: &Aabb<3>| -> (Vec<bool>, u64) {
+            let before = lines.n_cells();
+            let mut umbra = lines.umbra(&Volume::new(*eyes).expect("a box")).expect("no device is used");
+            let answers = pairs.iter().map(|[_, target]| umbra.hides_box_of(target, 40)).collect();
+            drop(umbra);
+            (answers, lines.n_cells() - before)
+        };
+        let mut lines = LineSpace::new(&soup);
+        for [eyes, _] in &pairs {
+            let again = ask(&mut lines, eyes);
+            prop_assert_eq!(again, ask(&mut LineSpace::new(&soup), eyes));
+        }
     }
 }
 
