@@ -19,8 +19,8 @@ pub(crate) struct End {
 /// numbers of at most twice that size.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// How far off a coordinate of the point is where a segment crosses a plane, if its ends have the coordinates `x` and `y`: the parameter has three
-/// roundings more.
+/// The rounding error of a coordinate of the point where a segment crosses a plane, if its ends have the coordinates `x` and `y`. The parameter
+/// is rounded three times, which [`ROUNDING`] does not count.
 pub(crate) fn crossing_error(x: f64, y: f64) -> f64 {
     2.0 * ROUNDING * (x.abs() + y.abs())
 }

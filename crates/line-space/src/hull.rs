@@ -66,8 +66,8 @@ impl HalfSpace {
     }
 }
 
-/// The same half-spaces side by side, for points whose coordinates are not larger than a given magnitude: what is far enough from every border is
-/// decided for all of them at once.
+/// The half-spaces side by side, so that all of them are tested at once. Bounds on rounding hold for points within a given reach; a point
+/// nearer than that to a border is left to the [`HalfSpace`].
 #[derive(Debug, Clone, Copy)]
 struct Quick {
     /// `normal[0] x + normal[1] y + normal[2] z + offset` is how far inside a point is.
@@ -84,8 +84,8 @@ impl Quick {
     const NONE: Self =
         Self { normal: [[0.0; MOST]; 3], offset: [0.0; MOST], inside: [-1.0; MOST], outside: [-1.0; MOST] };
 
-    /// Another half-space. To the rounding of `normal · (p - a)`, as a share of `weight · (|p| + |a|)`, this order of the sums adds
-    /// four roundings of terms of that size.
+    /// Sets half-space `i`. `normal · (p - a)` is off by at most `ROUNDING · weight · (|p| + |a|)`; summed in this order it has four more
+    /// roundings of terms of that size, for which twice the bound is enough.
     fn set(&mut self, i: usize, space: &HalfSpace, reach: Point3) {
         let a = space.through[0];
         let bound = 2.0 * ROUNDING * (0..3).map(|k| space.weight[k] * (reach[k] + a[k].abs())).sum::<f64>();

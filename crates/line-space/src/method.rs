@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// How much is done for one target at most. More finds more hidden, as a rule; nothing is ever hidden wrongly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
-    /// Cells of line space for a box. A box around triangles that are looked at one by one otherwise has at most half as many as there are triangles.
+    /// Cells of line space for a box. A box around triangles, each of which can be tested instead, gets at most half a cell for each.
     pub box_cells: u32,
     /// Cells of line space for a triangle.
     pub triangle_cells: u32,

@@ -1,8 +1,11 @@
 //! All lines from a box to a target, as cells of line space: coarse ones first, exact ones where these are not enough.
 //!
-//! Lines leave a box by up to five of its sides and enter another by up to five, mostly three each, so some nine cells hold them, and no
-//! others. But all of them also cross two planes across an axis, one at either box with nothing of the boxes between, within a rectangle on each. The cell from one rectangle to the other holds them with some others, and often one chain blocks
-//! even that. Where none does, the parts of a root are tried instead of it; a cell without others is cut in halves.
+//! A line may leave a box by any of its sides that faces the target, and enter the target by any side that faces the box: mostly three
+//! each. The nine cells for these pairs of sides hold all lines, and no others. If the two boxes are apart along an axis, all lines also
+//! cross two planes across that axis: one through the side of the first box that faces the second, one through the side of the second
+//! that faces the first. The lines cross each plane within a rectangle, and one cell, from rectangle to rectangle, holds all of them, and
+//! some others. Often one chain blocks that whole cell. If none does, the parts of the root take its place; a root without parts is cut
+//! in halves.
 
 use crate::cell::Cell;
 use crate::end::{End, crossing_error};
@@ -17,9 +20,9 @@ pub(crate) struct Root {
     pub(crate) start: Start,
     /// The side of an edge on which the lines in question pass, if not all are left.
     pub(crate) limit: Option<Limit>,
-    /// Its part of all lines, roughly: halves have half of it.
+    /// The share of all lines that it holds, roughly; each half of a cell has half of it.
     pub(crate) share: f64,
-    /// Other roots that hold all lines in question, and fewer others; none for a cell without others.
+    /// More exact roots that together hold the same lines in question; none if it holds no others.
     pub(crate) parts: Parts,
 }
 
@@ -49,7 +52,7 @@ impl Roots {
         self.of(self.whole)
     }
 
-    /// Roots that hold all lines of a root that are in question; none for a cell that has no others.
+    /// The parts of a root: more exact roots that together hold its lines in question; none if it holds no others.
     pub(crate) fn parts(&self, root: &Root) -> &[Root] {
         self.of(root.parts)
     }
@@ -138,7 +141,7 @@ struct Planes {
 }
 
 impl Planes {
-    /// Those across the axis along which the boxes' middles are farthest apart, of those that have some.
+    /// Of the axes along which the boxes are apart, the one along which their middles are farthest from each other; none if there is none.
     fn between(volume: &Aabb<3>, target: &Aabb<3>) -> Option<Self> {
         let between = |axis: usize| {
             let [low, high] = [volume.min[axis] - target.max[axis], target.min[axis] - volume.max[axis]];
@@ -154,10 +157,11 @@ impl Planes {
         (0..3).filter_map(between).max_by(|p, q| apart(p.axis).total_cmp(&apart(q.axis)))
     }
 
-    /// A rectangle on one of the planes that is crossed by every line from a point of the hull of some points to a point of that of
-    /// others, on either side of the planes. What has to be rounded is rounded outwards.
+    /// The rectangle on a plane, 0 or 1, within which every segment from the convex hull of `from` to that of `to` crosses it. Rounded outwards;
+    /// none if its coordinates are out of range.
     ///
-    /// From one point the other hull is projected onto the plane, which makes a hull of the projected corners; so corners of both are enough.
+    /// Seen from one point, the projection of a convex hull onto the plane is the hull of the projected corners. So segments between corners are
+    /// enough.
     fn crossed_at(&self, from: &[Point3], to: &[Point3], plane: usize) -> Option<Aabb<3>> {
         let (k, at) = (self.axis, self.at[plane]);
         let mut crossed = Aabb::EMPTY;

@@ -29,8 +29,8 @@ const AT_END: f64 = 1e-6;
 pub(crate) enum Patience {
     /// Never.
     Full,
-    /// When more cells wait than are left, or little was blocked by many cells: if the share of lines that is open after n cells is more than [`HOPELESS`], times the root
-    /// of the budget, over n.
+    /// When more cells wait than the budget allows, or when many cells have blocked little: when after n cells the share of lines that is
+    /// still open exceeds [`HOPELESS`] times the square root of the budget, divided by n.
     WhileItPays,
 }
 
@@ -92,7 +92,7 @@ impl Search {
         }
     }
 
-    /// Forgets which chains blocked lines. Until then the outcome of a search may depend on those before.
+    /// Forgets where chains that blocked lines began. Between two calls, the outcome of a search may depend on earlier ones.
     pub(crate) fn forget(&mut self) {
         self.successes.forget();
     }
@@ -121,7 +121,7 @@ impl Search {
         let mut random = Random::new(1);
         let mut n = 0;
         while let Some(root) = self.queue.pop_front() {
-            // Each cell that waits costs one at least.
+            // Each cell that waits takes at least one from the budget.
             let is_too_long = patience == Patience::WhileItPays && self.queue.len() as u32 >= budget.saturating_sub(n);
             if n == budget || open * f64::from(n) > hopeless || is_too_long {
                 return (Outcome::Undecided, n);
