@@ -96,6 +96,11 @@ impl SpaceSearch<'_> {
         }
     }
 
+    /// Whether two cells count as visible only because the allowance was over.
+    pub(super) fn is_left(&self, place: usize, other: usize) -> bool {
+        self.left.as_ref().is_some_and(|[cells, _]| cells.get(place, other))
+    }
+
     /// Decides which cells see each object, among those that may.
     pub(super) fn settle_objects(
         &self,

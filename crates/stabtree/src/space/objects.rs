@@ -53,7 +53,10 @@ impl SpaceSearch<'_> {
         }
         for other in self.cells.ones(place) {
             let cell = self.cell_at[other] as usize;
-            lies_in(cell);
+            // A pair that was left says nothing about objects around it; they are asked for themselves.
+            if !self.is_left(place, other) {
+                lies_in(cell);
+            }
             for &object in &self.within_reach[cell] {
                 if self.may_see_object(place, object as usize) {
                     self.maybe.set(object as usize, place);

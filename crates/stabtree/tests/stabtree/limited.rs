@@ -83,14 +83,36 @@ fn compare(name: &str, run: impl Fn(&[AxialFace<3>], &[bool], &[Aabb<3>], Option
     assert!(counts.iter().all(|&n| n > 10), "{name}: left, looser, caught, whole: {counts:?}");
 }
 
+/// What cells see.
+fn cells(faces: &[AxialFace<3>], out: &[bool], objects: &[Aabb<3>], budget: Option<&dyn Budget>) -> Option<Found> {
+    let (graph, solid) = cut(faces, out);
+    let seen = space_visibility(&graph, &solid, objects, &options(1, budget)).expect("nobody cancels");
+    (graph.n_cells() > 0)
+        .then_some(Found { visible: PairMask { boxes: seen.cells, objects: seen.objects }, left: seen.left })
+}
+
 #[test]
 fn cells_that_are_not_decided_are_visible() {
-    compare("cells", |faces, out, objects, budget| {
-        let (graph, solid) = cut(faces, out);
-        let seen = space_visibility(&graph, &solid, objects, &options(1, budget)).expect("nobody cancels");
-        (graph.n_cells() > 0)
-            .then_some(Found { visible: PairMask { boxes: seen.cells, objects: seen.objects }, left: seen.left })
-    });
+    compare("cells", cells);
+}
+
+/// Who sees a cell sees the objects around it. Who only may see it, because that was not decided, may see them.
+#[test]
+fn objects_around_cells_that_are_not_decided_are_listed() {
+    let faces = [
+        AxialFace::new(1, [0.0, 1.0, 0.0], [1.0, 1.0, 1.0]),
+        AxialFace::new(0, [2.0, 0.0, 0.0], [2.0, 1.0, 4.0]),
+        AxialFace::new(2, [0.0, 1.0, 3.0], [3.0, 2.0, 3.0]),
+        AxialFace::new(0, [1.0, 0.0, 0.0], [1.0, 2.0, 1.0]),
+        AxialFace::new(0, [2.0, 0.0, 1.0], [2.0, 4.0, 4.0]),
+    ];
+    let object = [Aabb { min: [0.0; 3], max: [1.0, 4.0, 4.0] }];
+    let find = |budget: Option<&dyn Budget>| cells(&faces, &[false], &object, budget).expect("there are cells");
+    let (full, limited) = (find(None), find(Some(&calls(0))));
+    assert_eq!(faults(&full, &limited), [0; 2]);
+    let left = limited.left.as_ref().expect("nothing is decided");
+    assert!(left.boxes.count_ones() > 0 && left.objects.count_ones() > 0);
+    assert!(faults(&full, &impostor(&limited))[0] > 0);
 }
 
 #[test]
