@@ -69,9 +69,7 @@ impl Survey {
 
 /// Whether a part of a box is behind the plane of a triangle. Exact.
 fn reaches_behind([a, b, c]: &[Point3; 3], cell: &Aabb<3>) -> bool {
-    let corner =
-        |i: usize| -> Point3 { std::array::from_fn(|k| if i >> k & 1 == 0 { cell.min[k] } else { cell.max[k] }) };
-    (0..8).any(|i| orient3d(*a, *b, *c, corner(i)) < 0.0)
+    cell.corners().into_iter().any(|corner| orient3d(*a, *b, *c, corner) < 0.0)
 }
 
 /// Triangles with a cell right behind them, of cells around which nothing is but solid matter.

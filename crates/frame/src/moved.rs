@@ -110,12 +110,11 @@ impl Moved {
     ///
     /// Where the axes are those of the frame within the gap that is the box itself; else it is larger.
     pub fn box_around(&self, frame: &Frame, bounds: &Aabb<3>, axes: &[Point3; 3]) -> Aabb<3> {
-        let corner = |i: usize| {
-            let along: Point3 = std::array::from_fn(|k| if i >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] });
+        let corner = |along: Point3| {
             let p = std::array::from_fn(|k| axes[0][k] * along[0] + axes[1][k] * along[1] + axes[2][k] * along[2]);
             frame.to_frame(p)
         };
-        let turned = Aabb::around((0..8).map(corner));
+        let turned = Aabb::around(bounds.corners().map(corner));
         let snap = |p: Point3| std::array::from_fn(|k| self.snaps.snap(k, p[k]));
         Aabb { min: snap(turned.min), max: snap(turned.max) }
     }

@@ -50,9 +50,24 @@ impl<const D: usize> Aabb<D> {
     }
 }
 
+impl Aabb<3> {
+    /// The eight corners; bit `k` of the index selects lower (0) or upper along axis `k`.
+    pub fn corners(&self) -> [[f64; 3]; 8] {
+        std::array::from_fn(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { self.min[k] } else { self.max[k] }))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn corners_are_numbered_by_their_sides() {
+        let b = Aabb { min: [0.0, 1.0, 2.0], max: [3.0, 4.0, 5.0] };
+        let corners = b.corners();
+        assert_eq!([corners[0], corners[1], corners[6]], [[0.0, 1.0, 2.0], [3.0, 1.0, 2.0], [0.0, 4.0, 5.0]]);
+        assert_eq!(Aabb::around(corners), b);
+    }
 
     #[test]
     fn boxes_grow_and_contain() {

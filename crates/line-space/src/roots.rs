@@ -97,14 +97,14 @@ impl Roots {
             }
             let whole = End::rectangle(&start, axis).and_then(|from| {
                 let planes = Planes::between(&start, target)?;
-                let to = planes.crossed_at(&corners(&start), &corners(target), 1)?;
+                let to = planes.crossed_at(&start.corners(), &target.corners(), 1)?;
                 let to = beyond(to, axis, start.min[axis], upward)?;
                 Some(Root::new(from, End::rectangle(&to, planes.axis)?, exits))
             });
             of_sides.extend(roots.join(of_side, whole));
         }
         let whole = Planes::between(volume, target).and_then(|planes| {
-            let [from, to] = [0, 1].map(|i| planes.crossed_at(&corners(volume), &corners(target), i));
+            let [from, to] = [0, 1].map(|i| planes.crossed_at(&volume.corners(), &target.corners(), i));
             let ends = End::rectangle(&from?, planes.axis).zip(End::rectangle(&to?, planes.axis));
             ends.map(|(from, to)| Root::new(from, to, start_at(volume, planes.axis, planes.upward)))
         });
@@ -122,7 +122,7 @@ impl Roots {
             of_sides.extend(pieces.map(|to| Root::new(from, to, start_at(volume, axis, upward))));
         }
         let whole = Planes::between(volume, &Aabb::around(triangle)).and_then(|planes| {
-            let from = End::rectangle(&planes.crossed_at(&corners(volume), &triangle, 0)?, planes.axis)?;
+            let from = End::rectangle(&planes.crossed_at(&volume.corners(), &triangle, 0)?, planes.axis)?;
             Some(Root::new(from, End::triangle(triangle), start_at(volume, planes.axis, planes.upward)))
         });
         let first = roots.join(of_sides, whole);
@@ -183,10 +183,6 @@ impl Planes {
         }
         crossed.min.iter().chain(&crossed.max).all(|&x| check_coordinate(x).is_ok()).then_some(crossed)
     }
-}
-
-fn corners(b: &Aabb<3>) -> [Point3; 8] {
-    std::array::from_fn(|i| std::array::from_fn(|k| if i >> k & 1 == 1 { b.max[k] } else { b.min[k] }))
 }
 
 /// The sides of a box: axis, whether it is the upper one, and the rectangle.

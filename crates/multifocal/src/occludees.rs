@@ -1,6 +1,5 @@
 //! Occludees: objects made of triangles, in trees that are tested top-down.
 
-use crate::volume::corners;
 use crate::{Umbra, Volume};
 use sightlines_geometry::vector::{length, normal};
 use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d};
@@ -113,7 +112,7 @@ impl Occludees {
         candidates: &[bool],
         visible: &mut [bool],
     ) -> QueryCounts {
-        let mut query = Query { umbra, eyes: corners(volume.bounds()), counts: QueryCounts::default() };
+        let mut query = Query { umbra, eyes: volume.corners(), counts: QueryCounts::default() };
         if !self.is_empty() {
             self.see_node(0, &mut query, candidates, visible);
         }

@@ -5,7 +5,6 @@
 //! target also show what blocks in front of it.
 
 use crate::footprint::{is_blocked_by_distance, limit};
-use crate::volume::corners;
 use crate::{Buffer, Footprint, Job, JobError, Measure, Occluder, Plane, PlaneError, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
@@ -167,7 +166,7 @@ impl<'a> Surrounded<'a> {
     ///
     /// It is if one plane, or all six sides of one box together, prove it. A box that meets the volume never is.
     pub fn hides(&self, target: &Aabb<3>) -> bool {
-        self.hides_hull(&corners(target), target)
+        self.hides_hull(&target.corners(), target)
     }
 
     /// Whether the convex hull of points is certainly hidden from the whole volume.

@@ -47,7 +47,7 @@ impl Volume {
 
     /// Its eight corners; bit `k` of the index selects lower (0) or upper along axis `k`.
     pub fn corners(&self) -> [Point3; 8] {
-        corners(&self.0)
+        self.0.corners()
     }
 
     /// Its halves along its longest axis, which share the border between them. `None` if no double lies between the
@@ -65,9 +65,4 @@ impl Volume {
         high.min[axis] = middle;
         Some([Self(low), Self(high)])
     }
-}
-
-/// The eight corners of a box; bit `k` of the index selects lower (0) or upper along axis `k`.
-pub(crate) fn corners(b: &Aabb<3>) -> [Point3; 8] {
-    std::array::from_fn(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { b.min[k] } else { b.max[k] }))
 }

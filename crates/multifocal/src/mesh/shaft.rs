@@ -142,7 +142,7 @@ pub fn avoids(t: &[Point3; 3], b: &Aabb<3>, touching: bool) -> bool {
     if (0..3).any(apart) {
         return true;
     }
-    let corners = crate::volume::corners(b);
+    let corners = b.corners();
     let [p, q, r] = *t;
     let mut away = Sides::default();
     corners.iter().for_each(|&c| away.count(sightlines_geometry::orient3d(p, q, r, c)));
@@ -280,7 +280,7 @@ mod tests {
         #[test]
         fn shaft_misses_what_is_clearly_outside(v in boxes(), e in boxes(), a in point(), b in point()) {
             let shaft = Shaft::new(&v, &e);
-            let corners: Vec<Point3> = [v, e].iter().flat_map(crate::volume::corners).collect();
+            let corners: Vec<Point3> = [v, e].iter().flat_map(Aabb::corners).collect();
             let f = |n: Point3, p: Point3| n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
             // A separating direction with room to spare, out of those that separate segments from such hulls.
             let mut directions: Vec<Point3> = Vec::new();
