@@ -21,6 +21,7 @@
 use crate::cell::{Cell, Passing};
 use crate::end::End;
 use crate::hull::{Code, Hull};
+use crate::marks::Marks;
 use crate::orient::orient;
 use crate::side::{Limit, Side};
 use crate::surface::Surface;
@@ -133,26 +134,17 @@ impl Shaft {
 /// How near to corners of the ends lines are tried to find one on a side.
 const NEAREST: f64 = 1.0 / (1u64 << 24) as f64;
 
-/// Marks that are forgotten all at once.
-#[derive(Debug, Default)]
-struct Epochs {
-    /// Of the present cell, and of the present chain.
-    cell: u32,
-    chain: u32,
-}
-
 /// Memory for the search of chains in one surface.
 #[derive(Debug)]
 pub(crate) struct ChainFinder {
-    epochs: Epochs,
-    /// For each vertex the cell that its code is of, and the code.
-    codes: Vec<(u32, Code)>,
-    /// For each edge the cell that it was tested for, and whether lines may pass it on both sides.
-    mixed: Vec<(u32, bool)>,
-    /// For each edge the chain that it was counted for, and whether an odd number of triangles ends there.
-    odd: Vec<(u32, bool)>,
-    /// For each triangle the chain that it was last part of.
-    part_of: Vec<u32>,
+    /// For vertices of the present cell.
+    codes: Marks<Code>,
+    /// For edges of the present cell whether lines may pass them on both sides.
+    mixed: Marks<bool>,
+    /// For edges of the present chain whether an odd number of triangles ends there.
+    odd: Marks<bool>,
+    /// For triangles of the present chain.
+    part_of: Marks<()>,
     chain: Vec<u32>,
     open: Vec<(u32, u32)>,
     /// How many triangles a chain has at most.
@@ -163,11 +155,10 @@ impl ChainFinder {
     pub(crate) fn new(surface: &Surface, longest: usize) -> Self {
         let mesh = surface.mesh();
         Self {
-            epochs: Epochs::default(),
-            codes: vec![(0, Code::default()); mesh.vertices().len()],
-            mixed: vec![(0, false); mesh.edges().len()],
-            odd: vec![(0, false); mesh.edges().len()],
-            part_of: vec![0; mesh.triangles().len()],
+            codes: Marks::new(mesh.vertices().len()),
+            mixed: Marks::new(mesh.edges().len()),
+            odd: Marks::new(mesh.edges().len()),
+            part_of: Marks::new(mesh.triangles().len()),
             chain: Vec::new(),
             open: Vec::new(),
             longest,
@@ -176,21 +167,13 @@ impl ChainFinder {
 
     /// Has to come before the chains of another cell.
     pub(crate) fn next_cell(&mut self) {
-        if self.epochs.cell == u32::MAX {
-            self.codes.fill((0, Code::default()));
-            self.mixed.fill((0, false));
-            self.epochs.cell = 0;
-        }
-        self.epochs.cell += 1;
+        self.codes.forget();
+        self.mixed.forget();
     }
 
     fn next_chain(&mut self) {
-        if self.epochs.chain == u32::MAX {
-            self.odd.fill((0, false));
-            self.part_of.fill(0);
-            self.epochs.chain = 0;
-        }
-        self.epochs.chain += 1;
+        self.odd.forget();
+        self.part_of.forget();
         self.chain.clear();
         self.open.clear();
     }
@@ -264,11 +247,11 @@ impl ChainFinder {
         if !target.is_clear_of(&corners, bounds, &shaft.cell.to) {
             return Err(Gap::Target { triangle });
         }
-        self.part_of[triangle as usize] = self.epochs.chain;
+        self.part_of.set(triangle, ());
         self.chain.push(triangle);
         for &edge in surface.mesh().outline_edges(triangle) {
             let odd = !self.is_odd(edge);
-            self.odd[edge as usize] = (self.epochs.chain, odd);
+            self.odd.set(edge, odd);
             if odd {
                 self.open.push((edge, triangle));
             }
@@ -278,17 +261,16 @@ impl ChainFinder {
 
     /// Whether a triangle was part of the last chain.
     pub(crate) fn has(&self, triangle: u32) -> bool {
-        self.part_of[triangle as usize] == self.epochs.chain
+        self.part_of.get(triangle).is_some()
     }
 
     fn is_odd(&self, edge: u32) -> bool {
-        self.odd[edge as usize] == (self.epochs.chain, true)
+        self.odd.get(edge) == Some(true)
     }
 
     /// Whether the lines in question may pass an edge on both sides, and meet it.
     fn is_mixed(&mut self, surface: &Surface, shaft: &Shaft, edge: u32) -> bool {
-        let (cell, mixed) = self.mixed[edge as usize];
-        if cell == self.epochs.cell {
+        if let Some(mixed) = self.mixed.get(edge) {
             return mixed;
         }
         let ends = surface.mesh().edges()[edge as usize];
@@ -296,24 +278,23 @@ impl ChainFinder {
         // No line leaves the box around the ends; most edges are far from it.
         let around = &shaft.bounds;
         if (0..3).any(|k| p[k].max(q[k]) < around.min[k] || p[k].min(q[k]) > around.max[k]) {
-            self.mixed[edge as usize] = (self.epochs.cell, false);
+            self.mixed.set(edge, false);
             return false;
         }
         let [s, t] = [(ends[0], p), (ends[1], q)].map(|(v, at)| self.code(shaft, v, at));
         let mixed = !shaft.hull.misses(s, t)
             && shaft.cell.passing(p, q) == Passing::Both
             && shaft.side.is_none_or(|side| !side.misses(&shaft.cell, [p, q]));
-        self.mixed[edge as usize] = (self.epochs.cell, mixed);
+        self.mixed.set(edge, mixed);
         mixed
     }
 
     fn code(&mut self, shaft: &Shaft, vertex: u32, at: Point3) -> Code {
-        let (cell, code) = self.codes[vertex as usize];
-        if cell == self.epochs.cell {
+        if let Some(code) = self.codes.get(vertex) {
             return code;
         }
         let code = shaft.hull.code(at);
-        self.codes[vertex as usize] = (self.epochs.cell, code);
+        self.codes.set(vertex, code);
         code
     }
 

@@ -66,8 +66,8 @@ impl HalfSpace {
     }
 }
 
-/// The half-spaces side by side, so that all of them are tested at once. Bounds on rounding hold for points within a given reach; a point
-/// nearer than that to a border is left to the [`HalfSpace`].
+/// The half-spaces side by side, so that all of them are tested at once. Bounds on rounding hold for points within a given reach; a
+/// point so near to a border that rounding may matter is left to the [`HalfSpace`].
 #[derive(Debug, Clone, Copy)]
 struct Quick {
     /// `normal[0] x + normal[1] y + normal[2] z + offset` is how far inside a point is.

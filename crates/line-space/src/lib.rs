@@ -19,6 +19,7 @@ mod chain;
 mod conform;
 mod end;
 mod hull;
+mod marks;
 mod method;
 mod orient;
 mod roots;

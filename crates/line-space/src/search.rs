@@ -1,6 +1,7 @@
 //! The search: cells of line space are blocked by chains or cut in two, until none is left or one has a free line.
 
 use crate::chain::{AtFold, Blocked, ChainFinder, Gap, Shaft};
+use crate::marks::Marks;
 use crate::roots::{Root, Roots};
 use crate::side::{Part, Side};
 use crate::split::{promise, split};
@@ -50,39 +51,14 @@ pub(crate) struct Search {
     hits: Vec<Hit>,
     /// How many hits of a line are tried as starts of chains.
     attempts: usize,
-    successes: Successes,
-}
-
-/// How often chains blocked all lines of a cell, by the triangle where they began. What blocks the lines to one target often blocks those to the next.
-#[derive(Debug)]
-struct Successes {
-    epoch: u32,
-    /// The epoch that the number is of.
-    of: Vec<(u32, u32)>,
-}
-
-impl Successes {
-    fn forget(&mut self) {
-        if self.epoch == u32::MAX {
-            self.of.fill((0, 0));
-            self.epoch = 0;
-        }
-        self.epoch += 1;
-    }
-
-    fn count(&self, triangle: u32) -> u32 {
-        let (epoch, n) = self.of[triangle as usize];
-        if epoch == self.epoch { n } else { 0 }
-    }
-
-    fn add(&mut self, triangle: u32) {
-        self.of[triangle as usize] = (self.epoch, self.count(triangle).saturating_add(1));
-    }
+    /// How often chains blocked all lines of a cell, by the triangle where they began. What blocks the lines to one target often blocks those to
+    /// the next.
+    successes: Marks<u32>,
 }
 
 impl Search {
     pub(crate) fn new(surface: &Surface, attempts: usize, longest: usize) -> Self {
-        let successes = Successes { epoch: 1, of: vec![(0, 0); surface.mesh().triangles().len()] };
+        let successes = Marks::new(surface.mesh().triangles().len());
         Self {
             finder: ChainFinder::new(surface, longest),
             queue: VecDeque::new(),
@@ -180,9 +156,9 @@ impl Search {
 
     /// Blocks the lines of a cell, or those on one side of an edge, by one of several chains, or says where best to cut.
     fn block(&mut self, surface: &Surface, shaft: &Shaft, target: &Target) -> Result<Blocked, Gap> {
-        let successes = &self.successes;
+        let successes = |hit: &Hit| self.successes.get(hit.triangle).unwrap_or_default();
         self.hits.sort_unstable_by(|a, b| {
-            let by_success = successes.count(b.triangle).cmp(&successes.count(a.triangle));
+            let by_success = successes(b).cmp(&successes(a));
             let by_area = || surface.area(b.triangle).total_cmp(&surface.area(a.triangle));
             by_success.then_with(by_area).then(a.triangle.cmp(&b.triangle))
         });
@@ -201,7 +177,8 @@ impl Search {
         for hit in &self.hits {
             match finder.block(surface, shaft, target, hit.triangle, AtFold::Leave) {
                 Ok(Blocked::All) => {
-                    self.successes.add(hit.triangle);
+                    let n = self.successes.get(hit.triangle).unwrap_or_default();
+                    self.successes.set(hit.triangle, n.saturating_add(1));
                     return Ok(Blocked::All);
                 }
                 Ok(part @ Blocked::Side { share, .. }) => {
