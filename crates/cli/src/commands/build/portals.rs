@@ -25,8 +25,22 @@ pub(super) fn write_method(
 }
 
 /// The method, in words.
-pub(super) const fn method(fast: bool) -> &'static str {
+const fn method(fast: bool) -> &'static str {
     if fast { "the first, coarse bound only" } else { "exact stabbing of convex portals" }
+}
+
+/// What was built from a map, in three lines.
+pub(super) fn of_clusters(taken: String, fast: bool, clusters: &Clusters, out: &str, n_bytes: usize) -> Brief {
+    Brief {
+        kind: "map",
+        taken,
+        method: method(fast).to_owned(),
+        cells: clusters.brief(),
+        out: out.to_owned(),
+        n_bytes,
+        visible: clusters.brief_pairs(),
+        seconds: clusters.see_seconds(),
+    }
 }
 
 /// What was built.
@@ -55,16 +69,8 @@ impl Outcome {
     }
 
     pub(super) fn brief(&self) -> Brief {
-        Brief {
-            kind: "map",
-            taken: format!("a {} file", self.portal_format),
-            method: method(self.fast).to_owned(),
-            cells: self.clusters.brief(),
-            out: self.out.clone(),
-            n_bytes: self.n_bytes,
-            visible: self.clusters.brief_pairs(),
-            seconds: self.clusters.see_seconds(),
-        }
+        let taken = format!("a {} file", self.portal_format);
+        of_clusters(taken, self.fast, &self.clusters, &self.out, self.n_bytes)
     }
 
     /// Lists pairs that are undecided.

@@ -2,7 +2,7 @@
 
 use super::Error;
 use super::brief::Brief;
-use super::portals::{method, write_method};
+use super::portals::{of_clusters, write_method};
 use crate::clusters::Clusters;
 use crate::error::InputError;
 use crate::output::{bytes, count};
@@ -74,16 +74,8 @@ impl Outcome {
 
     pub(super) fn brief(&self) -> Brief {
         let faces = count(self.n_faces as u64, "face");
-        Brief {
-            kind: "map",
-            taken: format!("a {} map with its {} file: {faces} of the world", self.format, self.portal_format),
-            method: method(self.fast).to_owned(),
-            cells: self.clusters.brief(),
-            out: self.out.clone(),
-            n_bytes: self.n_bytes,
-            visible: self.clusters.brief_pairs(),
-            seconds: self.clusters.see_seconds(),
-        }
+        let taken = format!("a {} map with its {} file: {faces} of the world", self.format, self.portal_format);
+        of_clusters(taken, self.fast, &self.clusters, &self.out, self.n_bytes)
     }
 
     /// Lists pairs that are undecided.
