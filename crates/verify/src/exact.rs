@@ -35,6 +35,22 @@ pub fn segment_crosses_triangle(p: Point3, q: Point3, [a, b, c]: &[Point3; 3]) -
         && (edges.iter().all(|&s| s > 0.0) || edges.iter().all(|&s| s < 0.0))
 }
 
+/// Whether the segment `p q` crosses the inside of a flat convex polygon from one side to the other. Exact for polygons with all corners in
+/// one plane.
+pub fn segment_crosses_polygon(p: Point3, q: Point3, corners: &[Point3]) -> bool {
+    let &[a, b, c, ..] = corners else { return false };
+    let (sp, sq) = (orient3d(a, b, c, p), orient3d(a, b, c, q));
+    let sides = || corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| orient3d(p, q, a, b));
+    ((sp > 0.0 && sq < 0.0) || (sp < 0.0 && sq > 0.0)) && (sides().all(|s| s > 0.0) || sides().all(|s| s < 0.0))
+}
+
+/// Whether the closed segment `p q` has certainly no point in common with a flat convex polygon: with none of the triangles that its first
+/// corner makes with its edges.
+pub fn segment_and_polygon_apart(p: Point3, q: Point3, corners: &[Point3]) -> bool {
+    let Some((&first, rest)) = corners.split_first() else { return true };
+    rest.windows(2).all(|edge| segment_and_triangle_apart(p, q, &[first, edge[0], edge[1]]))
+}
+
 fn edge_sides(p: Point3, q: Point3, [a, b, c]: [&Point3; 3]) -> [f64; 3] {
     [orient3d(p, q, *a, *b), orient3d(p, q, *b, *c), orient3d(p, q, *c, *a)]
 }
@@ -103,6 +119,17 @@ mod tests {
             let crosses = s > zero && s < one && weights.iter().all(|w| *w > zero);
             prop_assert_eq!(segment_and_triangle_apart(p, q, &t), !meets);
             prop_assert_eq!(segment_crosses_triangle(p, q, &t), crosses);
+            prop_assert_eq!(segment_crosses_polygon(p, q, &t), crosses);
+            prop_assert_eq!(segment_and_polygon_apart(p, q, &t), !meets);
+            // The parallelogram of which the triangle is one half.
+            let half = |a: Point3, b: Point3, c: Point3| [0, 1, 2].map(|k| a[k] + c[k] - b[k]);
+            let quad = [t[0], t[1], t[2], half(t[0], t[1], t[2])];
+            let [u, v] = [weights[0].clone(), weights[2].clone()];
+            let along = |x: &BigRational| [*x > zero && *x < one, *x >= zero && *x <= one];
+            // A point of the plane is `b + u (a - b) + v (c - b)`.
+            let [u, v] = [along(&u), along(&v)];
+            prop_assert_eq!(segment_crosses_polygon(p, q, &quad), s > zero && s < one && u[0] && v[0]);
+            prop_assert_eq!(segment_and_polygon_apart(p, q, &quad), !(s >= zero && s <= one && u[1] && v[1]));
         }
 
         #[test]

@@ -2,7 +2,7 @@
 
 use crate::options::VerifyOptions;
 use sightlines_geometry::Point3;
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, PortalId};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -63,6 +63,23 @@ pub enum Violation {
         /// The cell.
         cell: CellId,
     },
+    /// A cell that free lines leave where it has no portal: the segment is free, and passes the cell. Methods that follow portals would hide what is
+    /// behind.
+    MissingPortal {
+        /// The cell.
+        cell: CellId,
+        /// From inside of this or another cell to inside of one behind it, in scene units; z is 0 in a plane.
+        segment: [Point3; 2],
+    },
+    /// A sequence of portals that a free line passes, and that the stab tree of a cell does not have: the segment is free.
+    MissingSequence {
+        /// The cell that the segment begins in.
+        cell: CellId,
+        /// The first portals that the segment passes, up to the first that is missing.
+        portals: Vec<PortalId>,
+        /// From inside of the cell, in scene units; z is 0 in a plane.
+        segment: [Point3; 2],
+    },
     /// A portal that is not one of the file that the table was made from.
     UnlikePortal {
         /// The portal.
@@ -108,6 +125,8 @@ impl Violation {
             Self::OutOfScene { .. } => "out-of-scene",
             Self::NotFound { .. } => "not-found",
             Self::OffBorder { .. } => "off-border",
+            Self::MissingPortal { .. } => "missing-portal",
+            Self::MissingSequence { .. } => "missing-sequence",
             Self::UnlikePortal { .. } => "unlike-portal",
             Self::Count { .. } => "count",
             Self::ObjectName { .. } => "object-name",
@@ -127,6 +146,8 @@ impl Violation {
             | Self::OutOfScene { cell }
             | Self::NotFound { cell, .. }
             | Self::OffBorder { cell, .. }
+            | Self::MissingPortal { cell, .. }
+            | Self::MissingSequence { cell, .. }
             | Self::UnlistedObject { cell, .. } => vec![cell],
             _ => Vec::new(),
         }
@@ -146,7 +167,10 @@ impl Violation {
     /// The segment that shows it.
     pub const fn segment(&self) -> Option<[Point3; 2]> {
         match *self {
-            Self::HiddenCell { segment, .. } | Self::HiddenObject { segment, .. } => Some(segment),
+            Self::HiddenCell { segment, .. }
+            | Self::HiddenObject { segment, .. }
+            | Self::MissingPortal { segment, .. }
+            | Self::MissingSequence { segment, .. } => Some(segment),
             _ => None,
         }
     }
@@ -188,6 +212,18 @@ impl fmt::Display for Violation {
             Self::OutOfScene { cell } => write!(f, "cell {cell} reaches out of the box around the scene"),
             Self::NotFound { cell, point } => write!(f, "cell {cell} is not found at {}, which is inside", Full(point)),
             Self::OffBorder { portal, cell } => write!(f, "portal {portal} is not on the border of cell {cell}"),
+            Self::MissingPortal { cell, segment: [p, q] } => {
+                write!(f, "cell {cell} has no portal where the free line from {} to {} leaves it", Full(p), Full(q))
+            }
+            Self::MissingSequence { cell, portals, segment: [p, q] } => {
+                let portals: Vec<String> = portals.iter().map(ToString::to_string).collect();
+                let portals = portals.join(", ");
+                let [p, q] = [Full(p), Full(q)];
+                write!(
+                    f,
+                    "the stab tree of cell {cell} lacks the portals {portals}, which the free line from {p} to {q} passes"
+                )
+            }
             Self::UnlikePortal { portal } => write!(f, "portal {portal} is none of the scene"),
             Self::Count { what, table, scene } => write!(f, "the table has {table} {what}, the scene {scene}"),
             Self::ObjectName { object } => write!(f, "object {object} has another name in the scene"),
@@ -246,6 +282,10 @@ pub struct Findings {
     pub n_objects: usize,
     /// Random rays.
     pub n_rays: u64,
+    /// Free segments that were followed through the portals of the table, and its stab trees if it has any.
+    pub n_followed: u64,
+    /// Sequences of portals that stab trees do not have, and that segments were aimed along.
+    pub n_sequences: u64,
     /// Unordered pairs of different cells.
     pub cells: Confirmed,
     /// Pairs of a cell and an object.

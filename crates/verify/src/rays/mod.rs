@@ -2,6 +2,8 @@
 
 mod seen;
 mod suspects;
+mod trees;
+mod ways;
 
 use crate::findings::{Findings, Violation};
 use crate::options::VerifyOptions;
@@ -15,6 +17,7 @@ use sightlines_progress::{Cancelled, Counter, Observer, Progress};
 use sightlines_pvs::{CellId, Table};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use ways::Ways;
 
 /// Rays that one thread shoots in a row; violations are counted after every [`BATCH`] of them.
 const CHUNK: u64 = 256;
@@ -80,17 +83,33 @@ fn shoot_all<R: RayOracle>(
         .map(|observer| [(0.0, middle), (middle, 1.0)].map(|(begin, end)| Part { observer, begin, end }));
     let part = |k: usize| parts.as_ref().map(|parts| &parts[k] as &dyn Observer);
     let counter = Counter::new(part(0), "random rays", n_chunks as usize);
+    let ways = Ways::of(world, table);
+    let mut astray: BTreeMap<(&'static str, Vec<CellId>), Violation> = BTreeMap::new();
+    if let Some(ways) = &ways {
+        let missing = |cell: u32| ways.missing_portal(world, CellId(cell));
+        let found: Vec<_> = (0..table.n_cells() as u32).into_par_iter().filter_map(missing).collect();
+        found.into_iter().for_each(|v| note(&mut astray, v));
+    }
+    if let (Some(ways), Some(stab)) = (&ways, table.stab()) {
+        let absent = ways.absent(stab, options.pairs.saturating_mul(trees::FOR_EACH_PAIR));
+        findings.n_sequences = absent.len() as u64;
+        let aim = |(k, absent)| ways.aim(world, absent, options.tries, &mut Random::new(mixed(options.seed, k)));
+        let found: Vec<_> = (0u64..).zip(&absent).collect::<Vec<_>>().into_par_iter().filter_map(aim).collect();
+        found.into_iter().for_each(|v| note(&mut astray, v));
+    }
     let mut chunk = 0;
     while chunk < n_chunks && hidden.len() < VerifyOptions::MOST_VIOLATIONS {
         let end = (chunk + BATCH).min(n_chunks);
         let shoot = |k: u64| {
             let n = CHUNK.min(options.rays - k * CHUNK);
-            let found = shoot_chunk(world, &seen, &tally, table.n_cells(), n, mixed(options.seed, k));
+            let found = shoot_chunk(world, &seen, &tally, ways.as_ref(), n, mixed(options.seed, k));
             counter.step().map(|()| found)
         };
         let found: Vec<_> = (chunk..end).into_par_iter().map(shoot).collect::<Result<_, Cancelled>>()?;
-        for (sights, n_rays) in found {
+        for Shot { sights, astray: lost, n_rays, n_followed } in found {
             findings.n_rays += n_rays;
+            findings.n_followed += n_followed;
+            lost.into_iter().for_each(|v| note(&mut astray, v));
             // Of several for a pair the first ray counts.
             sights.into_iter().for_each(|s| {
                 hidden.entry(key(&s)).or_insert(s);
@@ -129,7 +148,24 @@ fn shoot_all<R: RayOracle>(
             Target::Object(object) => Violation::HiddenObject { cell: from, object, segment },
         });
     }
+    astray.into_values().for_each(|violation| findings.add(violation));
     Ok(())
+}
+
+/// Keeps the first violation of a kind for each cell.
+fn note(astray: &mut BTreeMap<(&'static str, Vec<CellId>), Violation>, violation: Violation) {
+    astray.entry((violation.kind(), violation.cells())).or_insert(violation);
+}
+
+/// What some random rays found.
+#[derive(Debug, Default)]
+struct Shot {
+    /// What they see that is hidden.
+    sights: Vec<Sight>,
+    /// Of those that the table does not lead along.
+    astray: Vec<Violation>,
+    n_rays: u64,
+    n_followed: u64,
 }
 
 /// A pair of cells, whichever of them is looked from, or of a cell and an object.
@@ -140,24 +176,32 @@ fn key(s: &Sight) -> (CellId, Target) {
     }
 }
 
-/// Shoots some rays; returns what they see that is hidden, and how many were shot.
+/// Shoots some rays, and follows each through the table as far as it sees.
 fn shoot_chunk<R: RayOracle>(
     world: &R,
     seen: &Seen,
     tally: &Tally,
-    n_cells: usize,
+    ways: Option<&Ways<'_>>,
     n: u64,
     seed: u64,
-) -> (Vec<Sight>, u64) {
+) -> Shot {
     let mut random = Random::new(seed);
     let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
-    let mut n_rays = 0;
+    let mut shot = Shot::default();
     for _ in 0..n {
-        let from = random.below(n_cells) as u32;
-        let shot = world.shoot(from, &mut random, &mut |s: Sight| {
+        let from = random.below(seen.n_cells()) as u32;
+        let mut farthest: Option<(f64, Sight)> = None;
+        let is_shot = world.shoot(from, &mut random, &mut |s: Sight| {
             let key = key(&s);
             if s.target == Target::Cell(s.from) {
                 return;
+            }
+            if matches!(s.target, Target::Cell(_)) {
+                let [p, q] = s.segment;
+                let reach = (0..3).map(|k| (q[k] - p[k]).powi(2)).sum();
+                if farthest.is_none_or(|(most, _)| reach > most) {
+                    farthest = Some((reach, s));
+                }
             }
             if seen.has(key.0, key.1) {
                 // What was confirmed before need not be again; in which order changes nothing.
@@ -168,9 +212,14 @@ fn shoot_chunk<R: RayOracle>(
                 hidden.insert(key, s);
             }
         });
-        n_rays += u64::from(shot.is_some());
+        shot.n_rays += u64::from(is_shot.is_some());
+        if let (Some(ways), Some((_, sight))) = (ways, farthest) {
+            let (n_followed, violation) = ways.follow(world, &sight);
+            shot.n_followed += n_followed;
+            shot.astray.extend(violation);
+        }
     }
-    (hidden.into_values().collect(), n_rays)
+    Shot { sights: hidden.into_values().collect(), ..shot }
 }
 
 /// A seed for a part of the work.

@@ -23,6 +23,10 @@ impl Seen {
         Self { cells: table.parts().rows.clone(), objects }
     }
 
+    pub(super) fn n_cells(&self) -> usize {
+        self.cells.n_rows()
+    }
+
     pub(super) fn has(&self, from: CellId, target: Target) -> bool {
         match target {
             Target::Cell(to) => self.cells.get(from.idx(), to.idx()),

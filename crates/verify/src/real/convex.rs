@@ -1,11 +1,11 @@
 //! Portals alone: a line sees on through portals, in their order along it.
 
 use super::{RayOracle, at, dot, extreme, length, scale_of, sub};
-use crate::exact::snapped;
+use crate::exact::{segment_crosses_polygon, snapped};
 use crate::sight::{Sight, Target};
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_geometry::{Point3, Portal3, Random, orient3d};
-use sightlines_pvs::Table;
+use sightlines_pvs::{PortalRecord, Table};
 
 mod thread;
 
@@ -222,5 +222,18 @@ impl RayOracle for PortalWorld {
 
     fn neighbours(&self) -> &[Vec<u32>] {
         &self.next
+    }
+
+    fn misses(&self, _: &PortalRecord, _: [Point3; 2]) -> bool {
+        // Portals of files are uneven, and lines pass beside them.
+        false
+    }
+
+    fn crosses(&self, portal: &PortalRecord, [p, q]: [Point3; 2]) -> bool {
+        segment_crosses_polygon(p, q, &portal.points)
+    }
+
+    fn through_borders(&self, _: u32, _: &[&PortalRecord]) -> Option<Vec<Sight>> {
+        None
     }
 }

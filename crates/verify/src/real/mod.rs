@@ -1,19 +1,21 @@
 //! What is really there, ready for rays. Vectors and rays are written out here on purpose, as this checks what others compute. Doubles propose segments; what [`RayOracle::proves`] says alone counts.
 
+mod borders;
 mod climb;
 mod convex;
 pub(crate) mod plan;
 mod solid;
 mod world;
 
+pub(crate) use climb::climb;
 pub(crate) use convex::PortalWorld;
 pub(crate) use plan::PlanWorld;
 pub(crate) use solid::SolidWorld;
 pub(crate) use world::MapWorld;
 
 use crate::sight::{Sight, Target};
-use sightlines_geometry::{Aabb, Random};
-use sightlines_pvs::Table;
+use sightlines_geometry::{Aabb, Point3, Random};
+use sightlines_pvs::{PortalRecord, Table};
 
 /// A scene with the cells of a table in it.
 pub(crate) trait RayOracle: Sync {
@@ -29,6 +31,17 @@ pub(crate) trait RayOracle: Sync {
 
     /// The cells next to each cell, ascending.
     fn neighbours(&self) -> &[Vec<u32>];
+
+    /// Whether a segment certainly misses a portal, whatever is uncertain of the scene.
+    fn misses(&self, portal: &PortalRecord, segment: [Point3; 2]) -> bool;
+
+    /// Whether a segment certainly crosses a portal between its borders.
+    fn crosses(&self, portal: &PortalRecord, segment: [Point3; 2]) -> bool;
+
+    /// Short segments from inside of a cell to inside of the cells next to it, as proposals: one or more through each part of their common border that
+    /// none of the cell's portals covers. A border of two cells has to be looked at from one of them only. `None` if cells are known by their portals
+    /// alone.
+    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Option<Vec<Sight>>;
 }
 
 /// From 0 to 1, and as likely near an end as in the middle, however near.

@@ -1,12 +1,13 @@
 //! Plans: opaque lines stop sight.
 
+use super::borders::middles;
 use super::{RayOracle, at, clip, extreme, neighbours_of, scale_of};
 use crate::exact::{segments_apart, snapped, strictly_in_polygon};
-use crate::shapes::outlines;
+use crate::shapes::{ends, outlines};
 use crate::sight::{Sight, Target};
 use sightlines_cells::{CellId, Plan};
-use sightlines_geometry::{Aabb, BoxTree, Point2, Point3, Random, Segment2, polygon_contains};
-use sightlines_pvs::Table;
+use sightlines_geometry::{Aabb, BoxTree, Point2, Point3, Random, Segment2, orient2d, polygon_contains};
+use sightlines_pvs::{PortalRecord, Table};
 
 mod slit;
 
@@ -43,7 +44,7 @@ impl PlanWorld {
         let rounded = has_rounded_crossings(plan);
         let mut gates = vec![Vec::new(); cells.len()];
         for record in table.portals() {
-            let [left, right] = crate::shapes::ends(record);
+            let [left, right] = ends(record);
             let [a, b] = record.cells;
             gates[a.idx()].push((b.0, left, right));
             gates[b.idx()].push((a.0, right, left));
@@ -113,8 +114,7 @@ impl PlanWorld {
         let mut clear = true;
         self.wall_tree.visit(near, |w| {
             let [a, b] = self.walls[w as usize];
-            let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-            clear &= (a + (b - a) * along).distance(p) > reach;
+            clear &= distance(p, a, b) > reach;
         });
         clear
     }
@@ -222,7 +222,7 @@ impl RayOracle for PlanWorld {
     }
 
     fn proves(&self, sight: &Sight) -> bool {
-        let [p, q] = sight.segment.map(|[x, y, _]: Point3| Point2::new(x, y));
+        let [p, q] = flat(sight.segment);
         let arrives = || match sight.target {
             Target::Cell(cell) => self.is_inside(cell.0, q),
             Target::Object(object) => {
@@ -258,4 +258,65 @@ impl RayOracle for PlanWorld {
     fn neighbours(&self) -> &[Vec<u32>] {
         &self.next
     }
+
+    fn misses(&self, portal: &PortalRecord, segment: [Point3; 2]) -> bool {
+        let ([p, q], [a, b]) = (flat(segment), ends(portal));
+        // Of segments that are apart, an end of one is nearest to the other.
+        let reach = [(p, a, b), (q, a, b), (a, p, q), (b, p, q)].map(|(p, a, b)| distance(p, a, b));
+        segments_apart(p, q, a, b) && reach.into_iter().all(|d| self.clearance == 0.0 || d > 2.0 * self.clearance)
+    }
+
+    fn crosses(&self, portal: &PortalRecord, segment: [Point3; 2]) -> bool {
+        let ([p, q], [a, b]) = (flat(segment), ends(portal));
+        let across = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
+        across(orient2d(p, q, a), orient2d(p, q, b)) && across(orient2d(a, b, p), orient2d(a, b, q))
+    }
+
+    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Option<Vec<Sight>> {
+        let corners = &self.cells[from as usize];
+        let mut found = Vec::new();
+        for (i, &start) in corners.iter().enumerate() {
+            let d = corners[(i + 1) % corners.len()] - start;
+            let square = d.length_squared();
+            if square == 0.0 {
+                continue;
+            }
+            // What is on the border changes only where something ends.
+            let around = Aabb::around([[start.x, start.y], [start.x + d.x, start.y + d.y]]);
+            let reach = self.slack;
+            let near =
+                |b: &Aabb<2>| (0..2).all(|k| b.min[k] - reach <= around.max[k] && around.min[k] <= b.max[k] + reach);
+            let mut points: Vec<Point2> = portals.iter().flat_map(|portal| ends(portal)).collect();
+            self.wall_tree.visit(near, |w| points.extend(self.walls[w as usize]));
+            let mut others = Vec::new();
+            self.cell_tree.visit(near, |cell| others.push(cell));
+            others.sort_unstable();
+            others.retain(|&other| other > from);
+            points.extend(others.iter().flat_map(|&cell| &self.cells[cell as usize]));
+            let along = points.into_iter().map(|p| (p - start).dot(d) / square).collect();
+            let inwards = d.perp();
+            for t in middles([0.0, 1.0], along) {
+                for share in SHORT {
+                    let [p, q] = [share, -share].map(|share| start + d * t + inwards * share);
+                    if let Some(&to) = others.iter().find(|&&other| self.is_inside(other, q)) {
+                        found.push(Self::sight(from, Target::Cell(CellId(to)), p, q));
+                    }
+                }
+            }
+        }
+        Some(found)
+    }
+}
+
+/// How far segments through a border reach into cells, as shares of the length of the border.
+const SHORT: [f64; 4] = [1.0 / (1u64 << 20) as f64, 1.0 / 1024.0, 1.0 / 32.0, 0.25];
+
+fn flat(segment: [Point3; 2]) -> [Point2; 2] {
+    segment.map(|[x, y, _]| Point2::new(x, y))
+}
+
+/// How far a point is from a segment; rounded.
+fn distance(p: Point2, a: Point2, b: Point2) -> f64 {
+    let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+    (a + (b - a) * along).distance(p)
 }

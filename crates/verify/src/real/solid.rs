@@ -1,13 +1,15 @@
 //! Scenes in space: every triangle stops sight, but for those of objects that are see-through. What moves is seen wherever it may
 //! be.
 
-use super::climb::climb;
-use super::{RayOracle, at, clip, extreme, length, neighbours_of, scale_of, sub};
-use crate::exact::{segment_and_triangle_apart, segment_crosses_triangle, snapped};
+use super::borders::{middles, pairs};
+use super::{RayOracle, at, climb, clip, extreme, length, neighbours_of, scale_of, sub};
+use crate::exact::{
+    segment_and_polygon_apart, segment_and_triangle_apart, segment_crosses_polygon, segment_crosses_triangle, snapped,
+};
 use crate::sight::{Sight, Target};
 use sightlines_cells::{CellId, Scene};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
-use sightlines_pvs::Table;
+use sightlines_pvs::{PortalRecord, Table};
 use std::cell::Cell;
 
 /// A scene with the cells of a table.
@@ -356,4 +358,67 @@ impl RayOracle for SolidWorld {
     fn neighbours(&self) -> &[Vec<u32>] {
         &self.next
     }
+
+    fn misses(&self, portal: &PortalRecord, [p, q]: [Point3; 2]) -> bool {
+        segment_and_polygon_apart(p, q, &portal.points)
+    }
+
+    fn crosses(&self, portal: &PortalRecord, [p, q]: [Point3; 2]) -> bool {
+        segment_crosses_polygon(p, q, &portal.points)
+    }
+
+    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Option<Vec<Sight>> {
+        let own = &self.cells[from as usize];
+        let touches = |b: &Aabb<3>| (0..3).all(|k| b.min[k] <= own.max[k] && own.min[k] <= b.max[k]);
+        let (mut found, mut near) = (Vec::new(), Vec::new());
+        self.cell_tree.visit(touches, |other| near.push(other));
+        near.sort_unstable();
+        for other in near {
+            for axis in (0..3).filter(|&axis| self.cells[other as usize].min[axis] == own.max[axis]) {
+                found.extend(self.through_border([from, other], axis, portals));
+            }
+        }
+        Some(found)
+    }
 }
+
+impl SolidWorld {
+    /// Segments through the border of two boxes, of which the second lies beyond the first along an axis.
+    fn through_border(&self, [from, to]: [u32; 2], axis: usize, portals: &[&PortalRecord]) -> Vec<Sight> {
+        let [a, b] = [from, to].map(|cell| &self.cells[cell as usize]);
+        let place = a.max[axis];
+        let across = [(axis + 1) % 3, (axis + 2) % 3];
+        let common = across.map(|k| [a.min[k].max(b.min[k]), a.max[k].min(b.max[k])]);
+        if common.iter().any(|[low, high]| low >= high) {
+            return Vec::new();
+        }
+        let portals: Vec<Aabb<3>> = portals.iter().map(|portal| Aabb::around(portal.points.iter().copied())).collect();
+        // What is on the border changes only where corners of what touches it are.
+        let mut corners: Vec<Point3> = portals.iter().flat_map(|b| [b.min, b.max]).collect();
+        let border = |b: &Aabb<3>| {
+            let meets = |(&k, [low, high]): (&usize, &[f64; 2])| b.min[k] <= *high && *low <= b.max[k];
+            b.min[axis] <= place && place <= b.max[axis] && across.iter().zip(&common).all(meets)
+        };
+        self.tree.visit(border, |i| corners.extend(self.triangles[i as usize].iter().filter(|p| p[axis] == place)));
+        let [u, v] = [0, 1].map(|i| middles(common[i], corners.iter().map(|p| p[across[i]]).collect()));
+        let is_covered = |p: Point3| portals.iter().any(|b| b.contains(p));
+        let mut found = Vec::new();
+        for [u, v] in pairs(&u, &v) {
+            let mut middle = [place; 3];
+            (middle[across[0]], middle[across[1]]) = (u, v);
+            if is_covered(middle) {
+                continue;
+            }
+            for share in SHORT {
+                let (mut p, mut q) = (middle, middle);
+                p[axis] -= (place - a.min[axis]) * share;
+                q[axis] += (b.max[axis] - place) * share;
+                found.push(Self::sight(from, Target::Cell(CellId(to)), [p, q]));
+            }
+        }
+        found
+    }
+}
+
+/// How far segments through a border reach into cells.
+const SHORT: [f64; 2] = [1.0 / (1u64 << 20) as f64, 1.0 / 16.0];

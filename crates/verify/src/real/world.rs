@@ -7,7 +7,7 @@ use crate::sight::{Sight, Target};
 use crate::truth::{WorldChild, WorldTree};
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
-use sightlines_pvs::Table;
+use sightlines_pvs::{PortalRecord, Table};
 
 /// A map with its portals.
 #[derive(Debug)]
@@ -263,5 +263,17 @@ impl RayOracle for MapWorld<'_> {
 
     fn neighbours(&self) -> &[Vec<u32>] {
         self.portals.neighbours()
+    }
+
+    fn misses(&self, portal: &PortalRecord, segment: [Point3; 2]) -> bool {
+        self.portals.misses(portal, segment)
+    }
+
+    fn crosses(&self, portal: &PortalRecord, segment: [Point3; 2]) -> bool {
+        self.portals.crosses(portal, segment)
+    }
+
+    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Option<Vec<Sight>> {
+        self.portals.through_borders(from, portals)
     }
 }

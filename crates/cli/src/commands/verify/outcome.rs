@@ -25,6 +25,10 @@ pub(super) struct Outcome {
     n_portals: usize,
     n_objects: usize,
     n_rays: u64,
+    /// Free segments that were followed through the portals of the table.
+    n_followed: u64,
+    /// Sequences of portals, which stab trees do not have, that rays were aimed along.
+    n_sequences: u64,
     /// The frame of the table, if it has one: the scene was moved into it, and places are along its axes.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<FrameFacts>,
@@ -121,6 +125,8 @@ impl Outcome {
             n_portals: found.n_portals,
             n_objects: found.n_objects,
             n_rays: found.n_rays,
+            n_followed: found.n_followed,
+            n_sequences: found.n_sequences,
             frame: None,
             checked,
             own,
@@ -198,6 +204,14 @@ impl fmt::Display for Outcome {
             None if !self.checked.random_rays && !self.checked.aimed_rays => writeln!(f, "rays           none")?,
             None => {
                 writeln!(f, "rays           {} in random directions", self.n_rays)?;
+                if self.n_portals > 0 {
+                    let segments = count(self.n_followed, "free segment");
+                    writeln!(f, "portals        {segments} followed from cell to cell")?;
+                }
+                if self.n_sequences > 0 {
+                    let sequences = count(self.n_sequences, "sequence");
+                    writeln!(f, "stab trees     {sequences} of portals that they do not have aimed at")?;
+                }
                 Self::pairs(f, "cells", &self.cells)?;
                 if self.n_objects > 0 {
                     Self::pairs(f, "objects", &self.objects)?;

@@ -1,8 +1,8 @@
 //! Tables of every kind, with the scenes that they are of.
 
 use sightlines_bake::{
-    CellsFrom, PlanBakeOptions, PrtOptions, RegionBakeOptions, SceneBakeOptions, Subdivide, bake_plan, bake_prt,
-    bake_regions, bake_scene,
+    CellsFrom, PlanBakeOptions, PrtOptions, RegionBakeOptions, SceneBakeOptions, StabOptions, Subdivide, bake_plan,
+    bake_prt, bake_regions, bake_scene,
 };
 use sightlines_cells::{CellGraph, Convex, Plan, PlanObject, Scene};
 use sightlines_formats::{Prt, ViewCell, ViewCells};
@@ -117,12 +117,17 @@ pub(crate) fn a_world() -> World {
     quake_like(QuakeLikeOptions { seed: 3, rooms_x: 2, rooms_y: 2, floors: 1 }).expect("a level")
 }
 
-pub(crate) fn portals_case() -> Case {
+fn a_portal_file() -> Prt {
     let world = a_world();
     let mut prt = Prt::new(world.graph.n_cells() as u32).expect("cells");
     for portal in world.graph.portals() {
         prt.push_portal(portal.cells.map(|c| c.0), portal.shape.corners()).expect("convex");
     }
+    prt
+}
+
+pub(crate) fn portals_case() -> Case {
+    let prt = a_portal_file();
     let table = bake_prt(&prt, PrtOptions::default()).expect("portals").table;
     let graph = sightlines_formats::quake::graph_of_prt(&prt);
     Case { name: "portal file", table, real: Real::Portals(graph), least_caught: [0.75, 1.0] }
@@ -154,6 +159,24 @@ pub(crate) fn map_case() -> Case {
     let listed = vec![Vec::new(); table.n_cells()];
     let tree = WorldTree { nodes, faces: Vec::new(), listed };
     Case { name: "map", table, real: Real::Map(graph, tree), least_caught: [0.75, 1.0] }
+}
+
+/// Tables with stab trees.
+pub(crate) fn with_trees() -> Vec<(&'static str, Table, Real)> {
+    let options = StabOptions::default();
+    let plan = an_office();
+    let of_plan = bake_plan(&plan, &PlanBakeOptions::default()).expect("a plan").into_any().with_stab_trees(&options);
+    let scene = small_tower();
+    let of_scene =
+        bake_scene(&scene, &SceneBakeOptions::default()).expect("a scene").into_any().with_stab_trees(&options);
+    let prt = a_portal_file();
+    let of_prt = bake_prt(&prt, PrtOptions::default()).expect("portals").into_any().with_stab_trees(&options);
+    let graph = sightlines_formats::quake::graph_of_prt(&prt);
+    vec![
+        ("office with trees", of_plan.expect("trees").0.table, Real::Plan(plan)),
+        ("tower with trees", of_scene.expect("trees").0.table, Real::Scene(scene)),
+        ("portal file with trees", of_prt.expect("trees").0.table, Real::Portals(graph)),
+    ]
 }
 
 /// A table of each kind.

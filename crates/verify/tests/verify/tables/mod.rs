@@ -1,6 +1,7 @@
 //! True tables of every kind have no violations; tables with one pair hidden that is seen have.
 
 mod common;
+mod damage;
 mod flips;
 mod impostors;
 mod structure;

@@ -1,0 +1,152 @@
+//! The ways that free segments take through a table: from cell to cell by its portals, and along the branches of its stab trees. What the run time
+//! follows has to lead wherever something is seen.
+
+use crate::exact::snapped;
+use crate::findings::Violation;
+use crate::real::{RayOracle, clip, extreme, scale_of, sub};
+use crate::sight::{Sight, Target};
+use sightlines_geometry::{Aabb, Point3, Random};
+use sightlines_pvs::{CellId, PortalId, PortalRecord, Table};
+
+/// Portals that one segment passes at most.
+const LONGEST: usize = 4096;
+
+/// The portals of a table, by cells.
+#[derive(Debug)]
+pub(super) struct Ways<'t> {
+    table: &'t Table,
+    portals_of: Vec<Vec<PortalId>>,
+    boxes: Vec<Aabb<3>>,
+    /// Around boxes in rounded questions.
+    slack: f64,
+    /// Whether cells are convex, so that a segment that leaves one does so once, by a portal.
+    are_cells_convex: bool,
+}
+
+/// Where a segment leads.
+enum Way {
+    /// To its end.
+    Open,
+    /// Too near to the border of a portal to be followed.
+    Unsure,
+    /// Nowhere, by the table.
+    Ends(Violation),
+}
+
+impl<'t> Ways<'t> {
+    /// `None` for a table without portals: then nothing follows them.
+    pub(super) fn of<R: RayOracle>(world: &R, table: &'t Table) -> Option<Self> {
+        if table.portals().is_empty() {
+            return None;
+        }
+        let mut portals_of = vec![Vec::new(); table.n_cells()];
+        for (id, portal) in (0u32..).map(PortalId).zip(table.portals()) {
+            portal.cells.iter().for_each(|cell| portals_of[cell.idx()].push(id));
+        }
+        let boxes = table.portals().iter().map(|portal| Aabb::around(portal.points.iter().copied())).collect();
+        let scale = scale_of(table.cells().iter().flat_map(|cell| cell.min.into_iter().chain(cell.max)));
+        let are_cells_convex = world.through_borders(0, &[]).is_some();
+        Some(Self { table, portals_of, boxes, slack: scale * 2f64.powi(-38), are_cells_convex })
+    }
+
+    pub(super) fn table(&self) -> &'t Table {
+        self.table
+    }
+
+    pub(super) fn portals_of(&self, cell: CellId) -> &[PortalId] {
+        &self.portals_of[cell.idx()]
+    }
+
+    /// The box around a portal.
+    pub(super) fn around(&self, id: PortalId) -> &Aabb<3> {
+        &self.boxes[id.idx()]
+    }
+
+    pub(super) fn portal(&self, id: PortalId) -> &'t PortalRecord {
+        &self.table.portals()[id.idx()]
+    }
+
+    /// Follows a segment through the table; says how many ways were followed, none or one, and the fault if the table does not lead to its end.
+    pub(super) fn follow<R: RayOracle>(&self, world: &R, sight: &Sight) -> (u64, Option<Violation>) {
+        match self.way(world, sight) {
+            Way::Open => (1, None),
+            Way::Unsure => (0, None),
+            // Proofs cost more than ways.
+            Way::Ends(violation) if world.proves(sight) => (1, Some(violation)),
+            Way::Ends(_) => (0, None),
+        }
+    }
+
+    fn way<R: RayOracle>(&self, world: &R, &Sight { from, target, segment }: &Sight) -> Way {
+        let Target::Cell(to) = target else { return Way::Unsure };
+        let (stab, mut cell) = (self.table.stab(), from);
+        // What may be crossed next by the stab tree; anything if it was cut here.
+        let mut next = stab.filter(|stab| !stab.is_root_open(from)).map(|stab| stab.roots(from));
+        let mut passed: Vec<PortalId> = Vec::new();
+        let d = sub(segment[1], segment[0]);
+        while cell != to {
+            let is_near = |id: PortalId| clip(segment[0], d, &self.boxes[id.idx()], [0.0, 1.0], self.slack).is_some();
+            let is_met =
+                |&&id: &&PortalId| passed.last() != Some(&id) && is_near(id) && !world.misses(self.portal(id), segment);
+            let mut met = self.portals_of[cell.idx()].iter().filter(is_met);
+            let portal = match (met.next(), met.next()) {
+                (None, _) if self.are_cells_convex => return Way::Ends(Violation::MissingPortal { cell, segment }),
+                (Some(&id), None) if world.crosses(self.portal(id), segment) => id,
+                _ => return Way::Unsure,
+            };
+            if passed.len() >= LONGEST {
+                return Way::Unsure;
+            }
+            passed.push(portal);
+            let [a, b] = self.portal(portal).cells;
+            let forward = a == cell;
+            if let (Some(stab), Some(nodes)) = (stab, next) {
+                let Some(&node) = nodes.iter().find(|&&node| stab.gate(node) == (portal, forward)) else {
+                    return Way::Ends(Violation::MissingSequence { cell: from, portals: passed, segment });
+                };
+                next = (!stab.is_open(node)).then(|| stab.children(node));
+            }
+            cell = if forward { b } else { a };
+        }
+        Way::Open
+    }
+
+    /// A portal that a cell lacks where its border is open.
+    pub(super) fn missing_portal<R: RayOracle>(&self, world: &R, cell: CellId) -> Option<Violation> {
+        let own: Vec<&PortalRecord> = self.portals_of(cell).iter().map(|&id| self.portal(id)).collect();
+        let is_missing =
+            |sight: &Sight| own.iter().all(|portal| world.misses(portal, sight.segment)) && world.proves(sight);
+        let sight = world.through_borders(cell.0, &own)?.into_iter().find(is_missing)?;
+        Some(Violation::MissingPortal { cell, segment: sight.segment })
+    }
+
+    /// Follows a segment from inside of a cell through one of its portals.
+    pub(super) fn through_one<R: RayOracle>(
+        &self,
+        world: &R,
+        from: CellId,
+        portal: PortalId,
+        random: &mut Random,
+    ) -> Option<Violation> {
+        let record = self.portal(portal);
+        let to = record.cells[usize::from(record.cells[0] == from)];
+        let middle = |cell: CellId| {
+            let cell = &self.table.cells()[cell.idx()];
+            [0, 1, 2].map(|k| 0.5 * cell.min[k] + 0.5 * cell.max[k])
+        };
+        (0..8).find_map(|k| {
+            let x = inside(&record.points, random);
+            let share = 2f64.powi(-3 * k);
+            let towards = |cell| snapped([0, 1, 2].map(|k| x[k] + (middle(cell)[k] - x[k]) * share));
+            let sight = Sight { from, target: Target::Cell(to), segment: [towards(from), towards(to)] };
+            self.follow(world, &sight).1
+        })
+    }
+}
+
+/// A random point inside of a convex polygon or a segment.
+pub(super) fn inside(corners: &[Point3], random: &mut Random) -> Point3 {
+    let weights: Vec<f64> = corners.iter().map(|_| extreme(random).max(f64::MIN_POSITIVE)).collect();
+    let sum: f64 = weights.iter().sum();
+    [0, 1, 2].map(|k| corners.iter().zip(&weights).map(|(p, w)| p[k] * (w / sum)).sum())
+}
