@@ -62,7 +62,7 @@ impl Ways<'_> {
         self.portals_of(cell).iter().copied().filter(move |&portal| !is_among(portal))
     }
 
-    /// Looks for a free segment along a sequence, with about four times so many rays.
+    /// Looks for a free segment along a sequence, with about so many rays.
     pub(super) fn aim<R: RayOracle>(
         &self,
         world: &R,
@@ -97,7 +97,7 @@ impl Ways<'_> {
         };
         let ends = [first, *next];
         let boxes = ends.map(|portal| self.around(portal));
-        (0..(tries / 4).max(1)).find(|_| {
+        (0..(tries / 16).max(1)).find(|_| {
             let start = ends.map(|portal| inside(&self.portal(portal).points, random));
             climb(start, boxes, 16, random, openness, &mut is_good).is_some()
         })?;
