@@ -71,6 +71,13 @@ pub enum Violation {
         /// From inside of this or another cell to inside of one behind it, in scene units; z is 0 in a plane.
         segment: [Point3; 2],
     },
+    /// A mirror on the border of a cell or in it, where the table has no part of one that looks into the cell.
+    MissingMirror {
+        /// The cell.
+        cell: CellId,
+        /// On the mirror, in scene units; z is 0 in a plane.
+        point: Point3,
+    },
     /// A sequence of portals that a free line passes, and that the stab tree of a cell does not have: the segment is free.
     MissingSequence {
         /// The cell that the segment begins in.
@@ -126,6 +133,7 @@ impl Violation {
             Self::NotFound { .. } => "not-found",
             Self::OffBorder { .. } => "off-border",
             Self::MissingPortal { .. } => "missing-portal",
+            Self::MissingMirror { .. } => "missing-mirror",
             Self::MissingSequence { .. } => "missing-sequence",
             Self::UnlikePortal { .. } => "unlike-portal",
             Self::Count { .. } => "count",
@@ -147,6 +155,7 @@ impl Violation {
             | Self::NotFound { cell, .. }
             | Self::OffBorder { cell, .. }
             | Self::MissingPortal { cell, .. }
+            | Self::MissingMirror { cell, .. }
             | Self::MissingSequence { cell, .. }
             | Self::UnlistedObject { cell, .. } => vec![cell],
             _ => Vec::new(),
@@ -214,6 +223,9 @@ impl fmt::Display for Violation {
             Self::OffBorder { portal, cell } => write!(f, "portal {portal} is not on the border of cell {cell}"),
             Self::MissingPortal { cell, segment: [p, q] } => {
                 write!(f, "cell {cell} has no portal where the free line from {} to {} leaves it", Full(p), Full(q))
+            }
+            Self::MissingMirror { cell, point } => {
+                write!(f, "cell {cell} has no part of the mirror that is at {}", Full(point))
             }
             Self::MissingSequence { cell, portals, segment: [p, q] } => {
                 let portals: Vec<String> = portals.iter().map(ToString::to_string).collect();

@@ -14,6 +14,7 @@
 //! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
 //! the errors of what makes them.
 
+mod borders;
 pub mod exact;
 mod findings;
 mod framed;

@@ -59,10 +59,22 @@ struct Part<'a> {
     end: f64,
 }
 
+impl<'a> Part<'a> {
+    /// One part after the other, as long as it costs.
+    fn all(observer: &'a dyn Observer, costs: [f64; 4]) -> [Self; 4] {
+        let all = costs.iter().sum::<f64>().max(1.0);
+        let mut begin = 0.0;
+        costs.map(|cost| {
+            let end = begin + cost / all;
+            Self { observer, begin: std::mem::replace(&mut begin, end), end }
+        })
+    }
+}
+
 impl Observer for Part<'_> {
     fn report(&self, progress: Progress) -> ControlFlow<()> {
         let share = self.begin + (self.end - self.begin) * progress.share;
-        self.observer.report(progress.with_share(share))
+        self.observer.report(progress.with_share(share.min(1.0)))
     }
 }
 
@@ -76,27 +88,37 @@ fn shoot_all<R: RayOracle>(
     let tally = Tally::new(table);
     let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
     let n_chunks = options.rays.div_ceil(CHUNK);
-    let (n_random, n_aimed) = (options.rays as f64, options.pairs as f64 * f64::from(options.tries));
-    let middle = n_random / (n_random + n_aimed).max(1.0);
-    let parts = options
-        .progress
-        .map(|observer| [(0.0, middle), (middle, 1.0)].map(|(begin, end)| Part { observer, begin, end }));
-    let part = |k: usize| parts.as_ref().map(|parts| &parts[k] as &dyn Observer);
-    let counter = Counter::new(part(0), "random rays", n_chunks as usize);
     let ways = Ways::of(world, table);
+    let n_borders = ways.as_ref().map_or(0, |_| table.n_cells());
+    let absent = ways
+        .as_ref()
+        .and_then(|ways| Some(ways.absent(table.stab()?, options.pairs.saturating_mul(trees::FOR_EACH_PAIR))));
+    let absent = absent.unwrap_or_default();
+    findings.n_sequences = absent.len() as u64;
+    // About how many rays they cost.
+    let tries = f64::from(options.tries);
+    let costs =
+        [32.0 * n_borders as f64, absent.len() as f64 * tries, options.rays as f64, options.pairs as f64 * tries];
+    let parts = options.progress.map(|observer| Part::all(observer, costs));
+    let part = |k: usize| parts.as_ref().map(|parts| &parts[k] as &dyn Observer);
     let mut astray: BTreeMap<(&'static str, Vec<CellId>), Violation> = BTreeMap::new();
     if let Some(ways) = &ways {
-        let missing = |cell: u32| ways.missing_portal(world, CellId(cell));
-        let found: Vec<_> = (0..table.n_cells() as u32).into_par_iter().filter_map(missing).collect();
-        found.into_iter().for_each(|v| note(&mut astray, v));
+        let counter = Counter::new(part(0), "borders of cells", n_borders);
+        let missing = |cell: u32| {
+            let found = ways.missing_portal(world, CellId(cell));
+            counter.step().map(|()| found)
+        };
+        let found: Vec<_> = (0..n_borders as u32).into_par_iter().map(missing).collect::<Result<_, Cancelled>>()?;
+        found.into_iter().flatten().for_each(|v| note(&mut astray, v));
+        let counter = Counter::new(part(1), "sequences of portals", absent.len());
+        let aim = |(k, absent)| {
+            let found = ways.aim(world, absent, options.tries, &mut Random::new(mixed(options.seed, k as u64)));
+            counter.step().map(|()| found)
+        };
+        let found: Vec<_> = absent.par_iter().enumerate().map(aim).collect::<Result<_, Cancelled>>()?;
+        found.into_iter().flatten().for_each(|v| note(&mut astray, v));
     }
-    if let (Some(ways), Some(stab)) = (&ways, table.stab()) {
-        let absent = ways.absent(stab, options.pairs.saturating_mul(trees::FOR_EACH_PAIR));
-        findings.n_sequences = absent.len() as u64;
-        let aim = |(k, absent)| ways.aim(world, absent, options.tries, &mut Random::new(mixed(options.seed, k)));
-        let found: Vec<_> = (0u64..).zip(&absent).collect::<Vec<_>>().into_par_iter().filter_map(aim).collect();
-        found.into_iter().for_each(|v| note(&mut astray, v));
-    }
+    let counter = Counter::new(part(2), "random rays", n_chunks as usize);
     let mut chunk = 0;
     while chunk < n_chunks && hidden.len() < VerifyOptions::MOST_VIOLATIONS {
         let end = (chunk + BATCH).min(n_chunks);
@@ -119,7 +141,7 @@ fn shoot_all<R: RayOracle>(
     }
     let suspects = suspects::most(world, table, &seen, options.pairs);
     if hidden.len() < VerifyOptions::MOST_VIOLATIONS {
-        let counter = Counter::new(part(1), "aimed rays", suspects.len());
+        let counter = Counter::new(part(3), "aimed rays", suspects.len());
         let aim = |s: &suspects::Suspect| {
             let mut random = Random::new(mixed(options.seed, s.hash));
             let tries = if s.is_surrounded { options.tries.saturating_mul(8) } else { options.tries };

@@ -1,6 +1,5 @@
 //! What is really there, ready for rays. Vectors and rays are written out here on purpose, as this checks what others compute. Doubles propose segments; what [`RayOracle::proves`] says alone counts.
 
-mod borders;
 mod climb;
 mod convex;
 pub(crate) mod plan;

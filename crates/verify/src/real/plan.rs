@@ -1,7 +1,7 @@
 //! Plans: opaque lines stop sight.
 
-use super::borders::middles;
 use super::{RayOracle, at, clip, extreme, neighbours_of, scale_of};
+use crate::borders::middles;
 use crate::exact::{segments_apart, snapped, strictly_in_polygon};
 use crate::shapes::{ends, outlines};
 use crate::sight::{Sight, Target};

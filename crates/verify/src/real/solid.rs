@@ -1,8 +1,8 @@
 //! Scenes in space: every triangle stops sight, but for those of objects that are see-through. What moves is seen wherever it may
 //! be.
 
-use super::borders::{middles, pairs};
 use super::{RayOracle, at, climb, clip, extreme, length, neighbours_of, scale_of, sub};
+use crate::borders::{middles, pairs};
 use crate::exact::{
     segment_and_polygon_apart, segment_and_triangle_apart, segment_crosses_polygon, segment_crosses_triangle, snapped,
 };

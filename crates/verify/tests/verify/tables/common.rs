@@ -4,7 +4,7 @@ use sightlines_bake::{
     CellsFrom, PlanBakeOptions, PrtOptions, RegionBakeOptions, SceneBakeOptions, StabOptions, Subdivide, bake_plan,
     bake_prt, bake_regions, bake_scene,
 };
-use sightlines_cells::{CellGraph, Convex, Plan, PlanObject, Scene};
+use sightlines_cells::{CellGraph, Convex, LineId, Plan, PlanObject, Scene};
 use sightlines_formats::{Prt, ViewCell, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::mesh::{PatchOptions, patches};
@@ -176,6 +176,28 @@ pub(crate) fn with_trees() -> Vec<(&'static str, Table, Real)> {
         ("office with trees", of_plan.expect("trees").0.table, Real::Plan(plan)),
         ("tower with trees", of_scene.expect("trees").0.table, Real::Scene(scene)),
         ("portal file with trees", of_prt.expect("trees").0.table, Real::Portals(graph)),
+    ]
+}
+
+/// Tables with mirrors: every seventh line of a plan, and every second box of a building.
+pub(crate) fn with_mirrors() -> Vec<Case> {
+    let plan = an_office();
+    let lines = (0..plan.lines().len() as u32).filter(|&line| plan.lines()[line as usize].opaque).step_by(7);
+    let lines: Vec<LineId> = lines.map(LineId).collect();
+    let plan = plan.with_mirrors(lines).expect("opaque lines");
+    let scene = small_tower();
+    let is_box = |&object: &u32| {
+        let (b, o) = (scene.extent(object), &scene.objects()[object as usize]);
+        let is_corner = |p: &Point3| (0..3).all(|k| p[k] == b.min[k] || p[k] == b.max[k]);
+        scene.is_opaque(object) && o.triangles.len() == 12 && o.corners().flatten().all(|p| is_corner(&p))
+    };
+    let objects: Vec<u32> = (0..scene.objects().len() as u32).filter(is_box).step_by(2).collect();
+    let scene = scene.clone().with_mirrors(objects).expect("objects");
+    let table = bake_scene(&scene, &SceneBakeOptions::default()).expect("a scene").table;
+    vec![
+        plan_case("office with mirrors, by k-d tree", plan.clone(), Subdivide::KdTree),
+        plan_case("office with mirrors, by triangulation", plan, Subdivide::Triangulation),
+        Case { name: "tower with mirrors", table, real: Real::Scene(scene), least_caught: [1.0; 2] },
     ]
 }
 

@@ -1,6 +1,6 @@
 //! Everything that the run time reads of a table, damaged in one place.
 
-use crate::tables::common::{Case, cases, changed, check, quick, with_trees};
+use crate::tables::common::{Case, cases, changed, check, quick, with_mirrors, with_trees};
 use sightlines_geometry::Random;
 use sightlines_pvs::{CellId, StabParts, StabTrees, TableParts};
 use sightlines_verify::{Findings, VerifyOptions};
@@ -82,6 +82,48 @@ fn damaged_portals_are_found() {
     }
     println!("{n_caught} caught");
     assert!(n_caught >= 7 * OF_PORTALS.len() * TRIES, "{n_caught}");
+}
+
+const OF_MIRRORS: [(&str, Damage); 4] = [
+    ("a part of a mirror is missing", |parts, random| {
+        let k = random.below(parts.mirrors.len());
+        parts.mirrors.remove(k);
+        true
+    }),
+    ("a part of a mirror has lost a hundredth", |parts, random| {
+        let k = random.below(parts.mirrors.len());
+        shrink(&mut parts.mirrors[k].points, 0.99);
+        true
+    }),
+    ("a part of a mirror looks the other way", |parts, random| {
+        let k = random.below(parts.mirrors.len());
+        parts.mirrors[k].points.reverse();
+        true
+    }),
+    ("a part of a mirror is in another cell", |parts, random| {
+        let [k, other] = [parts.mirrors.len(), parts.cells.len()].map(|n| random.below(n));
+        let other = CellId(other as u32);
+        std::mem::replace(&mut parts.mirrors[k].cell, other) != other
+    }),
+];
+
+#[test]
+fn damaged_mirrors_are_found() {
+    let mut n_caught = 0;
+    for case in with_mirrors() {
+        let whole = check(&case.table, &case.real, &quick());
+        assert_eq!(whole.violations, [], "{}", case.name);
+        assert!(case.table.mirrors().len() >= 10, "{}: {} parts", case.name, case.table.mirrors().len());
+        for (name, damage) in OF_MIRRORS {
+            for seed in 0..TRIES as u64 {
+                let findings = found(&case, damage, seed);
+                let is_missing = |findings: &Findings| findings.by_kind.contains_key("missing-mirror");
+                assert!(findings.as_ref().is_none_or(is_missing), "{}: {name}, try {seed}", case.name);
+                n_caught += 1;
+            }
+        }
+    }
+    assert_eq!(n_caught, 3 * OF_MIRRORS.len() * TRIES);
 }
 
 /// Stab trees with one gate less: a child of a node, or a root of a cell.
