@@ -155,9 +155,7 @@ impl Stated {
         let unit = (info.unit == LengthUnit::Metre).then_some("metre");
         Self { format, up: axis(info.up), up_is_assumed: info.up_is_assumed, unit }
     }
-}
 
-impl Stated {
     /// Whether the file states lengths in metres.
     pub(crate) fn is_in_metres(&self) -> bool {
         self.unit.is_some()

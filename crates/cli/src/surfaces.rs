@@ -150,9 +150,7 @@ impl Surfaces {
         let Backs { n_triangles, n_at_most, n_by_rays } = Backs::of(table, scene);
         Self { backs: (n_triangles > 0).then_some(SeenBacks { n_at_most, n_by_rays }), ..self }
     }
-}
 
-impl Surfaces {
     /// The same in few words: how many objects are what, and how many triangles have one side.
     pub(crate) fn brief(&self) -> Vec<String> {
         let mut kinds: Vec<(&str, usize)> = Vec::new();

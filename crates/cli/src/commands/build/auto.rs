@@ -39,9 +39,7 @@ impl Chosen {
         });
         Self { method: choice.method, reasons: choice.reasons, facts }
     }
-}
 
-impl Chosen {
     /// The methods, in words.
     pub(super) fn method(&self) -> &str {
         &self.method

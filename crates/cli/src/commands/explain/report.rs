@@ -47,9 +47,7 @@ impl<R: Reason> ExplanationReport<R> {
         let is_visible = verdict.or(self.listed).unwrap_or(true);
         Ok(if is_visible { Answer::Yes } else { Answer::No })
     }
-}
 
-impl<R: Reason> ExplanationReport<R> {
     /// Whether the table hides what portals let through, past walls that are no borders of cells.
     fn is_hidden_by_region(&self) -> bool {
         self.has_regions && self.reason.verdict() == Some(true) && self.listed == Some(false)

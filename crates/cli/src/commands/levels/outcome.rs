@@ -62,9 +62,7 @@ impl Outcome {
             seconds: time.as_secs_f64(),
         }
     }
-}
 
-impl Outcome {
     /// The same, with a note whether a scene has faces of which engines draw the fronts only: the table takes their backs to be unseen.
     pub(super) fn with_sides_of(self, scene: &Scene) -> Self {
         Self { single_sided: !scene.single_sided().is_empty(), ..self }
