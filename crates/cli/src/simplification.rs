@@ -7,6 +7,7 @@ use crate::input;
 use crate::named::one_of;
 use crate::numbers::share;
 use crate::surfaces::{self, SurfaceArgs};
+use serde::Serialize;
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
 use sightlines::cells::{MovingObject, Scene, SceneObject};
 use sightlines::formats::ReadError;
@@ -17,11 +18,25 @@ use sightlines::pvs::Table;
 use sightlines::simplify::SimplifyError;
 use sightlines::simplify::{Simplified, SimplifyOptions};
 use sightlines::verify::{VerifyError, along_frame};
+use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// What a promise for every eye does not hold for, if a scene has faces that are drawn from one side only.
-pub(crate) fn of_fronts(single_sided: bool) -> &'static str {
-    if single_sided { " that sees the back of no single-sided face" } else { "" }
+/// Whether a scene has faces of which engines draw the fronts only: a table takes their backs to be unseen. Displayed behind a promise
+/// for every eye, as what that leaves out.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[serde(transparent)]
+pub(crate) struct SingleSided(bool);
+
+impl SingleSided {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        Self(!scene.single_sided().is_empty())
+    }
+}
+
+impl fmt::Display for SingleSided {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0 { " that sees the back of no single-sided face" } else { "" })
+    }
 }
 
 /// Why a scene was not simplified.

@@ -113,7 +113,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
         });
     }
     folder.save(INDEX_NAME, write_levels_index(&index).as_bytes())?;
-    let outcome = Outcome::new(args, method, &index, n_bytes, start.elapsed()).with_sides_of(scene);
+    let outcome = Outcome::new(args, scene, method, &index, n_bytes, start.elapsed());
     folder.finish()?;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)

@@ -2,7 +2,7 @@
 
 use super::LevelsArgs;
 use crate::output::{bytes, count, percent, seconds};
-use crate::simplification::of_fronts;
+use crate::simplification::SingleSided;
 use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::formats::LevelsIndex;
@@ -29,14 +29,14 @@ pub(super) struct Outcome {
     most_triangles: u64,
     /// The largest share that changes, of all levels.
     bound: f64,
-    /// Whether the scene has single-sided faces.
-    single_sided: bool,
+    single_sided: SingleSided,
     seconds: f64,
 }
 
 impl Outcome {
     pub(super) fn new(
         args: &LevelsArgs,
+        scene: &Scene,
         method: &'static str,
         index: &LevelsIndex,
         n_file_bytes: u64,
@@ -57,15 +57,10 @@ impl Outcome {
             n_file_bytes,
             mean_triangles: of_cells().sum::<u64>() as f64 / index.cells.len().max(1) as f64,
             most_triangles: of_cells().max().unwrap_or(0),
-            single_sided: false,
+            single_sided: SingleSided::of(scene),
             bound: index.levels.iter().map(|level| level.bound).fold(0.0, f64::max),
             seconds: time.as_secs_f64(),
         }
-    }
-
-    /// The same, with a note whether a scene has faces of which engines draw the fronts only: the table takes their backs to be unseen.
-    pub(super) fn with_sides_of(self, scene: &Scene) -> Self {
-        Self { single_sided: !scene.single_sided().is_empty(), ..self }
     }
 }
 
@@ -89,7 +84,7 @@ impl fmt::Display for Outcome {
             f,
             "promised       {:.3e} of the view changes at most, for every eye{}; {:.3e} were allowed",
             self.bound,
-            of_fronts(self.single_sided),
+            self.single_sided,
             self.budget
         )?;
         writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))

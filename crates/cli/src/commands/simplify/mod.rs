@@ -85,9 +85,8 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     } else {
         None
     };
-    let outcome =
-        Outcome::new(args, method, (&simplified, along.is_some()), views.parts().len(), bytes.len(), report, time)
-            .with_sides_of(scene);
+    let result = (scene, &simplified, along.is_some());
+    let outcome = Outcome::new(args, method, result, views.parts().len(), bytes.len(), report, time);
     output::save(&args.output, &bytes)?;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)

@@ -2,7 +2,7 @@
 
 use super::SimplifyArgs;
 use crate::output::{bytes, count, percent, seconds};
-use crate::simplification::{is_occluder, of_fronts};
+use crate::simplification::{SingleSided, is_occluder};
 use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::geometry::Point3;
@@ -37,8 +37,7 @@ pub(super) struct Outcome {
     /// The share of the sphere of directions that changes at most, for every eye; if the scene has single-sided faces, for every eye that
     /// sees the back of none.
     bound: f64,
-    /// Whether the scene has single-sided faces.
-    single_sided: bool,
+    single_sided: SingleSided,
     /// How far surfaces were moved at most, in scene units.
     deviation: f64,
     /// Whether the result may be used to hide.
@@ -102,7 +101,7 @@ impl Outcome {
     pub(super) fn new(
         args: &SimplifyArgs,
         method: &'static str,
-        (simplified, is_framed): (&Simplified, bool),
+        (scene, simplified, is_framed): (&Scene, &Simplified, bool),
         n_volumes: usize,
         n_bytes: usize,
         report: Option<Report>,
@@ -127,17 +126,12 @@ impl Outcome {
             n_merged: counts.merged,
             n_left: counts.left,
             bound: simplified.bound,
-            single_sided: false,
+            single_sided: SingleSided::of(scene),
             deviation: simplified.deviation,
             occluder: is_occluder(simplified, is_framed),
             report,
             seconds: time.as_secs_f64(),
         }
-    }
-
-    /// The same, with a note whether a scene has faces of which engines draw the fronts only: the table takes their backs to be unseen.
-    pub(super) fn with_sides_of(self, scene: &Scene) -> Self {
-        Self { single_sided: !scene.single_sided().is_empty(), ..self }
     }
 }
 
@@ -164,7 +158,7 @@ impl fmt::Display for Outcome {
             f,
             "promised       {} of the view changes at most, for every eye{}; {} were allowed",
             parts(self.bound),
-            of_fronts(self.single_sided),
+            self.single_sided,
             parts(self.budget)
         )?;
         if let Some(report) = &self.report {
