@@ -56,12 +56,17 @@ impl LimitReport {
 
 impl fmt::Display for LimitReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [all, part, none] = [self.n_cells_decided, self.n_cells_in_part, self.n_cells_undecided];
-        let [cells, objects] = [self.n_cell_pairs, self.n_object_pairs];
-        let s = if all == 1 { "" } else { "s" };
-        write!(f, "{all} cell{s} decided in full, {part} in part, {none} not at all; ")?;
-        write!(f, "{cells} pairs of cells and {objects} of a cell and an object assumed visible")
+        let decided = count(self.n_cells_decided as u64, "cell");
+        let cells = count(self.n_cell_pairs, "pair");
+        let (part, none, objects) = (self.n_cells_in_part, self.n_cells_undecided, self.n_object_pairs);
+        write!(f, "{decided} decided in full, {part} in part, {none} not at all; ")?;
+        write!(f, "{cells} of cells and {objects} of a cell and an object assumed visible")
     }
+}
+
+/// A number with its noun, in the plural unless it is one.
+fn count(n: u64, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
 /// The key under which a table states it.
@@ -71,4 +76,22 @@ const KEY: &str = "time-limit";
 pub(crate) fn state_limit(parts: &mut TableParts, limit: &LimitReport) {
     parts.info.push((KEY.to_owned(), limit.to_string()));
     parts.info.sort();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_is_no_plural() {
+        let report = |n: u64| {
+            let n_cells = n as usize;
+            let left = LimitReport { n_cells_decided: n_cells, n_cell_pairs: n, n_object_pairs: n, ..Default::default() };
+            left.to_string()
+        };
+        let text = "1 cell decided in full, 0 in part, 0 not at all; 1 pair of cells and 1 of a cell and an object assumed visible";
+        assert_eq!(report(1), text);
+        assert!(report(2).starts_with("2 cells decided") && report(2).contains("; 2 pairs of cells and 2 of"));
+        assert!(report(0).contains("; 0 pairs of cells and 0 of"));
+    }
 }

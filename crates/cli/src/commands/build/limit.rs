@@ -1,6 +1,6 @@
 //! A limit of time, and what was not decided within it.
 
-use crate::output::seconds;
+use crate::output::{count, seconds};
 use serde::Serialize;
 use sightlines::bake::{LimitReport, Report};
 use sightlines::progress::Budget;
@@ -62,7 +62,8 @@ pub(crate) struct Undecided {
 /// What a report in few words says of a limit, if it was reached.
 pub(super) fn brief(left: Option<Undecided>) -> String {
     let Some(Undecided { n_cell_pairs: cells, n_object_pairs: objects, .. }) = left else { return String::new() };
-    format!("; not decided in time, and so visible: {cells} pairs of cells, {objects} of a cell and an object")
+    let cells = count(cells, "pair");
+    format!("; not decided in time, and so visible: {cells} of cells, {objects} of a cell and an object")
 }
 
 impl From<LimitReport> for Undecided {
