@@ -33,9 +33,11 @@ impl Gap {
     /// which nodes have in double precision, makes the gap wide. Where M is less
     /// than what was rounded, fewer walls become flat, and nothing is wrongly closed.
     pub fn of_file(scene: &Scene, file: &SceneInfo) -> f64 {
-        if file.format != SceneFormat::Gltf {
-            return 0.0;
-        }
+        if file.format == SceneFormat::Gltf { Self::of_single(scene) } else { 0.0 }
+    }
+
+    /// The precision of a scene whose coordinates were rounded to single precision, as [`Gap::of_file`] derives it.
+    fn of_single(scene: &Scene) -> f64 {
         let corners: Vec<Point3> = scene.occluding_triangles().flatten().collect();
         let middle = [0, 1, 2].map(|k| median(corners.iter().map(|p| p[k]).collect()));
         let far = |p: &Point3| (0..3).map(|k| (p[k] - middle[k]).abs()).fold(0.0, f64::max);
@@ -44,6 +46,16 @@ impl Gap {
         let extent = |b: Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
         let object = scene.occluders().map(|(_, o)| extent(o.bounds())).fold(0.0, f64::max);
         largest.min(2.0 * spread).min(2.0 * object) / f64::from(1 << 20)
+    }
+
+    /// How many times what single precision explains ([`Gap::of_file`]) a gap in scene units is, if that is more than 16 times; `None` for
+    /// others. For remarks only: such a gap was stated by someone, and rays tell nothing of what is narrower. The 16 is a choice, not derived.
+    /// O(n) of triangles.
+    pub fn times_too_wide(scene: &Scene, gap: f64) -> Option<f64> {
+        // Where most corners are in one place, single precision explains nothing.
+        let explained = Self::of_single(scene).max(Self::of_rounding(scene));
+        let times = if explained > 0.0 { gap / explained } else { 0.0 };
+        (times > WIDE).then_some(times)
     }
 
     /// The least gap, in scene units, with which a scene can be taken along any frame: 2^-45 of the largest coordinate M.
@@ -59,6 +71,9 @@ impl Gap {
     }
 }
 
+/// From how many times the precision of a file on a gap is remarked.
+const WIDE: f64 = 16.0;
+
 /// The value in the middle; 0 of none.
 fn median(mut values: Vec<f64>) -> f64 {
     let half = values.len() / 2;
@@ -69,10 +84,11 @@ fn median(mut values: Vec<f64>) -> f64 {
 mod tests {
     use super::*;
     use sightlines_cells::SceneObject;
+    use sightlines_formats::SceneFile;
     use sightlines_formats::scene::{parse_glb, write_glb};
 
     /// Many small triangles around a place, and one large one around that.
-    fn gap(place: f64, sky: f64) -> f64 {
+    fn file(place: f64, sky: f64) -> SceneFile {
         let triangle = |at: f64, size: f64| SceneObject {
             name: String::new(),
             vertices: vec![[at, 0.0, 0.0], [at + size, 0.0, 0.0], [at, size, 0.0]],
@@ -81,8 +97,26 @@ mod tests {
         let mut objects: Vec<SceneObject> = (0..32).map(|k| triangle(place + f64::from(k), 16.0)).collect();
         objects.push(triangle(place - sky, 2.0 * sky));
         let scene = Scene::new(objects).expect("a scene");
-        let file = parse_glb(&write_glb(&scene).expect("single precision"), None).expect("a scene");
+        parse_glb(&write_glb(&scene).expect("single precision"), None).expect("a scene")
+    }
+
+    fn gap(place: f64, sky: f64) -> f64 {
+        let file = file(place, sky);
         Gap::of_file(&file.scene, &file.info)
+    }
+
+    #[test]
+    fn only_gaps_far_wider_than_that_of_the_file_are_remarked() {
+        for (place, sky) in [(0.0, 1.0), (0.0, 65536.0), (4194304.0, 1.0)] {
+            let SceneFile { scene, info } = file(place, sky);
+            let gap = Gap::of_file(&scene, &info);
+            let times = [0.0, 1.0, 15.9, 16.5, 1e6].map(|times| Gap::times_too_wide(&scene, times * gap));
+            let [none @ .., some, many] = times;
+            assert_eq!(none, [None; 3]);
+            let near = |times: Option<f64>, n: f64| times.is_some_and(|times| (times - n).abs() < 1e-9 * n);
+            assert!(near(some, 16.5) && near(many, 1e6), "{some:?} {many:?}");
+        }
+        assert_eq!(Gap::times_too_wide(&Scene::new(Vec::new()).expect("a scene"), 1.0), None);
     }
 
     #[test]

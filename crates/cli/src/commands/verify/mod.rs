@@ -120,7 +120,8 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     let about = own.as_ref().map(|own| own::About::from(&own.about));
     let files = [args.table.as_path(), &args.scene];
     let outcome = Outcome::new(files, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
-    let outcome = outcome.in_frame(frame.as_ref(), frame.map_or(0.0, |frame| scene.times_usual(frame.gap())));
+    let wide_gap = frame.and_then(|frame| scene.times_too_wide(frame.gap()));
+    let outcome = outcome.in_frame(frame.as_ref(), wide_gap);
     let is_proven = unproven.is_none_or(|unproven| unproven.hides_none());
     let outcome = outcome.only_if(is_proven || !args.proofs.is_strict());
     let is_true = outcome.is_true();

@@ -51,7 +51,7 @@ pub(super) struct Outcome {
     /// With a frame: triangles that are thinner than the gap.
     #[serde(skip_serializing_if = "Option::is_none")]
     n_flattened: Option<u64>,
-    /// Whether the gap is much wider than single precision explains.
+    /// How many times what single precision explains the gap is, if that is much.
     #[serde(skip)]
     wide_gap: Option<f64>,
     n_violations: usize,
@@ -148,9 +148,8 @@ impl Outcome {
         }
     }
 
-    /// The same for a table with a frame, whose gap is so many times what single precision rounds.
-    pub(super) fn in_frame(self, frame: Option<&Frame>, times_usual: f64) -> Self {
-        let wide_gap = (times_usual > MUCH).then_some(times_usual);
+    /// The same for a table with a frame, whose gap is so many times what single precision explains, if that is much.
+    pub(super) fn in_frame(self, frame: Option<&Frame>, wide_gap: Option<f64>) -> Self {
         match frame {
             Some(frame) => Self { frame: Some(frame.into()), wide_gap, ..self },
             None => Self { n_cracks: None, n_flattened: None, ..self },
@@ -178,9 +177,6 @@ impl Outcome {
         writeln!(f, "               {} of {} hidden pairs aimed at", p.n_aimed_at, p.n_hidden)
     }
 }
-
-/// From how many times 2^-20 of a scene's size on a gap is remarked; only decides what is printed.
-const MUCH: f64 = 16.0;
 
 /// Violations of each kind that people are shown.
 const SHOWN: usize = 5;
@@ -232,7 +228,7 @@ impl fmt::Display for Outcome {
         if let Some(times) = self.wide_gap {
             writeln!(
                 f,
-                "remark         the gap is {times:.0} times what single precision explains in a scene of this size: no ray tells of what is narrower"
+                "remark         the gap is {times:.0} times what single precision explains in this scene: no ray tells of what is narrower"
             )?;
         }
         for (n, noun, what) in remarks.into_iter().filter(|(n, ..)| *n > 0) {

@@ -3,7 +3,7 @@
 use super::Error;
 use crate::error::InputError;
 use crate::input::{self, refuse};
-use sightlines::bake::{Bakeable, PrtBakeError};
+use sightlines::bake::{Bakeable, Gap, PrtBakeError};
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
 use sightlines::formats::Input;
 use sightlines::formats::quake::bsp::BspError;
@@ -81,13 +81,12 @@ impl Real {
         }
     }
 
-    /// How many times 2^-20 of the longest side of a scene a gap is: that is 16 times the rounding of single precision, as much as the
-    /// default gap of `build` allows for.
-    pub(super) fn times_usual(&self, gap: f64) -> f64 {
-        let Self::Scene(scene) = self else { return 0.0 };
-        let b = scene.bounds();
-        let longest = (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
-        if longest > 0.0 { gap / longest * f64::from(1 << 20) } else { 0.0 }
+    /// How many times what single precision explains in a scene the gap of a table is, if that is much.
+    pub(super) fn times_too_wide(&self, gap: f64) -> Option<f64> {
+        match self {
+            Self::Scene(scene) => Gap::times_too_wide(scene, gap),
+            _ => None,
+        }
     }
 
     pub(super) fn truth(&self) -> Truth<'_> {
