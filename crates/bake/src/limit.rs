@@ -86,7 +86,8 @@ mod tests {
     fn one_is_no_plural() {
         let report = |n: u64| {
             let n_cells = n as usize;
-            let left = LimitReport { n_cells_decided: n_cells, n_cell_pairs: n, n_object_pairs: n, ..Default::default() };
+            let left =
+                LimitReport { n_cells_decided: n_cells, n_cell_pairs: n, n_object_pairs: n, ..Default::default() };
             left.to_string()
         };
         let text = "1 cell decided in full, 0 in part, 0 not at all; 1 pair of cells and 1 of a cell and an object assumed visible";

@@ -112,7 +112,8 @@ fn the_guide_for_bim_works() {
     let sees = |table: &str| [last, corridor].map(|place| see_each_other(&folder, table, eye, place));
     assert_eq!(["before.pvs", "shut.pvs", "building.pvs"].map(sees), [[true, true], [false, false], [false, true]]);
     // Whoever checks a table hears of a gap that no file explains.
-    let check = |table: &str| folder.run(&["verify", table, "building.glb", "--rays", "100", "--pairs", "1"]).expect(0).out;
+    let check =
+        |table: &str| folder.run(&["verify", table, "building.glb", "--rays", "100", "--pairs", "1"]).expect(0).out;
     let remark = "times what single precision explains in this scene: no ray tells of what is narrower\n";
     let told = ["before.pvs", "shut.pvs", "building.pvs"].map(|table| check(table).contains(remark));
     assert_eq!(told, [false, true, true]);

@@ -63,12 +63,12 @@ impl CertifyArgs {
         drop(bar);
         let made = made.map_err(|source| Error::Certify { path: path.to_owned(), source })?;
         let content = made.proofs.to_bytes();
-        let found = check_proofs(&baked.table, &content).map_err(|error| error.to_string());
-        let found = found.and_then(|found| match found.violations.first() {
-            Some(violation) => Err(violation.to_string()),
-            None => Ok(found),
-        });
-        let found = found.map_err(|text| Error::Contradiction { path: path.to_owned(), text })?;
+        let incomparable = |source| Error::Incomparable { path: path.to_owned(), source };
+        let found = check_proofs(&baked.table, &content).map_err(incomparable)?;
+        if let Some(first) = found.violations.first() {
+            let (n_violations, first) = (found.n_violations, first.clone());
+            return Err(Error::Contradiction { path: path.to_owned(), n_violations, first });
+        }
         output::save(&file, &content)?;
         let file = ProofFile {
             proofs: file.display().to_string(),

@@ -7,6 +7,7 @@ use sightlines::bake::BakeError;
 use sightlines::bake::CertifyError;
 use sightlines::bake::PrtBakeError;
 use sightlines::bake::StabBakeError;
+use sightlines::verify::{ProofError, ProofViolation};
 use std::path::PathBuf;
 
 /// Why `build` fails; exit code 2.
@@ -31,12 +32,42 @@ pub(crate) enum Error {
     /// A table cannot have proofs.
     #[error("{}: {source}", path.display())]
     Certify { path: PathBuf, source: CertifyError },
+    /// Proofs that were made are none of the table: our bug.
+    #[error("{}: the proofs that were made cannot be compared with the table: {source}; nothing was written", path.display())]
+    Incomparable { path: PathBuf, source: ProofError },
     /// What is proven is not what the table states: our bug.
-    #[error("{}: the proofs contradict the table: {text}", path.display())]
-    Contradiction { path: PathBuf, text: String },
+    #[error("{}: the proofs contradict the table: {first}{}; nothing was written", path.display(), and_more(*n_violations))]
+    Contradiction { path: PathBuf, n_violations: u64, first: ProofViolation },
     /// A table cannot have stab trees.
     #[error("{}: {source}", path.display())]
     Stab { path: PathBuf, source: StabBakeError },
 }
 
 from_file_error!(Error);
+
+/// How many there are besides the first.
+fn and_more(n: u64) -> String {
+    if n > 1 { format!("; and {} more", n - 1) } else { String::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sightlines::pvs::CellId;
+
+    #[test]
+    fn proofs_that_contradict_are_named() {
+        let error = |n_violations: u64| {
+            let first = ProofViolation::Joined([CellId(1), CellId(2)]);
+            Error::Contradiction { path: "a.glb".into(), n_violations, first }.to_string()
+        };
+        let text = "a.glb: the proofs contradict the table: cells 1 and 2 are hidden from each other, but a proven line joins them";
+        assert_eq!(
+            [1, 3].map(error),
+            [format!("{text}; nothing was written"), format!("{text}; and 2 more; nothing was written")]
+        );
+        let other = Error::Incomparable { path: "a.glb".into(), source: ProofError::Portal(3) }.to_string();
+        let text = "cannot be compared with the table: portal 3 of the table is no rectangle across an axis; nothing was written";
+        assert_eq!(other, format!("a.glb: the proofs that were made {text}"));
+    }
+}

@@ -83,9 +83,7 @@ impl fmt::Display for Outcome {
         writeln!(
             f,
             "promised       {:.3e} of the view changes at most, for every eye{}; {:.3e} were allowed",
-            self.bound,
-            self.single_sided,
-            self.budget
+            self.bound, self.single_sided, self.budget
         )?;
         writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
     }

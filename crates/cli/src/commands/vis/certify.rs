@@ -1,6 +1,7 @@
 //! Proofs for some of the pairs of a table, before it is written.
 
 use super::Error;
+use super::error::Found;
 use crate::output::count;
 use crate::progress::Bar;
 use serde::Serialize;
@@ -55,10 +56,7 @@ pub(super) fn certify(
         let explanation = explainer.explain(a, b, MOST_EXPLAINED);
         let proven = if listed { &mut certified.visible } else { &mut certified.hidden };
         proven.n_picked += 1;
-        let wrong = |found| {
-            let listed = if listed { "visible" } else { "hidden" };
-            Err(Error::Contradiction { path: path.to_owned(), pair, listed, found })
-        };
+        let wrong = |found| Err(Error::Contradiction { path: path.to_owned(), pair, is_listed: listed, found });
         let shown = match explanation {
             Verdict::Undecided(ConvexDoubt::Limit(_)) => {
                 proven.n_too_many += 1;
@@ -72,10 +70,10 @@ pub(super) fn certify(
             Verdict::Visible(_) => true,
         };
         match (check_convex(graph, a, b, &explanation), listed, shown) {
-            (false, _, _) => return wrong("the proof that was found does not hold"),
-            (true, false, true) => return wrong("a line joins them"),
+            (false, _, _) => return wrong(Found::Refused),
+            (true, false, true) => return wrong(Found::Line),
             (true, true, false) if !fast && !seen.undecided.contains(&pair) => {
-                return wrong("no line joins them");
+                return wrong(Found::NoLine);
             }
             (true, true, false) => proven.n_loose += 1,
             (true, _, _) => proven.n_accepted += 1,

@@ -3,6 +3,7 @@
 use crate::file_error::{FileError, from_file_error};
 use sightlines::bake::PrtBakeError;
 use sightlines::bake::quake::StateError;
+use std::fmt;
 use std::path::PathBuf;
 
 /// Why `vis` fails; exit code 2.
@@ -19,8 +20,9 @@ pub(crate) enum Error {
     #[error("{}: {source}", path.display())]
     BakePrt { path: PathBuf, source: PrtBakeError },
     /// A proof about two clusters contradicts what the table lists.
-    #[error("{}: clusters {} and {} are listed as {listed}, but {found}; nothing was written", path.display(), pair[0], pair[1])]
-    Contradiction { path: PathBuf, pair: [u32; 2], listed: &'static str, found: &'static str },
+    #[error("{}: clusters {} and {} are listed as {}, but {found}; nothing was written", path.display(), pair[0], pair[1],
+            if *is_listed { "visible" } else { "hidden" })]
+    Contradiction { path: PathBuf, pair: [u32; 2], is_listed: bool, found: Found },
     /// A state from which the search cannot be resumed.
     #[error("{}: {source}; without --resume the search begins anew", path.display())]
     State { path: PathBuf, source: StateError },
@@ -30,3 +32,41 @@ pub(crate) enum Error {
 }
 
 from_file_error!(Error);
+
+/// What was found about a pair of clusters that is listed otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Found {
+    /// A line between them.
+    Line,
+    /// A proof that there is none.
+    NoLine,
+    /// A line or a proof that the checker refuses.
+    Refused,
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Line => "a line joins them",
+            Self::NoLine => "no line joins them",
+            Self::Refused => "the proof that was found does not hold",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contradictions_name_the_pair_and_what_was_found() {
+        let text = |is_listed, found| {
+            Error::Contradiction { path: "e1m1.bsp".into(), pair: [3, 5], is_listed, found }.to_string()
+        };
+        let start = "e1m1.bsp: clusters 3 and 5 are listed as";
+        assert_eq!(text(false, Found::Line), format!("{start} hidden, but a line joins them; nothing was written"));
+        assert_eq!(text(true, Found::NoLine), format!("{start} visible, but no line joins them; nothing was written"));
+        let refused = "but the proof that was found does not hold; nothing was written";
+        assert_eq!(text(true, Found::Refused), format!("{start} visible, {refused}"));
+    }
+}
