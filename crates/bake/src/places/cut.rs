@@ -1,7 +1,7 @@
 //! Cutting a region into places, the most worthwhile cut first.
 
 use super::views::{Cut, Views};
-use super::{PlaceSummary, Places};
+use super::{PlaceSummary, Places, n_boxes};
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{Matter, SceneOptions};
@@ -55,6 +55,8 @@ struct Leaf {
     worth: f64,
     /// The longest side.
     side: f64,
+    /// The fewest cells that it becomes, unless some of it is solid: more than one only where there is a bound on the sides of cells.
+    needs: f64,
     cut: Option<Cut>,
     /// Its place in the tree: nodes are numbered as they are made.
     node: usize,
@@ -94,6 +96,25 @@ fn report(progress: Option<&dyn Observer>, now: Progress) -> Result<(), Cancelle
     if is_cancelled { Err(Cancelled) } else { Ok(()) }
 }
 
+/// How far cutting is. Counts cuts, which are never taken back; the number of cells is no measure, as it falls where both halves of a box turn
+/// out to be solid.
+struct Cuts<'a> {
+    progress: Option<&'a dyn Observer>,
+    n_done: u64,
+    /// The largest share that was reported.
+    share: f64,
+}
+
+impl Cuts<'_> {
+    /// Reports that at least `n_left` more cuts are needed, by what is known now. Solid halves, and cuts that leave more than the fewest boxes,
+    /// raise that number; the share then stays until it is reached again.
+    fn report(&mut self, n_left: u64) -> Result<(), Cancelled> {
+        let now = Progress::new("cuts", self.n_done, self.n_done.saturating_add(n_left));
+        self.share = self.share.max(now.share);
+        report(self.progress, now.with_share(self.share))
+    }
+}
+
 fn longest_side(b: &Aabb<3>) -> (usize, f64) {
     let side = |k: usize| b.max[k] - b.min[k];
     let axis = (1..3).fold(0, |best, k| if side(k) > side(best) { k } else { best });
@@ -115,26 +136,38 @@ impl<'a> Cutter<'a> {
 
     /// Cuts `region` into places.
     pub(super) fn run(&self, region: Aabb<3>) -> Result<Places, Stop> {
+        let mut cuts = Cuts { progress: self.progress, n_done: 0, share: 0.0 };
+        let places = self.cut(region, &mut cuts)?;
+        // Where no more cuts pay, fewer are made than were thought to be needed.
+        cuts.report(0).map_err(Stop::Cancelled)?;
+        Ok(places)
+    }
+
+    fn cut(&self, region: Aabb<3>, cuts: &mut Cuts<'_>) -> Result<Places, Stop> {
         let views = Views::of(self.scene, &region);
         let thinnest = longest_side(&region).1 * THINNEST;
         let mut summary = PlaceSummary::default();
         let mut nodes = vec![Node::Solid];
         let whole = self.place(&views, region, &mut summary).unwrap_or(region);
-        let mut queue = BinaryHeap::from([self.leaf(&views, whole, 0, &mut nodes)]);
+        let first = self.leaf(&views, whole, 0, &mut nodes);
+        let mut needed = first.needs;
+        let mut queue = BinaryHeap::from([first]);
         let mut n_done = 0;
         while let Some(leaf) = queue.pop() {
             let n_cells = n_done + queue.len() + 1;
-            let total = self.goal.n_cells.max(n_cells) as u64;
-            report(self.progress, Progress::new("places", n_cells as u64, total)).map_err(Stop::Cancelled)?;
+            let n_left = needed.max(self.goal.n_cells as f64) - n_cells as f64;
+            cuts.report(n_left as u64).map_err(Stop::Cancelled)?;
             let is_enough = n_cells >= self.goal.n_cells;
             let full = is_enough && !(self.goal.is_bound && leaf.too_long > 0.0);
             let Some(cut) = leaf.cut.filter(|_| !full) else {
                 n_done += 1;
+                needed -= leaf.needs - 1.0;
                 continue;
             };
             let halves = halves(&leaf.bounds, cut.axis, cut.at);
             if halves.iter().any(|half| half.max[cut.axis] - half.min[cut.axis] < thinnest) {
                 n_done += 1;
+                needed -= leaf.needs - 1.0;
                 continue;
             }
             let counted = if cut.gain == 0.0 {
@@ -145,12 +178,16 @@ impl<'a> Cutter<'a> {
                 &mut summary.n_by_views
             };
             *counted += 1;
+            cuts.n_done += 1;
+            needed -= leaf.needs;
             let children = [nodes.len(), nodes.len() + 1];
             nodes.extend([Node::Solid, Node::Solid]);
             nodes[leaf.node] = Node::Divided(children);
             for (half, node) in halves.into_iter().zip(children) {
                 if let Some(place) = self.place(&views, half, &mut summary) {
-                    queue.push(self.leaf(&views, place, node, &mut nodes));
+                    let leaf = self.leaf(&views, place, node, &mut nodes);
+                    needed += leaf.needs;
+                    queue.push(leaf);
                 }
             }
             if n_done + queue.len() > self.goal.max_cells as usize {
@@ -160,7 +197,7 @@ impl<'a> Cutter<'a> {
         let cells = in_order(&nodes);
         // Where nothing is a place, all is one.
         if cells.is_empty() && self.matter.is_some() {
-            return Self { matter: None, ..*self }.run(region);
+            return Self { matter: None, ..*self }.cut(region, cuts);
         }
         summary.n_cells = cells.len();
         summary.cell_size = cells.iter().map(|cell| longest_side(cell).1).fold(0.0, f64::max);
@@ -169,7 +206,7 @@ impl<'a> Cutter<'a> {
 
     fn leaf(&self, views: &Views, bounds: Aabb<3>, node: usize, nodes: &mut [Node]) -> Leaf {
         nodes[node] = Node::Place(bounds);
-        let Goal { cell_size, all, .. } = self.goal;
+        let Goal { cell_size, all, is_bound, .. } = self.goal;
         let (axis, side) = longest_side(&bounds);
         let too_long = if side > cell_size { side / cell_size } else { 0.0 };
         let mut cut = views.best_cut(&bounds);
@@ -180,7 +217,8 @@ impl<'a> Cutter<'a> {
             let at = bounds.min[axis] + side * ((parts / 2.0).floor() / parts);
             cut = Some(Cut { axis, at, wall: false, gain: 0.0 });
         }
-        Leaf { bounds, too_long, worth, side, cut, node }
+        let needs = if is_bound { n_boxes(&bounds, cell_size).max(1.0) } else { 1.0 };
+        Leaf { bounds, too_long, worth, side, needs, cut, node }
     }
 
     /// A box without the sides of it that are in solid matter, or behind the backs of things; none if all is.

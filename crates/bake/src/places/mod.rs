@@ -113,7 +113,9 @@ pub fn places(scene: &Scene, cut: &SceneOptions, options: &PlaceOptions) -> Resu
     observed_places(scene, cut, options, None)
 }
 
-/// The same places; tells an observer of each cut, in the phase `places`. Its total is the number of cells to make, as far as that is known.
+/// The same places; tells an observer of each cut, in the phase `cuts`. The total is those that are made and the fewest that are then still needed:
+/// it grows where boxes turn out to be solid, or cuts leave more boxes than the bound on their sides needs, and is right in the end. The
+/// share never falls.
 ///
 /// # Errors
 /// As [`places`]; [`PlacesError::Cancelled`] if the observer cancels.

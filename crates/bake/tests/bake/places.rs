@@ -304,14 +304,14 @@ fn cutting_is_observed() {
     let stop_at = AtomicU64::new(u64::MAX);
     let observer = |progress: Progress| {
         seen.lock().expect("no panic").push(progress);
-        let is_over = progress.phase == "places" && progress.done >= stop_at.load(Relaxed);
+        let is_over = progress.phase == "cuts" && progress.done >= stop_at.load(Relaxed);
         if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let cut = || observed_places(&city, &SceneOptions::default(), &how, Some(&observer));
     assert_eq!(cut(), places(&city, &SceneOptions::default(), &how), "nobody changes what they see");
     let reports = std::mem::take(&mut *seen.lock().expect("no panic"));
     assert_eq!(reports[0].phase, "solid matter");
-    let shares: Vec<f64> = reports.iter().filter(|p| p.phase == "places").map(|p| p.share).collect();
+    let shares: Vec<f64> = reports.iter().filter(|p| p.phase == "cuts").map(|p| p.share).collect();
     assert!(shares.len() >= 40 && shares[0] < 0.1 && shares.last() == Some(&1.0), "{shares:?}");
     assert!(reports.iter().all(|p| p.done <= p.total && (0.0..=1.0).contains(&p.share)));
     stop_at.store(7, Relaxed);
@@ -325,6 +325,63 @@ fn cutting_is_observed() {
         ..BakeOptions::default()
     };
     assert_eq!(bake(&city, &options).map(|_| ()), Err(BakeError::Cancelled(Cancelled)));
+}
+
+/// What is reported of cutting: the reports of its phase, and the places.
+fn reports_of(scene: &Scene, how: &PlaceOptions, keep_solid: bool) -> (Vec<Progress>, Places) {
+    let seen = Mutex::new(Vec::new());
+    let observer = |progress: Progress| {
+        seen.lock().expect("no panic").push(progress);
+        ControlFlow::Continue(())
+    };
+    let options = SceneOptions { keep_solid, ..SceneOptions::default() };
+    let places = observed_places(scene, &options, how, Some(&observer)).expect("places");
+    let reports = seen.into_inner().expect("no panic");
+    (reports.into_iter().filter(|p| p.phase == "cuts").collect(), places)
+}
+
+/// Cuts are never taken back, though boxes are; and all are made when that is reported, not before.
+#[test]
+fn the_progress_of_cuts_never_falls_and_ends_when_they_do() {
+    let wall = |x: f64| block(&boxed([x, 0.0, 0.0], [x + 4.0, 4.0, 8.0]), false);
+    let post = |z: f64| block(&boxed([3.0, 6.0, z], [4.0, 7.0, z + 1.0]), false);
+    // Two blocks that fill the lower half together: both halves of it are solid, and cells become fewer.
+    let shared =
+        scene(vec![wall(0.0), wall(4.0), post(0.0), post(7.0), block(&boxed([0.0, 7.5, 0.0], [8.0; 3]), false)]);
+    // All is solid, which is found late: then nothing is, and all is cut once more.
+    let filled = scene(vec![wall(0.0), wall(4.0)]);
+    let city = city(CityOptions::default()).expect("a city");
+    let size = |size: f64| PlaceOptions { n_cells: Some(1), cell_size: Some(size) };
+    let n = |n: u32| PlaceOptions { n_cells: Some(n), cell_size: None };
+    let longest = (0..3).map(|k| city.bounds().max[k] - city.bounds().min[k]).fold(0.0, f64::max);
+    let (mut n_reports, mut n_grown) = (0, 0);
+    for (scene, how, keep_solid) in [
+        (&shared, size(1.5), false),
+        (&shared, n(30), false),
+        (&filled, size(2.0), false),
+        (&city, size(longest / 8.0), false),
+        (&city, size(longest / 8.0), true),
+        (&city, n(60), false),
+        (&city, PlaceOptions::default(), true),
+    ] {
+        let (reports, places) = reports_of(scene, &how, keep_solid);
+        let (first, last) = (reports[0], reports[reports.len() - 1]);
+        let cuts = places.summary.n_along_walls + places.summary.n_by_views + places.summary.n_by_size;
+        assert!(first.done == 0 && first.total > 0 && first.share == 0.0, "{first:?}");
+        // Of what was cut twice, the summary has the second time.
+        assert!(last.done >= cuts as u64 && last.done == last.total && last.share == 1.0, "{last:?}");
+        assert!(reports.iter().all(|p| p.done <= p.total && (p.share < 1.0 || p.done == last.done)), "{how:?}");
+        for pair in reports.windows(2) {
+            assert!(pair[0].done <= pair[1].done && pair[0].share <= pair[1].share, "{pair:?}");
+            n_grown += usize::from(pair[0].total < pair[1].total);
+        }
+        // Where nothing is solid, and only the number counts, the first total is right.
+        if keep_solid && how.cell_size.is_none() {
+            assert!(reports.iter().all(|p| p.total == last.total), "{how:?}");
+        }
+        n_reports += reports.len();
+    }
+    assert!(n_reports > 500 && n_grown > 5, "{n_reports}, {n_grown}");
 }
 
 /// A choice by measurements that take long tells which is being made.

@@ -70,7 +70,7 @@ struct Pace {
 }
 
 /// The phase in which places are cut.
-const CUTTING: &str = "places";
+const CUTTING: &str = "cuts";
 
 /// An estimate is given after this share of a phase.
 const SAMPLE: f64 = 0.03;
