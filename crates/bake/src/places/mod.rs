@@ -50,13 +50,27 @@ pub enum PlacesError {
         /// The limit.
         limit: u32,
     },
-    /// The bound on the sides of cells needs more cells than the limit.
+    /// Cutting to the bound on the sides of cells was given up, as there were more cells than the limit. Further cuts might have found some of
+    /// them to be solid.
     #[error(
-        "cells of at most {cell_size} units are more than {limit}, which is the limit: raise the limit, or take larger cells"
+        "cutting cells of at most {cell_size} units was stopped at more than {limit}, which is the limit: raise the limit, or take larger cells"
     )]
     TooSmall {
         /// The bound.
         cell_size: f64,
+        /// The limit.
+        limit: u32,
+    },
+    /// The region is so many cells of the longest sides that are allowed that nothing was cut. If nearly all of it is solid, fewer would do.
+    #[error(
+        "{n_cells} cells of at most {cell_size} units fill the region, less what is solid, and {limit} are the limit: nothing was cut; raise the \
+         limit, or take larger cells"
+    )]
+    FarTooSmall {
+        /// The bound.
+        cell_size: f64,
+        /// The fewest boxes within the bound that fill the region.
+        n_cells: f64,
         /// The limit.
         limit: u32,
     },
@@ -108,7 +122,7 @@ pub struct Places {
 /// Cost: some thousand rays for each cell.
 ///
 /// # Errors
-/// [`PlacesError`]; what is likely to be many more cells than the limit is refused before any work.
+/// [`PlacesError`]; what is likely to be many more cells than the limit is refused before any work ([`PlacesError::FarTooSmall`]).
 pub fn places(scene: &Scene, cut: &SceneOptions, options: &PlaceOptions) -> Result<Places, PlacesError> {
     observed_places(scene, cut, options, None)
 }
@@ -135,8 +149,11 @@ pub fn observed_places(
         _ => {}
     }
     let region = region(scene, cut.view_region)?;
-    if let Some(cell_size) = options.cell_size.filter(|&size| n_boxes(&region, size) > MOST_SOLID * f64::from(limit)) {
-        return Err(PlacesError::TooSmall { cell_size, limit });
+    if let Some(cell_size) = options.cell_size {
+        let n_cells = n_boxes(&region, cell_size);
+        if n_cells > MOST_TIMES * f64::from(limit) {
+            return Err(PlacesError::FarTooSmall { cell_size, n_cells, limit });
+        }
     }
     let n_cells = options.n_cells.unwrap_or(PlaceOptions::N_CELLS.min(limit));
     let cell_size = options.cell_size.unwrap_or_else(|| default_size(&region, n_cells));
@@ -148,8 +165,13 @@ pub fn observed_places(
     })
 }
 
-/// Solid matter may take most of a region, but a bound that needs so many times the limit of cells is refused before any work.
-const MOST_SOLID: f64 = 8.0;
+/// A bound on sides that divides the region into more than so many times the limit of cells is refused before any work.
+///
+/// Cells have at most the volume of their bound, so such a region holds no more cells than the limit only if more than about 7/8 of it is solid or
+/// behind backs. How much is solid is not known before the work, so the number is chosen, not derived. If it is too small, rock
+/// with a few caves in it is refused, though there were cells enough; whoever cuts it raises the limit. If it is too large, the refusal comes
+/// after as many cells were cut as the limit allows, some thousand rays each. No answer depends on it.
+const MOST_TIMES: f64 = 8.0;
 
 /// So many boxes without a longer side fill a region, and no fewer do: as many points in it are farther than that apart.
 fn n_boxes(region: &Aabb<3>, size: f64) -> f64 {
