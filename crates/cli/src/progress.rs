@@ -48,14 +48,12 @@ impl Bar {
         self.bar.finish_and_clear();
     }
 
-    fn show(&self, Progress { share, phase, .. }: Progress) {
-        let now = Instant::now();
-        let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
-        // The first report, of each phase, gives the share that was done before.
-        if pace.is_none_or(|pace| pace.phase != phase) {
-            *pace = Some(Pace { phase, since: now, before: share });
-        }
-        let left = pace.and_then(|pace| pace.left(share, now - pace.since));
+    fn show(&self, progress: Progress) {
+        let (Progress { share, phase, .. }, now) = (progress, Instant::now());
+        let mut last = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        let pace = Pace::after(*last, progress, now);
+        *last = Some(pace);
+        let left = pace.left(share, pace.took(now));
         let left = left.map_or_else(String::new, |left| format!("about {} left", rough(left)));
         self.bar.set_position((share.clamp(0.0, 1.0) * Self::STEPS as f64) as u64);
         self.bar.set_message(if phase.is_empty() { left } else { format!("{phase} {left}") });
@@ -76,8 +74,8 @@ impl Drop for Bar {
 }
 
 /// The pace of this run in a phase.
-#[derive(Debug, Clone, Copy)]
-struct Pace {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pace {
     phase: &'static str,
     since: Instant,
     /// The share that was done before this run.
@@ -85,8 +83,18 @@ struct Pace {
 }
 
 impl Pace {
+    /// The pace in the phase of a report, after that of earlier ones. The first report of each phase gives the share that was done before.
+    pub(crate) fn after(last: Option<Self>, Progress { phase, share, .. }: Progress, now: Instant) -> Self {
+        last.filter(|last| last.phase == phase).unwrap_or(Self { phase, since: now, before: share })
+    }
+
+    /// The time since the first report of the phase.
+    pub(crate) fn took(self, now: Instant) -> Duration {
+        now.saturating_duration_since(self.since)
+    }
+
     /// The time left if the rest proceeds at the pace of this run; `None` until there is something to estimate it from.
-    fn left(self, share: f64, elapsed: Duration) -> Option<Duration> {
+    pub(crate) fn left(self, share: f64, elapsed: Duration) -> Option<Duration> {
         let done = share - self.before;
         let left = elapsed.as_secs_f64() * (1.0 - share) / done;
         if done > 0.0 { Duration::try_from_secs_f64(left.max(0.0)).ok() } else { None }

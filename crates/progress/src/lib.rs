@@ -2,7 +2,7 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the [`Observer`] trait, its reports ([`Progress`]), the error of a cancelled search ([`Cancelled`]), and
+//! - **Owns**: the [`Observer`] trait, its reports ([`Progress`]) and kinds of work ([`Work`]), the error of a cancelled search ([`Cancelled`]), and
 //!   the counter that threads of a search share ([`Counter`]), and what a search may spend ([`Budget`]).
 //! - **Out of scope**: time, terminals, what is searched.
 
@@ -13,11 +13,26 @@ pub use budget::{Allowance, Budget, Shares, scattered};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
+/// What the work of a phase is, for programs that treat phases differently. The name of a phase is for people.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Work {
+    /// A scene is cut into cells, or prepared for that. It may still be refused.
+    Cutting,
+    /// What is visible is decided, in units of which every beginning is a sample: the rest will take about as long for each.
+    Deciding,
+    /// Anything else.
+    #[default]
+    Other,
+}
+
 /// How far a search is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
     /// What is being done, in a word or two, for people.
     pub phase: &'static str,
+    /// What kind of work that is.
+    pub work: Work,
     /// Units of this phase that are done. Their kind depends on the search: cells, pairs, objects.
     pub done: u64,
     /// Units of this phase.
@@ -27,10 +42,16 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A report of a search with one phase; the share is that of its units.
+    /// A report of a search with one phase, of [`Work::Other`]; the share is that of its units.
     pub fn new(phase: &'static str, done: u64, total: u64) -> Self {
         let share = if total == 0 { 1.0 } else { done as f64 / total as f64 };
-        Self { phase, done, total, share }
+        Self { phase, work: Work::Other, done, total, share }
+    }
+
+    /// The same report of a kind of work.
+    #[must_use]
+    pub const fn of(self, work: Work) -> Self {
+        Self { work, ..self }
     }
 
     /// The same report with another estimate of the share.
@@ -63,6 +84,7 @@ pub struct Cancelled;
 pub struct Counter<'a> {
     observer: Option<&'a dyn Observer>,
     phase: &'static str,
+    work: Work,
     total: u64,
     done: AtomicU64,
     cancelled: AtomicBool,
@@ -72,6 +94,7 @@ impl std::fmt::Debug for Counter<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Counter")
             .field("phase", &self.phase)
+            .field("work", &self.work)
             .field("total", &self.total)
             .field("done", &self.done)
             .field("cancelled", &self.cancelled)
@@ -80,10 +103,16 @@ impl std::fmt::Debug for Counter<'_> {
 }
 
 impl<'a> Counter<'a> {
-    /// None of `total` units are done. Without an observer nothing is reported, and nothing cancels.
+    /// None of `total` units, of [`Work::Other`], are done. Without an observer nothing is reported, and nothing cancels.
     pub const fn new(observer: Option<&'a dyn Observer>, phase: &'static str, total: usize) -> Self {
         let (done, cancelled) = (AtomicU64::new(0), AtomicBool::new(false));
-        Self { observer, phase, total: total as u64, done, cancelled }
+        Self { observer, phase, work: Work::Other, total: total as u64, done, cancelled }
+    }
+
+    /// The same counter for units of a kind of work.
+    #[must_use]
+    pub fn of(self, work: Work) -> Self {
+        Self { work, ..self }
     }
 
     /// Counts a unit and reports it.
@@ -93,7 +122,7 @@ impl<'a> Counter<'a> {
     pub fn step(&self) -> Result<(), Cancelled> {
         let done = self.done.fetch_add(1, Relaxed) + 1;
         if let Some(observer) = self.observer
-            && observer.report(Progress::new(self.phase, done, self.total)).is_break()
+            && observer.report(Progress::new(self.phase, done, self.total).of(self.work)).is_break()
         {
             self.cancelled.store(true, Relaxed);
         }
@@ -160,7 +189,20 @@ mod tests {
     #[test]
     fn shares_are_those_of_units_unless_given() {
         assert_eq!([Progress::new("", 1, 4).share, Progress::new("", 0, 0).share], [0.25, 1.0]);
-        assert_eq!(Progress::new("", 1, 4).with_share(0.5), Progress { phase: "", done: 1, total: 4, share: 0.5 });
+        let half = Progress { phase: "", work: Work::Other, done: 1, total: 4, share: 0.5 };
+        assert_eq!(Progress::new("", 1, 4).with_share(0.5), half);
+    }
+
+    #[test]
+    fn counters_report_their_kind_of_work() {
+        let seen = Mutex::new(Vec::new());
+        let observer = |progress: Progress| {
+            seen.lock().expect("no panic").push(progress.work);
+            ControlFlow::Continue(())
+        };
+        let steps = [Counter::new(Some(&observer), "", 1), Counter::new(Some(&observer), "", 1).of(Work::Deciding)];
+        assert_eq!(steps.map(|counter| counter.step()), [Ok(()); 2]);
+        assert_eq!(*seen.lock().expect("no panic"), [Work::Other, Work::Deciding]);
     }
 
     #[test]

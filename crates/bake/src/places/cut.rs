@@ -5,7 +5,7 @@ use super::{PlaceSummary, Places, n_boxes};
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{Matter, SceneOptions};
-use sightlines_progress::{Cancelled, Observer, Progress};
+use sightlines_progress::{Cancelled, Observer, Progress, Work};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -109,7 +109,7 @@ impl Cuts<'_> {
     /// Reports that at least `n_left` more cuts are needed, by what is known now. Solid halves, and cuts that leave more than the fewest boxes,
     /// raise that number; the share then stays until it is reached again.
     fn report(&mut self, n_left: u64) -> Result<(), Cancelled> {
-        let now = Progress::new("cuts", self.n_done, self.n_done.saturating_add(n_left));
+        let now = Progress::new("cuts", self.n_done, self.n_done.saturating_add(n_left)).of(Work::Cutting);
         self.share = self.share.max(now.share);
         report(self.progress, now.with_share(self.share))
     }
@@ -129,7 +129,7 @@ impl<'a> Cutter<'a> {
         goal: Goal,
         progress: Option<&'a dyn Observer>,
     ) -> Result<Self, Cancelled> {
-        report(progress, Progress::new("solid matter", 0, 1))?;
+        report(progress, Progress::new("solid matter", 0, 1).of(Work::Cutting))?;
         let matter = (!options.keep_solid).then(|| Matter::of(scene));
         Ok(Self { scene, matter, goal, progress })
     }

@@ -6,7 +6,7 @@ use crate::error::BakeError;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, RaySampler, Umbra, Volume, adaptive};
-use sightlines_progress::{Allowance, Counter, Shares, scattered};
+use sightlines_progress::{Allowance, Counter, Shares, Work, scattered};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
 
@@ -59,7 +59,7 @@ pub(super) fn see(
     let n_objects = scene.occludees.len();
     let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, n_objects) };
     let mut known = RegionVisibility { rows, objects, proven: none(), left: none(), effort: Effort::default() };
-    let counter = Counter::new(options.progress, "cells", n);
+    let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
     let mut cells: Vec<usize> = scattered(n).collect();
     for turn in 0..MOST_TURNS {

@@ -34,7 +34,7 @@ use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_geometry::BoxTree;
-use sightlines_progress::{Allowance, Cancelled, Counter, scattered};
+use sightlines_progress::{Allowance, Cancelled, Counter, Work, scattered};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Shaft;
 use sightlines_sightline::{Blockers, ShaftCounters};
@@ -278,7 +278,8 @@ impl<'a> SpaceSearch<'a> {
             }
         }
         let tasks: Vec<Pair> = scattered(tasks.len()).map(|i| tasks[i]).collect();
-        let counter = Counter::new(options.progress, "pairs and objects", tasks.len() + self.boxes.len());
+        let n_units = tasks.len() + self.boxes.len();
+        let counter = Counter::new(options.progress, "pairs and objects", n_units).of(Work::Deciding);
         let pairs = self.settle_pairs(tasks, threads, budget.part(PAIRS), &counter)?;
         let survey = (0..n).into_par_iter().map(|place| {
             let mut log = self.logging.then(WitnessLog::default);

@@ -2,9 +2,9 @@
 
 use super::auto::Chosen;
 use crate::output::seconds;
-use crate::progress::{Bar, rough};
+use crate::progress::{Bar, Pace, rough};
 use sightlines::bake::{BakeOptions, Bakeable, CellsFrom, SceneMethod};
-use sightlines::progress::{Observer, Progress};
+use sightlines::progress::{Observer, Progress, Work};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -55,70 +55,114 @@ pub(super) struct Announcer<'a> {
     bar: &'a Bar,
     start: Instant,
     /// None where nothing is to be said.
-    pace: Option<Mutex<Pace>>,
+    said: Option<Mutex<Said>>,
 }
 
-/// What is known of the phase that is going on.
+/// What was said, and of what phase.
 #[derive(Debug)]
-struct Pace {
-    phase: &'static str,
-    since: Instant,
+struct Said {
+    /// None before the first report.
+    pace: Option<Pace>,
     /// What is going to be done, until that is said: once the scene is found to have room for cells, so that an error found early stays one line.
     plan: Option<String>,
     is_said: bool,
     is_said_of_cells: bool,
 }
 
-/// The phase in which places are cut.
-const CUTTING: &str = "cuts";
-
 /// An estimate is given after this share of a phase.
 const SAMPLE: f64 = 0.03;
 /// And not before so much time of it.
 const LEAST: Duration = Duration::from_millis(700);
+/// Nor before so many units.
+const FEWEST: u64 = 8;
 
 impl<'a> Announcer<'a> {
     pub(super) fn new(bar: &'a Bar, plan: &Plan, show: bool) -> Self {
-        let start = Instant::now();
         let line = plan.line.as_ref().filter(|_| show);
-        let pace = Pace { phase: "", since: start, plan: line.cloned(), is_said: false, is_said_of_cells: false };
-        Self { bar, start, pace: line.map(|_| Mutex::new(pace)) }
+        let said = Said { pace: None, plan: line.cloned(), is_said: false, is_said_of_cells: false };
+        Self { bar, start: Instant::now(), said: line.map(|_| Mutex::new(said)) }
     }
 
-    /// The estimate that is due with a report, if one is.
-    fn estimate(&self, progress: Progress) -> Option<String> {
-        let now = Instant::now();
-        let mut pace = self.pace.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner);
+    /// The lines that are due with a report: the plan, and an estimate.
+    fn due(&self, progress: Progress, now: Instant) -> [Option<String>; 2] {
+        let Some(said) = &self.said else { return [None, None] };
+        let mut said = said.lock().unwrap_or_else(PoisonError::into_inner);
+        let since_start = now.saturating_duration_since(self.start);
         // Cutting may yet find that there are too many cells; if it takes long, that is said at once all the same.
-        if !matches!(progress.phase, "solid matter" | CUTTING) || now - self.start > LEAST {
-            pace.plan.take().iter().for_each(|plan| self.bar.say(plan));
+        let plan = if progress.work != Work::Cutting || since_start > LEAST { said.plan.take() } else { None };
+        let pace = Pace::after(said.pace, progress, now);
+        if said.pace.replace(pace) != Some(pace) {
+            tracing::info!("{} after {:.2} s", progress.phase, since_start.as_secs_f64());
         }
-        if pace.phase != progress.phase {
-            tracing::info!("{} after {:.2} s", progress.phase, (now - self.start).as_secs_f64());
-            (pace.phase, pace.since) = (progress.phase, now);
-        }
-        // The pairs that are left to sightlines after all cells, and cuts, are no sample of the rest.
-        let of_cells = progress.phase == CUTTING;
-        let counts = of_cells || matches!(progress.phase, "cells" | "pairs and objects");
-        let took = now - pace.since;
-        let is_said = if of_cells { pace.is_said_of_cells } else { pace.is_said };
-        if is_said || !counts || progress.share < SAMPLE || took < LEAST || progress.done < 8 {
+        [plan, said.estimate(progress, since_start, pace.took(now))]
+    }
+}
+
+impl Said {
+    /// The estimate that is due with a report, if one is. It comes once for the cells, and once for what they see.
+    fn estimate(&mut self, progress: Progress, since_start: Duration, took: Duration) -> Option<String> {
+        let Progress { done, total, phase, share, work } = progress;
+        // After all cells, the pairs that are left to sightlines are no sample of the rest: all is said by then.
+        let (is_said, what) = match work {
+            Work::Cutting => (&mut self.is_said_of_cells, "to cut cells"),
+            Work::Deciding => (&mut self.is_said, "in all"),
+            _ => return None,
+        };
+        if *is_said || share < SAMPLE || took < LEAST || done < FEWEST {
             return None;
         }
-        *(if of_cells { &mut pace.is_said_of_cells } else { &mut pace.is_said }) = true;
-        let all = (now - self.start).as_secs_f64() + took.as_secs_f64() * (1.0 - progress.share) / progress.share;
-        let all = Duration::try_from_secs_f64(all).ok()?;
-        let Progress { done, total, phase, .. } = progress;
-        let what = if of_cells { "to cut cells" } else { "in all" };
+        let all = since_start.checked_add(self.pace?.left(share, took)?)?;
+        *is_said = true;
         Some(format!("about {} {what}, by the first {done} of {total} {phase}", rough(all)))
     }
 }
 
 impl Observer for Announcer<'_> {
     fn report(&self, progress: Progress) -> ControlFlow<()> {
-        if let Some(line) = self.estimate(progress) {
-            self.bar.say(&line);
-        }
+        self.due(progress, Instant::now()).iter().flatten().for_each(|line| self.bar.say(line));
         self.bar.report(progress)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever a phase is called, its kind of work decides.
+    #[test]
+    fn estimates_are_of_the_kind_of_work() {
+        let lines = |phase, work| {
+            let bar = Bar::new("", false);
+            let announcer = Announcer::new(&bar, &Plan { line: Some("plan".to_owned()) }, true);
+            let at = |seconds: u64, done| {
+                let progress = Progress::new(phase, done, 100).of(work);
+                announcer.due(progress, announcer.start + Duration::from_secs(seconds))
+            };
+            let [first, early, due, again] = [at(0, 0), at(5, 2), at(10, 20), at(11, 21)];
+            assert_eq!((&early[1], &again), (&None, &[None, None]));
+            (first[0].is_some(), due[1].clone())
+        };
+        for name in ["cells", "cuts", "pairs and objects", ""] {
+            assert_eq!(lines(name, Work::Other), (true, None));
+            let all = format!("about 50 s in all, by the first 20 of 100 {name}");
+            assert_eq!(lines(name, Work::Deciding), (true, Some(all)));
+            let cells = format!("about 50 s to cut cells, by the first 20 of 100 {name}");
+            assert_eq!(lines(name, Work::Cutting), (false, Some(cells)));
+        }
+    }
+
+    /// What was done before the first report of a phase took none of its time.
+    #[test]
+    fn estimates_are_by_the_pace_of_the_phase() {
+        let bar = Bar::new("", false);
+        let announcer = Announcer::new(&bar, &Plan { line: Some("plan".to_owned()) }, true);
+        let at = |seconds: u64, done| {
+            let progress = Progress::new("cells", done, 100).of(Work::Deciding);
+            announcer.due(progress, announcer.start + Duration::from_secs(seconds))[1].take()
+        };
+        assert_eq!(at(30, 50), None);
+        assert_eq!(at(40, 75).as_deref(), Some("about 50 s in all, by the first 75 of 100 cells"));
+        let silent = Announcer::new(&bar, &Plan::default(), true);
+        assert_eq!(silent.due(Progress::new("", 0, 1), silent.start), [None, None]);
     }
 }
