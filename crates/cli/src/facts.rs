@@ -90,28 +90,19 @@ impl From<&Frame> for FrameFacts {
     }
 }
 
+/// How it is turned, and what its gap means; the same words wherever a frame is reported.
 impl fmt::Display for FrameFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", frame(&self.axes, self.gap))
+        match degrees(&self.axes) {
+            Some(degrees) => write!(f, "turned by {degrees:.6} degrees")?,
+            None => f.write_str(ALONG_THE_FILE)?,
+        }
+        write!(f, ", openings and things narrower than {:.2e} units may count as closed or hidden", self.gap)
     }
 }
 
-impl FrameFacts {
-    /// The same in few words.
-    pub(crate) fn brief(&self) -> String {
-        let turned = degrees(&self.axes).map_or(String::new(), |degrees| format!("turned by {degrees:.6} degrees, "));
-        format!("{turned}openings and things below {:.2e} units may count as closed or hidden", self.gap)
-    }
-}
-
-/// The line about the frame of a table: how it is turned, and its gap.
-fn frame(axes: &[[f64; 3]; 3], gap: f64) -> String {
-    let narrow = format!("openings and things narrower than {gap:.2e} units may count as closed or hidden");
-    match degrees(axes) {
-        Some(degrees) => format!("frame          turned by {degrees:.6} degrees; {narrow}"),
-        None => format!("frame          along the axes of the file; {narrow}"),
-    }
-}
+/// How a scene stands that has no frame, or one that is not turned.
+pub(crate) const ALONG_THE_FILE: &str = "along the axes of the file";
 
 /// By how much axes are turned; none if they are those of the file.
 fn degrees(axes: &[[f64; 3]; 3]) -> Option<f64> {
@@ -175,5 +166,20 @@ impl fmt::Display for Stated {
             Some(unit) => write!(f, "in {unit}s"),
             None => f.write_str("unit unknown"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_told_in_the_same_words() {
+        let text = |axes: [[f64; 3]; 3]| FrameFacts { axes, gap: 0.00025 }.to_string();
+        let (plain, gap) =
+            ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "openings and things narrower than 2.50e-4 units");
+        assert_eq!(text(plain), format!("along the axes of the file, {gap} may count as closed or hidden"));
+        let turned = text([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
+        assert_eq!(turned, format!("turned by 90.000000 degrees, {gap} may count as closed or hidden"));
     }
 }

@@ -1,6 +1,7 @@
 //! What is going to be done, and about how long that takes.
 
 use super::auto::Chosen;
+use crate::facts::{ALONG_THE_FILE, FrameFacts};
 use crate::output::seconds;
 use crate::progress::{Bar, Pace, rough};
 use sightlines::bake::{BakeOptions, Bakeable, CellsFrom, SceneMethod};
@@ -37,8 +38,8 @@ impl Plan {
             (None, method) => method.name().to_owned(),
         };
         let frame = match &options.frame {
-            Some(frame) => format!("along axes of its own, with a gap of {:.1e} units", frame.gap()),
-            None => "along the axes of the file".to_owned(),
+            Some(frame) => FrameFacts::from(frame).to_string(),
+            None => ALONG_THE_FILE.to_owned(),
         };
         let limit = limit.map_or(String::new(), |limit| {
             format!(

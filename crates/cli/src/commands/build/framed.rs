@@ -40,7 +40,7 @@ pub(super) struct Placed {
 impl Placed {
     /// What a report in few words says of cells.
     pub(super) fn brief(&self) -> String {
-        let frame = self.frame.map_or(String::new(), |taken| format!(", {}", taken.frame.brief()));
+        let frame = self.frame.map_or(String::new(), |taken| format!(", {}", taken.frame));
         let growth = self.cells_growth.map_or(String::new(), |growth| {
             format!(", boxes around the given ones, which stand along other axes, of {growth:.2} times the surface")
         });
@@ -94,7 +94,7 @@ impl Taken {
 
 impl fmt::Display for Taken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.frame)?;
+        writeln!(f, "frame          {}", self.frame)?;
         if self.along == "cells" {
             writeln!(f, "               along the given cells")?;
         }

@@ -107,7 +107,7 @@ impl fmt::Display for TableInfo {
         writeln!(f, "{}: visibility table in {dimension}D, {}", self.file, bytes(self.summary.n_bytes as u64))?;
         write!(f, "{}", Facts(&self.summary))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
-        self.frame.iter().try_for_each(|frame| write!(f, "{frame}"))?;
+        self.frame.iter().try_for_each(|frame| writeln!(f, "frame          {frame}"))?;
         self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
     }
 }

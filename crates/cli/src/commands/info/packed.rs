@@ -119,7 +119,7 @@ impl fmt::Display for PackedInfo {
             let held = if *resident { ", in memory" } else { "" };
             writeln!(f, "  {name}         {n_bytes:>10} bytes {share:>8}  {what}{held}")?;
         }
-        self.frame.iter().try_for_each(|frame| write!(f, "{frame}"))?;
+        self.frame.iter().try_for_each(|frame| writeln!(f, "frame          {frame}"))?;
         self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
     }
 }

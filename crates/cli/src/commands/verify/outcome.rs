@@ -189,7 +189,7 @@ impl fmt::Display for Outcome {
         self.own.iter().try_for_each(|own| write!(f, "{own}"))?;
         writeln!(f, "structure      {things}")?;
         if let Some(frame) = &self.frame {
-            write!(f, "{frame}")?;
+            writeln!(f, "frame          {frame}")?;
             writeln!(
                 f,
                 "               the scene was moved into it, every corner by less than that; places are along its axes"
