@@ -111,6 +111,10 @@ pub(crate) struct ClassGroup {
 pub(crate) struct Surfaces {
     /// What is not simply a wall, the largest groups first.
     surfaces: Vec<ClassGroup>,
+    /// View volumes that are flat, and so ignored.
+    n_ignored_view_volumes: usize,
+    /// The first few.
+    ignored_view_volumes: Vec<String>,
     /// Triangles that hide, of which engines draw the fronts only.
     n_single_sided_triangles: usize,
     /// Of these, what viewers in the cells of a table can see from behind.
@@ -127,7 +131,7 @@ struct SeenBacks {
 
 impl Surfaces {
     pub(crate) fn new(file: &SceneFile) -> Self {
-        let SceneInfo { surfaces, n_single_sided_triangles, .. } = &file.info;
+        let SceneInfo { surfaces, n_single_sided_triangles, ignored_view_volumes, .. } = &file.info;
         let mut groups: BTreeMap<(Role, bool, &str), Vec<u32>> = BTreeMap::new();
         for found in surfaces {
             groups.entry((found.role, found.moves, &found.reason)).or_default().push(found.object);
@@ -142,7 +146,13 @@ impl Surfaces {
         };
         let mut surfaces: Vec<ClassGroup> = groups.into_iter().map(group).collect();
         surfaces.sort_by_key(|group| std::cmp::Reverse(group.n_objects));
-        Self { surfaces, n_single_sided_triangles: *n_single_sided_triangles, backs: None }
+        Self {
+            surfaces,
+            n_ignored_view_volumes: ignored_view_volumes.len(),
+            ignored_view_volumes: ignored_view_volumes.iter().take(MOST_NAMES).map(name).collect(),
+            n_single_sided_triangles: *n_single_sided_triangles,
+            backs: None,
+        }
     }
 
     /// The same, with what viewers in the cells of a table of the scene can see from behind, unless both sides are drawn.
@@ -170,6 +180,9 @@ impl Surfaces {
             kind => format!("{n} {kind}"),
         };
         let mut all: Vec<String> = kinds.into_iter().map(words).collect();
+        if self.n_ignored_view_volumes > 0 {
+            all.push(count(self.n_ignored_view_volumes as u64, "flat view volume") + " ignored");
+        }
         if self.n_single_sided_triangles > 0 {
             let behind = match self.backs {
                 Some(SeenBacks { n_at_most: 0, .. }) => ", none seen from behind".to_owned(),
@@ -191,6 +204,12 @@ impl fmt::Display for Surfaces {
             let more = if names.len() < *n_objects { ", …" } else { "" };
             let objects = count(*n_objects as u64, if *moves { "moving object" } else { "object" });
             writeln!(f, "{role:<14} {objects}, classified by {reason}: {}{more}", names.join(", "))?;
+        }
+        if self.n_ignored_view_volumes > 0 {
+            let (n, names) = (self.n_ignored_view_volumes, &self.ignored_view_volumes);
+            let volumes = count(n as u64, "flat view volume");
+            let more = if names.len() < n { ", …" } else { "" };
+            writeln!(f, "ignored        {volumes}, where viewers have no room: {}{more}", names.join(", "))?;
         }
         if self.n_single_sided_triangles > 0 {
             let triangles = count(self.n_single_sided_triangles as u64, "triangle");

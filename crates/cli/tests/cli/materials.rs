@@ -263,6 +263,37 @@ fn view_volumes_and_movers_of_a_file_are_taken() {
     assert_eq!(info["view_volumes"][0]["max"], serde_json::json!([7.5, 3.0, 5.5]));
 }
 
+/// A volume without room is named in all reports, and viewers may be anywhere.
+#[test]
+fn flat_view_volumes_are_named() {
+    let folder = Folder::new();
+    folder.write("flat.glb", levels::with_flat_view_volume());
+    folder.write("level.glb", levels::blender_with_extras());
+    let build = |file: &str, more: &str| {
+        folder.run(&["build", file, "-o", "t.pvs", "--grid", "2,1,1", "--method", "shafts", more]).expect(0)
+    };
+    let run = build("flat.glb", "-v");
+    let warning =
+        "1 view volume is flat and ignored, the first is called \"Alarm-noimp.034\": viewers have no room there";
+    assert!(run.err.contains(warning), "{}", run.err);
+    let line = "ignored        1 flat view volume, where viewers have no room: Alarm-noimp.034\n";
+    assert!(run.out.contains(line) && !run.out.contains("viewers  "), "{}", run.out);
+    assert!(folder.run(&["info", "flat.glb"]).expect(0).out.contains(line));
+    assert!(build("flat.glb", "--quiet").out.contains(", 1 flat view volume ignored"));
+    let told = build("flat.glb", "--json").json();
+    assert_eq!(told["n_ignored_view_volumes"], 1);
+    assert_eq!(told["ignored_view_volumes"], serde_json::json!(["Alarm-noimp.034"]));
+    // The twin: a volume with room is not.
+    let run = build("level.glb", "-v");
+    assert!(
+        !run.err.contains("flat") && !run.out.contains("flat") && run.out.contains("viewers  "),
+        "{}{}",
+        run.out,
+        run.err
+    );
+    assert_eq!(build("level.glb", "--json").json()["n_ignored_view_volumes"], 0);
+}
+
 /// What is drawn from the front only is counted, and how much of it viewers in cells see from behind: nothing of closed things, everything of a single
 /// sheet in the middle of a room.
 #[test]

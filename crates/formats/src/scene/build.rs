@@ -44,7 +44,8 @@ pub(super) struct Builder {
     n_degenerate: usize,
     n_single_sided: usize,
     fronts_only: Vec<u32>,
-    view_volumes: Vec<Aabb<3>>,
+    /// With the object of each; an empty box where it has no triangles.
+    view_volumes: Vec<(u32, Aabb<3>)>,
     doors: Vec<u32>,
     simplified: Option<Simplified>,
     /// What a user should hear of the file.
@@ -126,8 +127,9 @@ impl Builder {
             self.see_through.push(object);
         }
         let SceneObject { vertices, triangles, .. } = &mut self.objects[object as usize];
-        if class.role == Role::ViewVolume && !triangles.is_empty() {
-            self.view_volumes.push(Aabb::around(vertices.iter().copied()));
+        if class.role == Role::ViewVolume {
+            let corners = vertices.iter().copied().filter(|_| !triangles.is_empty());
+            self.view_volumes.push((object, Aabb::around(corners)));
         }
         if !class.role.is_drawn() {
             triangles.clear();
@@ -140,8 +142,29 @@ impl Builder {
         self.surfaces.push(Classified { object, role, moves, reason });
     }
 
+    /// The view volumes that are ignored, as viewers have no room in all of them together. A flat one beside others counts: the box around all
+    /// holds it.
+    fn ignored_view_volumes(&self) -> Vec<u32> {
+        let volumes = || self.view_volumes.iter().filter(|(_, bounds)| !bounds.is_empty());
+        let all = Aabb::around(volumes().flat_map(|(_, bounds)| [bounds.min, bounds.max]));
+        let ignored = |bounds: &Aabb<3>| is_flat(&all) || bounds.is_empty();
+        self.view_volumes.iter().filter(|(_, bounds)| ignored(bounds)).map(|(object, _)| *object).collect()
+    }
+
     /// The scene, if there is anything to see in it.
-    pub(super) fn finish(self, format: SceneFormat, read_with: &SceneReadOptions) -> Result<SceneFile, SceneReadError> {
+    pub(super) fn finish(
+        mut self,
+        format: SceneFormat,
+        read_with: &SceneReadOptions,
+    ) -> Result<SceneFile, SceneReadError> {
+        let ignored_view_volumes = self.ignored_view_volumes();
+        if let Some(first) = ignored_view_volumes.first() {
+            let n = ignored_view_volumes.len();
+            let volumes = if n == 1 { "1 view volume is".to_owned() } else { format!("{n} view volumes are") };
+            let name = &self.objects[*first as usize].name;
+            self.warnings
+                .push(format!("{volumes} flat and ignored, the first is called {name:?}: viewers have no room there"));
+        }
         let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let scene = scene.with_see_through(self.see_through)?.with_moving(self.moving)?;
@@ -164,11 +187,17 @@ impl Builder {
             simplified,
             read_with: read_with.clone(),
             surfaces: self.surfaces,
-            view_volumes: self.view_volumes,
+            view_volumes: self.view_volumes.into_iter().map(|(_, b)| b).filter(|b| !b.is_empty()).collect(),
+            ignored_view_volumes,
             warnings: self.warnings,
         };
         Ok(SceneFile { scene, info })
     }
+}
+
+/// Whether a box has no inside.
+pub(super) fn is_flat(b: &Aabb<3>) -> bool {
+    (0..3).any(|axis| b.min[axis] >= b.max[axis])
 }
 
 #[cfg(test)]

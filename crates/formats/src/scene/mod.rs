@@ -111,15 +111,18 @@ pub struct SceneInfo {
     pub surfaces: Vec<Classified>,
     /// The boxes around objects that show where viewers can be ([`Role::ViewVolume`]), in their order, in scene units.
     pub view_volumes: Vec<Aabb<3>>,
+    /// Objects with that role that are ignored, ascending: those without a triangle that has an area, and all if the box around them is flat.
+    pub ignored_view_volumes: Vec<u32>,
     /// What a user should hear of the file, a sentence each.
     pub warnings: Vec<String>,
 }
 
 impl SceneInfo {
-    /// The box around all places where viewers can be, as the file states them; `None` if it states none.
+    /// The box around all places where viewers can be, as the file states them; `None` if it states none, or if the box is flat
+    /// ([`SceneInfo::ignored_view_volumes`]).
     pub fn view_region(&self) -> Option<Aabb<3>> {
         let corners = self.view_volumes.iter().flat_map(|volume| [volume.min, volume.max]);
-        (!self.view_volumes.is_empty()).then(|| Aabb::around(corners))
+        Some(Aabb::around(corners)).filter(|region| !build::is_flat(region))
     }
 }
 

@@ -147,6 +147,31 @@ fn variants_count_by_their_roles_and_names() {
     assert_eq!(of(json!({"doubleSided": true}), json!({}), &sided), found(Role::SeeThrough, "single sides", false));
 }
 
+/// Viewers have no room in what is flat; a flat volume beside others is a part of the box around all.
+#[test]
+fn flat_view_volumes_are_ignored_and_named() {
+    let volume = |name: &str, scale: [f64; 3], z: f64| json!({"name": name, "scale": scale, "translation": [0.0, 0.0, z], "extras": {"sightlines": {"role": "view-volume"}}});
+    let wall = || json!({"name": "wall"});
+    let deck = |z: f64| volume("deck", [1.0, 1.0, 0.0], z);
+    let line = || volume("line", [1.0, 0.0, 0.0], 0.0);
+    let found = |nodes: &[Value]| {
+        let info = read(&doc(nodes, &[])).info;
+        (info.view_region().is_some(), info.view_volumes.len(), info.ignored_view_volumes, info.warnings)
+    };
+    let none = Vec::<String>::new;
+    let warning = |volumes: &str, name: &str| {
+        vec![format!("{volumes} flat and ignored, the first is called {name:?}: viewers have no room there")]
+    };
+    assert_eq!(found(&[wall()]), (false, 0, vec![], none()));
+    assert_eq!(found(&[wall(), deck(0.0)]), (false, 1, vec![1], warning("1 view volume is", "deck")));
+    assert_eq!(found(&[wall(), line(), deck(2.0)]), (false, 1, vec![1, 2], warning("2 view volumes are", "line")));
+    // The twins: what has room alone, or with others.
+    let room = || volume("room", [1.0; 3], 0.0);
+    assert_eq!(found(&[wall(), room()]), (true, 1, vec![], none()));
+    assert_eq!(found(&[wall(), deck(0.0), deck(2.0)]), (true, 2, vec![], none()));
+    assert_eq!(found(&[wall(), room(), deck(2.0), line()]), (true, 2, vec![3], warning("1 view volume is", "line")));
+}
+
 #[test]
 fn artists_say_otherwise() {
     let role = |role: &str| json!({"extras": {"sightlines": {"role": role}}});

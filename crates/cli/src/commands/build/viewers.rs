@@ -12,11 +12,10 @@ pub(super) struct Viewers {
     max: [f64; 3],
 }
 
-/// Takes the box around the view volumes of a scene as the region of viewers, unless the options name one or the cells themselves. A
-/// region that is flat holds no cells and is not taken.
+/// Takes the box around the view volumes of a scene as the region of viewers, unless the options name one or the cells themselves.
 pub(super) fn take(content: &Bakeable, options: &mut BakeOptions<'_>) -> Option<Viewers> {
     let Bakeable::Scene(file) = content else { return None };
-    let region = file.info.view_region().filter(|region| (0..3).all(|axis| region.min[axis] < region.max[axis]))?;
+    let region = file.info.view_region()?;
     if options.cut.view_region.is_some() || matches!(options.cells, CellsFrom::Boxes(_)) {
         return None;
     }

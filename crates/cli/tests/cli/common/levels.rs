@@ -183,6 +183,17 @@ pub(crate) fn blender_with_extras() -> Vec<u8> {
     })
 }
 
+/// The level from Blender, where viewers are to be on a plane.
+pub(crate) fn with_flat_view_volume() -> Vec<u8> {
+    edited(&blender_with_extras(), |document| {
+        for node in document["nodes"].as_array_mut().expect("a list of nodes") {
+            if node["extras"]["sightlines"]["role"] == "view-volume" {
+                node["scale"] = json!([1.0, 0.0, 1.0]);
+            }
+        }
+    })
+}
+
 /// The rooms with a shut door in each opening, which extras call a door.
 pub(crate) fn with_doors() -> Vec<u8> {
     let mut blocks = rooms(false);
