@@ -16,10 +16,11 @@ use std::time::Duration;
 /// Whether proofs are written, and where.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct CertifyArgs {
-    /// Also write proofs, to FILE or beside the table with the extension .cert: a line for each visible pair, a reason
-    /// for each hidden one, for `verify` to check with independent code. May take ten times as long as the table, and
-    /// much longer for large Quake maps, where pairs that take too long stay without a proof. What from-region methods hide is proven
-    /// where walls hide it too, else counted as unproven, as is all that cells without portals see and do not see
+    /// Also write proofs about pairs of cells, for `verify` to check with independent code: a line for each visible pair, a reason for each hidden one.
+    /// They go to FILE, or without it beside the table with the extension .cert. May take ten times as long as the table, and much longer for
+    /// large Quake maps. What has no proof is counted as unproven: pairs that take too long, what only a from-region method
+    /// hides, and all pairs of cells without portals. Scenes have the cells of a k-d tree then, unless others are named
+    /// [default: no proofs]
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     certify: Option<Option<PathBuf>>,
 }

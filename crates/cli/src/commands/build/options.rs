@@ -30,9 +30,10 @@ pub(crate) struct BakeArgs {
     /// through one rectangle around each, which shows more
     #[arg(long, help_heading = "Method", value_name = "HOW", value_parser = one_of(&PortalMode::ALL, PortalMode::name, |_| ""))]
     portals: Option<PortalMode>,
-    /// Scenes in space: openings narrower than this, in scene units, may count as closed, and things as thin as hidden. Walls that lie across an axis of the
-    /// building to within half of it are taken to do so exactly, also where the building stands at an angle to the axes of its file. 0
-    /// takes every coordinate as it is [default: the precision of the file, where such walls are many]
+    /// Scenes in space: how precise coordinates are, in scene units. Walls within WIDTH/2 of a plane across an axis of the building,
+    /// which may be turned in its file, are taken to lie in it. Errs towards hidden by no more than that: openings narrower than WIDTH may count as
+    /// closed, and what is thinner as hidden. 0 takes every coordinate as it is, and does not err so [default: for glTF what single
+    /// precision explains, about a millionth of the building's size, where that puts many walls into planes; else 0]
     #[arg(long, help_heading = "Method", value_name = "WIDTH", value_parser = size, allow_hyphen_values = true)]
     gap: Option<f64>,
     /// Scenes in space: fail if there are more cells than this [default: 65536]

@@ -23,12 +23,11 @@ use std::path::Path;
 /// What decides which cells and objects are visible, for scenes in space.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct RegionArgs {
-    /// Scenes in space: sightlines (through portals; axis-aligned walls occlude), multifocal (from whole cells; any
-    /// surfaces occlude), both (hides what either hides), line-space (from whole cells; surfaces that meet or overlap occlude
-    /// together; slower), or shafts and voxels (older methods, for comparison). auto,
-    /// for any input, measures it and chooses the methods; -v prints the reasons. Cells depend on the scene, whatever the method: those of a k-d
-    /// tree, or boxes where few walls are axis-aligned; but sightlines alone take those of a k-d tree, unless others are named
-    /// [default: sightlines, or auto where cells are boxes of the scene's own]
+    /// Scenes in space: what decides which cells and objects are visible. All methods err towards visible: a weaker one
+    /// shows more, and hides nothing wrongly. sightlines look through portals, and axis-aligned walls hide; all others look from whole cells, and any
+    /// surface may hide; both hides what either hides. auto, for any input, measures it and chooses; -v prints the reasons. Cells
+    /// that are not named are those of a k-d tree, or, but for sightlines, boxes where few walls are axis-aligned
+    /// [default: sightlines, or auto where cells are such boxes]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
     method: Option<SceneMethod>,
     #[command(flatten)]
