@@ -6,8 +6,9 @@ use serde_json::{Value, json};
 use sightlines::bake::from_table::convex_graph;
 use sightlines::bake::quake::StateKey;
 use sightlines::bake::quake::state::{encode, is_state};
+use sightlines::formats::quake::prt::{LeafList, parse_prt, write_prt};
 use sightlines::formats::quake::visibility::{VisibilityLump, read_visibility};
-use sightlines::formats::quake::{Bsp, BspFormat, graph_of_prt, prt::parse_prt};
+use sightlines::formats::quake::{Bsp, BspFormat, Prt, graph_of_prt};
 use sightlines::pvs::{BitMatrix, CellId, Table};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 
@@ -49,6 +50,33 @@ fn maps_get_what_the_table_of_their_portals_says() {
         n_maps += 1;
     }
     assert!(n_maps > 10, "{n_maps}");
+}
+
+/// A portal file with the corners of every portal, or of one, in the other order is refused, with the line.
+#[test]
+fn portals_inside_out_are_refused() {
+    let map = rooms(3, 2);
+    let parsed = parse_prt(map.prt.as_bytes()).expect("sound portals");
+    for only in [None, Some(0), Some(parsed.n_portals() - 1)] {
+        let mut turned = Prt::new(parsed.n_clusters()).expect("clusters");
+        for (k, portal) in parsed.portals().enumerate() {
+            let mut points = portal.points.to_vec();
+            if only.is_none_or(|only| only == k) {
+                points.reverse();
+            }
+            turned.push_portal(portal.clusters, &points).expect("as good as before");
+        }
+        let turned = turned.with_leafs(LeafList::PerCluster, parsed.leaf_clusters().cluster_of_leaf().to_vec());
+        let folder = with(&map);
+        folder.write("map.prt", write_prt(&turned.expect("the same leafs")));
+        for arguments in [&["vis", "map.bsp", "-o", "out.bsp"][..], &["build", "map.prt", "-o", "out.pvs"]] {
+            let run = folder.run(arguments).expect(2);
+            let line = 5 + only.unwrap_or(0);
+            assert!(run.err.contains(&format!("line {line}")), "{}", run.err);
+            assert!(run.err.contains("go round the wrong way"), "{}", run.err);
+        }
+        assert_eq!(folder.names(), ["map.bsp", "map.prt"], "nothing is written");
+    }
 }
 
 /// The impostor of the comparison above: a lump that lacks a pair.

@@ -148,6 +148,14 @@ pub enum PrtErrorKind {
         /// How far the farthest point is from the plane in the middle, map units.
         by: f64,
     },
+    /// The corners of a portal go round the wrong way.
+    #[error("portal {portal}: its corners go round the wrong way, as most of cluster {} is not before it or most of cluster {} not behind it; nothing would be seen through it", clusters[0], clusters[1])]
+    InsideOut {
+        /// The portal.
+        portal: usize,
+        /// The clusters that it leads from and into.
+        clusters: [u32; 2],
+    },
     /// A portal leads back to where it comes from.
     #[error("portal {portal} joins cluster {cluster} with itself")]
     SelfPortal {

@@ -15,6 +15,7 @@
 mod error;
 mod graph;
 mod lexer;
+mod orientation;
 mod read;
 mod write;
 

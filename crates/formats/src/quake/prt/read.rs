@@ -16,7 +16,8 @@ use std::ops::RangeInclusive;
 /// # Source
 /// The grammar is what compilers write: `PRT1` of id Software's qbsp, `PRT2` of ericw-tools, `PRT1-AM` of
 /// bjptools. Chosen here: text behind the end is refused, and so are a portal from a cluster to itself and a
-/// leaf in no or two clusters. Portals without area are kept ([`PrtPortal::is_degenerate`]).
+/// leaf in no or two clusters, and portals whose corners go round the wrong way ([`Prt::inside_out`]): through these a search would see
+/// nothing of what is seen in truth. Portals without area are kept ([`PrtPortal::is_degenerate`]).
 ///
 /// [`PrtPortal::is_degenerate`]: super::PrtPortal::is_degenerate
 pub fn parse_prt(text: &[u8]) -> Result<Prt, PrtError> {
@@ -26,9 +27,13 @@ pub fn parse_prt(text: &[u8]) -> Result<Prt, PrtError> {
     let dialect = dialect.ok_or_else(|| unexpected(&magic, PrtItem::Magic))?;
     let header = reader.header(dialect)?;
     let mut prt = Prt::new(header.n_clusters).map_err(|kind| at(&magic, kind))?;
-    let mut points = Vec::new();
+    let (mut points, mut places) = (Vec::new(), Vec::new());
     for portal in 0..header.n_portals as usize {
-        reader.portal(portal, &mut prt, &mut points)?;
+        places.push(reader.portal(portal, &mut prt, &mut points)?);
+    }
+    if let Some(portal) = prt.inside_out() {
+        let clusters = prt.portal(portal).clusters;
+        return Err(at(&places[portal], PrtErrorKind::InsideOut { portal, clusters }));
     }
     let prt = match dialect {
         PrtDialect::Prt1 => prt,
@@ -82,7 +87,8 @@ impl<'t> Reader<'t> {
         if fits { Ok(n_leafs) } else { Err(at(&token, PrtErrorKind::LeafClaim { n_leafs, n_bytes })) }
     }
 
-    fn portal(&mut self, portal: usize, prt: &mut Prt, points: &mut Vec<Point3>) -> Result<(), PrtError> {
+    /// Adds a portal, and returns where it begins.
+    fn portal(&mut self, portal: usize, prt: &mut Prt, points: &mut Vec<Point3>) -> Result<Token<'t>, PrtError> {
         let (place, n_points) = self.number(PrtItem::Points { portal }, point_range())?;
         let clusters = 0..=u64::from(prt.n_clusters() - 1);
         let (_, a) = self.number(PrtItem::Cluster { portal }, clusters.clone())?;
@@ -97,7 +103,8 @@ impl<'t> Reader<'t> {
             ]);
             self.sign(b")", PrtItem::Close { portal, point })?;
         }
-        prt.push_portal([a, b], points).map_err(|kind| at(&place, kind))
+        prt.push_portal([a, b], points).map_err(|kind| at(&place, kind))?;
+        Ok(place)
     }
 
     /// The lists of a `PRT2`, as the cluster of each leaf.
