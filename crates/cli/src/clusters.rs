@@ -4,9 +4,19 @@ use crate::output::{count, percent, seconds};
 use serde::Serialize;
 use sightlines::bake::ClusterVisibility;
 use sightlines::bake::quake::named_counters;
+use sightlines::formats::quake::Prt;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 use std::time::Duration;
+
+/// Warns of portals that a file has more than once.
+pub(crate) fn warn_of_repeats(path: &Path, prt: &Prt) {
+    let n = prt.n_repeats() as u64;
+    if n > 0 {
+        tracing::warn!("{}: {} again, and used once", path.display(), count(n, "portal"));
+    }
+}
 
 /// What was found about clusters.
 #[derive(Debug, Serialize)]

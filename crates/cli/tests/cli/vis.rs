@@ -79,6 +79,34 @@ fn portals_inside_out_are_refused() {
     }
 }
 
+/// A portal file that has every portal twice says the same as one that has it once, with a warning, and takes about as long.
+#[test]
+fn repeated_portals_are_used_once() {
+    let map = rooms(3, 2);
+    let parsed = parse_prt(map.prt.as_bytes()).expect("sound portals");
+    let mut twice = Prt::new(parsed.n_clusters()).expect("clusters");
+    for portal in parsed.portals() {
+        let [a, b] = portal.clusters;
+        let mut points = portal.points.to_vec();
+        twice.push_portal([a, b], &points).expect("as before");
+        points.reverse();
+        twice.push_portal([b, a], &points).expect("the same from the other side");
+    }
+    let twice = twice.with_leafs(LeafList::PerCluster, parsed.leaf_clusters().cluster_of_leaf().to_vec());
+    let folder = with(&map);
+    let once = folder.run(&["vis", "map.bsp", "-o", "once.bsp", "--json"]).expect(0);
+    assert!(!once.err.contains("again"), "{}", once.err);
+    folder.write("map.prt", write_prt(&twice.expect("the same leafs")));
+    let run = folder.run(&["vis", "map.bsp", "-o", "twice.bsp", "--json"]).expect(0);
+    let n = parsed.n_portals();
+    assert!(run.err.contains(&format!("{n} portals again, and used once")), "{}", run.err);
+    assert_eq!(folder.read("twice.bsp"), folder.read("once.bsp"));
+    assert_eq!(run.json()["counters"], once.json()["counters"], "the same work");
+    let built = folder.run(&["build", "map.prt", "-o", "map.pvs", "--json"]).expect(0);
+    assert!(built.err.contains("portals again, and used once"), "{}", built.err);
+    assert_eq!(folder.run(&["info", "map.prt", "--json"]).expect(0).json()["n_repeated_portals"], json!(n));
+}
+
 /// The impostor of the comparison above: a lump that lacks a pair.
 #[test]
 fn a_missing_pair_would_be_found() {

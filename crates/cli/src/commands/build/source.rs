@@ -3,6 +3,7 @@
 use super::announce::{Announcer, Plan};
 use super::{BakeArgs, Error, plan, quake, space};
 use crate::buffers::MethodFailed;
+use crate::clusters::warn_of_repeats;
 use crate::input;
 use crate::output;
 use crate::progress::Bar;
@@ -33,6 +34,9 @@ impl Source {
         portals.iter().try_for_each(|portals| output::refuse_same(portals, out))?;
         let prt = portals.as_ref().map(read_prt).transpose()?;
         let content = input::bakeable(path, input, map, prt)?;
+        if let Bakeable::Portals(prt) | Bakeable::Map(_, prt) = &content {
+            warn_of_repeats(portals.as_deref().unwrap_or(path), prt);
+        }
         match content {
             Bakeable::Plan { .. } => args.check_for_plan(path)?,
             Bakeable::Scene(_) => args.check_for_space(path)?,

@@ -21,6 +21,8 @@ pub(super) struct PrtInfo {
     n_portals: usize,
     /// Portals without area, through which nothing is seen; counted in `n_portals`.
     n_degenerate_portals: usize,
+    /// Portals that the file has again, and that are used once; counted in `n_portals`.
+    n_repeated_portals: usize,
     /// Clusters that no portal leads to.
     n_closed_clusters: usize,
 }
@@ -38,6 +40,7 @@ impl PrtInfo {
             n_leafs: prt.listed_leafs().map(LeafClusters::n_leafs),
             n_portals: prt.n_portals(),
             n_degenerate_portals: prt.portals().filter(|portal| portal.is_degenerate()).count(),
+            n_repeated_portals: prt.n_repeats(),
             n_closed_clusters: is_closed.iter().filter(|closed| **closed).count(),
         })
     }
@@ -59,7 +62,11 @@ impl fmt::Display for PrtInfo {
             0 => String::new(),
             n => format!(", {n} of them without area"),
         };
-        writeln!(f, "portals        {}{degenerate}", self.n_portals)
+        let repeated = match self.n_repeated_portals {
+            0 => String::new(),
+            n => format!(", {n} of them again"),
+        };
+        writeln!(f, "portals        {}{degenerate}{repeated}", self.n_portals)
     }
 }
 

@@ -6,6 +6,7 @@ mod outcome;
 mod saved;
 
 use crate::Answer;
+use crate::clusters::warn_of_repeats;
 use crate::error::InputError;
 use crate::input;
 use crate::output;
@@ -78,6 +79,7 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
     let other_map =
         |source| InputError::OtherMap { prt: prt_path.clone(), bsp: args.map.clone(), source: Box::new(source) };
     check_portals(&bsp, &prt).map_err(other_map)?;
+    warn_of_repeats(&prt_path, &prt);
 
     let key = StateKey::new(&text, args.fast);
     drop(text);

@@ -17,6 +17,7 @@ mod graph;
 mod lexer;
 mod orientation;
 mod read;
+mod repeats;
 mod write;
 
 pub use error::{PrtError, PrtErrorKind, PrtItem};
