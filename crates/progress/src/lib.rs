@@ -37,7 +37,7 @@ pub struct Progress {
     pub done: u64,
     /// Units of this phase.
     pub total: u64,
-    /// The share of the whole search that is done, from 0 to 1, as an estimate of time.
+    /// The share of this phase, or of all phases of a search that knows them, that is done; from 0 to 1, as an estimate of time.
     pub share: f64,
 }
 
