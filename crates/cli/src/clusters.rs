@@ -14,7 +14,8 @@ use std::time::Duration;
 pub(crate) fn warn_of_repeats(path: &Path, prt: &Prt) {
     let n = prt.n_repeats() as u64;
     if n > 0 {
-        tracing::warn!("{}: {} again, and used once", path.display(), count(n, "portal"));
+        let repeats = if n == 1 { "repeats an earlier one and is" } else { "repeat earlier ones and are" };
+        tracing::warn!("{}: {} {repeats} ignored", path.display(), count(n, "portal"));
     }
 }
 

@@ -56,7 +56,8 @@ pub enum Violation {
         /// The point.
         point: Point3,
     },
-    /// A portal that is not on the borders of both of its cells.
+    /// A portal that is not on the borders of both of its cells, or whose corners do not go round as seen from the first; in space also one that is no
+    /// rectangle.
     OffBorder {
         /// The portal.
         portal: usize,
@@ -220,7 +221,9 @@ impl fmt::Display for Violation {
             Self::NotConvex { cell } => write!(f, "cell {cell} is not convex, or has no inside"),
             Self::OutOfScene { cell } => write!(f, "cell {cell} reaches out of the box around the scene"),
             Self::NotFound { cell, point } => write!(f, "cell {cell} is not found at {}, which is inside", Full(point)),
-            Self::OffBorder { portal, cell } => write!(f, "portal {portal} is not on the border of cell {cell}"),
+            Self::OffBorder { portal, cell } => {
+                write!(f, "portal {portal} is not on the border of cell {cell}, or faces the wrong way")
+            }
             Self::MissingPortal { cell, segment: [p, q] } => {
                 write!(f, "cell {cell} has no portal where the free line from {} to {} leaves it", Full(p), Full(q))
             }
@@ -294,7 +297,7 @@ pub struct Findings {
     pub n_objects: usize,
     /// Random rays.
     pub n_rays: u64,
-    /// Free segments that were followed through the portals of the table, and its stab trees if it has any.
+    /// Segments, free as far as doubles tell, that were followed through the portals of the table, and its stab trees if it has any.
     pub n_followed: u64,
     /// Sequences of portals that stab trees do not have, and that segments were aimed along.
     pub n_sequences: u64,

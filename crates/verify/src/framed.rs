@@ -61,7 +61,7 @@ pub(crate) fn add_remarks(
     let turned = turned(file, frame)?;
     let mut seen = Findings::default();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
-    pool.install(|| rays::check(table, &Truth::Scene(&turned), options, &mut seen))?;
+    pool.install(|| rays::check(table, &Truth::Scene(&turned), false, options, &mut seen))?;
     let pair = |violation: &Violation| match *violation {
         Violation::HiddenCell { cells: [from, to], segment } => Some((from, Target::Cell(to), segment)),
         Violation::HiddenObject { cell, object, segment } => Some((cell, Target::Object(object), segment)),

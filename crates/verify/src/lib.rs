@@ -71,6 +71,6 @@ pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> 
     }
     let mut findings = structure::check(table, truth);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
-    pool.install(|| rays::check(table, truth, options, &mut findings))?;
+    pool.install(|| rays::check(table, truth, true, options, &mut findings))?;
     Ok(findings)
 }

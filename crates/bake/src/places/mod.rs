@@ -63,8 +63,9 @@ pub enum PlacesError {
     },
     /// The region is so many cells of the longest sides that are allowed that nothing was cut. If nearly all of it is solid, fewer would do.
     #[error(
-        "{n_cells} cells of at most {cell_size} units fill the region, less what is solid, and {limit} are the limit: nothing was cut; raise the \
-         limit, or take larger cells"
+        "the region takes {} cells of at most {cell_size} units, fewer where it is solid; the limit is {limit}. Nothing was cut: raise the limit, or \
+         take larger cells",
+        if *n_cells < 1e9 { format!("{n_cells}") } else { format!("{n_cells:.1e}") }
     )]
     FarTooSmall {
         /// The bound.
@@ -167,8 +168,8 @@ pub fn observed_places(
 
 /// A bound on sides that divides the region into more than so many times the limit of cells is refused before any work.
 ///
-/// Cells have at most the volume of their bound, so such a region holds no more cells than the limit only if more than about 7/8 of it is solid or
-/// behind backs. How much is solid is not known before the work, so the number is chosen, not derived. If it is too small, rock
+/// Large regions hold no more cells than the limit then only if some 7/8 of them are solid or behind backs; how much is solid is not known before the
+/// work, so the number is chosen, not derived. If it is too small, rock
 /// with a few caves in it is refused, though there were cells enough; whoever cuts it raises the limit. If it is too large, the refusal comes
 /// after as many cells were cut as the limit allows, some thousand rays each. No answer depends on it.
 const MOST_TIMES: f64 = 8.0;

@@ -38,7 +38,8 @@ impl SpaceSearch<'_> {
             }
         };
         if let Some(doubt) = self.doubt.as_ref().filter(|doubt| !doubt.rows[place]) {
-            // For most places little has to be examined.
+            // For most places little has to be examined. Who keeps doubts has no limit.
+            debug_assert!(self.left.is_none());
             self.inner
                 .iter()
                 .filter(|other| self.cells.get(place, **other))

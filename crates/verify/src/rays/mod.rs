@@ -17,6 +17,7 @@ use sightlines_progress::{Cancelled, Counter, Observer, Progress};
 use sightlines_pvs::{CellId, Table};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use trees::Absent;
 use ways::Ways;
 
 /// Rays that one thread shoots in a row; violations are counted after every [`BATCH`] of them.
@@ -24,9 +25,12 @@ const CHUNK: u64 = 256;
 const BATCH: u64 = 64;
 
 /// Shoots rays, and adds to the findings what they found.
+///
+/// * `follow`: whether segments are followed through the table, and portals and stab trees looked at
 pub(crate) fn check(
     table: &Table,
     truth: &Truth<'_>,
+    follow: bool,
     options: &VerifyOptions<'_>,
     findings: &mut Findings,
 ) -> Result<(), Cancelled> {
@@ -40,15 +44,15 @@ pub(crate) fn check(
     }
     match truth {
         Truth::Plan(plan) => match PlanWorld::new(table, plan) {
-            Some(world) => shoot_all(&world, table, options, findings),
+            Some(world) => shoot_all(&world, table, follow, options, findings),
             None => {
                 findings.no_rays = Some("the table was stripped of the outlines of its cells");
                 Ok(())
             }
         },
-        Truth::Scene(scene) => shoot_all(&SolidWorld::new(table, scene), table, options, findings),
-        Truth::Portals(graph) => shoot_all(&PortalWorld::new(graph), table, options, findings),
-        Truth::World(graph, tree) => shoot_all(&MapWorld::new(table, graph, tree), table, options, findings),
+        Truth::Scene(scene) => shoot_all(&SolidWorld::new(table, scene), table, follow, options, findings),
+        Truth::Portals(graph) => shoot_all(&PortalWorld::new(graph), table, follow, options, findings),
+        Truth::World(graph, tree) => shoot_all(&MapWorld::new(table, graph, tree), table, follow, options, findings),
     }
 }
 
@@ -81,6 +85,7 @@ impl Observer for Part<'_> {
 fn shoot_all<R: RayOracle>(
     world: &R,
     table: &Table,
+    follow: bool,
     options: &VerifyOptions<'_>,
     findings: &mut Findings,
 ) -> Result<(), Cancelled> {
@@ -88,14 +93,13 @@ fn shoot_all<R: RayOracle>(
     let tally = Tally::new(table);
     let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
     let n_chunks = options.rays.div_ceil(CHUNK);
-    let ways = Ways::of(world, table);
-    let n_borders = ways.as_ref().map_or(0, |_| table.n_cells());
-    let absent = ways
-        .as_ref()
-        .and_then(|ways| Some(ways.absent(table.stab()?, options.pairs.saturating_mul(trees::FOR_EACH_PAIR))));
-    let absent = absent.unwrap_or_default();
+    let ways = if follow { Ways::of(table) } else { None };
+    let absent = ways.as_ref().zip(table.stab());
+    let most = options.pairs.saturating_mul(trees::FOR_EACH_PAIR);
+    let absent = absent.map_or_else(Vec::new, |(ways, stab)| ways.absent(stab, most));
     findings.n_sequences = absent.len() as u64;
-    // About how many rays they cost.
+    let n_borders = ways.as_ref().map_or(0, |_| table.n_cells());
+    // About how many rays they cost: some thirty short segments for the border of a cell.
     let tries = f64::from(options.tries);
     let costs =
         [32.0 * n_borders as f64, absent.len() as f64 * tries, options.rays as f64, options.pairs as f64 * tries];
@@ -103,20 +107,9 @@ fn shoot_all<R: RayOracle>(
     let part = |k: usize| parts.as_ref().map(|parts| &parts[k] as &dyn Observer);
     let mut astray: BTreeMap<(&'static str, Vec<CellId>), Violation> = BTreeMap::new();
     if let Some(ways) = &ways {
-        let counter = Counter::new(part(0), "borders of cells", n_borders);
-        let missing = |cell: u32| {
-            let found = ways.missing_portal(world, CellId(cell));
-            counter.step().map(|()| found)
-        };
-        let found: Vec<_> = (0..n_borders as u32).into_par_iter().map(missing).collect::<Result<_, Cancelled>>()?;
-        found.into_iter().flatten().for_each(|v| note(&mut astray, v));
-        let counter = Counter::new(part(1), "sequences of portals", absent.len());
-        let aim = |(k, absent)| {
-            let found = ways.aim(world, absent, options.tries, &mut Random::new(mixed(options.seed, k as u64)));
-            counter.step().map(|()| found)
-        };
-        let found: Vec<_> = absent.par_iter().enumerate().map(aim).collect::<Result<_, Cancelled>>()?;
-        found.into_iter().flatten().for_each(|v| note(&mut astray, v));
+        let found = missing_portals(world, ways, n_borders, part(0))?;
+        let sequences = missing_sequences(world, ways, &absent, options, part(1))?;
+        found.into_iter().chain(sequences).for_each(|v| note(&mut astray, v));
     }
     let counter = Counter::new(part(2), "random rays", n_chunks as usize);
     let mut chunk = 0;
@@ -174,6 +167,39 @@ fn shoot_all<R: RayOracle>(
     Ok(())
 }
 
+/// Looks at the borders of all cells.
+fn missing_portals<R: RayOracle>(
+    world: &R,
+    ways: &Ways<'_>,
+    n_cells: usize,
+    observer: Option<&dyn Observer>,
+) -> Result<Vec<Violation>, Cancelled> {
+    let counter = Counter::new(observer, "borders of cells", n_cells);
+    let look = |cell: u32| {
+        let found = ways.missing_portal(world, CellId(cell));
+        counter.step().map(|()| found)
+    };
+    let found: Vec<_> = (0..n_cells as u32).into_par_iter().map(look).collect::<Result<_, Cancelled>>()?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// Aims along sequences that stab trees do not have.
+fn missing_sequences<R: RayOracle>(
+    world: &R,
+    ways: &Ways<'_>,
+    absent: &[Absent],
+    options: &VerifyOptions<'_>,
+    observer: Option<&dyn Observer>,
+) -> Result<Vec<Violation>, Cancelled> {
+    let counter = Counter::new(observer, "sequences of portals", absent.len());
+    let aim = |(k, absent): (usize, &Absent)| {
+        let found = ways.aim(world, absent, options.tries, &mut Random::new(mixed(options.seed, k as u64)));
+        counter.step().map(|()| found)
+    };
+    let found: Vec<_> = absent.par_iter().enumerate().map(aim).collect::<Result<_, Cancelled>>()?;
+    Ok(found.into_iter().flatten().collect())
+}
+
 /// Keeps the first violation of a kind for each cell.
 fn note(astray: &mut BTreeMap<(&'static str, Vec<CellId>), Violation>, violation: Violation) {
     astray.entry((violation.kind(), violation.cells())).or_insert(violation);
@@ -184,7 +210,7 @@ fn note(astray: &mut BTreeMap<(&'static str, Vec<CellId>), Violation>, violation
 struct Shot {
     /// What they see that is hidden.
     sights: Vec<Sight>,
-    /// Of those that the table does not lead along.
+    /// Faults of the table along their ways.
     astray: Vec<Violation>,
     n_rays: u64,
     n_followed: u64,

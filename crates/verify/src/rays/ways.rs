@@ -1,5 +1,5 @@
-//! The ways that free segments take through a table: from cell to cell by its portals, and along the branches of its stab trees. What the run time
-//! follows has to lead wherever something is seen.
+//! The ways that free segments take through a table: from cell to cell by its portals, and along the branches of its stab trees. These are what the run time
+//! follows. Wherever something is visible, the portals and stab trees must lead there.
 
 use crate::exact::snapped;
 use crate::findings::Violation;
@@ -17,10 +17,8 @@ pub(super) struct Ways<'t> {
     table: &'t Table,
     portals_of: Vec<Vec<PortalId>>,
     boxes: Vec<Aabb<3>>,
-    /// Around boxes in rounded questions.
+    /// Around boxes in rounded questions: more than twice the clearance of plans with rounded crossings, so that no portal is ruled out that they may be near to.
     slack: f64,
-    /// Whether cells are convex, so that a segment that leaves one does so once, by a portal.
-    are_cells_convex: bool,
 }
 
 /// Where a segment leads.
@@ -35,7 +33,7 @@ enum Way {
 
 impl<'t> Ways<'t> {
     /// `None` for a table without portals: then nothing follows them.
-    pub(super) fn of<R: RayOracle>(world: &R, table: &'t Table) -> Option<Self> {
+    pub(super) fn of(table: &'t Table) -> Option<Self> {
         if table.portals().is_empty() {
             return None;
         }
@@ -45,8 +43,7 @@ impl<'t> Ways<'t> {
         }
         let boxes = table.portals().iter().map(|portal| Aabb::around(portal.points.iter().copied())).collect();
         let scale = scale_of(table.cells().iter().flat_map(|cell| cell.min.into_iter().chain(cell.max)));
-        let are_cells_convex = world.through_borders(0, &[]).is_some();
-        Some(Self { table, portals_of, boxes, slack: scale * 2f64.powi(-38), are_cells_convex })
+        Some(Self { table, portals_of, boxes, slack: 4.0 * scale * 2f64.powi(-40) })
     }
 
     pub(super) fn table(&self) -> &'t Table {
@@ -72,7 +69,7 @@ impl<'t> Ways<'t> {
             Way::Open => (1, None),
             Way::Unsure => (0, None),
             // Proofs cost more than ways.
-            Way::Ends(violation) if world.proves(sight) => (1, Some(violation)),
+            Way::Ends(violation) if world.proves_way(sight) => (1, Some(violation)),
             Way::Ends(_) => (0, None),
         }
     }
@@ -90,7 +87,7 @@ impl<'t> Ways<'t> {
                 |&&id: &&PortalId| passed.last() != Some(&id) && is_near(id) && !world.misses(self.portal(id), segment);
             let mut met = self.portals_of[cell.idx()].iter().filter(is_met);
             let portal = match (met.next(), met.next()) {
-                (None, _) if self.are_cells_convex => return Way::Ends(Violation::MissingPortal { cell, segment }),
+                (None, _) if R::CELLS_ARE_CONVEX => return Way::Ends(Violation::MissingPortal { cell, segment }),
                 (Some(&id), None) if world.crosses(self.portal(id), segment) => id,
                 _ => return Way::Unsure,
             };
@@ -116,7 +113,7 @@ impl<'t> Ways<'t> {
         let own: Vec<&PortalRecord> = self.portals_of(cell).iter().map(|&id| self.portal(id)).collect();
         let is_missing =
             |sight: &Sight| own.iter().all(|portal| world.misses(portal, sight.segment)) && world.proves(sight);
-        let sight = world.through_borders(cell.0, &own)?.into_iter().find(is_missing)?;
+        let sight = world.through_borders(cell.0, &own).into_iter().find(is_missing)?;
         Some(Violation::MissingPortal { cell, segment: sight.segment })
     }
 

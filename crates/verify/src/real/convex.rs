@@ -145,6 +145,8 @@ fn of_portal(shape: &Portal3, random: &mut Random) -> Point3 {
 }
 
 impl RayOracle for PortalWorld {
+    const CELLS_ARE_CONVEX: bool = false;
+
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
         let [p, q] = self.line(from, random)?;
         let d = sub(q, p);
@@ -231,9 +233,5 @@ impl RayOracle for PortalWorld {
 
     fn crosses(&self, portal: &PortalRecord, [p, q]: [Point3; 2]) -> bool {
         segment_crosses_polygon(p, q, &portal.points)
-    }
-
-    fn through_borders(&self, _: u32, _: &[&PortalRecord]) -> Option<Vec<Sight>> {
-        None
     }
 }

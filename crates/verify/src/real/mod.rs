@@ -18,6 +18,9 @@ use sightlines_pvs::{PortalRecord, Table};
 
 /// A scene with the cells of a table in it.
 pub(crate) trait RayOracle: Sync {
+    /// Whether cells are convex, disjoint, and known by more than their portals: then a segment that leaves a cell does so once, and by a portal.
+    const CELLS_ARE_CONVEX: bool;
+
     /// A ray in a random direction from a random place inside of a cell; `visit` gets what may be visible along it, as
     /// proposals. `None` if no place was found.
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()>;
@@ -38,9 +41,16 @@ pub(crate) trait RayOracle: Sync {
     fn crosses(&self, portal: &PortalRecord, segment: [Point3; 2]) -> bool;
 
     /// Short segments from inside of a cell to inside of the cells next to it, as proposals: one or more through each part of their common border that
-    /// none of the cell's portals covers. A border of two cells has to be looked at from one of them only. `None` if cells are known by their portals
+    /// none of the cell's portals covers. A border of two cells has to be looked at from one of them only. None if cells are known by their portals
     /// alone.
-    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Option<Vec<Sight>>;
+    fn through_borders(&self, _from: u32, _portals: &[&PortalRecord]) -> Vec<Sight> {
+        Vec::new()
+    }
+
+    /// Whether a sight to a cell is one along the portals that it crosses: certainly, or the answer is no.
+    fn proves_way(&self, sight: &Sight) -> bool {
+        self.proves(sight)
+    }
 }
 
 /// From 0 to 1, and as likely near an end as in the middle, however near.

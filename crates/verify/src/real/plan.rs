@@ -195,6 +195,8 @@ fn has_rounded_crossings(plan: &Plan) -> bool {
 }
 
 impl RayOracle for PlanWorld {
+    const CELLS_ARE_CONVEX: bool = true;
+
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
         let p = self.place(from, random)?;
         if !self.objects.is_empty() && random.below(8) == 0 {
@@ -272,7 +274,7 @@ impl RayOracle for PlanWorld {
         across(orient2d(p, q, a), orient2d(p, q, b)) && across(orient2d(a, b, p), orient2d(a, b, q))
     }
 
-    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Option<Vec<Sight>> {
+    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Vec<Sight> {
         let corners = &self.cells[from as usize];
         let mut found = Vec::new();
         for (i, &start) in corners.iter().enumerate() {
@@ -286,17 +288,24 @@ impl RayOracle for PlanWorld {
             let reach = self.slack;
             let near =
                 |b: &Aabb<2>| (0..2).all(|k| b.min[k] - reach <= around.max[k] && around.min[k] <= b.max[k] + reach);
-            let mut points: Vec<Point2> = portals.iter().flat_map(|portal| ends(portal)).collect();
-            self.wall_tree.visit(near, |w| points.extend(self.walls[w as usize]));
+            let is_on = |p: &Point2| distance(*p, start, start + d) <= 4.0 * reach;
+            let mut points: Vec<Point2> = portals.iter().flat_map(|portal| ends(portal)).filter(is_on).collect();
+            self.wall_tree.visit(near, |w| points.extend(self.walls[w as usize].iter().filter(|p| is_on(p))));
             let mut others = Vec::new();
             self.cell_tree.visit(near, |cell| others.push(cell));
             others.sort_unstable();
-            others.retain(|&other| other > from);
-            points.extend(others.iter().flat_map(|&cell| &self.cells[cell as usize]));
+            // Cells have no corners within the sides of others, but where one of the two has a corner on the border.
+            let touches = |&other: &u32| {
+                let corners = &self.cells[other as usize];
+                let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+                corners.iter().any(is_on) || sides.into_iter().any(|(&a, &b)| distance(start, a, b) <= 4.0 * reach)
+            };
+            others.retain(|other| *other > from && touches(other));
+            points.extend(others.iter().flat_map(|&cell| &self.cells[cell as usize]).filter(|p| is_on(p)));
             let along = points.into_iter().map(|p| (p - start).dot(d) / square).collect();
             let inwards = d.perp();
             for t in middles([0.0, 1.0], along) {
-                for share in SHORT {
+                for share in DEPTHS {
                     let [p, q] = [share, -share].map(|share| start + d * t + inwards * share);
                     if let Some(&to) = others.iter().find(|&&other| self.is_inside(other, q)) {
                         found.push(Self::sight(from, Target::Cell(CellId(to)), p, q));
@@ -304,12 +313,13 @@ impl RayOracle for PlanWorld {
                 }
             }
         }
-        Some(found)
+        found
     }
 }
 
-/// How far segments through a border reach into cells, as shares of the length of the border.
-const SHORT: [f64; 4] = [1.0 / (1u64 << 20) as f64, 1.0 / 1024.0, 1.0 / 32.0, 0.25];
+/// How far segments through a border reach into cells, as shares of the length of that side of a cell: little, as something may be near, and more, as
+/// ends have to be clear of bent walls.
+const DEPTHS: [f64; 4] = [1.0 / (1u64 << 20) as f64, 1.0 / 1024.0, 1.0 / 32.0, 0.25];
 
 fn flat(segment: [Point3; 2]) -> [Point2; 2] {
     segment.map(|[x, y, _]| Point2::new(x, y))
@@ -317,6 +327,9 @@ fn flat(segment: [Point3; 2]) -> [Point2; 2] {
 
 /// How far a point is from a segment; rounded.
 fn distance(p: Point2, a: Point2, b: Point2) -> f64 {
+    if a == b {
+        return p.distance(a);
+    }
     let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
     (a + (b - a) * along).distance(p)
 }

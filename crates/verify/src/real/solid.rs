@@ -288,6 +288,8 @@ fn meet(p: Point3, d: Point3, [a, b, c]: &[Point3; 3]) -> Option<f64> {
 }
 
 impl RayOracle for SolidWorld {
+    const CELLS_ARE_CONVEX: bool = true;
+
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
         let p = self.place(from, random)?;
         let d = random.direction();
@@ -367,7 +369,7 @@ impl RayOracle for SolidWorld {
         segment_crosses_polygon(p, q, &portal.points)
     }
 
-    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Option<Vec<Sight>> {
+    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Vec<Sight> {
         let own = &self.cells[from as usize];
         let touches = |b: &Aabb<3>| (0..3).all(|k| b.min[k] <= own.max[k] && own.min[k] <= b.max[k]);
         let (mut found, mut near) = (Vec::new(), Vec::new());
@@ -378,7 +380,7 @@ impl RayOracle for SolidWorld {
                 found.extend(self.through_border([from, other], axis, portals));
             }
         }
-        Some(found)
+        found
     }
 }
 
@@ -392,7 +394,8 @@ impl SolidWorld {
         if common.iter().any(|[low, high]| low >= high) {
             return Vec::new();
         }
-        let portals: Vec<Aabb<3>> = portals.iter().map(|portal| Aabb::around(portal.points.iter().copied())).collect();
+        let portals = portals.iter().map(|portal| Aabb::<3>::around(portal.points.iter().copied()));
+        let portals: Vec<Aabb<3>> = portals.filter(|b| b.min[axis] == place && b.max[axis] == place).collect();
         // What is on the border changes only where corners of what touches it are.
         let mut corners: Vec<Point3> = portals.iter().flat_map(|b| [b.min, b.max]).collect();
         let border = |b: &Aabb<3>| {
@@ -409,7 +412,7 @@ impl SolidWorld {
             if is_covered(middle) {
                 continue;
             }
-            for share in SHORT {
+            for share in DEPTHS {
                 let (mut p, mut q) = (middle, middle);
                 p[axis] -= (place - a.min[axis]) * share;
                 q[axis] += (b.max[axis] - place) * share;
@@ -420,5 +423,6 @@ impl SolidWorld {
     }
 }
 
-/// How far segments through a border reach into cells.
-const SHORT: [f64; 2] = [1.0 / (1u64 << 20) as f64, 1.0 / 16.0];
+/// How far segments through a border reach into cells, as shares of the cells' depth: little, as something may be near, and more, as doubles may
+/// not resolve little.
+const DEPTHS: [f64; 2] = [1.0 / (1u64 << 20) as f64, 1.0 / 16.0];

@@ -226,6 +226,8 @@ impl<'a> MapWorld<'a> {
 }
 
 impl RayOracle for MapWorld<'_> {
+    const CELLS_ARE_CONVEX: bool = false;
+
     fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
         if random.below(2) == 0 {
             return self.portals.shoot(from, random, visit);
@@ -273,7 +275,8 @@ impl RayOracle for MapWorld<'_> {
         self.portals.crosses(portal, segment)
     }
 
-    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Option<Vec<Sight>> {
-        self.portals.through_borders(from, portals)
+    fn proves_way(&self, sight: &Sight) -> bool {
+        // What stays clear of all that is solid need not stay clear of the borders of portals.
+        self.portals.proves(sight)
     }
 }

@@ -1,15 +1,14 @@
 //! Mirrors: where a cell has one on its border or inside, the table has to have a part of it.
 //!
 //! A part that is missing reflects nothing, and what is seen in it is hidden. Parts are looked for between the places where something begins or ends, as on
-//! [borders](crate::borders).
+//! [borders](crate::borders). Which points of a plan are on a mirror is decided as it is for the bake, by exact signs.
 
 use crate::borders::{middles, pairs};
 use crate::findings::{Findings, Violation};
-use crate::shapes::{ends, outlines};
+use crate::shapes::{ends, outlines, turn};
 use sightlines_cells::{CellId, LineId, Plan, Scene, SceneObject};
-use sightlines_geometry::{Aabb, Point2, Point3, orient2d};
+use sightlines_geometry::{Aabb, BoxTree, Point2, Point3, orient2d};
 use sightlines_pvs::{MirrorRecord, PortalRecord, Table};
-use std::collections::HashSet;
 
 /// Compares the parts of mirrors with the lines of a plan that are mirrors.
 pub(super) fn of_plan(table: &Table, plan: &Plan, findings: &mut Findings) {
@@ -56,7 +55,7 @@ fn ends_of(part: &MirrorRecord) -> [Point2; 2] {
     ends(&PortalRecord { cells: [CellId(0); 2], sides: [0; 2], points: part.points.clone() })
 }
 
-/// Compares the parts of mirrors with the rectangles along the axes that are two triangles of a scene's mirrors: of other shapes only a part reflects.
+/// Compares the parts of mirrors with those of a scene's mirrors that are [rectangles] along the axes.
 pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
     let moves = |object: &u32| scene.moving().binary_search_by_key(object, |moving| moving.object).is_ok();
     let still = scene.mirrors().iter().filter(|object| !moves(object));
@@ -73,31 +72,32 @@ pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
     }
 }
 
-/// The rectangles along the axes of which a triangle of an object is one half, and another triangle the other.
+/// The rectangles along the axes that are two triangles of an object and touch no other triangle in their plane: of larger shapes a table may have
+/// other parts.
 fn rectangles(object: &SceneObject) -> Vec<Aabb<3>> {
-    let key = |mut t: [Point3; 3]| {
-        t.sort_unstable_by(|a, b| a.partial_cmp(b).expect("coordinates are numbers"));
-        t.map(|p| p.map(|x| (x + 0.0).to_bits()))
-    };
-    let all: HashSet<_> = object.corners().map(key).collect();
+    let triangles: Vec<[Point3; 3]> = object.corners().collect();
+    let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
+    let tree = BoxTree::build(&boxes, 4);
     let mut found = Vec::new();
-    for t in object.corners() {
-        let around = Aabb::<3>::around(t);
-        let is_flat = (0..3).filter(|&k| around.min[k] == around.max[k]).count() == 1;
-        // The corner between the sides along the axes is opposite to the corner of the rectangle that is not of the triangle.
-        let of_box = t.iter().all(|p| (0..3).all(|k| p[k] == around.min[k] || p[k] == around.max[k]));
-        if !is_flat || !of_box {
-            continue;
-        }
-        let other = |p: &Point3| -> Point3 {
-            std::array::from_fn(|k| if p[k] == around.min[k] { around.max[k] } else { around.min[k] })
-        };
-        let is_half = (0..3).any(|i| {
-            let (p, q) = (t[(i + 1) % 3], t[(i + 2) % 3]);
-            other(&p) == q && all.contains(&key([p, q, other(&t[i])]))
-        });
-        if is_half {
-            found.push(around);
+    for (&t, around) in triangles.iter().zip(&boxes) {
+        let is_flat = |b: &Aabb<3>, axis: usize| b.min[axis] == b.max[axis];
+        let Some(axis) = (0..3).find(|&axis| is_flat(around, axis)) else { continue };
+        let mut near = Vec::new();
+        let touches = |b: &Aabb<3>| (0..3).all(|k| b.min[k] <= around.max[k] && around.min[k] <= b.max[k]);
+        tree.visit(touches, |i| near.push(i as usize));
+        near.retain(|&i| is_flat(&boxes[i], axis) && touches(&boxes[i]));
+        near.sort_unstable();
+        let &[first, second] = &near[..] else { continue };
+        let (a, b) = (triangles[first], triangles[second]);
+        // Each of the two has three corners of the rectangle, and they have a diagonal in common.
+        let is_corner = |p: &Point3| (0..3).all(|k| p[k] == around.min[k] || p[k] == around.max[k]);
+        let opposite = |p: &Point3, q: &Point3| (0..3).all(|k| k == axis || p[k] != q[k]);
+        let apart = |t: &[Point3; 3], other: &[Point3; 3]| t.iter().find(|p| !other.contains(p)).copied();
+        let is_rectangle = a.iter().chain(&b).all(is_corner)
+            && apart(&a, &b).zip(apart(&b, &a)).is_some_and(|(p, q)| opposite(&p, &q))
+            && boxes[first] == boxes[second];
+        if is_rectangle && t == a {
+            found.push(*around);
         }
     }
     found
@@ -113,7 +113,7 @@ fn missing_in_space(bounds: &Aabb<3>, rectangle: &Aabb<3>, parts: &[&MirrorRecor
     let across = [(axis + 1) % 3, (axis + 2) % 3];
     let parts: Vec<(Aabb<3>, bool)> = parts
         .iter()
-        .map(|part| (Aabb::around(part.points.iter().copied()), looks_up(part, across)))
+        .filter_map(|part| Some((Aabb::around(part.points.iter().copied()), turn(&part.points, axis)? > 0)))
         .filter(|(b, _)| b.min[axis] == place && b.max[axis] == place)
         .collect();
     let [u, v] = across.map(|k| {
@@ -130,12 +130,6 @@ fn missing_in_space(bounds: &Aabb<3>, rectangle: &Aabb<3>, parts: &[&MirrorRecor
         let has = |up: bool| parts.iter().any(|(b, looks_up)| *looks_up == up && b.contains(*p));
         sides.iter().any(|&(up, is_there)| is_there && !has(up))
     })
-}
-
-/// Whether a part of a mirror is seen from above its plane: it is counter-clockwise then.
-fn looks_up(part: &MirrorRecord, [i, j]: [usize; 2]) -> bool {
-    let at = |k: usize| part.points.get(k).map_or(Point2::ZERO, |p| Point2::new(p[i], p[j]));
-    orient2d(at(0), at(1), at(2)) > 0.0
 }
 
 fn by_cell(table: &Table) -> Vec<Vec<&MirrorRecord>> {

@@ -1,7 +1,7 @@
 //! Cells and portals of scenes in space.
 
 use crate::findings::{Findings, Violation};
-use crate::shapes::middle;
+use crate::shapes::{middle, turn};
 use sightlines_cells::CellId;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_pvs::{CellRecord, Table, TableKind};
@@ -36,7 +36,12 @@ pub(super) fn check(table: &Table, findings: &mut Findings) {
         let axis = (0..3).find(|&k| extent.min[k] == extent.max[k]);
         for (own, other) in [(0, 1), (1, 0)] {
             let record_of = |i: usize| &table.cells()[record.cells[i].idx()];
-            let is_on = axis.is_some_and(|axis| on_wall(record_of(own), record_of(other), axis, &extent));
+            let is_on = axis.is_some_and(|axis| {
+                // As seen from the first cell the corners go round counter-clockwise: clockwise about an axis that leads into the second.
+                let is_above = record_of(1).min[axis] >= extent.max[axis];
+                let looks_in = turn(&record.points, axis) == Some(if is_above { -1 } else { 1 });
+                looks_in && on_wall(record_of(own), record_of(other), axis, &extent)
+            });
             if !is_on {
                 findings.add(Violation::OffBorder { portal, cell: record.cells[own] });
             }

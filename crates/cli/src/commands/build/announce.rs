@@ -103,7 +103,7 @@ impl Said {
     /// The estimate that is due with a report, if one is. It comes once for the cells, and once for what they see.
     fn estimate(&mut self, progress: Progress, since_start: Duration, took: Duration) -> Option<String> {
         let Progress { done, total, phase, share, work } = progress;
-        // After all cells, the pairs that are left to sightlines are no sample of the rest: all is said by then.
+        // The pairs that are left to sightlines after all cells are no sample of the rest; mostly the estimate is out by then.
         let (is_said, what) = match work {
             Work::Cutting => (&mut self.is_said_of_cells, "to cut cells"),
             Work::Deciding => (&mut self.is_said, "in all"),

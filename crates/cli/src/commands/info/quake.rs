@@ -64,7 +64,7 @@ impl fmt::Display for PrtInfo {
         };
         let repeated = match self.n_repeated_portals {
             0 => String::new(),
-            n => format!(", {n} of them again"),
+            n => format!(", {n} of them repeats"),
         };
         writeln!(f, "portals        {}{degenerate}{repeated}", self.n_portals)
     }

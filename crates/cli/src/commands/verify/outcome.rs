@@ -201,12 +201,12 @@ impl fmt::Display for Outcome {
             None => {
                 writeln!(f, "rays           {} in random directions", self.n_rays)?;
                 if self.n_portals > 0 {
-                    let segments = count(self.n_followed, "free segment");
-                    writeln!(f, "portals        {segments} followed from cell to cell")?;
+                    let segments = count(self.n_followed, "segment");
+                    writeln!(f, "portals        {segments} followed through them")?;
                 }
                 if self.n_sequences > 0 {
                     let sequences = count(self.n_sequences, "sequence");
-                    writeln!(f, "stab trees     {sequences} of portals that they do not have aimed at")?;
+                    writeln!(f, "stab trees     rays aimed along {sequences} of portals that they lack")?;
                 }
                 Self::pairs(f, "cells", &self.cells)?;
                 if self.n_objects > 0 {
@@ -228,7 +228,7 @@ impl fmt::Display for Outcome {
         if let Some(times) = self.wide_gap {
             writeln!(
                 f,
-                "remark         the gap is {times:.0} times what single precision explains in this scene: no ray tells of what is narrower"
+                "remark         the gap is {times:.0} times what single precision explains in this scene: rays cannot check anything narrower"
             )?;
         }
         for (n, noun, what) in remarks.into_iter().filter(|(n, ..)| *n > 0) {

@@ -149,7 +149,7 @@ pub enum PrtErrorKind {
         by: f64,
     },
     /// The corners of a portal go round the wrong way.
-    #[error("portal {portal}: its corners go round the wrong way, as most of cluster {} is not before it or most of cluster {} not behind it; nothing would be seen through it", clusters[0], clusters[1])]
+    #[error("portal {portal}: its corners are in the wrong order: the other portals of clusters {} and {} lie on the wrong side of it, so what is visible through it would be hidden", clusters[0], clusters[1])]
     InsideOut {
         /// The portal.
         portal: usize,
