@@ -114,7 +114,7 @@ fn the_guide_for_bim_works() {
     // Whoever checks a table hears of a gap that no file explains.
     let check =
         |table: &str| folder.run(&["verify", table, "building.glb", "--rays", "100", "--pairs", "1"]).expect(0).out;
-    let remark = "times what single precision explains in this scene: no ray tells of what is narrower\n";
+    let remark = "times what single precision explains in this scene: rays cannot check anything narrower\n";
     let told = ["before.pvs", "shut.pvs", "building.pvs"].map(|table| check(table).contains(remark));
     assert_eq!(told, [false, true, true]);
 }
