@@ -2,17 +2,19 @@
 
 use crate::buffers::{BufferArgs, MethodFailed};
 use crate::error::InputError;
-use crate::glb::GlbError;
 use crate::input;
 use crate::named::one_of;
 use crate::numbers::share;
+use crate::output::count;
 use crate::surfaces::{self, SurfaceArgs};
 use serde::Serialize;
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
 use sightlines::cells::{MovingObject, Scene, SceneObject};
 use sightlines::formats::ReadError;
-use sightlines::formats::scene::RewriteError;
-use sightlines::formats::scene::{self, SceneReadOptions, read_scene_with_source_and, write_simplified_glb};
+use sightlines::formats::scene::{
+    self, Rounding, SceneReadOptions, read_scene_with_source_and, write_rounded_glb, write_simplified_obj,
+};
+use sightlines::formats::scene::{RewriteError, SceneWriteError};
 use sightlines::formats::{GltfSource, SceneFile};
 use sightlines::pvs::Table;
 use sightlines::simplify::SimplifyError;
@@ -48,9 +50,15 @@ pub(crate) enum SimplificationError {
     /// A WAD, a plan or a scene cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// A scene that cannot be written as GLB.
-    #[error(transparent)]
-    Glb(#[from] GlbError),
+    /// A scene that cannot be written as GLB or OBJ.
+    #[error("{}: {source}", path.display())]
+    Write { path: PathBuf, source: SceneWriteError },
+    /// The name of an output ends otherwise than a scene can be written.
+    #[error("{}: the scene is written as GLB or, if it was read from one, as OBJ; give a name that ends in .glb or .obj", path.display())]
+    NotScene { path: PathBuf },
+    /// A glTF is not written as OBJ.
+    #[error("{}: a glTF is written as GLB, which keeps its materials; give a name that ends in .glb", path.display())]
+    GltfAsObj { path: PathBuf },
     /// A from-region method cannot be prepared.
     #[error(transparent)]
     Method(#[from] MethodFailed),
@@ -165,11 +173,75 @@ pub(crate) fn along(path: &Path, table: &Table, scene: &Scene) -> Result<Option<
 
 /// Whether what is left may be used to hide. Faces that are merged along a frame are in one plane there; with the corners of the file they are
 /// so only within the gap, and a merged face may be off the surface by as much.
-pub(crate) fn is_occluder(simplified: &Simplified, is_framed: bool) -> bool {
+fn is_occluder(simplified: &Simplified, is_framed: bool) -> bool {
     simplified.is_part_of_the_original() && !(is_framed && simplified.counts.merged > 0)
 }
 
-/// What is left of a scene, as GLB.
+/// How a scene is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum OutFormat {
+    Glb,
+    Obj,
+}
+
+impl OutFormat {
+    /// By the end of the name of the output.
+    pub(crate) fn of(path: &Path) -> Result<Self, SimplificationError> {
+        match path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("glb") => Ok(Self::Glb),
+            Some("obj") => Ok(Self::Obj),
+            _ => Err(SimplificationError::NotScene { path: path.to_owned() }),
+        }
+    }
+
+    /// Refuses to write a glTF as OBJ.
+    pub(crate) fn check(self, path: &Path, source: Option<&GltfSource>) -> Result<(), SimplificationError> {
+        match (self, source) {
+            (Self::Obj, Some(_)) => Err(SimplificationError::GltfAsObj { path: path.to_owned() }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A file, and how it differs from what was to be written.
+#[derive(Debug)]
+pub(crate) struct Written {
+    pub(crate) bytes: Vec<u8>,
+    /// What single precision did not hold.
+    pub(crate) rounding: Rounding,
+    /// Whether it may be used to hide.
+    pub(crate) occluder: bool,
+}
+
+/// Coordinates that were rounded because the file holds single precision.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Rounded {
+    n_coordinates: u64,
+    /// In scene units.
+    largest: f64,
+}
+
+impl Rounded {
+    /// None if nothing was rounded, in none of the files.
+    pub(crate) fn of(all: impl IntoIterator<Item = Rounding>) -> Option<Self> {
+        let sum = all.into_iter().fold(Rounding::default(), |a, b| Rounding {
+            n_coordinates: a.n_coordinates + b.n_coordinates,
+            largest: a.largest.max(b.largest),
+        });
+        let Rounding { n_coordinates, largest } = sum;
+        (n_coordinates > 0).then_some(Self { n_coordinates, largest })
+    }
+}
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { n_coordinates, largest } = self;
+        let what = count(*n_coordinates, "coordinate");
+        write!(f, "{what} to single precision, by at most {largest:.3e} units, beside what is promised")
+    }
+}
+
+/// What is left of a scene, as a file. As OBJ, coordinates are those of the scene; as GLB made of an OBJ, they are rounded to single precision.
 ///
 /// * `is_framed`: whether it was simplified along a frame, with other corners than those of the file
 pub(crate) fn written(
@@ -178,20 +250,24 @@ pub(crate) fn written(
     source: Option<&GltfSource>,
     simplified: &Simplified,
     is_framed: bool,
-) -> Result<Vec<u8>, SimplificationError> {
-    let said = scene::Simplified { occluder: is_occluder(simplified, is_framed) };
-    match source {
-        Some(source) => {
-            let change = |(k, list): (usize, &Vec<[u32; 3]>)| simplified.changes(scene, k).then(|| list.clone());
-            let changes: Vec<_> = simplified.triangles.iter().enumerate().map(change).collect();
-            source
-                .rewrite(&changes, Some(said))
-                .map_err(|source| SimplificationError::Rewrite { path: path.to_owned(), source })
-        }
-        None => {
-            let left = left(scene, simplified);
-            let failed = |source| GlbError::Glb { path: path.to_owned(), source };
-            Ok(write_simplified_glb(&left, said).map_err(failed)?)
+    format: OutFormat,
+) -> Result<Written, SimplificationError> {
+    let occluder = is_occluder(simplified, is_framed);
+    let said = scene::Simplified { occluder };
+    let exact = |bytes| Written { bytes, rounding: Rounding::default(), occluder };
+    if let Some(source) = source {
+        let change = |(k, list): (usize, &Vec<[u32; 3]>)| simplified.changes(scene, k).then(|| list.clone());
+        let changes: Vec<_> = simplified.triangles.iter().enumerate().map(change).collect();
+        let bytes = source.rewrite(&changes, Some(said));
+        return Ok(exact(bytes.map_err(|source| SimplificationError::Rewrite { path: path.to_owned(), source })?));
+    }
+    let left = left(scene, simplified);
+    let failed = |source| SimplificationError::Write { path: path.to_owned(), source };
+    match format {
+        OutFormat::Obj => Ok(exact(write_simplified_obj(&left, said).map_err(failed)?)),
+        OutFormat::Glb => {
+            let (bytes, rounding) = write_rounded_glb(&left, &scene.bounds(), said).map_err(failed)?;
+            Ok(Written { bytes, rounding, occluder: occluder && rounding.n_coordinates == 0 })
         }
     }
 }

@@ -166,12 +166,97 @@ fn objs_lose_their_materials_and_nothing_else() {
     let after = read_scene(folder.path("s.glb")).unwrap();
     let names: Vec<&str> = after.scene.objects().iter().map(|o| o.name.as_str()).collect();
     assert_eq!((names, after.scene.mirrors(), after.info.n_triangles), (vec!["wall", "before-mirror"], &[1][..], 3));
-    // What single precision cannot hold is refused, not rounded.
-    folder.write("d.obj", obj.replace("-9", "-9.1"));
-    let args = ["simplify", "d.obj", "--volume", "-0.5,-0.5,4,0.5,0.5,5", "-o", "d.glb", "-q", "--ignore-mirrors"];
-    let error = folder.run(&args).expect(2).err;
-    assert!(error.contains("d.obj: object 0, vertex 0: -9.1 is not a number of single precision"), "{error}");
-    assert!(!folder.path("d.glb").exists());
+}
+
+/// An OBJ of decimals that are no numbers of single precision, as most are: a wall with a square behind it, and one of glass before it.
+fn decimals(far: f64) -> String {
+    let [low, high] = [far - 9.1, far + 9.1];
+    format!(
+        "v {low} -9.1 0.1\nv {high} -9.1 0.1\nv {high} 9.1 0.1\nv {low} 9.1 0.1\nv {far} 0 -1.3\nv {} 0 -1.3\nv {far} 1 -1.3\n\
+         v {far} 0.7 1\nv {} 0.7 1\nv {far} 1.7 1e-1\no the wall # 1\nf 1 2 3 4\no behind\nf 5 6 7\no glass\nf 8 9 10\n",
+        far + 1.0,
+        far + 0.3,
+    )
+}
+
+/// As OBJ, coordinates are those of the input; as GLB they are rounded, which is said.
+#[test]
+fn decimals_are_kept_or_rounded_aloud() {
+    let folder = Folder::new();
+    for (far, most) in [(0.0, 1e-6), (430_000.0, 1e-6)] {
+        folder.write("d.obj", decimals(far));
+        let volume = format!("--volume={},-0.5,4,{},0.5,5", far - 0.5, far + 0.5);
+        let run = |out: &str, more: &[&str]| {
+            let args = ["simplify", "d.obj", &volume, "-o", out, "--see-through", "glass", "-q"];
+            folder.run(&[&args[..], more].concat()).expect(0)
+        };
+        let read = |name: &str| read_scene(folder.path(name)).unwrap();
+        let before = read("d.obj").scene;
+        let of = |scene: &Scene, k: usize| scene.objects()[k].clone();
+        let wanted = Scene::new(vec![of(&before, 0), of(&before, 2)]).unwrap().with_see_through(vec![1]).unwrap();
+
+        let exact = run("e.obj", &["--json"]).json();
+        assert!(exact.get("rounded").is_none() && exact["occluder"] == json!(true), "{exact}");
+        assert!(!run("e.obj", &[]).out.contains("rounded"));
+        let after = read("e.obj");
+        assert_eq!(after.scene, wanted);
+        assert_eq!(after.info.simplified.map(|s| s.occluder), Some(true));
+        // An impostor has one bit of one coordinate flipped.
+        let text = String::from_utf8(folder.read("e.obj")).unwrap();
+        let flipped = text.replacen("-9.1 0.1", "-9.1 0.10000000000000002", 1);
+        assert_ne!(text, flipped);
+        folder.write("f.obj", flipped);
+        assert_ne!(read("f.obj").scene, wanted);
+
+        let rounded = run("r.glb", &["--json"]).json();
+        let after = read("r.glb");
+        let pairs = |scene: &Scene| -> Vec<f64> {
+            scene.objects().iter().flat_map(|o| o.vertices.iter().flatten().copied()).collect()
+        };
+        let changes = || pairs(&after.scene).into_iter().zip(pairs(&wanted)).map(|(a, b)| (a - b).abs());
+        let (n, largest) = (changes().filter(|x| *x > 0.0).count(), changes().fold(0.0, f64::max));
+        assert_eq!(pairs(&after.scene).len(), pairs(&wanted).len());
+        assert!(n > 0 && largest > 0.0 && largest < most, "{n} {largest:e}");
+        assert_eq!(rounded["rounded"], json!({"n_coordinates": n, "largest": largest}));
+        assert_eq!(rounded["bound"], json!(0.0));
+        // What was moved, however little, must not hide.
+        assert_eq!(rounded["occluder"], json!(false));
+        assert_eq!(after.info.simplified.map(|s| s.occluder), Some(false));
+        let line = format!("rounded        {n} coordinates to single precision, by at most {largest:.3e} units, ");
+        assert!(run("r.glb", &[]).out.contains(&line), "{line}");
+        assert!(folder.refused(&["build", "r.glb", "-o", "r.pvs"]).contains("its triangles were moved"));
+        folder.run(&["build", "e.obj", "-o", "e.pvs", "-q"]).expect(0);
+    }
+    // A name says how to write.
+    for (name, says) in [("d", "give a name that ends in .glb or .obj"), ("d.obj.txt", "ends in .glb or .obj")] {
+        let error = folder.refused(&["simplify", "d.obj", "--volume=0,0,0,1,1,1", "-o", name]);
+        assert!(error.contains(says), "{error}");
+        assert!(!folder.path(name).exists());
+    }
+    // A number beyond single precision has none near it; as OBJ it is kept.
+    folder.write("d.obj", decimals(0.0).replace("-1.3", "-1e39").replace("-9.1", "-1e39"));
+    let args = ["simplify", "d.obj", "--volume=-0.5,-0.5,4,0.5,0.5,5", "--method", "none", "-q", "-o"];
+    let error = folder.run(&[&args[..], &["h.glb"]].concat()).expect(2).err;
+    assert!(error.contains("d.obj: object 0, vertex 0: -1e39 is not a number of single precision"), "{error}");
+    folder.run(&[&args[..], &["h.obj"]].concat()).expect(0);
+}
+
+/// Levels are GLB, and say what they round; those that were moved by it do not hide.
+#[test]
+fn levels_of_decimals_are_rounded_aloud() {
+    let folder = Folder::new();
+    folder.write("room.obj", room(0.0).replace("1.25", "1.3"));
+    folder.run(&["build", "room.obj", "-o", "room.pvs", "-q"]).expect(0);
+    let args = ["levels", "room.obj", "--table", "room.pvs", "--method", "none", "-o", "l", "-q"];
+    let reply = folder.run(&[&args[..], &["--json"]].concat()).expect(0).json();
+    assert!(reply["rounded"]["n_coordinates"].as_u64() > Some(0), "{reply}");
+    assert!(reply["rounded"]["largest"].as_f64().is_some_and(|x| x > 0.0 && x < 1e-6), "{reply}");
+    assert!(folder.run(&args).expect(0).out.contains("rounded        "));
+    let index = read_levels_index(folder.path("l/index.json")).unwrap();
+    for level in &index.levels {
+        let said = parse_glb(&folder.read(&format!("l/{}", level.file)), None).unwrap().info.simplified;
+        assert_eq!((level.occluder, said.map(|s| s.occluder)), (false, Some(false)));
+    }
 }
 
 #[test]
@@ -201,6 +286,7 @@ fn bad_input_is_refused() {
         "tower.pvs: the table is of another scene: ",
     );
     refused(&["simplify", "tower.glb", "-o", "no.obj", "--volume", VOLUME], "give a name that ends in .glb");
+    refused(&["simplify", "tower.glb", "-o", "no.ply", "--volume", VOLUME], "give a name that ends in .glb or .obj");
     refused(&["simplify", "tower.pvs", "-o", "no.glb", "--volume", VOLUME], "tower.pvs: neither a GLB nor");
     refused(&["simplify", "word.glb", "-o", "no.glb", "--volume", VOLUME], "word.glb: the glTF text cannot be read");
     refused(&["simplify", "tower.glb", "-o", "no/such/o.glb", "--volume", VOLUME], "no/such/o.glb: cannot be written");

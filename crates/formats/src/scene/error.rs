@@ -453,34 +453,6 @@ pub enum ObjErrorKind {
     },
 }
 
-/// Why a scene cannot be written as GLB.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SceneWriteError {
-    /// GLB holds single precision, and the coordinate needs more.
-    #[error("object {object}, vertex {vertex}: {value:?} is not a number of single precision")]
-    Precision {
-        /// Index of the object.
-        object: usize,
-        /// Index of the vertex in it.
-        vertex: usize,
-        /// The coordinate.
-        value: f64,
-    },
-    /// glTF has no meshes without corners.
-    #[error("object {object} has no vertices")]
-    Empty {
-        /// Index of the object.
-        object: usize,
-    },
-    /// A GLB has at most 4 GiB.
-    #[error("{len} bytes are too many for a GLB")]
-    TooLarge {
-        /// Bytes of the file.
-        len: usize,
-    },
-}
-
 impl From<SceneReadError> for crate::ReadErrorKind {
     fn from(error: SceneReadError) -> Self {
         Self::content(error)

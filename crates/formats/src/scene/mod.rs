@@ -9,7 +9,7 @@
 //! | roles | `"extras": {"sightlines": {"role": …}}` of nodes, meshes and materials, see [`Role`]; endings of names | endings of names |
 //! | mirrors | nodes, meshes and materials with that role, or nodes with a name that ends in `-mirror` | objects with such a name |
 //! | left out | looks, animations, cameras | looks, normals, lines, curves |
-//! | written again | with fewer triangles, and all else as it was ([`GltfSource::rewrite`]) | as GLB, without materials |
+//! | written again | with fewer triangles, and all else as it was ([`GltfSource::rewrite`]) | as OBJ or as GLB, without materials |
 //!
 //! Objects keep their order, which gives them their ids, even those that are only points or lines and have no
 //! triangles. Corners that nothing uses are left out, and so are triangles without area. What moves or changes its shape
@@ -42,10 +42,12 @@ mod source;
 mod surface;
 mod transform;
 mod write;
+mod write_error;
+mod write_obj;
 
 pub use error::{
     AccessorErrorKind, AccessorRole, BufferErrorKind, GlbError, NodeErrorKind, NodeId, ObjErrorKind,
-    PrimitiveErrorKind, SceneReadError, SceneWriteError,
+    PrimitiveErrorKind, SceneReadError,
 };
 pub(crate) use gltf::MAGIC as GLB_MAGIC;
 pub use gltf::{parse_glb, parse_gltf, parse_gltf_with};
@@ -55,7 +57,9 @@ pub use rewrite::RewriteError;
 pub use role::Role;
 pub use source::{GltfSource, ObjectSource, parse_glb_with_source};
 pub use surface::{Classified, SceneReadOptions};
-pub use write::{write_glb, write_simplified_glb};
+pub use write::{Rounding, write_glb, write_rounded_glb, write_simplified_glb};
+pub use write_error::{ObjLimit, SceneWriteError};
+pub use write_obj::{write_obj, write_simplified_obj};
 
 use crate::ReadError;
 use crate::beside::{Folder, Neighbours};

@@ -7,7 +7,8 @@ use super::mtl::{before_comment, parse_mtl};
 use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
 use super::role::{MeshNames, Role, role_of_name};
 use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
-use super::{MAX_ELEMENTS, SceneFile, SceneFormat};
+use super::write_obj::{OCCLUDER, SEE_THROUGH, SIMPLIFIED, STATEMENT};
+use super::{MAX_ELEMENTS, SceneFile, SceneFormat, Simplified};
 use crate::beside::Neighbours;
 use crate::point::check_point;
 use sightlines_cells::Point3;
@@ -20,6 +21,8 @@ use std::collections::BTreeMap;
 /// object too. An object without a name is called `object N`. Faces of more than three corners are cut into
 /// triangles that cover the face and nothing else, even where it is not convex. Coordinates are taken in
 /// double precision. Everything about looks, lines, points and curves is skipped.
+///
+/// Comments that [`write_obj`](super::write_obj()) writes are read: what is simplified, and what hides nothing.
 ///
 /// Materials are not looked up, so faces with a material of a library (`mtllib`) hide nothing: it may be glass. See
 /// [`parse_obj_with`].
@@ -65,9 +68,12 @@ pub fn parse_obj_with(
             classes.entry(face.material).or_insert_with(|| {
                 let material = face.material.map(|m| obj.materials[m].as_str());
                 let role = names.role_of(&group.name).filter(|(role, _)| *role != Role::Mirror);
+                let named = role.map(|(role, ending)| (role, format!("a name with {ending}")));
+                // What is not drawn stays so.
+                let stated = group.is_see_through && named.as_ref().is_none_or(|(role, _)| role.is_drawn());
                 classifier.classify([Evidence {
                     names: [Some(group.name.as_str()), material].into_iter().flatten().collect(),
-                    role: role.map(|(role, ending)| (role, format!("a name with {ending}"))),
+                    role: if stated { Some((Role::SeeThrough, "a comment".to_owned())) } else { named },
                     see_through: material.and_then(|m| surfaces.see_through(m)),
                     ..Evidence::default()
                 }])
@@ -90,7 +96,9 @@ pub fn parse_obj_with(
         }
     }
     builder.warnings.extend(classifier.warnings());
-    builder.finish(SceneFormat::Obj, options)
+    let mut file = builder.finish(SceneFormat::Obj, options)?;
+    file.info.simplified = obj.simplified;
+    Ok(file)
 }
 
 /// What is known of the materials of an OBJ.
@@ -180,6 +188,8 @@ struct Obj {
     materials: Vec<String>,
     /// What each line that names files with materials has behind its keyword.
     libraries: Vec<String>,
+    /// What a comment of ours states of the whole.
+    simplified: Option<Simplified>,
 }
 
 /// Invariant: `first_corner` ascends, and every face has three corners or more.
@@ -197,6 +207,8 @@ struct Face {
 struct Group {
     name: String,
     first_face: usize,
+    /// Whether a comment of ours states that it hides nothing.
+    is_see_through: bool,
 }
 
 impl Obj {
@@ -205,7 +217,7 @@ impl Obj {
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let divider = if lines(bytes).any(|(_, line)| keyword(&line) == b"o") { b"o" } else { b"g" };
         let mut obj = Self::default();
-        obj.groups.push(Group { name: "object 0".to_owned(), first_face: 0 });
+        obj.groups.push(Group { name: "object 0".to_owned(), first_face: 0, is_see_through: false });
         let (mut by_name, mut material) = (BTreeMap::new(), None);
         for (number, line) in lines(bytes) {
             let fail = |kind| SceneReadError::Obj { line: number, kind };
@@ -218,6 +230,7 @@ impl Obj {
                     material = (!name.is_empty()).then(|| *by_name.entry(name).or_insert(next));
                 }
                 b"mtllib" => obj.library(lossy_text(&line)),
+                word if word == STATEMENT.as_bytes() => obj.statement(&lossy_text(&line)),
                 word if word == divider => obj.group(text(&line).map_err(fail)?),
                 _ => {}
             }
@@ -226,6 +239,16 @@ impl Obj {
         names.sort_unstable();
         obj.materials = names.into_iter().map(|(_, name)| name).collect();
         Ok(obj)
+    }
+
+    /// A comment of ours. Others who write one may have added what we do not know.
+    fn statement(&mut self, text: &str) {
+        let mut words = text.split_ascii_whitespace();
+        match words.next() {
+            Some(SIMPLIFIED) => self.simplified = Some(Simplified { occluder: words.eq([OCCLUDER]) }),
+            Some(SEE_THROUGH) => self.groups.last_mut().expect("there is always a group").is_see_through = true,
+            _ => {}
+        }
     }
 
     fn library(&mut self, name: String) {
@@ -282,7 +305,7 @@ impl Obj {
             self.groups.pop();
         }
         let name = if name.is_empty() { format!("object {}", self.groups.len()) } else { name.to_owned() };
-        self.groups.push(Group { name, first_face: self.faces.len() });
+        self.groups.push(Group { name, first_face: self.faces.len(), is_see_through: false });
     }
 
     /// The triangles of `faces`. Indices are looked up only here, since a face may stand before its corners.
@@ -327,7 +350,8 @@ fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
             joined.extend_from_slice(rest.next().map_or(&[], |(_, next)| next));
             whole = Cow::Owned(joined);
         }
-        let has_name = matches!(keyword(&whole), b"o" | b"g" | b"usemtl" | b"mtllib");
+        let word = keyword(&whole);
+        let has_name = matches!(word, b"o" | b"g" | b"usemtl" | b"mtllib") || word == STATEMENT.as_bytes();
         if let Some(comment) = whole.iter().position(|&b| b == b'#').filter(|_| !has_name) {
             match &mut whole {
                 Cow::Borrowed(line) => *line = &line[..comment],

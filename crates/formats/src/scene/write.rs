@@ -1,10 +1,11 @@
 //! Scenes in space as GLB.
 
 use super::Simplified;
-use super::error::SceneWriteError;
+use super::write_error::SceneWriteError;
 use serde::Serialize;
 use serde_json::{Value, json};
-use sightlines_cells::{Scene, SceneObject};
+use sightlines_cells::{Point3, Scene, SceneObject};
+use sightlines_geometry::Aabb;
 
 /// Writes a scene as GLB: a node, a mesh and a primitive per object, without transforms.
 ///
@@ -16,7 +17,7 @@ use sightlines_cells::{Scene, SceneObject};
 /// # Errors
 /// [`SceneWriteError`]: a coordinate that single precision cannot hold exactly is refused, not rounded.
 pub fn write_glb(scene: &Scene) -> Result<Vec<u8>, SceneWriteError> {
-    write(scene, None)
+    Ok(write(scene, Numbers::Exact, None)?.0)
 }
 
 /// As [`write_glb`], of a scene that has fewer triangles than the one that it was made from, and says so.
@@ -24,11 +25,67 @@ pub fn write_glb(scene: &Scene) -> Result<Vec<u8>, SceneWriteError> {
 /// # Errors
 /// As [`write_glb`].
 pub fn write_simplified_glb(scene: &Scene, simplified: Simplified) -> Result<Vec<u8>, SceneWriteError> {
-    write(scene, Some(simplified))
+    Ok(write(scene, Numbers::Exact, Some(simplified))?.0)
 }
 
-fn write(scene: &Scene, simplified: Option<Simplified>) -> Result<Vec<u8>, SceneWriteError> {
-    let mut parts = Parts::default();
+/// What rounding to single precision changed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rounding {
+    /// How many coordinates are others than before.
+    pub n_coordinates: u64,
+    /// The largest change of a coordinate, in scene units.
+    pub largest: f64,
+}
+
+/// As [`write_simplified_glb`], but coordinates that single precision cannot hold are rounded to the nearest that it can; also returns
+/// what that changed. Without such coordinates the bytes are the same.
+///
+/// * `around`: a box around the scene, or around the one that it is a part of. If its middle is farther from the origin than the box is
+///   wide, along an axis, all nodes get a translation to about there, so that less is rounded. Corners in one place stay in one.
+///
+/// Surfaces move by rounding, so a rounded scene states that it must not be used to hide. Triangles may lose their area.
+///
+/// # Errors
+/// As [`write_glb`], but for coordinates only those beyond the largest of single precision.
+pub fn write_rounded_glb(
+    scene: &Scene,
+    around: &Aabb<3>,
+    simplified: Simplified,
+) -> Result<(Vec<u8>, Rounding), SceneWriteError> {
+    let mut coordinates = scene.objects().iter().flat_map(|o| o.vertices.iter().flatten());
+    if coordinates.all(|&value| f64::from(value as f32) == value) {
+        return write(scene, Numbers::Exact, Some(simplified));
+    }
+    let offset = [0, 1, 2].map(|k| {
+        let (min, max) = (around.min[k], around.max[k]);
+        let middle = f64::from((min / 2.0 + max / 2.0).round() as f32);
+        if middle.is_finite() && middle.abs() > max - min { middle } else { 0.0 }
+    });
+    write(scene, Numbers::Rounded { offset }, Some(simplified))
+}
+
+/// How coordinates are written.
+#[derive(Debug, Clone, Copy, Default)]
+enum Numbers {
+    /// As they are, or not at all.
+    #[default]
+    Exact,
+    /// Rounded, with nodes at `offset`.
+    Rounded { offset: Point3 },
+}
+
+impl Numbers {
+    fn offset(self) -> Point3 {
+        if let Self::Rounded { offset } = self { offset } else { [0.0; 3] }
+    }
+}
+
+fn write(
+    scene: &Scene,
+    numbers: Numbers,
+    simplified: Option<Simplified>,
+) -> Result<(Vec<u8>, Rounding), SceneWriteError> {
+    let mut parts = Parts { numbers, ..Parts::default() };
     for (k, object) in scene.objects().iter().enumerate() {
         let id = u32::try_from(k);
         let is_mirror = id.is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
@@ -38,7 +95,10 @@ fn write(scene: &Scene, simplified: Option<Simplified>) -> Result<Vec<u8>, Scene
         let moves = id.is_ok_and(|k| scene.moving().binary_search_by_key(&k, |moving| moving.object).is_ok());
         parts.add(k, object, Marks { is_mirror, moves, material })?;
     }
-    parts.into_glb(simplified)
+    let rounding = parts.rounding;
+    let is_rounded = rounding.n_coordinates > 0;
+    let simplified = simplified.map(|s| Simplified { occluder: s.occluder && !is_rounded });
+    Ok((parts.into_glb(simplified)?, rounding))
 }
 
 #[derive(Debug, Serialize)]
@@ -57,6 +117,8 @@ struct Roots {
 struct Node<'a> {
     name: &'a str,
     mesh: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    translation: Option<Point3>,
     #[serde(skip_serializing_if = "Option::is_none")]
     extras: Option<Extras>,
 }
@@ -166,6 +228,8 @@ struct Document<'a> {
 
 #[derive(Debug, Default)]
 struct Parts<'a> {
+    numbers: Numbers,
+    rounding: Rounding,
     nodes: Vec<Node<'a>>,
     meshes: Vec<Mesh>,
     /// All different.
@@ -186,7 +250,8 @@ impl<'a> Parts<'a> {
         self.meshes.push(Mesh { primitives: [primitive] });
         let stated = Stated { role: is_mirror.then_some("mirror"), moves: moves.then_some(true) };
         let extras = (is_mirror || moves).then_some(Extras { sightlines: stated });
-        self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1, extras });
+        let translation = Some(self.numbers.offset()).filter(|offset| *offset != [0.0; 3]);
+        self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1, translation, extras });
         Ok(())
     }
 
@@ -208,11 +273,19 @@ impl<'a> Parts<'a> {
         }
         let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         let start = self.binary.len();
+        let offset = self.numbers.offset();
         for (vertex, p) in o.vertices.iter().enumerate() {
             for (axis, &value) in p.iter().enumerate() {
-                let single = value as f32;
-                if f64::from(single) != value {
-                    return Err(SceneWriteError::Precision { object, vertex, value });
+                let single = (value - offset[axis]) as f32;
+                // As readers in double precision place it.
+                let change = (f64::from(single) + offset[axis] - value).abs();
+                if change != 0.0 {
+                    // What is too large for single precision has an infinite change.
+                    if matches!(self.numbers, Numbers::Exact) || !change.is_finite() {
+                        return Err(SceneWriteError::Precision { object, vertex, value });
+                    }
+                    self.rounding.n_coordinates += 1;
+                    self.rounding.largest = self.rounding.largest.max(change);
                 }
                 (min[axis], max[axis]) = (min[axis].min(single), max[axis].max(single));
                 self.binary.extend_from_slice(&single.to_le_bytes());

@@ -15,4 +15,5 @@ mod rewrite;
 mod roles;
 mod scene_mutations;
 mod scene_oracles;
+mod scene_writers;
 mod scenes;

@@ -8,7 +8,7 @@ use crate::folder::NewFolder;
 use crate::input;
 use crate::output;
 use crate::progress::Bar;
-use crate::simplification::{self, HowArgs, ReadScene, SimplificationError, is_occluder, read, written};
+use crate::simplification::{self, HowArgs, OutFormat, ReadScene, SimplificationError, read, written};
 use outcome::Outcome;
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
 use sightlines::multifocal::FromRegion;
@@ -98,22 +98,23 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
         levels: Vec::new(),
         cells: made.of_cell.iter().map(|&level| Some(level)).collect(),
     };
-    let mut n_bytes = 0;
+    let (mut n_bytes, mut roundings) = (0, Vec::new());
     for (k, level) in made.levels.iter().enumerate() {
-        let bytes = written(&args.scene, &file.scene, source.as_ref(), &level.simplified, is_framed)?;
+        let written = written(&args.scene, &file.scene, source.as_ref(), &level.simplified, is_framed, OutFormat::Glb)?;
         let file = format!("level_{k}.glb");
-        folder.save(&file, &bytes)?;
-        n_bytes += bytes.len() as u64;
+        folder.save(&file, &written.bytes)?;
+        n_bytes += written.bytes.len() as u64;
+        roundings.push(written.rounding);
         index.levels.push(LevelFile {
             file,
             n_triangles: level.simplified.counts.left as u64,
             n_bytes: level.n_bytes,
             bound: level.simplified.bound,
-            occluder: is_occluder(&level.simplified, is_framed),
+            occluder: written.occluder,
         });
     }
     folder.save(INDEX_NAME, write_levels_index(&index).as_bytes())?;
-    let outcome = Outcome::new(args, scene, method, &index, n_bytes, start.elapsed());
+    let outcome = Outcome::new(args, (scene, method), &index, (n_bytes, roundings), start.elapsed());
     folder.finish()?;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)

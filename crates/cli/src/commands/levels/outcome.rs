@@ -2,10 +2,11 @@
 
 use super::LevelsArgs;
 use crate::output::{bytes, count, percent, seconds};
-use crate::simplification::SingleSided;
+use crate::simplification::{Rounded, SingleSided};
 use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::formats::LevelsIndex;
+use sightlines::formats::scene::Rounding;
 use std::fmt;
 use std::time::Duration;
 
@@ -30,16 +31,18 @@ pub(super) struct Outcome {
     /// The largest share that changes, of all levels.
     bound: f64,
     single_sided: SingleSided,
+    /// What the files do not hold exactly, of all levels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rounded: Option<Rounded>,
     seconds: f64,
 }
 
 impl Outcome {
     pub(super) fn new(
         args: &LevelsArgs,
-        scene: &Scene,
-        method: &'static str,
+        (scene, method): (&Scene, &'static str),
         index: &LevelsIndex,
-        n_file_bytes: u64,
+        (n_file_bytes, roundings): (u64, Vec<Rounding>),
         time: Duration,
     ) -> Self {
         let of_cells = || index.cells.iter().flatten().map(|&level| index.levels[level as usize].n_triangles);
@@ -58,6 +61,7 @@ impl Outcome {
             mean_triangles: of_cells().sum::<u64>() as f64 / index.cells.len().max(1) as f64,
             most_triangles: of_cells().max().unwrap_or(0),
             single_sided: SingleSided::of(scene),
+            rounded: Rounded::of(roundings),
             bound: index.levels.iter().map(|level| level.bound).fold(0.0, f64::max),
             seconds: time.as_secs_f64(),
         }
@@ -85,6 +89,9 @@ impl fmt::Display for Outcome {
             "promised       {:.3e} of the view changes at most, for every eye{}; {:.3e} were allowed",
             self.bound, self.single_sided, self.budget
         )?;
+        if let Some(rounded) = self.rounded {
+            writeln!(f, "rounded        {rounded}")?;
+        }
         writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
     }
 }

@@ -5,10 +5,9 @@ mod eyes;
 mod outcome;
 
 use crate::Answer;
-use crate::glb;
 use crate::output;
 use crate::progress::Bar;
-use crate::simplification::{self, HowArgs, ReadScene, SimplificationError, read, written};
+use crate::simplification::{self, HowArgs, OutFormat, ReadScene, SimplificationError, read, written};
 use error::Error;
 use eyes::EyesArgs;
 use outcome::{Outcome, Report};
@@ -24,7 +23,9 @@ use std::time::Instant;
                   of directions: for every eye in the boxes, at most that share of the view shows another face than \
                   before. This bound is proven, of eyes that see the back of no single-sided face: such faces hide from \
                   both sides, and a table takes their backs to be unseen. Materials, textures, names and everything else in a glTF are kept; \
-                  textures in separate files are embedded. A result with moved triangles is marked, and is refused \
+                  textures in separate files are embedded. GLB holds single precision: a GLB \
+                  that is made of an OBJ has rounded coordinates, which moves surfaces beside what the bound allows; the output states \
+                  by how much. A result with moved triangles is marked, and is refused \
                   wherever a scene is used as an occluder. With a table that has a frame, the bound is of the scene \
                   along the frame, and a result with merged triangles is marked too."
 )]
@@ -40,8 +41,8 @@ pub(crate) struct SimplifyArgs {
     #[arg(long, help_heading = "Viewer", value_name = "N", default_value_t = SimplifyOptions::default().n_parts as u32)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
     parts: u32,
-    /// The scene to write; may be the input
-    #[arg(short, long, help_heading = "Output", value_name = "OUT.glb")]
+    /// The scene to write; may be the input. A GLB or, of an OBJ, an OBJ, which keeps coordinates exactly
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.glb|OUT.obj")]
     output: PathBuf,
     /// Also measure the change with fresh rays, over all eyes and for the worst one
     #[arg(long, help_heading = "Output")]
@@ -52,12 +53,13 @@ pub(crate) struct SimplifyArgs {
 }
 
 pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Error> {
-    glb::check_name(&args.output).map_err(SimplificationError::from)?;
+    let format = OutFormat::of(&args.output)?;
     output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
     let table = args.eyes.table()?;
     // What was see-through for the table must not count as a wall here.
     let ReadScene { file, source } =
         read(&args.scene, &args.how.surfaces.options_with(table.as_ref().map_or(&[], |table| table.info())))?;
+    format.check(&args.output, source.as_ref())?;
     let along =
         table.as_ref().map(|table| simplification::along(&args.scene, table, &file.scene)).transpose()?.flatten();
     // A table with a frame is about the scene along its axes, and so are its cells.
@@ -77,7 +79,7 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     let simplified = simplify(scene, &views, &by, &options).map_err(failed)?;
     drop(bar);
     let time = start.elapsed();
-    let bytes = written(&args.scene, &file.scene, source.as_ref(), &simplified, along.is_some())?;
+    let file = written(&args.scene, &file.scene, source.as_ref(), &simplified, along.is_some(), format)?;
     let report = if args.report {
         let rays = MeasureOptions { threads: args.how.threads, ..MeasureOptions::default() };
         let measured = measure(scene, &simplified, &views, &rays).map_err(failed)?;
@@ -85,9 +87,8 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     } else {
         None
     };
-    let result = (scene, &simplified, along.is_some());
-    let outcome = Outcome::new(args, method, result, views.parts().len(), bytes.len(), report, time);
-    output::save(&args.output, &bytes)?;
+    let outcome = Outcome::new(args, method, (scene, &simplified), views.parts().len(), &file, report, time);
+    output::save(&args.output, &file.bytes)?;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
 }

@@ -2,7 +2,7 @@
 
 use super::SimplifyArgs;
 use crate::output::{bytes, count, percent, seconds};
-use crate::simplification::{SingleSided, is_occluder};
+use crate::simplification::{Rounded, SingleSided, Written};
 use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::geometry::Point3;
@@ -40,6 +40,9 @@ pub(super) struct Outcome {
     single_sided: SingleSided,
     /// How far surfaces were moved at most, in scene units.
     deviation: f64,
+    /// What the file does not hold exactly.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rounded: Option<Rounded>,
     /// Whether the result may be used to hide.
     occluder: bool,
     report: Option<Report>,
@@ -101,9 +104,9 @@ impl Outcome {
     pub(super) fn new(
         args: &SimplifyArgs,
         method: &'static str,
-        (scene, simplified, is_framed): (&Scene, &Simplified, bool),
+        (scene, simplified): (&Scene, &Simplified),
         n_volumes: usize,
-        n_bytes: usize,
+        file: &Written,
         report: Option<Report>,
         time: Duration,
     ) -> Self {
@@ -111,7 +114,7 @@ impl Outcome {
         Self {
             scene: args.scene.display().to_string(),
             out: args.output.display().to_string(),
-            n_bytes,
+            n_bytes: file.bytes.len(),
             n_volumes,
             method,
             table: args.eyes.table.as_ref().map(|table| table.display().to_string()),
@@ -128,7 +131,8 @@ impl Outcome {
             bound: simplified.bound,
             single_sided: SingleSided::of(scene),
             deviation: simplified.deviation,
-            occluder: is_occluder(simplified, is_framed),
+            rounded: Rounded::of([file.rounding]),
+            occluder: file.occluder,
             report,
             seconds: time.as_secs_f64(),
         }
@@ -186,6 +190,9 @@ impl fmt::Display for Outcome {
             "has moved triangles, and must not be used to hide"
         };
         writeln!(f, "the result     {may}")?;
+        if let Some(rounded) = self.rounded {
+            writeln!(f, "rounded        {rounded}")?;
+        }
         writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
     }
 }

@@ -195,6 +195,10 @@ fn scenes(all: &mut Results) {
     let simplify = format!("simplify triangles.obj --volume={VOLUME} -o s.glb --method none");
     add("simplify", &simplify);
     add("simplify", &format!("{simplify} --report"));
+    folder.write("decimals.obj", TRIANGLES.replace("-1 -1 ", "-1.1 -1 "));
+    add("simplify", &simplify.replace("triangles", "decimals"));
+    add("build of a scene", "build decimals.obj -o decimals.pvs");
+    add("levels", "levels decimals.obj --table decimals.pvs -o decimals --method none");
     let look = "--size 16x12 --eye 0,0,0 --look-at 0,0,5";
     add("render", &format!("render boards.obj -o r.png --method zbuffer --far 20 {look}"));
     add("render", &format!("render boards.obj -o r.png --compare --cull frustum {look}"));
