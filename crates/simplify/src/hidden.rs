@@ -1,9 +1,10 @@
 //! Which faces are proven hidden.
 
+use crate::ask::Asker;
 use crate::views::{View, Views};
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_multifocal::{BackendError, FromRegion, Occludees, RaySampler, Split, adaptive};
+use sightlines_multifocal::{BackendError, FromRegion, Volume};
 use sightlines_pvs::Table;
 use sightlines_visible_surface::Faces;
 use std::fmt;
@@ -29,29 +30,40 @@ impl fmt::Debug for HiddenBy<'_> {
     }
 }
 
-/// Rays from each box towards each undecided face: faces that they hit need no test.
-const N_RAYS_PER_FACE: u32 = 8;
-
 /// The occluders of a scene, prepared for queries about any views.
 pub(crate) struct Hider<'a> {
     faces: &'a Faces,
     table: Option<TableFaces<'a>>,
-    method: Option<(MakeMethod<'a>, Occludees, RaySampler)>,
+    method: Option<(MakeMethod<'a>, Asker<'a>)>,
 }
 
 impl<'a> Hider<'a> {
     /// O(n log² n).
     pub(crate) fn new(faces: &'a Faces, by: &HiddenBy<'a>) -> Self {
-        let method = by.method.map(|make| {
-            // Each face is an object of its own.
-            let occludees = Occludees::new(faces.corners().iter().map(|t| vec![*t]).collect());
-            (make, occludees, RaySampler::new(faces.corners().iter().map(std::slice::from_ref)))
-        });
+        let method = by.method.map(|make| (make, Asker::new(faces)));
         Self { faces, table: by.table.map(|table| TableFaces::new(faces, table)), method }
     }
 
     /// For each view, which faces may be visible from it. Errs towards visible only, provided that method and table do.
     pub(crate) fn may_see(&self, views: &Views) -> Result<Vec<Vec<bool>>, BackendError> {
+        let start = self.by_table(views);
+        match &self.method {
+            Some((make, asker)) => asker.each(*make, &volumes(views), start),
+            None => Ok(start),
+        }
+    }
+
+    /// Which faces may be visible from some view. Errs as [`Self::may_see`].
+    pub(crate) fn may_see_from_any(&self, views: &Views) -> Result<Vec<bool>, BackendError> {
+        let start = self.by_table(views);
+        match &self.method {
+            Some((make, asker)) => asker.any(*make, &volumes(views), &start),
+            None => Ok(self.faces.ids().map(|face| start.iter().any(|visible| visible[face as usize])).collect()),
+        }
+    }
+
+    /// What the table alone says.
+    fn by_table(&self, views: &Views) -> Vec<Vec<bool>> {
         let start = |view: &View| -> Vec<bool> {
             let mut visible: Vec<bool> = self.faces.ids().map(|face| self.faces.has_area(face)).collect();
             if let Some(table) = &self.table {
@@ -59,18 +71,12 @@ impl<'a> Hider<'a> {
             }
             visible
         };
-        let Some((make, occludees, witness)) = &self.method else {
-            return Ok(views.parts().par_iter().map(start).collect());
-        };
-        let n_rays = u32::try_from(self.faces.len()).unwrap_or(u32::MAX).saturating_mul(N_RAYS_PER_FACE).max(1 << 12);
-        let split = Split { depth: 0, n_rays, ..Split::default() };
-        let ask = |method: &mut Box<dyn FromRegion + Send>, view: &View| {
-            let mut visible = start(view);
-            adaptive::see(&mut **method, occludees, witness, &view.volume, &split, &mut visible, &mut |_| {})?;
-            Ok(visible)
-        };
-        views.parts().par_iter().map_init(make, ask).collect()
+        views.parts().par_iter().map(start).collect()
     }
+}
+
+fn volumes(views: &Views) -> Vec<Volume> {
+    views.parts().iter().map(|view| view.volume).collect()
 }
 
 /// A table as a source of hidden faces.

@@ -49,6 +49,15 @@ impl Intercepts {
         Self { n_faces: faces.len(), bounds: bounds.concat() }
     }
 
+    /// From the faces that may be visible from any part, without looking at how much of the view they intercept: all parts as one.
+    pub(crate) fn of_any(visible: &[bool]) -> Self {
+        // No face takes up more than half of the sphere.
+        Self {
+            n_faces: visible.len(),
+            bounds: visible.iter().map(|&visible| if visible { 0.5 } else { 0.0 }).collect(),
+        }
+    }
+
     /// Number of parts.
     pub fn n_parts(&self) -> usize {
         self.bounds.len() / self.n_faces.max(1)

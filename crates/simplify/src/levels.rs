@@ -82,8 +82,13 @@ pub fn levels(
         let hider = Hider::new(&faces, &HiddenBy { method: by.method, table: Some(table) });
         let maker = LevelBuilder { whole, scene, table, faces: &faces, hider, mesh: Mesh::new(scene), options };
         let all: Vec<CellId> = (0..table.n_cells() as u32).map(CellId).collect();
-        let asked = all.par_iter().map(|&cell| maker.kept(cell)).collect::<Result<Vec<_>, SimplifyError>>()?;
-        let (visible, kept): (Vec<Vec<bool>>, Vec<Bits>) = asked.into_iter().unzip();
+        // A table may have no cells.
+        let visible = if all.is_empty() { vec![] } else { maker.hider.may_see(&Views::of_cells(table, &all)?)? };
+        let kept: Vec<Bits> = all
+            .par_iter()
+            .zip(&visible)
+            .map(|(&cell, visible)| maker.kept(cell, visible))
+            .collect::<Result<_, SimplifyError>>()?;
         let mut groups = Groups::new(table, kept, options.bytes_per_triangle);
         groups.merge_equal();
         let mut made: BTreeMap<Vec<CellId>, Level> = BTreeMap::new();
@@ -138,21 +143,21 @@ struct LevelBuilder<'a> {
 }
 
 impl LevelBuilder<'_> {
-    /// The faces that may be visible for the eyes of one cell, and those that remain, without collapsing: accurate
-    /// enough to choose merges.
-    fn kept(&self, cell: CellId) -> Result<(Vec<bool>, Bits), SimplifyError> {
-        let views = Views::of_cells(self.table, &[cell])?;
-        let mut visible = self.hider.may_see(&views)?;
-        let intercepts = Intercepts::of_visible(self.faces, &views, &visible, self.options.simplify.depth);
+    /// Those of the faces that may be visible for the eyes of one cell that remain, without collapsing: accurate enough to choose
+    /// merges.
+    fn kept(&self, cell: CellId, visible: &[bool]) -> Result<Bits, SimplifyError> {
         let mut kept = Bits::new(self.faces.len());
-        let in_sight = || self.faces.ids().filter(|&f| !intercepts.is_hidden(f));
+        let in_sight = || self.faces.ids().filter(|&f| visible[f as usize]);
         in_sight().for_each(|face| kept.set(face, true));
         let budget = self.options.simplify.budget;
         if budget > 0.0 {
+            let views = Views::of_cells(self.table, &[cell])?;
+            let intercepts =
+                Intercepts::of_visible(self.faces, &views, &[visible.to_vec()], self.options.simplify.depth);
             let mut account = Account::new(1);
             least_visible(&intercepts, in_sight(), budget, &mut account, |face| kept.set(face, false));
         }
-        Ok((visible.pop().unwrap_or_default(), kept))
+        Ok(kept)
     }
 
     /// * `visible`: for each cell the faces that may be visible
@@ -160,8 +165,14 @@ impl LevelBuilder<'_> {
         let options = &self.options.simplify;
         let views = Views::of_cells(self.table, cells)?;
         let (views, intercepts) = if options.n_parts <= cells.len() {
-            let of_cells: Vec<Vec<bool>> = cells.iter().map(|cell| visible[cell.idx()].clone()).collect();
-            let intercepts = Intercepts::of_visible(self.faces, &views, &of_cells, options.depth);
+            let of_cells = || cells.iter().map(|cell| &visible[cell.idx()]);
+            let intercepts = if options.budget > 0.0 {
+                let of_cells: Vec<Vec<bool>> = of_cells().cloned().collect();
+                Intercepts::of_visible(self.faces, &views, &of_cells, options.depth)
+            } else {
+                let is_visible = |face: u32| of_cells().any(|visible| visible[face as usize]);
+                Intercepts::of_any(&self.faces.ids().map(is_visible).collect::<Vec<bool>>())
+            };
             (views, intercepts)
         } else {
             let views = views.cut(options.n_parts);

@@ -24,6 +24,7 @@
 //! no such face. Merging faces in one plane changes no surface, and so it changes first hits only in name.
 
 mod aimed;
+mod ask;
 pub mod bound;
 mod collapse_budget;
 mod compared;

@@ -2,7 +2,7 @@
 
 use crate::collapse_budget::CollapseBudget;
 use crate::estimate::Estimate;
-use crate::hidden::HiddenBy;
+use crate::hidden::{HiddenBy, Hider};
 use crate::intercepts::Intercepts;
 use crate::mesh::{Collapser, Left, Mesh, State, Weights, merge};
 use crate::options::{OptionsError, SimplifyOptions};
@@ -101,7 +101,7 @@ pub fn simplify(
     by: &HiddenBy<'_>,
     options: &SimplifyOptions,
 ) -> Result<Simplified, SimplifyError> {
-    Prepared::new(scene, views, by, options)?.simplify(options)
+    Prepared::of(scene, views, by, options, options.budget > 0.0)?.simplify(options)
 }
 
 /// A scene with bounds on what its faces can intercept for some views: to be simplified with several budgets.
@@ -127,6 +127,17 @@ impl<'a> Prepared<'a> {
         by: &HiddenBy<'_>,
         options: &SimplifyOptions,
     ) -> Result<Self, SimplifyError> {
+        Self::of(scene, views, by, options, true)
+    }
+
+    /// * `has_budget`: whether there will be one; without, all that matters is what no eye sees
+    fn of(
+        scene: &'a Scene,
+        views: &Views,
+        by: &HiddenBy<'_>,
+        options: &SimplifyOptions,
+        has_budget: bool,
+    ) -> Result<Self, SimplifyError> {
         options.check()?;
         check_mirrors(scene, options)?;
         if let Some(table) = by.table {
@@ -137,7 +148,11 @@ impl<'a> Prepared<'a> {
             let (whole, scene) = (scene, scene.still_part());
             let faces = Faces::of_scene(&scene)?;
             let views = views.clone().cut(options.n_parts);
-            let intercepts = Intercepts::new(&faces, &views, by, options.depth)?;
+            let intercepts = if has_budget {
+                Intercepts::new(&faces, &views, by, options.depth)?
+            } else {
+                Intercepts::of_any(&Hider::new(&faces, by).may_see_from_any(&views)?)
+            };
             Ok(Self { whole, scene, faces, views, intercepts })
         })
     }
