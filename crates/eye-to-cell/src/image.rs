@@ -25,6 +25,8 @@ pub struct Image {
     pub cells: Vec<CellId>,
     /// The objects, ascending.
     pub objects: Vec<ObjectId>,
+    /// Whether a view in these mirrors had more to do than [`Scratch::allow`] lets it, so that a coarser method answered there.
+    pub fell_back: bool,
     /// Whether that is all. If not, a subgraph was missing or there were too many views: anything may be seen by way of
     /// these mirrors, and of any others after them, which are not listed then.
     pub complete: bool,
@@ -43,7 +45,7 @@ pub fn follow_reflections<O: Borrow<VisibleSubgraph>>(
     [n_cells, n_objects]: [usize; 2],
     mut subgraph: impl FnMut(CellId) -> Option<O>,
 ) -> Vec<Image> {
-    let mut images: BTreeMap<Vec<MirrorId>, (BTreeSet<CellId>, BTreeSet<ObjectId>, bool)> = BTreeMap::new();
+    let mut images: BTreeMap<Vec<MirrorId>, Sets> = BTreeMap::new();
     let step = |mirrors: &[MirrorId], next: &Reflection| ([mirrors, &[next.mirror]].concat(), next.clone());
     let mut pending: Vec<(Vec<MirrorId>, Reflection)> = match bounces {
         0 => Vec::new(),
@@ -52,28 +54,36 @@ pub fn follow_reflections<O: Borrow<VisibleSubgraph>>(
     let mut seen = VisibleSet::new();
     let mut n_views = 0;
     while let Some((mirrors, reflection)) = pending.pop() {
-        let (cells, objects, complete) =
-            images.entry(mirrors.clone()).or_insert_with(|| (BTreeSet::new(), BTreeSet::new(), true));
+        let image = images.entry(mirrors.clone()).or_default();
         n_views += 1;
         let there = subgraph(reflection.cell).filter(|_| n_views <= MOST_VIEWS);
         let Some(there) = there else {
-            *complete = false;
+            image.misses = true;
             continue;
         };
         seen.clear(n_cells, n_objects);
-        method.look(there.borrow(), &reflection.view, doors, scratch, &mut seen);
-        cells.extend(seen.cells());
-        objects.extend(seen.objects());
+        image.fell_back |= method.look(there.borrow(), &reflection.view, doors, scratch, &mut seen) < method;
+        image.cells.extend(seen.cells());
+        image.objects.extend(seen.objects());
         if mirrors.len() < bounces {
             pending.extend(seen.reflections.iter().map(|r| step(&mirrors, r)));
         }
     }
-    let image =
-        |(mirrors, (cells, objects, complete)): (Vec<MirrorId>, (BTreeSet<CellId>, BTreeSet<ObjectId>, bool))| Image {
-            mirrors,
-            cells: cells.into_iter().collect(),
-            objects: objects.into_iter().collect(),
-            complete,
-        };
+    let image = |(mirrors, Sets { cells, objects, misses, fell_back }): (Vec<MirrorId>, Sets)| Image {
+        mirrors,
+        cells: cells.into_iter().collect(),
+        objects: objects.into_iter().collect(),
+        complete: !misses,
+        fell_back,
+    };
     images.into_iter().map(image).collect()
+}
+
+/// What becomes an image.
+#[derive(Default)]
+struct Sets {
+    cells: BTreeSet<CellId>,
+    objects: BTreeSet<ObjectId>,
+    misses: bool,
+    fell_back: bool,
 }

@@ -28,7 +28,7 @@ mod visible_set;
 
 pub use doors::Doors;
 pub use image::{Image, follow_reflections};
-pub use method::{Method, Scratch, UnknownMethod};
+pub use method::{Budget, Method, Scratch, UnknownMethod};
 pub use source::{CellSource, MirrorPiece, PortalEdge, StabStep};
 pub use subgraph::VisibleSubgraph;
 pub use table::TableCells;

@@ -149,7 +149,8 @@ fn compare(cells: &Cells, frames: &[Kept], how: MoverOptions, kind: Kind, things
     let mut n_seen = 0;
     for (k, kept) in frames.iter().enumerate() {
         let now = k as f64 / RATE;
-        let frame = Frame { seen: &kept.seen, at: &[], answer: kept.answer, images: &[], ahead: &[] };
+        let frame =
+            Frame { seen: &kept.seen, at: &[], answer: kept.answer, method: Method::Exact, images: &[], ahead: &[] };
         let start = Instant::now();
         let reported = movers.frame(now, &frame, &mut |id: MoverId| things[id.slot()].0.at(now)).expect("time goes on");
         ours.push(start.elapsed());

@@ -4,7 +4,7 @@ use crate::coarse::CoarseVisibility;
 use crate::predict::Path;
 use crate::prefetch::{Prefetcher, Prepare};
 use sightlines_eye_to_cell::{
-    CellSource, Doors, Image, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections,
+    Budget, CellSource, Doors, Image, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer, PortalId};
 use std::fmt;
@@ -21,6 +21,9 @@ pub struct WalkOptions {
     pub places_per_frame: u32,
     /// Maximum number of reflections in a row; 0 for no mirrors.
     pub bounces: usize,
+    /// Work that the queries of a frame may do together, those in mirrors included; beyond it the exact method's answer is
+    /// that of the incident portals, which is never less ([`Frame::method`]).
+    pub steps: Budget,
     /// Whether subgraphs are prepared on another thread. Otherwise each frame prepares those that it requests before it
     /// returns: such a frame waits. For measurements that have to be repeatable, and for targets without threads.
     pub has_thread: bool,
@@ -28,14 +31,21 @@ pub struct WalkOptions {
 
 impl Default for WalkOptions {
     fn default() -> Self {
-        Self { budget: 64 << 20, frames_ahead: 60, places_per_frame: 4, bounces: 0, has_thread: true }
+        Self {
+            budget: 64 << 20,
+            frames_ahead: 60,
+            places_per_frame: 4,
+            bounces: 0,
+            steps: Budget::UNLIMITED,
+            has_thread: true,
+        }
     }
 }
 
 /// How a frame's answer relates to the method's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// It is the method's answer.
+    /// It is the answer of [`Frame::method`].
     Full,
     /// Something was not prepared yet: the cells and objects are a superset of the method's. What is seen in mirrors is
     /// incomplete.
@@ -53,6 +63,9 @@ pub struct Frame<'a> {
     pub at: &'a [CellId],
     /// How that relates to the method's answer.
     pub answer: Answer,
+    /// The method that answered: the one that was asked for, or the coarsest that a query of the frame fell back to, in mirrors
+    /// too, as [`WalkOptions::steps`] were spent.
+    pub method: Method,
     /// What is seen in mirrors, if [`WalkOptions::bounces`] is above 0. Complete only with [`Answer::Full`]; otherwise
     /// anything may be seen in any mirror, listed or not.
     pub images: &'a [Image],
@@ -72,6 +85,8 @@ pub struct WalkCounters {
     pub late: u64,
     /// Frames with [`Answer::Outside`].
     pub outside: u64,
+    /// Frames with a coarser [`Frame::method`] than was asked for; repeated ones count again.
+    pub fell_back: u64,
 }
 
 /// Prepares subgraphs from a source.
@@ -121,6 +136,8 @@ struct Last {
     view: View,
     method: Method,
     answer: Answer,
+    /// Who answered.
+    by: Method,
     doors_changed: bool,
 }
 
@@ -156,10 +173,10 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         let repeats = |last: &Last| {
             last.answer != Answer::Late && !last.doors_changed && last.method == method && last.view == *view
         };
-        let answer = match &self.last {
+        let (answer, by) = match &self.last {
             Some(last) if repeats(last) => {
                 self.counters.repeated += 1;
-                last.answer
+                (last.answer, last.by)
             }
             _ => self.look(view, method),
         };
@@ -169,10 +186,13 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
             Answer::Late => self.counters.late += 1,
             Answer::Outside => self.counters.outside += 1,
         }
-        Frame { seen: &self.seen, at: &self.at, answer, images: &self.images, ahead: &self.wishes }
+        self.counters.fell_back += u64::from(by < method);
+        Frame { seen: &self.seen, at: &self.at, answer, method: by, images: &self.images, ahead: &self.wishes }
     }
 
-    fn look(&mut self, view: &View, method: Method) -> Answer {
+    fn look(&mut self, view: &View, method: Method) -> (Answer, Method) {
+        self.scratch.allow(self.options.steps);
+        let mut by = method;
         let (n_cells, n_objects) = (self.resident.n_cells(), self.resident.n_objects());
         self.seen.clear(n_cells, n_objects);
         self.images.clear();
@@ -187,7 +207,9 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         };
         for &cell in &self.at {
             match self.subgraphs.get(cell) {
-                Some(subgraph) => method.look(&subgraph, view, &self.doors, &mut self.scratch, &mut self.seen),
+                Some(subgraph) => {
+                    by = by.min(method.look(&subgraph, view, &self.doors, &mut self.scratch, &mut self.seen));
+                }
                 None => {
                     answer = Answer::Late;
                     coarse(&self.resident, cell, &mut self.seen);
@@ -215,6 +237,9 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
                 sizes,
                 subgraph,
             );
+            if self.images.iter().any(|image| image.fell_back) {
+                by = by.min(Method::IncidentPortals);
+            }
             if self.images.iter().any(|image| !image.complete) {
                 answer = Answer::Late;
             }
@@ -222,11 +247,11 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         match &mut self.last {
             Some(last) => {
                 last.view.clone_from(view);
-                (last.method, last.answer, last.doors_changed) = (method, answer, false);
+                (last.method, last.answer, last.by, last.doors_changed) = (method, answer, by, false);
             }
-            none => *none = Some(Last { view: view.clone(), method, answer, doors_changed: false }),
+            none => *none = Some(Last { view: view.clone(), method, answer, by, doors_changed: false }),
         }
-        answer
+        (answer, by)
     }
 
     /// Requests the subgraphs of the eye's cells, of cells with mirrors in view, and of the cells ahead.

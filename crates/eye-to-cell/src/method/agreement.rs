@@ -36,7 +36,7 @@ fn door(axis: usize, at: [usize; 3], [low, high]: [[u8; 2]; 2]) -> PortalRecord 
 }
 
 /// Every wall has a door from the first numbers to the second ones, wholly open for equal ones.
-fn block(doors: &[[u8; 4]]) -> Table {
+pub(super) fn block(doors: &[[u8; 4]]) -> Table {
     let mut cells = Vec::new();
     let mut portals = Vec::new();
     let mut chosen = doors.iter().cycle();
@@ -57,7 +57,7 @@ fn block(doors: &[[u8; 4]]) -> Table {
 }
 
 /// The same in the plane, with `side` squares along each side.
-fn plan(doors: &[[u8; 4]], side: usize) -> Table {
+pub(super) fn plan(doors: &[[u8; 4]], side: usize) -> Table {
     let mut cells = Vec::new();
     let mut portals = Vec::new();
     let mut chosen = doors.iter().cycle();

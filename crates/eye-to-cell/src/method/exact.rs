@@ -1,9 +1,9 @@
 //! The exact method: all sequences of portals that the eye looks through.
 
 use super::Scratch;
+use super::budget::CLIP;
 use super::missing::{list_missing, meets};
 use super::query::{Query, keep_mirrors};
-use super::reach;
 use super::sweep::sweep;
 use crate::front::Facing;
 use crate::trees::NO_NODE;
@@ -36,20 +36,28 @@ pub(crate) struct Frame {
     first_side: u32,
 }
 
-/// Keeps what a line from the eye leads to, through open portals, within the view; within rounding.
-pub(super) fn exact(query: &mut Query<'_>) {
+/// Keeps what a line from the eye leads to, through open portals, within the view; within rounding. `false` if that is too
+/// much work: then all is kept that the incident portals lead to.
+pub(super) fn exact(query: &mut Query<'_>) -> bool {
     list_missing(query);
     let n_reflections = query.seen.reflections.len();
     let ways: [fn(&mut Query<'_>) -> bool; 3] =
         [|query| by_sequences(query, MOST_STEPS), sweep, |query| by_sequences(query, MOST_STEPS_WITHOUT_ORDER)];
     for way in ways {
         if way(query) {
-            return;
+            return true;
         }
         // The next way finds all mirrors anew.
         query.seen.reflections.truncate(n_reflections);
+        if query.scratch.work.is_spent() {
+            break;
+        }
     }
-    reach::incident(query);
+    // They are known already.
+    for k in 0..query.scratch.wanted.list().len() {
+        query.keep(query.scratch.wanted.list()[k]);
+    }
+    false
 }
 
 /// Looks along the sequences of portals, at `most` portals at most; `false` if there are more. What was kept until
@@ -85,7 +93,8 @@ impl<'q, 'a> Search<'q, 'a> {
         );
         while let Some((way, node)) = self.next_way() {
             self.query.scratch.n_steps += 1;
-            if self.query.scratch.n_steps > limit {
+            self.query.scratch.work.take(CLIP);
+            if self.query.scratch.n_steps > limit || self.query.scratch.work.is_spent() {
                 return false;
             }
             self.step(way, node);
@@ -152,7 +161,7 @@ impl<'q, 'a> Search<'q, 'a> {
             }
         };
         let Query { subgraph, view, scratch, seen, .. } = &mut *self.query;
-        if passes && meets(&mut scratch.missing, &scratch.sides[end..], subgraph, view, seen) {
+        if passes && meets(&mut scratch.missing, &mut scratch.work, &scratch.sides[end..], subgraph, view, seen) {
             self.enter(way.to, way.portal, node, end as u32);
         } else {
             scratch.sides.truncate(end);

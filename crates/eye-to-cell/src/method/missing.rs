@@ -3,6 +3,7 @@
 //! The incident portals' answer holds all that can be seen. Once all of it is found there is nothing more to look
 //! for, and a cone that meets nothing of what is missing need not be followed.
 
+use super::budget::Work;
 use super::query::{Query, excluded};
 use super::reach;
 use crate::side::Side;
@@ -29,6 +30,7 @@ pub(super) fn list_missing(query: &mut Query<'_>) {
     for k in 0..query.scratch.wanted.list().len() {
         let cell = query.scratch.wanted.list()[k];
         query.scratch.missing.push(Missing::Cell(cell));
+        query.scratch.work.take((1 + subgraph.ways_of(cell).len() + subgraph.objects_of(cell).len()) as u64);
         if !subgraph.mirrors_of(cell).is_empty() {
             query.scratch.missing.push(Missing::Mirror(cell));
         }
@@ -43,6 +45,7 @@ pub(super) fn list_missing(query: &mut Query<'_>) {
 /// Whether a cone may meet anything that is missing. Strikes off what was found.
 pub(super) fn meets(
     missing: &mut Vec<Missing>,
+    work: &mut Work,
     cone: &[Side],
     subgraph: &VisibleSubgraph,
     view: &View,
@@ -50,6 +53,7 @@ pub(super) fn meets(
 ) -> bool {
     let mut k = 0;
     while let Some(&item) = missing.get(k) {
+        work.take(1);
         let (found, bounds) = match item {
             Missing::Cell(cell) => (seen.has_cell(subgraph.cells[cell as usize]), &subgraph.bounds[cell as usize]),
             Missing::Object(object) => {

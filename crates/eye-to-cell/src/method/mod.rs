@@ -1,5 +1,6 @@
 //! The methods: from what a cell may see to what a viewer in it sees.
 
+mod budget;
 mod clip;
 mod exact;
 mod missing;
@@ -13,6 +14,8 @@ use crate::side::Side;
 use crate::subgraph::VisibleSubgraph;
 use crate::view::View;
 use crate::visible_set::VisibleSet;
+pub use budget::Budget;
+use budget::Work;
 use clip::Clipper;
 use exact::Frame;
 use missing::Missing;
@@ -58,6 +61,8 @@ pub struct Scratch {
     pub(crate) frames: Vec<Frame>,
     /// Steps of the exact method since this was made.
     pub(crate) n_steps: u64,
+    /// What is left to the queries.
+    pub(crate) work: Work,
 }
 
 impl Scratch {
@@ -69,6 +74,17 @@ impl Scratch {
     /// Portals that the exact method has looked at, of all queries together.
     pub fn n_steps(&self) -> u64 {
         self.n_steps
+    }
+
+    /// What all queries from here on may do together, until the next call; [`Budget::UNLIMITED`] at first. Once a frame, as a
+    /// rule. A query that finds nothing left, or comes to the end of it, takes the answer of the incident portals.
+    pub fn allow(&mut self, budget: Budget) {
+        self.work = Work::of(budget);
+    }
+
+    /// What is left of that.
+    pub fn left(&self) -> Budget {
+        Budget::steps(self.work.left())
     }
 }
 
@@ -93,7 +109,7 @@ pub enum Method {
     IncidentPortals,
     /// Those to which a line leads from the eye, through portals, within the view; within rounding. The cost is that of
     /// the parts into which the cells' edges cut what is seen. Where that is out of all proportion, the answer is that
-    /// of the incident portals; no scene that was measured came to that.
+    /// of the incident portals; no scene that was measured came to that without a [`Budget`].
     Exact,
 }
 
@@ -119,6 +135,10 @@ impl Method {
     ///
     /// `seen` has room for the table's cells and objects ([`VisibleSet::clear`]). On the border between cells, look once with
     /// the subgraph of each of them. Allocates nothing once `scratch` and `seen` are warm, but for mirrors.
+    ///
+    /// Returns the method whose answer was added: this one, or the incident portals where the exact method had more to do than
+    /// [`Scratch::allow`] lets it. That answer contains the exact one, and is within the coarser one: of a view wider than half a
+    /// turn, one half may still be exact.
     pub fn look(
         self,
         subgraph: &VisibleSubgraph,
@@ -126,23 +146,30 @@ impl Method {
         doors: &Doors,
         scratch: &mut Scratch,
         seen: &mut VisibleSet,
-    ) {
+    ) -> Self {
         let turned = subgraph.frame.map(|frame| view.in_frame(&frame));
         let view = turned.as_ref().unwrap_or(view);
         if self == Self::CellToCell {
-            return query::all(subgraph, view, seen);
+            query::all(subgraph, view, seen);
+            return self;
         }
+        let mut answered = self;
         for part in view.parts() {
             let mut query = Query::new(subgraph, view, part, doors, scratch, seen);
             match self {
                 Self::CellToCell | Self::DisjointCell => reach::disjoint(&mut query),
                 Self::ConnectedComponent => reach::connected(&mut query),
                 Self::IncidentPortals => reach::incident(&mut query),
-                Self::Exact => exact::exact(&mut query),
+                Self::Exact => {
+                    if !exact::exact(&mut query) {
+                        answered = Self::IncidentPortals;
+                    }
+                }
             }
             query.keep_apart_cells();
             query.keep_loose_objects();
         }
+        answered
     }
 }
 
@@ -167,6 +194,8 @@ impl FromStr for Method {
 
 #[cfg(test)]
 mod agreement;
+#[cfg(test)]
+mod bounded;
 
 #[cfg(test)]
 mod tests {

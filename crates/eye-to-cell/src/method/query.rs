@@ -134,6 +134,7 @@ impl<'a> Query<'a> {
     /// A cone has left out those sides of the view that its last portal makes needless, and a box may reach beyond the
     /// portal; so the view is tested as well.
     pub(super) fn keep_objects_in(&mut self, cell: u32, cone: &[Side]) {
+        self.scratch.work.take(self.subgraph.objects_of(cell).len() as u64);
         for &object in self.subgraph.objects_of(cell) {
             let id = self.subgraph.objects[object as usize];
             if !self.seen.has_object(id)

@@ -12,6 +12,7 @@
 //! up however often it is done.
 
 use super::Scratch;
+use super::budget::{CLIP, JOIN, Work};
 use super::clip::MOST_CORNERS;
 use super::missing::meets;
 use super::query::{Query, keep_mirrors};
@@ -111,7 +112,7 @@ impl Pieces {
     }
 
     /// Adds a piece of a way into `cell`, put together with others of the way as long as that is convex.
-    fn add(&mut self, cell: u32, way: u32, corners: &[Vector], sides: &[Side], same: f64) {
+    fn add(&mut self, (cell, way): (u32, u32), corners: &[Vector], sides: &[Side], same: f64, work: &mut Work) {
         let (mut whole, mut spare) = (std::mem::take(&mut self.whole), std::mem::take(&mut self.spare));
         whole.0.clear();
         if self.planar {
@@ -125,6 +126,7 @@ impl Pieces {
         let mut at = self.last_of_way[way as usize];
         while at != NONE {
             let piece = self.pieces[at as usize];
+            work.take(JOIN);
             if !piece.joined && self.join(&piece, &whole, &mut spare, same) {
                 self.pieces[at as usize].joined = true;
                 std::mem::swap(&mut whole, &mut spare);
@@ -236,7 +238,7 @@ fn shared_edge(p: &[Vector], q: &[Vector], same: f64) -> Option<(usize, usize)> 
 }
 
 /// Keeps what a line from the eye leads to among the wanted cells; `false` if there is no order from front to back,
-/// or too many pieces. What was kept until then is right.
+/// or too many pieces, or too much work. What was kept until then is right.
 pub(super) fn sweep(query: &mut Query<'_>) -> bool {
     sweep_within(query, MOST_PIECES)
 }
@@ -280,7 +282,7 @@ impl Sweep<'_, '_> {
         ready.extend(all.iter().copied().filter(|&cell| self.pieces.to_come[cell as usize] == 0));
         let mut n_done = 0;
         while let Some(cell) = ready.pop() {
-            if self.pieces.pieces.len() > self.most {
+            if self.pieces.pieces.len() > self.most || self.query.scratch.work.is_spent() {
                 break;
             }
             n_done += 1;
@@ -296,7 +298,7 @@ impl Sweep<'_, '_> {
             }
         }
         self.query.scratch.pending = ready;
-        n_done == n_wanted
+        n_done == n_wanted && !self.query.scratch.work.is_spent()
     }
 
     /// Whether lines from the eye may go by this way, into a cell that is wanted.
@@ -326,6 +328,9 @@ impl Sweep<'_, '_> {
                 for &way in &ways {
                     self.send(way, &cone);
                 }
+                if self.query.scratch.work.is_spent() {
+                    break;
+                }
             }
             at = piece.next;
         }
@@ -337,16 +342,17 @@ impl Sweep<'_, '_> {
         let Query { subgraph, view, scratch, seen, .. } = &mut *self.query;
         let LocalEdge { to, first_corner, n_corners, front, .. } = subgraph.ways[index as usize];
         scratch.n_steps += 1;
+        scratch.work.take(CLIP);
         let corners = subgraph.corners(first_corner, n_corners);
         match front.facing(corners, view.eye, view.slack) {
             Facing::Behind => {}
             Facing::Before if n_corners as usize <= MOST_SIDES => {
                 scratch.cone.clear();
-                let Scratch { clipper, cone: narrowed, missing, .. } = &mut **scratch;
+                let Scratch { clipper, cone: narrowed, missing, work, .. } = &mut **scratch;
                 if let Some(part) = clipper.narrow_part(eye, corners, cone, narrowed)
-                    && meets(missing, narrowed, subgraph, view, seen)
+                    && meets(missing, work, narrowed, subgraph, view, seen)
                 {
-                    self.pieces.add(to, index, part, narrowed, eye.reach.radius * SAME);
+                    self.pieces.add((to, index), part, narrowed, eye.reach.radius * SAME, work);
                 }
             }
             // The portal does not narrow the cone; without corners it is never put together with others.

@@ -1,6 +1,6 @@
 //! A viewer walks along a row of rooms: with everything in memory, and with sources that are late, fail, or are gone.
 
-use sightlines_eye_to_cell::{CellSource, Method, MirrorPiece, PortalEdge, StabStep, TableCells, View};
+use sightlines_eye_to_cell::{Budget, CellSource, Method, MirrorPiece, PortalEdge, StabStep, TableCells, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, Frame, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord, PortalId,
@@ -385,5 +385,40 @@ fn frames_without_a_thread_prepare_what_they_request() {
         assert_eq!(*answer, Answer::Full, "frame {k}");
         let full = until_full(&mut twin, &looking_right(0.5 + 0.08 * f64::from(k)), Method::Exact);
         assert_eq!(cells.iter().copied().collect::<BTreeSet<u32>>(), full.0, "frame {k}");
+    }
+}
+
+/// A frame that is too much work says so, is counted, and shows no less; with all the work there is, it is the method's.
+#[test]
+fn frames_fall_back_and_say_so() {
+    let table = rooms(12);
+    let frames = |steps: Budget, method: Method| {
+        let (source, gate) = slow(&table, None);
+        gate.open();
+        let options = WalkOptions { has_thread: false, steps, ..WalkOptions::default() };
+        let mut walk = walk(&table, source, options);
+        let mut all = Vec::new();
+        for k in 0..40 {
+            // Each view twice: the second time the answer is repeated.
+            let view = looking_right(0.5 + 0.16 * f64::from(k / 2));
+            let frame = walk.frame(&view, method);
+            if frame.answer == Answer::Full {
+                all.push((k, frame.method, frame.seen.cells().iter().map(|c| c.0).collect::<BTreeSet<u32>>()));
+            }
+        }
+        (all, walk.counters())
+    };
+    let (exact, counters) = frames(Budget::UNLIMITED, Method::Exact);
+    assert!(exact.len() > 30 && exact.iter().all(|frame| frame.1 == Method::Exact) && counters.fell_back == 0);
+    assert_eq!(frames(Budget::FRAME, Method::Exact), (exact.clone(), counters));
+    let (coarser, counters) = frames(Budget::steps(0), Method::Exact);
+    assert!(coarser.iter().all(|frame| frame.1 == Method::IncidentPortals));
+    assert_eq!(counters.fell_back, coarser.len() as u64);
+    assert!(counters.repeated >= 10, "{counters:?}");
+    let cells = |list: &[(i32, Method, BTreeSet<u32>)]| list.iter().map(|f| (f.0, f.2.clone())).collect::<Vec<_>>();
+    let (incident, counters) = frames(Budget::steps(0), Method::IncidentPortals);
+    assert_eq!((cells(&coarser), counters.fell_back), (cells(&incident), 0));
+    for ((_, _, fine), (_, _, wide)) in exact.iter().zip(&coarser) {
+        assert!(fine.is_subset(wide));
     }
 }

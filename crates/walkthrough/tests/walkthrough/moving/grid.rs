@@ -249,5 +249,5 @@ pub(crate) fn see(seen: &mut VisibleSet, n_cells: usize, cells: impl IntoIterato
 }
 
 pub(crate) fn frame<'a>(seen: &'a VisibleSet, answer: Answer) -> Frame<'a> {
-    Frame { seen, at: &[], answer, images: &[], ahead: &[] }
+    Frame { seen, at: &[], answer, method: sightlines_eye_to_cell::Method::Exact, images: &[], ahead: &[] }
 }
