@@ -8,7 +8,7 @@ use sightlines_cells::Scene;
 use sightlines_formats::{SceneInfo, ViewCell, ViewCells};
 use sightlines_frame::{Areas, FoundAxes, MoveError, Moved, are_near, axes_near, find_axes};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::Frame;
+use sightlines_pvs::{Frame, GeometryDigest};
 
 /// Unit vectors of the scene.
 type Axes = [[f64; 3]; 3];
@@ -36,6 +36,8 @@ pub enum Along {
 pub struct Framed {
     /// The axes, and the premise.
     pub frame: Frame,
+    /// The digests of the scene as its file has it.
+    pub digest: GeometryDigest,
     /// What the axes are.
     pub along: Along,
     /// The scene along them.
@@ -84,7 +86,7 @@ impl Framed {
         };
         let is_upright = axes == PLAIN;
         let after = Areas::of(&moved.scene);
-        let framed = Self { frame, along, moved, before, after };
+        let framed = Self { frame, digest: scene.digest(), along, moved, before, after };
         // Of a scene with walls along the axes of its file, by default the cells alone are a reason.
         let has_walls = !is_stated && before.axial_share() > 1.0 - LEAST_GAIN;
         let stays = is_upright && (has_walls || framed.moved.n_snapped == 0) && !framed.moves_cells(&options.cells);
@@ -99,7 +101,7 @@ impl Framed {
     /// The options for the scene along the frame: given cells and the view region as boxes along it, around what they were.
     pub fn options<'o>(&self, options: &BakeOptions<'o>) -> BakeOptions<'o> {
         let mut framed = options.clone();
-        framed.frame = Some(self.frame);
+        (framed.frame, framed.digest) = (Some(self.frame), Some(self.digest));
         let region = |region: Aabb<3>| self.moved.box_around(&self.frame, &region, &PLAIN);
         framed.cut.view_region = framed.cut.view_region.map(region);
         if let CellsFrom::Boxes(given) = &mut framed.cells {

@@ -8,7 +8,7 @@ use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneOptions;
 use sightlines_multifocal::Split;
 use sightlines_progress::{Budget, Observer};
-use sightlines_pvs::Frame;
+use sightlines_pvs::{Frame, GeometryDigest};
 use sightlines_stabtree::SearchOptions;
 use std::fmt;
 use std::str::FromStr;
@@ -104,6 +104,8 @@ pub struct BakeOptions<'a> {
     /// Scenes: the frame that the scene is in already, with its cells and view region; the table states it. [`Framed`](crate::Framed)
     /// sets it.
     pub frame: Option<Frame>,
+    /// Scenes in a frame: the digests of the scene as its file has it; the table states them in place of those of the scene that was moved.
+    pub digest: Option<GeometryDigest>,
     /// Scenes: which portals sightlines go through.
     pub portals: PortalMode,
     /// Scenes: what decides.
@@ -133,6 +135,7 @@ impl Default for BakeOptions<'_> {
             chords: SearchOptions::default().chords,
             gap: Gap::default(),
             frame: None,
+            digest: None,
             portals: PortalMode::default(),
             method: SceneMethod::default(),
             cells: CellsFrom::default(),
@@ -153,6 +156,7 @@ impl fmt::Debug for BakeOptions<'_> {
             .field("cut", &self.cut)
             .field("gap", &self.gap)
             .field("frame", &self.frame)
+            .field("digest", &self.digest)
             .field("portals", &self.portals)
             .field("method", &self.method)
             .field("cells", &self.cells)

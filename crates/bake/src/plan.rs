@@ -83,6 +83,7 @@ pub fn bake_plan(plan: &Plan, options: &PlanBakeOptions<'_>) -> Result<BakedPlan
         info.push(("tau".to_owned(), options.tau.to_string()));
     }
     let mut parts = planar_parts(&graph, rows, TableOptions { objects: plan.objects(), kind, info });
+    parts.digest = Some(plan.digest());
     if !plan.mirrors().is_empty() {
         let mirrors = mirrors::of_plan(&graph, plan);
         (report.n_mirror_parts, report.n_lost_mirrors) = (mirrors.parts.len(), mirrors.n_lost);

@@ -55,7 +55,8 @@ pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> R
                 let budget = Allowance::all(budget);
                 bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget })?.into_any()
             };
-            baked.table = baked.table.with_frame(options.frame)?;
+            let digest = options.digest.or(baked.table.digest());
+            baked.table = baked.table.with_frame(options.frame)?.with_digest(digest);
             Ok(baked)
         }
         BakeInput::Portals(prt) => {

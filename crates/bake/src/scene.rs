@@ -193,6 +193,7 @@ pub(crate) fn scene_parts(
         cells,
         info,
         mirrors,
+        digest: Some(scene.digest()),
         ..TableParts::empty(3, TableKind::SceneKdTree { hidden_by: SIGHTLINES })
     }
 }

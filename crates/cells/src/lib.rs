@@ -10,6 +10,7 @@
 
 pub mod axial;
 pub mod convex;
+mod digest;
 pub mod graph;
 pub mod plan;
 pub mod planar;

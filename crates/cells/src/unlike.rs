@@ -29,6 +29,9 @@ pub enum Unlike {
         /// Its name in the scene.
         scene: String,
     },
+    /// The digest of the table is not that of the scene.
+    #[error("the scene has changed since the table was made")]
+    Changed,
     /// An object reaches out of its box.
     #[error("object {object}, {name:?}, is not where the table has it")]
     Box {

@@ -3,7 +3,7 @@
 use crate::output::{bytes, count, percent, seconds};
 use serde::Serialize;
 use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
-use sightlines::pvs::{Frame, Table};
+use sightlines::pvs::{Frame, GeometryDigest, Table};
 use sightlines::report::Summary;
 use std::fmt;
 use std::time::Duration;
@@ -72,6 +72,29 @@ impl fmt::Display for StabFacts {
         let each = self.n_stab_bytes as f64 / self.n_sequences.max(1) as f64;
         writeln!(f, "stab trees     {} sequences in {nodes} nodes with {edges} edges", self.n_sequences)?;
         writeln!(f, "               {}, {each:.3} bytes a sequence", bytes(self.n_stab_bytes as u64))
+    }
+}
+
+/// The digests of a table, as hexadecimal numbers.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct DigestFacts {
+    /// Of what hides.
+    hiding: String,
+    /// Of what is seen.
+    seen: String,
+}
+
+impl From<GeometryDigest> for DigestFacts {
+    fn from(digest: GeometryDigest) -> Self {
+        let [hiding, seen] = [digest.hiding, digest.seen].map(|number| format!("{number:032x}"));
+        Self { hiding, seen }
+    }
+}
+
+impl fmt::Display for DigestFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "digests        {} of what hides", self.hiding)?;
+        writeln!(f, "               {} of what can be seen", self.seen)
     }
 }
 

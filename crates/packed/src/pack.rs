@@ -3,7 +3,9 @@
 use crate::bytes::Writer;
 use crate::classes::{Classes, Distinct};
 use crate::error::PackError;
-use crate::format::{self, ENTRY, FIXED, MAGIC, MAJOR, OPTIONAL, SINCE_CELL_NAMES, SINCE_FRAME, SINCE_KIND};
+use crate::format::{
+    self, ENTRY, FIXED, MAGIC, MAJOR, OPTIONAL, SINCE_CELL_NAMES, SINCE_DIGEST, SINCE_FRAME, SINCE_KIND,
+};
 use crate::merge::{Sight, after, merge_order, merged};
 use crate::store::Store;
 use crate::write;
@@ -205,6 +207,9 @@ impl Frame {
         if let Some(frame) = &parts.frame {
             sections.push((format::FRAME, frame.to_bytes().to_vec()));
         }
+        if let Some(digest) = &parts.digest {
+            sections.push((format::DIGEST, digest.to_bytes().to_vec()));
+        }
         sections.push((format::INFO, write::info(&parts.info)));
         let mut stores = vec![
             Store::of_records(format::CELLS, &write::cells(parts))?,
@@ -264,8 +269,12 @@ impl Frame {
         out.0.extend(MAGIC);
         out.0.extend(MAJOR.to_le_bytes());
         let has_kind = ordered.iter().any(|(id, ..)| *id == format::KIND);
-        let has_frame = table.frame().is_some();
-        let needed = [(table.has_cell_names(), SINCE_CELL_NAMES), (has_kind, SINCE_KIND), (has_frame, SINCE_FRAME)];
+        let needed = [
+            (table.has_cell_names(), SINCE_CELL_NAMES),
+            (has_kind, SINCE_KIND),
+            (table.frame().is_some(), SINCE_FRAME),
+            (table.digest().is_some(), SINCE_DIGEST),
+        ];
         let minor = needed.into_iter().filter(|(there, _)| *there).map(|(_, since)| since).max().unwrap_or(0);
         out.0.extend(minor.to_le_bytes());
         out.u32(ordered.len() as u32);

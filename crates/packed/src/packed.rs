@@ -10,7 +10,7 @@ use crate::locate::PointLocation;
 use crate::source::Source;
 use sightlines_pvs::bits::ones;
 use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
-use sightlines_pvs::{Axis, CellId, Frame, FrameError, MirrorId, MirrorRecord, SectionId, TableKind};
+use sightlines_pvs::{Axis, CellId, Frame, FrameError, GeometryDigest, MirrorId, MirrorRecord, SectionId, TableKind};
 use std::sync::Arc;
 
 /// A packed table that is read piece by piece within a memory budget.
@@ -27,6 +27,7 @@ pub struct Packed<S: Source> {
     info: Vec<(String, String)>,
     kind: TableKind,
     frame: Option<Frame>,
+    digest: Option<GeometryDigest>,
     up: Option<Axis>,
     mirrors: Vec<MirrorRecord>,
     pub(crate) rows: RowStore,
@@ -221,6 +222,7 @@ impl<S: Source> Packed<S> {
             info,
             kind,
             frame: frame(&resident, head.dimension)?,
+            digest: digest(&resident)?,
             up,
             mirrors: mirrors(&resident, &head)?,
             rows,
@@ -270,6 +272,11 @@ impl<S: Source> Packed<S> {
     /// The axis that points up, in its positive direction; `None` if it is not known.
     pub fn up(&self) -> Option<Axis> {
         self.up
+    }
+
+    /// Digests of what the table was made of, as [`sightlines_pvs::Table::digest`].
+    pub const fn digest(&self) -> Option<GeometryDigest> {
+        self.digest
     }
 
     /// The axes along which the coordinates of the table are, as [`sightlines_pvs::Table::frame`].
@@ -439,6 +446,12 @@ fn frame(resident: &ResidentPart, dimension: u8) -> Result<Option<Frame>, Packed
     let bytes = section.bytes.try_into().map_err(|_| section.place.fail(Kind::Cut))?;
     let read = if dimension == 3 { Frame::from_bytes(bytes) } else { Err(FrameError::Plane) };
     read.map(Some).map_err(|error| section.place.fail(Kind::Table(error.into())))
+}
+
+fn digest(resident: &ResidentPart) -> Result<Option<GeometryDigest>, PackedError> {
+    let Some(section) = resident.find(format::DIGEST) else { return Ok(None) };
+    let bytes = section.bytes.try_into().map_err(|_| section.place.fail(Kind::Cut))?;
+    Ok(Some(GeometryDigest::from_bytes(bytes)))
 }
 
 fn mirrors(resident: &ResidentPart, head: &Head) -> Result<Vec<MirrorRecord>, PackedError> {

@@ -31,6 +31,7 @@ impl<S: Source> Packed<S> {
                 .map_err(|error| table_error(format::LOCATOR)(error.into()))?,
             up: self.up(),
             frame: self.frame().copied(),
+            digest: self.digest(),
             ..TableParts::empty(self.dimension(), self.kind())
         };
         if let Some(seen) = &self.seen {

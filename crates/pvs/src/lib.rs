@@ -13,6 +13,7 @@
 
 pub mod bits;
 mod check;
+pub mod digest;
 pub mod format;
 pub mod frame;
 mod id;
@@ -29,6 +30,7 @@ mod table;
 
 pub use bits::BitMatrix;
 pub use check::{Item, TableError};
+pub use digest::GeometryDigest;
 pub use format::{DecodeError, DecodeErrorKind, SectionId};
 pub use frame::{Frame, FrameError};
 pub use id::{CellId, MirrorId, ObjectId, PortalId};

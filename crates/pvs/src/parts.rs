@@ -1,7 +1,7 @@
 //! The parts of a table.
 
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
-use crate::{Axis, BitMatrix, Frame, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
+use crate::{Axis, BitMatrix, Frame, GeometryDigest, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
 
 /// The parts of a [`crate::Table`], not yet checked.
 ///
@@ -16,6 +16,8 @@ pub struct TableParts {
     pub up: Option<Axis>,
     /// In space: the axes along which all coordinates of the table are; `None`: those of the scene.
     pub frame: Option<Frame>,
+    /// Digests of what the table was made of, as the scene has it, before any frame; `None`: not known.
+    pub digest: Option<GeometryDigest>,
     /// The cells; their index is their id.
     pub cells: Vec<CellRecord>,
     /// The portals; may be empty, as no query uses them.
@@ -53,6 +55,7 @@ impl TableParts {
             kind,
             up: None,
             frame: None,
+            digest: None,
             cells: Vec::new(),
             portals: Vec::new(),
             rows: BitMatrix::default(),

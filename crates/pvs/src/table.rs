@@ -3,8 +3,8 @@
 use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
 use crate::{
-    Axis, CellId, CellSet, Frame, FrameError, Locator, ObjectId, PlaneTree, StabTrees, TableError, TableKind, bits,
-    side,
+    Axis, CellId, CellSet, Frame, FrameError, GeometryDigest, Locator, ObjectId, PlaneTree, StabTrees, TableError,
+    TableKind, bits, side,
 };
 
 /// Which cells of a scene can see each other: checked, and immutable.
@@ -82,6 +82,18 @@ impl Table {
         }
         self.parts.frame = frame;
         Ok(self)
+    }
+
+    /// Digests of the geometry that the table was made of; `None` if they are not known, as in older files.
+    pub fn digest(&self) -> Option<GeometryDigest> {
+        self.parts.digest
+    }
+
+    /// The same table with other digests of what it was made of.
+    #[must_use]
+    pub fn with_digest(mut self, digest: Option<GeometryDigest>) -> Self {
+        self.parts.digest = digest;
+        self
     }
 
     /// Whether cells can be found at points: not in a table of the clusters of a Quake map without planes.

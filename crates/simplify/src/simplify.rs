@@ -224,7 +224,10 @@ pub(crate) fn check_table(scene: &Scene, table: &Table) -> Result<(), SimplifyEr
         Ok::<_, Infallible>((record.name.clone(), Aabb { min: record.min, max: record.max }))
     };
     let Ok(found) = unlike(scene, table.dimension(), table.frame(), table.objects().len(), object);
-    found.map_or(Ok(()), |unlike| Err(SimplifyError::OtherScene(unlike)))
+    // Faces that the table hides may have come to light.
+    let has_changed = || table.digest().is_some_and(|digest| digest != scene.digest());
+    let unlike = found.or_else(|| has_changed().then_some(Unlike::Changed));
+    unlike.map_or(Ok(()), |unlike| Err(SimplifyError::OtherScene(unlike)))
 }
 
 /// Simplifies within the budget, given bounds on what faces intercept; `mesh` is that of the whole scene.

@@ -93,6 +93,12 @@ pub enum Violation {
         /// The portal.
         portal: usize,
     },
+    /// Geometry that is not what the table was made of, by its [digest](sightlines_pvs::GeometryDigest): the scene was changed since, however little. The other checks
+    /// tell whether it matters, as far as they go.
+    ChangedGeometry {
+        /// What was changed.
+        what: Geometry,
+    },
     /// Numbers of cells, portals or objects that are not those of the scene.
     Count {
         /// Of what.
@@ -121,7 +127,19 @@ pub enum Violation {
     },
 }
 
+/// A part of what is in a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Geometry {
+    /// What hides other things.
+    Hiding,
+    /// What can be seen.
+    Seen,
+}
+
 impl Violation {
+    /// The kind of [`Violation::ChangedGeometry`].
+    pub const CHANGED: &'static str = "changed-geometry";
+
     /// The kind, as one word with dashes.
     pub const fn kind(&self) -> &'static str {
         match self {
@@ -137,6 +155,7 @@ impl Violation {
             Self::MissingMirror { .. } => "missing-mirror",
             Self::MissingSequence { .. } => "missing-sequence",
             Self::UnlikePortal { .. } => "unlike-portal",
+            Self::ChangedGeometry { .. } => Self::CHANGED,
             Self::Count { .. } => "count",
             Self::ObjectName { .. } => "object-name",
             Self::ObjectBox { .. } => "object-box",
@@ -240,6 +259,13 @@ impl fmt::Display for Violation {
                 )
             }
             Self::UnlikePortal { portal } => write!(f, "portal {portal} is none of the scene"),
+            Self::ChangedGeometry { what } => {
+                let what = match what {
+                    Geometry::Hiding => "what hides",
+                    Geometry::Seen => "what can be seen",
+                };
+                write!(f, "{what} in the scene has changed since the table was made")
+            }
             Self::Count { what, table, scene } => write!(f, "the table has {table} {what}, the scene {scene}"),
             Self::ObjectName { object } => write!(f, "object {object} has another name in the scene"),
             Self::ObjectBox { object } => write!(f, "object {object} has another extent in the scene"),
@@ -267,6 +293,25 @@ impl Confirmed {
     /// The share of the visible pairs that were confirmed; 1 if there are none.
     pub fn share(&self) -> f64 {
         if self.visible == 0 { 1.0 } else { self.confirmed as f64 / self.visible as f64 }
+    }
+}
+
+/// Hidden pairs that as many random segments were shot at each, everywhere alike.
+///
+/// Each is a pair of a cell and a cell, or an object, of which each is next to something that is visible from the other. If any segment of a hidden pair is free, it passes
+/// such a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Sampled {
+    /// Number of pairs.
+    pub n_pairs: u64,
+    /// Segments for each of them.
+    pub n_each: u64,
+}
+
+impl Sampled {
+    /// The share of free segments from which on a pair is found in 99 of 100 runs: with n segments each, 1 - 0.01^(1/n); 1 if none were shot.
+    pub fn share_found(&self) -> f64 {
+        if self.n_each == 0 { 1.0 } else { -(0.01f64.ln() / self.n_each as f64).exp_m1() }
     }
 }
 
@@ -305,6 +350,8 @@ pub struct Findings {
     pub cells: Confirmed,
     /// Pairs of a cell and an object.
     pub objects: Confirmed,
+    /// Random segments at hidden pairs.
+    pub sampled: Sampled,
     /// What is no violation.
     pub remarks: Remarks,
     /// Why no rays were shot, if none were.
@@ -321,6 +368,13 @@ impl Findings {
     /// Whether nothing was found that a true table must not have.
     pub const fn is_true(&self) -> bool {
         self.n_violations == 0
+    }
+
+    /// Adds violations before all others.
+    pub(crate) fn add_first(&mut self, violations: impl IntoIterator<Item = Violation>) {
+        let n = self.violations.len();
+        violations.into_iter().for_each(|violation| self.add(violation));
+        self.violations.rotate_left(n);
     }
 
     /// Adds a violation, unless there are enough of its kind.

@@ -31,7 +31,8 @@ pub fn along_frame(table: &Table, scene: &Scene) -> Result<Option<(Table, Scene)
         _ => VerifyError::Range,
     })?;
     check_moves(scene, &moved.scene, frame)?;
-    let table = table.clone().with_frame(None).map_err(|_| VerifyError::Range)?;
+    // The digests are those of the scene as it was.
+    let table = table.clone().with_frame(None).map_err(|_| VerifyError::Range)?.with_digest(None);
     Ok(Some((table, moved.scene)))
 }
 

@@ -31,7 +31,7 @@ mod truth;
 mod walls;
 mod witness;
 
-pub use findings::{Confirmed, Findings, Remarks, Violation};
+pub use findings::{Confirmed, Findings, Geometry, Remarks, Sampled, Violation};
 pub use framed::along_frame;
 pub use options::VerifyOptions;
 pub use own::{LumpKind, OwnError, OwnSummary, OwnViolation, OwnVisibility};
@@ -47,7 +47,7 @@ use sightlines_pvs::Table;
 
 /// Checks a table against what is really there.
 ///
-/// First its structure, then random rays, then rays aimed at what the table hides, most suspicious first. Lists the
+/// First whether the scene is still what the table was made of, by the table's [digest](sightlines_pvs::GeometryDigest) if it has one; then its structure, then random rays, then rays aimed at what the table hides, most suspicious first. Lists the
 /// first [`VerifyOptions::MOST_VIOLATIONS`] violations of each kind, and stops shooting rays once there are that many.
 ///
 /// A table with a frame is checked along its axes, against the scene as [`along_frame`] moves it: that every corner is within the gap that the
@@ -61,11 +61,18 @@ use sightlines_pvs::Table;
 /// Cost: O(size of table and scene * log) for the structure; each ray visits what is near it.
 pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> Result<Findings, VerifyError> {
     truth.check_kind(table)?;
+    let mut findings = check(table, truth, options)?;
+    findings.add_first(structure::changes(table, truth));
+    Ok(findings)
+}
+
+/// Checks all but the digests.
+fn check(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> Result<Findings, VerifyError> {
     if let Truth::Scene(scene) = truth
         && let Some(&frame) = table.frame()
         && let Some((table, along)) = along_frame(table, scene)?
     {
-        let mut findings = verify(&table, &Truth::Scene(&along), options)?;
+        let mut findings = check(&table, &Truth::Scene(&along), options)?;
         framed::add_remarks(&table, [scene, &along], &frame, options, &mut findings)?;
         return Ok(findings);
     }

@@ -3,7 +3,7 @@
 use sightlines_cells::{CellGraph, Convex, Plan, Scene};
 use sightlines_geometry::Point3;
 use sightlines_progress::Cancelled;
-use sightlines_pvs::{Table, TableKind};
+use sightlines_pvs::{GeometryDigest, Table, TableKind};
 
 /// The scene that a table is to be true to.
 #[derive(Debug, Clone)]
@@ -104,6 +104,15 @@ pub enum VerifyError {
 impl Truth<'_> {
     const fn dimension(&self) -> u8 {
         if matches!(self, Self::Plan(_)) { 2 } else { 3 }
+    }
+
+    /// The digests that a table of it has.
+    pub(crate) fn digest(&self) -> GeometryDigest {
+        match self {
+            Self::Plan(plan) => plan.digest(),
+            Self::Scene(scene) => scene.digest(),
+            Self::Portals(graph) | Self::World(graph, _) => graph.digest(),
+        }
     }
 
     /// Refuses a table that cannot be of such a scene.

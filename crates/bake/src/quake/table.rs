@@ -31,6 +31,7 @@ pub(super) fn parts_of_clusters(prt: &Prt, graph: &CellGraph<Convex>, rows: BitM
         cells,
         info,
         up: Some(Axis::Z),
+        digest: Some(graph.digest()),
         ..TableParts::empty(3, TableKind::QuakePortalFile)
     }
 }

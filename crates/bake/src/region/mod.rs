@@ -238,6 +238,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     parts.info.sort();
     limit.iter().for_each(|limit| state_limit(&mut parts, limit));
     state_file(&mut parts, options.file);
+    parts.digest = Some(scene.digest());
     let table = Table::new(parts)?;
     let time = start.elapsed();
     let report = RegionReport {

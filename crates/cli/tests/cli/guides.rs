@@ -95,7 +95,11 @@ fn the_guide_for_blender_works() {
     let info = folder.run(&["info", "level.glb"]).expect(0).out;
     assert!(info.contains("classified by a name with noimp: Alarm-noimp"), "{info}");
     // The impostor: a table that takes glass for a wall is found by who knows better.
-    folder.run(&["verify", "before.pvs", "level.glb", "--see-through", "*glass*", "--rays", "20000"]).expect(1);
+    let check = ["verify", "before.pvs", "level.glb", "--see-through", "*glass*", "--rays", "20000"];
+    let found = folder.run(&check).expect(1).out;
+    for kind in ["changed-geometry: what hides", "hidden-"] {
+        assert!(found.contains(&format!("violation      {kind}")), "{found}");
+    }
 }
 
 #[test]

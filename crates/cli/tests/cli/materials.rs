@@ -65,7 +65,10 @@ fn glass_is_reported_and_hides_nothing() {
     folder.write("room.mtl", "newmtl wall\nnewmtl glass\n");
     folder.run(&[&build[..], &["blind.pvs"]].concat()).expect(0);
     folder.write("room.mtl", "newmtl wall\nnewmtl glass\nd 0.2\n");
-    folder.run(&["verify", "blind.pvs", "room.obj", "--rays", "2000"]).expect(1);
+    let found = folder.run(&["verify", "blind.pvs", "room.obj", "--rays", "2000"]).expect(1).out;
+    for kind in ["changed-geometry: what hides", "hidden-object"] {
+        assert!(found.contains(&format!("violation      {kind}")), "{found}");
+    }
     // Without its library nobody knows what is glass.
     std::fs::remove_file(folder.path("room.mtl")).unwrap();
     let run = folder.run(&[&build[..], &["none.pvs"]].concat()).expect(0);

@@ -4,10 +4,11 @@ use super::container::{self, Section, array};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::{Reader, read};
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, FRAME, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS, OBJECT_POLYGONS,
-    OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_from_bytes, kind_from_info, n_row_words,
-    planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, FRAME, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS,
+    OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_from_bytes, kind_from_info,
+    n_row_words, planes, stab,
 };
+use crate::digest::{DIGEST_LEN, GeometryDigest};
 use crate::frame::FRAME_LEN;
 use crate::locator::Node;
 use crate::{Axis, Frame, TableKind};
@@ -55,6 +56,7 @@ impl Table {
             kind,
             up,
             frame: sections.find(FRAME).map(|s| read(s, frame)).transpose()?,
+            digest: sections.find(DIGEST).map(|s| read(s, digest)).transpose()?,
             mirrors,
             object_polygons,
             cell_names,
@@ -293,6 +295,10 @@ fn frame(r: &mut Reader<'_>) -> Result<Frame, DecodeError> {
     let bytes = r.take(FRAME_LEN)?;
     let wrong = |error| r.fail(FRAME_LEN, Kind::Table(TableError::Frame(error)));
     Frame::from_bytes(&array(bytes, 0)).map_err(wrong)
+}
+
+fn digest(r: &mut Reader<'_>) -> Result<GeometryDigest, DecodeError> {
+    Ok(GeometryDigest::from_bytes(&array(r.take(DIGEST_LEN)?, 0)))
 }
 
 fn info(r: &mut Reader<'_>) -> Result<Vec<(String, String)>, DecodeError> {

@@ -3,8 +3,8 @@
 use super::container::{self, Payload};
 use super::writer::Writer;
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, FRAME, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS, PLANES,
-    POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_section, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, FRAME, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS,
+    PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_section, planes, stab,
 };
 use crate::locator::Node;
 use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectId, ObjectRecord, PortalRecord, Table, TableParts};
@@ -50,6 +50,9 @@ impl Table {
         }
         if let Some(frame) = &parts.frame {
             sections.push(section(FRAME, |out| out.0.extend(frame.to_bytes())));
+        }
+        if let Some(digest) = &parts.digest {
+            sections.push(section(DIGEST, |out| out.0.extend(digest.to_bytes())));
         }
         sections.push(section(INFO, |out| info(out, &parts.info)));
         container::write(&sections)

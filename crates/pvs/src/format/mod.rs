@@ -39,6 +39,7 @@
 //! | `CNAM`, optional | for each cell its name, as number of bytes and UTF-8 |
 //! | `KIND`, optional | what kind of table it is (`u32`): 0 not stated, 1 plan by k-d tree, 2 plan by triangulation, 3 scene by k-d tree, 4 scene with given cells, 5 Quake portal file, 6 Quake map; for scenes, what found the hidden (`u32`): 1 sight lines, plus 2 a from-region method, plus 4 if nothing is promised for eyes inside solid matter; the axis that points up (`u32`): 0 not known, 1 to 3 |
 //! | `FRAM` | the axes of the frame (3 each), the gap |
+//! | `DGST`, optional | digests of what hides and of what is seen in what the table was made of, 16 bytes each |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
 //! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are their boxes, a
@@ -49,7 +50,8 @@
 //! (new in 1.4), kind and axis are those that older programs left in `INFO` under the keys `source`, `subdivide`,
 //! `method` and `up` ([`kind_from_info`]), or unknown; a later minor version may add kinds, which a reader treats as
 //! not stated. Without a `FRAM` (new in 1.5) all coordinates are along the axes of the scene. Because it changes what coordinates mean,
-//! `FRAM` is not optional for a reader: one that does not have it refuses the file. Files without it are as before.
+//! `FRAM` is not optional for a reader: one that does not have it refuses the file. Files without it are as before. A missing
+//! `DGST` (new in 1.6) means that the digests are unknown.
 //!
 //! # Stab trees
 //!
@@ -99,7 +101,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the smallest version with all the sections of a table, so
 /// that files without newer sections stay unchanged.
-pub const MINOR: u16 = 5;
+pub const MINOR: u16 = 6;
 
 const CELLS: SectionId = SectionId(*b"CELL");
 const POLYGONS: SectionId = SectionId(*b"POLY");
@@ -116,6 +118,7 @@ const STAB: SectionId = SectionId(*b"STAB");
 const CELL_NAMES: SectionId = SectionId(*b"CNAM");
 const KIND: SectionId = SectionId(*b"KIND");
 const FRAME: SectionId = SectionId(*b"FRAM");
+const DIGEST: SectionId = SectionId(*b"DGST");
 const INFO: SectionId = SectionId(*b"INFO");
 
 /// The minor version that added rows of objects.
@@ -128,9 +131,11 @@ const SINCE_CELL_NAMES: u16 = 3;
 const SINCE_KIND: u16 = 4;
 /// The minor version that added frames.
 const SINCE_FRAME: u16 = 5;
+/// The minor version that added digests of the geometry.
+const SINCE_DIGEST: u16 = 6;
 
 /// The sections of this version, whether readers may skip them, and the minor version that added each, which is a constant.
-const KNOWN: [(SectionId, bool, u16); 16] = [
+const KNOWN: [(SectionId, bool, u16); 17] = [
     (CELLS, false, 0),
     (POLYGONS, true, 0),
     (PORTALS, true, 0),
@@ -146,6 +151,7 @@ const KNOWN: [(SectionId, bool, u16); 16] = [
     (CELL_NAMES, true, SINCE_CELL_NAMES),
     (KIND, true, SINCE_KIND),
     (FRAME, false, SINCE_FRAME),
+    (DIGEST, true, SINCE_DIGEST),
     (INFO, false, 0),
 ];
 

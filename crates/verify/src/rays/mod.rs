@@ -1,5 +1,6 @@
 //! Rays against the real geometry: random ones, then ones that are aimed at what the table hides.
 
+mod sampled;
 mod seen;
 mod suspects;
 mod trees;
@@ -65,7 +66,7 @@ struct Part<'a> {
 
 impl<'a> Part<'a> {
     /// One part after the other, as long as it costs.
-    fn all(observer: &'a dyn Observer, costs: [f64; 4]) -> [Self; 4] {
+    fn all(observer: &'a dyn Observer, costs: [f64; 5]) -> [Self; 5] {
         let all = costs.iter().sum::<f64>().max(1.0);
         let mut begin = 0.0;
         costs.map(|cost| {
@@ -101,8 +102,14 @@ fn shoot_all<R: RayOracle>(
     let n_borders = ways.as_ref().map_or(0, |_| table.n_cells());
     // About how many rays they cost: some thirty short segments for the border of a cell.
     let tries = f64::from(options.tries);
-    let costs =
-        [32.0 * n_borders as f64, absent.len() as f64 * tries, options.rays as f64, options.pairs as f64 * tries];
+    let costs = [
+        32.0 * n_borders as f64,
+        absent.len() as f64 * tries,
+        options.rays as f64,
+        options.pairs as f64 * tries,
+        // Most end at the first border.
+        if follow { f64::from(options.segments) * table.n_cells() as f64 } else { 0.0 },
+    ];
     let parts = options.progress.map(|observer| Part::all(observer, costs));
     let part = |k: usize| parts.as_ref().map(|parts| &parts[k] as &dyn Observer);
     let mut astray: BTreeMap<(&'static str, Vec<CellId>), Violation> = BTreeMap::new();
@@ -147,6 +154,13 @@ fn shoot_all<R: RayOracle>(
         });
         let of_cells = suspects.iter().filter(|s| matches!(s.target, Target::Cell(_))).count() as u64;
         (findings.cells.aimed, findings.objects.aimed) = (of_cells, suspects.len() as u64 - of_cells);
+    }
+    if follow && hidden.len() < VerifyOptions::MOST_VIOLATIONS {
+        let (found, sampled) = sampled::shoot(world, table, &seen, ways.as_ref(), options, part(4))?;
+        findings.sampled = sampled;
+        found.into_iter().for_each(|s| {
+            hidden.entry(key(&s)).or_insert(s);
+        });
     }
     tally.write(&seen, findings);
     findings.remarks.cells_without_places = (0..table.n_cells() as u32)

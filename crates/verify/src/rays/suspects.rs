@@ -22,13 +22,23 @@ pub(super) struct Suspect {
 
 impl Suspect {
     fn new(from: u32, target: Target, score: f64) -> Self {
-        let other = match target {
-            Target::Cell(to) => u64::from(to.0),
-            Target::Object(object) => (1 << 31) | u64::from(object),
-        };
-        let hash = Random::new((u64::from(from) << 32) | other).bits();
-        Self { from: CellId(from), target, hash, is_surrounded: score >= 2.0, score: (score * 65536.0) as u32 }
+        Self {
+            from: CellId(from),
+            target,
+            hash: hash_of(from, target),
+            is_surrounded: score >= 2.0,
+            score: (score * 65536.0) as u32,
+        }
     }
+}
+
+/// A number for a pair, as good as random.
+pub(super) fn hash_of(from: u32, target: Target) -> u64 {
+    let other = match target {
+        Target::Cell(to) => u64::from(to.0),
+        Target::Object(object) => (1 << 31) | u64::from(object),
+    };
+    Random::new((u64::from(from) << 32) | other).bits()
 }
 
 /// Up to `n` hidden pairs, the most suspicious first; all of them if there are no more. Half of them are pairs of a cell and an object, if

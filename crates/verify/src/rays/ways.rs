@@ -6,7 +6,7 @@ use crate::findings::Violation;
 use crate::real::{RayOracle, clip, extreme, scale_of, sub};
 use crate::sight::{Sight, Target};
 use sightlines_geometry::{Aabb, Point3, Random};
-use sightlines_pvs::{CellId, PortalId, PortalRecord, Table};
+use sightlines_pvs::{CellId, ObjectId, PortalId, PortalRecord, Table};
 
 /// Portals that one segment passes at most.
 const LONGEST: usize = 4096;
@@ -106,6 +106,35 @@ impl<'t> Ways<'t> {
             cell = if forward { b } else { a };
         }
         Way::Open
+    }
+
+    /// Whether the portals of the table may lead along a segment to its end, or to a cell that its object touches: no only where the segment leaves a cell and comes
+    /// near no portal there, which for a free one the borders of that cell would have shown.
+    pub(super) fn may_lead(&self, &Sight { from, target, segment: [p, q] }: &Sight) -> bool {
+        let (mut cell, mut last) = (from, None);
+        let d = sub(q, p);
+        for _ in 0..LONGEST {
+            if target == Target::Cell(cell) {
+                return true;
+            }
+            let is_near = |&&id: &&PortalId| {
+                last != Some(id) && clip(p, d, &self.boxes[id.idx()], [0.0, 1.0], self.slack).is_some()
+            };
+            let mut near = self.portals_of[cell.idx()].iter().filter(is_near);
+            let portal = match (near.next(), near.next()) {
+                (Some(&id), None) => id,
+                (None, _) => {
+                    return match target {
+                        Target::Cell(_) => false,
+                        Target::Object(object) => self.table.objects_of(cell).binary_search(&ObjectId(object)).is_ok(),
+                    };
+                }
+                _ => return true,
+            };
+            let [a, b] = self.portal(portal).cells;
+            (cell, last) = (if a == cell { b } else { a }, Some(portal));
+        }
+        true
     }
 
     /// A portal that a cell lacks where its border is open.

@@ -222,6 +222,13 @@ impl RayOracle for PortalWorld {
         None
     }
 
+    const SAMPLES: [bool; 2] = [false, false];
+
+    /// Nothing: clusters that are known by their portals have no places.
+    fn sample(&self, _: u32, _: Target, _: &mut Random, _: &dyn Fn(&Sight) -> bool) -> Option<Sight> {
+        None
+    }
+
     fn neighbours(&self) -> &[Vec<u32>] {
         &self.next
     }

@@ -31,6 +31,21 @@ pub(crate) trait RayOracle: Sync {
     /// Looks for a sight from a cell to a cell or an object, with about so many rays; what is found is proven.
     fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<Sight>;
 
+    /// Whether [`RayOracle::sample`] knows places in cells, and on objects.
+    const SAMPLES: [bool; 2];
+
+    /// Whether a random segment from a cell to a cell or an object is free: every place of the cells alike, by volume or area, and every place on the object. What
+    /// is found is proven.
+    ///
+    /// * `may_lead`: rules out segments that cannot be free
+    fn sample(
+        &self,
+        from: u32,
+        target: Target,
+        random: &mut Random,
+        may_lead: &dyn Fn(&Sight) -> bool,
+    ) -> Option<Sight>;
+
     /// The cells next to each cell, ascending.
     fn neighbours(&self) -> &[Vec<u32>];
 
@@ -64,6 +79,13 @@ pub(crate) fn extreme(random: &mut Random) -> f64 {
             if end == 2 { near } else { 1.0 - near }
         }
     }
+}
+
+/// A random number from 0 to a sum, as the place in the sums of weights up to each that it falls on; `None` if all weights are 0.
+pub(crate) fn chosen(sums: &[f64], random: &mut Random) -> Option<usize> {
+    let all = sums.last().copied().filter(|&all| all > 0.0)?;
+    let at = all * random.unit();
+    Some(sums.partition_point(|&sum| sum <= at).min(sums.len() - 1))
 }
 
 /// The part of the line `p + t d` in a box, as a range of `t` within the given one; rounded. `None` if there is none.

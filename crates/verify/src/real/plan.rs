@@ -1,6 +1,6 @@
 //! Plans: opaque lines stop sight.
 
-use super::{RayOracle, at, clip, extreme, neighbours_of, scale_of};
+use super::{RayOracle, at, chosen, clip, extreme, neighbours_of, scale_of};
 use crate::borders::middles;
 use crate::exact::{segments_apart, snapped, strictly_in_polygon};
 use crate::shapes::{ends, outlines};
@@ -158,6 +158,25 @@ impl PlanWorld {
         (low < high).then_some([low, high])
     }
 
+    /// A place of a cell, each as likely as another; `None` if rounding led out of it.
+    fn any_place(&self, cell: u32, random: &mut Random) -> Option<Point2> {
+        let corners = &self.cells[cell as usize];
+        let first = *corners.first()?;
+        let fan = || corners.windows(2).skip(1).map(|w| [w[0] - first, w[1] - first]);
+        let mut sum = 0.0;
+        let sums: Vec<f64> = fan()
+            .map(|[x, y]| {
+                sum += x.perp_dot(y).abs();
+                sum
+            })
+            .collect();
+        let [x, y] = fan().nth(chosen(&sums, random)?)?;
+        let (u, v) = (random.unit(), random.unit());
+        let p = first + x * u.min(v) + y * (1.0 - u.max(v));
+        let [x, y, _] = snapped([p.x, p.y, 0.0]);
+        Some(Point2::new(x, y)).filter(|&p| self.is_inside(cell, p))
+    }
+
     fn sight(from: u32, target: Target, p: Point2, q: Point2) -> Sight {
         let lift = |p: Point2| snapped([p.x, p.y, 0.0]);
         Sight { from: CellId(from), target, segment: [lift(p), lift(q)] }
@@ -255,6 +274,29 @@ impl RayOracle for PlanWorld {
             let sight = Self::sight(from, target, p, q);
             self.proves(&sight).then_some(sight)
         })
+    }
+
+    const SAMPLES: [bool; 2] = [true, true];
+
+    fn sample(
+        &self,
+        from: u32,
+        target: Target,
+        random: &mut Random,
+        may_lead: &dyn Fn(&Sight) -> bool,
+    ) -> Option<Sight> {
+        let p = self.any_place(from, random)?;
+        let q = match target {
+            Target::Cell(to) => self.any_place(to.0, random)?,
+            Target::Object(object) => {
+                let b = &self.objects[object as usize];
+                Point2::from(
+                    [0, 1].map(|k| (b.min[k] + (b.max[k] - b.min[k]) * random.unit()).clamp(b.min[k], b.max[k])),
+                )
+            }
+        };
+        let sight = Self::sight(from, target, p, q);
+        (may_lead(&sight) && self.proves(&sight)).then_some(sight)
     }
 
     fn neighbours(&self) -> &[Vec<u32>] {

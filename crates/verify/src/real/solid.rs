@@ -1,7 +1,7 @@
 //! Scenes in space: every triangle stops sight, but for those of objects that are see-through. What moves is seen wherever it may
 //! be.
 
-use super::{RayOracle, at, climb, clip, extreme, length, neighbours_of, scale_of, sub};
+use super::{RayOracle, at, chosen, climb, clip, extreme, length, neighbours_of, scale_of, sub};
 use crate::borders::{middles, pairs};
 use crate::exact::{
     segment_and_polygon_apart, segment_and_triangle_apart, segment_crosses_polygon, segment_crosses_triangle, snapped,
@@ -19,6 +19,8 @@ pub(crate) struct SolidWorld {
     object_of: Vec<u32>,
     /// The triangles of each object, as a range.
     of_object: Vec<[u32; 2]>,
+    /// For each triangle the area of those of its object up to it; rounded.
+    areas: Vec<f64>,
     /// For each object whether its triangles stop sight.
     is_opaque: Vec<bool>,
     /// For each object whether only the fronts of its triangles are seen.
@@ -48,6 +50,15 @@ impl SolidWorld {
             object_of.resize(triangles.len(), object);
             of_object.push([first, triangles.len() as u32]);
         }
+        let mut areas: Vec<f64> =
+            triangles.iter().map(|&t| 0.5 * length(sightlines_geometry::vector::normal(t))).collect();
+        for &[first, end] in &of_object {
+            let mut sum = 0.0;
+            areas[first as usize..end as usize].iter_mut().for_each(|area| {
+                sum += *area;
+                *area = sum;
+            });
+        }
         let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
         let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
         let all = boxes.iter().chain(&cells).fold(Aabb::EMPTY, |all: Aabb<3>, b| all.with(b.min).with(b.max));
@@ -62,6 +73,7 @@ impl SolidWorld {
             tree: BoxTree::build(&boxes, 4),
             cell_tree: BoxTree::build(&cells, 4),
             triangles,
+            areas,
             object_of,
             of_object,
             is_opaque: (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_opaque(object)).collect(),
@@ -208,6 +220,31 @@ impl SolidWorld {
         Some(snapped(p)).filter(|&p| extent.contains(p))
     }
 
+    /// The sight along a ray to a point of an object, if nothing else is met before.
+    fn sight_of_object(&self, from: u32, object: u32, p: Point3, q: Point3) -> Option<Sight> {
+        let d = sub(q, p);
+        // What is see-through is no obstacle, but may be the aim.
+        let counts = |i: u32| self.stops_sight(i) || self.object_of[i as usize] == object;
+        let (t, first) = self.first(p, d, 1.0 + 2f64.powi(-20), counts);
+        first.filter(|&i| self.object_of[i as usize] == object)?;
+        let sight = Self::sight(from, Target::Object(object), Self::just_behind(p, d, t));
+        self.proves(&sight).then_some(sight)
+    }
+
+    /// A place of a cell, each as likely as another; `None` if rounding led out of it.
+    fn any_place(&self, cell: u32, random: &mut Random) -> Option<Point3> {
+        Some(snapped(random.point(&self.cells[cell as usize]))).filter(|&p| self.is_inside(cell, p))
+    }
+
+    /// A place on an object, each as likely as another.
+    fn any_place_on(&self, object: u32, random: &mut Random) -> Option<Point3> {
+        let [first, end] = self.of_object[object as usize].map(|i| i as usize);
+        let [a, b, c] = self.triangles[first + chosen(&self.areas[first..end], random)?];
+        let (u, v) = (random.unit(), random.unit());
+        let (u, v) = (u.min(v), 1.0 - u.max(v));
+        Some(std::array::from_fn(|k| a[k] + (b[k] - a[k]) * u + (c[k] - a[k]) * v))
+    }
+
     fn aim_at_object(&self, from: u32, object: u32, tries: u32, random: &mut Random) -> Option<Sight> {
         let extent = self.extent(object);
         for k in 0..tries {
@@ -223,15 +260,8 @@ impl SolidWorld {
                 continue;
             }
             let (p, q) = (self.place(from, random)?, self.on_object(object, random)?);
-            let d = sub(q, p);
-            // What is see-through is no obstacle, but may be the aim.
-            let counts = |i: u32| self.stops_sight(i) || self.object_of[i as usize] == object;
-            let (t, first) = self.first(p, d, 1.0 + 2f64.powi(-20), counts);
-            if first.is_some_and(|i| self.object_of[i as usize] == object) {
-                let sight = Self::sight(from, Target::Object(object), Self::just_behind(p, d, t));
-                if self.proves(&sight) {
-                    return Some(sight);
-                }
+            if let Some(sight) = self.sight_of_object(from, object, p, q) {
+                return Some(sight);
             }
         }
         None
@@ -354,6 +384,34 @@ impl RayOracle for SolidWorld {
         match target {
             Target::Cell(to) => self.aim_at_cell(table, from, to.0, tries, random),
             Target::Object(object) => self.aim_at_object(from, object, tries, random),
+        }
+    }
+
+    const SAMPLES: [bool; 2] = [true, true];
+
+    fn sample(
+        &self,
+        from: u32,
+        target: Target,
+        random: &mut Random,
+        may_lead: &dyn Fn(&Sight) -> bool,
+    ) -> Option<Sight> {
+        let p = self.any_place(from, random)?;
+        match target {
+            Target::Cell(to) => {
+                let sight = Self::sight(from, target, [p, self.any_place(to.0, random)?]);
+                let [p, q] = sight.segment;
+                let is_free = || self.hit(p, sub(q, p), 1.0).1.is_none();
+                (may_lead(&sight) && is_free() && self.proves(&sight)).then_some(sight)
+            }
+            Target::Object(object) => {
+                if let Some(extent) = self.extent(object) {
+                    let sight = Self::sight(from, target, [p, self.in_extent(extent, random)?]);
+                    return self.proves(&sight).then_some(sight);
+                }
+                let q = self.any_place_on(object, random)?;
+                may_lead(&Self::sight(from, target, [p, q])).then(|| self.sight_of_object(from, object, p, q))?
+            }
         }
     }
 

@@ -263,6 +263,26 @@ impl RayOracle for MapWorld<'_> {
         })
     }
 
+    const SAMPLES: [bool; 2] = [true, false];
+
+    fn sample(
+        &self,
+        from: u32,
+        target: Target,
+        random: &mut Random,
+        may_lead: &dyn Fn(&Sight) -> bool,
+    ) -> Option<Sight> {
+        let Target::Cell(to) = target else { return None };
+        let mut any_place = |cell: u32| {
+            let p = snapped(random.point(&self.cells[cell as usize]));
+            let here = self.stretches(p, [0.0; 3], MARGIN);
+            (!here.is_empty() && here.iter().all(|s| s.cluster == Some(cell))).then_some(p)
+        };
+        let sight = Sight { from: CellId(from), target, segment: [any_place(from)?, any_place(to.0)?] };
+        let [p, q] = sight.segment;
+        (may_lead(&sight) && self.is_free(from, to.0, p, q)).then_some(sight)
+    }
+
     fn neighbours(&self) -> &[Vec<u32>] {
         self.portals.neighbours()
     }

@@ -7,7 +7,7 @@ mod planar;
 mod spatial;
 mod world;
 
-use crate::findings::{Findings, Violation};
+use crate::findings::{Findings, Geometry, Violation};
 use crate::truth::Truth;
 use sightlines_pvs::Table;
 
@@ -38,6 +38,15 @@ pub(crate) fn check(table: &Table, truth: &Truth<'_>) -> Findings {
         }
     }
     findings
+}
+
+/// What has changed since the table was made, by its digests; nothing if it has none.
+pub(crate) fn changes(table: &Table, truth: &Truth<'_>) -> Vec<Violation> {
+    let Some(then) = table.digest() else { return Vec::new() };
+    let now = truth.digest();
+    let parts = [(Geometry::Hiding, then.hiding != now.hiding), (Geometry::Seen, then.seen != now.seen)];
+    let changed = parts.into_iter().filter(|(_, has_changed)| *has_changed);
+    changed.map(|(what, _)| Violation::ChangedGeometry { what }).collect()
 }
 
 /// Cells joined by a portal see each other: so does every line through it.

@@ -76,7 +76,7 @@ struct Taken {
 
 impl Taken {
     fn new(framed: &Framed) -> Self {
-        let Framed { frame, along, moved, before, after } = framed;
+        let Framed { frame, along, moved, before, after, .. } = framed;
         Self {
             frame: frame.into(),
             along: match along {

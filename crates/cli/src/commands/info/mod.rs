@@ -8,7 +8,7 @@ mod wad;
 
 use crate::Answer;
 use crate::error::InputError;
-use crate::facts::{Facts, FrameFacts, StabFacts};
+use crate::facts::{DigestFacts, Facts, FrameFacts, StabFacts};
 use crate::file_error::{FileError, from_file_error};
 use crate::input;
 use crate::output::{self, bytes};
@@ -79,6 +79,9 @@ struct TableInfo {
     /// If the table stands along axes of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<FrameFacts>,
+    /// If the table has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    digests: Option<DigestFacts>,
     /// How the table was made, as it states.
     #[serde(serialize_with = "as_map")]
     info: Vec<(String, String)>,
@@ -97,7 +100,8 @@ impl TableInfo {
             (summary.mean_floor_share, summary.floor) = (f64::NAN, f64::NAN);
         }
         let (stab, frame) = (StabFacts::of(table), table.frame().map(FrameFacts::from));
-        Self { file, kind: "table", summary, stab, frame, info: table.info().to_vec() }
+        let digests = table.digest().map(DigestFacts::from);
+        Self { file, kind: "table", summary, stab, frame, digests, info: table.info().to_vec() }
     }
 }
 
@@ -108,6 +112,7 @@ impl fmt::Display for TableInfo {
         write!(f, "{}", Facts(&self.summary))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         self.frame.iter().try_for_each(|frame| writeln!(f, "frame          {frame}"))?;
+        self.digests.iter().try_for_each(|digests| write!(f, "{digests}"))?;
         self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
     }
 }

@@ -3,7 +3,7 @@
 use super::Error;
 use super::as_map;
 use crate::error::InputError;
-use crate::facts::FrameFacts;
+use crate::facts::{DigestFacts, FrameFacts};
 use crate::output::{bytes, percent};
 use crate::tables;
 use serde::Serialize;
@@ -30,6 +30,9 @@ pub(super) struct PackedInfo {
     /// If the table stands along axes of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<FrameFacts>,
+    /// If the table has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    digests: Option<DigestFacts>,
     /// How the table was made, as it states.
     #[serde(serialize_with = "as_map")]
     info: Vec<(String, String)>,
@@ -46,7 +49,7 @@ struct Part {
 }
 
 /// What the parts are.
-const PARTS: [(&str, &str); 21] = [
+const PARTS: [(&str, &str); 22] = [
     ("HEAD", "numbers"),
     ("BOXS", "boxes of cells"),
     ("POLY", "corners of cells"),
@@ -60,6 +63,7 @@ const PARTS: [(&str, &str); 21] = [
     ("CLAS", "equal rows"),
     ("SCLR", "equal rows of objects"),
     ("SCLC", "equal objects"),
+    ("DGST", "digests of the scene"),
     ("BLKS", "index of blocks"),
     ("ROWS", "cells seen"),
     ("SEEN", "objects seen"),
@@ -93,6 +97,7 @@ impl PackedInfo {
             resident_bytes: packed.resident_bytes(),
             parts: packed.part_sizes().into_iter().map(part).collect(),
             frame: packed.frame().map(FrameFacts::from),
+            digests: packed.digest().map(DigestFacts::from),
             info: packed.info().to_vec(),
         })
     }
@@ -120,6 +125,7 @@ impl fmt::Display for PackedInfo {
             writeln!(f, "  {name}         {n_bytes:>10} bytes {share:>8}  {what}{held}")?;
         }
         self.frame.iter().try_for_each(|frame| writeln!(f, "frame          {frame}"))?;
+        self.digests.iter().try_for_each(|digests| write!(f, "{digests}"))?;
         self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
     }
 }

@@ -53,6 +53,9 @@ pub(crate) struct VerifyArgs {
     /// Number of rays aimed at each of these pairs; eight times as many where all neighbouring pairs are visible
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().tries)]
     tries: u32,
+    /// Number of random segments between each hidden pair next to visible ones; fewer if there are very many such pairs
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().segments)]
+    segments: u32,
     /// Seed of the random numbers; the same seed gives the same result
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().seed)]
     seed: u64,
@@ -94,14 +97,15 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
         input::refuse_without_places(table, &args.table, "no ray can be drawn")?;
     }
     let failed = |source| Error::Verify { table: args.table.clone(), scene: args.scene.clone(), source };
-    let VerifyArgs { rays, pairs, tries, seed, threads, .. } = *args;
+    let VerifyArgs { rays, pairs, tries, segments, seed, threads, .. } = *args;
     let start = Instant::now();
     let bar = Bar::new("rays", show_progress);
-    let options = VerifyOptions { rays, pairs, tries, seed, threads, progress: Some(&bar) };
+    let options = VerifyOptions { rays, pairs, tries, segments, seed, threads, progress: Some(&bar) };
     let findings = verify(table, &scene.truth(), &options);
     drop(bar);
     let findings = findings.map_err(failed)?;
     let time = start.elapsed();
+    let has_digests = table.digest().is_some();
     // Places in the findings, and proofs, are along the frame.
     let frame = table.frame().copied();
     let along = scene.along(table).map_err(failed)?;
@@ -119,7 +123,8 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     let violations = own.as_ref().map_or_else(|| Violations::from(&findings), |own| Violations::of_own(&findings, own));
     let about = own.as_ref().map(|own| own::About::from(&own.about));
     let files = [args.table.as_path(), &args.scene];
-    let outcome = Outcome::new(files, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
+    let outcome =
+        Outcome::new(files, has_digests, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
     let wide_gap = frame.and_then(|frame| scene.times_too_wide(frame.gap()));
     let outcome = outcome.in_frame(frame.as_ref(), wide_gap);
     let is_proven = unproven.is_none_or(|unproven| unproven.hides_none());
