@@ -158,33 +158,37 @@ fn the_text_lists_what_was_checked() {
 #[test]
 fn what_was_not_checked_is_listed() {
     let folder = Folder::with_office();
-    let none = ["verify", "office.pvs", "office.geojson", "--rays", "0", "--pairs", "0"];
+    const NONE: [&str; 6] = ["--rays", "0", "--pairs", "0", "--segments", "0"];
+    let none = [&["verify", "office.pvs", "office.geojson"][..], &NONE].concat();
     let reply = folder.run(&none).expect(0).out;
     assert!(reply.contains("rays           none\n") && reply.contains("only the structure was checked"), "{reply}");
     assert!(!reply.contains("nothing found"), "{reply}");
     let checked = |args: &[&str]| {
         let reply =
             folder.run(&[&["verify", "--json", "office.pvs", "office.geojson"], args].concat()).expect(0).json();
-        let list = ["random_rays", "aimed_rays", "proofs"].map(|what| reply["checked"][what].as_bool().expect("said"));
+        let list = ["random_rays", "random_segments", "aimed_rays", "proofs"]
+            .map(|what| reply["checked"][what].as_bool().expect("said"));
         (list, reply["is_true"].as_bool())
     };
-    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]), ([false; 3], Some(true)));
-    assert_eq!(checked(&["--rays", "100", "--pairs", "0"]).0, [true, false, false]);
-    assert_eq!(checked(&["--rays", "0", "--pairs", "5"]).0, [false, true, false]);
+    assert_eq!(checked(&NONE), ([false; 4], Some(true)));
+    assert_eq!(checked(&["--rays", "100", "--pairs", "0", "--segments", "0"]).0, [true, false, false, false]);
+    assert_eq!(checked(&["--rays", "0", "--pairs", "0", "--segments", "5"]).0, [false, true, false, false]);
+    assert_eq!(checked(&["--rays", "0", "--pairs", "5", "--segments", "0"]).0, [false, false, true, false]);
     for some in [["--rays", "0"], ["--pairs", "0"]] {
         let reply = folder.run(&[&["verify", "office.pvs", "office.geojson"][..], &some].concat()).expect(0).out;
         assert!(reply.contains("nothing found that contradicts the table"), "{reply}");
     }
     // Proofs are something.
     folder.run(&["build", "office.geojson", "-o", "office.pvs", "--certify"]).expect(0);
-    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]), ([false, false, true], Some(true)));
+    assert_eq!(checked(&NONE), ([false, false, false, true], Some(true)));
     // Those of another table are nothing.
     folder.run(&["build", "office.geojson", "-o", "office.pvs", "--subdivide", "triangulation"]).expect(0);
-    assert_eq!(checked(&["--rays", "0", "--pairs", "0"]).0, [false; 3]);
+    assert_eq!(checked(&NONE).0, [false; 4]);
     folder.run(&["build", "office.geojson", "-o", "office.pvs"]).expect(0);
     // A pair that is wrong and not looked at goes unnoticed, which is why it has to be said.
     flip(&folder, "office.pvs", "wrong.pvs", 3);
-    let reply = folder.run(&["verify", "wrong.pvs", "office.geojson", "--rays", "0", "--pairs", "0"]).expect(0).out;
+    let none = [&["verify", "wrong.pvs", "office.geojson"][..], &NONE].concat();
+    let reply = folder.run(&none).expect(0).out;
     assert!(reply.contains("only the structure was checked"), "{reply}");
 }
 

@@ -14,10 +14,10 @@ use crate::sight::{Sight, Target};
 use rayon::prelude::*;
 use sightlines_geometry::Random;
 use sightlines_progress::{Cancelled, Counter, Observer};
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, PortalId, Table};
 
 /// Segments of all pairs together, at most: of tables with portals, by which nearly all are ruled out at once, and of others.
-const MOST: [u64; 2] = [1 << 25, 1 << 22];
+const MOST: [u64; 2] = [1 << 28, 1 << 22];
 
 /// Shoots random segments at hidden pairs next to visible ones, as many at each; what they see, in the order of the pairs, and how many were shot.
 pub(super) fn shoot<R: RayOracle>(
@@ -44,7 +44,13 @@ pub(super) fn shoot<R: RayOracle>(
         let mut found = Vec::new();
         for target in of_cell(cell) {
             let mut random = Random::new(mixed(options.seed, super::suspects::hash_of(cell, target)));
-            let leads = |sight: &Sight| ways.is_none_or(|ways| ways.may_lead(sight));
+            let gates = ways.map(|ways| near.gates(ways, table, seen, CellId(cell), target));
+            let leads = |sight: &Sight| {
+                let passes = |(ways, gates): (&Ways<'_>, &Gates)| {
+                    gates.iter().flatten().all(|gates| ways.is_near_any(gates, sight.segment)) && ways.may_lead(sight)
+                };
+                ways.zip(gates.as_ref()).is_none_or(passes)
+            };
             found.extend((0..n_each).find_map(|_| world.sample(cell, target, &mut random, &leads)));
         }
         counter.step().map(|()| found)
@@ -52,6 +58,9 @@ pub(super) fn shoot<R: RayOracle>(
     let found: Vec<Vec<Sight>> = (0..n_cells as u32).into_par_iter().map(shoot).collect::<Result<_, Cancelled>>()?;
     Ok((found.into_iter().flatten().collect(), Sampled { n_pairs, n_each }))
 }
+
+/// The portals by which a segment leaves the cell of a pair, and those by which it enters the other one, if that is a cell.
+type Gates = [Option<Vec<PortalId>>; 2];
 
 /// What is next to what.
 struct Near<'w> {
@@ -97,5 +106,21 @@ impl<'w> Near<'w> {
             !seen.has(cell, target) && any(touched, &|c| table.sees(cell, c)) && any(own, &|c| seen.has(c, target))
         });
         cells.chain(objects.map(|(object, _)| Target::Object(object))).collect()
+    }
+
+    /// The portals of a pair that lead into what its other side sees: no others are passed by the segments that this pair is looked at for.
+    fn gates(&self, ways: &Ways<'_>, table: &Table, seen: &Seen, cell: CellId, target: Target) -> Gates {
+        let other_side = |id: PortalId, of: CellId| {
+            let [a, b] = ways.portal(id).cells;
+            if a == of { b } else { a }
+        };
+        let gates = |of: CellId, sees: &dyn Fn(CellId) -> bool| {
+            ways.portals_of(of).iter().copied().filter(|&id| sees(other_side(id, of))).collect()
+        };
+        let entries = match target {
+            Target::Cell(to) => Some(gates(to, &|c| table.sees(cell, c))),
+            Target::Object(_) => None,
+        };
+        [Some(gates(cell, &|c| seen.has(c, target))), entries]
     }
 }

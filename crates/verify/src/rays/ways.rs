@@ -108,6 +108,12 @@ impl<'t> Ways<'t> {
         Way::Open
     }
 
+    /// Whether a segment comes near one of some portals.
+    pub(super) fn is_near_any(&self, portals: &[PortalId], [p, q]: [Point3; 2]) -> bool {
+        let d = sub(q, p);
+        portals.iter().any(|id| clip(p, d, &self.boxes[id.idx()], [0.0, 1.0], self.slack).is_some())
+    }
+
     /// Whether the portals of the table may lead along a segment to its end, or to a cell that its object touches: no only where the segment leaves a cell and comes
     /// near no portal there, which for a free one the borders of that cell would have shown.
     pub(super) fn may_lead(&self, &Sight { from, target, segment: [p, q] }: &Sight) -> bool {
