@@ -250,3 +250,73 @@ fn real_tables_are_true() {
         assert_eq!(verify(&folder, &["flipped.pvs", &scene], 1)["is_true"], false, "{scene}");
     }
 }
+
+/// A scene that was changed since by one coordinate is named at once, for plain and packed tables, plans and scenes; rays tell whether it matters.
+#[test]
+fn scenes_that_were_changed_are_named() {
+    let folder = Folder::with_tower();
+    let changed = |kind: &str| {
+        format!("violation      changed-geometry: {kind} in the scene has changed since the table was made\n")
+    };
+    let only = "result         the scene has changed since the table was made; nothing else found";
+    let scene = sightlines::formats::scene::parse_glb(&folder.read("tower.glb"), None).expect("a tower").scene;
+    let info = folder.run(&["info", "tower.pvs"]).expect(0).out;
+    let digests = scene.digest();
+    assert!(info.contains(&format!("digests        {:032x} of what hides\n", digests.hiding)), "{info}");
+    assert!(info.contains(&format!("               {:032x} of what can be seen\n", digests.seen)), "{info}");
+    // A corner of a chair that does not touch the box around it, by a thousandth.
+    let mut objects = scene.objects().to_vec();
+    let bounds = |object: usize| objects[object].bounds();
+    let inner = (0..objects.len()).find_map(|k| {
+        let b = bounds(k);
+        let is_inner = |p: &&[f64; 3]| (0..3).any(|i| b.min[i] < p[i] && p[i] < b.max[i]);
+        objects[k].vertices.iter().position(|p| is_inner(&p)).map(|vertex| (k, vertex))
+    });
+    let (object, vertex) = inner.expect("a corner inside of a box");
+    let b = bounds(object);
+    let axis = (0..3).find(|&i| {
+        (b.min[i]..b.max[i]).contains(&objects[object].vertices[vertex][i])
+            && b.min[i] < objects[object].vertices[vertex][i]
+    });
+    objects[object].vertices[vertex][axis.expect("found before")] += 1.0 / 1024.0;
+    let moved = sightlines::cells::Scene::new(objects).expect("a scene");
+    folder.write("moved.glb", sightlines::formats::scene::write_glb(&moved).expect("single precision"));
+    folder.run(&["pack", "tower.pvs", "-o", "tower.pvz"]).expect(0);
+    for table in ["tower.pvs", "tower.pvz"] {
+        let same = folder.run(&["verify", table, "tower.glb", "--rays", "2000", "--pairs", "100", "--segments", "1"]);
+        assert!(!same.expect(0).out.contains("changed"));
+        let run = folder.run(&["verify", table, "moved.glb", "--rays", "2000", "--pairs", "100", "--segments", "1"]);
+        let out = run.expect(1).out;
+        assert!(["what hides", "what can be seen"].iter().all(|kind| out.contains(&changed(kind))), "{out}");
+    }
+    // A triangle that faces the other way hides the same, and no ray tells.
+    let mut objects = scene.objects().to_vec();
+    objects[0].triangles[0].swap(1, 2);
+    let turned = sightlines::cells::Scene::new(objects).expect("a scene");
+    folder.write("turned.glb", sightlines::formats::scene::write_glb(&turned).expect("single precision"));
+    let out = folder.run(&["verify", "tower.pvs", "turned.glb", "--rays", "2000", "--segments", "1"]).expect(1).out;
+    assert!(out.contains(&changed("what can be seen")) && !out.contains(&changed("what hides")), "{out}");
+    assert!(out.contains(only), "{out}");
+    // What removes faces that a table hides takes no other scene.
+    let error = folder.run(&["levels", "moved.glb", "-o", "levels", "--table", "tower.pvs"]).expect(2).err;
+    assert!(
+        error.contains("tower.pvs: the table is of another scene: the scene has changed since the table was made"),
+        "{error}"
+    );
+    // Of a plan nothing but a wall hides; tables of older programs have no digests, and say so.
+    let folder = Folder::with_office();
+    let plan = String::from_utf8(folder.read("office.geojson")).expect("text");
+    let moved = plan.replacen("12.0", "12.001", 1);
+    let moved = if moved == plan { plan.replacen(".5", ".501", 1) } else { moved };
+    assert_ne!(moved, plan);
+    folder.write("moved.geojson", moved);
+    let out = folder.run(&["verify", "office.pvs", "moved.geojson", "--json"]).expect(1).json();
+    assert_eq!(out["violations"][0]["kind"], "changed-geometry");
+    let table = Table::from_bytes(&folder.read("office.pvs")).expect("a table").with_digest(None);
+    folder.write("old.pvs", table.to_bytes());
+    let out = folder.run(&["verify", "old.pvs", "office.geojson"]).expect(0).out;
+    assert!(
+        out.contains("digests        none in the table: whether the scene has changed since is not known\n"),
+        "{out}"
+    );
+}
