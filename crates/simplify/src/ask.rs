@@ -6,12 +6,14 @@
 //!
 //! Rays and guesses of what pays only steer the work. Every face that is called hidden was proven hidden from a box that contains the eyes.
 
-use crate::hidden::MakeMethod;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
 use sightlines_multifocal::{BackendError, FromRegion, RaySampler, Umbra, Volume};
 use sightlines_visible_surface::Faces;
 use std::sync::Mutex;
+
+/// Makes a from-region method for the scene, for one thread.
+pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
 
 /// Rays towards each face that is open, from a group of boxes.
 const N_RAYS_OF_GROUP: u32 = 2;

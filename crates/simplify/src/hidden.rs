@@ -1,16 +1,13 @@
 //! Which faces are proven hidden.
 
-use crate::ask::Asker;
+use crate::ask::{Asker, MakeMethod};
 use crate::views::{View, Views};
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_multifocal::{BackendError, FromRegion, Volume};
+use sightlines_multifocal::{BackendError, Volume};
 use sightlines_pvs::Table;
 use sightlines_visible_surface::Faces;
 use std::fmt;
-
-/// Makes a from-region method for the scene, for one thread.
-pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
 
 /// Sources of proofs that faces are hidden. A face that any of them hides is hidden.
 #[derive(Clone, Copy, Default)]

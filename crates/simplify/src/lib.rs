@@ -44,9 +44,10 @@ mod views;
 mod weigh;
 
 pub use aimed::{Aimed, measure_aimed};
+pub use ask::MakeMethod;
 pub use estimate::{Estimate, Interval};
 pub use geometric::geometric;
-pub use hidden::{HiddenBy, MakeMethod};
+pub use hidden::HiddenBy;
 pub use intercepts::Intercepts;
 pub use levels::{Level, LevelOptions, Levels, levels};
 pub use measure::{MeasureOptions, Measured, measure};
