@@ -78,13 +78,8 @@ impl CellGraph<Convex> {
 /// The same corners, in the same direction, from the least on.
 fn turned(corners: [Point3; 3]) -> [Point3; 3] {
     let [p, q, r] = corners;
-    if p <= q && p <= r {
-        [p, q, r]
-    } else if q <= r {
-        [q, r, p]
-    } else {
-        [r, p, q]
-    }
+    let turns = [[p, q, r], [q, r, p], [r, p, q]];
+    turns.into_iter().min_by(|a, b| a.partial_cmp(b).expect("coordinates are numbers")).expect("three turns")
 }
 
 fn triangle(corners: &[Point3; 3]) -> u128 {
@@ -143,6 +138,11 @@ mod tests {
         first.triangles = vec![[0, 3, 1], [2, 1, 3]];
         first.name = "other".to_owned();
         assert_eq!(Scene::new(vec![first, second]).unwrap().digest(), scene().digest());
+        // Even if two corners are in one place, it makes no difference with which a triangle begins.
+        let seen = |turn: [u32; 3]| {
+            Scene::new(vec![object(&[SQUARE[0], SQUARE[0], SQUARE[1]], &[turn])]).unwrap().digest().seen
+        };
+        assert!(seen([0, 1, 2]) == seen([1, 2, 0]) && seen([0, 1, 2]) == seen([2, 0, 1]));
         let mixed =
             |[r, s]: [f64; 2]| Scene::new(vec![object(&[[0., r, s], [1., 0., 0.], [0., 1., 0.]], &[[0, 1, 2]])]);
         assert_eq!(mixed([0., 0.]).unwrap().digest(), mixed([-0., -0.]).unwrap().digest());

@@ -30,7 +30,7 @@ pub enum Unlike {
         scene: String,
     },
     /// The digest of the table is not that of the scene.
-    #[error("the scene has changed since the table was made")]
+    #[error("it was made of other geometry: the scene has changed, or is read with other options")]
     Changed,
     /// An object reaches out of its box.
     #[error("object {object}, {name:?}, is not where the table has it")]

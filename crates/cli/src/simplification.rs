@@ -9,7 +9,7 @@ use crate::output::count;
 use crate::surfaces::{self, SurfaceArgs};
 use serde::Serialize;
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
-use sightlines::cells::{MovingObject, Scene, SceneObject};
+use sightlines::cells::{MovingObject, Scene, SceneObject, Unlike};
 use sightlines::formats::ReadError;
 use sightlines::formats::scene::{
     self, Rounding, SceneReadOptions, read_scene_with_source_and, write_rounded_glb, write_simplified_obj,
@@ -166,9 +166,21 @@ pub(crate) fn read(path: &Path, options: &SceneReadOptions) -> Result<ReadScene,
 }
 
 /// A table without its frame, and the scene along it: what is simplified there has the corners of the original, by number. `None` for a
-/// table without a frame.
-pub(crate) fn along(path: &Path, table: &Table, scene: &Scene) -> Result<Option<(Table, Scene)>, SimplificationError> {
-    along_frame(table, scene).map_err(|source| SimplificationError::Frame { path: path.to_owned(), source })
+/// table without a frame. Refuses a scene that has changed since: along the frame, its digests are others in any case.
+///
+/// * `scene_path`, `table_path`: the files, for errors
+pub(crate) fn along(
+    [scene_path, table_path]: [&Path; 2],
+    table: &Table,
+    scene: &Scene,
+) -> Result<Option<(Table, Scene)>, SimplificationError> {
+    let along = along_frame(table, scene)
+        .map_err(|source| SimplificationError::Frame { path: scene_path.to_owned(), source })?;
+    if along.is_some() && table.digest().is_some_and(|digest| digest != scene.digest()) {
+        let source = SimplifyError::OtherScene(Unlike::Changed);
+        return Err(SimplificationError::Simplify { path: table_path.to_owned(), source });
+    }
+    Ok(along)
 }
 
 /// Whether what is left may be used to hide. Faces that are merged along a frame are in one plane there; with the corners of the file they are

@@ -93,8 +93,8 @@ pub enum Violation {
         /// The portal.
         portal: usize,
     },
-    /// Geometry that is not what the table was made of, by its [digest](sightlines_pvs::GeometryDigest): the scene was changed since, however little. The other checks
-    /// tell whether it matters, as far as they go.
+    /// Geometry that is not what the table was made of, by its [digest](sightlines_pvs::GeometryDigest): the scene was changed since, however little, or other options make
+    /// other things see-through. The other checks tell whether it matters, as far as they go.
     ChangedGeometry {
         /// What was changed.
         what: Geometry,
@@ -264,7 +264,10 @@ impl fmt::Display for Violation {
                     Geometry::Hiding => "what hides",
                     Geometry::Seen => "what can be seen",
                 };
-                write!(f, "{what} in the scene has changed since the table was made")
+                write!(
+                    f,
+                    "{what} is not as when the table was made: the scene has changed, or is read with other options"
+                )
             }
             Self::Count { what, table, scene } => write!(f, "the table has {table} {what}, the scene {scene}"),
             Self::ObjectName { object } => write!(f, "object {object} has another name in the scene"),
@@ -298,8 +301,9 @@ impl Confirmed {
 
 /// Hidden pairs that as many random segments were shot at each, everywhere alike.
 ///
-/// Each is a pair of a cell and a cell, or an object, of which each is next to something that is visible from the other. If any segment of a hidden pair is free, it passes
-/// such a pair.
+/// Where cells leave no gaps, a pair is a cell and a cell, or an object, of which each is next to something that is visible from the other, and its segments are those
+/// that pass such neighbours: any free segment of a hidden pair is one of these, of this pair or of a nearer one. Where cells leave gaps, all hidden pairs; if there are very many,
+/// some of them, chosen at random.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Sampled {
     /// Number of pairs.
@@ -309,7 +313,7 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// The share of free segments from which on a pair is found in 99 of 100 runs: with n segments each, 1 - 0.01^(1/n); 1 if none were shot.
+    /// The share of free segments from which on one of the pairs is found in 99 of 100 runs, unless a nearer pair is wrong as well: with n segments each, 1 - 0.01^(1/n); 1 if none were shot.
     pub fn share_found(&self) -> f64 {
         if self.n_each == 0 { 1.0 } else { -(0.01f64.ln() / self.n_each as f64).exp_m1() }
     }

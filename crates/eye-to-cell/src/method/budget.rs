@@ -10,8 +10,8 @@ pub struct Budget(u64);
 impl Budget {
     /// No bound.
     pub const UNLIMITED: Self = Self(u64::MAX);
-    /// What a frame can spare: some 0.03 ms besides the answer of the incident portals, by measurement. In open rooms many
-    /// answers are then coarser ones.
+    /// 4,096 steps, for those who would rather have a coarser answer than wait. In open rooms many answers are then coarser ones. A step
+    /// is no time: measure on your scenes.
     pub const FRAME: Self = Self(4096);
 
     /// So many steps. With 0 every answer of the exact method is that of the one before.

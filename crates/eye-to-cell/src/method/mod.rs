@@ -137,7 +137,7 @@ impl Method {
     /// the subgraph of each of them. Allocates nothing once `scratch` and `seen` are warm, but for mirrors.
     ///
     /// Returns the method whose answer was added: this one, or the incident portals where the exact method had more to do than
-    /// [`Scratch::allow`] lets it. That answer contains the exact one, and is within the coarser one: of a view wider than half a
+    /// [`Scratch::allow`] lets it, or more than is in any proportion to its gain ([`Method::Exact`]). That answer contains the exact one, and is within the coarser one: of a view wider than half a
     /// turn, one half may still be exact.
     pub fn look(
         self,

@@ -1,15 +1,15 @@
 //! Random segments between what the table hides from each other: not where something is likely to be found, but everywhere alike, so that what was not found has a bound.
 //!
-//! If a free segment joins a hidden pair, there are two places on it, the nearest to each other, that are hidden from each other: each is visible from the neighbours
-//! of the other on the segment. So only pairs are looked at of which each sees a neighbour of the other ([`candidates`]): every false hidden segment
-//! passes one of them.
+//! If a free segment joins a hidden pair, there are two cells on it, the nearest to each other, that are hidden from each other: each is visible from the neighbour
+//! of the other on the segment. So where cells leave no gaps, only pairs are looked at of which each sees a neighbour of the other, and of these only segments
+//! that pass such neighbours ([`Near`]): every free segment of a hidden pair is one of these, of this or of a nearer pair.
 
 use super::mixed;
 use super::seen::Seen;
 use super::ways::Ways;
 use crate::findings::Sampled;
 use crate::options::VerifyOptions;
-use crate::real::RayOracle;
+use crate::real::{RayOracle, Sample};
 use crate::sight::{Sight, Target};
 use rayon::prelude::*;
 use sightlines_geometry::Random;
@@ -18,8 +18,12 @@ use sightlines_pvs::{CellId, PortalId, Table};
 
 /// Segments of all pairs together, at most: of tables with portals, by which nearly all are ruled out at once, and of others.
 const MOST: [u64; 2] = [1 << 28, 1 << 22];
+/// Where there are not even so many for each pair, pairs are chosen at random.
+const LEAST_EACH: u64 = 16;
+/// How often a segment is drawn again because an end was nowhere that is certain, as a multiple of the number of segments.
+const REDRAWN: u64 = 16;
 
-/// Shoots random segments at hidden pairs next to visible ones, as many at each; what they see, in the order of the pairs, and how many were shot.
+/// Shoots random segments at hidden pairs, as many at each; what they see, in the order of the pairs, and how many were shot.
 pub(super) fn shoot<R: RayOracle>(
     world: &R,
     table: &Table,
@@ -33,17 +37,22 @@ pub(super) fn shoot<R: RayOracle>(
         return Ok((Vec::new(), Sampled::default()));
     }
     let near = Near::new(world, table);
-    let of_cell = |cell: u32| near.candidates(table, seen, CellId(cell));
     // Who is not convex may be left and entered again.
     let ways = ways.filter(|_| R::CELLS_ARE_CONVEX);
-    let n_pairs: u64 = (0..n_cells as u32).into_par_iter().map(|cell| of_cell(cell).len() as u64).sum();
+    let n_all: u64 =
+        (0..n_cells as u32).into_par_iter().map(|cell| near.candidates(table, seen, CellId(cell)).len() as u64).sum();
     let most = MOST[usize::from(ways.is_none())];
-    let n_each = most.checked_div(n_pairs).unwrap_or(0).min(u64::from(options.segments)).max(1);
+    let stride = (n_all * LEAST_EACH).div_ceil(most).max(1);
+    let n_each = (most * stride).checked_div(n_all).unwrap_or(0).min(u64::from(options.segments));
     let counter = Counter::new(observer, "random segments", n_cells);
     let shoot = |cell: u32| {
-        let mut found = Vec::new();
-        for target in of_cell(cell) {
-            let mut random = Random::new(mixed(options.seed, super::suspects::hash_of(cell, target)));
+        let (mut found, mut n_pairs) = (Vec::new(), 0u64);
+        for target in near.candidates(table, seen, CellId(cell)) {
+            let hash = super::suspects::hash_of(cell, target);
+            if !hash.is_multiple_of(stride) {
+                continue;
+            }
+            let mut random = Random::new(mixed(options.seed, hash));
             let gates = ways.map(|ways| near.gates(ways, table, seen, CellId(cell), target));
             let leads = |sight: &Sight| {
                 let passes = |(ways, gates): (&Ways<'_>, &Gates)| {
@@ -51,12 +60,29 @@ pub(super) fn shoot<R: RayOracle>(
                 };
                 ways.zip(gates.as_ref()).is_none_or(passes)
             };
-            found.extend((0..n_each).find_map(|_| world.sample(cell, target, &mut random, &leads)));
+            let mut left = n_each;
+            for _ in 0..n_each.saturating_mul(REDRAWN) {
+                match world.sample(cell, target, &mut random, &leads) {
+                    Sample::Nowhere => continue,
+                    Sample::Blocked => left -= 1,
+                    Sample::Free(sight) => {
+                        found.push(sight);
+                        left = 0;
+                    }
+                }
+                if left == 0 {
+                    break;
+                }
+            }
+            n_pairs += u64::from(left == 0);
         }
-        counter.step().map(|()| found)
+        counter.step().map(|()| (found, n_pairs))
     };
-    let found: Vec<Vec<Sight>> = (0..n_cells as u32).into_par_iter().map(shoot).collect::<Result<_, Cancelled>>()?;
-    Ok((found.into_iter().flatten().collect(), Sampled { n_pairs, n_each }))
+    let found: Vec<(Vec<Sight>, u64)> =
+        (0..n_cells as u32).into_par_iter().map(shoot).collect::<Result<_, Cancelled>>()?;
+    let n_pairs = found.iter().map(|found| found.1).sum();
+    let sampled = if n_pairs == 0 { Sampled::default() } else { Sampled { n_pairs, n_each } };
+    Ok((found.into_iter().flat_map(|found| found.0).collect(), sampled))
 }
 
 /// The portals by which a segment leaves the cell of a pair, and those by which it enters the other one, if that is a cell.
@@ -67,6 +93,10 @@ struct Near<'w> {
     cells: &'w [Vec<u32>],
     /// For each object the cells that it touches; empty if objects are seen with the cells that they touch.
     touched: Vec<Vec<u32>>,
+    /// Cells that nothing is next to, ascending.
+    alone: Vec<u32>,
+    /// Whether a segment may be outside of all cells on its way: then neighbours tell nothing.
+    has_gaps: bool,
 }
 
 impl<'w> Near<'w> {
@@ -77,21 +107,24 @@ impl<'w> Near<'w> {
         for cell in (0..table.n_cells() as u32).filter(|_| n_objects > 0) {
             table.objects_of(CellId(cell)).iter().for_each(|o| touched[o.idx()].push(cell));
         }
-        Self { cells: world.neighbours(), touched }
+        let cells = world.neighbours();
+        let alone = (0u32..).zip(cells).filter(|(_, next)| next.is_empty()).map(|(cell, _)| cell).collect();
+        Self { cells, touched, alone, has_gaps: table.kind().leaves_gaps() }
     }
 
     /// What is hidden from a cell although it sees something next to it, and something next to the cell sees it; cells with larger numbers only, each pair once.
-    /// What nothing is next to is looked at as well.
+    /// What nothing is next to is looked at as well; where cells leave gaps, all that is hidden.
     fn candidates(&self, table: &Table, seen: &Seen, cell: CellId) -> Vec<Target> {
         let own = &self.cells[cell.idx()];
-        let any =
-            |list: &[u32], sees: &dyn Fn(CellId) -> bool| list.is_empty() || list.iter().any(|&c| sees(CellId(c)));
+        let any = |list: &[u32], sees: &dyn Fn(CellId) -> bool| {
+            self.has_gaps || list.is_empty() || list.iter().any(|&c| sees(CellId(c)))
+        };
         // By what is visible, so that large tables cost no more than they show.
-        let mut others: Vec<u32> = if own.is_empty() {
+        let mut others: Vec<u32> = if own.is_empty() || self.has_gaps {
             (cell.0 + 1..table.n_cells() as u32).collect()
         } else {
             let next = table.visible(cell).flat_map(|c| self.cells[c.idx()].iter().copied());
-            next.chain((0u32..).zip(self.cells).filter(|(_, next)| next.is_empty()).map(|(lone, _)| lone)).collect()
+            next.chain(self.alone.iter().copied()).collect()
         };
         others.retain(|&other| other > cell.0 && !table.sees(cell, CellId(other)));
         others.sort_unstable();
@@ -108,19 +141,21 @@ impl<'w> Near<'w> {
         cells.chain(objects.map(|(object, _)| Target::Object(object))).collect()
     }
 
-    /// The portals of a pair that lead into what its other side sees: no others are passed by the segments that this pair is looked at for.
+    /// The portals of a pair that lead into what its other side sees: no others are passed by the segments that this pair is looked at for. None of a cell without
+    /// portals.
     fn gates(&self, ways: &Ways<'_>, table: &Table, seen: &Seen, cell: CellId, target: Target) -> Gates {
         let other_side = |id: PortalId, of: CellId| {
             let [a, b] = ways.portal(id).cells;
             if a == of { b } else { a }
         };
         let gates = |of: CellId, sees: &dyn Fn(CellId) -> bool| {
-            ways.portals_of(of).iter().copied().filter(|&id| sees(other_side(id, of))).collect()
+            let own = ways.portals_of(of);
+            (!own.is_empty()).then(|| own.iter().copied().filter(|&id| sees(other_side(id, of))).collect())
         };
         let entries = match target {
-            Target::Cell(to) => Some(gates(to, &|c| table.sees(cell, c))),
+            Target::Cell(to) => gates(to, &|c| table.sees(cell, c)),
             Target::Object(_) => None,
         };
-        [Some(gates(cell, &|c| seen.has(c, target))), entries]
+        [gates(cell, &|c| seen.has(c, target)), entries]
     }
 }

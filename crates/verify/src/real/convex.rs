@@ -1,6 +1,6 @@
 //! Portals alone: a line sees on through portals, in their order along it.
 
-use super::{RayOracle, at, dot, extreme, length, scale_of, sub};
+use super::{RayOracle, Sample, at, dot, extreme, length, scale_of, sub};
 use crate::exact::{segment_crosses_polygon, snapped};
 use crate::sight::{Sight, Target};
 use sightlines_cells::{CellGraph, CellId, Convex};
@@ -225,8 +225,8 @@ impl RayOracle for PortalWorld {
     const SAMPLES: [bool; 2] = [false, false];
 
     /// Nothing: clusters that are known by their portals have no places.
-    fn sample(&self, _: u32, _: Target, _: &mut Random, _: &dyn Fn(&Sight) -> bool) -> Option<Sight> {
-        None
+    fn sample(&self, _: u32, _: Target, _: &mut Random, _: &dyn Fn(&Sight) -> bool) -> Sample {
+        Sample::Nowhere
     }
 
     fn neighbours(&self) -> &[Vec<u32>] {

@@ -34,17 +34,11 @@ pub(crate) trait RayOracle: Sync {
     /// Whether [`RayOracle::sample`] knows places in cells, and on objects.
     const SAMPLES: [bool; 2];
 
-    /// Whether a random segment from a cell to a cell or an object is free: every place of the cells alike, by volume or area, and every place on the object. What
-    /// is found is proven.
+    /// Shoots a random segment from a cell to a cell or an object: every place of the cells is as likely as another, by volume or area, and every place on
+    /// the object, or in the box that it does not leave.
     ///
     /// * `may_lead`: rules out segments that cannot be free
-    fn sample(
-        &self,
-        from: u32,
-        target: Target,
-        random: &mut Random,
-        may_lead: &dyn Fn(&Sight) -> bool,
-    ) -> Option<Sight>;
+    fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample;
 
     /// The cells next to each cell, ascending.
     fn neighbours(&self) -> &[Vec<u32>];
@@ -65,6 +59,24 @@ pub(crate) trait RayOracle: Sync {
     /// Whether a sight to a cell is one along the portals that it crosses: certainly, or the answer is no.
     fn proves_way(&self, sight: &Sight) -> bool {
         self.proves(sight)
+    }
+}
+
+/// What became of a random segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Sample {
+    /// It was not shot: an end is nowhere that is certain, or on nothing.
+    Nowhere,
+    /// It is not free for certain, or ruled out.
+    Blocked,
+    /// It is free, which is proven.
+    Free(Sight),
+}
+
+impl Sample {
+    /// A segment that was shot.
+    pub(crate) fn of(free: Option<Sight>) -> Self {
+        free.map_or(Self::Blocked, Self::Free)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Plans: opaque lines stop sight.
 
-use super::{RayOracle, at, chosen, clip, extreme, neighbours_of, scale_of};
+use super::{RayOracle, Sample, at, chosen, clip, extreme, neighbours_of, scale_of};
 use crate::borders::middles;
 use crate::exact::{segments_apart, snapped, strictly_in_polygon};
 use crate::shapes::{ends, outlines};
@@ -278,25 +278,19 @@ impl RayOracle for PlanWorld {
 
     const SAMPLES: [bool; 2] = [true, true];
 
-    fn sample(
-        &self,
-        from: u32,
-        target: Target,
-        random: &mut Random,
-        may_lead: &dyn Fn(&Sight) -> bool,
-    ) -> Option<Sight> {
-        let p = self.any_place(from, random)?;
-        let q = match target {
-            Target::Cell(to) => self.any_place(to.0, random)?,
+    fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample {
+        let Some(p) = self.any_place(from, random) else { return Sample::Nowhere };
+        let end = match target {
+            Target::Cell(to) => self.any_place(to.0, random),
             Target::Object(object) => {
                 let b = &self.objects[object as usize];
-                Point2::from(
-                    [0, 1].map(|k| (b.min[k] + (b.max[k] - b.min[k]) * random.unit()).clamp(b.min[k], b.max[k])),
-                )
+                let x = |k: usize, t: f64| (b.min[k] + (b.max[k] - b.min[k]) * t).clamp(b.min[k], b.max[k]);
+                Some(Point2::new(x(0, random.unit()), x(1, random.unit())))
             }
         };
+        let Some(q) = end else { return Sample::Nowhere };
         let sight = Self::sight(from, target, p, q);
-        (may_lead(&sight) && self.proves(&sight)).then_some(sight)
+        Sample::of((may_lead(&sight) && self.proves(&sight)).then_some(sight))
     }
 
     fn neighbours(&self) -> &[Vec<u32>] {

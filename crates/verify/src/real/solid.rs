@@ -1,7 +1,7 @@
 //! Scenes in space: every triangle stops sight, but for those of objects that are see-through. What moves is seen wherever it may
 //! be.
 
-use super::{RayOracle, at, chosen, climb, clip, extreme, length, neighbours_of, scale_of, sub};
+use super::{RayOracle, Sample, at, chosen, climb, clip, extreme, length, neighbours_of, scale_of, sub};
 use crate::borders::{middles, pairs};
 use crate::exact::{
     segment_and_polygon_apart, segment_and_triangle_apart, segment_crosses_polygon, segment_crosses_triangle, snapped,
@@ -236,6 +236,15 @@ impl SolidWorld {
         Some(snapped(random.point(&self.cells[cell as usize]))).filter(|&p| self.is_inside(cell, p))
     }
 
+    /// A place where something that moves may be, each as likely as another, in the part of space where there is something to be seen from.
+    fn any_place_in(&self, extent: &Aabb<3>, random: &mut Random) -> Option<Point3> {
+        let within = Aabb {
+            min: [0, 1, 2].map(|k| extent.min[k].max(self.bounds.min[k])),
+            max: [0, 1, 2].map(|k| extent.max[k].min(self.bounds.max[k])),
+        };
+        (!within.is_empty()).then(|| snapped(random.point(&within))).filter(|&p| extent.contains(p))
+    }
+
     /// A place on an object, each as likely as another.
     fn any_place_on(&self, object: u32, random: &mut Random) -> Option<Point3> {
         let [first, end] = self.of_object[object as usize].map(|i| i as usize);
@@ -389,28 +398,26 @@ impl RayOracle for SolidWorld {
 
     const SAMPLES: [bool; 2] = [true, true];
 
-    fn sample(
-        &self,
-        from: u32,
-        target: Target,
-        random: &mut Random,
-        may_lead: &dyn Fn(&Sight) -> bool,
-    ) -> Option<Sight> {
-        let p = self.any_place(from, random)?;
+    fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample {
+        let Some(p) = self.any_place(from, random) else { return Sample::Nowhere };
+        let end = match target {
+            Target::Cell(to) => self.any_place(to.0, random),
+            Target::Object(object) => match self.extent(object) {
+                Some(extent) => self.any_place_in(extent, random),
+                None => self.any_place_on(object, random),
+            },
+        };
+        let Some(q) = end else { return Sample::Nowhere };
+        let sight = Self::sight(from, target, [p, q]);
+        let [p, q] = sight.segment;
         match target {
-            Target::Cell(to) => {
-                let sight = Self::sight(from, target, [p, self.any_place(to.0, random)?]);
-                let [p, q] = sight.segment;
-                let is_free = || self.hit(p, sub(q, p), 1.0).1.is_none();
-                (may_lead(&sight) && is_free() && self.proves(&sight)).then_some(sight)
+            Target::Object(object) if self.extent(object).is_none() => {
+                Sample::of(may_lead(&sight).then(|| self.sight_of_object(from, object, p, q)).flatten())
             }
-            Target::Object(object) => {
-                if let Some(extent) = self.extent(object) {
-                    let sight = Self::sight(from, target, [p, self.in_extent(extent, random)?]);
-                    return self.proves(&sight).then_some(sight);
-                }
-                let q = self.any_place_on(object, random)?;
-                may_lead(&Self::sight(from, target, [p, q])).then(|| self.sight_of_object(from, object, p, q))?
+            Target::Object(_) => Sample::of(self.proves(&sight).then_some(sight)),
+            Target::Cell(_) => {
+                let is_free = || self.hit(p, sub(q, p), 1.0).1.is_none();
+                Sample::of((may_lead(&sight) && is_free() && self.proves(&sight)).then_some(sight))
             }
         }
     }

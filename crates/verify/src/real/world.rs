@@ -1,7 +1,7 @@
 //! Quake maps: the tree of planes says what is solid and which cluster is where.
 
 use super::convex::PortalWorld;
-use super::{RayOracle, at, clip, dot, extreme, length, scale_of, sub};
+use super::{RayOracle, Sample, at, clip, dot, extreme, length, scale_of, sub};
 use crate::exact::snapped;
 use crate::sight::{Sight, Target};
 use crate::truth::{WorldChild, WorldTree};
@@ -265,22 +265,17 @@ impl RayOracle for MapWorld<'_> {
 
     const SAMPLES: [bool; 2] = [true, false];
 
-    fn sample(
-        &self,
-        from: u32,
-        target: Target,
-        random: &mut Random,
-        may_lead: &dyn Fn(&Sight) -> bool,
-    ) -> Option<Sight> {
-        let Target::Cell(to) = target else { return None };
-        let mut any_place = |cell: u32| {
+    fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample {
+        let Target::Cell(to) = target else { return Sample::Nowhere };
+        let any_place = |cell: u32, random: &mut Random| {
             let p = snapped(random.point(&self.cells[cell as usize]));
             let here = self.stretches(p, [0.0; 3], MARGIN);
             (!here.is_empty() && here.iter().all(|s| s.cluster == Some(cell))).then_some(p)
         };
-        let sight = Sight { from: CellId(from), target, segment: [any_place(from)?, any_place(to.0)?] };
-        let [p, q] = sight.segment;
-        (may_lead(&sight) && self.is_free(from, to.0, p, q)).then_some(sight)
+        let Some(p) = any_place(from, random) else { return Sample::Nowhere };
+        let Some(q) = any_place(to.0, random) else { return Sample::Nowhere };
+        let sight = Sight { from: CellId(from), target, segment: [p, q] };
+        Sample::of((may_lead(&sight) && self.is_free(from, to.0, p, q)).then_some(sight))
     }
 
     fn neighbours(&self) -> &[Vec<u32>] {

@@ -72,7 +72,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     let table = input::table(&args.table)?;
     // What was see-through for the table must not count as a wall here.
     let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.info()))?;
-    let along = simplification::along(&args.scene, &table, &file.scene)?;
+    let along = simplification::along([&args.scene, &args.table], &table, &file.scene)?;
     // A table with a frame is about the scene along its axes.
     let is_framed = along.is_some();
     let (table, scene) = along.as_ref().map_or((&table, &file.scene), |(table, scene)| (table, scene));

@@ -60,8 +60,10 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     let ReadScene { file, source } =
         read(&args.scene, &args.how.surfaces.options_with(table.as_ref().map_or(&[], |table| table.info())))?;
     format.check(&args.output, source.as_ref())?;
-    let along =
-        table.as_ref().map(|table| simplification::along(&args.scene, table, &file.scene)).transpose()?.flatten();
+    let along = match (&table, &args.eyes.table) {
+        (Some(table), Some(path)) => simplification::along([&args.scene, path], table, &file.scene)?,
+        _ => None,
+    };
     // A table with a frame is about the scene along its axes, and so are its cells.
     let (table, scene) = along.as_ref().map_or((table.as_ref(), &file.scene), |(table, scene)| (Some(table), scene));
     let views = args.eyes.views(table)?;

@@ -292,10 +292,13 @@ impl fmt::Display for Outcome {
                 writeln!(f, "result         nothing found by structure and rays, but not all that is hidden is proven")
             }
             n if self.n_violations_by_kind.get(Violation::CHANGED) == Some(&n) => {
-                writeln!(
-                    f,
-                    "result         the scene has changed since the table was made; nothing else found that contradicts the table"
-                )
+                writeln!(f, "result         the scene is not as when the table was made")?;
+                let found = if self.checked.has_any() {
+                    "nothing else was found that contradicts the table"
+                } else {
+                    "whether that matters is not known: no ray was shot and no proof was there"
+                };
+                writeln!(f, "               {found}")
             }
             n if self.has_more_violations => writeln!(f, "result         at least {}", count(n as u64, "violation")),
             n => writeln!(f, "result         {}", count(n as u64, "violation")),

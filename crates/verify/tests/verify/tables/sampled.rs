@@ -120,3 +120,46 @@ fn the_share_that_is_found_follows_from_the_number_of_segments() {
         assert!(((1.0 - share(n)).powi(n as i32) - 0.01).abs() < 1e-9, "{n}");
     }
 }
+
+/// Objects are sampled too: one hidden from a cell that sees more than a tenth of it is found by random segments alone, and one that is hidden in fact is not.
+#[test]
+fn hidden_objects_are_found() {
+    let (mut n_found, mut n_all) = (0, 0);
+    for case in cases().into_iter().filter(|case| matches!(case.real, Real::Scene(_))) {
+        let Some(seen) = &case.table.parts().objects_seen else { continue };
+        assert!(check(&case.table, &case.real, &segments(459, 1)).is_true(), "{}", case.name);
+        let mut random = Random::new(3);
+        for _ in 0..12 {
+            let (cell, object) = (random.below(seen.n_rows()), random.below(seen.n_cols()));
+            let touches = case.table.objects_of(CellId(cell as u32)).iter().any(|o| o.idx() == object);
+            if touches || !seen.get(cell, object) {
+                continue;
+            }
+            let wrong = changed(&case.table, |parts| {
+                parts.objects_seen.as_mut().expect("asked before").set(cell, object, false);
+            });
+            let found = check(&wrong, &case.real, &segments(459, 1));
+            let is_it = |v: &Violation| v.object() == Some(object as u32) && v.cells() == [CellId(cell as u32)];
+            assert!(found.violations.iter().all(is_it), "{:?}", found.violations);
+            n_found += found.n_violations;
+            n_all += 1;
+        }
+    }
+    println!("{n_found} of {n_all} hidden objects found");
+    // The methods show some objects that no segment reaches.
+    assert!(n_all >= 10 && 2 * n_found >= n_all, "{n_found} of {n_all}");
+}
+
+/// Where cells leave gaps, a table that hides two groups of them from each other has no pair next to a visible one; all hidden pairs are looked at.
+#[test]
+fn cells_with_gaps_between_them_are_sampled() {
+    let case = cases().into_iter().find(|case| case.table.kind().leaves_gaps()).expect("given cells");
+    let n = case.table.n_cells();
+    let blind = changed(&case.table, |parts| {
+        (0..n).for_each(|a| (0..n).filter(|&b| a != b).for_each(|b| parts.rows.set(a, b, false)));
+    });
+    let found = check(&blind, &case.real, &segments(459, 1));
+    let n_pairs = (n * (n - 1) / 2) as u64;
+    assert!(found.sampled.n_pairs >= n_pairs && found.sampled.n_each == 459, "{:?}", found.sampled);
+    assert!(found.by_kind["hidden-cell"] > n / 2, "{:?}", found.by_kind);
+}

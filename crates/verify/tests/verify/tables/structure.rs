@@ -10,7 +10,7 @@ fn case(name: &str) -> Case {
 
 /// The kinds of violations of a table that was changed, without rays.
 fn kinds(case: &Case, change: impl FnOnce(&mut TableParts)) -> Vec<&'static str> {
-    let none = VerifyOptions { rays: 0, pairs: 0, ..VerifyOptions::default() };
+    let none = VerifyOptions { rays: 0, pairs: 0, segments: 0, ..VerifyOptions::default() };
     let wrong = changed(&case.table, change);
     check(&wrong, &case.real, &none).by_kind.into_keys().collect()
 }
