@@ -53,7 +53,7 @@ pub(crate) struct VerifyArgs {
     /// Number of rays aimed at each of these pairs; eight times as many where all neighbouring pairs are visible
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().tries)]
     tries: u32,
-    /// Number of random segments between each hidden pair next to visible ones; fewer if there are very many such pairs
+    /// Number of random segments for each hidden pair next to a visible one, or for all where cells leave gaps; fewer if there are very many
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().segments)]
     segments: u32,
     /// Seed of the random numbers; the same seed gives the same result

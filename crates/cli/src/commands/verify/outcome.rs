@@ -232,10 +232,10 @@ impl fmt::Display for Outcome {
                 if self.checked.random_segments {
                     let pairs = count(self.n_sampled_pairs, "hidden pair");
                     let [n, share] = [count(self.n_segments_each, "random segment"), percent(self.share_found)];
-                    writeln!(f, "segments       {n} at each of {pairs} next to visible ones")?;
+                    writeln!(f, "segments       {n} at each of {pairs}")?;
                     writeln!(
                         f,
-                        "               a wrong pair with {share} of its segments free is found in 99 of 100 runs"
+                        "               one with {share} of them free is found in 99 of 100 runs, unless nearer pairs are wrong too"
                     )?;
                 }
                 Self::pairs(f, "cells", &self.cells)?;
