@@ -238,7 +238,8 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     parts.info.sort();
     limit.iter().for_each(|limit| state_limit(&mut parts, limit));
     state_file(&mut parts, options.file);
-    parts.digest = Some(scene.digest());
+    // Those of a k-d tree have them.
+    parts.digest.get_or_insert_with(|| scene.digest());
     let table = Table::new(parts)?;
     let time = start.elapsed();
     let report = RegionReport {
