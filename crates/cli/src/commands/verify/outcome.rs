@@ -235,7 +235,7 @@ impl fmt::Display for Outcome {
                     writeln!(f, "segments       {n} at each of {pairs}")?;
                     writeln!(
                         f,
-                        "               one with {share} of them free is found in 99 of 100 runs, unless nearer pairs are wrong too"
+                        "               a pair with {share} of them free is found in 99 of 100 runs, unless nearer pairs are wrong too"
                     )?;
                 }
                 Self::pairs(f, "cells", &self.cells)?;
