@@ -217,6 +217,22 @@ fn walks_are_measured() {
         assert_eq!(kept(&again, "cells"), [kept(&reply, "cells")[0], kept(&reply, "cells")[3]]);
         assert_eq!(kept(&again, "polygons"), [kept(&reply, "polygons")[0], kept(&reply, "polygons")[3]]);
         assert!(again["packed_bytes"][0].as_u64().unwrap() > 0 && reply["packed_bytes"].is_null());
+        // Without a bound no frame is a coarser one. With none at all each of the exact method is, and shows what incident portals
+        // find; the others are as before.
+        let coarser = |reply: &Value| -> Vec<u64> {
+            reply["methods"].as_array().unwrap().iter().map(|m| m["n_fell_back"].as_u64().unwrap()).collect()
+        };
+        assert_eq!((coarser(&reply), &reply["steps"]), (vec![0; 5], &json!(null)));
+        let args = ["walk", name, "--random", "400", "--seed", "7", "--json", "--steps", "0"];
+        let hurried = folder.run(&args).expect(0).json();
+        assert_eq!((coarser(&hurried), &hurried["steps"]), (vec![0, 0, 0, 0, 400], &json!(0)));
+        for what in ["cells", "objects", "polygons"] {
+            let (hurried, full) = (kept(&hurried, what), kept(&reply, what));
+            assert_eq!((&hurried[..4], hurried[4]), (&full[..4], full[3]), "{what}");
+        }
+        for line in hurried["methods"].as_array().unwrap() {
+            assert!(line["longest_us"].as_f64() >= line["p99_us"].as_f64(), "{line}");
+        }
         // The impostor: another walk is another.
         let other = folder.run(&["walk", name, "--random", "400", "--seed", "8", "--json"]).expect(0).json();
         assert_ne!(kept(&other, "cells"), kept(&reply, "cells"));
@@ -270,6 +286,8 @@ fn walks_that_cannot_be_are_refused() {
         &["--random", "5", "--step", "NaN"],
         &["--random", "5", "--fov", "NaN"],
         &["--random", "5", "--method", "best"],
+        &["--random", "5", "--steps", "-1"],
+        &["--random", "5", "--steps", "few"],
     ] {
         let run = folder.run(&[&["walk", "office.pvs"][..], bad].concat()).expect(2);
         assert!(run.out.is_empty() && run.err.starts_with("error: "), "{bad:?}: {}", run.err);

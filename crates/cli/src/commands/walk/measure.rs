@@ -41,6 +41,8 @@ pub(super) struct MethodSums {
     pub(super) image_polygons: u64,
     /// Of each frame, ascending.
     pub(super) times: Vec<Duration>,
+    /// Frames that a coarser method answered, because the steps were spent.
+    pub(super) n_fell_back: u64,
     /// Frames of the walk without waiting whose answer was not ready in time.
     pub(super) n_late: u64,
 }
@@ -71,6 +73,7 @@ struct Shot {
     images: u64,
     image_polygons: u64,
     time: Duration,
+    fell_back: bool,
 }
 
 impl<C: Cells> Walk<'_, C> {
@@ -85,6 +88,7 @@ impl<C: Cells> Walk<'_, C> {
             images: 0,
             image_polygons: 0,
             times: Vec::new(),
+            n_fell_back: 0,
             n_late: 0,
         };
         let mut measured = Measured {
@@ -170,6 +174,7 @@ impl<C: Cells> Walk<'_, C> {
                 images: frame.images.len() as u64,
                 image_polygons: frame.images.iter().map(|image| polygons(&image.objects)).sum(),
                 time,
+                fell_back: frame.method < method,
             };
             let sets = (frame.answer == Answer::Full).then(|| Sets::of(&frame));
             return Ok((shot, sets));
@@ -207,6 +212,7 @@ impl Measured {
                 sums.images += shot.images;
                 sums.image_polygons += shot.image_polygons;
                 sums.times.push(shot.time);
+                sums.n_fell_back += u64::from(shot.fell_back);
             }
         } else {
             self.n_starved += 1;

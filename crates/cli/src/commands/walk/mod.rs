@@ -15,7 +15,7 @@ use crate::view::{LensArgs, Methods, method_help};
 use error::{Error, PathError};
 use measure::Walk;
 use outcome::Outcome;
-use sightlines::eye_to_cell::{CellSource, Method, View};
+use sightlines::eye_to_cell::{Budget, CellSource, Method, View};
 use sightlines::report::walk_svg;
 use sightlines::walkthrough::{CameraPose, WalkOptions, wander};
 use std::path::{Path, PathBuf};
@@ -52,6 +52,10 @@ pub(crate) struct WalkArgs {
     /// Memory budget for prepared data, in bytes; the blocks of a packed table get the same again
     #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = WalkOptions::default().budget)]
     budget: usize,
+    /// Work that the queries of a frame may do; beyond it a frame shows what incident-portals finds, which is never less, and counts as
+    /// coarser. A step is about a test of a box; frame for 4096, none for no bound
+    #[arg(long, help_heading = "Method", value_name = "STEPS", default_value = "none", value_parser = steps)]
+    steps: Budget,
     /// Also follow reflections in mirrors, up to this many in a row
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::view::bounces)]
     bounces: usize,
@@ -76,6 +80,14 @@ fn step(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
         _ => Err("not a number above 0".to_owned()),
+    }
+}
+
+fn steps(text: &str) -> Result<Budget, String> {
+    match text {
+        "none" => Ok(Budget::UNLIMITED),
+        "frame" => Ok(Budget::FRAME),
+        _ => text.parse().map(Budget::steps).map_err(|_| "neither a number of steps, frame, nor none".to_owned()),
     }
 }
 
@@ -118,7 +130,8 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
         .map(|o| cells.polygons_of(sightlines::pvs::ObjectId(o)))
         .collect::<Result<Vec<_>, _>>()
         .map_err(fail)?;
-    let options = WalkOptions { budget: args.budget, bounces: args.bounces, ..WalkOptions::default() };
+    let options =
+        WalkOptions { budget: args.budget, bounces: args.bounces, steps: args.steps, ..WalkOptions::default() };
     let bar = Bar::new("frames", show_progress);
     let walk = Walk { cells, file, views: &views, polygons: &polygons, options, fps: args.fps };
     let measured = walk.measure(&methods, &|done, all| bar.set(done, all))?;

@@ -6,6 +6,7 @@ use super::measure::{Measured, MethodSums};
 use crate::output::{bytes, count};
 use crate::tables::Cells;
 use serde::Serialize;
+use sightlines::eye_to_cell::Budget;
 use sightlines::report::WalkBar;
 use std::fmt;
 use std::fmt::Write;
@@ -30,6 +31,8 @@ pub(super) struct Outcome {
     /// Frames for which the budget was too small.
     n_starved: usize,
     budget: usize,
+    /// Steps allowed to the queries of a frame; null for no bound.
+    steps: Option<u64>,
     /// The most bytes of prepared subgraphs that were kept at once.
     most_bytes_kept: usize,
     n_prepared: u64,
@@ -55,6 +58,9 @@ struct MethodLine {
     mean_us: f64,
     median_us: f64,
     p99_us: f64,
+    longest_us: f64,
+    /// Frames that a coarser method answered, because the steps were spent.
+    n_fell_back: u64,
     /// Frames of a walk without waiting whose answer was not ready in time.
     n_late: u64,
 }
@@ -111,6 +117,8 @@ impl Outcome {
             mean_us: share(micros(sums.times.iter().sum()), *n_full as f64),
             median_us: quantile(&sums.times, 0.5),
             p99_us: quantile(&sums.times, 0.99),
+            longest_us: quantile(&sums.times, 1.0),
+            n_fell_back: sums.n_fell_back,
             n_late: sums.n_late,
         };
         Self {
@@ -125,6 +133,7 @@ impl Outcome {
             n_outside: *n_outside,
             n_starved: *n_starved,
             budget: args.budget,
+            steps: (args.steps != Budget::UNLIMITED).then(|| args.steps.n_steps()),
             most_bytes_kept: *most_bytes,
             n_prepared: *n_prepared,
             n_dropped: *n_dropped,
@@ -160,7 +169,7 @@ impl Outcome {
         let mut out = String::from(
             "file,fov,frames,method,cells,cells_of_cell_to_cell,cells_of_all,objects,objects_of_cell_to_cell,\
              objects_of_all,polygons,polygons_of_cell_to_cell,polygons_of_all,images,image_polygons,mean_us,median_us,\
-             p99_us,late\n",
+             p99_us,longest_us,fell_back,late\n",
         );
         let file = self.file.replace('"', "\"\"");
         for line in &self.methods {
@@ -169,8 +178,9 @@ impl Outcome {
                 let Kept { mean, share_of_cell_to_cell, share_of_all } = kept;
                 let _ = write!(out, ",{mean:.2},{share_of_cell_to_cell:.6},{share_of_all:.6}");
             }
-            let MethodLine { images, image_polygons, mean_us, median_us, p99_us, n_late, .. } = line;
-            let _ = writeln!(out, ",{images:.3},{image_polygons:.1},{mean_us:.3},{median_us:.3},{p99_us:.3},{n_late}");
+            let MethodLine { images, image_polygons, mean_us, median_us, p99_us, longest_us, .. } = line;
+            let _ = write!(out, ",{images:.3},{image_polygons:.1},{mean_us:.3},{median_us:.3},{p99_us:.3}");
+            let _ = writeln!(out, ",{longest_us:.3},{},{}", line.n_fell_back, line.n_late);
         }
         out
     }
@@ -201,14 +211,19 @@ impl fmt::Display for Outcome {
             let n = count(self.n_starved as u64, "frame");
             writeln!(f, "too large      {n} that need more than the budget, not counted below")?;
         }
-        let [cells, objects, polygons, time] = ["cells", "objects", "polygons", "µs: mean, median, 99 %"];
-        writeln!(f, "\n{:<20} {cells:>23} {objects:>23} {polygons:>23} {time:>27} {:>6}", "left to draw", "late")?;
+        let [cells, objects, polygons, time] = ["cells", "objects", "polygons", "µs: mean, median, 99 %, all"];
+        writeln!(
+            f,
+            "\n{:<20} {cells:>23} {objects:>23} {polygons:>23} {time:>37} {:>7} {:>6}",
+            "left to draw", "coarser", "late"
+        )?;
         for line in &self.methods {
-            let MethodLine { method, mean_us, median_us, p99_us, n_late, .. } = line;
+            let MethodLine { method, mean_us, median_us, p99_us, longest_us, n_fell_back, n_late, .. } = line;
             let [cells, objects, polygons] = [line.cells, line.objects, line.polygons].map(Column);
             writeln!(
                 f,
-                "{method:<20} {cells} {objects} {polygons} {mean_us:>9.2} {median_us:>8.2} {p99_us:>8.2} {n_late:>6}"
+                "{method:<20} {cells} {objects} {polygons} {mean_us:>9.2} {median_us:>8.2} {p99_us:>8.2} {longest_us:>9.2} \
+                 {n_fell_back:>7} {n_late:>6}"
             )?;
             if line.images > 0.0 {
                 writeln!(f, "  in mirrors: {:.2} images, {:.1} polygons", line.images, line.image_polygons)?;
@@ -227,6 +242,13 @@ impl fmt::Display for Outcome {
             write!(f, "{levels}")?;
         }
         writeln!(f, "left to draw   on average; of it, % of the first line; of all, %")?;
+        if let Some(steps) = self.steps {
+            writeln!(
+                f,
+                "coarser        frames that had more to do than {}, and show what incident-portals finds",
+                count(steps, "step")
+            )?;
+        }
         writeln!(
             f,
             "late           frames whose answer was not ready in time, so that they showed more; of a second walk that does not wait \
