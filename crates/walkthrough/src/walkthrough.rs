@@ -22,7 +22,7 @@ pub struct WalkOptions {
     /// Maximum number of reflections in a row; 0 for no mirrors.
     pub bounces: usize,
     /// Work that the queries of a frame may do together, those in mirrors included; beyond it the exact method's answer is
-    /// that of the incident portals, which is never less ([`Frame::method`]).
+    /// exact only near the eye, and that of the incident portals behind, which is never less ([`Frame::method`]).
     pub steps: Budget,
     /// Whether subgraphs are prepared on another thread. Otherwise each frame prepares those that it requests before it
     /// returns: such a frame waits. For measurements that have to be repeatable, and for targets without threads.
@@ -36,7 +36,7 @@ impl Default for WalkOptions {
             frames_ahead: 60,
             places_per_frame: 4,
             bounces: 0,
-            steps: Budget::UNLIMITED,
+            steps: Budget::FRAME,
             has_thread: true,
         }
     }

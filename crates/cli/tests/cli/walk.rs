@@ -198,7 +198,7 @@ fn kept(reply: &Value, what: &str) -> Vec<f64> {
 fn walks_are_measured() {
     for (folder, name, _) in scenes() {
         let table = table(&folder, name);
-        let args = ["walk", name, "--random", "400", "--seed", "7", "--json"];
+        let args = ["walk", name, "--random", "400", "--seed", "7", "--json", "--steps", "none"];
         let reply = folder.run(&[&args[..], &["-o", "walk.svg", "--csv", "walk.csv"]].concat()).expect(0).json();
         assert_eq!((&reply["n_frames"], &reply["n_full"], &reply["n_starved"]), (&json!(400), &json!(400), &json!(0)));
         let (svg, csv) = (folder.read("walk.svg"), folder.read("walk.csv"));
@@ -233,6 +233,9 @@ fn walks_are_measured() {
         for line in hurried["methods"].as_array().unwrap() {
             assert!(line["longest_us"].as_f64() >= line["p99_us"].as_f64(), "{line}");
         }
+        // A bound is what frames have unless they are told otherwise.
+        let usual = folder.run(&["walk", name, "--random", "400", "--seed", "7", "--json"]).expect(0).json();
+        assert_eq!(usual["steps"], 4096);
         // The impostor: another walk is another.
         let other = folder.run(&["walk", name, "--random", "400", "--seed", "8", "--json"]).expect(0).json();
         assert_ne!(kept(&other, "cells"), kept(&reply, "cells"));

@@ -3,8 +3,8 @@
 use super::exact::by_sequences;
 use super::missing::list_missing;
 use super::query::Query;
-use super::sweep::{sweep, sweep_within};
-use crate::{Doors, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
+use super::sweep::{keep_unfinished, sweep, sweep_within};
+use crate::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use proptest::prelude::*;
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use std::f64::consts::TAU;
@@ -167,7 +167,10 @@ fn limits_are_reported() {
     let subgraph = VisibleSubgraph::prepare(&TableCells::new(&table), root).unwrap_or_else(|never| match never {});
     let all = seen_by(&subgraph, &view, |query| by_sequences(query, u64::MAX));
     let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
-    let mut n_done = 0;
+    seen.clear(1 << 10, 0);
+    Method::IncidentPortals.look(&subgraph, &view, &Doors::all_open(), &mut scratch, &mut seen);
+    let n_coarser = seen.cells().len();
+    let (mut n_done, mut n_dropped, mut n_between) = (0, 0, 0);
     for most in 0..100 {
         seen.clear(1 << 10, 0);
         let doors = Doors::all_open();
@@ -178,7 +181,21 @@ fn limits_are_reported() {
         assert!(seen.cells().iter().all(|cell| all.contains(&cell.0)));
         assert!(!done || seen.cells().iter().map(|cell| cell.0).eq(all.iter().copied()), "{most}");
         n_done += usize::from(done);
+        // What it has left, the rest has.
+        let doors = Doors::all_open();
+        let mut query = Query::new(&subgraph, &view, &view.parts()[0], &doors, &mut scratch, &mut seen);
+        query.seen.clear(1 << 10, 0);
+        list_missing(&mut query);
+        if !sweep_within(&mut query, most) {
+            let n_found = query.seen.cells().len();
+            keep_unfinished(&mut query);
+            assert!(all.iter().all(|&cell| seen.has_cell(CellId(cell))), "{most}");
+            n_dropped += usize::from(n_found < all.len());
+            n_between += usize::from(seen.cells().len() < n_coarser);
+        }
     }
+    // Impostor: what the sweep alone has found; and twin: the rest is not all that the incident portals lead to.
+    assert!(n_dropped > 10 && n_between > 5, "{n_dropped} {n_between}");
     assert!((10..95).contains(&n_done), "{n_done}");
 }
 

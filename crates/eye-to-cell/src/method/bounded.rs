@@ -31,23 +31,26 @@ fn faults(answer: &[CellId], exact: &[CellId], coarser: &[CellId]) -> usize {
     dropped + answer.iter().filter(|cell| !coarser.contains(cell)).count()
 }
 
-/// Checks the answers of an eye within a budget; how many were exact, and how many fell back.
-fn check(table: &Table, view: &View, budget: Budget) -> Result<[usize; 2], TestCaseError> {
-    let mut counts = [0; 2];
+/// Checks the answers of an eye within a budget; how many were exact, how many those of the incident portals, and how many between.
+fn check(table: &Table, view: &View, budget: Budget) -> Result<[usize; 3], TestCaseError> {
+    let mut counts = [0; 3];
     for subgraph in subgraphs(table, view) {
         let (by, answer) = look(Method::Exact, budget, &subgraph, view);
         let (best, exact) = look(Method::Exact, Budget::UNLIMITED, &subgraph, view);
         let (_, coarser) = look(Method::IncidentPortals, budget, &subgraph, view);
         prop_assert_eq!(best, Method::Exact);
         prop_assert_eq!(faults(&answer, &exact, &coarser), 0);
-        // Of a view wider than half a turn, one half may be exact and the other not.
         if by == Method::Exact {
             prop_assert_eq!(&answer, &exact);
-        } else if view.parts().len() == 1 {
+        } else if budget == Budget::steps(0) {
             prop_assert_eq!(&answer, &coarser);
         }
+        counts[match (by, answer.len() < coarser.len()) {
+            (Method::Exact, _) => 0,
+            (_, false) => 1,
+            (_, true) => 2,
+        }] += 1;
         prop_assert_eq!((by, answer), look(Method::Exact, budget, &subgraph, view));
-        counts[usize::from(by != Method::Exact)] += 1;
     }
     Ok(counts)
 }
@@ -64,8 +67,8 @@ proptest! {
     ) {
         prop_assume!(dir.iter().any(|x| x.abs() > 0.01));
         let view = View::pinhole(eye, dir, [0.0, 0.0, 1.0], fov, 1.25).unwrap();
-        let [n_exact, n_coarser] = check(&block(&doors), &view, Budget::steps(steps))?;
-        prop_assert!(n_exact + n_coarser > 0);
+        let n: usize = check(&block(&doors), &view, Budget::steps(steps))?.iter().sum();
+        prop_assert!(n > 0);
     }
 
     /// The same in the plane.
@@ -78,8 +81,8 @@ proptest! {
         steps in 0u64..4000,
     ) {
         let view = View::planar(eye, [turn.cos(), turn.sin()], fov).unwrap();
-        let [n_exact, n_coarser] = check(&plan(&doors, 6), &view, Budget::steps(steps))?;
-        prop_assert!(n_exact + n_coarser > 0);
+        let n: usize = check(&plan(&doors, 6), &view, Budget::steps(steps))?.iter().sum();
+        prop_assert!(n > 0);
     }
 }
 
@@ -98,15 +101,21 @@ fn views() -> (Table, Vec<View>) {
 #[test]
 fn most_answers_are_exact() {
     let (table, views) = views();
-    let mut last = 0;
+    let (mut last, mut n_between) = (0, 0);
     for steps in [0, 64, 256, 1024, Budget::FRAME.n_steps(), u64::MAX] {
-        let n_exact = views.iter().map(|view| check(&table, view, Budget::steps(steps)).unwrap()[0]).sum::<usize>();
+        let mut n_exact = 0;
+        for view in &views {
+            let counts = check(&table, view, Budget::steps(steps)).unwrap();
+            n_exact += counts[0];
+            n_between += counts[2];
+        }
         assert!(n_exact >= last, "{steps}: {n_exact}");
         assert!(steps > 0 || n_exact == 0);
         assert!(steps < Budget::FRAME.n_steps() || n_exact * 10 > views.len() * 9, "{steps}: {n_exact}");
         last = n_exact;
     }
-    assert_eq!(last, 128);
+    // Who has done some of the work has some of the gain.
+    assert!(last == 128 && n_between > 30, "{last} {n_between}");
 }
 
 /// Impostors: who stops without falling back, or drops one cell of the coarser answer that is seen.

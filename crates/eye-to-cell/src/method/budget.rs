@@ -10,8 +10,8 @@ pub struct Budget(u64);
 impl Budget {
     /// No bound.
     pub const UNLIMITED: Self = Self(u64::MAX);
-    /// 4,096 steps, for those who would rather have a coarser answer than wait. In open rooms many answers are then coarser ones. A step
-    /// is no time: measure on your scenes.
+    /// 4,096 steps, some tens of microseconds: what a frame of a walkthrough is allowed unless it is told otherwise. In open rooms many
+    /// answers are then coarser ones. A step is no time: measure on your scenes.
     pub const FRAME: Self = Self(4096);
 
     /// So many steps. With 0 every answer of the exact method is that of the one before.

@@ -4,7 +4,7 @@ use super::Scratch;
 use super::budget::CLIP;
 use super::missing::{list_missing, meets};
 use super::query::{Query, keep_mirrors};
-use super::sweep::sweep;
+use super::sweep::{keep_unfinished, sweep};
 use crate::front::Facing;
 use crate::trees::NO_NODE;
 use sightlines_pvs::PortalId;
@@ -37,26 +37,27 @@ pub(crate) struct Frame {
 }
 
 /// Keeps what a line from the eye leads to, through open portals, within the view; within rounding. `false` if that is too
-/// much work: then all is kept that the incident portals lead to.
+/// much work: then what is near is kept as exactly as the work allowed, and of the rest all that the incident portals lead to.
 pub(super) fn exact(query: &mut Query<'_>) -> bool {
     list_missing(query);
-    let n_reflections = query.seen.reflections.len();
-    let ways: [fn(&mut Query<'_>) -> bool; 3] =
-        [|query| by_sequences(query, MOST_STEPS), sweep, |query| by_sequences(query, MOST_STEPS_WITHOUT_ORDER)];
-    for way in ways {
-        if way(query) {
-            return true;
-        }
-        // The next way finds all mirrors anew.
-        query.seen.reflections.truncate(n_reflections);
-        if query.scratch.work.is_spent() {
-            break;
-        }
+    let first = query.seen.reflections.len();
+    // Where there are too many sequences, the sweep needs what is left of the work.
+    let most = MOST_STEPS.min(query.scratch.work.left() / (4 * CLIP));
+    if by_sequences(query, most) {
+        return true;
     }
-    // They are known already.
-    for k in 0..query.scratch.wanted.list().len() {
-        query.keep(query.scratch.wanted.list()[k]);
+    // The next way finds all mirrors anew.
+    query.seen.reflections.truncate(first);
+    if sweep(query) {
+        return true;
     }
+    let mut swept = query.seen.reflections.split_off(first);
+    if !query.scratch.work.is_spent() && by_sequences(query, MOST_STEPS_WITHOUT_ORDER) {
+        return true;
+    }
+    query.seen.reflections.truncate(first);
+    query.seen.reflections.append(&mut swept);
+    keep_unfinished(query);
     false
 }
 

@@ -77,7 +77,8 @@ impl Scratch {
     }
 
     /// What all queries from here on may do together, until the next call; [`Budget::UNLIMITED`] at first. Once a frame, as a
-    /// rule. A query that finds nothing left, or comes to the end of it, takes the answer of the incident portals.
+    /// rule. A query that finds nothing left takes the answer of the incident portals; one that comes to the end of it takes
+    /// that for what it has not looked at yet.
     pub fn allow(&mut self, budget: Budget) {
         self.work = Work::of(budget);
     }
@@ -108,8 +109,8 @@ pub enum Method {
     /// Those that are reached through portals that the view meets. O(cells + portals).
     IncidentPortals,
     /// Those to which a line leads from the eye, through portals, within the view; within rounding. The cost is that of
-    /// the parts into which the cells' edges cut what is seen. Where that is out of all proportion, the answer is that
-    /// of the incident portals; no scene that was measured came to that without a [`Budget`].
+    /// the parts into which the cells' edges cut what is seen. Where that is out of all proportion, the answer is exact
+    /// near the eye, and that of the incident portals behind; no scene that was measured came to that without a [`Budget`].
     Exact,
 }
 
@@ -137,8 +138,8 @@ impl Method {
     /// the subgraph of each of them. Allocates nothing once `scratch` and `seen` are warm, but for mirrors.
     ///
     /// Returns the method whose answer was added: this one, or the incident portals where the exact method had more to do than
-    /// [`Scratch::allow`] lets it, or more than is in any proportion to its gain ([`Method::Exact`]). That answer contains the exact one, and is within the coarser one: of a view wider than half a
-    /// turn, one half may still be exact.
+    /// [`Scratch::allow`] lets it, or more than is in any proportion to its gain ([`Method::Exact`]). Then the answer contains the
+    /// exact one and is within that of the incident portals, and often less: what is near the eye is exact.
     pub fn look(
         self,
         subgraph: &VisibleSubgraph,

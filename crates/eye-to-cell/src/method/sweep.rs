@@ -16,6 +16,7 @@ use super::budget::{CLIP, JOIN, Work};
 use super::clip::MOST_CORNERS;
 use super::missing::meets;
 use super::query::{Query, keep_mirrors};
+use crate::epoch_set::EpochSet;
 use crate::front::Facing;
 use crate::side::{MOST_SIDES, Side, Vector, cross, dot, norm};
 use crate::subgraph::{LocalEdge, VisibleSubgraph};
@@ -62,6 +63,8 @@ pub(crate) struct Pieces {
     spare: Part,
     /// The ways out of the cell that is looked at.
     ways: Vec<u32>,
+    /// Cells that are looked at to the end.
+    finished: EpochSet,
 }
 
 /// A part of a portal: its corners, and the side along the edge from each.
@@ -83,6 +86,7 @@ impl Pieces {
         self.last.resize(n_cells, NONE);
         self.last_of_way.clear();
         self.last_of_way.resize(n_ways, NONE);
+        self.finished.clear(n_cells);
         self.to_come.clear();
         self.to_come.resize(n_cells, 0);
     }
@@ -253,6 +257,18 @@ pub(super) fn sweep_within(query: &mut Query<'_>, most: usize) -> bool {
     done
 }
 
+/// After a sweep that came to no end: keeps the cells that it has not finished and that its pieces lead to by ways in view, with all that
+/// the view may meet of them.
+///
+/// Errs towards visible. A cell is finished after all cells that lead into it, so a line from the eye that has left the finished
+/// cells does not come back to them. It leaves them through a portal with a piece, as no cone is dropped that meets anything not found yet.
+pub(super) fn keep_unfinished(query: &mut Query<'_>) {
+    let mut pieces = std::mem::take(&mut query.scratch.pieces);
+    let most = pieces.pieces.len();
+    Sweep { query, pieces: &mut pieces, most }.keep_unfinished();
+    query.scratch.pieces = pieces;
+}
+
 struct Sweep<'q, 'a> {
     query: &'q mut Query<'a>,
     pieces: &'q mut Pieces,
@@ -280,13 +296,17 @@ impl Sweep<'_, '_> {
         ready.clear();
         let all = self.query.scratch.wanted.list();
         ready.extend(all.iter().copied().filter(|&cell| self.pieces.to_come[cell as usize] == 0));
-        let mut n_done = 0;
         while let Some(cell) = ready.pop() {
             if self.pieces.pieces.len() > self.most || self.query.scratch.work.is_spent() {
                 break;
             }
-            n_done += 1;
-            self.visit(cell);
+            let n_reflections = self.query.seen.reflections.len();
+            if !self.visit(cell) {
+                // The cell is looked at anew, as a whole.
+                self.query.seen.reflections.truncate(n_reflections);
+                break;
+            }
+            self.pieces.finished.add(cell);
             for way in subgraph.ways_of(cell) {
                 if self.leads_on(way) {
                     let to = subgraph.ways[way as usize].to;
@@ -298,7 +318,32 @@ impl Sweep<'_, '_> {
             }
         }
         self.query.scratch.pending = ready;
-        n_done == n_wanted && !self.query.scratch.work.is_spent()
+        self.pieces.finished.list().len() == n_wanted
+    }
+
+    /// See [`keep_unfinished`].
+    fn keep_unfinished(&mut self) {
+        let subgraph = self.query.subgraph;
+        let mut pending = std::mem::take(&mut self.query.scratch.pending);
+        pending.clear();
+        self.query.scratch.reached.clear(subgraph.cells.len());
+        for k in 0..self.query.scratch.wanted.list().len() {
+            let cell = self.query.scratch.wanted.list()[k];
+            if self.pieces.last[cell as usize] != NONE && !self.pieces.finished.has(cell) {
+                self.query.scratch.reached.add(cell);
+                pending.push(cell);
+            }
+        }
+        while let Some(cell) = pending.pop() {
+            self.query.keep(cell);
+            for way in subgraph.ways_of(cell) {
+                let to = subgraph.ways[way as usize].to;
+                if !self.pieces.finished.has(to) && self.leads_on(way) && self.query.scratch.reached.add(to) {
+                    pending.push(to);
+                }
+            }
+        }
+        self.query.scratch.pending = pending;
     }
 
     /// Whether lines from the eye may go by this way, into a cell that is wanted.
@@ -307,11 +352,11 @@ impl Sweep<'_, '_> {
         to != self.query.subgraph.root && self.query.scratch.wanted.has(to) && self.query.way_in_view(way)
     }
 
-    /// Keeps a cell with what its pieces meet there, and sends them on.
-    fn visit(&mut self, cell: u32) {
+    /// Keeps a cell with what its pieces meet there, and sends them on; `false` if the work was spent before the end.
+    fn visit(&mut self, cell: u32) -> bool {
         let mut at = self.pieces.last[cell as usize];
         if at == NONE {
-            return;
+            return true;
         }
         let subgraph = self.query.subgraph;
         self.query.seen.add_cell(subgraph.cells[cell as usize]);
@@ -335,6 +380,7 @@ impl Sweep<'_, '_> {
             at = piece.next;
         }
         (self.pieces.ways, self.pieces.cone) = (ways, cone);
+        at == NONE
     }
 
     fn send(&mut self, index: u32, cone: &[Side]) {

@@ -52,9 +52,9 @@ pub(crate) struct WalkArgs {
     /// Memory budget for prepared data, in bytes; the blocks of a packed table get the same again
     #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = WalkOptions::default().budget)]
     budget: usize,
-    /// Work that the queries of a frame may do; beyond it a frame shows what incident-portals finds, which is never less, and counts as
-    /// coarser. A step is about a test of a box; frame for 4096, none for no bound
-    #[arg(long, help_heading = "Method", value_name = "STEPS", default_value = "none", value_parser = steps)]
+    /// Work that the queries of a frame may do. Beyond it, exact is exact only near the eye, and shows what incident-portals finds behind,
+    /// which is never less; the frame counts as coarser. A step is about a test of a box; frame is 4096, none is no bound
+    #[arg(long, help_heading = "Method", value_name = "STEPS", default_value = "frame", value_parser = steps)]
     steps: Budget,
     /// Also follow reflections in mirrors, up to this many in a row
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::view::bounces)]

@@ -245,7 +245,7 @@ impl fmt::Display for Outcome {
         if let Some(steps) = self.steps {
             writeln!(
                 f,
-                "coarser        frames that had more to do than {}, and show what incident-portals finds",
+                "coarser        frames that had more to do than {}: exact near the eye only, and what incident-portals finds behind",
                 count(steps, "step")
             )?;
         }
