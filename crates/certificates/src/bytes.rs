@@ -5,7 +5,9 @@ use num_bigint::{BigInt, Sign};
 /// The first bytes of every proof file.
 const MAGIC: [u8; 8] = *b"SLPROOFS";
 /// The version that is written, and the only one that is read.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
+/// The version before: without proofs about objects. Proofs that have none are written in it.
+pub(crate) const WITHOUT_OBJECTS: u32 = 1;
 /// Magic, version, kind; then the body; then the checksum.
 const HEAD: usize = 8 + 4 + 1;
 
@@ -27,7 +29,7 @@ pub enum ReadErrorKind {
     #[error("these are no proofs of a table")]
     Magic,
     /// Another version.
-    #[error("version {0} of the format; this reader knows version 1")]
+    #[error("version {0} of the format; this reader knows versions 1 and 2")]
     Version(u32),
     /// Proofs for an unknown kind of table.
     #[error("proofs of kind {0}, which is not known")]
@@ -84,10 +86,10 @@ impl Kind {
 }
 
 /// Puts a frame around a body.
-pub(crate) fn framed(kind: Kind, body: Writer) -> Vec<u8> {
+pub(crate) fn framed(kind: Kind, version: u32, body: Writer) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(HEAD + body.0.len() + 4);
     bytes.extend(MAGIC);
-    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend(version.to_le_bytes());
     bytes.push(kind.code());
     bytes.extend(body.0);
     let checksum = crc32fast::hash(&bytes);
@@ -107,15 +109,17 @@ pub(crate) fn unframed(bytes: &[u8]) -> Result<(Kind, Reader<'_>), ReadError> {
         return fail(0, ReadErrorKind::Magic);
     }
     let four = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
-    if four(8) != VERSION {
-        return fail(8, ReadErrorKind::Version(four(8)));
+    let version = four(8);
+    if !(WITHOUT_OBJECTS..=VERSION).contains(&version) {
+        return fail(8, ReadErrorKind::Version(version));
     }
     let end = bytes.len() - 4;
     if crc32fast::hash(&bytes[..end]) != four(end) {
         return fail(end, ReadErrorKind::Checksum);
     }
     match Kind::ALL.into_iter().find(|kind| kind.code() == bytes[12]) {
-        Some(kind) => Ok((kind, Reader { bytes: &bytes[..end], at: HEAD })),
+        Some(kind) if version != WITHOUT_OBJECTS && kind != Kind::Space => fail(8, ReadErrorKind::Version(version)),
+        Some(kind) => Ok((kind, Reader { bytes: &bytes[..end], at: HEAD, version })),
         None => fail(12, ReadErrorKind::Kind(bytes[12])),
     }
 }
@@ -229,9 +233,15 @@ pub(crate) fn is_wide(bits: &[u64]) -> bool {
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
+    version: u32,
 }
 
 impl<'a> Reader<'a> {
+    /// Whether the frame has a version in which proofs about objects follow.
+    pub(crate) fn has_objects(&self) -> bool {
+        self.version > WITHOUT_OBJECTS
+    }
+
     /// An error at the offset `back` bytes before the current one.
     pub(crate) fn fail<T>(&self, back: usize, kind: ReadErrorKind) -> Result<T, ReadError> {
         Err(ReadError { offset: self.at - back, kind })
@@ -358,7 +368,7 @@ mod tests {
             writer.whole(&BigInt::from(y));
             writer.double(z, true);
             writer.double(f64::from(z as f32), false);
-            let bytes = framed(Kind::Space, writer);
+            let bytes = framed(Kind::Space, WITHOUT_OBJECTS, writer);
             let (kind, mut reader) = unframed(&bytes).unwrap();
             prop_assert_eq!(kind, Kind::Space);
             prop_assert_eq!(reader.number().unwrap(), x);
@@ -370,7 +380,7 @@ mod tests {
     }
 
     fn of(body: &[u8]) -> Vec<u8> {
-        framed(Kind::Plan, Writer(body.to_vec()))
+        framed(Kind::Plan, WITHOUT_OBJECTS, Writer(body.to_vec()))
     }
 
     #[test]
@@ -400,7 +410,7 @@ mod tests {
         assert_eq!(error(b"this is some other kind of file"), "byte 0: these are no proofs of a table");
         let mut other = bytes.clone();
         other[8] = 7;
-        assert_eq!(error(&other), "byte 8: version 7 of the format; this reader knows version 1");
+        assert_eq!(error(&other), "byte 8: version 7 of the format; this reader knows versions 1 and 2");
         let mut other = bytes.clone();
         other[14] ^= 1;
         assert_eq!(error(&other), "byte 16: the checksum is wrong: the file is damaged");

@@ -24,7 +24,7 @@ pub mod space;
 mod walk;
 
 pub use bytes::{Kind, ReadError, ReadErrorKind, VERSION};
-pub use pairs::Pairs;
+pub use pairs::{ObjectPairs, Pairs};
 pub use proven::{NoWall, Proven, Refusal};
 pub use walk::{ChainSolver, ChainStep, Decisions, Maker};
 

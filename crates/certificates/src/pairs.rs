@@ -104,6 +104,52 @@ impl Pairs {
     }
 }
 
+/// Pairs of a cell and an object; a bit for each.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ObjectPairs {
+    n_objects: usize,
+    width: usize,
+    words: Vec<u64>,
+}
+
+impl ObjectPairs {
+    /// No pairs of cells and objects. Takes a bit for each pair.
+    pub fn none(n_cells: usize, n_objects: usize) -> Self {
+        let width = n_objects.div_ceil(64);
+        Self { n_objects, width, words: vec![0; n_cells * width] }
+    }
+
+    /// Whether a pair is in the set; a pair with a cell or an object that does not exist is not.
+    pub fn has(&self, cell: u32, object: u32) -> bool {
+        let (cell, object) = (cell as usize, object as usize);
+        let word = || self.words.get(cell * self.width + object / 64);
+        object < self.n_objects && word().is_some_and(|word| word >> (object % 64) & 1 == 1)
+    }
+
+    /// Adds a pair. Returns whether it is new.
+    ///
+    /// # Panics
+    /// If there is no such cell or object.
+    pub fn add(&mut self, cell: u32, object: u32) -> bool {
+        let (cell, object) = (cell as usize, object as usize);
+        assert!(object < self.n_objects, "object {object} of {}", self.n_objects);
+        let (word, bit) = (&mut self.words[cell * self.width + object / 64], 1 << (object % 64));
+        let is_new = *word & bit == 0;
+        *word |= bit;
+        is_new
+    }
+
+    /// Number of pairs.
+    pub fn len(&self) -> u64 {
+        self.words.iter().map(|word| u64::from(word.count_ones())).sum()
+    }
+
+    /// Whether there is no pair.
+    pub fn is_empty(&self) -> bool {
+        self.words.iter().all(|word| *word == 0)
+    }
+}
+
 /// The indices of the bits that are set in a row, ascending.
 pub(crate) fn ones(row: &[u64]) -> impl Iterator<Item = u32> + '_ {
     (0u32..).zip(row).flat_map(|(i, &word)| {
@@ -119,6 +165,15 @@ pub(crate) fn ones(row: &[u64]) -> impl Iterator<Item = u32> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pairs_with_objects_are_kept() {
+        let mut pairs = ObjectPairs::none(3, 70);
+        assert!(pairs.is_empty() && pairs.add(2, 69) && pairs.add(0, 0) && !pairs.add(2, 69));
+        assert_eq!((pairs.len(), pairs.is_empty()), (2, false));
+        assert!(pairs.has(2, 69) && !pairs.has(1, 69) && !pairs.has(2, 70) && !pairs.has(3, 0) && !pairs.has(1, 64));
+        assert!(!ObjectPairs::default().has(0, 0));
+    }
 
     #[test]
     fn pairs_are_kept_both_ways_round() {

@@ -1,19 +1,21 @@
 //! The result of a check: the pairs proven, or why proofs are refused.
 
-use crate::pairs::Pairs;
+use crate::pairs::{ObjectPairs, Pairs};
 
-/// Pairs of cells for which a proof was checked.
+/// Pairs for which a proof was checked.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Proven {
     /// Pairs that an open set of lines joins.
     pub visible: Pairs,
     /// Pairs that no open set of lines joins.
     pub hidden: Pairs,
+    /// Pairs of a cell and an object to which no open set of lines leads from the cell. Only proofs of scenes in space have any.
+    pub hidden_objects: ObjectPairs,
 }
 
 impl Proven {
     pub(crate) fn new(visible: Pairs, hidden: Pairs) -> Self {
-        Self { visible, hidden }
+        Self { visible, hidden, hidden_objects: ObjectPairs::default() }
     }
 
     /// Number of pairs of different cells for which there is no proof.
@@ -49,6 +51,9 @@ pub enum Refusal {
     /// They are about other cells and portals.
     #[error("the proofs are about other cells or portals than the table has")]
     OtherTable,
+    /// Proofs about other objects than the network was given.
+    #[error("the proofs are about other objects than the table has")]
+    OtherObjects,
     /// A line that passes no portal of its cell.
     #[error("line {index} passes no portal of cell {cell}")]
     Line {
@@ -120,6 +125,14 @@ pub enum Refusal {
     Boxes {
         /// The index of the proof.
         index: usize,
+    },
+    /// A proof about a box and an object that does not hold.
+    #[error("proof {index} about objects does not show that object {object} is hidden from its box")]
+    Object {
+        /// The index of the proof among those about objects.
+        index: usize,
+        /// The object.
+        object: u32,
     },
 }
 

@@ -7,7 +7,9 @@ use super::block::MOST_DEPTH;
 use super::{
     ConvexBlock, ConvexCut, ConvexLine, ConvexPlane, ConvexProofs, ConvexSums, ConvexTerm, ConvexTree, ConvexWalk,
 };
-use crate::bytes::{Coded, Kind, ReadError, ReadErrorKind, Reader, Writer, framed, is_narrow, is_wide, unframed_of};
+use crate::bytes::{
+    Coded, Kind, ReadError, ReadErrorKind, Reader, WITHOUT_OBJECTS, Writer, framed, is_narrow, is_wide, unframed_of,
+};
 
 /// Forms of lines.
 const NARROW: u8 = 0;
@@ -29,7 +31,7 @@ impl ConvexProofs {
         writer.list(&self.lines);
         writer.pairs(&self.unproven);
         writer.list(&self.walks);
-        framed(Kind::Convex, writer)
+        framed(Kind::Convex, WITHOUT_OBJECTS, writer)
     }
 
     /// Reads proofs without checking what they prove: see [`ConvexProofs::check`].

@@ -4,7 +4,9 @@
 //! length.
 
 use super::{LineForm, PlanBlock, PlanLine, PlanProofs, PlanWalk};
-use crate::bytes::{Coded, Kind, ReadError, ReadErrorKind, Reader, Writer, framed, is_wide, unframed_of};
+use crate::bytes::{
+    Coded, Kind, ReadError, ReadErrorKind, Reader, WITHOUT_OBJECTS, Writer, framed, is_wide, unframed_of,
+};
 
 /// Forms of lines.
 const NARROW: u8 = 0;
@@ -21,7 +23,7 @@ impl PlanProofs {
         writer.list(&self.lines);
         writer.pairs(&self.unproven);
         writer.list(&self.walks);
-        framed(Kind::Plan, writer)
+        framed(Kind::Plan, WITHOUT_OBJECTS, writer)
     }
 
     /// Reads proofs without checking what they prove: see [`PlanProofs::check`].

@@ -1,5 +1,8 @@
 //! Why no line leads from one box to another past rectangles: proofs about pairs of boxes, and their checker.
 //!
+//! An object is hidden from a box by the same reasons, with the object's box as the second one: lines end where they meet it, so a
+//! rectangle on its surface blocks none.
+//!
 //! # What is shown
 //! A line with a direction along every axis reaches each coordinate on an axis at some time, and times are linear in
 //! the coordinate: on axis `k` it reaches `x` at `s_k |x| + q_k`, with a positive slowness `s_k`, where `|x|` is `x`,
@@ -100,12 +103,19 @@ pub(super) struct Lines<'a> {
     blockers: &'a [Box3],
     /// Whether lines go towards larger coordinates.
     forward: [bool; 3],
+    /// Whether lines may end on the surface of the second box, so that a rectangle there is not in their way.
+    ends_on_surface: bool,
     path: Vec<Passage<'a>>,
 }
 
 impl<'a> Lines<'a> {
     pub(super) fn new(boxes: [&'a Box3; 2], blockers: &'a [Box3], forward: [bool; 3]) -> Self {
-        Self { boxes, blockers, forward, path: Vec::new() }
+        Self { boxes, blockers, forward, ends_on_surface: false, path: Vec::new() }
+    }
+
+    /// The same for lines that end where they meet the second box, which may be flat.
+    pub(super) fn to_surface(self) -> Self {
+        Self { ends_on_surface: true, ..self }
     }
 
     fn enter(&self, b: &Box3, axis: usize) -> Event {
@@ -146,9 +156,11 @@ impl<'a> Lines<'a> {
             Bypass::InFirst => self
                 .earlier(own, at, self.leave(first, own).1)
                 .then(|| others.map(|k| [plane, self.leave(first, k)]).to_vec()),
-            Bypass::InSecond => self
-                .earlier(own, self.enter(second, own).1, at)
-                .then(|| others.map(|k| [self.enter(second, k), plane]).to_vec()),
+            Bypass::InSecond => {
+                let entered = self.enter(second, own).1;
+                (self.earlier(own, entered, at) || (self.ends_on_surface && entered == at))
+                    .then(|| others.map(|k| [self.enter(second, k), plane]).to_vec())
+            }
         }
     }
 
@@ -326,7 +338,48 @@ mod tests {
         })
     }
 
+    /// The share of the segment from `p` to `q` after which the box is entered.
+    fn entered(p: [f64; 3], q: [f64; 3], b: &Box3) -> f64 {
+        let at = |k: usize| (if p[k] < q[k] { b[0][k] } else { b[1][k] } - p[k]) / (q[k] - p[k]);
+        (0..3).map(at).fold(0.0, f64::max)
+    }
+
     proptest! {
+        /// The same for lines that end on the surface of the second box, which may be flat: only what is in front of it blocks.
+        #[test]
+        fn no_line_to_a_surface_refutes_what_is_accepted(
+            from in extent(false),
+            to in prop_oneof![extent(false), extent(true)],
+            blockers in prop::collection::vec(extent(true), 0..3),
+            on_surface in any::<bool>(),
+            shares in prop::collection::vec(prop::array::uniform6(0.01f64..0.99), 200),
+        ) {
+            let at = |b: &Box3, s: &[f64]| [0, 1, 2].map(|k| b[0][k] + (b[1][k] - b[0][k]) * s[k]);
+            let mut blockers = blockers;
+            // Often one lies on a face of the box.
+            if let Some(first) = blockers.first_mut().filter(|_| on_surface) {
+                let axis = flat_axis(first).expect("a rectangle");
+                (first[0][axis], first[1][axis]) = (to[0][axis], to[0][axis]);
+            }
+            for octant in 0..8 {
+                let forward = [0, 1, 2].map(|k| octant >> k & 1 == 1);
+                let mut lines = Lines::new([&from, &to], &blockers, forward).to_surface();
+                let leads_away = lines.lead_away();
+                let proof = if leads_away { None } else { any_proof(&mut lines, 0) };
+                if leads_away || proof.is_some() {
+                    for s in &shares {
+                        let (p, q) = (at(&from, &s[..3]), at(&to, &s[3..]));
+                        let is_ours = (0..3).all(|k| (p[k] < q[k]) == forward[k]);
+                        let end = entered(p, q, &to);
+                        let stop = [0, 1, 2].map(|k| p[k] + (q[k] - p[k]) * end * (1.0 - 1e-9));
+                        // An eye in the box sees it.
+                        let is_seen = is_ours && (end <= 0.0 || is_free(p, stop, &blockers));
+                        prop_assert!(!is_seen, "{p:?} {q:?} {proof:?}");
+                    }
+                }
+            }
+        }
+
         /// No line of the octant refutes what the checker accepts. Boxes may overlap, and rectangles lie anywhere.
         #[test]
         fn no_line_refutes_what_is_accepted(

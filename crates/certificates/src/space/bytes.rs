@@ -1,12 +1,14 @@
 //! Proofs of scenes in space as bytes.
 //!
-//! After the frame: the checksum of the network (four bytes); lines; blockers; proofs of boxes. Each list begins with its
-//! length. A box is given by six indices of coordinates of the network.
+//! After the frame: the checksum of the network (four bytes); lines; blockers; proofs of boxes; from version 2 on the checksum of the
+//! objects and proofs about them. Each list begins with its length. A box is given by six indices of coordinates of the network.
 
 use super::branch::{Branch, Bypass, Claim, Sum};
 use super::network::{BoxLine, BoxName};
-use super::{BoxProof, BoxProofs};
-use crate::bytes::{Coded, Kind, ReadError, ReadErrorKind, Reader, Writer, framed, is_wide, unframed_of};
+use super::{BoxProof, BoxProofs, ObjectProof};
+use crate::bytes::{
+    Coded, Kind, ReadError, ReadErrorKind, Reader, VERSION, WITHOUT_OBJECTS, Writer, framed, is_wide, unframed_of,
+};
 use num_bigint::BigInt;
 
 /// Depth of branches that are read.
@@ -47,7 +49,12 @@ impl BoxProofs {
         writer.list(&self.lines);
         writer.list(&self.blockers);
         writer.list(&self.boxes);
-        framed(Kind::Space, writer)
+        if self.objects.is_empty() {
+            return framed(Kind::Space, WITHOUT_OBJECTS, writer);
+        }
+        self.objects_checksum.to_le_bytes().into_iter().for_each(|byte| writer.byte(byte));
+        writer.list(&self.objects);
+        framed(Kind::Space, VERSION, writer)
     }
 
     /// Reads proofs without checking what they prove: see [`BoxProofs::check`].
@@ -56,7 +63,17 @@ impl BoxProofs {
     /// [`ReadError`] with the offset of what is wrong.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadError> {
         let (checksum, mut reader) = unframed_of(Kind::Space, bytes)?;
-        let proofs = Self { checksum, lines: reader.list()?, blockers: reader.list()?, boxes: reader.list()? };
+        let (lines, blockers, boxes) = (reader.list()?, reader.list()?, reader.list()?);
+        let mut proofs = Self { checksum, lines, blockers, boxes, ..Self::default() };
+        if reader.has_objects() {
+            let four = reader.bytes(4)?;
+            proofs.objects_checksum = u32::from_le_bytes([four[0], four[1], four[2], four[3]]);
+            proofs.objects = reader.list()?;
+            // Without any, the version before has the same bytes.
+            if proofs.objects.is_empty() {
+                return reader.fail(1, ReadErrorKind::Number);
+            }
+        }
         reader.end().map(|()| proofs)
     }
 }
@@ -110,24 +127,44 @@ impl Coded for BoxProof {
 
     fn write(&self, writer: &mut Writer) {
         self.boxes.iter().for_each(|name| name.write(writer));
-        let octants = self.octants.iter().fold(0u8, |bits, (octant, _)| bits | 1 << (octant & 7));
-        writer.byte(octants);
-        for octant in 0..8 {
-            if let Some((_, branch)) = self.octants.iter().find(|(o, _)| *o == octant) {
-                write_branch(branch, writer);
-            }
-        }
+        write_octants(&self.octants, writer);
     }
 
     fn read(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
         let boxes = [BoxName::read(reader)?, BoxName::read(reader)?];
-        let bits = reader.byte()?;
-        let mut octants = Vec::new();
-        for octant in (0..8).filter(|octant| bits >> octant & 1 == 1) {
-            octants.push((octant, read_branch(reader, 0)?));
-        }
-        Ok(Self { boxes, octants })
+        Ok(Self { boxes, octants: read_octants(reader)? })
     }
+}
+
+/// The name of the box; the object; its octants as those of a pair of boxes.
+impl Coded for ObjectProof {
+    const LEAST: usize = 8;
+
+    fn write(&self, writer: &mut Writer) {
+        self.cells.write(writer);
+        writer.number(self.object);
+        write_octants(&self.octants, writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let (cells, object) = (BoxName::read(reader)?, reader.number()?);
+        Ok(Self { cells, object, octants: read_octants(reader)? })
+    }
+}
+
+fn write_octants(all: &[(u8, Branch)], writer: &mut Writer) {
+    writer.byte(all.iter().fold(0u8, |bits, (octant, _)| bits | 1 << (octant & 7)));
+    for octant in 0..8 {
+        if let Some((_, branch)) = all.iter().find(|(o, _)| *o == octant) {
+            write_branch(branch, writer);
+        }
+    }
+}
+
+fn read_octants(reader: &mut Reader<'_>) -> Result<Vec<(u8, Branch)>, ReadError> {
+    let bits = reader.byte()?;
+    let octants = (0..8).filter(|octant| bits >> octant & 1 == 1);
+    octants.map(|octant| Ok((octant, read_branch(reader, 0)?))).collect()
 }
 
 /// The six ways beside a rectangle by axis and side, then the two others.

@@ -3,8 +3,8 @@
 use super::branch::Branch;
 use super::bytes::can_be_written;
 use super::network::{Box3, BoxLine, BoxNetwork};
-use super::{BoxProof, BoxProofs, add_hidden, are_hidden, no_wall};
-use crate::pairs::Pairs;
+use super::{BoxProof, BoxProofs, ObjectProof, add_hidden, add_hidden_object, are_hidden, is_object_hidden, no_wall};
+use crate::pairs::{ObjectPairs, Pairs};
 
 /// Collects proofs of a scene. What does not hold is not taken.
 #[derive(Debug)]
@@ -13,6 +13,7 @@ pub struct BoxMaker<'a> {
     proofs: BoxProofs,
     visible: Pairs,
     hidden: Pairs,
+    hidden_objects: ObjectPairs,
     /// Rectangles by the indices that proofs name when they are offered.
     blockers: &'a [Box3],
     /// The index of each blocker among those that accepted proofs use.
@@ -30,6 +31,7 @@ impl<'a> BoxMaker<'a> {
             proofs: BoxProofs { checksum: network.checksum(), ..BoxProofs::default() },
             visible: Pairs::none(n),
             hidden: Pairs::none(n),
+            hidden_objects: ObjectPairs::none(n, network.n_objects()),
             blockers,
             number: vec![None; blockers.len()],
             is_wall: vec![None; blockers.len()],
@@ -44,6 +46,11 @@ impl<'a> BoxMaker<'a> {
     /// The pairs proven hidden so far.
     pub fn hidden(&self) -> &Pairs {
         &self.hidden
+    }
+
+    /// The pairs of a cell and an object proven hidden so far.
+    pub fn hidden_objects(&self) -> &ObjectPairs {
+        &self.hidden_objects
     }
 
     /// Takes a line if it proves at least `at_least` pairs, and at least one, that no other line does. Returns whether it
@@ -62,15 +69,39 @@ impl<'a> BoxMaker<'a> {
         if !can_be_written(&octants) || !are_hidden(boxes, &octants, self.blockers) {
             return false;
         }
-        let mut used = Vec::new();
-        octants.iter().for_each(|(_, branch)| named(branch, &mut used));
-        if !used.iter().all(|&index| self.is_wall(index as usize)) {
+        if !self.rests_on_walls(&mut octants) {
             return false;
         }
-        octants.iter_mut().for_each(|(_, branch)| self.renumber(branch));
         add_hidden(boxes, self.network, &mut self.hidden);
         self.proofs.boxes.push(BoxProof { boxes: [first, second], octants });
         true
+    }
+
+    /// Takes a proof that an object is hidden from all cells in a box if it holds and can be written as bytes. Returns whether it was
+    /// taken.
+    pub fn take_object(&mut self, cells: &Box3, object: u32, mut octants: Vec<(u8, Branch)>) -> bool {
+        let (Some(name), Some(around)) = (self.network.name(cells), self.network.object(object)) else { return false };
+        if !can_be_written(&octants) || !is_object_hidden([cells, around], &octants, self.blockers) {
+            return false;
+        }
+        if !self.rests_on_walls(&mut octants) {
+            return false;
+        }
+        add_hidden_object(cells, object, self.network, &mut self.hidden_objects);
+        self.proofs.objects_checksum = self.network.objects_checksum();
+        self.proofs.objects.push(ObjectProof { cells: name, object, octants });
+        true
+    }
+
+    /// Whether all blockers that branches name are walls; then the branches name them as the proofs do.
+    fn rests_on_walls(&mut self, octants: &mut [(u8, Branch)]) -> bool {
+        let mut used = Vec::new();
+        octants.iter().for_each(|(_, branch)| named(branch, &mut used));
+        let all = used.iter().all(|&index| self.is_wall(index as usize));
+        if all {
+            octants.iter_mut().for_each(|(_, branch)| self.renumber(branch));
+        }
+        all
     }
 
     fn is_wall(&mut self, index: usize) -> bool {

@@ -4,7 +4,8 @@
 //! for pairs of boxes, most of them around many cells: for each octant of directions a tree of rectangles shows that no line
 //! gets past them ([`Branch`]). The rectangles are checked to be walls: no part of one is inside a cell, and no portal lies
 //! in one. Each point of a line that goes from cell to cell through portals is inside a cell or a portal (unless the line
-//! passes an edge, which no open set of lines does), so the line meets no wall.
+//! passes an edge, which no open set of lines does), so the line meets no wall. A pair of a cell and an *object* is proven hidden in the
+//! same way, with lines that go from cell to cell and end on the object.
 
 mod branch;
 mod bytes;
@@ -15,7 +16,7 @@ pub use branch::{Branch, Bypass, Claim, Sum};
 pub use make::BoxMaker;
 pub use network::{Box3, BoxLine, BoxName, BoxNetwork, BoxNetworkError, BoxPortal, Point3};
 
-use crate::pairs::Pairs;
+use crate::pairs::{ObjectPairs, Pairs};
 use crate::proven::{NoWall, Proven, Refusal, joined_along};
 use branch::Lines;
 use network::{flat_axis, is_within};
@@ -30,6 +31,17 @@ pub struct BoxProof {
     pub octants: Vec<(u8, Branch)>,
 }
 
+/// A proof that no cell in a box sees an object.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ObjectProof {
+    /// The box.
+    pub cells: BoxName,
+    /// The index of the object.
+    pub object: u32,
+    /// As in [`BoxProof::octants`], from the box to the object's, with lines that end on its surface.
+    pub octants: Vec<(u8, Branch)>,
+}
+
 /// Proofs of a table of boxes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct BoxProofs {
@@ -41,19 +53,26 @@ pub struct BoxProofs {
     pub blockers: Vec<BoxName>,
     /// Proofs that pairs of cells are hidden.
     pub boxes: Vec<BoxProof>,
+    /// [`BoxNetwork::objects_checksum`] of the objects; 0 without proofs about any.
+    pub objects_checksum: u32,
+    /// Proofs that objects are hidden from cells.
+    pub objects: Vec<ObjectProof>,
 }
 
 impl BoxProofs {
     /// Checks every proof, and returns what they prove together. Exact.
     ///
     /// Cost: O(blockers (cells + portals)) comparisons, and those of the proofs, with O(cells) for each proof of boxes. Memory: a
-    /// few bits for each pair of cells.
+    /// few bits for each pair of cells, and one for each pair of a cell and an object.
     ///
     /// # Errors
     /// [`Refusal`] for proofs of another network and for the first proof that does not hold.
     pub fn check(&self, network: &BoxNetwork) -> Result<Proven, Refusal> {
         if self.checksum != network.checksum() {
             return Err(Refusal::OtherTable);
+        }
+        if !self.objects.is_empty() && self.objects_checksum != network.objects_checksum() {
+            return Err(Refusal::OtherObjects);
         }
         let refusal = |index, line: &BoxLine| Refusal::Line { index, cell: line.cell };
         let visible = joined_along(network.n_cells(), &self.lines, |line| network.follow(line), refusal)?;
@@ -75,15 +94,35 @@ impl BoxProofs {
             }
             add_hidden([&first, &second], network, &mut hidden);
         }
-        Ok(Proven::new(visible, hidden))
+        let mut hidden_objects = ObjectPairs::none(network.n_cells(), network.n_objects());
+        for (index, proof) in self.objects.iter().enumerate() {
+            let refusal = Refusal::Object { index, object: proof.object };
+            let (Some(cells), Some(object)) = (network.named(&proof.cells), network.object(proof.object)) else {
+                return Err(refusal);
+            };
+            if !is_object_hidden([&cells, object], &proof.octants, &blockers) {
+                return Err(refusal);
+            }
+            add_hidden_object(&cells, proof.object, network, &mut hidden_objects);
+        }
+        Ok(Proven { hidden_objects, ..Proven::new(visible, hidden) })
     }
+}
+
+fn cells_within<'a>(b: &'a Box3, network: &'a BoxNetwork) -> impl Iterator<Item = u32> + 'a {
+    (0u32..).zip(&network.cells).filter(|(_, cell)| is_within(cell, b)).map(|(id, _)| id)
+}
+
+/// Adds every pair of a cell in the box and the object.
+fn add_hidden_object(cells: &Box3, object: u32, network: &BoxNetwork, hidden: &mut ObjectPairs) {
+    cells_within(cells, network).for_each(|cell| {
+        hidden.add(cell, object);
+    });
 }
 
 /// Adds every pair of a cell in the first box and another in the second.
 fn add_hidden([first, second]: [&Box3; 2], network: &BoxNetwork, hidden: &mut Pairs) {
-    let within = |b: &Box3| -> Vec<u32> {
-        (0u32..).zip(&network.cells).filter(|(_, cell)| is_within(cell, b)).map(|(id, _)| id).collect()
-    };
+    let within = |b| -> Vec<u32> { cells_within(b, network).collect() };
     let (firsts, seconds) = (within(first), within(second));
     for &a in &firsts {
         // A cell in both boxes still sees itself.
@@ -93,8 +132,17 @@ fn add_hidden([first, second]: [&Box3; 2], network: &BoxNetwork, hidden: &mut Pa
 
 /// Whether for every octant no line leads from inside of the first box to inside of the second past the blockers.
 fn are_hidden(boxes: [&Box3; 2], octants: &[(u8, Branch)], blockers: &[Box3]) -> bool {
+    for_all_octants(octants, |forward| Lines::new(boxes, blockers, forward))
+}
+
+/// Whether for every octant no line leads from inside of the first box to the surface of the second past the blockers.
+fn is_object_hidden(boxes: [&Box3; 2], octants: &[(u8, Branch)], blockers: &[Box3]) -> bool {
+    for_all_octants(octants, |forward| Lines::new(boxes, blockers, forward).to_surface())
+}
+
+fn for_all_octants<'a>(octants: &[(u8, Branch)], lines: impl Fn([bool; 3]) -> Lines<'a>) -> bool {
     (0..8u8).all(|octant| {
-        let mut lines = Lines::new(boxes, blockers, [0, 1, 2].map(|k| octant >> k & 1 == 1));
+        let mut lines = lines([0, 1, 2].map(|k| octant >> k & 1 == 1));
         let mut own = octants.iter().filter(|(o, _)| *o == octant);
         lines.lead_away() || own.any(|(_, branch)| lines.none_left(branch))
     })

@@ -72,6 +72,8 @@ pub struct BoxNetwork {
     /// The coordinates of cells and portals along each axis, ascending, each once. Proofs name coordinates by their indices.
     pub(super) places: [Vec<f64>; 3],
     checksum: u32,
+    objects: Vec<Box3>,
+    objects_checksum: u32,
 }
 
 impl BoxNetwork {
@@ -132,12 +134,40 @@ impl BoxNetwork {
             axis.sort_by(f64::total_cmp);
             axis.dedup();
         }
-        Ok(Self { gates, cells: cells.to_vec(), portals: portals.to_vec(), places, checksum: hash.finalize() })
+        let (cells, portals, checksum) = (cells.to_vec(), portals.to_vec(), hash.finalize());
+        Ok(Self { gates, cells, portals, places, checksum, objects: Vec::new(), objects_checksum: 0 })
+    }
+
+    /// The same with boxes around objects, which proofs name by their indices. Any boxes will do; there are no proofs about those without
+    /// a surface or with a coordinate out of range.
+    #[must_use]
+    pub fn with_objects(self, objects: &[Box3]) -> Self {
+        let mut hash = crc32fast::Hasher::new();
+        objects.iter().for_each(|b| b.as_flattened().iter().for_each(|x| hash.update(&(x + 0.0).to_le_bytes())));
+        Self { objects: objects.to_vec(), objects_checksum: hash.finalize(), ..self }
     }
 
     /// Number of cells.
     pub fn n_cells(&self) -> usize {
         self.cells.len()
+    }
+
+    /// Number of objects.
+    pub fn n_objects(&self) -> usize {
+        self.objects.len()
+    }
+
+    /// A checksum of the boxes of objects. Proofs about objects carry it.
+    pub fn objects_checksum(&self) -> u32 {
+        self.objects_checksum
+    }
+
+    /// The box of an object; `None` if there is none, or if it is flat along more than one axis: no open set of lines leads to that.
+    pub(super) fn object(&self, index: u32) -> Option<&Box3> {
+        let b = self.objects.get(index as usize)?;
+        let fits = b.as_flattened().iter().all(|x| is_coordinate(*x));
+        let extents = (0..3).filter(|&k| b[0][k] < b[1][k]).count();
+        (fits && (0..3).all(|k| b[0][k] <= b[1][k]) && extents >= 2).then_some(b)
     }
 
     /// A checksum of cells and portals. Proofs carry it, so those of another network are refused.

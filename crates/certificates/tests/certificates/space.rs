@@ -91,6 +91,77 @@ fn whole_tables_are_proven() {
     assert!((0..bytes.len()).all(|n| BoxProofs::from_bytes(&bytes[..n]).is_err()));
 }
 
+/// Objects: in the second room; against the wall, on its far face; in the corridor; on the near face of the wall; a segment.
+const OBJECTS: [Box3; 5] = [
+    [[6.0, 1.0, 0.0], [7.0, 2.0, 1.0]],
+    [[5.0, 1.0, 0.0], [5.0, 2.0, 1.0]],
+    [[2.0, 4.5, 0.0], [3.0, 4.75, 1.0]],
+    [[4.0, 1.0, 0.0], [4.0, 2.0, 1.0]],
+    [[6.0, 1.0, 0.0], [6.0, 1.0, 1.0]],
+];
+
+fn with_objects() -> (BoxNetwork, BoxProofs) {
+    let network = network().with_objects(&OBJECTS);
+    let walls = [WALL];
+    let mut maker = BoxMaker::new(&network, &walls);
+    let all = || OCTANTS.map(|octant| (octant, past(0))).to_vec();
+    let [first, second] = boxes_of(&network);
+    assert!((0..2).all(|object| maker.take_object(&first, object, all())));
+    // The first room sees the corridor and the near face of its wall; a segment is seen by no open set of lines, and has no proofs; there
+    // is no sixth object; the second room sees what is in it; and nothing is proven without branches.
+    assert!((2..6).all(|object| !maker.take_object(&first, object, all())));
+    assert!(!maker.take_object(&second, 0, all()) && !maker.take_object(&first, 0, Vec::new()));
+    assert_eq!(maker.hidden_objects().len(), 2);
+    let proofs = maker.finish();
+    (network, proofs)
+}
+
+#[test]
+fn objects_are_proven_hidden() {
+    let (network, proofs) = with_objects();
+    let proven = proofs.check(&network).unwrap();
+    let pairs = (0..3).flat_map(|cell| (0..5).map(move |object| (cell, object)));
+    let hidden: Vec<_> = pairs.filter(|&(cell, object)| proven.hidden_objects.has(cell, object)).collect();
+    assert_eq!(hidden, [(0, 0), (0, 1)]);
+    let bytes = proofs.to_bytes();
+    assert_eq!((BoxProofs::from_bytes(&bytes), bytes[8]), (Ok(proofs.clone()), 2));
+    assert!((0..bytes.len()).all(|n| BoxProofs::from_bytes(&bytes[..n]).is_err()));
+    // Without proofs about objects, they are as they were before there were any; an empty list of them is refused, as is another version.
+    let none = BoxProofs { objects: vec![], objects_checksum: 0, ..proofs };
+    assert_eq!(none.to_bytes()[8], 1);
+    let empty = with_body(&none.to_bytes(), |body| {
+        body[8] = 2;
+        body.extend([0; 5]);
+    });
+    assert!(BoxProofs::from_bytes(&empty).is_err());
+    assert!([0, 3].iter().all(|&version| BoxProofs::from_bytes(&with_body(&bytes, |body| body[8] = version)).is_err()));
+    assert!(BoxProofs::from_bytes(&with_body(&bytes, |body| body[8] = 1)).is_err());
+}
+
+#[test]
+fn impostors_about_objects_are_refused() {
+    let (network, proofs) = with_objects();
+    let refused = |change: &dyn Fn(&mut BoxProofs)| {
+        let mut proofs = proofs.clone();
+        change(&mut proofs);
+        proofs.check(&network).unwrap_err()
+    };
+    let wrong = |object| Refusal::Object { index: 0, object };
+    for object in [2, 3, 4, 5] {
+        assert_eq!(refused(&|p| p.objects[0].object = object), wrong(object));
+    }
+    let name = |b: Box3| network.name(&b).unwrap();
+    assert_eq!(refused(&|p| p.objects[0].cells = name(boxes_of(&network)[1])), wrong(0));
+    assert_eq!(refused(&|p| p.objects[0].cells = name([[0.0, 0.0, 0.0], [9.0, 5.0, 2.0]])), wrong(0));
+    assert_eq!(refused(&|p| drop(p.objects[0].octants.remove(2))), wrong(0));
+    assert_eq!(refused(&|p| p.objects_checksum ^= 1), Refusal::OtherObjects);
+    // Another object in its place, elsewhere by a unit in the last place; and none.
+    let mut moved = OBJECTS;
+    moved[4][0][0] = moved[4][0][0].next_up();
+    assert_eq!(proofs.check(&self::network().with_objects(&moved)), Err(Refusal::OtherObjects));
+    assert_eq!(proofs.check(&self::network()), Err(Refusal::OtherObjects));
+}
+
 fn refused(change: impl FnOnce(&mut BoxProofs)) -> Refusal {
     let mut proofs = proofs();
     change(&mut proofs);
