@@ -5,9 +5,12 @@ use crate::graph::{GraphRef, OtherGraph, TableGraph};
 use sightlines_certificates::convex::{ConvexNetworkError, ConvexProofs};
 use sightlines_certificates::plan::{NetworkError, PlanProofs};
 use sightlines_certificates::space::{BoxNetworkError, BoxProofs};
+use sightlines_geometry::Aabb;
 use sightlines_progress::Cancelled;
-use sightlines_pvs::Table;
-use sightlines_stabtree::{CertifyError as SearchError, CertifyOptions, certify_convex, certify_plan, certify_space};
+use sightlines_pvs::{CellId, Table};
+use sightlines_stabtree::{
+    CertifyError as SearchError, CertifyOptions, ObjectRows, certify_convex, certify_plan, certify_space,
+};
 use std::error::Error;
 use std::time::{Duration, Instant};
 
@@ -76,7 +79,7 @@ pub struct Certified {
     pub time: Duration,
 }
 
-/// Finds proofs for the pairs of a table. A pair without one is left open, so nothing here has to be trusted: the checker decides
+/// Finds proofs for the pairs of cells of a table, and in space for the objects that cells do not see. A pair without one is left open, so nothing here has to be trusted: the checker decides
 /// which pairs are proven.
 ///
 /// * `graph`: the one that the table was made from: [`Baked::graph`], or
@@ -96,7 +99,13 @@ pub fn certify_table<'g>(
     let rows = &table.parts().rows;
     let proofs = match graph {
         GraphRef::Planar(graph) => Proofs::Plan(certify_plan(graph, rows, options).map_err(CertifyError::of)?),
-        GraphRef::Axial(graph) => Proofs::Space(certify_space(graph, rows, options).map_err(CertifyError::of)?),
+        GraphRef::Axial(graph) => {
+            let boxes: Vec<Aabb<3>> = table.objects().iter().map(|o| Aabb { min: o.min, max: o.max }).collect();
+            let cells = (0..table.n_cells() as u32).map(CellId);
+            let seen: Vec<_> = cells.map(|cell| table.visible_objects(cell)).collect();
+            let objects = Some(ObjectRows { boxes: &boxes, seen: &seen });
+            Proofs::Space(certify_space(graph, rows, objects, options).map_err(CertifyError::of)?)
+        }
         GraphRef::Convex(graph) => Proofs::Convex(certify_convex(graph, rows, options).map_err(CertifyError::of)?),
         GraphRef::Boxes(_) => return Err(CertifyError::NoGraph),
     };

@@ -26,7 +26,7 @@ mod space;
 mod tree;
 mod zones;
 
-pub use certify::{CertifyError, CertifyOptions, certify_plan, certify_space, plan_network, space_network};
+pub use certify::{CertifyError, CertifyOptions, ObjectRows, certify_plan, certify_space, plan_network, space_network};
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
     BlockedConvex, Blocking, ConvexCounters, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate,

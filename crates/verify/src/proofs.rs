@@ -50,7 +50,7 @@ pub enum ProofViolation {
     Refused(Refusal),
     /// Cells that are hidden from each other in the table, and a checked line joins them.
     Joined([CellId; 2]),
-    /// Cells that see each other in the table, and it is proven that no line joins them.
+    /// Cells that see each other in the table of a plan or a Quake map, and it is proven that no line joins them.
     Apart([CellId; 2]),
 }
 
@@ -68,13 +68,16 @@ impl fmt::Display for ProofViolation {
     }
 }
 
-/// What proofs say about a table; counts are of unordered pairs of different cells.
+/// What proofs say about a table; counts are of unordered pairs of different cells but where they are of objects.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ProofFindings {
     /// Pairs that the table shows and a line joins.
     pub n_visible: u64,
     /// Pairs that the table hides, and that are proven to be hidden.
     pub n_hidden: u64,
+    /// Pairs that the table of a scene in space shows, though they are proven to be hidden: cells that are too thin to be decided have the
+    /// pairs of their neighbours, and some pairs are only assumed visible. Showing too much hides nothing.
+    pub n_excess: u64,
     /// Pairs that the table shows, without a proof: of cells that are too thin, or that are only assumed to see each other. No violation, as
     /// showing too much hides nothing.
     pub n_unproven_visible: u64,
@@ -85,6 +88,12 @@ pub struct ProofFindings {
     /// Of the pairs that are hidden without a proof: those that a line through portals joins. Only of tables that a from-region method took part
     /// in: it hides by walls that are no borders of cells, of which proofs do not speak. In other tables such a pair is a violation.
     pub n_hidden_past_portals: u64,
+    /// Pairs of a cell and an object that the table hides, and that are proven to be hidden: by a proof of their own, or, in tables
+    /// whose cells see the objects of the cells that they see, as every cell that the object touches is proven hidden, if there is
+    /// any.
+    pub n_hidden_objects: u64,
+    /// Pairs of a cell and an object that the table hides, without a proof.
+    pub n_unproven_hidden_objects: u64,
     /// Number of violations.
     pub n_violations: u64,
     /// The first of them, [`ProofFindings::MOST_LISTED`] at most.
@@ -97,7 +106,7 @@ impl ProofFindings {
 
     /// Whether nothing speaks against the table; if `strict`, also whether everything that it hides is proven to be hidden.
     pub const fn is_true(&self, strict: bool) -> bool {
-        self.n_violations == 0 && (!strict || self.n_unproven_hidden == 0)
+        self.n_violations == 0 && (!strict || self.n_unproven_hidden + self.n_unproven_hidden_objects == 0)
     }
 
     fn add(&mut self, violation: ProofViolation) {
@@ -108,19 +117,30 @@ impl ProofFindings {
     }
 
     /// Everything that a table states, as far as nothing of it is proven. For tables that cannot have proofs: their counts of what rests on methods
-    /// and rays alone. O(cells²).
+    /// and rays alone. O(cells (cells + objects)).
     pub fn without_proofs(table: &Table) -> Self {
-        Self::of(table, |_, _| [false; 2])
+        Self::of(table, |_, _| [false; 2], |_, _| false)
     }
 
     fn compared(table: &Table, proven: &Proven) -> Self {
-        Self::of(table, |a, b| [proven.visible.has(a, b), proven.hidden.has(a, b)])
+        let cells = |a, b| [proven.visible.has(a, b), proven.hidden.has(a, b)];
+        if table.parts().objects_seen.is_some() {
+            return Self::of(table, cells, |cell, object| proven.hidden_objects.has(cell, object));
+        }
+        let mut touched = vec![Vec::new(); table.objects().len()];
+        for cell in (0..table.n_cells() as u32).map(CellId) {
+            table.objects_of(cell).iter().for_each(|object| touched[object.idx()].push(cell.0));
+        }
+        Self::of(table, cells, |cell, object| {
+            touched[object as usize].iter().all(|&other| proven.hidden.has(cell, other))
+        })
     }
 
     /// Compares with what is proven visible and hidden of each pair.
-    fn of(table: &Table, proven: impl Fn(u32, u32) -> [bool; 2]) -> Self {
+    fn of(table: &Table, proven: impl Fn(u32, u32) -> [bool; 2], is_object_hidden: impl Fn(u32, u32) -> bool) -> Self {
         let mut findings = Self::default();
         let by_regions = has_from_region(table.kind());
+        let may_exceed = table.dimension() == 3 && !table.kind().is_quake();
         let n = table.n_cells() as u32;
         for a in 0..n {
             for b in a + 1..n {
@@ -129,6 +149,7 @@ impl ProofFindings {
                 match (table.sees(pair[0], pair[1]), joined, apart) {
                     (true, true, false) => findings.n_visible += 1,
                     (false, false, true) => findings.n_hidden += 1,
+                    (true, false, true) if may_exceed => findings.n_excess += 1,
                     (true, _, true) => findings.add(ProofViolation::Apart(pair)),
                     (false, true, _) if !by_regions => findings.add(ProofViolation::Joined(pair)),
                     (true, false, false) => findings.n_unproven_visible += 1,
@@ -139,6 +160,16 @@ impl ProofFindings {
                             findings.unproven_hidden.push(pair);
                         }
                     }
+                }
+            }
+            let mut seen = table.visible_objects(CellId(a)).into_iter().peekable();
+            for object in 0..table.objects().len() as u32 {
+                if seen.next_if(|other| other.0 == object).is_some() {
+                    continue;
+                }
+                match is_object_hidden(a, object) {
+                    true => findings.n_hidden_objects += 1,
+                    false => findings.n_unproven_hidden_objects += 1,
                 }
             }
         }
@@ -165,7 +196,8 @@ pub fn can_be_proven(table: &Table) -> bool {
 
 /// Checks all proofs, and compares what they prove with a table. Exact.
 ///
-/// Cost: as for [`PlanProofs::check`], [`BoxProofs::check`] and [`ConvexProofs::check`], and O(cells²).
+/// Cost: as for [`PlanProofs::check`], [`BoxProofs::check`] and [`ConvexProofs::check`], and O(cells (cells + objects)), where the objects of cells
+/// are those that touch them also O(cells) for each cell that an object touches.
 ///
 /// # Errors
 /// [`ProofError`] for bytes that are no proofs of such a table. Proofs that do not hold are a violation, not an error.
@@ -206,7 +238,7 @@ pub fn plan_of(table: &Table) -> Result<PlanNetwork, ProofError> {
     Ok(PlanNetwork::new(&cells, &portals.ok_or(ProofError::NoGraph)?)?)
 }
 
-/// The cells and portals of a table of a scene in space, as proofs know them.
+/// The cells, portals and objects of a table of a scene in space, as proofs know them.
 ///
 /// # Errors
 /// [`ProofError`] for other tables, stripped ones, those of regions, and those whose cells and portals do not fit together.
@@ -240,7 +272,8 @@ pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
         }
         portals.push(BoxPortal { cells: p.cells.map(|cell| cell.0), extent, axis, forward: p.sides[0] % 2 == 1 });
     }
-    Ok(BoxNetwork::new(&cells, &portals)?)
+    let objects: Vec<_> = table.objects().iter().map(|object| [object.min, object.max]).collect();
+    Ok(BoxNetwork::new(&cells, &portals)?.with_objects(&objects))
 }
 
 /// The cells and portals of a table of a Quake map, as proofs know them: with corners that count as on a portal's plane within

@@ -114,7 +114,7 @@ impl<'a> Lines<'a> {
     }
 
     /// The same for lines that end where they meet the second box, which may be flat.
-    pub(super) fn to_surface(self) -> Self {
+    pub(super) fn ending_on_surface(self) -> Self {
         Self { ends_on_surface: true, ..self }
     }
 
@@ -363,7 +363,7 @@ mod tests {
             }
             for octant in 0..8 {
                 let forward = [0, 1, 2].map(|k| octant >> k & 1 == 1);
-                let mut lines = Lines::new([&from, &to], &blockers, forward).to_surface();
+                let mut lines = Lines::new([&from, &to], &blockers, forward).ending_on_surface();
                 let leads_away = lines.lead_away();
                 let proof = if leads_away { None } else { any_proof(&mut lines, 0) };
                 if leads_away || proof.is_some() {

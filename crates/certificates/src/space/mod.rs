@@ -137,7 +137,7 @@ fn are_hidden(boxes: [&Box3; 2], octants: &[(u8, Branch)], blockers: &[Box3]) ->
 
 /// Whether for every octant no line leads from inside of the first box to the surface of the second past the blockers.
 fn is_object_hidden(boxes: [&Box3; 2], octants: &[(u8, Branch)], blockers: &[Box3]) -> bool {
-    for_all_octants(octants, |forward| Lines::new(boxes, blockers, forward).to_surface())
+    for_all_octants(octants, |forward| Lines::new(boxes, blockers, forward).ending_on_surface())
 }
 
 fn for_all_octants<'a>(octants: &[(u8, Branch)], lines: impl Fn([bool; 3]) -> Lines<'a>) -> bool {

@@ -7,7 +7,7 @@ mod plan;
 mod space;
 
 pub use plan::{certify_plan, plan_network};
-pub use space::{certify_space, space_network};
+pub use space::{ObjectRows, certify_space, space_network};
 
 use sightlines_progress::{Cancelled, Observer};
 use std::error::Error;

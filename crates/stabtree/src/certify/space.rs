@@ -11,7 +11,7 @@ use sightlines_certificates::space::{
 use sightlines_geometry::Random;
 use sightlines_geometry::{Aabb, BoxTree, check_coordinate};
 use sightlines_progress::{Cancelled, Counter};
-use sightlines_pvs::BitMatrix;
+use sightlines_pvs::{BitMatrix, ObjectId};
 use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, Target, Verdict};
 
 /// Lines are added in rounds: at first only those that prove at least this many new pairs.
@@ -30,8 +30,17 @@ const LINE_BUDGET: u64 = 100;
 /// Number of nearby lines that are tried where a line touches an edge of a portal.
 const MOST_TRIED: u32 = 24;
 
-/// Proves the visibility in `rows` for the cells of `graph` (symmetric, with the diagonal set). Pairs without a proof,
-/// because they are wrong, only assumed visible, or too thin for doubles, are left open.
+/// Which cells see which objects.
+#[derive(Debug, Clone, Copy)]
+pub struct ObjectRows<'a> {
+    /// A box around each object, in scene units.
+    pub boxes: &'a [Aabb<3>],
+    /// For each cell the objects that it sees.
+    pub seen: &'a [Vec<ObjectId>],
+}
+
+/// Proves the visibility in `rows` for the cells of `graph` (symmetric, with the diagonal set), and that the objects that a cell does not
+/// see are hidden from it. Pairs without a proof, because they are wrong, only assumed visible, or too thin for doubles, are left open.
 ///
 /// Cost: several times that of the search for the rows: each contradiction is converted to integers, and each visible
 /// pair needs a line, its own or a shared one.
@@ -40,14 +49,19 @@ const MOST_TRIED: u32 = 24;
 /// [`CertifyError`] with a [`BoxNetworkError`] for a graph that is not well formed; or if the observer cancels.
 ///
 /// # Panics
-/// If there is not a row for each cell.
+/// If there is not a row for each cell, or not a list of objects.
 pub fn certify_space(
     graph: &CellGraph<Axial>,
     rows: &BitMatrix,
+    objects: Option<ObjectRows<'_>>,
     options: &CertifyOptions<'_>,
 ) -> Result<BoxProofs, CertifyError<BoxNetworkError>> {
     assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
-    let network = space_network(graph).map_err(CertifyError::Network)?;
+    assert!(objects.is_none_or(|objects| objects.seen.len() == graph.n_cells()), "a list for each cell");
+    let mut network = space_network(graph).map_err(CertifyError::Network)?;
+    if let Some(objects) = objects {
+        network = network.with_objects(&objects.boxes.iter().map(corners).collect::<Vec<_>>());
+    }
     let blockers = Blockers::new(opaque_without_solid(graph));
     let rectangles: Vec<Box3> = blockers.rectangles().iter().map(corners).collect();
     let mut maker = BoxMaker::new(&network, &rectangles);
@@ -55,7 +69,7 @@ pub fn certify_space(
     if graph.n_cells() == 0 {
         return Ok(maker.finish());
     }
-    let search = Search::new(graph, rows, &blockers, options);
+    let search = Search::new(graph, rows, objects, &blockers, options);
     Ok(search.run(maker, options)?)
 }
 
@@ -130,6 +144,10 @@ struct Search<'a> {
     cell_at: Vec<u32>,
     /// Positions by positions: which see each other.
     sees: AtomicBitMatrix,
+    /// The boxes of objects.
+    objects: &'a [Aabb<3>],
+    /// Objects by positions: which are seen from where.
+    seen_from: AtomicBitMatrix,
     /// Linear programs for a hidden pair of cells, and for a visible one.
     budgets: [u32; 2],
 }
@@ -140,6 +158,9 @@ type Pair = [u32; 2];
 /// A finding about two boxes: they are hidden from each other.
 type Found = ([Aabb<3>; 2], BlockedProof);
 
+/// A finding about a box and an object: it is hidden from there.
+type FoundObject = (Aabb<3>, u32, BlockedProof);
+
 /// Pairs of groups are halved on one thread until there are this many. Independent of the number of threads.
 const N_TASKS: usize = 2048;
 
@@ -147,6 +168,7 @@ impl<'a> Search<'a> {
     fn new(
         graph: &'a CellGraph<Axial>,
         rows: &BitMatrix,
+        objects: Option<ObjectRows<'a>>,
         blockers: &'a Blockers,
         options: &CertifyOptions<'_>,
     ) -> Self {
@@ -161,8 +183,15 @@ impl<'a> Search<'a> {
                 sees.set(row, place[other]);
             }
         }
+        let boxes = objects.map_or(&[][..], |objects| objects.boxes);
+        let seen_from = AtomicBitMatrix::new(boxes.len(), cell_at.len());
+        for (cell, seen) in objects.iter().flat_map(|objects| objects.seen.iter().enumerate()) {
+            seen.iter().for_each(|object| {
+                seen_from.set(object.idx(), place[cell]);
+            });
+        }
         let budgets = [CELL_BUDGET, LINE_BUDGET].map(|budget| budget.min(options.most_steps) as u32);
-        Self { graph, blockers, tree, cell_at, sees, budgets }
+        Self { graph, blockers, tree, cell_at, sees, objects: boxes, seen_from, budgets }
     }
 
     fn run(&self, mut maker: BoxMaker<'_>, options: &CertifyOptions<'_>) -> Result<BoxProofs, Cancelled> {
@@ -175,7 +204,8 @@ impl<'a> Search<'a> {
         }
         let share = options.most_steps_in_all / tasks.len().max(1) as u64;
         // Groups are hidden from each other, then lines are sought from each cell.
-        let counter = Counter::new(options.progress, "proofs", tasks.len() + self.cell_at.len());
+        let n_objects = self.objects.len();
+        let counter = Counter::new(options.progress, "proofs", tasks.len() + n_objects + self.cell_at.len());
         let work = |shaft: &mut Shaft<'a>, task: Pair| {
             let (mut found, mut stack) = (Vec::new(), vec![task]);
             let before = shaft.counters().n_programs;
@@ -195,6 +225,20 @@ impl<'a> Search<'a> {
         counter.check()?;
         for ([a, b], proof) in found.into_iter().chain(all.into_iter().flatten()) {
             let _ = maker.take_boxes([&corners(&a), &corners(&b)], translated(&proof));
+        }
+        let share = options.most_steps_in_all / n_objects.max(1) as u64;
+        let work = |shaft: &mut Shaft<'a>, object: u32| {
+            let found = if counter.is_cancelled() { Vec::new() } else { self.hide_object(object, shaft, share) };
+            let _ = counter.step();
+            found
+        };
+        let all: Vec<Vec<FoundObject>> = on_threads(options.threads, |_| {
+            let objects = (0..n_objects as u32).into_par_iter().with_max_len(1);
+            objects.map_init(|| Shaft::new(self.blockers), work).collect()
+        });
+        counter.check()?;
+        for (cells, object, proof) in all.into_iter().flatten() {
+            let _ = maker.take_object(&corners(&cells), object, translated(&proof));
         }
         self.seek_all(&mut maker, &mut shaft, &counter)?;
         Ok(maker.finish())
@@ -230,6 +274,39 @@ impl<'a> Search<'a> {
         } else {
             smaller.extend(self.tree.children(b).map(|b| [a, b]));
         }
+    }
+
+    /// Proofs that an object is hidden from groups of cells: from those that do not see it, as large as they can be.
+    fn hide_object(&self, object: u32, shaft: &mut Shaft<'a>, share: u64) -> Vec<FoundObject> {
+        let (target, rows) = (&self.objects[object as usize], [object as usize, object as usize + 1]);
+        let before = shaft.counters().n_programs;
+        let (mut found, mut stack) = (Vec::new(), vec![0]);
+        while let Some(n) = stack.pop() {
+            if shaft.counters().n_programs - before >= share {
+                break;
+            }
+            let node = &self.tree.nodes()[n as usize];
+            let places = [node.start as usize, node.end as usize];
+            if self.seen_from.all(rows, places) {
+                continue;
+            }
+            let (a, is_leaf) = (&node.bounds, node.is_leaf());
+            // A cell that touches the object sees it.
+            let apart = (0..3).any(|k| a.max[k] < target.min[k] || target.max[k] < a.min[k]);
+            if apart && !self.seen_from.any(rows, places) {
+                let budget = if is_leaf { self.budgets[0] } else { GROUP_BUDGET.min(self.budgets[0]) };
+                // As for groups of cells.
+                let worth_it = is_leaf || shaft.decide(a, target, Target::Surface, budget).is_hidden();
+                if let Some(proof) = worth_it.then(|| shaft.certify(a, target, Target::Surface, budget)).flatten() {
+                    found.push((*a, object, proof));
+                    continue;
+                }
+            }
+            if !is_leaf {
+                stack.extend(self.tree.children(n));
+            }
+        }
+        found
     }
 
     /// A proof that two boxes are hidden from each other.

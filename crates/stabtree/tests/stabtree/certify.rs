@@ -8,14 +8,15 @@ use sightlines_certificates::Proven;
 use sightlines_certificates::convex::ConvexProofs;
 use sightlines_certificates::plan::PlanProofs;
 use sightlines_certificates::space::BoxProofs;
-use sightlines_pvs::BitMatrix;
+use sightlines_geometry::Aabb;
+use sightlines_pvs::{BitMatrix, ObjectId};
 use sightlines_scenes::world::{
     BspWorldOptions, QuakeLikeOptions, World, bsp_world, corridor, quake_like, world_families,
 };
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_stabtree::{
-    CertifyOptions, ConvexOptions, ConvexSearch, ConvexVisibility, SearchOptions, Zones, certify_convex, certify_plan,
-    certify_space, convex_network, plan_network, plan_visibility, space_network, space_visibility,
+    CertifyOptions, ConvexOptions, ConvexSearch, ConvexVisibility, ObjectRows, SearchOptions, Zones, certify_convex,
+    certify_plan, certify_space, convex_network, plan_network, plan_visibility, space_network, space_visibility,
 };
 use sightlines_testkit::convex::seen_by_rays;
 use sightlines_testkit::{axial_plan, small_grid_plan};
@@ -37,10 +38,27 @@ fn proven_plan(graph: &CellGraph<Planar>, rows: &BitMatrix, options: &CertifyOpt
 }
 
 fn proven_space(graph: &CellGraph<Axial>, rows: &BitMatrix) -> Proven {
-    let made = certify_space(graph, rows, &CertifyOptions::default()).expect("the graph is good");
+    let made = certify_space(graph, rows, None, &CertifyOptions::default()).expect("the graph is good");
     let read = BoxProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
     assert_eq!(read, made);
     read.check(&space_network(graph).expect("the graph is good")).expect("proofs hold")
+}
+
+/// The same with objects, of which cells see those in `rows_of_objects`.
+fn proven_objects(
+    graph: &CellGraph<Axial>,
+    rows: &BitMatrix,
+    objects: &[Aabb<3>],
+    rows_of_objects: &BitMatrix,
+) -> Proven {
+    let of = |cell| rows_of_objects.iter_ones(cell).map(|object| ObjectId(object as u32)).collect();
+    let seen: Vec<Vec<ObjectId>> = (0..graph.n_cells()).map(of).collect();
+    let objects = ObjectRows { boxes: objects, seen: &seen };
+    let made = certify_space(graph, rows, Some(objects), &CertifyOptions::default()).expect("the graph is good");
+    let read = BoxProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
+    assert_eq!(read, made);
+    let boxes: Vec<_> = objects.boxes.iter().map(|b| [b.min, b.max]).collect();
+    read.check(&space_network(graph).expect("the graph is good").with_objects(&boxes)).expect("proofs hold")
 }
 
 /// Asserts that exactly the content of `rows` is proven; returns how many pairs are visible and hidden.
@@ -108,7 +126,32 @@ proptest! {
         let (graph, solid) = cut(&faces, &out);
         let seen = space_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
         prop_assert_eq!(seen.n_assumed, 0);
-        assert_proven(&seen.cells, &proven_space(&graph, &seen.cells));
+        let proven = proven_objects(&graph, &seen.cells, &objects, &seen.objects);
+        assert_proven(&seen.cells, &proven);
+        for (cell, object) in (0..graph.n_cells()).flat_map(|cell| (0..objects.len()).map(move |object| (cell, object))) {
+            // No open set of lines leads to an object without a surface.
+            let has_surface = (0..3).filter(|&k| objects[object].min[k] < objects[object].max[k]).count() > 1;
+            let is_hidden = !seen.objects.get(cell, object);
+            let is_proven = proven.hidden_objects.has(cell as u32, object as u32);
+            prop_assert_eq!(is_proven, is_hidden && has_surface, "cell {} and object {}", cell, object);
+        }
+    }
+
+    /// The impostor: rows in which cells see no object but those that they touch. Nothing is proven of one that is seen.
+    #[test]
+    fn wrong_rows_of_objects_are_not_proven(
+        faces in faces(9),
+        objects in objects(),
+        out in prop::collection::vec(prop::bool::weighted(0.25), 1..7),
+    ) {
+        let (graph, solid) = cut(&faces, &out);
+        let seen = space_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
+        let none = BitMatrix::new(graph.n_cells(), objects.len());
+        let proven = proven_objects(&graph, &seen.cells, &objects, &none);
+        for (cell, object) in (0..graph.n_cells()).flat_map(|cell| (0..objects.len()).map(move |object| (cell, object))) {
+            let is_proven = proven.hidden_objects.has(cell as u32, object as u32);
+            prop_assert!(!(is_proven && seen.objects.get(cell, object)), "cell {} and object {}", cell, object);
+        }
     }
 
     #[test]

@@ -21,8 +21,8 @@ pub(super) struct ProofArgs {
     /// exists]
     #[arg(long, value_name = "FILE.cert")]
     proofs: Option<PathBuf>,
-    /// With proofs, and for cells without portals, which have none: hidden pairs of cells without a proof are violations, and so are walls
-    /// of cells that nothing in the scene covers
+    /// With proofs, and for cells without portals, which have none: hidden pairs without a proof, of cells or of a cell and an object, are
+    /// violations, and so are walls of cells that nothing in the scene covers
     #[arg(long)]
     strict: bool,
 }
@@ -57,6 +57,8 @@ pub(super) struct ProofOutcome {
     n_visible: u64,
     /// Pairs that the table hides and that are proven.
     n_hidden: u64,
+    /// Pairs that the table shows although they are proven to be hidden.
+    n_excess: u64,
     /// Pairs that the table shows without a proof.
     n_unproven_visible: u64,
     /// Pairs that the table hides without a proof.
@@ -64,6 +66,10 @@ pub(super) struct ProofOutcome {
     /// Of these, pairs that a line through portals joins: only a from-region method hides them.
     n_hidden_past_portals: u64,
     unproven_hidden: Vec<[u32; 2]>,
+    /// Pairs of a cell and an object that the table hides and that are proven.
+    n_hidden_objects: u64,
+    /// Those without a proof.
+    n_unproven_hidden_objects: u64,
     n_violations: u64,
     violations: Vec<String>,
     /// Parts of borders of cells that are not portals: the proofs take them for walls.
@@ -99,7 +105,10 @@ pub(super) fn check(
     let start = Instant::now();
     let found = check_proofs(table, &content);
     let is_of_other = match &found {
-        Ok(found) => found.violations.contains(&ProofViolation::Refused(Refusal::OtherTable)),
+        Ok(found) => found
+            .violations
+            .iter()
+            .any(|violation| matches!(violation, ProofViolation::Refused(Refusal::OtherTable | Refusal::OtherObjects))),
         Err(error) => matches!(error, ProofError::Kind { .. }) || !can_be_proven(table),
     };
     // They were not named, only found beside the table: most likely it was built again without proofs.
@@ -140,6 +149,9 @@ impl ProofOutcome {
             is_true: found.is_true(strict) && !(strict && walls.n_bare > 0),
             n_visible: found.n_visible,
             n_hidden: found.n_hidden,
+            n_excess: found.n_excess,
+            n_hidden_objects: found.n_hidden_objects,
+            n_unproven_hidden_objects: found.n_unproven_hidden_objects,
             n_unproven_visible: found.n_unproven_visible,
             n_unproven_hidden: found.n_unproven_hidden,
             n_hidden_past_portals: found.n_hidden_past_portals,
@@ -169,10 +181,22 @@ impl fmt::Display for ProofOutcome {
         let [shown, hidden] =
             [(self.n_visible, "visible"), (self.n_hidden, "hidden")].map(|(n, what)| count(n, &format!("{what} pair")));
         writeln!(f, "               {shown} and {hidden} proven")?;
+        if self.n_hidden_objects > 0 {
+            let hidden = count(self.n_hidden_objects, "hidden pair");
+            writeln!(f, "               {hidden} of a cell and an object proven")?;
+        }
+        if self.n_excess > 0 {
+            let shown = count(self.n_excess, "visible pair");
+            writeln!(f, "               {shown} proven to be hidden: the table shows more than is visible")?;
+        }
         for (n, what) in [(self.n_unproven_visible, "visible"), (self.n_unproven_hidden, "hidden")] {
             if n > 0 {
                 writeln!(f, "unproven       {}", count(n, &format!("{what} pair")))?;
             }
+        }
+        if self.n_unproven_hidden_objects > 0 {
+            let hidden = count(self.n_unproven_hidden_objects, "hidden pair");
+            writeln!(f, "unproven       {hidden} of a cell and an object")?;
         }
         if self.n_hidden_past_portals > 0 {
             let n = self.n_hidden_past_portals;
