@@ -11,7 +11,7 @@ use crate::reports::{MapReport, WorldSummary};
 use planes::ClusterTree;
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::bsp::{BspTree, WorldFaces};
-use sightlines_formats::quake::visibility::check_portals;
+use sightlines_formats::quake::visibility::{check_portals, clusters_of_leafs};
 use sightlines_formats::quake::{Bsp, Prt};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellRecord, Locator, ObjectRecord, Table, TableKind};
@@ -35,7 +35,7 @@ pub fn bake_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<BakedMa
     check_portals(bsp, prt)?;
     let (tree, faces, listed) = (bsp.world_tree()?, bsp.world_faces()?, bsp.leaf_faces()?);
     let graph = graph(prt)?;
-    let leafs = clusters_of_leafs(bsp, prt);
+    let leafs = clusters_of_leafs(bsp, &prt.leaf_clusters());
     let planes = ClusterTree::new(&tree, &leafs, &graph)?;
     let lists = faces::lists(&planes, &leafs, &faces, &listed, prt.n_clusters() as usize);
     let fast = options.search.fast;
@@ -60,17 +60,6 @@ pub fn bake_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<BakedMa
     parts.kind = TableKind::QuakeMap;
     parts.info.iter_mut().filter(|(key, _)| key == SOURCE_KEY).for_each(|(_, value)| value.clone_from(&source));
     Ok(Baked { table: Table::new(parts)?, graph, report: MapReport { clusters, world } })
-}
-
-/// The cluster of each leaf of the map; `None` for what is solid, and for leafs of doors and the like.
-fn clusters_of_leafs(bsp: &Bsp, prt: &Prt) -> Vec<Option<u32>> {
-    if bsp.format().has_clusters() {
-        return bsp.leafs().iter().map(|leaf| leaf.cluster().map(u32::from)).collect();
-    }
-    let of_leaf = prt.leaf_clusters();
-    let visible = of_leaf.cluster_of_leaf().iter().map(|&cluster| Some(cluster));
-    let all = std::iter::once(None).chain(visible).chain(std::iter::repeat(None));
-    all.take(bsp.leafs().len()).collect()
 }
 
 /// The box around the leafs and the portals of each cluster; empty for one that has neither.

@@ -3,6 +3,7 @@
 use sightlines::cells::PlanError;
 use sightlines::formats::ReadError;
 use sightlines::formats::quake::VisibilityError;
+use sightlines::formats::quake::prt::line_of_portal;
 use sightlines::packed::PackedError;
 use sightlines::pvs::DecodeError;
 use std::io;
@@ -68,6 +69,25 @@ pub(crate) enum InputError {
     /// A portal file of another map.
     #[error("{}: does not go with {}: {source}", prt.display(), bsp.display())]
     OtherMap { prt: PathBuf, bsp: PathBuf, source: Box<VisibilityError> },
+    /// A portal file with a portal that the map contradicts.
+    #[error("{}: line {line}: {source}", prt.display())]
+    InsideOut { prt: PathBuf, line: usize, source: Box<VisibilityError> },
+}
+
+impl InputError {
+    /// Portals that do not go with a map.
+    pub(crate) fn of_portals(prt: &Path, bsp: &Path, source: Box<VisibilityError>) -> Self {
+        let line = match *source {
+            VisibilityError::InsideOut { portal, .. } => {
+                std::fs::read(prt).ok().and_then(|text| line_of_portal(&text, portal))
+            }
+            _ => None,
+        };
+        match line {
+            Some(line) => Self::InsideOut { prt: prt.to_owned(), line, source },
+            None => Self::OtherMap { prt: prt.to_owned(), bsp: bsp.to_owned(), source },
+        }
+    }
 }
 
 /// Names the map of a file, if it has one.

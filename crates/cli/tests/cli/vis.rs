@@ -1,6 +1,6 @@
 //! Visibility of Quake maps through the command line.
 
-use crate::common::quake::{Map, Portals, rooms, small_maps};
+use crate::common::quake::{Map, Portals, rooms, row_of_leafs, small_maps};
 use crate::common::{Folder, Run};
 use serde_json::{Value, json};
 use sightlines::bake::from_table::convex_graph;
@@ -80,6 +80,45 @@ fn portals_inside_out_are_refused() {
         }
         assert_eq!(folder.names(), ["map.bsp", "map.prt"], "nothing is written");
     }
+}
+
+/// Where only one cluster tells, as at a dead end, the tree of the map does: each portal of a row of leafs is found, in every format, with the line.
+#[test]
+fn single_portals_inside_out_are_refused() {
+    let mut n_found = 0;
+    for map in BspFormat::ALL.map(row_of_leafs) {
+        let parsed = parse_prt(map.prt.as_bytes()).expect("sound portals");
+        for turned in 0..parsed.n_portals() {
+            let mut other = Prt::new(parsed.n_clusters()).expect("clusters");
+            for (k, portal) in parsed.portals().enumerate() {
+                let mut points = portal.points.to_vec();
+                if k == turned {
+                    points.reverse();
+                }
+                other.push_portal(portal.clusters, &points).expect("as good as before");
+            }
+            let folder = with(&map);
+            folder.write("map.prt", write_prt(&other));
+            let table = Table::from_bytes(&{
+                let sound = with(&map);
+                sound.run(&["build", "map.bsp", "-o", "t.pvs"]).expect(0);
+                sound.read("t.pvs")
+            });
+            folder.write("t.pvs", table.expect("a sound table").to_bytes());
+            for arguments in [
+                &["vis", "map.bsp", "-o", "out.bsp"][..],
+                &["build", "map.bsp", "-o", "out.pvs"],
+                &["verify", "t.pvs", "map.bsp"],
+            ] {
+                let run = folder.run(arguments).expect(2);
+                assert!(run.err.contains(&format!("map.prt: line {}: portal {turned}: ", 4 + turned)), "{}", run.err);
+                assert!(run.err.contains("corners are in the wrong order"), "{}", run.err);
+            }
+            assert_eq!(folder.names(), ["map.bsp", "map.prt", "t.pvs"], "nothing is written");
+            n_found += 1;
+        }
+    }
+    assert!(n_found > 10, "{n_found}");
 }
 
 /// A portal file that has every portal twice says the same as one that has it once, with a warning, and takes about as long.

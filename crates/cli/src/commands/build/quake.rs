@@ -20,8 +20,9 @@ pub(super) fn failed(map: &Path, portals: &Path, source: PrtBakeError) -> Error 
         PrtBakeError::Visibility(
             source @ (VisibilityError::Leafs { .. }
             | VisibilityError::Clusters { .. }
-            | VisibilityError::OtherMap { .. }),
-        ) => InputError::OtherMap { prt: portals.to_owned(), bsp: map.to_owned(), source: Box::new(source) }.into(),
+            | VisibilityError::OtherMap { .. }
+            | VisibilityError::InsideOut { .. }),
+        ) => InputError::of_portals(portals, map, Box::new(source)).into(),
         source => Error::BakePrt { path: portals.to_owned(), source },
     }
 }

@@ -92,7 +92,7 @@ fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility
     let named = portals_of(path, scene, prt)?;
     let portals = read_prt(&named)?;
     OwnVisibility::of_bsp(&bsp, &portals).map_err(|error| match error {
-        OwnError::OtherMap(source) => InputError::OtherMap { prt: named.clone(), bsp: path.to_owned(), source }.into(),
+        OwnError::OtherMap(source) => InputError::of_portals(&named, path, source).into(),
         error => refused(path, None, error),
     })
 }

@@ -44,12 +44,9 @@ impl Real {
             Bakeable::Scene(file) => Self::Scene(file.scene),
             Bakeable::Portals(prt) => Self::Portals(graph_of_prt(&prt)),
             Bakeable::Map(bsp, portals) => {
-                let other_map = |source| InputError::OtherMap {
-                    prt: file.unwrap_or_default(),
-                    bsp: path.to_owned(),
-                    source: Box::new(source),
-                };
-                check_portals(&bsp, &portals).map_err(other_map)?;
+                let file = file.unwrap_or_default();
+                check_portals(&bsp, &portals)
+                    .map_err(|source| InputError::of_portals(&file, path, Box::new(source)))?;
                 let broken =
                     |error: BspError| Error::BakePrt { path: path.to_owned(), source: PrtBakeError::Bsp(error) };
                 Self::Map(graph_of_prt(&portals), WorldTree::of_map(&bsp, &portals).map_err(broken)?)

@@ -76,9 +76,7 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
         return Err(InputError::MapWithoutPortals(args.map.clone()).into());
     }
     let (prt, text) = read_portals(&prt_path)?;
-    let other_map =
-        |source| InputError::OtherMap { prt: prt_path.clone(), bsp: args.map.clone(), source: Box::new(source) };
-    check_portals(&bsp, &prt).map_err(other_map)?;
+    check_portals(&bsp, &prt).map_err(|source| InputError::of_portals(&prt_path, &args.map, Box::new(source)))?;
     warn_of_repeats(&prt_path, &prt);
 
     let key = StateKey::new(&text, args.fast);

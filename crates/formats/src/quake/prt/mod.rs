@@ -22,7 +22,7 @@ mod write;
 
 pub use error::{PrtError, PrtErrorKind, PrtItem};
 pub use graph::graph_of_prt;
-pub use read::parse_prt;
+pub use read::{line_of_portal, parse_prt};
 pub use write::write_prt;
 
 use super::{LeafClusters, MAX_CLUSTERS};

@@ -50,6 +50,20 @@ pub fn parse_prt(text: &[u8]) -> Result<Prt, PrtError> {
     if end.bytes.is_some() { Err(unexpected(&end, PrtItem::End)) } else { Ok(prt) }
 }
 
+/// The line on which a portal of a portal file begins, counted from 1; `None` if the text has no such portal that can be read. For messages about
+/// portals after the text was read.
+pub fn line_of_portal(text: &[u8], portal: usize) -> Option<usize> {
+    let mut reader = Reader { lexer: Lexer::new(text) };
+    let magic = reader.lexer.next();
+    let dialect = PrtDialect::ALL.into_iter().find(|d| magic.bytes == Some(d.magic().as_bytes()))?;
+    let header = reader.header(dialect).ok()?;
+    let mut prt = Prt::new(header.n_clusters).ok()?;
+    let n_before = (portal < header.n_portals as usize).then_some(portal)?;
+    let mut points = Vec::new();
+    (0..n_before).try_for_each(|k| reader.portal(k, &mut prt, &mut points).map(drop)).ok()?;
+    reader.portal(portal, &mut prt, &mut points).ok().map(|place| place.line)
+}
+
 struct Header {
     n_clusters: u32,
     n_portals: u32,

@@ -31,6 +31,14 @@ pub enum VisibilityError {
         /// Two for each portal.
         n_sides: usize,
     },
+    /// The corners of a portal go round the wrong way, as the tree of the map has its clusters.
+    #[error("portal {portal}: its corners are in the wrong order: in the map, clusters {} and {} lie on the other sides of it, so what is visible through it would be hidden", clusters[0], clusters[1])]
+    InsideOut {
+        /// The portal.
+        portal: usize,
+        /// The clusters that it leads from and into.
+        clusters: [u32; 2],
+    },
     /// A matrix for another number of clusters.
     #[error("{n_rows} rows of {n_cols} bits are not for {n_clusters} clusters")]
     Matrix {

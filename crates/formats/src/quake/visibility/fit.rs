@@ -1,5 +1,6 @@
 //! Whether portals and map are of the same map.
 
+use super::orientation::inside_out;
 use super::{Bsp, LeafClusters, VisibilityError};
 use crate::quake::Prt;
 
@@ -25,7 +26,8 @@ pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityErro
 /// half of them. It catches mistakes and does not affect visibility.
 ///
 /// # Errors
-/// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`], [`VisibilityError::OtherMap`].
+/// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`], [`VisibilityError::OtherMap`]; [`VisibilityError::InsideOut`] for the first portal whose
+/// corners go round the wrong way, as the tree of the map has it: through that, a search would see nothing of what is seen in truth.
 pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
     let leafs = prt.leaf_clusters();
     check_match(bsp, &leafs)?;
@@ -40,7 +42,23 @@ pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
             n_outside += usize::from(!portal.points.iter().all(is_inside));
         }
     }
-    if 2 * n_outside > n_sides { Err(VisibilityError::OtherMap { n_outside, n_sides }) } else { Ok(()) }
+    if 2 * n_outside > n_sides {
+        return Err(VisibilityError::OtherMap { n_outside, n_sides });
+    }
+    match inside_out(bsp, prt) {
+        Some((portal, clusters)) => Err(VisibilityError::InsideOut { portal, clusters }),
+        None => Ok(()),
+    }
+}
+
+/// The cluster of each leaf of the map; `None` for what is solid, and for leafs of doors and the like.
+pub fn clusters_of_leafs(bsp: &Bsp, leafs: &LeafClusters) -> Vec<Option<u32>> {
+    if bsp.format().has_clusters() {
+        return bsp.leafs().iter().map(|leaf| leaf.cluster().map(u32::from)).collect();
+    }
+    let visible = leafs.cluster_of_leaf().iter().map(|&cluster| Some(cluster));
+    let all = std::iter::once(None).chain(visible).chain(std::iter::repeat(None));
+    all.take(bsp.leafs().len()).collect()
 }
 
 /// Low and high corner of the leafs of each cluster; of one without leafs nothing is inside.

@@ -10,10 +10,11 @@ use sightlines_pvs::bits::{ones, or_words};
 
 mod error;
 mod fit;
+mod orientation;
 mod read;
 
 pub use error::VisibilityError;
-pub use fit::{check_match, check_portals};
+pub use fit::{check_match, check_portals, clusters_of_leafs};
 pub use read::{read_hearing, read_visibility};
 
 /// A visibility lump, and what goes with it in the leafs; [`Bsp::with_visibility`] puts it into a map.
