@@ -111,8 +111,9 @@ fn single_portals_inside_out_are_refused() {
                 &["verify", "t.pvs", "map.bsp"],
             ] {
                 let run = folder.run(arguments).expect(2);
-                assert!(run.err.contains(&format!("map.prt: line {}: portal {turned}: ", 4 + turned)), "{}", run.err);
-                assert!(run.err.contains("corners are in the wrong order"), "{}", run.err);
+                let wrong = format!(": portal {turned}: its corners are in the wrong order");
+                let says = [format!("map.prt: line {}", 4 + turned), wrong];
+                assert!(says.iter().all(|text| run.err.contains(text)), "{}", run.err);
             }
             assert_eq!(folder.names(), ["map.bsp", "map.prt", "t.pvs"], "nothing is written");
             n_found += 1;
