@@ -22,8 +22,8 @@ mod stabber;
 mod verdict;
 
 pub use axial::shaft::{
-    BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, FreeLine, FreeSpan, ProofSize, Shaft,
-    ShaftCounters, ShaftVerdict, Target,
+    BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, FineLine, FreeLine, FreeSpan, ProofSize, Shaft,
+    ShaftCounters, ShaftLine, ShaftVerdict, Target,
 };
 pub use axial::{
     AxialCertificate, AxialCounters, AxialRow, AxialStabber, AxialUndo, AxialVerdict, AxialWitness, OctantProof,

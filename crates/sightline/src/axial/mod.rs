@@ -28,12 +28,14 @@
 
 mod certificate;
 mod exact;
+mod fine;
 mod octant;
 mod proof;
 mod rows;
 pub mod shaft;
 mod simplex;
 mod stabber;
+mod wide;
 mod witness;
 
 pub use certificate::{AxialCertificate, AxialRow, OctantProof};

@@ -1,6 +1,7 @@
 //! The decision of one octant: doubles propose, exact arithmetic decides.
 
 use super::exact::{self, Exact};
+use super::fine::{self, Fine};
 use super::proof::{self, Proof};
 use super::rows::{Line, Octant, Row};
 use super::simplex;
@@ -27,9 +28,13 @@ pub(super) const SMALL_FIRST: &[f64] =
 pub(super) fn decide(rows: &[Row], octant: Octant, scales: &[f64], scratch: &mut Vec<Row>) -> (Decision, bool) {
     match decide_in_doubles(rows, octant, scales, scratch) {
         Ok(decision) => (decision, false),
-        Err(support) => match exact::decide(rows, octant, &support) {
-            Exact::Open(witness) => (Decision::Fractions(witness), true),
-            Exact::Blocked(proof) => (Decision::Blocked(proof), true),
+        Err(support) => match fine::decide(rows, octant) {
+            Some(Fine::Open(line)) => (Decision::Fractions(Box::new(line.witness())), true),
+            Some(Fine::Blocked(proof)) => (Decision::Blocked(proof), true),
+            None => match exact::decide(rows, octant, &support) {
+                Exact::Open(witness) => (Decision::Fractions(witness), true),
+                Exact::Blocked(proof) => (Decision::Blocked(proof), true),
+            },
         },
     }
 }

@@ -8,6 +8,7 @@
 //! clearly negative; otherwise the weights are recomputed as the integers with which the sum vanishes exactly.
 
 use super::rows::{Octant, Row, sign};
+use super::wide::Wide;
 use num_bigint::BigInt;
 use num_traits::{CheckedDiv, CheckedMul, CheckedSub, FromPrimitive, One, Signed, ToPrimitive, Zero};
 
@@ -48,36 +49,42 @@ const MAX_SUPPORT: usize = 8;
 
 /// A cycle of up to three rows, by their places in the support, and its weight.
 #[derive(Debug, Clone, Copy, Default)]
-struct Cycle {
+struct Cycle<W> {
     rows: [u8; 3],
     n_rows: u8,
-    weight: f64,
+    weight: W,
 }
 
-impl Cycle {
+impl<W> Cycle<W> {
     fn rows(&self) -> impl Iterator<Item = usize> + '_ {
         self.rows[..usize::from(self.n_rows)].iter().map(|&n| usize::from(n))
     }
 }
 
 /// Writes weights as a sum of cycles; what does not fit, by rounding, is dropped. Returns how many.
-fn cycles(rows: &[Row], support: &[(usize, f64)], found: &mut [Cycle; MAX_SUPPORT]) -> usize {
+fn cycles<W>(rows: &[Row], support: &[(usize, W)], found: &mut [Cycle<W>; MAX_SUPPORT]) -> usize
+where
+    W: Copy + Default + PartialOrd + std::ops::SubAssign,
+{
     const KINDS: [&[usize]; 5] = [&[0, 1], &[1, 2], &[2, 0], &[0, 1, 2], &[2, 1, 0]];
-    let mut left = [0.0; MAX_SUPPORT];
+    let mut left = [W::default(); MAX_SUPPORT];
     left.iter_mut().zip(support).for_each(|(left, s)| *left = s.1);
     let mut n_found = 0;
     for axes in KINDS {
         // Each cycle uses up a row, so there is room for all.
         while n_found < MAX_SUPPORT {
-            let mut cycle = Cycle { weight: f64::INFINITY, ..Cycle::default() };
+            let mut cycle = Cycle::default();
             for (i, &from) in axes.iter().enumerate() {
                 let to = axes[(i + 1) % axes.len()];
                 let fits = |&n: &usize| {
                     let row = &rows[support[n].0];
-                    left[n] > 0.0 && row.early == from && row.late == to
+                    left[n] > W::default() && row.early == from && row.late == to
                 };
                 let Some(n) = (0..support.len()).find(fits) else { break };
-                (cycle.rows[i], cycle.n_rows, cycle.weight) = (n as u8, cycle.n_rows + 1, cycle.weight.min(left[n]));
+                if i == 0 || left[n] < cycle.weight {
+                    cycle.weight = left[n];
+                }
+                (cycle.rows[i], cycle.n_rows) = (n as u8, cycle.n_rows + 1);
             }
             if usize::from(cycle.n_rows) < axes.len() {
                 break;
@@ -96,6 +103,33 @@ pub(super) fn by_cycles(rows: &[Row], octant: Octant, support: &[(usize, f64)], 
     let mut terms = [(0, 0.0); MAX_SUPPORT];
     let n_terms = weigh(rows, octant, support, scale, &mut terms)?;
     Some(Proof::Small(terms[..n_terms].to_vec()))
+}
+
+/// Rounds weights to integers of some hundred bits, so that their cycles need less slack, and checks the proof exactly; `None` if the
+/// result proves nothing.
+pub(super) fn by_fine_cycles(rows: &[Row], octant: Octant, support: &[(usize, Wide)]) -> Option<Proof> {
+    let support = support.get(..MAX_SUPPORT).unwrap_or(support);
+    let largest = support.iter().map(|s| s.1.high).fold(0.0, f64::max);
+    // A power of two of at most 2^100 divided by the largest.
+    let scale = f64::from_bits(largest.recip().to_bits() & 0x7ff << 52) * (1u128 << 99) as f64;
+    let whole = |w: Wide| (w.high * scale).round() as i128 + (w.low * scale).round() as i128;
+    let whole: Vec<(usize, i128)> = support.iter().map(|&(k, w)| (k, whole(w))).collect();
+    let mut found = [Cycle::default(); MAX_SUPPORT];
+    let n_found = cycles(rows, &whole, &mut found);
+    let mut weights = [0i128; MAX_SUPPORT];
+    for cycle in &found[..n_found] {
+        cycle.rows().for_each(|n| weights[n] += cycle.weight);
+    }
+    // Each is at most what it was before, so it has two parts that doubles hold.
+    let parts = |w: i128| [(w >> 50) as f64 * (1u64 << 50) as f64, (w & ((1 << 50) - 1)) as f64];
+    let terms: Vec<(usize, i128)> = support.iter().zip(weights).map(|(s, w)| (s.0, w)).filter(|t| t.1 > 0).collect();
+    let is_slow = |axis: usize| {
+        let products = terms.iter().filter_map(|&(k, w)| rows[k].term(axis).map(|(factor, x)| (factor, w, x)));
+        let products = products.flat_map(|(factor, w, x)| parts(w).map(|w| (factor * w, x)));
+        sign(octant, axis) * sign_of_sum(products) >= 0.0
+    };
+    let proves = !terms.is_empty() && (0..3).all(is_slow);
+    proves.then(|| Proof::Big(terms.into_iter().map(|(k, w)| (k, BigInt::from(w))).collect()))
 }
 
 /// Whether [`by_cycles`] finds a proof.
@@ -159,7 +193,7 @@ fn is_slow(rows: &[Row], octant: Octant, terms: &[(usize, f64)], axis: usize) ->
 ///
 /// Source: Shewchuk, Discrete Comput. Geom. 18, 1997: a sum of doubles that do not overlap has the sign of
 /// its largest.
-fn sign_of_sum(products: impl Iterator<Item = (f64, f64)>) -> f64 {
+pub(super) fn sign_of_sum(products: impl Iterator<Item = (f64, f64)>) -> f64 {
     // From small to large, without overlap, some zero; two for each of up to five products.
     let mut parts: Vec<f64> = Vec::with_capacity(16);
     for (a, b) in products {

@@ -102,6 +102,16 @@ pub(super) fn reaches(bounds: &Aabb<3>, axis: usize, forward: bool, at: f64) -> 
     if forward { bounds.max[axis] >= at } else { bounds.min[axis] <= at }
 }
 
+/// Whether a line of the octant, given by the rows that it obeys, passes the plane of a closed rectangle outside of it.
+pub(super) fn misses(rectangle: &Aabb<3>, axis: usize, octant: Octant, obeys: impl Fn(&Row) -> bool) -> bool {
+    let at = rectangle.min[axis];
+    others(axis).into_iter().any(|b| {
+        let [first, last] = first_and_last(rectangle, octant, b);
+        obeys(&Row { early: axis, late: b, from: at, to: first })
+            || obeys(&Row { early: b, late: axis, from: last, to: at })
+    })
+}
+
 /// A directed line through two points that differ on every axis.
 ///
 /// Rows about two axes are orientations in the plane of those axes, so the exact planar predicate
@@ -146,12 +156,7 @@ impl Line {
 
     /// Whether it passes the plane of a closed rectangle outside of it, if it is in the octant. Exact.
     pub(super) fn misses(&self, rectangle: &Aabb<3>, axis: usize, octant: Octant) -> bool {
-        let at = rectangle.min[axis];
-        others(axis).into_iter().any(|b| {
-            let [first, last] = first_and_last(rectangle, octant, b);
-            self.obeys(&Row { early: axis, late: b, from: at, to: first }, octant)
-                || self.obeys(&Row { early: b, late: axis, from: last, to: at }, octant)
-        })
+        misses(rectangle, axis, octant, |row| self.obeys(row, octant))
     }
 
     /// Whether its direction is strictly in the octant. Exact.

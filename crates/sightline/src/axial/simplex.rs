@@ -14,9 +14,9 @@ use super::rows::{Line, Octant, Row, is_forward};
 use crate::simplex::Basis;
 
 /// Unknowns: three slownesses, two offsets (the first is 0), the margin.
-const N: usize = 6;
+pub(super) const N: usize = 6;
 /// Bound on offsets, never tight at an optimum: a door keeps them within 2 plus the margin's size.
-const FAR: f64 = 8.0;
+pub(super) const FAR: f64 = 8.0;
 /// Violations below this are rounding.
 const VIOLATED: f64 = 1e-12;
 /// Weights below this are rounding.
@@ -28,7 +28,7 @@ const FLOOR: f64 = 1.0 / 64.0;
 
 /// A column of the dual program.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Column {
+pub(super) enum Column {
     /// The sum of the slownesses, an equation; it never leaves the basis.
     Total,
     /// A slowness is at least the margin.
@@ -146,6 +146,11 @@ impl Tableau {
         let weights = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
         let columns = [Total, Floor(1), Floor(2), Offset(1, 1.0), Offset(2, 1.0), Cap];
         Self { basis: Basis { columns, inverse, weights }, bounded: true }
+    }
+
+    /// The columns of the basis.
+    pub(super) fn columns(&self) -> [Column; N] {
+        self.basis.columns
     }
 
     /// The unknowns of the primal program.

@@ -12,7 +12,9 @@ use sightlines_geometry::Random;
 use sightlines_geometry::{Aabb, BoxTree, check_coordinate};
 use sightlines_progress::{Cancelled, Counter};
 use sightlines_pvs::{BitMatrix, ObjectId};
-use sightlines_sightline::{BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, Target, Verdict};
+use sightlines_sightline::{
+    BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, Shaft, ShaftLine, Target, Verdict,
+};
 
 /// Lines are added in rounds: at first only those that prove at least this many new pairs.
 const ROUNDS: [usize; 3] = [64, 8, 1];
@@ -351,7 +353,9 @@ impl<'a> Search<'a> {
         if !apart {
             return;
         }
-        let Verdict::Visible(line) = shaft.decide(&a, &b, Target::Inside, self.budgets[1]) else { return };
+        let Verdict::Visible(ShaftLine::Free(line)) = shaft.decide(&a, &b, Target::Inside, self.budgets[1]) else {
+            return;
+        };
         let [p, q] = line.points();
         // A free line may pass the common edge of two portals; lines next to it do not.
         let mut width = 0.25;

@@ -5,7 +5,7 @@ use crate::explanation::{Barrier, Explanation, SearchLimit, Sight};
 use sightlines_cells::{Axial, CellGraph, CellId, Exit, PortalId};
 use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_sightline::{
-    AxialStabber, AxialWitness, BlockedProof, Blockers, FreeLine, Shaft, Stabber, Target, Verdict,
+    AxialStabber, AxialWitness, BlockedProof, Blockers, Shaft, ShaftLine, Stabber, Target, Verdict,
 };
 
 /// The explanation for two cells in space.
@@ -90,7 +90,7 @@ pub fn explain_space(
 struct Walk<'a> {
     graph: &'a CellGraph<Axial>,
     useful: &'a [bool],
-    line: &'a FreeLine,
+    line: &'a ShaftLine,
     to: CellId,
     path: Vec<Exit>,
     stabber: AxialStabber,
@@ -98,7 +98,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn new(graph: &'a CellGraph<Axial>, useful: &'a [bool], line: &'a FreeLine, to: CellId) -> Self {
+    fn new(graph: &'a CellGraph<Axial>, useful: &'a [bool], line: &'a ShaftLine, to: CellId) -> Self {
         Self { graph, useful, line, to, path: Vec::new(), stabber: AxialStabber::new(), tries: 0 }
     }
 
@@ -109,7 +109,7 @@ impl<'a> Walk<'a> {
         let doors: Vec<AxialDoor> = self.path.iter().map(|exit| self.graph.door(exit)).collect();
         let passes = |witness: &AxialWitness| doors.iter().all(|door| witness.passes(door));
         let free = Some(self.line.witness()).filter(passes);
-        let ends = free.is_some().then(|| self.line.points());
+        let ends = free.as_ref().and_then(|_| Some(self.line.free()?.points()));
         let witness = free.or_else(|| Some(self.stabber.witness()).filter(passes))?;
         Some(Verdict::Visible(Sight::Along(SpacePath {
             portals: self.path.iter().map(|exit| exit.portal).collect(),

@@ -5,7 +5,7 @@ use super::pairs::{CELL_BUDGET, FEW, GROUP_BUDGET, apart};
 use super::witness_log::{FoundFor, WitnessLog, Worker};
 use sightlines_geometry::Aabb;
 use sightlines_progress::Allowance;
-use sightlines_sightline::{Target, Verdict};
+use sightlines_sightline::{ShaftLine, Target, Verdict};
 use std::collections::VecDeque;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -100,16 +100,20 @@ impl SpaceSearch<'_> {
                 let found_for = if node.is_leaf() { FoundFor::Object([object, places[0]]) } else { FoundFor::Groups };
                 match worker.shaft.decide(&node.bounds, target, Target::Surface, budget) {
                     Verdict::Hidden(()) => continue,
-                    Verdict::Visible(line) => self.follow(&line, [&node.bounds, target], found_for, worker),
+                    Verdict::Visible(ShaftLine::Free(line)) => {
+                        self.follow(&line, [&node.bounds, target], found_for, worker);
+                    }
+                    Verdict::Visible(ShaftLine::Fine(_)) if node.is_leaf() => {
+                        self.see_without_line([object, places[0]], worker);
+                    }
+                    Verdict::Visible(ShaftLine::Fine(_)) => {}
                     Verdict::Undecided(_) => {
                         if node.is_leaf() && self.is_object_hidden_in_groups(object, places[0], worker) {
                             continue;
                         }
                         if node.is_leaf() {
                             self.n_assumed.fetch_add(1, Relaxed);
-                            self.objects.set(object, places[0]);
-                            let pair = [object as u32, self.cell_at[places[0]]];
-                            worker.log.iter_mut().for_each(|log| log.assumed_objects.push(pair));
+                            self.see_without_line([object, places[0]], worker);
                         }
                     }
                 }
@@ -119,6 +123,13 @@ impl SpaceSearch<'_> {
             }
         }
         next.into()
+    }
+
+    /// Marks an object as seen from a cell, by place, where no line in doubles shows it.
+    fn see_without_line(&self, [object, place]: [usize; 2], worker: &mut Worker<'_>) {
+        self.objects.set(object, place);
+        let pair = [object as u32, self.cell_at[place]];
+        worker.log.iter_mut().for_each(|log| log.objects_without_line.push(pair));
     }
 
     /// For a search in which only some pairs are in doubt and so not all groups are tested: whether an object is hidden

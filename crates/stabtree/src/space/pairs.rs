@@ -3,7 +3,7 @@
 use super::witness_log::{FoundFor, Line, Proof, Worker};
 use super::{PairsInDoubt, SpaceSearch};
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_sightline::{FreeLine, FreeSpan, Target, Verdict};
+use sightlines_sightline::{FreeLine, FreeSpan, ShaftLine, Target, Verdict};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Linear programs spent on a pair of groups; one that takes more is halved.
@@ -60,8 +60,10 @@ impl SpaceSearch<'_> {
         if worth_it && apart(&na.bounds, &nb.bounds) && !self.cells.any(rows, cols) {
             match worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, self.group_budget()) {
                 Verdict::Hidden(()) => return,
-                Verdict::Visible(line) => self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, worker),
-                Verdict::Undecided(_) => {}
+                Verdict::Visible(ShaftLine::Free(line)) => {
+                    self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, worker);
+                }
+                Verdict::Visible(ShaftLine::Fine(_)) | Verdict::Undecided(_) => {}
             }
         }
         if halves_first(&self.tree, [a, b]) {
@@ -119,15 +121,21 @@ impl SpaceSearch<'_> {
         }
         match worker.shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
             Verdict::Hidden(()) => {}
-            Verdict::Visible(line) => self.follow(&line, bounds, FoundFor::Cells([a, b]), worker),
+            Verdict::Visible(ShaftLine::Free(line)) => self.follow(&line, bounds, FoundFor::Cells([a, b]), worker),
+            Verdict::Visible(ShaftLine::Fine(_)) => self.join_without_line([a, b], worker),
             Verdict::Undecided(_) if self.is_hidden_in_groups([a, b], worker) => {}
             Verdict::Undecided(_) => {
                 self.n_assumed.fetch_add(1, Relaxed);
-                if self.join(a, b) {
-                    let log = worker.log.iter_mut();
-                    log.for_each(|log| log.assumed.push([a, b].map(|place| self.cell_at[place])));
-                }
+                self.join_without_line([a, b], worker);
             }
+        }
+    }
+
+    /// Marks two cells, by place, as seeing each other where no line in doubles shows it.
+    fn join_without_line(&self, [a, b]: [usize; 2], worker: &mut Worker<'_>) {
+        if self.join(a, b) {
+            let log = worker.log.iter_mut();
+            log.for_each(|log| log.without_line.push([a, b].map(|place| self.cell_at[place])));
         }
     }
 

@@ -28,10 +28,11 @@ pub(super) struct WitnessLog {
     pub(super) cells: Vec<Proof>,
     /// Pairs of an object and a cell.
     pub(super) objects: Vec<Proof>,
-    /// Pairs of cells that count as visible because they are too hard to decide.
-    pub(super) assumed: Vec<[u32; 2]>,
+    /// Pairs of cells that count as visible because they are too hard to decide, or that lines see each other by which
+    /// doubles cannot hold.
+    pub(super) without_line: Vec<[u32; 2]>,
     /// The same for an object and a cell.
-    pub(super) assumed_objects: Vec<[u32; 2]>,
+    pub(super) objects_without_line: Vec<[u32; 2]>,
     /// Pairs of an object and a cell that sees a cell inside the object.
     pub(super) inside: Vec<[u32; 2]>,
 }
@@ -44,8 +45,8 @@ impl WitnessLog {
         self.lines.append(&mut other.lines);
         self.cells.extend(other.cells.into_iter().map(moved));
         self.objects.extend(other.objects.into_iter().map(moved));
-        self.assumed.append(&mut other.assumed);
-        self.assumed_objects.append(&mut other.assumed_objects);
+        self.without_line.append(&mut other.without_line);
+        self.objects_without_line.append(&mut other.objects_without_line);
         self.inside.append(&mut other.inside);
     }
 

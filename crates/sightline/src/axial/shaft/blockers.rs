@@ -70,6 +70,16 @@ impl Blockers {
         });
     }
 
+    /// Rectangles that a line may meet which a ray was rounded from, place and direction; certainly all that it meets.
+    pub(super) fn near_rounded(&self, ray: &Ray, mut each: impl FnMut(u32)) {
+        let may_meet = |b: &Aabb<3>| ray.may_meet(&ray.widened(b), [f64::NEG_INFINITY, f64::INFINITY]);
+        self.tree.visit(may_meet, |i| {
+            if may_meet(&self.rectangles[i as usize]) {
+                each(i);
+            }
+        });
+    }
+
     /// Rectangles that a ray seems to meet between two times; rounding may leave one out or let one in.
     #[inline]
     pub(super) fn met(&self, ray: &Ray, times: [f64; 2], mut each: impl FnMut(u32)) {

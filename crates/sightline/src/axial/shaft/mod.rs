@@ -10,7 +10,8 @@
 //! between the boxes, not on the number of cells that the space between them is cut into.
 //!
 //! Doubles choose the line and the rectangle. That a set is empty is proven by integer weights, as for
-//! doors; that a line is free is checked exactly; so no answer depends on rounding.
+//! doors; that a line is free is checked exactly; so no answer depends on rounding. Where lines pass a slit of a few units
+//! in the last place, or miss one by that, the program is solved again in numbers of two doubles.
 //!
 //! # Ties
 //! Rectangles are closed and the boxes' insides are open: a line that only grazes does not count.
@@ -29,18 +30,21 @@ mod record;
 mod tests;
 mod trace;
 
+pub use super::fine::FineLine;
 pub use blockers::Blockers;
 pub use certificate::{BlockedProof, Branch, BranchRow, Bypass, Contradiction, ProofSize};
 pub use trace::{FreeLine, FreeSpan};
 
+use super::fine::{self, Fine};
 use super::octant::{Decision, FINE, SMALL_FIRST, decide_in_doubles, two_axes};
-use super::proof;
-use super::rows::{Line, Octant, Row, others, sign};
+use super::proof::{self, Proof};
+use super::rows::{Line, Octant, Row, misses, others, sign};
 use super::simplex::{Frame, Tableau};
+use super::witness::AxialWitness;
 use crate::{LimitReached, Verdict};
 use cuts::{BypassRows, Ends};
 use ray::Ray;
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, AxialDoor};
 
 /// What has to be reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +58,7 @@ pub enum Target {
 /// What is between two boxes. [`Verdict::Visible`]: the line, from its first point towards its second, leaves the
 /// first box and enters the second without meeting a rectangle; so does an open set of lines. For a proof of
 /// [`Verdict::Hidden`] see [`Shaft::certify`].
-pub type ShaftVerdict = Verdict<FreeLine, (), LimitReached>;
+pub type ShaftVerdict = Verdict<ShaftLine, (), LimitReached>;
 
 /// How queries were decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -123,9 +127,61 @@ pub struct Shaft<'a> {
 
 /// An answer for one octant, or a part of it.
 enum Part {
-    Open(FreeLine),
+    Open(ShaftLine),
     Blocked,
     Undecided,
+}
+
+/// What comes of a ray.
+enum Next {
+    /// A rectangle is in its way, which the branch has not gone past.
+    Past(u32),
+    /// It is free.
+    Open(ShaftLine),
+    /// Rounding spoils that.
+    Unknown,
+}
+
+/// What a closer look at the current rows found: a ray that rounding may have moved out of them, with the line that it stands
+/// for if doubles cannot hold that; or that there are none.
+enum Closer {
+    Open(Ray, Option<FineLine>),
+    Blocked(Proof),
+}
+
+/// A line that was checked exactly to lead from one box to another past all rectangles; so does an open set of lines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ShaftLine {
+    /// Through two points in doubles.
+    Free(FreeLine),
+    /// Through a slit of about a unit in the last place, which such a line may not pass.
+    Fine(FineLine),
+}
+
+impl ShaftLine {
+    /// The line through two points, if it is one.
+    pub const fn free(&self) -> Option<&FreeLine> {
+        match self {
+            Self::Free(line) => Some(line),
+            Self::Fine(_) => None,
+        }
+    }
+
+    /// Whether it crosses the plane of a door in the door's direction and meets the closed rectangle. Exact.
+    pub fn touches(&self, door: &AxialDoor) -> bool {
+        match self {
+            Self::Free(line) => line.touches(door),
+            Self::Fine(line) => line.touches(door),
+        }
+    }
+
+    /// The same line in fractions.
+    pub fn witness(&self) -> AxialWitness {
+        match self {
+            Self::Free(line) => line.witness(),
+            Self::Fine(line) => line.witness(),
+        }
+    }
 }
 
 impl<'a> Shaft<'a> {
@@ -284,27 +340,22 @@ impl<'a> Shaft<'a> {
             }
         }
         let Some(mut ray) = Ray::new(frame.starts_and_paces(&y)) else { return Part::Undecided };
+        let mut fine = None;
         let mut blocker = self.ahead(ends, &ray);
         if blocker.is_none() && y[5] <= CLEAR_MARGIN {
             // No rectangle is left to pass, so it remains to decide whether there are lines at all.
-            self.counters.n_exact += 1;
-            ray = match decide_in_doubles(&self.rows, ends.octant, FINE, &mut self.scratch) {
-                Ok(Decision::Blocked(_)) => return Part::Blocked,
-                Ok(Decision::Line(line)) => match Ray::through(&line) {
-                    Some(ray) => ray,
-                    None => return Part::Undecided,
-                },
-                Ok(Decision::Fractions(_)) | Err(_) => return Part::Undecided,
-            };
+            match self.look_closer(ends.octant, FINE) {
+                Some(Closer::Blocked(_)) => return Part::Blocked,
+                Some(Closer::Open(found, line)) => (ray, fine) = (found, line),
+                None => return Part::Undecided,
+            }
             blocker = self.ahead(ends, &ray);
         }
-        let blocker = match blocker {
-            Some(blocker) => blocker,
-            None => match self.free_line(ends, &ray) {
-                Ok(line) => return Part::Open(line),
-                Err(Some(blocker)) if !self.passed.contains(&blocker) => blocker,
-                Err(_) => return Part::Undecided,
-            },
+        let next = blocker.map_or_else(|| self.free_line(ends, &ray, fine), Next::Past);
+        let blocker = match next {
+            Next::Past(blocker) => blocker,
+            Next::Open(line) => return Part::Open(line),
+            Next::Unknown => return Part::Undecided,
         };
         self.passed.push(blocker);
         let part = self.past(ends, frame, tableau, blocker, &ray);
@@ -402,38 +453,88 @@ impl<'a> Shaft<'a> {
         self.unit.truncate(n_rows);
     }
 
-    /// A ray as a line that is checked exactly to lead from box to box past all rectangles; else the
+    /// Lines of the current rows where a margin is within rounding, or why there are none; `None` if that is not decided.
+    fn look_closer(&mut self, octant: Octant, scales: &[f64]) -> Option<Closer> {
+        self.counters.n_exact += 1;
+        match decide_in_doubles(&self.rows, octant, scales, &mut self.scratch) {
+            Ok(Decision::Blocked(proof)) => return Some(Closer::Blocked(proof)),
+            Ok(Decision::Line(line)) => return Some(Closer::Open(Ray::through(&line)?, None)),
+            Ok(Decision::Fractions(_)) | Err(_) => {}
+        }
+        match fine::decide(&self.rows, octant)? {
+            Fine::Blocked(proof) => Some(Closer::Blocked(proof)),
+            Fine::Open(line) => Some(Closer::Open(Ray::new(line.start_and_pace())?, Some(line))),
+        }
+    }
+
+    /// What comes of a ray of the current rows on which no rectangle seems to be: a rectangle that it meets nevertheless, or
+    /// the line, which was checked exactly to lead from box to box past all rectangles. `fine` is the line that the ray was
+    /// rounded from, if it is known.
+    fn free_line(&self, ends: &Ends<'_>, ray: &Ray, fine: Option<FineLine>) -> Next {
+        let new = |blocker: u32| !self.passed.contains(&blocker);
+        match self.rounded_line(ends, ray) {
+            Ok(line) => return Next::Open(ShaftLine::Free(line)),
+            Err(Some(blocker)) if new(blocker) => return Next::Past(blocker),
+            Err(_) => {}
+        }
+        let fine = fine.or_else(|| match fine::decide(&self.rows, ends.octant)? {
+            Fine::Open(line) => Some(line),
+            Fine::Blocked(_) => None,
+        });
+        let Some(line) = fine else { return Next::Unknown };
+        let Some(ray) = Ray::new(line.start_and_pace()) else { return Next::Unknown };
+        match self.first_met(ends, &|row| line.obeys(row), |each| self.blockers.near_rounded(&ray, each)) {
+            None => Next::Open(ShaftLine::Fine(line)),
+            Some(blocker) if new(blocker) => Next::Past(blocker),
+            Some(_) => Next::Unknown,
+        }
+    }
+
+    /// A ray as a line through two points that is checked exactly to lead from box to box past all rectangles; else the
     /// rectangle that it touches, if it is that.
-    fn free_line(&self, ends: &Ends<'_>, ray: &Ray) -> Result<FreeLine, Option<u32>> {
+    fn rounded_line(&self, ends: &Ends<'_>, ray: &Ray) -> Result<FreeLine, Option<u32>> {
         let ([enter, out], [into, leave]) = (ray.span(ends.from), ray.span(ends.to));
         let middle = |a: f64, b: f64| a + (b - a) / 2.0;
         let at = |t: f64| [0, 1, 2].map(|i| ray.place(i, t));
         let (start, stop) = (at(middle(enter, out)), at(middle(into, leave)));
         let line = Line::new(start, stop).ok_or(None)?;
         let octant = ends.octant;
-        if !line.is_in(octant) || !ends.rows().all(|row| line.obeys(&row, octant)) {
+        let obeys = |row: &Row| line.obeys(row, octant);
+        if !line.is_in(octant) || !ends.rows().all(|row| obeys(&row)) {
             return Err(None);
         }
         let free = FreeLine::new(line, octant).ok_or(None)?;
-        let mut touched = None;
-        self.blockers.near(&free.ray, [free.ray.span(ends.from)[1], free.ray.span(ends.to)[0]], |i| {
-            if touched.is_none()
-                && !self.blockers.missed(i, &line, octant)
-                && !is_outside(ends, self.blockers, i, &line)
-            {
-                touched = Some(i);
+        let times = [free.ray.span(ends.from)[1], free.ray.span(ends.to)[0]];
+        match self.first_met(ends, &obeys, |each| self.blockers.near(&free.ray, times, each)) {
+            None => Ok(free),
+            touched => Err(touched),
+        }
+    }
+
+    /// The first of some rectangles that a line which passes two boxes meets between them. Exact.
+    fn first_met(
+        &self,
+        ends: &Ends<'_>,
+        obeys: &impl Fn(&Row) -> bool,
+        candidates: impl FnOnce(&mut dyn FnMut(u32)),
+    ) -> Option<u32> {
+        let mut met = None;
+        candidates(&mut |i| {
+            let missed = || misses(self.blockers.rectangle(i), self.blockers.axis(i), ends.octant, obeys);
+            if met.is_none() && !missed() && !is_outside(ends, self.blockers, i, obeys) {
+                met = Some(i);
             }
         });
-        if touched.is_some() { Err(touched) } else { Ok(free) }
+        met
     }
 }
 
 /// Whether a line that passes two boxes crosses the plane of a rectangle before it leaves the first, or
 /// after it enters the second. Exact.
-fn is_outside(ends: &Ends<'_>, blockers: &Blockers, index: u32, line: &Line) -> bool {
+fn is_outside(ends: &Ends<'_>, blockers: &Blockers, index: u32, obeys: &impl Fn(&Row) -> bool) -> bool {
     let mut outside = false;
     ends.ways_past(blockers.rectangle(index), blockers.axis(index), |way| {
-        outside |= way.complement().is_none() && way.rows().iter().all(|row| line.obeys(row, ends.octant));
+        outside |= way.complement().is_none() && way.rows().iter().all(obeys);
     });
     outside
 }

@@ -39,6 +39,15 @@ impl Ray {
         self.start[axis] + time / self.pace[axis]
     }
 
+    /// A box that the ray meets if a line meets `b` that the ray was rounded from.
+    ///
+    /// The start and the paces err by 2^-52 of themselves at most, so at the time at which the line is at `x`, the ray is off
+    /// by at most 2^-51 of the magnitudes of the start and of `x`.
+    pub(super) fn widened(&self, b: &Aabb<3>) -> Aabb<3> {
+        let by = [0, 1, 2].map(|i| 16.0 * f64::EPSILON * (self.start[i].abs() + b.min[i].abs().max(b.max[i].abs())));
+        Aabb { min: [0, 1, 2].map(|i| b.min[i] - by[i]), max: [0, 1, 2].map(|i| b.max[i] + by[i]) }
+    }
+
     /// When it enters and when it leaves a box; the other way round if it misses it.
     #[inline(always)]
     pub(super) fn span(&self, b: &Aabb<3>) -> [f64; 2] {

@@ -1,11 +1,11 @@
 //! The search of a [`Shaft`] with a record of what it finds: slower, with a proof as the result.
 
-use super::super::octant::{Decision, SMALL_FIRST, decide};
+use super::super::octant::{Decision, SMALL_FIRST, decide, decide_in_doubles};
 use super::super::rows::{Row, first_and_last, others};
 use super::certificate::{BlockedProof, Branch, BranchRow, Bypass, Contradiction};
 use super::cuts::{BypassRows, Ends};
 use super::ray::Ray;
-use super::{CLEAR_MARGIN, DEEPEST, Frame, Shaft, Tableau, Target};
+use super::{CLEAR_MARGIN, Closer, DEEPEST, Frame, Next, Shaft, Tableau, Target};
 use sightlines_geometry::Aabb;
 
 impl Shaft<'_> {
@@ -71,14 +71,9 @@ impl<'s, 'a, 'e> Recorder<'s, 'a, 'e> {
         }
     }
 
-    /// Lines of the current rows, or why there are none.
-    fn decide(&mut self) -> Decision {
-        decide(&self.shaft.rows, self.ends.octant, SMALL_FIRST, &mut self.shaft.scratch).0
-    }
-
     /// Why there are no lines of the current rows.
     fn contradiction(&mut self) -> Option<Contradiction> {
-        match self.decide() {
+        match decide(&self.shaft.rows, self.ends.octant, SMALL_FIRST, &mut self.shaft.scratch).0 {
             Decision::Blocked(proof) => Some(named(&proof.terms(), &self.names)),
             Decision::Line(_) | Decision::Fractions(_) => None,
         }
@@ -90,28 +85,25 @@ impl<'s, 'a, 'e> Recorder<'s, 'a, 'e> {
         }
         self.shaft.left -= 1;
         let mut y = tableau.improve(&self.shaft.unit);
-        let mut line = None;
         if y[5] <= CLEAR_MARGIN {
-            match self.decide() {
-                Decision::Blocked(proof) => return Some(Branch::Empty(named(&proof.terms(), &self.names))),
-                Decision::Line(found) => line = Some(found),
-                Decision::Fractions(_) => {}
+            let (octant, scratch) = (self.ends.octant, &mut self.shaft.scratch);
+            if let Ok(Decision::Blocked(proof)) = decide_in_doubles(&self.shaft.rows, octant, SMALL_FIRST, scratch) {
+                return Some(Branch::Empty(named(&proof.terms(), &self.names)));
             }
             y = Tableau::new([true; 3]).improve(&self.shaft.unit);
         }
         let mut ray = Ray::new(self.frame.starts_and_paces(&y))?;
+        let mut fine = None;
         let mut blocker = self.shaft.ahead(&self.ends, &ray);
         if blocker.is_none() && y[5] <= CLEAR_MARGIN {
-            ray = Ray::through(&line?)?;
+            match self.shaft.look_closer(self.ends.octant, SMALL_FIRST)? {
+                Closer::Blocked(proof) => return Some(Branch::Empty(named(&proof.terms(), &self.names))),
+                Closer::Open(found, line) => (ray, fine) = (found, line),
+            }
             blocker = self.shaft.ahead(&self.ends, &ray);
         }
-        let blocker = match blocker {
-            Some(blocker) => blocker,
-            None => match self.shaft.free_line(&self.ends, &ray) {
-                Err(Some(blocker)) if !self.shaft.passed.contains(&blocker) => blocker,
-                Ok(_) | Err(_) => return None,
-            },
-        };
+        let next = blocker.map_or_else(|| self.shaft.free_line(&self.ends, &ray, fine), Next::Past);
+        let Next::Past(blocker) = next else { return None };
         let before = self.names.len();
         let branch = self.past(tableau, blocker, &ray);
         self.truncate(before);

@@ -21,7 +21,7 @@ use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_progress::{Allowance, Cancelled, Counter, Shares};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Blockers, Shaft, ShaftCounters, Target, Verdict};
+use sightlines_sightline::{Blockers, Shaft, ShaftCounters, ShaftLine, Target, Verdict};
 use std::collections::VecDeque;
 use targets::{CellLocator, Targets};
 
@@ -233,8 +233,8 @@ impl BoxSearch<'_, '_, '_> {
             if n_left > 1 && apart(self.thick, &node.bounds) && none_seen() {
                 match self.shaft.decide(self.thick, &node.bounds, targets.target, GROUP_BUDGET) {
                     Verdict::Hidden(()) => continue,
-                    Verdict::Visible(line) => known.follow(&line, [self.thick, &node.bounds]),
-                    Verdict::Undecided(_) => {}
+                    Verdict::Visible(ShaftLine::Free(line)) => known.follow(&line, [self.thick, &node.bounds]),
+                    Verdict::Visible(ShaftLine::Fine(_)) | Verdict::Undecided(_) => {}
                 }
             }
             next.extend(targets.tree.children(n));
@@ -252,7 +252,8 @@ impl BoxSearch<'_, '_, '_> {
         };
         match sight {
             Verdict::Hidden(()) => return,
-            Verdict::Visible(line) => self.known.follow(&line, [self.thick, target]),
+            Verdict::Visible(ShaftLine::Free(line)) => self.known.follow(&line, [self.thick, target]),
+            Verdict::Visible(ShaftLine::Fine(_)) => {}
             Verdict::Undecided(_) => self.n_assumed += 1,
         }
         self.known.see(kind, self.id, i);

@@ -300,12 +300,12 @@ impl Step<'_> {
             || self.carry_over_cells(&mut log.cells, number, cells),
             || self.carry_over_objects(&mut log.objects, number, objects, rows),
         );
-        for pair in log.assumed.drain(..) {
+        for pair in log.without_line.drain(..) {
             if let [Some(a), Some(b)] = pair.map(|cell| self.place(cell)) {
                 doubt.pair(a, b);
             }
         }
-        for [object, cell] in log.assumed_objects.drain(..).chain(log.inside.drain(..)) {
+        for [object, cell] in log.objects_without_line.drain(..).chain(log.inside.drain(..)) {
             if let Some(place) = self.place(cell) {
                 self.heirs[object as usize].iter().for_each(|&same| doubt.object(same, place));
             }

@@ -9,7 +9,7 @@
 use super::super::super::exact::{self, Exact};
 use super::super::super::rows::Row;
 use super::super::super::witness::AxialWitness;
-use super::super::{FreeLine, Target};
+use super::super::{ShaftLine, Target};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
@@ -124,9 +124,9 @@ impl Case {
     }
 
     /// Whether a line leads from box to box past all rectangles: its times at coordinates, in fractions.
-    pub(super) fn is_free(&self, line: &FreeLine) -> bool {
-        let [p, q] = line.points().map(|p| p.map(fraction));
-        let d: [BigRational; 3] = std::array::from_fn(|k| &q[k] - &p[k]);
+    pub(super) fn is_free(&self, line: &ShaftLine) -> bool {
+        let line = line.witness();
+        let (p, d) = (line.point(), line.direction());
         if d.iter().any(Zero::is_zero) {
             return false;
         }

@@ -1,0 +1,104 @@
+//! Numbers of two doubles, some 106 bits: enough for rows that are obeyed by a few units in the last place.
+//!
+//! Source: Dekker, Numer. Math. 18, 1971; Hida, Li and Bailey, "Library for double-double and quad-double arithmetic",
+//! 2007; error bounds by Joldes, Muller and Popescu, ACM Trans. Math. Softw. 44, 2017.
+
+use std::cmp::Ordering;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// The sum of two doubles, of which the second is at most half a unit in the last place of the first.
+///
+/// Sums, differences and products err by less than 2^-103 of the result, unless they leave the range of doubles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Wide {
+    pub(super) high: f64,
+    pub(super) low: f64,
+}
+
+fn two_sum(a: f64, b: f64) -> Wide {
+    let high = a + b;
+    let part = high - a;
+    Wide { high, low: (a - (high - part)) + (b - part) }
+}
+
+/// The same where the first has the larger magnitude.
+fn quick_sum(a: f64, b: f64) -> Wide {
+    let high = a + b;
+    Wide { high, low: b - (high - a) }
+}
+
+impl Wide {
+    pub(super) const ZERO: Self = Self::of(0.0);
+    pub(super) const ONE: Self = Self::of(1.0);
+
+    pub(super) const fn of(x: f64) -> Self {
+        Self { high: x, low: 0.0 }
+    }
+
+    /// A difference of two doubles, exactly.
+    pub(super) fn difference(a: f64, b: f64) -> Self {
+        two_sum(a, -b)
+    }
+
+    /// Its product with a power of two.
+    pub(super) fn scaled(self, power: f64) -> Self {
+        Self { high: self.high * power, low: self.low * power }
+    }
+}
+
+impl Neg for Wide {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { high: -self.high, low: -self.low }
+    }
+}
+
+impl Add for Wide {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let (high, low) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
+        let sum = quick_sum(high.high, high.low + low.high);
+        quick_sum(sum.high, sum.low + low.low)
+    }
+}
+
+impl Sub for Wide {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Wide {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let high = self.high * other.high;
+        let low = self.high.mul_add(other.high, -high);
+        quick_sum(high, low + (self.high * other.low + self.low * other.high))
+    }
+}
+
+impl Div for Wide {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let first = self.high / other.high;
+        let rest = self - other * Self::of(first);
+        let second = rest.high / other.high;
+        let rest = rest - other * Self::of(second);
+        quick_sum(first, second) + Self::of(rest.high / other.high)
+    }
+}
+
+impl PartialOrd for Wide {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.high.partial_cmp(&other.high)?.then(self.low.partial_cmp(&other.low)?))
+    }
+}
