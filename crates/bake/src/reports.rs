@@ -115,7 +115,7 @@ pub struct SceneReport {
     /// Rectangles that the walls between the cells were merged into.
     pub n_blockers: usize,
     /// Pairs of a cell and a cell or object that count as visible because deciding them took too much effort, or more
-    /// digits than doubles have. Varies a little with threads.
+    /// digits than two doubles have. Varies a little with threads.
     pub n_assumed: u64,
     /// How pairs were decided. Varies from run to run with several threads.
     pub counters: ShaftCounters,

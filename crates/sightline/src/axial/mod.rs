@@ -13,7 +13,8 @@
 //! * If that line does not pass, a small linear program in doubles, on the sequence moved and scaled to the unit box,
 //!   finds a line, which is checked exactly, or weights, which are turned into integers with which the rows add up to a
 //!   contradiction.
-//! * If rounding spoiled both, the same program in fractions decides.
+//! * If rounding spoiled both, the same program in numbers of two doubles finds them, checked likewise; where that does
+//!   not settle it either, the program in fractions decides.
 //! * As long as all doors face one axis, the directions along the two others do not depend on each
 //!   other, and two planar [funnels](crate::planar::funnel) decide.
 //!

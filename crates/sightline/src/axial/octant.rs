@@ -1,4 +1,4 @@
-//! The decision of one octant: doubles propose, exact arithmetic decides.
+//! The decision of one octant: doubles propose, then numbers of two doubles, and exact arithmetic decides.
 
 use super::exact::{self, Exact};
 use super::fine::{self, Fine};
@@ -24,7 +24,7 @@ pub(super) const FINE: &[f64] = &[(1u64 << 40) as f64];
 pub(super) const SMALL_FIRST: &[f64] =
     &[1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0, 64.0, 256.0, 65536.0, (1u64 << 40) as f64];
 
-/// Decides; also returns whether fractions were needed. `scales` are tried in turn for the weights of a proof.
+/// Decides; also returns whether doubles were not enough. `scales` are tried in turn for the weights of a proof.
 pub(super) fn decide(rows: &[Row], octant: Octant, scales: &[f64], scratch: &mut Vec<Row>) -> (Decision, bool) {
     match decide_in_doubles(rows, octant, scales, scratch) {
         Ok(decision) => (decision, false),

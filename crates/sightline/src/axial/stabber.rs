@@ -22,7 +22,7 @@ pub struct AxialCounters {
     pub n_witness: u64,
     /// The linear program in doubles found a line or a proof, which exact arithmetic confirmed.
     pub n_float: u64,
-    /// The linear program in fractions.
+    /// The linear program in numbers of two doubles, or in fractions.
     pub n_exact: u64,
 }
 

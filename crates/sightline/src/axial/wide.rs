@@ -102,3 +102,51 @@ impl PartialOrd for Wide {
         Some(self.high.partial_cmp(&other.high)?.then(self.low.partial_cmp(&other.low)?))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_rational::BigRational;
+    use num_traits::Signed;
+    use proptest::prelude::*;
+    use sightlines_exact::rational;
+
+    fn exact(x: Wide) -> BigRational {
+        rational(x.high) + rational(x.low)
+    }
+
+    /// Two doubles of very different or nearly equal size.
+    fn any_wide() -> impl Strategy<Value = Wide> {
+        let part = || (-1.0f64..1.0, -60..60i32).prop_map(|(x, e)| x * 2f64.powi(e));
+        (part(), part(), any::<bool>())
+            .prop_map(|(a, b, close)| two_sum(a, if close { a * f64::EPSILON * b } else { b }))
+    }
+
+    /// Whether a result is within a share of the true one.
+    fn within(found: Wide, truth: &BigRational, share: f64) -> bool {
+        (exact(found) - truth).abs() <= truth.abs() * rational(share)
+    }
+
+    proptest! {
+        /// Invariant: results err by less than is said.
+        #[test]
+        fn results_err_by_no_more_than_is_said(a in any_wide(), b in any_wide(), cancel in any::<bool>()) {
+            let b = if cancel { -Wide { high: a.high, low: b.low.min(a.high.abs() * f64::EPSILON / 4.0).max(-a.high.abs() * f64::EPSILON / 4.0) } } else { b };
+            let share = 2f64.powi(-103);
+            prop_assert!(within(a + b, &(exact(a) + exact(b)), share), "{:?} + {:?}", a, b);
+            prop_assert!(within(a - b, &(exact(a) - exact(b)), share), "{:?} - {:?}", a, b);
+            prop_assert!(within(a * b, &(exact(a) * exact(b)), share), "{:?} * {:?}", a, b);
+            prop_assert!((a > b) == (exact(a) > exact(b)), "{:?} > {:?}", a, b);
+            if b.high != 0.0 {
+                prop_assert!(within(a / b, &(exact(a) / exact(b)), 8.0 * share), "{:?} / {:?}", a, b);
+            }
+        }
+    }
+
+    /// A bound that is not kept: a product is not exact to 2^-110.
+    #[test]
+    fn products_are_not_exact() {
+        let third = Wide::ONE / Wide::of(3.0);
+        assert!(!within(third * third, &(exact(third) * exact(third)), 2f64.powi(-110)));
+    }
+}

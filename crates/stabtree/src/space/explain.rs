@@ -49,7 +49,7 @@ const MAX_TRIES: u32 = 10_000;
 /// * `budget`: linear programs after which it gives up.
 ///
 /// Exact. Both a line and a proof were checked by code that shares nothing with the code that found them. Undecided
-/// means that the budget, or the digits of doubles, were not enough.
+/// means that the budget, or the digits of two doubles, were not enough.
 ///
 /// # Panics
 /// If there are no such cells.
@@ -72,7 +72,7 @@ pub fn explain_space(
     let mut shaft = Shaft::new(&blockers);
     let explanation = match shaft.decide(a, b, Target::Inside, budget) {
         Verdict::Visible(line) => Walk::new(graph, &useful, &line, to).explain(from),
-        // Cases that doubles leave open are often decided by the fractions of a proof.
+        // Cases that are left open are often decided by the fractions of a proof.
         Verdict::Hidden(()) | Verdict::Undecided(_) => shaft
             .certify(a, b, Target::Inside, budget)
             .and_then(|proof| proof.narrowed(blockers.rectangles()))

@@ -53,7 +53,7 @@ pub struct SpaceVisibility {
     /// Number of opaque rectangles that the walls were merged into.
     pub n_blockers: usize,
     /// Pairs of a cell and a cell or object that count as visible because deciding them would take too much effort, or
-    /// more digits than doubles have. Like `counters`, it varies with threads, as a line for another pair may prove
+    /// more digits than two doubles have. Like `counters`, it varies with threads, as a line for another pair may prove
     /// such a pair visible first.
     pub n_assumed: u64,
     /// The visible pairs that were not decided because the budget was spent; none if all were. Cells that are too thin to be decided
@@ -148,7 +148,7 @@ const FEW_TASKS_PER_THREAD: usize = 16;
 ///   inside the cell reaches before meeting a wall. Flat boxes can be seen; boxes that are flat along two axes are seen
 ///   only where they touch. Empty ones are never seen.
 ///
-/// Exact, unless a pair takes thousands of linear programs: such pairs count as visible, and are counted
+/// Exact, unless a pair takes thousands of linear programs, or more digits than two doubles have: such pairs count as visible, and are counted
 /// in [`SpaceVisibility::n_assumed`].
 ///
 /// Cost: near-linear in the number of cells in practice, as long as each sees only nearby cells; visible pairs cost a
