@@ -60,7 +60,7 @@ fn pairs_and_sequences_agree() {
 /// Every box and portal elsewhere.
 fn placed(graph: &CellGraph<Axial>, place: impl Fn(f64) -> f64) -> CellGraph<Axial> {
     let moved = |b: &Aabb<3>| Aabb { min: b.min.map(&place), max: b.max.map(&place) };
-    let cells = graph.cells().iter().map(|cell| BoxCell { bounds: moved(&cell.bounds), ..cell.clone() }).collect();
+    let cells = graph.cells().iter().map(|cell| BoxCell { bounds: moved(&cell.bounds) }).collect();
     let portals = graph.portals().iter();
     let door = |door: &AxialDoor| AxialDoor { extent: moved(&door.extent), ..*door };
     CellGraph::new(cells, portals.map(|p| Portal { shape: door(&p.shape), ..p.clone() }).collect())
