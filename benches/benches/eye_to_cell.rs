@@ -108,7 +108,7 @@ fn diagonal(table: &Table) -> f64 {
 }
 
 fn view(stand: &CameraPose, up: [f64; 3], fov: f64) -> Result<View, Box<dyn Error>> {
-    Ok(View::pinhole(stand.eye, stand.dir, up, fov.to_radians(), 4.0 / 3.0)?)
+    Ok(View::perspective_horizontal(stand.eye, stand.dir, up, fov.to_radians(), 4.0 / 3.0)?)
 }
 
 /// The time of one query, the first time and the least.

@@ -54,7 +54,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let cells = TableCells::new(Arc::new(table(args, floors)?));
     let views = wander(&cells, n_frames, SPEED / RATE, 3)?
         .iter()
-        .map(|pose| View::pinhole(pose.eye, pose.dir, [0.0, 1.0, 0.0], 1.2, 1.6))
+        .map(|pose| View::perspective_horizontal(pose.eye, pose.dir, [0.0, 1.0, 0.0], 1.2, 1.6))
         .collect::<Result<Vec<_>, _>>()?;
     let options = WalkOptions { has_thread: false, ..WalkOptions::default() };
     let mut walk = Walkthrough::new(cells.clone(), cells.clone(), options);

@@ -39,7 +39,8 @@ impl Camera {
     /// # Panics
     /// If the eye is nowhere.
     pub fn view(&self, aspect: f64) -> View {
-        View::pinhole(self.eye, self.ahead, self.up, FRAC_PI_2, aspect).expect("an eye somewhere, looking somewhere")
+        View::perspective_horizontal(self.eye, self.ahead, self.up, FRAC_PI_2, aspect)
+            .expect("an eye somewhere, looking somewhere")
     }
 
     /// Right, up and ahead of the eye.

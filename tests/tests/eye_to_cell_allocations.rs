@@ -18,7 +18,7 @@ fn frames(table: &Table) -> Vec<(CellId, View)> {
             let (sin, cos) = f64::from(id.0 + k as u32).sin_cos();
             let view = match planar {
                 true => View::planar([eye[0], eye[1]], [cos, sin], 1.0 + 4.0 * k as f64),
-                false => View::pinhole(eye, [cos, sin, 0.1], [0.0, 0.0, 1.0], 1.0 + k as f64, 1.5),
+                false => View::perspective_horizontal(eye, [cos, sin, 0.1], [0.0, 0.0, 1.0], 1.0 + k as f64, 1.5),
             };
             frames.push((id, view.expect("numbers in their ranges")));
             frames.push((id, View::all_round(eye).expect("a finite eye")));

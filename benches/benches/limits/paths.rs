@@ -195,7 +195,8 @@ fn eye_to_cell(rates: &Rates, table: &Table) -> Path {
         n_seen = 0;
         for stand in &stands {
             let view =
-                View::pinhole(stand.eye, stand.dir, [0.0, 1.0, 0.0], 75f64.to_radians(), 4.0 / 3.0).expect("a view");
+                View::perspective_horizontal(stand.eye, stand.dir, [0.0, 1.0, 0.0], 75f64.to_radians(), 4.0 / 3.0)
+                    .expect("a view");
             seen.clear(table.n_cells(), table.objects().len());
             for cell in table.in_dimension().expect("it is of space").at(stand.eye).cells().iter().copied() {
                 Method::Exact.look(&subgraphs[cell.idx()], &view, &Doors::all_open(), &mut scratch, &mut seen);

@@ -104,7 +104,7 @@ impl Lens {
         let fov = self.fov.to_radians().min(std::f64::consts::TAU);
         match self.in_space {
             None => View::planar([eye[0], eye[1]], [dir[0], dir[1]], fov),
-            Some((up, aspect)) => View::pinhole(eye, dir, up, fov, aspect),
+            Some((up, aspect)) => View::perspective_horizontal(eye, dir, up, fov, aspect),
         }
     }
 }

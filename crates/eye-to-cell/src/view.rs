@@ -44,6 +44,12 @@ pub enum ViewError {
     /// Not above 0, or more than a full turn.
     #[error("a field of view of {0} is not above 0 and at most a full turn")]
     Fov(f64),
+    /// Not above 0, or half a turn or more: no picture is as high.
+    #[error("a vertical field of view of {0} is not above 0 and below half a turn")]
+    VerticalFov(f64),
+    /// A matrix that is no perspective projection.
+    #[error("the matrix is not finite, or not one of a perspective")]
+    Projection,
     /// Not above 0, or not finite.
     #[error("an aspect of {0} is not a finite number above 0")]
     Aspect(f64),
@@ -74,7 +80,8 @@ impl View {
         Ok(view)
     }
 
-    /// In space: what a picture shows whose width takes the angle `fov` (radians) and whose width is `aspect` times its height.
+    /// In space: what a picture shows whose *width* takes the angle `fov` (radians) and whose width is `aspect` times its height.
+    /// Engines give the angle of the height as a rule: see [`View::perspective_vertical`].
     ///
     /// `up` says what is up in the picture; it need not be at a right angle to `dir`, and if it is parallel to it,
     /// or zero, some direction is chosen. No picture takes half a turn or more; then the directions are meant whose
@@ -82,7 +89,13 @@ impl View {
     ///
     /// # Errors
     /// [`ViewError`] for numbers out of range.
-    pub fn pinhole(eye: [f64; 3], dir: [f64; 3], up: [f64; 3], fov: f64, aspect: f64) -> Result<Self, ViewError> {
+    pub fn perspective_horizontal(
+        eye: [f64; 3],
+        dir: [f64; 3],
+        up: [f64; 3],
+        fov: f64,
+        aspect: f64,
+    ) -> Result<Self, ViewError> {
         let forward = unit_of_any_size(dir).ok_or(ViewError::Direction)?;
         check_fov(fov)?;
         if !(aspect.is_finite() && aspect > 0.0) {
@@ -97,10 +110,73 @@ impl View {
             let (sin, cos) = (0.5 * fov).sin_cos();
             for up_or_down in [1.0, -1.0] {
                 let normal = std::array::from_fn(|k| sin * forward[k] + up_or_down * aspect * cos * up[k]);
-                view.parts[0].add(Side::given(unit_of_any_size(normal).ok_or(ViewError::Direction)?));
+                view.add_side(normal)?;
             }
         }
         Ok(view)
+    }
+
+    /// In space: what a picture shows whose *height* takes the angle `fov` (radians, below half a turn) and whose width is `aspect` times
+    /// its height: the angle of view of Bevy, wgpu, Godot, Unity and OpenGL. `dir` and `up` as for [`View::perspective_horizontal`].
+    ///
+    /// # Errors
+    /// [`ViewError`] for numbers out of range.
+    pub fn perspective_vertical(
+        eye: [f64; 3],
+        dir: [f64; 3],
+        up: [f64; 3],
+        fov: f64,
+        aspect: f64,
+    ) -> Result<Self, ViewError> {
+        if !(fov > 0.0 && fov < PI) {
+            return Err(ViewError::VerticalFov(fov));
+        }
+        if !(aspect.is_finite() && aspect > 0.0) {
+            return Err(ViewError::Aspect(aspect));
+        }
+        let forward = unit_of_any_size(dir).ok_or(ViewError::Direction)?;
+        let right = right_of(forward, up);
+        let up = cross(right, forward);
+        let mut view = Self::all_round(eye)?;
+        let (sin, cos) = (0.5 * fov).sin_cos();
+        // Half the height is tan(fov / 2), half the width aspect times that.
+        for (across, ahead, aside) in [(right, aspect * sin, cos), (up, sin, cos)] {
+            for sign in [1.0, -1.0] {
+                view.add_side(std::array::from_fn(|k| ahead * forward[k] + sign * aside * across[k]))?;
+            }
+        }
+        Ok(view)
+    }
+
+    /// In space: what an engine's picture shows. `view_projection` is the matrix from the scene to clip space, projection times view,
+    /// by columns (`to_cols_array_2d` of glam): a point `p` is in the picture if `|x| <= w` and `|y| <= w` in `view_projection * (p, 1)`. Lenses
+    /// may be shifted, and either hand and any range of depth is right, reversed and infinite ones, too: only the four sides
+    /// are taken, so what is nearer than the near plane or beyond the far one counts as in the picture.
+    ///
+    /// `eye` is where the camera is, which the engine knows better than its matrix: the sides go through it. They are as exact as the
+    /// matrix.
+    ///
+    /// # Errors
+    /// [`ViewError::Eye`]; [`ViewError::Projection`] for a matrix that is not finite or not one of a perspective.
+    pub fn from_view_projection(eye: [f64; 3], view_projection: [[f64; 4]; 4]) -> Result<Self, ViewError> {
+        let row = |r: usize| [0, 1, 2].map(|column| view_projection[column][r]);
+        let (x, y, w) = (row(0), row(1), row(3));
+        // A parallel projection has no eye: its w does not depend on the place.
+        if !w.iter().all(|x| x.is_finite()) || w == [0.0; 3] {
+            return Err(ViewError::Projection);
+        }
+        let mut view = Self::all_round(eye)?;
+        for (across, sign) in [(x, 1.0), (x, -1.0), (y, 1.0), (y, -1.0)] {
+            let side = std::array::from_fn(|k| w[k] + sign * across[k]);
+            view.add_side(side).map_err(|_| ViewError::Projection)?;
+        }
+        Ok(view)
+    }
+
+    /// Cuts the only part of the view: directions with `normal . v < 0` are out.
+    fn add_side(&mut self, normal: Vector) -> Result<(), ViewError> {
+        self.parts[0].add(Side::given(unit_of_any_size(normal).ok_or(ViewError::Direction)?));
+        Ok(())
     }
 
     /// The eye, in scene units; of what is looked at in a mirror of a table with a frame, along the axes of the frame.
@@ -262,7 +338,7 @@ mod tests {
 
     #[test]
     fn pictures_have_their_width_and_height() {
-        let view = View::pinhole([0.0; 3], [0.0, 2.0, 0.0], [0.0, 0.5, 9.0], PI / 2.0, 2.0).unwrap();
+        let view = View::perspective_horizontal([0.0; 3], [0.0, 2.0, 0.0], [0.0, 0.5, 9.0], PI / 2.0, 2.0).unwrap();
         // Forward is y, right is x, up is z: half a width of 1 and half a height of 0.5 at distance 1.
         for (v, inside) in [
             ([0.99, 1.0, 0.0], true),
@@ -274,12 +350,100 @@ mod tests {
         ] {
             assert_eq!(contains(&view, v), inside, "{v:?}");
         }
-        let wide = View::pinhole([0.0; 3], [0.0, 2.0, 0.0], [0.0, 0.0, 9.0], 1.5 * PI, 2.0).unwrap();
+        let wide = View::perspective_horizontal([0.0; 3], [0.0, 2.0, 0.0], [0.0, 0.0, 9.0], 1.5 * PI, 2.0).unwrap();
         assert!(contains(&wide, [0.0, 0.1, 9.0]) && contains(&wide, [1.0, -0.9, 0.0]));
         assert!(!contains(&wide, [0.9, -1.0, 0.0]));
         // Straight up, with up along it: some picture.
-        let up = View::pinhole([0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 1.0, 1.0).unwrap();
+        let up = View::perspective_horizontal([0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 1.0, 1.0).unwrap();
         assert!(contains(&up, [0.0, 0.0, 1.0]) && !contains(&up, [0.0, 0.0, -1.0]));
+    }
+
+    /// Row-major product.
+    fn times(a: [[f64; 4]; 4], b: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|k| a[i][k] * b[k][j]).sum()))
+    }
+
+    /// By columns.
+    fn columns(m: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
+        std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
+    }
+
+    /// A camera that looks along -z of its own axes, or along z, at `eye`, towards `dir` with `up` above.
+    fn look(eye: Vector, dir: Vector, up: Vector, left_handed: bool) -> [[f64; 4]; 4] {
+        let forward = unit_of_any_size(dir).unwrap();
+        let right = right_of(forward, up);
+        let up = cross(right, forward);
+        let back = forward.map(|x| if left_handed { x } else { -x });
+        let row = |v: Vector| [v[0], v[1], v[2], -dot(v, eye)];
+        [row(right), row(up), row(back), [0.0, 0.0, 0.0, 1.0]]
+    }
+
+    /// The angle of the height is taken for that of the width by nobody: both say the same of the same picture, and so does the matrix of an engine,
+    /// whatever its conventions of depth and hand.
+    #[test]
+    fn pictures_of_engines() {
+        let (eye, dir, up) = ([3.0, -2.0, 5.5], [0.3, -0.2, 1.0], [0.1, 1.0, 0.2]);
+        let (vertical, aspect) = (60f64.to_radians(), 16.0 / 9.0);
+        let horizontal = 2.0 * (aspect * (0.5 * vertical).tan()).atan();
+        let by_height = View::perspective_vertical(eye, dir, up, vertical, aspect).unwrap();
+        let by_width = View::perspective_horizontal(eye, dir, up, horizontal, aspect).unwrap();
+        // What takes one for the other: the picture is too low.
+        let confused = View::perspective_horizontal(eye, dir, up, vertical, aspect).unwrap();
+        let f = 1.0 / (0.5 * vertical).tan();
+        let (near, far) = (0.1, 1000.0);
+        let depths = [
+            // OpenGL; wgpu and Direct3D; reversed; reversed and infinite, as in Bevy.
+            [(far + near) / (near - far), 2.0 * far * near / (near - far)],
+            [far / (near - far), far * near / (near - far)],
+            [near / (far - near), far * near / (far - near)],
+            [0.0, near],
+        ];
+        let mut views = vec![by_width];
+        for left_handed in [false, true] {
+            for [a, b] in depths {
+                let sign = if left_handed { 1.0 } else { -1.0 };
+                let (a, w) = (if left_handed { -a } else { a }, [0.0, 0.0, sign, 0.0]);
+                let projection = [[f / aspect, 0.0, 0.0, 0.0], [0.0, f, 0.0, 0.0], [0.0, 0.0, a, b], w];
+                let matrix = columns(times(projection, look(eye, dir, up, left_handed)));
+                views.push(View::from_view_projection(eye, matrix).unwrap());
+            }
+        }
+        let (mut n_inside, mut n_confused) = (0, 0);
+        for k in 0..20_000u32 {
+            let share = |prime: u32| f64::from(k * prime % 20_011) / 10_005.5 - 1.0;
+            let v = [share(7), share(131), share(2027)];
+            // Not where rounding decides.
+            let reach = by_height.reach(10.0);
+            let nearest =
+                by_height.parts()[0].sides(reach).map(|side| side.value(v)).fold(f64::INFINITY, |m, x| m.min(x.abs()));
+            if nearest < 1e-9 {
+                continue;
+            }
+            let inside = contains(&by_height, v);
+            n_inside += usize::from(inside);
+            views.iter().enumerate().for_each(|(i, view)| assert_eq!(contains(view, v), inside, "{i} {v:?}"));
+            n_confused += usize::from(contains(&confused, v) != inside);
+        }
+        assert!(n_inside > 500 && n_confused > 100, "{n_inside} {n_confused}");
+        // A lens that is shifted by half a picture to the right: the left half of it is out.
+        let mut shifted = times(
+            [[f / aspect, 0.0, 1.0, 0.0], [0.0, f, 0.0, 0.0], [0.0, 0.0, 0.0, near], [0.0, 0.0, -1.0, 0.0]],
+            look(eye, dir, up, false),
+        );
+        let view = View::from_view_projection(eye, columns(shifted)).unwrap();
+        let (forward, right) = (unit_of_any_size(dir).unwrap(), right_of(unit_of_any_size(dir).unwrap(), up));
+        let aside = |x: f64| [0, 1, 2].map(|k| forward[k] + x * right[k]);
+        assert_eq!([-0.1, 0.1, 1.9, 2.2].map(|x| contains(&view, aside(x))), [false, true, true, false]);
+        // Parallel, and broken.
+        shifted[3] = [0.0, 0.0, 0.0, 1.0];
+        assert_eq!(View::from_view_projection(eye, columns(shifted)), Err(ViewError::Projection));
+        shifted[3] = [0.0, f64::NAN, 0.0, 1.0];
+        assert_eq!(View::from_view_projection(eye, columns(shifted)), Err(ViewError::Projection));
+        for fov in [0.0, -1.0, PI, f64::NAN] {
+            assert!(matches!(View::perspective_vertical(eye, dir, up, fov, 1.0), Err(ViewError::VerticalFov(_))));
+        }
+        assert_eq!(View::perspective_vertical(eye, dir, up, 1.0, 0.0), Err(ViewError::Aspect(0.0)));
+        assert_eq!(View::perspective_vertical(eye, [0.0; 3], up, 1.0, 1.0), Err(ViewError::Direction));
     }
 
     #[test]
@@ -303,7 +467,10 @@ mod tests {
         for fov in [0.0, -1.0, 6.3] {
             assert_eq!(View::planar([0.0, 0.0], [1.0, 0.0], fov), Err(ViewError::Fov(fov)));
         }
-        assert_eq!(View::pinhole([0.0; 3], [1.0, 0.0, 0.0], [0.0; 3], 1.0, 0.0), Err(ViewError::Aspect(0.0)));
+        assert_eq!(
+            View::perspective_horizontal([0.0; 3], [1.0, 0.0, 0.0], [0.0; 3], 1.0, 0.0),
+            Err(ViewError::Aspect(0.0))
+        );
         assert_eq!(
             View::planar([0.0, 0.0], [1.0, 0.0], 0.0).unwrap_err().to_string(),
             "a field of view of 0 is not above 0 and at most a full turn"

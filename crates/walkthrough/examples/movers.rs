@@ -100,7 +100,7 @@ fn frames_of(cells: &Cells, stands: &[CameraPose]) -> Result<Vec<Kept>, Box<dyn 
     let mut walk = Walkthrough::new(cells.clone(), cells.clone(), WalkOptions::default());
     let mut frames = Vec::new();
     for stand in stands {
-        let view = View::pinhole(stand.eye, stand.dir, [0.0, 1.0, 0.0], 1.2, 1.6)?;
+        let view = View::perspective_horizontal(stand.eye, stand.dir, [0.0, 1.0, 0.0], 1.2, 1.6)?;
         walk.frame(&view, Method::Exact);
         while !walk.is_idle() {
             std::thread::yield_now();

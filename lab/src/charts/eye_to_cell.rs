@@ -115,7 +115,7 @@ fn view(place: &Place, stand: &CameraPose) -> Result<View, Failure> {
     let ([x, y, _], [dx, dy, _]) = (stand.eye, stand.dir);
     Ok(match place.table.dimension() {
         2 => View::planar([x, y], [dx, dy], fov())?,
-        _ => View::pinhole(stand.eye, stand.dir, place.up, fov(), ASPECT)?,
+        _ => View::perspective_horizontal(stand.eye, stand.dir, place.up, fov(), ASPECT)?,
     })
 }
 

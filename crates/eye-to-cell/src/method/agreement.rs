@@ -116,7 +116,7 @@ fn seen_by(subgraph: &VisibleSubgraph, view: &View, way: fn(&mut Query<'_>) -> b
 }
 
 fn compare(doors: &[[u8; 4]], eye: [f64; 3], dir: [f64; 3], fov: f64) -> Result<usize, TestCaseError> {
-    compare_in(&block(doors), &View::pinhole(eye, dir, [0.0, 0.0, 1.0], fov, 1.25).unwrap())
+    compare_in(&block(doors), &View::perspective_horizontal(eye, dir, [0.0, 0.0, 1.0], fov, 1.25).unwrap())
 }
 
 fn compare_in(table: &Table, view: &View) -> Result<usize, TestCaseError> {

@@ -66,7 +66,7 @@ proptest! {
         steps in 0u64..20_000,
     ) {
         prop_assume!(dir.iter().any(|x| x.abs() > 0.01));
-        let view = View::pinhole(eye, dir, [0.0, 0.0, 1.0], fov, 1.25).unwrap();
+        let view = View::perspective_horizontal(eye, dir, [0.0, 0.0, 1.0], fov, 1.25).unwrap();
         let n: usize = check(&block(&doors), &view, Budget::steps(steps))?.iter().sum();
         prop_assert!(n > 0);
     }

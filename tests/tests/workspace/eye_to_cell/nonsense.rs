@@ -149,7 +149,7 @@ impl CellSource for Garbage {
 fn view(source: &Garbage, eye: [f64; 3], dir: [f64; 3], fov: f64) -> Result<View, ViewError> {
     match source.dimension {
         2 => View::planar([eye[0], eye[1]], [dir[0], dir[1]], fov),
-        _ => View::pinhole(eye, dir, [0.0, 0.0, 1.0], fov, 1.5),
+        _ => View::perspective_horizontal(eye, dir, [0.0, 0.0, 1.0], fov, 1.5),
     }
 }
 

@@ -46,7 +46,7 @@ impl Picture {
         let right = unit(cross(forward, up));
         let (fov, aspect) = (FIELDS[random.below(FIELDS.len())].to_radians(), [0.5, 1.0, 1.78][random.below(3)]);
         let view = match fov < TAU {
-            true => View::pinhole(eye, direction, up, fov, aspect),
+            true => View::perspective_horizontal(eye, direction, up, fov, aspect),
             false => View::all_round(eye),
         };
         Self {

@@ -56,7 +56,8 @@ fn what_rays_meet_is_seen_from_boxes() {
             let mut dir = random.direction();
             dir[1] *= 0.2;
             let dir = scale(dir, 1.0 / length(dir));
-            let view = View::pinhole(eye, dir, [0.0, 1.0, 0.0], 60f64.to_radians(), 1.5).expect("a view");
+            let view =
+                View::perspective_horizontal(eye, dir, [0.0, 1.0, 0.0], 60f64.to_radians(), 1.5).expect("a view");
             let answers = Method::ALL.map(|method| ask(&table, method, CellId(id), &view));
             assert!(answers.windows(2).all(|w| w[0].0.len() >= w[1].0.len() && w[0].1 >= w[1].1), "each is no more");
             n_kept += answers[4].0.len();
@@ -96,7 +97,8 @@ fn objects_in_gaps_are_seen() {
     parts.locator = Locator::build(&parts.cell_bounds(), 3);
     let table = Table::new(parts).expect("a table");
     let eye = [0.5; 3];
-    let view = View::pinhole(eye, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 40f64.to_radians(), 1.0).expect("a view");
+    let view =
+        View::perspective_horizontal(eye, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 40f64.to_radians(), 1.0).expect("a view");
     for method in Method::ALL {
         let (objects, n_cells) = ask(&table, method, CellId(0), &view);
         assert_eq!(objects, [0], "{method}");

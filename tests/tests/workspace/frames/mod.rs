@@ -197,7 +197,7 @@ fn views_are_taken_into_the_frame() {
     for room in tower_rooms(SMALL).unwrap() {
         let eye = turn(&rows, std::array::from_fn(|k| 0.45 * room.bounds.min[k] + 0.55 * room.bounds.max[k]));
         for dir in [[1.0, 0.1, 0.2], [-0.3, 0.0, 1.0], [0.5, -0.2, -1.0], [-1.0, 0.05, 0.0]] {
-            let view = View::pinhole(eye, dir, [0.0, 1.0, 0.0], 1.2, 1.5).unwrap();
+            let view = View::perspective_horizontal(eye, dir, [0.0, 1.0, 0.0], 1.2, 1.5).unwrap();
             let mut before: Option<Vec<ObjectId>> = None;
             for (k, method) in Method::ALL.into_iter().enumerate() {
                 seen.clear(table.n_cells(), table.objects().len());
