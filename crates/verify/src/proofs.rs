@@ -88,9 +88,8 @@ pub struct ProofFindings {
     /// Of the pairs that are hidden without a proof: those that a line through portals joins. Only of tables that a from-region method took part
     /// in: it hides by walls that are no borders of cells, of which proofs do not speak. In other tables such a pair is a violation.
     pub n_hidden_past_portals: u64,
-    /// Pairs of a cell and an object that the table hides, and that are proven to be hidden: by a proof of their own, or, in tables
-    /// whose cells see the objects of the cells that they see, as every cell that the object touches is proven hidden, if there is
-    /// any.
+    /// Pairs of a cell and an object that the table hides, and that are proven to be hidden: by a proof of their own, or as every cell
+    /// that the object touches is proven hidden, if there is any.
     pub n_hidden_objects: u64,
     /// Pairs of a cell and an object that the table hides, without a proof.
     pub n_unproven_hidden_objects: u64,

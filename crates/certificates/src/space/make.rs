@@ -3,7 +3,10 @@
 use super::branch::Branch;
 use super::bytes::can_be_written;
 use super::network::{Box3, BoxLine, BoxNetwork};
-use super::{BoxProof, BoxProofs, ObjectProof, add_hidden, add_hidden_object, are_hidden, is_object_hidden, no_wall};
+use super::{
+    BoxProof, BoxProofs, ObjectProof, add_hidden, add_hidden_object, add_out_of_reach, are_hidden, is_object_hidden,
+    no_wall,
+};
 use crate::pairs::{ObjectPairs, Pairs};
 
 /// Collects proofs of a scene. What does not hold is not taken.
@@ -75,6 +78,11 @@ impl<'a> BoxMaker<'a> {
         add_hidden(boxes, self.network, &mut self.hidden);
         self.proofs.boxes.push(BoxProof { boxes: [first, second], octants });
         true
+    }
+
+    /// Adds the objects that no line gets to, as every cell that they touch is proven hidden by now. They need no proofs of their own.
+    pub fn add_out_of_reach(&mut self) {
+        add_out_of_reach(self.network, &self.hidden, &mut self.hidden_objects);
     }
 
     /// Takes a proof that an object is hidden from all cells in a box if it holds and can be written as bytes. Returns whether it was

@@ -5,7 +5,8 @@
 //! gets past them ([`Branch`]). The rectangles are checked to be walls: no part of one is inside a cell, and no portal lies
 //! in one. Each point of a line that goes from cell to cell through portals is inside a cell or a portal (unless the line
 //! passes an edge, which no open set of lines does), so the line meets no wall. A pair of a cell and an *object* is proven hidden in the
-//! same way, with lines that go from cell to cell and end on the object.
+//! same way, with lines that go from cell to cell and end on the object; or because every cell that the object touches is proven hidden, and
+//! so no line gets there.
 
 mod branch;
 mod bytes;
@@ -16,7 +17,7 @@ pub use branch::{Branch, Bypass, Claim, Sum};
 pub use make::BoxMaker;
 pub use network::{Box3, BoxLine, BoxName, BoxNetwork, BoxNetworkError, BoxPortal, Point3};
 
-use crate::pairs::{ObjectPairs, Pairs};
+use crate::pairs::{ObjectPairs, Pairs, ones};
 use crate::proven::{NoWall, Proven, Refusal, joined_along};
 use branch::Lines;
 use network::{flat_axis, is_within};
@@ -55,7 +56,7 @@ pub struct BoxProofs {
     pub boxes: Vec<BoxProof>,
     /// [`BoxNetwork::objects_checksum`] of the objects; 0 without proofs about any.
     pub objects_checksum: u32,
-    /// Proofs that objects are hidden from cells.
+    /// Proofs that objects are hidden from cells, beside those that no line gets to because of the proofs about boxes.
     pub objects: Vec<ObjectProof>,
 }
 
@@ -105,6 +106,7 @@ impl BoxProofs {
             }
             add_hidden_object(&cells, proof.object, network, &mut hidden_objects);
         }
+        add_out_of_reach(network, &hidden, &mut hidden_objects);
         Ok(Proven { hidden_objects, ..Proven::new(visible, hidden) })
     }
 }
@@ -118,6 +120,34 @@ fn add_hidden_object(cells: &Box3, object: u32, network: &BoxNetwork, hidden: &m
     cells_within(cells, network).for_each(|cell| {
         hidden.add(cell, object);
     });
+}
+
+/// Adds the objects that are out of reach: those of which all cells that they touch are hidden. A line to an object ends in the closed
+/// box of a cell that it has passed; so of an open set of lines to it an open subset passes one of the cells that it touches.
+fn add_out_of_reach(network: &BoxNetwork, hidden: &Pairs, hidden_objects: &mut ObjectPairs) {
+    let touch = |a: &Box3, b: &Box3| (0..3).all(|k| a[0][k] <= b[1][k] && b[0][k] <= a[1][k]);
+    for (object, around) in (0u32..).zip(&network.objects) {
+        // A box with a coordinate that is none touches nothing, and is nowhere.
+        if !(0..3).all(|k| around[0][k] <= around[1][k]) {
+            continue;
+        }
+        let mut out_of_reach: Option<Vec<u64>> = None;
+        for (cell, _) in (0u32..).zip(&network.cells).filter(|(_, cell)| touch(cell, around)) {
+            let row = hidden.row(cell);
+            match &mut out_of_reach {
+                None => out_of_reach = Some(row.to_vec()),
+                Some(all) => all.iter_mut().zip(row).for_each(|(all, word)| *all &= word),
+            }
+        }
+        match out_of_reach {
+            None => (0..network.n_cells() as u32).for_each(|cell| {
+                hidden_objects.add(cell, object);
+            }),
+            Some(all) => ones(&all).for_each(|cell| {
+                hidden_objects.add(cell, object);
+            }),
+        }
+    }
 }
 
 /// Adds every pair of a cell in the first box and another in the second.

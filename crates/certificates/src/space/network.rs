@@ -72,7 +72,7 @@ pub struct BoxNetwork {
     /// The coordinates of cells and portals along each axis, ascending, each once. Proofs name coordinates by their indices.
     pub(super) places: [Vec<f64>; 3],
     checksum: u32,
-    objects: Vec<Box3>,
+    pub(super) objects: Vec<Box3>,
     objects_checksum: u32,
 }
 

@@ -138,6 +138,28 @@ fn objects_are_proven_hidden() {
     assert!(BoxProofs::from_bytes(&with_body(&bytes, |body| body[8] = 1)).is_err());
 }
 
+/// Where all cells that an object touches are hidden, no line gets to it: that needs no proof of its own. One that touches the corridor, too, is not
+/// out of reach; one that touches no cell is, from everywhere.
+#[test]
+fn objects_out_of_reach_are_proven_hidden() {
+    let spanning = [[6.0, 3.0, 0.0], [7.0, 4.0, 1.0]];
+    let buried = [[4.25, 1.0, 0.5], [4.75, 2.0, 1.0]];
+    let objects = [OBJECTS[0], OBJECTS[1], OBJECTS[2], OBJECTS[3], OBJECTS[4], spanning, buried];
+    let network = network().with_objects(&objects);
+    let proven = proofs().check(&network).unwrap();
+    let pairs = (0..3).flat_map(|cell| (0..7).map(move |object| (cell, object)));
+    let hidden: Vec<_> = pairs.filter(|&(cell, object)| proven.hidden_objects.has(cell, object)).collect();
+    assert_eq!(hidden, [(0, 0), (0, 1), (0, 4), (0, 6), (1, 3), (1, 6), (2, 6)]);
+    let walls = [WALL];
+    let mut maker = BoxMaker::new(&network, &walls);
+    maker.add_out_of_reach();
+    assert_eq!(maker.hidden_objects().len(), 3, "the buried one, before anything is proven");
+    let [first, second] = boxes_of(&network);
+    assert!(maker.take_boxes([&first, &second], OCTANTS.map(|octant| (octant, past(0))).to_vec()));
+    maker.add_out_of_reach();
+    assert_eq!(*maker.hidden_objects(), proven.hidden_objects);
+}
+
 #[test]
 fn impostors_about_objects_are_refused() {
     let (network, proofs) = with_objects();

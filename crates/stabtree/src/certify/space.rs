@@ -4,6 +4,7 @@ use super::{CertifyError, CertifyOptions};
 use crate::space::{AtomicBitMatrix, halves_first, on_threads, opaque_without_solid};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
+use sightlines_certificates::ObjectPairs;
 use sightlines_certificates::space::{
     Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch as Proof,
     Bypass as ProvenBypass, Claim, Sum,
@@ -229,9 +230,11 @@ impl<'a> Search<'a> {
         for ([a, b], proof) in found.into_iter().chain(all.into_iter().flatten()) {
             let _ = maker.take_boxes([&corners(&a), &corners(&b)], translated(&proof));
         }
+        maker.add_out_of_reach();
+        let open = self.open_objects(maker.hidden_objects());
         let share = options.most_steps_in_all / n_objects.max(1) as u64;
         let work = |shaft: &mut Shaft<'a>, object: u32| {
-            let found = if counter.is_cancelled() { Vec::new() } else { self.hide_object(object, shaft, share) };
+            let found = if counter.is_cancelled() { Vec::new() } else { self.hide_object(object, &open, shaft, share) };
             let _ = counter.step();
             found
         };
@@ -279,8 +282,22 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Proofs that an object is hidden from groups of cells: from those that do not see it, as large as they can be.
-    fn hide_object(&self, object: u32, shaft: &mut Shaft<'a>, share: u64) -> Vec<FoundObject> {
+    /// Objects by positions: those that are not seen and not proven to be hidden.
+    fn open_objects(&self, proven: &ObjectPairs) -> AtomicBitMatrix {
+        let open = AtomicBitMatrix::new(self.objects.len(), self.cell_at.len());
+        for (object, (place, &cell)) in
+            (0..self.objects.len()).flat_map(|object| self.cell_at.iter().enumerate().map(move |at| (object, at)))
+        {
+            if !self.seen_from.get(object, place) && !proven.has(cell, object as u32) {
+                open.set(object, place);
+            }
+        }
+        open
+    }
+
+    /// Proofs that an object is hidden from groups of cells: from those that do not see it, as large as they can be, with a cell for which
+    /// that is still open.
+    fn hide_object(&self, object: u32, open: &AtomicBitMatrix, shaft: &mut Shaft<'a>, share: u64) -> Vec<FoundObject> {
         let (target, rows) = (&self.objects[object as usize], [object as usize, object as usize + 1]);
         let before = shaft.counters().n_programs;
         let (mut found, mut stack) = (Vec::new(), vec![0]);
@@ -290,7 +307,7 @@ impl<'a> Search<'a> {
             }
             let node = &self.tree.nodes()[n as usize];
             let places = [node.start as usize, node.end as usize];
-            if self.seen_from.all(rows, places) {
+            if !open.any(rows, places) {
                 continue;
             }
             let (a, is_leaf) = (&node.bounds, node.is_leaf());
