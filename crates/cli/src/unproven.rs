@@ -2,7 +2,7 @@
 
 use crate::output::count;
 use serde::Serialize;
-use sightlines::pvs::{CellId, Table};
+use sightlines::pvs::Table;
 use sightlines::verify::{ProofFindings, can_be_proven};
 use std::fmt;
 
@@ -15,7 +15,7 @@ pub(crate) struct Unproven {
     n_hidden_past_portals: u64,
     /// Unordered pairs of different cells that the table shows.
     n_visible: u64,
-    /// Pairs of a cell and an object that the table hides; no proof speaks of objects.
+    /// Pairs of a cell and an object that the table hides.
     n_hidden_objects: u64,
     /// Whether there can be proofs at all.
     #[serde(skip)]
@@ -25,20 +25,18 @@ pub(crate) struct Unproven {
 impl Unproven {
     /// Counts, after the proofs were checked.
     pub(crate) fn new(table: &Table, found: &ProofFindings) -> Self {
-        let n_objects = table.objects().len() as u64;
-        let hidden = |cell| n_objects - table.visible_objects(CellId(cell)).len() as u64;
         Self {
             n_hidden: found.n_unproven_hidden,
             n_hidden_past_portals: found.n_hidden_past_portals,
             n_visible: found.n_unproven_visible,
-            n_hidden_objects: (0u32..).take(table.n_cells()).map(hidden).sum(),
+            n_hidden_objects: found.n_unproven_hidden_objects,
             has_proofs: can_be_proven(table),
         }
     }
 
-    /// Whether all that is hidden from cells is proven to be.
+    /// Whether all that is hidden, cells and objects, is proven to be.
     pub(crate) fn hides_none(&self) -> bool {
-        self.n_hidden == 0
+        self.n_hidden + self.n_hidden_objects == 0
     }
 }
 
