@@ -2,7 +2,7 @@
 
 use crate::quake::PrtBakeError;
 use sightlines_cells::{CellGraph, CellId, Convex};
-use sightlines_formats::quake::bsp::{BspChild, BspNode, BspTree};
+use sightlines_formats::quake::bsp::{BspChild, BspNode, BspTree, ClusterPlaces};
 use sightlines_formats::quake::prt::MAX_UNEVENNESS;
 use sightlines_geometry::Point3;
 use sightlines_pvs::{PlaneChild, PlaneNode, PlaneTree};
@@ -91,7 +91,7 @@ impl ClusterTree {
 /// above a plane are largest at corners. At least as much as portals are uneven, and as doubles of such size are
 /// rounded by ([`sightlines_stabtree`] takes 2^-44 of the largest coordinate).
 fn slack(tree: &BspTree, clusters: &[Option<u32>], graph: &CellGraph<Convex>) -> Result<f64, PrtBakeError> {
-    let mut around = Surroundings::new(tree, clusters, graph.n_cells());
+    let mut around = ClusterPlaces::new(tree, clusters, graph.n_cells());
     let mut slack = 0f64;
     for a in graph.cell_ids() {
         let own = graph.exits(a).iter().filter(|exit| exit.forward);
@@ -102,7 +102,7 @@ fn slack(tree: &BspTree, clusters: &[Option<u32>], graph: &CellGraph<Convex>) ->
         for exit in own {
             let corners = graph.portals()[exit.portal.idx()].shape.corners();
             // Clusters that no plane divides have no places of their own in the tree.
-            let Some(by) = around.distance_towards(exit.to.0, corners) else { continue };
+            let Some(by) = distance_towards(&around, exit.to.0, corners) else { continue };
             if by > MAX_UNEVENNESS {
                 let clusters = [a.0, exit.to.0];
                 return Err(PrtBakeError::OffPlane { portal: exit.portal.idx(), clusters, by });
@@ -116,71 +116,13 @@ fn slack(tree: &BspTree, clusters: &[Option<u32>], graph: &CellGraph<Convex>) ->
     Ok(slack.max(uneven).max(largest * 2f64.powi(-44)))
 }
 
-/// A tree that is climbed from the leafs of clusters.
-struct Surroundings<'t> {
-    tree: &'t BspTree,
-    /// For each node its parent and the side that it is on there; none for the root.
-    parents: Vec<Option<(u32, usize)>>,
-    /// For each cluster the nodes that its leafs are on, with the side.
-    places: Vec<Vec<(u32, usize)>>,
-    /// The sides of each node that the current cluster is on.
-    sides: Vec<[bool; 2]>,
-    /// Nodes with such a side.
-    marked: Vec<u32>,
-}
-
-impl<'t> Surroundings<'t> {
-    fn new(tree: &'t BspTree, clusters: &[Option<u32>], n_clusters: usize) -> Self {
-        let n_nodes = tree.nodes().len();
-        let (mut parents, mut places) = (vec![None; n_nodes], vec![Vec::new(); n_clusters]);
-        for (node, parent) in tree.nodes().iter().zip(0..) {
-            for (side, child) in node.children.into_iter().enumerate() {
-                match child {
-                    BspChild::Node(below) => parents[below as usize] = Some((parent, side)),
-                    BspChild::Leaf(leaf) => {
-                        if let Some(cluster) = clusters[leaf as usize] {
-                            places[cluster as usize].push((parent, side));
-                        }
-                    }
-                }
-            }
-        }
-        Self { tree, parents, places, sides: vec![[false; 2]; n_nodes], marked: Vec::new() }
-    }
-
-    fn stand_in(&mut self, cluster: u32) {
-        self.marked.drain(..).for_each(|node| self.sides[node as usize] = [false; 2]);
-        for place in &self.places[cluster as usize] {
-            let mut at = Some(*place);
-            while let Some((node, side)) = at.filter(|&(node, side)| !self.sides[node as usize][side]) {
-                self.sides[node as usize][side] = true;
-                self.marked.push(node);
-                at = self.parents[node as usize];
-            }
-        }
-    }
-
-    /// How far the farthest of some points is from the nearest plane that has a part of the current cluster on one side
-    /// and a part of another on the other.
-    fn distance_towards(&self, cluster: u32, points: &[Point3]) -> Option<f64> {
-        let mut least: Option<f64> = None;
-        for place in &self.places[cluster as usize] {
-            let mut at = Some(*place);
-            while let Some((node, side)) = at {
-                if self.sides[node as usize][1 - side] {
-                    let plane = &self.tree.nodes()[node as usize];
-                    let by = points.iter().map(|&p| height(plane, p).abs()).fold(0.0, f64::max);
-                    least = Some(least.map_or(by, |least| least.min(by)));
-                }
-                at = self.parents[node as usize];
-            }
-        }
-        least
-    }
-}
-
-/// How far a point is above a plane, rounded: by some units in the last place of the largest product, which is less
-/// than the 2^-44 of the largest coordinate that a slack has at least.
-fn height(plane: &BspNode, p: Point3) -> f64 {
-    (0..3).map(|k| plane.normal[k] * p[k]).sum::<f64>() - plane.distance
+/// How far the farthest of some points is from the nearest plane that has a part of the current cluster on one side
+/// and a part of another on the other.
+fn distance_towards(places: &ClusterPlaces<'_>, cluster: u32, points: &[Point3]) -> Option<f64> {
+    let mut least: Option<f64> = None;
+    places.planes_towards(cluster, |plane, _| {
+        let by = points.iter().map(|&p| plane.height(p).abs()).fold(0.0, f64::max);
+        least = Some(least.map_or(by, |least| least.min(by)));
+    });
+    least
 }

@@ -13,6 +13,7 @@
 mod error;
 mod faces;
 mod leaf;
+mod places;
 mod rewrite;
 mod surfaces;
 mod tree;
@@ -20,6 +21,7 @@ mod tree;
 pub use error::{BspError, BspLumpId};
 pub use faces::AmbientKind;
 pub use leaf::{BspLeaf, LeafRow};
+pub use places::ClusterPlaces;
 pub(in crate::quake) use rewrite::NewVisibility;
 pub use surfaces::{LeafFaces, WorldFaces};
 pub use tree::{BspChild, BspNode, BspTree};

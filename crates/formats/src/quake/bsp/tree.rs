@@ -33,6 +33,14 @@ pub struct BspNode {
     pub children: [BspChild; 2],
 }
 
+impl BspNode {
+    /// How far a point is above the plane, rounded: by some units in the last place of the largest product, which is less than 2^-44 of the largest
+    /// coordinate.
+    pub fn height(&self, p: Point3) -> f64 {
+        (0..3).map(|k| self.normal[k] * p[k]).sum::<f64>() - self.distance
+    }
+}
+
 /// The tree of the world, without those of doors and the like. Every node has one parent, before it in the list, and is
 /// at most [`MAX_TREE_DEPTH`] steps below the root; every leaf that is named is there.
 #[derive(Debug, Clone, PartialEq)]
