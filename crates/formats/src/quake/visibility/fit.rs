@@ -45,7 +45,7 @@ pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
     if 2 * n_outside > n_sides {
         return Err(VisibilityError::OtherMap { n_outside, n_sides });
     }
-    match inside_out(bsp, prt) {
+    match inside_out(bsp, prt, &clusters_of_leafs(bsp, &leafs)) {
         Some((portal, clusters)) => Err(VisibilityError::InsideOut { portal, clusters }),
         None => Ok(()),
     }

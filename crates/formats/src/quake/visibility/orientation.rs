@@ -1,6 +1,5 @@
 //! Whether the corners of portals go round the way that the map's tree demands.
 
-use super::clusters_of_leafs;
 use crate::quake::bsp::ClusterPlaces;
 use crate::quake::prt::MAX_UNEVENNESS;
 use crate::quake::{Bsp, Prt};
@@ -11,14 +10,13 @@ use sightlines_geometry::{Point3, Portal3};
 const PARALLEL: f64 = 0.5;
 
 /// A portal of which the tree says that its second cluster lies where the corners say that the first does, with its clusters. It lies on a plane
-/// that divides the two.
+/// that divides the two. `leafs` are the clusters of the map's leafs.
 ///
 /// Rounded arithmetic: it catches mistakes, and errs towards silence. Of no map whose tree cannot be read, and of no two clusters without a plane
 /// between them at the portal, anything is said. O(nodes + portals * depth), where clusters have a leaf or two.
-pub(super) fn inside_out(bsp: &Bsp, prt: &Prt) -> Option<(usize, [u32; 2])> {
+pub(super) fn inside_out(bsp: &Bsp, prt: &Prt, leafs: &[Option<u32>]) -> Option<(usize, [u32; 2])> {
     let tree = bsp.world_tree().ok()?;
-    let leafs = clusters_of_leafs(bsp, &prt.leaf_clusters());
-    let mut places = ClusterPlaces::new(&tree, &leafs, prt.n_clusters() as usize);
+    let mut places = ClusterPlaces::new(&tree, leafs, prt.n_clusters() as usize);
     prt.portals().enumerate().find_map(|(k, portal)| {
         let shape = Portal3::around(portal.points)?;
         places.stand_in(portal.clusters[0]);
