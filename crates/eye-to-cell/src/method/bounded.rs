@@ -102,7 +102,7 @@ fn views() -> (Table, Vec<View>) {
 fn most_answers_are_exact() {
     let (table, views) = views();
     let (mut last, mut n_between) = (0, 0);
-    for steps in [0, 64, 256, 1024, Budget::FRAME.n_steps(), u64::MAX] {
+    for steps in [0, 64, 256, 384, 512, 768, 1024, Budget::FRAME.n_steps(), u64::MAX] {
         let mut n_exact = 0;
         for view in &views {
             let counts = check(&table, view, Budget::steps(steps)).unwrap();

@@ -39,10 +39,17 @@ pub(crate) struct Frame {
 /// Keeps what a line from the eye leads to, through open portals, within the view; within rounding. `false` if that is too
 /// much work: then what is near is kept as exactly as the work allowed, and of the rest all that the incident portals lead to.
 pub(super) fn exact(query: &mut Query<'_>) -> bool {
+    let allowed = query.scratch.work.left();
     list_missing(query);
+    let left = query.scratch.work.left();
+    // Where listing what there is takes more than half of the work, deciding about it would hardly come to an end.
+    if left < allowed - left {
+        keep_wanted(query);
+        return false;
+    }
     let first = query.seen.reflections.len();
     // Where there are too many sequences, the sweep needs what is left of the work.
-    let most = MOST_STEPS.min(query.scratch.work.left() / (4 * CLIP));
+    let most = MOST_STEPS.min(left / (4 * CLIP));
     if by_sequences(query, most) {
         return true;
     }
@@ -59,6 +66,13 @@ pub(super) fn exact(query: &mut Query<'_>) -> bool {
     query.seen.reflections.append(&mut swept);
     keep_unfinished(query);
     false
+}
+
+/// Keeps all that the incident portals lead to, which is known already.
+fn keep_wanted(query: &mut Query<'_>) {
+    for k in 0..query.scratch.wanted.list().len() {
+        query.keep(query.scratch.wanted.list()[k]);
+    }
 }
 
 /// Looks along the sequences of portals, at `most` portals at most; `false` if there are more. What was kept until
