@@ -8,7 +8,7 @@
 use clap::Parser;
 use sightlines::bake::quake::bake_map;
 use sightlines::bake::{PrtOptions, SceneBakeOptions, StabOptions, bake_scene, from_table, with_stab_trees};
-use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
+use sightlines::eye_to_cell::{Budget, Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
@@ -228,7 +228,8 @@ fn slow_source(table: &Table, stands: &[CameraPose], fov: f64) -> Result<(), Box
     for pause in [Duration::ZERO, Duration::from_millis(2)] {
         let packed = Packed::open(Slow(bytes.clone(), Duration::from_millis(20)), 1 << 16)?;
         let cells = PackedCells::new(packed);
-        let mut walk = Walkthrough::new(cells.clone(), cells, WalkOptions::default());
+        let mut walk =
+            Walkthrough::new(cells.clone(), cells, WalkOptions { steps: Budget::UNLIMITED, ..WalkOptions::default() });
         let mut times = Vec::new();
         let mut late = 0;
         for stand in stands {

@@ -79,7 +79,9 @@ pub struct Certified {
     pub time: Duration,
 }
 
-/// Finds proofs for the pairs of cells of a table, and in space for the objects that cells do not see. A pair without one is left open, so nothing here has to be trusted: the checker decides
+/// Finds proofs for the pairs of cells of a table, and in space for the objects that cells do not see.
+///
+/// A pair without one is left open, so nothing here has to be trusted: the checker decides
 /// which pairs are proven.
 ///
 /// * `graph`: the one that the table was made from: [`Baked::graph`], or

@@ -4,9 +4,9 @@ use num_bigint::{BigInt, Sign};
 
 /// The first bytes of every proof file.
 const MAGIC: [u8; 8] = *b"SLPROOFS";
-/// The version that is written, and the only one that is read.
+/// The newest version: with proofs about objects, which only scenes in space have.
 pub const VERSION: u32 = 2;
-/// The version before: without proofs about objects. Proofs that have none are written in it.
+/// The version before: without proofs about objects. Proofs that have none are written in it, and both are read.
 pub(crate) const WITHOUT_OBJECTS: u32 = 1;
 /// Magic, version, kind; then the body; then the checksum.
 const HEAD: usize = 8 + 4 + 1;

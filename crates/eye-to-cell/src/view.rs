@@ -50,6 +50,9 @@ pub enum ViewError {
     /// A matrix that is no perspective projection.
     #[error("the matrix is not finite, or not one of a perspective")]
     Projection,
+    /// A matrix of a camera that is not where the eye is.
+    #[error("the matrix is that of a camera elsewhere than the eye, or is given by rows instead of columns")]
+    OtherEye,
     /// Not above 0, or not finite.
     #[error("an aspect of {0} is not a finite number above 0")]
     Aspect(f64),
@@ -154,18 +157,29 @@ impl View {
     /// are taken, so what is nearer than the near plane or beyond the far one counts as in the picture.
     ///
     /// `eye` is where the camera is, which the engine knows better than its matrix: the sides go through it. They are as exact as the
-    /// matrix.
+    /// matrix, which may have been computed in single precision.
     ///
     /// # Errors
-    /// [`ViewError::Eye`]; [`ViewError::Projection`] for a matrix that is not finite or not one of a perspective.
+    /// [`ViewError::Eye`]; [`ViewError::Projection`] for a matrix that is not finite or not one of a perspective; [`ViewError::OtherEye`] for a
+    /// matrix of a camera elsewhere, such as that of the frame before, and for most matrices that are given by rows.
     pub fn from_view_projection(eye: [f64; 3], view_projection: [[f64; 4]; 4]) -> Result<Self, ViewError> {
         let row = |r: usize| [0, 1, 2].map(|column| view_projection[column][r]);
         let (x, y, w) = (row(0), row(1), row(3));
         // A parallel projection has no eye: its w does not depend on the place.
-        if !w.iter().all(|x| x.is_finite()) || w == [0.0; 3] {
+        let volume = dot(cross(x, y), w);
+        if !view_projection.as_flattened().iter().all(|x| x.is_finite()) || !volume.is_finite() || volume == 0.0 {
             return Err(ViewError::Projection);
         }
         let mut view = Self::all_round(eye)?;
+        // At the eye x, y and w are 0. In single precision the view's last column, products and sums err by some twenty units of 2^-24 of
+        // the magnitudes, and turning the camera's axes by some more: 64 units.
+        for r in [0, 1, 3] {
+            let (v, last) = (row(r), view_projection[3][r]);
+            if (dot(v, eye) + last).abs() > 64.0 / f64::from(1u32 << 24) * (norm(v) * dot(eye, eye).sqrt() + last.abs())
+            {
+                return Err(ViewError::OtherEye);
+            }
+        }
         for (across, sign) in [(x, 1.0), (x, -1.0), (y, 1.0), (y, -1.0)] {
             let side = std::array::from_fn(|k| w[k] + sign * across[k]);
             view.add_side(side).map_err(|_| ViewError::Projection)?;
@@ -437,8 +451,34 @@ mod tests {
         // Parallel, and broken.
         shifted[3] = [0.0, 0.0, 0.0, 1.0];
         assert_eq!(View::from_view_projection(eye, columns(shifted)), Err(ViewError::Projection));
-        shifted[3] = [0.0, f64::NAN, 0.0, 1.0];
-        assert_eq!(View::from_view_projection(eye, columns(shifted)), Err(ViewError::Projection));
+        // What one camera's matrix has at fault: any number that is none, a row of zeros, rows for columns, another eye.
+        let good = columns(times(
+            [[f / aspect, 0.0, 0.0, 0.0], [0.0, f, 0.0, 0.0], [0.0, 0.0, 0.0, near], [0.0, 0.0, -1.0, 0.0]],
+            look(eye, dir, up, false),
+        ));
+        for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+            let mut bad = good;
+            bad[i][j] = f64::NAN;
+            assert_eq!(View::from_view_projection(eye, bad), Err(ViewError::Projection));
+        }
+        let mut flat = good;
+        flat.iter_mut().for_each(|column| column[1] = 0.0);
+        assert_eq!(View::from_view_projection(eye, flat), Err(ViewError::Projection));
+        assert_eq!(View::from_view_projection(eye, columns(good)), Err(ViewError::OtherEye));
+        for k in 0..3 {
+            let mut moved = eye;
+            moved[k] += 0.01;
+            assert_eq!(View::from_view_projection(moved, good), Err(ViewError::OtherEye));
+        }
+        // In single precision it is still that of the eye, near the origin and far from it.
+        for far in [0.0, 1.0, 1e5] {
+            let eye = eye.map(|x| x * far);
+            let single = |m: [[f64; 4]; 4]| m.map(|row| row.map(|x| f64::from(x as f32)));
+            let view = single(look(eye.map(|x| f64::from(x as f32)), dir, up, false));
+            let lens = [[f / aspect, 0.0, 0.0, 0.0], [0.0, f, 0.0, 0.0], [0.0, 0.0, 0.0, near], [0.0, 0.0, -1.0, 0.0]];
+            let matrix = columns(single(times(single(lens), view)));
+            assert!(View::from_view_projection(eye.map(|x| f64::from(x as f32)), matrix).is_ok(), "{far}");
+        }
         for fov in [0.0, -1.0, PI, f64::NAN] {
             assert!(matches!(View::perspective_vertical(eye, dir, up, fov, 1.0), Err(ViewError::VerticalFov(_))));
         }

@@ -89,7 +89,8 @@ pub struct ProofFindings {
     /// in: it hides by walls that are no borders of cells, of which proofs do not speak. In other tables such a pair is a violation.
     pub n_hidden_past_portals: u64,
     /// Pairs of a cell and an object that the table hides, and that are proven to be hidden: by a proof of their own, or as every cell
-    /// that the object touches is proven hidden, if there is any.
+    /// that the object touches is proven hidden, if there is any. Of plans and Quake maps the table says which cells those are; the check of its
+    /// structure compares that with the scene.
     pub n_hidden_objects: u64,
     /// Pairs of a cell and an object that the table hides, without a proof.
     pub n_unproven_hidden_objects: u64,

@@ -45,7 +45,8 @@ impl Default for WalkOptions {
 /// How a frame's answer relates to the method's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// It is the answer of [`Frame::method`].
+    /// It is the answer of [`Frame::method`], or, where the work of the frame was spent, between that and the answer of the method
+    /// that was asked for.
     Full,
     /// Something was not prepared yet: the cells and objects are a superset of the method's. What is seen in mirrors is
     /// incomplete.
@@ -64,7 +65,7 @@ pub struct Frame<'a> {
     /// How that relates to the method's answer.
     pub answer: Answer,
     /// The method that answered: the one that was asked for, or the coarsest that a query of the frame fell back to, in mirrors
-    /// too, as [`WalkOptions::steps`] were spent.
+    /// too, as [`WalkOptions::steps`] were spent. The answer is no more than its, and may be less.
     pub method: Method,
     /// What is seen in mirrors, if [`WalkOptions::bounces`] is above 0. Complete only with [`Answer::Full`]; otherwise
     /// anything may be seen in any mirror, listed or not.

@@ -63,7 +63,8 @@ pub struct BoxProofs {
 impl BoxProofs {
     /// Checks every proof, and returns what they prove together. Exact.
     ///
-    /// Cost: O(blockers (cells + portals)) comparisons, and those of the proofs, with O(cells) for each proof of boxes. Memory: a
+    /// Cost: O(blockers (cells + portals)) comparisons, and those of the proofs, with O(cells) for each proof of boxes, and
+    /// O(objects cells) comparisons of boxes for what is out of reach. Memory: a
     /// few bits for each pair of cells, and one for each pair of a cell and an object.
     ///
     /// # Errors

@@ -138,8 +138,8 @@ impl BoxNetwork {
         Ok(Self { gates, cells, portals, places, checksum, objects: Vec::new(), objects_checksum: 0 })
     }
 
-    /// The same with boxes around objects, which proofs name by their indices. Any boxes will do; there are no proofs about those without
-    /// a surface or with a coordinate out of range.
+    /// The same with boxes around objects, which proofs name by their indices. Any boxes will do; about those without a surface or
+    /// with a coordinate out of range there are no proofs of their own.
     #[must_use]
     pub fn with_objects(self, objects: &[Box3]) -> Self {
         let mut hash = crc32fast::Hasher::new();

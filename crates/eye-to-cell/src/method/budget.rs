@@ -14,7 +14,7 @@ impl Budget {
     /// answers are then coarser ones. A step is no time: measure on your scenes.
     pub const FRAME: Self = Self(4096);
 
-    /// So many steps. With 0 every answer of the exact method is that of the one before.
+    /// So many steps. With 0 every answer of the exact method is that of the one before; from a cell without ways out the two are the same.
     pub const fn steps(n: u64) -> Self {
         Self(n)
     }

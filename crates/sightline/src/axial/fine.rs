@@ -69,6 +69,11 @@ impl FineLine {
         sign_of_sum(terms.chain(product(r, Wide::ONE))) < 0.0
     }
 
+    /// Some place on each axis, from which the others are computed.
+    pub(super) const fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
     /// Where it is on each axis at time 0, and the time that a unit takes there; rounded.
     pub(super) fn start_and_pace(&self) -> [[f64; 3]; 2] {
         let start = |i: usize| (Wide::of(self.origin[i]) + self.offset[i] / self.slowness[i]).high;

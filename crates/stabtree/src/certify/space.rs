@@ -53,7 +53,7 @@ pub struct ObjectRows<'a> {
 /// [`CertifyError`] with a [`BoxNetworkError`] for a graph that is not well formed; or if the observer cancels.
 ///
 /// # Panics
-/// If there is not a row for each cell, or not a list of objects.
+/// If there is not a row for each cell, or not a list of objects, or an object in a list that has no box.
 pub fn certify_space(
     graph: &CellGraph<Axial>,
     rows: &BitMatrix,
@@ -206,7 +206,9 @@ impl<'a> Search<'a> {
             tasks.iter().for_each(|&pair| self.hide(pair, &mut shaft, &mut found, &mut smaller));
             tasks = smaller;
         }
-        let share = options.most_steps_in_all / tasks.len().max(1) as u64;
+        // Half of the effort is for objects, if there are any.
+        let halves = if self.objects.is_empty() { 1 } else { 2 };
+        let share = options.most_steps_in_all / halves / tasks.len().max(1) as u64;
         // Groups are hidden from each other, then lines are sought from each cell.
         let n_objects = self.objects.len();
         let counter = Counter::new(options.progress, "proofs", tasks.len() + n_objects + self.cell_at.len());
@@ -232,9 +234,9 @@ impl<'a> Search<'a> {
         }
         maker.add_out_of_reach();
         let open = self.open_objects(maker.hidden_objects());
-        let share = options.most_steps_in_all / n_objects.max(1) as u64;
+        let share = options.most_steps_in_all / halves / n_objects.max(1) as u64;
         let work = |shaft: &mut Shaft<'a>, object: u32| {
-            let found = if counter.is_cancelled() { Vec::new() } else { self.hide_object(object, &open, shaft, share) };
+            let found = self.hide_object(object, &open, shaft, share, &|| counter.is_cancelled());
             let _ = counter.step();
             found
         };
@@ -297,12 +299,19 @@ impl<'a> Search<'a> {
 
     /// Proofs that an object is hidden from groups of cells: from those that do not see it, as large as they can be, with a cell for which
     /// that is still open.
-    fn hide_object(&self, object: u32, open: &AtomicBitMatrix, shaft: &mut Shaft<'a>, share: u64) -> Vec<FoundObject> {
+    fn hide_object(
+        &self,
+        object: u32,
+        open: &AtomicBitMatrix,
+        shaft: &mut Shaft<'a>,
+        share: u64,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> Vec<FoundObject> {
         let (target, rows) = (&self.objects[object as usize], [object as usize, object as usize + 1]);
         let before = shaft.counters().n_programs;
         let (mut found, mut stack) = (Vec::new(), vec![0]);
         while let Some(n) = stack.pop() {
-            if shaft.counters().n_programs - before >= share {
+            if is_cancelled() || shaft.counters().n_programs - before >= share {
                 break;
             }
             let node = &self.tree.nodes()[n as usize];

@@ -72,7 +72,7 @@ pub fn explain_space(
     let mut shaft = Shaft::new(&blockers);
     let explanation = match shaft.decide(a, b, Target::Inside, budget) {
         Verdict::Visible(line) => Walk::new(graph, &useful, &line, to).explain(from),
-        // Cases that are left open are often decided by the fractions of a proof.
+        // Cases that are left open may still be decided by the fractions of a proof.
         Verdict::Hidden(()) | Verdict::Undecided(_) => shaft
             .certify(a, b, Target::Inside, budget)
             .and_then(|proof| proof.narrowed(blockers.rectangles()))

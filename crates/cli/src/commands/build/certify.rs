@@ -16,8 +16,8 @@ use std::time::Duration;
 /// Whether proofs are written, and where.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct CertifyArgs {
-    /// Also write proofs about pairs of cells, and in space about objects that cells do not see, for `verify` to check with independent code: a line for each visible pair, a reason for each hidden one.
-    /// They go to FILE, or without it beside the table with the extension .cert. May take ten times as long as the table, and much longer for
+    /// Also write proofs about pairs of cells, and in space about objects that cells do not see, for `verify` to check with independent
+    /// code: a line for each visible pair, a reason for each hidden one. They go to FILE, or without it beside the table with the extension .cert. May take ten times as long as the table, and much longer for
     /// large Quake maps. What has no proof is counted as unproven: pairs that take too long, what only a from-region method
     /// hides, and all pairs of cells without portals. Scenes have the cells of a k-d tree then, unless others are named
     /// [default: no proofs]

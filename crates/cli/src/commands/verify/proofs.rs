@@ -171,7 +171,7 @@ impl fmt::Display for ProofOutcome {
         if self.is_stale {
             writeln!(
                 f,
-                "proofs         {} is stale: it is about other cells or portals than the table has",
+                "proofs         {} is stale: it is about other cells, portals or objects than the table has",
                 self.file
             )?;
             return writeln!(f, "               not checked; build the table with --certify again, or remove the file");
@@ -194,10 +194,6 @@ impl fmt::Display for ProofOutcome {
                 writeln!(f, "unproven       {}", count(n, &format!("{what} pair")))?;
             }
         }
-        if self.n_unproven_hidden_objects > 0 {
-            let hidden = count(self.n_unproven_hidden_objects, "hidden pair");
-            writeln!(f, "unproven       {hidden} of a cell and an object")?;
-        }
         if self.n_hidden_past_portals > 0 {
             let n = self.n_hidden_past_portals;
             writeln!(f, "               {n} of these are joined through portals: a from-region method hides them")?;
@@ -206,6 +202,10 @@ impl fmt::Display for ProofOutcome {
         let pairs: Vec<String> = pairs.collect();
         if !pairs.is_empty() {
             writeln!(f, "               hidden without a proof: {}", pairs.join(", "))?;
+        }
+        if self.n_unproven_hidden_objects > 0 {
+            let hidden = count(self.n_unproven_hidden_objects, "hidden pair");
+            writeln!(f, "unproven       {hidden} of a cell and an object")?;
         }
         if self.n_walls > 0 {
             let backed = count(self.n_walls - self.n_bare_walls, "wall");

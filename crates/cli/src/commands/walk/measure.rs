@@ -41,7 +41,7 @@ pub(super) struct MethodSums {
     pub(super) image_polygons: u64,
     /// Of each frame, ascending.
     pub(super) times: Vec<Duration>,
-    /// Frames that a coarser method answered, because the steps were spent.
+    /// Frames that had more to do than the steps allow, or than is in proportion, so that a coarser method answered in part.
     pub(super) n_fell_back: u64,
     /// Frames of the walk without waiting whose answer was not ready in time.
     pub(super) n_late: u64,

@@ -59,7 +59,7 @@ struct MethodLine {
     median_us: f64,
     p99_us: f64,
     longest_us: f64,
-    /// Frames that a coarser method answered, because the steps were spent.
+    /// Frames that had more to do than the steps allow, or than is in proportion, so that a coarser method answered in part.
     n_fell_back: u64,
     /// Frames of a walk without waiting whose answer was not ready in time.
     n_late: u64,
@@ -242,13 +242,11 @@ impl fmt::Display for Outcome {
             write!(f, "{levels}")?;
         }
         writeln!(f, "left to draw   on average; of it, % of the first line; of all, %")?;
-        if let Some(steps) = self.steps {
-            writeln!(
-                f,
-                "coarser        frames that had more to do than {}: exact near the eye only, and what incident-portals finds behind",
-                count(steps, "step")
-            )?;
-        }
+        let steps = self.steps.map_or("is in proportion".to_owned(), |steps| count(steps, "step"));
+        writeln!(
+            f,
+            "coarser        frames that had more to do than {steps}: exact near the eye only, and what incident-portals finds behind"
+        )?;
         writeln!(
             f,
             "late           frames whose answer was not ready in time, so that they showed more; of a second walk that does not wait \

@@ -36,6 +36,11 @@ impl<'t> ClusterPlaces<'t> {
         Self { tree, parents, of_cluster, sides, marked: Vec::new() }
     }
 
+    /// The number of leafs of a cluster that the tree has.
+    pub fn n_places(&self, cluster: u32) -> usize {
+        self.of_cluster[cluster as usize].len()
+    }
+
     /// Stands in another cluster. O(depth) for each of its leafs.
     pub fn stand_in(&mut self, cluster: u32) {
         self.marked.drain(..).for_each(|node| self.sides[node as usize] = [false; 2]);

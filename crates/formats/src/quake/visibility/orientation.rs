@@ -9,15 +9,20 @@ use sightlines_geometry::{Point3, Portal3};
 /// one may be tilted by the rounding of its corners.
 const PARALLEL: f64 = 0.5;
 
+/// Portals of clusters with more leafs are not judged, to bound the cost: detail makes some hundreds.
+const MOST_LEAFS: usize = 4096;
+
 /// A portal of which the tree says that its second cluster lies where the corners say that the first does, with its clusters. It lies on a plane
 /// that divides the two. `leafs` are the clusters of the map's leafs.
 ///
 /// Rounded arithmetic: it catches mistakes, and errs towards silence. Of no map whose tree cannot be read, and of no two clusters without a plane
-/// between them at the portal, anything is said. O(nodes + portals * depth), where clusters have a leaf or two.
+/// between them at the portal, anything is said. O(nodes + portals * leafs of a cluster * depth).
 pub(super) fn inside_out(bsp: &Bsp, prt: &Prt, leafs: &[Option<u32>]) -> Option<(usize, [u32; 2])> {
     let tree = bsp.world_tree().ok()?;
     let mut places = ClusterPlaces::new(&tree, leafs, prt.n_clusters() as usize);
-    prt.portals().enumerate().find_map(|(k, portal)| {
+    let is_small = |cluster: &u32| places.n_places(*cluster) <= MOST_LEAFS;
+    let small: Vec<bool> = prt.portals().map(|portal| portal.clusters.iter().all(is_small)).collect();
+    prt.portals().enumerate().filter(|&(k, _)| small[k]).find_map(|(k, portal)| {
         let shape = Portal3::around(portal.points)?;
         places.stand_in(portal.clusters[0]);
         is_contradicted(&places, portal.clusters[1], &shape).then_some((k, portal.clusters))

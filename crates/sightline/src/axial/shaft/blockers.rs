@@ -70,9 +70,10 @@ impl Blockers {
         });
     }
 
-    /// Rectangles that a line may meet which a ray was rounded from, place and direction; certainly all that it meets.
-    pub(super) fn near_rounded(&self, ray: &Ray, mut each: impl FnMut(u32)) {
-        let may_meet = |b: &Aabb<3>| ray.may_meet(&ray.widened(b), [f64::NEG_INFINITY, f64::INFINITY]);
+    /// Rectangles that a line may meet which a ray was rounded from, place and direction; certainly all that it meets. The ray's start was
+    /// computed from `origin`.
+    pub(super) fn near_rounded(&self, ray: &Ray, origin: [f64; 3], mut each: impl FnMut(u32)) {
+        let may_meet = |b: &Aabb<3>| ray.may_meet(&ray.widened(b, origin), [f64::NEG_INFINITY, f64::INFINITY]);
         self.tree.visit(may_meet, |i| {
             if may_meet(&self.rectangles[i as usize]) {
                 each(i);

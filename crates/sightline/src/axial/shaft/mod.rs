@@ -483,7 +483,8 @@ impl<'a> Shaft<'a> {
         });
         let Some(line) = fine else { return Next::Unknown };
         let Some(ray) = Ray::new(line.start_and_pace()) else { return Next::Unknown };
-        match self.first_met(ends, &|row| line.obeys(row), |each| self.blockers.near_rounded(&ray, each)) {
+        match self.first_met(ends, &|row| line.obeys(row), |each| self.blockers.near_rounded(&ray, line.origin(), each))
+        {
             None => Next::Open(ShaftLine::Fine(line)),
             Some(blocker) if new(blocker) => Next::Past(blocker),
             Some(_) => Next::Unknown,

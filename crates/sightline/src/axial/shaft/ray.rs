@@ -41,10 +41,14 @@ impl Ray {
 
     /// A box that the ray meets if a line meets `b` that the ray was rounded from.
     ///
-    /// The start and the paces err by 2^-52 of themselves at most, so at the time at which the line is at `x`, the ray is off
-    /// by at most 2^-51 of the magnitudes of the start and of `x`.
-    pub(super) fn widened(&self, b: &Aabb<3>) -> Aabb<3> {
-        let by = [0, 1, 2].map(|i| 16.0 * f64::EPSILON * (self.start[i].abs() + b.min[i].abs().max(b.max[i].abs())));
+    /// The start and the paces err by 2^-52 of themselves at most, and the start by 2^-96 of the place `origin` besides that it was computed
+    /// from, as that may have cancelled; so at the time at which the line is at `x`, the ray is off by at most 2^-51 of the magnitudes of the
+    /// start and of `x`, and by 2^-96 of that of the origin.
+    pub(super) fn widened(&self, b: &Aabb<3>, origin: [f64; 3]) -> Aabb<3> {
+        let by = [0, 1, 2].map(|i| {
+            let sizes = self.start[i].abs() + b.min[i].abs().max(b.max[i].abs());
+            16.0 * f64::EPSILON * sizes + origin[i].abs() / (1u128 << 90) as f64
+        });
         Aabb { min: [0, 1, 2].map(|i| b.min[i] - by[i]), max: [0, 1, 2].map(|i| b.max[i] + by[i]) }
     }
 

@@ -84,6 +84,7 @@ impl<'s, 'a, 'e> Recorder<'s, 'a, 'e> {
             return None;
         }
         self.shaft.left -= 1;
+        self.shaft.counters.n_programs += 1;
         let mut y = tableau.improve(&self.shaft.unit);
         if y[5] <= CLEAR_MARGIN {
             let (octant, scratch) = (self.ends.octant, &mut self.shaft.scratch);
@@ -96,9 +97,11 @@ impl<'s, 'a, 'e> Recorder<'s, 'a, 'e> {
         let mut fine = None;
         let mut blocker = self.shaft.ahead(&self.ends, &ray);
         if blocker.is_none() && y[5] <= CLEAR_MARGIN {
-            match self.shaft.look_closer(self.ends.octant, SMALL_FIRST)? {
-                Closer::Blocked(proof) => return Some(Branch::Empty(named(&proof.terms(), &self.names))),
-                Closer::Open(found, line) => (ray, fine) = (found, line),
+            match self.shaft.look_closer(self.ends.octant, SMALL_FIRST) {
+                Some(Closer::Blocked(proof)) => return Some(Branch::Empty(named(&proof.terms(), &self.names))),
+                Some(Closer::Open(found, line)) => (ray, fine) = (found, line),
+                // What two doubles do not settle, fractions do.
+                None => return self.contradiction().map(Branch::Empty),
             }
             blocker = self.shaft.ahead(&self.ends, &ray);
         }
