@@ -22,7 +22,11 @@ pub(super) fn stopping(portals: &[&Portal3], among: &[usize]) -> Option<PlanePro
             for &touched in among.iter().filter(|&&t| t != held) {
                 for corner in tangents(e, f, portals[touched].corners()).into_iter().flatten() {
                     let plane = PlaneProof { edge: (held, edge), corner: (touched, corner), stops: [0; 3] };
-                    if let Some(stops) = stops(portals, among, e, f, portals[touched].corners()[corner]) {
+                    let c = portals[touched].corners()[corner];
+                    // Most planes stop nothing, which needs no exact side to be seen.
+                    if stops(portals, among, [e, f, c], |_| 0.0).is_some()
+                        && let Some(stops) = stops(portals, among, [e, f, c], |p| orient3d(e, f, c, p))
+                    {
                         return Some(PlaneProof { stops, ..plane });
                     }
                 }
@@ -56,8 +60,16 @@ fn tangents(e: Point3, f: Point3, corners: &[Point3]) -> [Option<usize>; 2] {
     [least, most.filter(|m| Some(*m) != least)]
 }
 
-/// The first three portals on alternating sides of a plane, if there are three. Exact.
-fn stops(portals: &[&Portal3], among: &[usize], e: Point3, f: Point3, c: Point3) -> Option<[usize; 3]> {
+/// The first three portals on alternating sides of the plane through three points, if there are three. `close` tells
+/// the side of a point that rounding leaves in doubt; 0 counts as both sides. So the answer is exact if `close` is, and
+/// if it is always 0, `None` is right.
+#[inline(always)]
+fn stops(
+    portals: &[&Portal3],
+    among: &[usize],
+    [e, f, c]: [Point3; 3],
+    close: impl Fn(Point3) -> f64,
+) -> Option<[usize; 3]> {
     let (along, to) = (sub(f, e), sub(c, e));
     // A determinant of rounded differences is accurate to less than 20 * 2^-53 of the product of their sizes; above a
     // multiple of that its sign is exact.
@@ -74,7 +86,7 @@ fn stops(portals: &[&Portal3], among: &[usize], e: Point3, f: Point3, c: Point3)
             } else if p == e || p == f || p == c {
                 0.0
             } else {
-                orient3d(e, f, c, p)
+                close(p)
             };
             below &= side <= 0.0;
             above &= side >= 0.0;

@@ -21,7 +21,7 @@
 use super::ConvexCounters;
 use super::cell_set::CellSet;
 use super::cut::{Cutter, Part, Plane, Vertex, is_within, middle};
-use super::gates::{Gate, Gates};
+use super::gates::{Gate, Gates, Memory};
 use super::vector::{add, sub, unit};
 use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
@@ -62,6 +62,8 @@ pub(super) struct BeamTracer {
     wanted: CellSet,
     followed: CellSet,
     sequence: Vec<u32>,
+    /// Which gates may follow the source.
+    follows: Memory,
 }
 
 /// The results for one gate.
@@ -91,6 +93,7 @@ impl BeamTracer {
             wanted: CellSet::default(),
             followed: CellSet::default(),
             sequence: Vec::new(),
+            follows: Memory::new(gates.len()),
         }
     }
 
@@ -111,6 +114,7 @@ impl BeamTracer {
             return traced;
         }
         let Gate { from: home, to: next, .. } = *gates.get(source);
+        self.follows.forget();
         if in_doubt[next as usize / 64] >> (next % 64) & 1 == 1 {
             self.seek(gates, source, None, source, &[], &mut in_doubt, &mut traced);
         }
@@ -163,8 +167,9 @@ impl BeamTracer {
             let meets = self.find_planes(gates, source, beam);
             drop_hidden(&self.planes, gates, self.cutter.eps, &mut wanted);
             if meets && !wanted.is_empty() {
-                for &exit in gates.exits(gates.get(at).to) {
-                    if exit != at ^ 1 && gates.get(exit).to != home {
+                for &exit in gates.next(at) {
+                    // Looking back through the exit, a line sees the cell that it comes from.
+                    if gates.get(exit).to != home && through.get((exit ^ 1) as usize, home as usize) {
                         self.pass(gates, source, beam, exit, &wanted, in_doubt, through, traced);
                     }
                 }
@@ -210,19 +215,14 @@ impl BeamTracer {
         if self.wanted.is_empty() {
             return;
         }
-        let at = self.beams[beam as usize].gate;
-        if !gates.may_follow(at, exit) || (at != source && !gates.may_follow(source, exit)) {
+        if !self.follows.ask(exit, || gates.may_follow(source, exit)) {
             return;
         }
         let gate = gates.get(exit);
         self.part.clear();
         self.part.extend_from_slice(gates.corners(exit));
-        for plane in &self.planes {
-            let value = plane.at(gate.center);
-            // The plane's normal is at most 1.01 long.
-            if value < 1.02 * gate.radius && !self.cutter.cut(&mut self.part, plane) {
-                return;
-            }
+        if !self.cutter.cut_all(&mut self.part, gate, self.planes.iter()) {
+            return;
         }
         if self.wanted.has(gate.to) {
             // The search for a line uses the gates themselves; the part is only a hint.

@@ -15,6 +15,8 @@ pub(super) struct Gate {
     pub(super) center: Point3,
     /// Radius of the ball around the center that contains the corners, rounded up.
     pub(super) radius: f64,
+    /// How far a plane has to be from any corner to be certainly on one side.
+    pub(super) clearance: f64,
     /// The direction of crossing, of length 1.
     pub(super) normal: Point3,
     /// Distance of the corners from the plane through the center with this normal.
@@ -38,6 +40,8 @@ pub(crate) struct Gates {
     corners: Part,
     first_exit: Vec<u32>,
     exits: Vec<u32>,
+    first_next: Vec<u32>,
+    next: Vec<u32>,
     /// Bounding boxes of the portals of each cell.
     pub(super) boxes: Vec<[Point3; 2]>,
     /// Largest coordinate, at least the smallest positive one.
@@ -79,6 +83,7 @@ impl Gates {
                     n_corners,
                     center,
                     radius,
+                    clearance: corners[first as usize].clearance,
                     normal,
                     uneven,
                     lean,
@@ -94,7 +99,15 @@ impl Gates {
             let bounds = graph.cell(cell).bounds;
             boxes.push([bounds.min, bounds.max]);
         }
-        Self { gates, shapes, corners, first_exit, exits, boxes, largest }
+        let (first_next, next) = (vec![0], Vec::new());
+        let mut made = Self { gates, shapes, corners, first_exit, exits, first_next, next, boxes, largest };
+        for gate in 0..made.gates.len() as u32 {
+            let exits = made.exits(made.get(gate).to).iter().copied();
+            let next: Vec<u32> = exits.filter(|&exit| exit != gate ^ 1 && made.may_follow(gate, exit)).collect();
+            made.next.extend(next);
+            made.first_next.push(made.next.len() as u32);
+        }
+        made
     }
 
     pub(super) fn len(&self) -> usize {
@@ -124,6 +137,12 @@ impl Gates {
     #[inline(always)]
     pub(super) fn exits(&self, cell: u32) -> &[u32] {
         &self.exits[self.first_exit[cell as usize] as usize..self.first_exit[cell as usize + 1] as usize]
+    }
+
+    /// The gates out of the cell behind a gate that [may follow](Self::may_follow) it.
+    #[inline(always)]
+    pub(super) fn next(&self, gate: u32) -> &[u32] {
+        &self.next[self.first_next[gate as usize] as usize..self.first_next[gate as usize + 1] as usize]
     }
 
     /// Whether a line may pass gate `s` and then gate `t`, judging by their planes: `t` has a corner in front of the
@@ -217,5 +236,38 @@ impl Gates {
         passed.iter_mut().for_each(|g| *g ^= 1);
         passed.push(gate);
         self.follow(gate, origin, d, passed);
+    }
+}
+
+/// Answers about gates that are asked for again and again.
+#[derive(Debug)]
+pub(super) struct Memory {
+    /// Twice the round in which a gate's answer was found, and 1 more for yes.
+    answers: Vec<u32>,
+    round: u32,
+}
+
+impl Memory {
+    pub(super) fn new(n_gates: usize) -> Self {
+        Self { answers: vec![0; n_gates], round: 1 }
+    }
+
+    /// Begins with no answers.
+    pub(super) fn forget(&mut self) {
+        self.round += 1;
+        if self.round > u32::MAX / 2 {
+            self.answers.fill(0);
+            self.round = 1;
+        }
+    }
+
+    /// The answer for a gate: `find` is called if it is not known.
+    #[inline(always)]
+    pub(super) fn ask(&mut self, gate: u32, find: impl FnOnce() -> bool) -> bool {
+        let answer = &mut self.answers[gate as usize];
+        if *answer / 2 != self.round {
+            *answer = 2 * self.round + u32::from(find());
+        }
+        *answer % 2 == 1
     }
 }

@@ -79,7 +79,7 @@ fn hull(points: &[Point3]) -> Option<Vec<Point3>> {
 /// The part after its cuts; `None` if nothing is left.
 fn cut(start: &Start, cutter: &mut Cutter) -> Option<Part> {
     let mut part = start.part.clone();
-    cutter.cut_all(&mut part, &start.cuts).then_some(part)
+    start.cuts.iter().all(|plane| cutter.cut(&mut part, plane)).then_some(part)
 }
 
 proptest! {
