@@ -23,9 +23,8 @@ use super::cell_set::CellSet;
 use super::cut::{Cutter, Part, Plane, Vertex, is_within, middle};
 use super::gates::{Gate, Gates, Memory};
 use super::vector::{add, sub, unit};
-use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
+use sightlines_sightline::{ConvexStabber, KnownPortal, Line3, StabLimits, Verdict};
 
 /// How many different parts of one gate are followed before the whole gate is.
 const MOST_PARTS: usize = 8;
@@ -274,9 +273,9 @@ impl BeamTracer {
         if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
             self.chain.clear();
             self.sequence_to(beam, exit);
-            let shapes: Vec<&Portal3> = self.sequence.iter().map(|&g| gates.shape(g)).collect();
+            let shapes: Vec<&KnownPortal> = self.sequence.iter().map(|&g| gates.known(g)).collect();
             let hint = Line3::through(start, end);
-            if let Verdict::Visible(line) = self.stabber.stab(&shapes, hint.as_ref()) {
+            if let Verdict::Visible(line) = self.stabber.stab_known(&shapes, hint.as_ref()) {
                 // Followed further, the line may pass more gates; where rounding could matter, the exact decision
                 // stands.
                 self.counted.lines += 1;

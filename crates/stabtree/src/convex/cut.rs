@@ -275,12 +275,13 @@ fn lean([a, b, v]: [&Vertex; 3], normal: Point3, nn: f64, shared: Option<Point3>
     let (at_a, at_b, at_v) = (wanted(a, -1.0), wanted(b, -1.0), wanted(v, 1.0));
     // The gradient, within the plane of the three, of the linear function with these values.
     let (x, y) = ((at_b - at_a) * ff - (at_v - at_a) * ef, (at_v - at_a) * ee - (at_b - at_a) * ef);
-    let turn = scale(add(scale(e, x), scale(f, y)), 1.0 / nn);
+    let inverse = 1.0 / nn.sqrt();
+    let turn = scale(add(scale(e, x), scale(f, y)), inverse * inverse);
     // A normal longer than 1.01 would spoil the error bound of evaluation, and `LONGEST`.
     if dot(turn, turn) > 1e-4 {
         return None;
     }
-    let normal = add(scale(normal, 1.0 / nn.sqrt()), turn);
+    let normal = add(scale(normal, inverse), turn);
     Some(match shared {
         Some(corner) => Plane { normal, origin: corner, offset: 0.0 },
         None => Plane { normal, origin: a.at, offset: at_a },

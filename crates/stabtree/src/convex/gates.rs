@@ -3,6 +3,7 @@
 use super::cut::{Part, Plane, Vertex};
 use super::vector::{Point3, cross, dot, scale, sub, unit};
 use sightlines_cells::{CellGraph, Convex, Portal3};
+use sightlines_sightline::KnownPortal;
 
 /// A portal with the direction in which it is crossed. Gate `2 p` leads from the first cell of portal `p` into the
 /// second, gate `2 p + 1` back.
@@ -36,7 +37,7 @@ pub(super) struct Gate {
 #[derive(Debug, Clone)]
 pub(crate) struct Gates {
     gates: Vec<Gate>,
-    shapes: Vec<Portal3>,
+    shapes: Vec<KnownPortal>,
     corners: Part,
     first_exit: Vec<u32>,
     exits: Vec<u32>,
@@ -89,7 +90,7 @@ impl Gates {
                     lean,
                     flat,
                 });
-                shapes.push(shape);
+                shapes.push(KnownPortal::new(shape));
             }
         }
         let (mut first_exit, mut exits, mut boxes) = (vec![0u32], Vec::with_capacity(gates.len()), Vec::new());
@@ -124,6 +125,11 @@ impl Gates {
     }
 
     pub(crate) fn shape(&self, gate: u32) -> &Portal3 {
+        self.shapes[gate as usize].shape()
+    }
+
+    /// The same, as the solver likes it.
+    pub(super) fn known(&self, gate: u32) -> &KnownPortal {
         &self.shapes[gate as usize]
     }
 
@@ -154,12 +160,13 @@ impl Gates {
         // A line meets a gate no farther behind its plane than the gate's own corners lie, and rounding tilts the
         // plane.
         let flat = gs.flat.max(gt.flat);
-        let reach = dot(between, between).sqrt() + gs.radius + gt.radius;
-        let (flat_s, flat_t) = (flat - gs.uneven - gs.lean * reach, flat - gt.uneven - gt.lean * reach);
+        let reach = || dot(between, between).sqrt() + gs.radius + gt.radius;
         // Balls decide nearly all cases; their margin is far above the error of evaluation.
-        let margin = self.largest * 1e-9 + gs.uneven.max(gt.uneven) + gs.lean.max(gt.lean) * reach;
+        let far = between[0].abs() + between[1].abs() + between[2].abs() + gs.radius + gt.radius;
+        let margin = self.largest * 1e-9 + gs.uneven.max(gt.uneven) + gs.lean.max(gt.lean) * far;
         let ahead = dot(gs.normal, between);
         if ahead < gt.radius + margin {
+            let flat_s = flat - gs.uneven - gs.lean * reach();
             let in_front = |v: &Vertex| dot(gs.normal, sub(v.at, gs.center)) > flat_s;
             if ahead < -gt.radius - margin || !self.corners(t).iter().any(in_front) {
                 return false;
@@ -167,6 +174,7 @@ impl Gates {
         }
         let ahead = dot(gt.normal, between);
         if ahead < gs.radius + margin {
+            let flat_t = flat - gt.uneven - gt.lean * reach();
             let behind = |v: &Vertex| dot(gt.normal, sub(v.at, gt.center)) < -flat_t;
             if ahead < -gs.radius - margin || !self.corners(s).iter().any(behind) {
                 return false;

@@ -11,10 +11,9 @@ use super::ConvexCounters;
 use super::cut::{Cutter, Part, Plane, enclosing, middle};
 use super::gates::{Gates, Memory};
 use super::vector::{sub, unit};
-use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::ones;
-use sightlines_sightline::{ConvexStabber, LimitReached, Line3, StabLimits, Verdict};
+use sightlines_sightline::{ConvexStabber, KnownPortal, LimitReached, Line3, StabLimits, Verdict};
 
 /// Maximum number of queries about sequences for a pair; a pair that takes more counts as visible.
 const MOST_QUESTIONS: u64 = 20_000;
@@ -40,6 +39,8 @@ struct Level {
     part: Part,
     /// The same for the goal gate.
     goal: Part,
+    /// A line through the sequence up to here, then through the goal gate, if one was found.
+    line: Option<Line3>,
 }
 
 /// The answer for a pair. Visible: the gates that a line passes, which may be more than those between the cells.
@@ -118,7 +119,7 @@ impl SequenceTracer {
                 self.blocked = usize::MAX;
                 self.follows.forget();
                 let level = self.level(0);
-                (level.gate, level.to) = (first, gates.get(first).to);
+                (level.gate, level.to, level.line) = (first, gates.get(first).to, None);
                 for (part, gate) in [(&mut level.source, first), (&mut level.part, first), (&mut level.goal, goal)] {
                     part.clear();
                     part.extend_from_slice(gates.corners(gate));
@@ -220,7 +221,7 @@ impl SequenceTracer {
         self.level(depth + 1);
         let first = self.levels[0].gate;
         let [.., before, level] = &mut self.levels[..=depth + 1] else { unreachable!("two levels at least") };
-        (level.gate, level.to) = (exit, gate.to);
+        (level.gate, level.to, level.line) = (exit, gate.to, None);
         level.part.clear();
         level.part.extend_from_slice(if exit == pair.goal { &before.goal } else { gates.corners(exit) });
         if !self.cutter.cut_all(&mut level.part, gate, self.planes.iter().rev().take(PLANES)) {
@@ -254,13 +255,23 @@ impl SequenceTracer {
     /// `true` if a line was found that reaches the goal's cell; the gates that it passes are then in the chain. If no
     /// line passes, `self.blocked` is the level up to which none does.
     fn ask(&mut self, gates: &Gates, depth: usize, goal: Option<u32>) -> bool {
+        // A line that was found for the first levels may pass the others too, but leads nowhere else.
+        let above = self.levels[..=depth].iter().rposition(|level| level.line.is_some());
+        let line = above.and_then(|above| {
+            let passes = |line: &Line3| self.levels[above + 1..=depth].iter().all(|l| line.passes(gates.shape(l.gate)));
+            self.levels[above].line.filter(passes)
+        });
+        if line.is_some() && goal.is_some() {
+            self.levels[depth].line = line;
+            return false;
+        }
         self.asked += 1;
         let level = &self.levels[depth];
-        let hint =
-            Line3::through(middle(&level.source), middle(if goal.is_some() { &level.goal } else { &level.part }));
+        let end = if goal.is_some() { &level.goal } else { &level.part };
+        let hint = line.or_else(|| Line3::through(middle(&level.source), middle(end)));
         let sequence: Vec<u32> = self.levels[..=depth].iter().map(|l| l.gate).chain(goal).collect();
-        let shapes: Vec<&Portal3> = sequence.iter().map(|&gate| gates.shape(gate)).collect();
-        match self.stabber.stab(&shapes, hint.as_ref()) {
+        let shapes: Vec<&KnownPortal> = sequence.iter().map(|&gate| gates.known(gate)).collect();
+        match self.stabber.stab_known(&shapes, hint.as_ref()) {
             Verdict::Visible(line) => {
                 // Followed further, the line may pass more gates; where rounding could matter, the exact decision
                 // stands.
@@ -270,6 +281,7 @@ impl SequenceTracer {
                     return true;
                 }
                 self.chain = sequence;
+                self.levels[depth].line = Some(line);
                 goal.is_none()
             }
             Verdict::Undecided(_) => {
