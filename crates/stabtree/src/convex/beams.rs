@@ -7,7 +7,8 @@
 //! Three things keep the number of beams small:
 //!
 //! * Only cells that are in doubt are searched for, and a beam carries them along: cells on the wrong side of its new
-//!   planes, or known not to be visible through the gate, are dropped, and a beam without any ends.
+//!   planes, or known not to be visible through the gate, are dropped, and a beam without any ends. So does one at a
+//!   gate through which, looking back, the first cell is known not to be visible.
 //! * What lies beyond a part of a gate depends on the source and the part, not on the route to it. So a beam ends if
 //!   its part lies within the part of an earlier beam whose targets include its own. (The earlier one may still be
 //!   waiting; all beams are followed in the end.)
@@ -120,6 +121,12 @@ impl BeamTracer {
         self.part.clear();
         self.part.extend_from_slice(gates.corners(source));
         self.wanted.set(&in_doubt);
+        self.wanted.retain(|cell| {
+            gates.exits(cell as u32).iter().any(|&exit| {
+                through.get(exit as usize, home as usize)
+                    && (exit ^ 1 == source || self.follows.ask(exit ^ 1, || gates.may_follow(source, exit ^ 1)))
+            })
+        });
         self.push(source, 0);
         while let Some(beam) = self.waiting.pop() {
             self.follow(gates, source, home, beam, &mut in_doubt, through, &mut traced);
@@ -220,7 +227,7 @@ impl BeamTracer {
         let gate = gates.get(exit);
         self.part.clear();
         self.part.extend_from_slice(gates.corners(exit));
-        if !self.cutter.cut_all(&mut self.part, gate, self.planes.iter()) {
+        if !self.cutter.cut_all(&mut self.part, &gate.ball(), self.planes.iter()) {
             return;
         }
         if self.wanted.has(gate.to) {

@@ -21,7 +21,6 @@
 //! Source: the planes are those of Quake's vis (Abrash, Graphics Programming Black Book, chapter 70), there
 //! with a tolerance of a tenth of a unit; Teller, PhD thesis, 1992, section 5.4. The margins are ours.
 
-use super::gates::Gate;
 use super::vector::{Point3, add, cross, dot, scale, sub};
 use std::ops::Range;
 
@@ -74,6 +73,16 @@ impl Plane {
     }
 }
 
+/// A ball that contains the corners of a portal.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ball {
+    pub(super) center: Point3,
+    /// Rounded up.
+    pub(super) radius: f64,
+    /// That of the portal's corners.
+    pub(super) clearance: f64,
+}
+
 /// Cuts parts and counts how often.
 #[derive(Debug, Clone)]
 pub(super) struct Cutter {
@@ -104,9 +113,10 @@ impl Cutter {
         let (mut low, mut high, mut clearance) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
         for (v, f) in part.iter().zip(&mut values) {
             *f = plane.at(v.at);
-            low = low.min(*f);
-            high = high.max(*f);
-            clearance = clearance.max(v.clearance);
+            // What is not a number counts as neither.
+            low = if *f < low { *f } else { low };
+            high = if *f > high { *f } else { high };
+            clearance = if v.clearance > clearance { v.clearance } else { clearance };
         }
         let below = LONGEST * clearance + self.eps;
         // NaN decides nothing.
@@ -138,18 +148,19 @@ impl Cutter {
         part.len() >= 3
     }
 
-    /// Cuts a part of `gate` with all planes that its ball does not show to leave it whole, or to leave nothing.
+    /// Cuts a part of a portal with all planes that the portal's ball does not show to leave it whole, or to leave
+    /// nothing: the same as all cuts, with less work.
     #[inline(always)]
     pub(super) fn cut_all<'p>(
         &mut self,
         part: &mut Part,
-        gate: &Gate,
+        ball: &Ball,
         planes: impl Iterator<Item = &'p Plane>,
     ) -> bool {
-        let ball = LONGEST * gate.radius;
+        let radius = LONGEST * ball.radius;
         for plane in planes {
-            let value = plane.at(gate.center);
-            if value < ball && (value < -(ball + LONGEST * gate.clearance + self.eps) || !self.cut(part, plane)) {
+            let value = plane.at(ball.center);
+            if value < radius && (value < -(radius + LONGEST * ball.clearance + self.eps) || !self.cut(part, plane)) {
                 return false;
             }
         }
@@ -170,11 +181,21 @@ impl Cutter {
                 }
             }
         }
-        let start = planes.len();
-        leaning([first, second], 1.0, shared, start..start, planes);
-        // Parallel edges support each other; one plane for both is enough.
-        leaning([second, first], -1.0, shared, start..planes.len(), planes);
+        // Most share none, and then nothing has to be compared with it.
+        match shared {
+            None => leaning_both(first, second, None, planes),
+            Some(_) => leaning_both(first, second, shared, planes),
+        }
     }
+}
+
+/// Appends the planes of [`leaning`] for the edges of both parts.
+#[inline(always)]
+fn leaning_both(first: &[Vertex], second: &[Vertex], shared: Option<Point3>, planes: &mut Vec<Plane>) {
+    let start = planes.len();
+    leaning([first, second], 1.0, shared, start..start, planes);
+    // Parallel edges support each other; one plane for both is enough.
+    leaning([second, first], -1.0, shared, start..planes.len(), planes);
 }
 
 /// Appends, for each edge of `part`, the plane through it that supports `other`, if it separates the two: `part` on one

@@ -1,6 +1,6 @@
 //! The graph in the form that the search uses: portals with a direction of crossing.
 
-use super::cut::{Part, Plane, Vertex};
+use super::cut::{Ball, Part, Plane, Vertex};
 use super::vector::{Point3, cross, dot, scale, sub, unit};
 use sightlines_cells::{CellGraph, Convex, Portal3};
 use sightlines_sightline::KnownPortal;
@@ -197,7 +197,12 @@ impl Gates {
         for v in corners {
             let r = sub(v.at, origin);
             farthest = farthest.max(dot(r, r));
-            least = least.min(dot(d, cross(last, r)));
+            let side = dot(d, cross(last, r));
+            // Most gates are passed by, which one edge shows.
+            if side <= 0.0 {
+                return false;
+            }
+            least = least.min(side);
             last = r;
         }
         least > farthest * (32.0 * 0.5 * f64::EPSILON)
@@ -247,6 +252,13 @@ impl Gates {
     }
 }
 
+impl Gate {
+    #[inline(always)]
+    pub(super) fn ball(&self) -> Ball {
+        Ball { center: self.center, radius: self.radius, clearance: self.clearance }
+    }
+}
+
 /// Answers about gates that are asked for again and again.
 #[derive(Debug)]
 pub(super) struct Memory {
@@ -277,5 +289,33 @@ impl Memory {
             *answer = 2 * self.round + u32::from(find());
         }
         *answer % 2 == 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    #[test]
+    fn a_question_is_asked_once_in_a_round() {
+        let mut memory = Memory::new(3);
+        let asked = Cell::new(0);
+        let find = |answer: bool| {
+            asked.set(asked.get() + 1);
+            answer
+        };
+        for round in 1..4 {
+            for gate in [0, 1, 2, 1, 0] {
+                assert_eq!(memory.ask(gate, || find((gate + round) % 2 == 0)), (gate + round) % 2 == 0);
+            }
+            assert_eq!(asked.get(), 3 * round);
+            memory.forget();
+        }
+        // Rounds begin again without answers of old ones.
+        memory.round = u32::MAX / 2;
+        assert!(memory.ask(0, || true));
+        memory.forget();
+        assert!(!memory.ask(0, || false) && memory.round == 1);
     }
 }

@@ -186,7 +186,7 @@ impl SequenceTracer {
             self.cutter.separators(&level.source, &level.part, &mut self.planes);
         }
         self.planes.push(gates.in_front(level.gate));
-        let left = self.cutter.cut_all(&mut level.goal, gates.get(goal), self.planes[n_planes..].iter());
+        let left = self.cutter.cut_all(&mut level.goal, &gates.get(goal).ball(), self.planes[n_planes..].iter());
         if left {
             enclosing(&level.source, &level.goal, &mut self.planes);
         }
@@ -224,7 +224,7 @@ impl SequenceTracer {
         (level.gate, level.to, level.line) = (exit, gate.to, None);
         level.part.clear();
         level.part.extend_from_slice(if exit == pair.goal { &before.goal } else { gates.corners(exit) });
-        if !self.cutter.cut_all(&mut level.part, gate, self.planes.iter().rev().take(PLANES)) {
+        if !self.cutter.cut_all(&mut level.part, &gate.ball(), self.planes.iter().rev().take(PLANES)) {
             return false;
         }
         level.goal.clone_from(&before.goal);
@@ -242,7 +242,7 @@ impl SequenceTracer {
             self.back.clear();
             let first = gates.get(first);
             self.cutter.separators(a, b, &mut self.back);
-            if !self.cutter.cut_all(&mut level.source, first, self.back.iter()) {
+            if !self.cutter.cut_all(&mut level.source, &first.ball(), self.back.iter()) {
                 return false;
             }
         }
