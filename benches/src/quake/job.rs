@@ -168,6 +168,10 @@ pub fn measure(graph: &CellGraph<Convex>, method: Method, threads: usize, limit:
                 is_going = search.advance();
             }
             measured.counters = named_counters(&search.state().counters).map(|(k, v)| format!("{k}={v}")).join(" ");
+            if method == Method::Exact {
+                let chain = search.chain();
+                measured.counters += &format!(" work={} chain={}", chain.all, chain.longest);
+            }
             if is_over(&search) {
                 search.state().visible.clone()
             } else if is_going {
@@ -253,7 +257,13 @@ mod tests {
     #[test]
     fn answers_are_read_back() {
         let (measured, mut answer) = measure(&level(), Method::Exact, 1, f64::INFINITY);
-        assert!(measured.cpu > 0.0 && measured.done == 1.0 && measured.counters.contains("beams="), "{measured:?}");
+        assert!(
+            measured.cpu > 0.0
+                && measured.done == 1.0
+                && measured.counters.contains("beams=")
+                && measured.counters.contains(" chain="),
+            "{measured:?}"
+        );
         let n = answer.table.n_rows();
         assert!(answer.table.is_symmetric() && answer.table.count_ones() > n as u64);
         answer.undecided = vec![[0, 1], [3, 7]];

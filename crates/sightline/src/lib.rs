@@ -31,7 +31,7 @@ pub use axial::{
 };
 pub use convex::{
     Block, BoxProof, ConvexCertificate, ConvexCounters, ConvexNode, ConvexSequence, ConvexStabber, ConvexTerm,
-    ConvexUndo, ConvexVerdict, Line3, PlaneProof, StabLimits,
+    ConvexUndo, ConvexVerdict, KnownPortal, Line3, PlaneProof, StabLimits,
 };
 pub use planar::{End, Funnel, FunnelUndo, PlanarCertificate, PlanarVerdict, PlanarWitness, stabbing_line};
 pub use stabber::{Proof, Stabber, Witness};

@@ -30,7 +30,7 @@ pub use certify::{CertifyError, CertifyOptions, ObjectRows, certify_plan, certif
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
     BlockedConvex, Blocking, ConvexCounters, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate,
-    ConvexOptions, ConvexPath, ConvexProof, ConvexSearch, ConvexState, ConvexVisibility, MOST_EXPLAINED,
+    ConvexOptions, ConvexPath, ConvexProof, ConvexSearch, ConvexState, ConvexVisibility, MOST_EXPLAINED, WorkChain,
     certify_convex, check_convex, convex_network, explain_convex,
 };
 pub use explain::{BlockedSequence, PlanExplanation, PlanPath, PlanProof, explain};

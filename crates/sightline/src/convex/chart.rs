@@ -15,7 +15,7 @@ const PLACE: f64 = f64::EPSILON * 8.0;
 
 /// A box around a portal: as long and wide as the portal, and as thick as rounding requires.
 #[derive(Debug, Clone, Copy)]
-struct Plate {
+pub(super) struct Plate {
     block: Block,
     centre: Point3,
     /// Unit vector in the direction of crossing.
@@ -26,7 +26,7 @@ struct Plate {
 
 impl Plate {
     /// The box along the portal's longest edge. It contains every corner, rigorously.
-    fn around(portal: &Portal3) -> Option<Self> {
+    pub(super) fn around(portal: &Portal3) -> Option<Self> {
         let longest = portal.edges().map(|[p, q]| sub(q, p)).max_by(|p, q| dot(*p, *p).total_cmp(&dot(*q, *q)))?;
         let first = unit(longest)?;
         let across = cross(unit(portal.normal())?, first);
@@ -87,9 +87,8 @@ pub(super) struct Chart {
 impl Chart {
     /// The two portals between which lines differ least: the product of their extents, divided by the gap between them,
     /// is least. Boxes that touch or overlap are the last resort; of those, the farthest apart. `None` if there are not
-    /// two portals or one has no extent. O(n²), with little work for most pairs.
-    pub(super) fn best(portals: &[&Portal3]) -> Option<Self> {
-        let plates: Vec<Plate> = portals.iter().map(|p| Plate::around(p)).collect::<Option<_>>()?;
+    /// two portals. O(n²), with little work for most pairs.
+    pub(super) fn best(plates: &[Plate]) -> Option<Self> {
         let reach = |p: &Plate| p.extent[0] + p.extent[1];
         let mut best: Option<(f64, [usize; 2])> = None;
         let mut farthest: Option<(f64, [usize; 2])> = None;

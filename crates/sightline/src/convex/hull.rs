@@ -18,9 +18,12 @@ const CAP: f64 = 1.0;
 /// Pairs of a first coordinate (0, 1) and a second one (0, 1), in the order of their products.
 const PAIRS: [[usize; 2]; 4] = [[0, 0], [0, 1], [1, 0], [1, 1]];
 
-/// Starts the program with the rows of the hull.
+/// Starts the program with the rows of the hull; it has none yet, or begins with them already.
 pub(super) fn start(program: &mut Program<9>) {
-    program.clear();
+    program.truncate(N_HULL);
+    if program.n_rows() == N_HULL {
+        return;
+    }
     for i in 0..9 {
         let (sign, bound) = if i < 8 { (-1.0, 0.0) } else { (1.0, CAP) };
         program.push(std::array::from_fn(|k| if i == k { sign } else { 0.0 }), bound);

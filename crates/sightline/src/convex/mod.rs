@@ -83,7 +83,7 @@ pub use certificate::{Block, BoxProof, ConvexCertificate, ConvexNode, ConvexTerm
 pub use counters::ConvexCounters;
 pub use line::Line3;
 pub use sequence::{ConvexSequence, ConvexUndo};
-pub use solver::{ConvexStabber, StabLimits};
+pub use solver::{ConvexStabber, KnownPortal, StabLimits};
 
 use crate::{LimitReached, Verdict};
 use sightlines_geometry::Portal3;

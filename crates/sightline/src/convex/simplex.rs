@@ -37,9 +37,14 @@ impl<const N: usize> Program<N> {
         }
     }
 
-    pub(super) fn clear(&mut self) {
-        self.columns.iter_mut().for_each(Vec::clear);
-        self.bounds.clear();
+    /// Drops all rows but the first `n`.
+    pub(super) fn truncate(&mut self, n: usize) {
+        self.columns.iter_mut().for_each(|column| column.truncate(n));
+        self.bounds.truncate(n);
+    }
+
+    pub(super) fn n_rows(&self) -> usize {
+        self.bounds.len()
     }
 
     pub(super) fn push(&mut self, coefficients: [f64; N], bound: f64) {

@@ -30,7 +30,7 @@ pub(super) fn alternate(
     for round in 0..rounds {
         let second = round % 2 == 0;
         let before = turn.margin;
-        program.clear();
+        program.truncate(0);
         for i in 0..3 {
             let bound = if i < 2 { 0.0 } else { 1.0 };
             let sign = if i < 2 { -1.0 } else { 1.0 };

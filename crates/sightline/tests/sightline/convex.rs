@@ -5,8 +5,8 @@ use num_traits::{Float, Signed, Zero};
 use proptest::prelude::*;
 use sightlines_geometry::{AxialDoor, Point3, Portal3, Random};
 use sightlines_sightline::{
-    BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexVerdict, LimitReached, Line3, PlaneProof, StabLimits,
-    Verdict,
+    BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexVerdict, KnownPortal, LimitReached, Line3,
+    PlaneProof, StabLimits, Verdict,
 };
 use sightlines_testkit::{axial_corridor, axial_stabbable_brute_force, straight_axial_corridor};
 
@@ -157,6 +157,19 @@ proptest! {
         let open = axial_stabbable_brute_force(&doors);
         let found = decide(&mut ConvexStabber::new(StabLimits::default()), &portals);
         prop_assert_ne!(found, if open { Found::Hidden } else { Found::Visible }, "{:?}", doors);
+    }
+
+    /// Nor what is kept of the portal, or of the sequences before: the same answers with the same proofs.
+    #[test]
+    fn known_portals_change_no_answer(seed: u64, n in 1usize..9, size in 20.0f64..60.0) {
+        let mut random = Random::new(seed);
+        let mut stabber = ConvexStabber::new(StabLimits::default());
+        for grid in [0.0, 4.0, 16.0] {
+            let portals = corridor(&mut random, n, size, grid, 0.0);
+            let known: Vec<KnownPortal> = portals.iter().cloned().map(KnownPortal::new).collect();
+            let found = stabber.stab_known(&known.iter().collect::<Vec<_>>(), None);
+            prop_assert_eq!(format!("{found:?}"), format!("{:?}", stab(&portals)));
+        }
     }
 
     /// Invariant: hints do not change what is so.

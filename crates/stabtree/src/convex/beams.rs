@@ -7,7 +7,8 @@
 //! Three things keep the number of beams small:
 //!
 //! * Only cells that are in doubt are searched for, and a beam carries them along: cells on the wrong side of its new
-//!   planes, or known not to be visible through the gate, are dropped, and a beam without any ends.
+//!   planes, or known not to be visible through the gate, are dropped, and a beam without any ends. So does one at a
+//!   gate through which, looking back, the first cell is known not to be visible.
 //! * What lies beyond a part of a gate depends on the source and the part, not on the route to it. So a beam ends if
 //!   its part lies within the part of an earlier beam whose targets include its own. (The earlier one may still be
 //!   waiting; all beams are followed in the end.)
@@ -21,11 +22,10 @@
 use super::ConvexCounters;
 use super::cell_set::CellSet;
 use super::cut::{Cutter, Part, Plane, Vertex, is_within, middle};
-use super::gates::{Gate, Gates};
+use super::gates::{Gate, Gates, Memory};
 use super::vector::{add, sub, unit};
-use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
+use sightlines_sightline::{ConvexStabber, KnownPortal, Line3, StabLimits, Verdict};
 
 /// How many different parts of one gate are followed before the whole gate is.
 const MOST_PARTS: usize = 8;
@@ -62,6 +62,8 @@ pub(super) struct BeamTracer {
     wanted: CellSet,
     followed: CellSet,
     sequence: Vec<u32>,
+    /// Which gates may follow the source.
+    follows: Memory,
 }
 
 /// The results for one gate.
@@ -91,6 +93,7 @@ impl BeamTracer {
             wanted: CellSet::default(),
             followed: CellSet::default(),
             sequence: Vec::new(),
+            follows: Memory::new(gates.len()),
         }
     }
 
@@ -111,12 +114,19 @@ impl BeamTracer {
             return traced;
         }
         let Gate { from: home, to: next, .. } = *gates.get(source);
+        self.follows.forget();
         if in_doubt[next as usize / 64] >> (next % 64) & 1 == 1 {
             self.seek(gates, source, None, source, &[], &mut in_doubt, &mut traced);
         }
         self.part.clear();
         self.part.extend_from_slice(gates.corners(source));
         self.wanted.set(&in_doubt);
+        self.wanted.retain(|cell| {
+            gates.exits(cell as u32).iter().any(|&exit| {
+                through.get(exit as usize, home as usize)
+                    && (exit ^ 1 == source || self.follows.ask(exit ^ 1, || gates.may_follow(source, exit ^ 1)))
+            })
+        });
         self.push(source, 0);
         while let Some(beam) = self.waiting.pop() {
             self.follow(gates, source, home, beam, &mut in_doubt, through, &mut traced);
@@ -163,8 +173,9 @@ impl BeamTracer {
             let meets = self.find_planes(gates, source, beam);
             drop_hidden(&self.planes, gates, self.cutter.eps, &mut wanted);
             if meets && !wanted.is_empty() {
-                for &exit in gates.exits(gates.get(at).to) {
-                    if exit != at ^ 1 && gates.get(exit).to != home {
+                for &exit in gates.next(at) {
+                    // Looking back through the exit, a line sees the cell that it comes from.
+                    if gates.get(exit).to != home && through.get((exit ^ 1) as usize, home as usize) {
                         self.pass(gates, source, beam, exit, &wanted, in_doubt, through, traced);
                     }
                 }
@@ -210,19 +221,14 @@ impl BeamTracer {
         if self.wanted.is_empty() {
             return;
         }
-        let at = self.beams[beam as usize].gate;
-        if !gates.may_follow(at, exit) || (at != source && !gates.may_follow(source, exit)) {
+        if !self.follows.ask(exit, || gates.may_follow(source, exit)) {
             return;
         }
         let gate = gates.get(exit);
         self.part.clear();
         self.part.extend_from_slice(gates.corners(exit));
-        for plane in &self.planes {
-            let value = plane.at(gate.center);
-            // The plane's normal is at most 1.01 long.
-            if value < 1.02 * gate.radius && !self.cutter.cut(&mut self.part, plane) {
-                return;
-            }
+        if !self.cutter.cut_all(&mut self.part, &gate.ball(), self.planes.iter()) {
+            return;
         }
         if self.wanted.has(gate.to) {
             // The search for a line uses the gates themselves; the part is only a hint.
@@ -274,9 +280,9 @@ impl BeamTracer {
         if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
             self.chain.clear();
             self.sequence_to(beam, exit);
-            let shapes: Vec<&Portal3> = self.sequence.iter().map(|&g| gates.shape(g)).collect();
+            let shapes: Vec<&KnownPortal> = self.sequence.iter().map(|&g| gates.known(g)).collect();
             let hint = Line3::through(start, end);
-            if let Verdict::Visible(line) = self.stabber.stab(&shapes, hint.as_ref()) {
+            if let Verdict::Visible(line) = self.stabber.stab_known(&shapes, hint.as_ref()) {
                 // Followed further, the line may pass more gates; where rounding could matter, the exact decision
                 // stands.
                 self.counted.lines += 1;

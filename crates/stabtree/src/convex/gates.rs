@@ -1,8 +1,9 @@
 //! The graph in the form that the search uses: portals with a direction of crossing.
 
-use super::cut::{Part, Plane, Vertex};
+use super::cut::{Ball, Part, Plane, Vertex};
 use super::vector::{Point3, cross, dot, scale, sub, unit};
 use sightlines_cells::{CellGraph, Convex, Portal3};
+use sightlines_sightline::KnownPortal;
 
 /// A portal with the direction in which it is crossed. Gate `2 p` leads from the first cell of portal `p` into the
 /// second, gate `2 p + 1` back.
@@ -15,6 +16,8 @@ pub(super) struct Gate {
     pub(super) center: Point3,
     /// Radius of the ball around the center that contains the corners, rounded up.
     pub(super) radius: f64,
+    /// How far a plane has to be from any corner to be certainly on one side.
+    pub(super) clearance: f64,
     /// The direction of crossing, of length 1.
     pub(super) normal: Point3,
     /// Distance of the corners from the plane through the center with this normal.
@@ -34,10 +37,12 @@ pub(super) struct Gate {
 #[derive(Debug, Clone)]
 pub(crate) struct Gates {
     gates: Vec<Gate>,
-    shapes: Vec<Portal3>,
+    shapes: Vec<KnownPortal>,
     corners: Part,
     first_exit: Vec<u32>,
     exits: Vec<u32>,
+    first_next: Vec<u32>,
+    next: Vec<u32>,
     /// Bounding boxes of the portals of each cell.
     pub(super) boxes: Vec<[Point3; 2]>,
     /// Largest coordinate, at least the smallest positive one.
@@ -79,12 +84,13 @@ impl Gates {
                     n_corners,
                     center,
                     radius,
+                    clearance: corners[first as usize].clearance,
                     normal,
                     uneven,
                     lean,
                     flat,
                 });
-                shapes.push(shape);
+                shapes.push(KnownPortal::new(shape));
             }
         }
         let (mut first_exit, mut exits, mut boxes) = (vec![0u32], Vec::with_capacity(gates.len()), Vec::new());
@@ -94,7 +100,15 @@ impl Gates {
             let bounds = graph.cell(cell).bounds;
             boxes.push([bounds.min, bounds.max]);
         }
-        Self { gates, shapes, corners, first_exit, exits, boxes, largest }
+        let (first_next, next) = (vec![0], Vec::new());
+        let mut made = Self { gates, shapes, corners, first_exit, exits, first_next, next, boxes, largest };
+        for gate in 0..made.gates.len() as u32 {
+            let exits = made.exits(made.get(gate).to).iter().copied();
+            let next: Vec<u32> = exits.filter(|&exit| exit != gate ^ 1 && made.may_follow(gate, exit)).collect();
+            made.next.extend(next);
+            made.first_next.push(made.next.len() as u32);
+        }
+        made
     }
 
     pub(super) fn len(&self) -> usize {
@@ -111,6 +125,11 @@ impl Gates {
     }
 
     pub(crate) fn shape(&self, gate: u32) -> &Portal3 {
+        self.shapes[gate as usize].shape()
+    }
+
+    /// The same, as the solver likes it.
+    pub(super) fn known(&self, gate: u32) -> &KnownPortal {
         &self.shapes[gate as usize]
     }
 
@@ -126,6 +145,12 @@ impl Gates {
         &self.exits[self.first_exit[cell as usize] as usize..self.first_exit[cell as usize + 1] as usize]
     }
 
+    /// The gates out of the cell behind a gate that [may follow](Self::may_follow) it.
+    #[inline(always)]
+    pub(super) fn next(&self, gate: u32) -> &[u32] {
+        &self.next[self.first_next[gate as usize] as usize..self.first_next[gate as usize + 1] as usize]
+    }
+
     /// Whether a line may pass gate `s` and then gate `t`, judging by their planes: `t` has a corner in front of the
     /// plane of `s`, and `s` one behind the plane of `t`.
     #[inline]
@@ -135,12 +160,13 @@ impl Gates {
         // A line meets a gate no farther behind its plane than the gate's own corners lie, and rounding tilts the
         // plane.
         let flat = gs.flat.max(gt.flat);
-        let reach = dot(between, between).sqrt() + gs.radius + gt.radius;
-        let (flat_s, flat_t) = (flat - gs.uneven - gs.lean * reach, flat - gt.uneven - gt.lean * reach);
+        let reach = || dot(between, between).sqrt() + gs.radius + gt.radius;
         // Balls decide nearly all cases; their margin is far above the error of evaluation.
-        let margin = self.largest * 1e-9 + gs.uneven.max(gt.uneven) + gs.lean.max(gt.lean) * reach;
+        let far = between[0].abs() + between[1].abs() + between[2].abs() + gs.radius + gt.radius;
+        let margin = self.largest * 1e-9 + gs.uneven.max(gt.uneven) + gs.lean.max(gt.lean) * far;
         let ahead = dot(gs.normal, between);
         if ahead < gt.radius + margin {
+            let flat_s = flat - gs.uneven - gs.lean * reach();
             let in_front = |v: &Vertex| dot(gs.normal, sub(v.at, gs.center)) > flat_s;
             if ahead < -gt.radius - margin || !self.corners(t).iter().any(in_front) {
                 return false;
@@ -148,6 +174,7 @@ impl Gates {
         }
         let ahead = dot(gt.normal, between);
         if ahead < gs.radius + margin {
+            let flat_t = flat - gt.uneven - gt.lean * reach();
             let behind = |v: &Vertex| dot(gt.normal, sub(v.at, gt.center)) < -flat_t;
             if ahead < -gs.radius - margin || !self.corners(s).iter().any(behind) {
                 return false;
@@ -170,7 +197,12 @@ impl Gates {
         for v in corners {
             let r = sub(v.at, origin);
             farthest = farthest.max(dot(r, r));
-            least = least.min(dot(d, cross(last, r)));
+            let side = dot(d, cross(last, r));
+            // Most gates are passed by, which one edge shows.
+            if side <= 0.0 {
+                return false;
+            }
+            least = least.min(side);
             last = r;
         }
         least > farthest * (32.0 * 0.5 * f64::EPSILON)
@@ -217,5 +249,73 @@ impl Gates {
         passed.iter_mut().for_each(|g| *g ^= 1);
         passed.push(gate);
         self.follow(gate, origin, d, passed);
+    }
+}
+
+impl Gate {
+    #[inline(always)]
+    pub(super) fn ball(&self) -> Ball {
+        Ball { center: self.center, radius: self.radius, clearance: self.clearance }
+    }
+}
+
+/// Answers about gates that are asked for again and again.
+#[derive(Debug)]
+pub(super) struct Memory {
+    /// Twice the round in which a gate's answer was found, and 1 more for yes.
+    answers: Vec<u32>,
+    round: u32,
+}
+
+impl Memory {
+    pub(super) fn new(n_gates: usize) -> Self {
+        Self { answers: vec![0; n_gates], round: 1 }
+    }
+
+    /// Begins with no answers.
+    pub(super) fn forget(&mut self) {
+        self.round += 1;
+        if self.round > u32::MAX / 2 {
+            self.answers.fill(0);
+            self.round = 1;
+        }
+    }
+
+    /// The answer for a gate: `find` is called if it is not known.
+    #[inline(always)]
+    pub(super) fn ask(&mut self, gate: u32, find: impl FnOnce() -> bool) -> bool {
+        let answer = &mut self.answers[gate as usize];
+        if *answer / 2 != self.round {
+            *answer = 2 * self.round + u32::from(find());
+        }
+        *answer % 2 == 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    #[test]
+    fn a_question_is_asked_once_in_a_round() {
+        let mut memory = Memory::new(3);
+        let asked = Cell::new(0);
+        let find = |answer: bool| {
+            asked.set(asked.get() + 1);
+            answer
+        };
+        for round in 1..4 {
+            for gate in [0, 1, 2, 1, 0] {
+                assert_eq!(memory.ask(gate, || find((gate + round) % 2 == 0)), (gate + round) % 2 == 0);
+            }
+            assert_eq!(asked.get(), 3 * round);
+            memory.forget();
+        }
+        // Rounds begin again without answers of old ones.
+        memory.round = u32::MAX / 2;
+        assert!(memory.ask(0, || true));
+        memory.forget();
+        assert!(!memory.ask(0, || false) && memory.round == 1);
     }
 }

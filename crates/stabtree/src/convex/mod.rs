@@ -33,7 +33,7 @@ pub use explain::{
     BlockedConvex, Blocking, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexPath, ConvexProof,
     MOST_EXPLAINED, check_convex, explain_convex,
 };
-pub use state::{ConvexCounters, ConvexOptions, ConvexState, ConvexVisibility};
+pub use state::{ConvexCounters, ConvexOptions, ConvexState, ConvexVisibility, WorkChain};
 
 pub(crate) use batch::Workers;
 use beams::BeamTracer;
@@ -70,6 +70,7 @@ pub struct ConvexSearch {
     /// can be estimated from what is done.
     scattered: Vec<u32>,
     workers: Workers,
+    chain: WorkChain,
 }
 
 impl ConvexSearch {
@@ -90,7 +91,16 @@ impl ConvexSearch {
         let mut scattered: Vec<u32> = (0..n as u32).collect();
         // Bits reversed: halves, then quarters, and so on.
         scattered.sort_by_key(|cell| cell.reverse_bits());
-        Self { gates, options, state, order: Vec::new(), rank: Vec::new(), scattered, workers }
+        Self {
+            gates,
+            options,
+            state,
+            order: Vec::new(),
+            rank: Vec::new(),
+            scattered,
+            workers,
+            chain: WorkChain::default(),
+        }
     }
 
     /// Resumes a search of the same graph with the same options (the number of threads may differ). `None` if the state
@@ -119,6 +129,12 @@ impl ConvexSearch {
     /// The current state of the search.
     pub fn state(&self) -> &ConvexState {
         &self.state
+    }
+
+    /// The work of beams and of pairs since this search was made or resumed, where nearly all time goes, and the longest
+    /// chain of it that no number of threads can shorten. Deterministic, with any number of threads.
+    pub fn chain(&self) -> WorkChain {
+        self.chain
     }
 
     /// The progress of the search. The share is an estimate of time.
@@ -301,6 +317,7 @@ impl ConvexSearch {
                 (traced, tracer.take_counters())
             },
         );
+        self.chain.add(traced.iter().map(|(_, counters)| counters.work()));
         let mut touched: Vec<u32> = Vec::new();
         for (place, (traced, counters)) in range.zip(traced) {
             let gate = self.order[place];
@@ -356,6 +373,7 @@ impl ConvexSearch {
             |tracer, k| (tracer.decide(gates, pairs[k], &state.through), tracer.take_counters()),
         );
         self.state.done = done as u64;
+        self.chain.add(decided.iter().map(|(_, counters)| counters.work()));
         for ([a, b], (sight, counters)) in pairs.into_iter().zip(decided) {
             self.state.counters += counters;
             match sight {

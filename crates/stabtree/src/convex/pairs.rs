@@ -9,13 +9,11 @@
 
 use super::ConvexCounters;
 use super::cut::{Cutter, Part, Plane, enclosing, middle};
-use super::gates::Gates;
+use super::gates::{Gates, Memory};
 use super::vector::{sub, unit};
-use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::ones;
-use sightlines_sightline::{ConvexStabber, LimitReached, Line3, StabLimits, Verdict};
-use std::collections::HashMap;
+use sightlines_sightline::{ConvexStabber, KnownPortal, LimitReached, Line3, StabLimits, Verdict};
 
 /// Maximum number of queries about sequences for a pair; a pair that takes more counts as visible.
 const MOST_QUESTIONS: u64 = 20_000;
@@ -33,12 +31,16 @@ const WORTH_ASKING: u64 = 32;
 #[derive(Debug, Default)]
 struct Level {
     gate: u32,
+    /// The cell behind it.
+    to: u32,
     /// The part of the first gate that lines of the sequence may pass.
     source: Part,
     /// The same for this gate.
     part: Part,
     /// The same for the goal gate.
     goal: Part,
+    /// A line through the sequence up to here, then through the goal gate, if one was found.
+    line: Option<Line3>,
 }
 
 /// The answer for a pair. Visible: the gates that a line passes, which may be more than those between the cells.
@@ -54,8 +56,13 @@ pub(super) struct SequenceTracer {
     levels: Vec<Level>,
     planes: Vec<Plane>,
     chain: Vec<u32>,
-    /// Sets of gates that no line passes, by their last gate, for the current pair.
-    learnt: HashMap<u32, Vec<Vec<u32>>>,
+    /// Sets of gates that no line passes, by their last gate, for the current pair; and the gates that have some.
+    learnt: Vec<Vec<Vec<u32>>>,
+    learnt_of: Vec<u32>,
+    /// Which gates may lead to the goal.
+    leads: Memory,
+    /// Which gates may follow the first one.
+    follows: Memory,
     asked: u64,
     undecided: bool,
     /// The level at which the sequence is blocked; nothing is to be followed behind it.
@@ -74,7 +81,10 @@ impl SequenceTracer {
             levels: Vec::new(),
             planes: Vec::new(),
             chain: Vec::new(),
-            learnt: HashMap::new(),
+            learnt: vec![Vec::new(); gates.len()],
+            learnt_of: Vec::new(),
+            leads: Memory::new(gates.len()),
+            follows: Memory::new(gates.len()),
             asked: 0,
             undecided: false,
             blocked: usize::MAX,
@@ -95,19 +105,21 @@ impl SequenceTracer {
     /// `g`.
     pub(super) fn decide(&mut self, gates: &Gates, [a, b]: [u32; 2], through: &BitMatrix) -> PairVerdict {
         (self.asked, self.undecided) = (0, false);
-        self.learnt.clear();
+        self.learnt_of.drain(..).for_each(|gate| self.learnt[gate as usize].clear());
         for goal in gates.exits(b).iter().map(|&exit| exit ^ 1) {
             if !through.get((goal ^ 1) as usize, a as usize) {
                 continue;
             }
+            self.leads.forget();
             for &first in gates.exits(a).iter().filter(|&&first| through.get(first as usize, b as usize)) {
                 if first != goal && !gates.may_follow(first, goal) {
                     continue;
                 }
                 self.planes.clear();
                 self.blocked = usize::MAX;
+                self.follows.forget();
                 let level = self.level(0);
-                level.gate = first;
+                (level.gate, level.to, level.line) = (first, gates.get(first).to, None);
                 for (part, gate) in [(&mut level.source, first), (&mut level.part, first), (&mut level.goal, goal)] {
                     part.clear();
                     part.extend_from_slice(gates.corners(gate));
@@ -138,9 +150,9 @@ impl SequenceTracer {
     fn follow(&mut self, gates: &Gates, depth: usize, pair: &Pair<'_>) -> bool {
         let n_planes = self.planes.len();
         let mut found = false;
-        if !self.is_learnt(depth + 1, pair.goal) && self.narrow(gates, depth) {
+        if !self.is_learnt(depth + 1, pair.goal) && self.narrow(gates, depth, pair.goal) {
             let (first, mut has_asked) = (self.counted.sequences, false);
-            for &exit in gates.exits(gates.get(self.levels[depth].gate).to) {
+            for &exit in gates.next(self.levels[depth].gate) {
                 // Where much lies behind a sequence, test whether its lines lead to the goal at all.
                 if !has_asked && self.counted.sequences > first + WORTH_ASKING {
                     has_asked = true;
@@ -167,14 +179,14 @@ impl SequenceTracer {
     }
 
     /// Finds the planes of a level and cuts the goal with them; returns whether something is left of it.
-    fn narrow(&mut self, gates: &Gates, depth: usize) -> bool {
+    fn narrow(&mut self, gates: &Gates, depth: usize, goal: u32) -> bool {
         let n_planes = self.planes.len();
         let level = &mut self.levels[depth];
         if depth > 0 {
             self.cutter.separators(&level.source, &level.part, &mut self.planes);
         }
         self.planes.push(gates.in_front(level.gate));
-        let left = self.planes[n_planes..].iter().all(|plane| self.cutter.cut(&mut level.goal, plane));
+        let left = self.cutter.cut_all(&mut level.goal, &gates.get(goal).ball(), self.planes[n_planes..].iter());
         if left {
             enclosing(&level.source, &level.goal, &mut self.planes);
         }
@@ -183,30 +195,37 @@ impl SequenceTracer {
 
     /// Extends the sequence by a gate; returns whether it is worth following.
     fn enter(&mut self, gates: &Gates, depth: usize, exit: u32, pair: &Pair<'_>) -> bool {
-        let gate = gates.get(exit);
         // A line meets each cell once, and every point on it sees the first cell and the last.
-        let sees_both = exit == pair.goal
-            || gate.to != pair.b
+        let gate = gates.get(exit);
+        let leads = || {
+            gate.to != pair.a
+                && gate.to != pair.b
                 && pair.through.get(exit as usize, pair.b as usize)
                 && pair.through.get((exit ^ 1) as usize, pair.a as usize)
-                && gates.may_follow(exit, pair.goal);
-        let is_on_way = gate.to == pair.a || self.levels[..=depth].iter().any(|l| gates.get(l.gate).to == gate.to);
-        if !sees_both
-            || is_on_way
+                && gates.may_follow(exit, pair.goal)
+        };
+        if exit != pair.goal && !self.leads.ask(exit, leads) {
+            return false;
+        }
+        let [first, others @ ..] = &self.levels[..=depth] else { unreachable!("one level at least") };
+        // What may follow the last one is all that is tried.
+        let between = &others[..others.len().saturating_sub(1)];
+        if others.iter().any(|level| level.to == gate.to)
+            || first.to == gate.to
+            || !self.follows.ask(exit, || gates.may_follow(first.gate, exit))
             || self.is_learnt(depth + 1, exit)
-            || !self.levels[..=depth].iter().all(|l| gates.may_follow(l.gate, exit))
+            || !between.iter().all(|level| gates.may_follow(level.gate, exit))
         {
             return false;
         }
         self.level(depth + 1);
+        let first = self.levels[0].gate;
         let [.., before, level] = &mut self.levels[..=depth + 1] else { unreachable!("two levels at least") };
-        level.gate = exit;
+        (level.gate, level.to, level.line) = (exit, gate.to, None);
         level.part.clear();
         level.part.extend_from_slice(if exit == pair.goal { &before.goal } else { gates.corners(exit) });
-        for plane in self.planes.iter().rev().take(PLANES) {
-            if plane.at(gate.center) < 1.02 * gate.radius && !self.cutter.cut(&mut level.part, plane) {
-                return false;
-            }
+        if !self.cutter.cut_all(&mut level.part, &gate.ball(), self.planes.iter().rev().take(PLANES)) {
+            return false;
         }
         level.goal.clone_from(&before.goal);
         level.source.clone_from(&before.source);
@@ -221,8 +240,9 @@ impl SequenceTracer {
             b.clear();
             b.extend(before.part.iter().rev());
             self.back.clear();
+            let first = gates.get(first);
             self.cutter.separators(a, b, &mut self.back);
-            if !self.cutter.cut_all(&mut level.source, &self.back) {
+            if !self.cutter.cut_all(&mut level.source, &first.ball(), self.back.iter()) {
                 return false;
             }
         }
@@ -235,13 +255,23 @@ impl SequenceTracer {
     /// `true` if a line was found that reaches the goal's cell; the gates that it passes are then in the chain. If no
     /// line passes, `self.blocked` is the level up to which none does.
     fn ask(&mut self, gates: &Gates, depth: usize, goal: Option<u32>) -> bool {
+        // A line that was found for the first levels may pass the others too, but leads nowhere else.
+        let above = self.levels[..=depth].iter().rposition(|level| level.line.is_some());
+        let line = above.and_then(|above| {
+            let passes = |line: &Line3| self.levels[above + 1..=depth].iter().all(|l| line.passes(gates.shape(l.gate)));
+            self.levels[above].line.filter(passes)
+        });
+        if line.is_some() && goal.is_some() {
+            self.levels[depth].line = line;
+            return false;
+        }
         self.asked += 1;
         let level = &self.levels[depth];
-        let hint =
-            Line3::through(middle(&level.source), middle(if goal.is_some() { &level.goal } else { &level.part }));
+        let end = if goal.is_some() { &level.goal } else { &level.part };
+        let hint = line.or_else(|| Line3::through(middle(&level.source), middle(end)));
         let sequence: Vec<u32> = self.levels[..=depth].iter().map(|l| l.gate).chain(goal).collect();
-        let shapes: Vec<&Portal3> = sequence.iter().map(|&gate| gates.shape(gate)).collect();
-        match self.stabber.stab(&shapes, hint.as_ref()) {
+        let shapes: Vec<&KnownPortal> = sequence.iter().map(|&gate| gates.known(gate)).collect();
+        match self.stabber.stab_known(&shapes, hint.as_ref()) {
             Verdict::Visible(line) => {
                 // Followed further, the line may pass more gates; where rounding could matter, the exact decision
                 // stands.
@@ -251,6 +281,7 @@ impl SequenceTracer {
                     return true;
                 }
                 self.chain = sequence;
+                self.levels[depth].line = Some(line);
                 goal.is_none()
             }
             Verdict::Undecided(_) => {
@@ -262,7 +293,9 @@ impl SequenceTracer {
                 if let Some(mut last) = named.pop() {
                     if named.len() <= MOST_LEARNT {
                         let others = named.iter().map(|&place| sequence[place]).collect();
-                        self.learnt.entry(sequence[last]).or_default().push(others);
+                        let gate = sequence[last];
+                        self.learnt[gate as usize].push(others);
+                        self.learnt_of.push(gate);
                     }
                     // The goal comes last, whatever lies between.
                     if goal.is_some() && last > depth {
@@ -278,8 +311,7 @@ impl SequenceTracer {
     /// Whether the first levels and a gate are known to be blocked. Gates are stored in order, and a proof may depend
     /// on it.
     fn is_learnt(&self, n_levels: usize, gate: u32) -> bool {
-        let Some(sets) = self.learnt.get(&gate) else { return false };
-        sets.iter().any(|set| {
+        self.learnt[gate as usize].iter().any(|set| {
             let mut on_way = self.levels[..n_levels].iter().map(|level| level.gate);
             set.iter().all(|other| on_way.any(|gate| gate == *other))
         })

@@ -27,6 +27,14 @@ pub struct ConvexCounters {
     pub sequences: u64,
 }
 
+impl ConvexCounters {
+    /// All of it as one number, in cuts of a polygon: the other operations count as many as they were found to take time
+    /// for, roughly.
+    pub const fn work(&self) -> u64 {
+        self.clips + 10 * self.lines + 80 * self.programs + 20 * self.beams + 30 * self.sequences
+    }
+}
+
 impl std::ops::AddAssign for ConvexCounters {
     fn add_assign(&mut self, other: Self) {
         self.clips += other.clips;
@@ -57,6 +65,25 @@ pub struct ConvexState {
     pub counters: ConvexCounters,
 }
 
+/// How far more threads can speed up a search, counted and not timed: see [`ConvexSearch::chain`](super::ConvexSearch::chain).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct WorkChain {
+    /// The [work](ConvexCounters::work) of all units.
+    pub all: u64,
+    /// That of the unit with the most work of each batch, added up: batches follow each other, so however many threads
+    /// there are, they wait for it.
+    pub longest: u64,
+}
+
+impl WorkChain {
+    /// Adds a batch, given the work of its units.
+    pub(super) fn add(&mut self, batch: impl Iterator<Item = u64>) {
+        let (all, longest) = batch.fold((0, 0), |(all, longest), unit| (all + unit, unit.max(longest)));
+        self.all += all;
+        self.longest += longest;
+    }
+}
+
 /// The answer of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvexVisibility {
@@ -67,4 +94,18 @@ pub struct ConvexVisibility {
     pub undecided: Vec<[u32; 2]>,
     /// The work done.
     pub counters: ConvexCounters,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chain_waits_for_the_longest_of_each_batch() {
+        let mut chain = WorkChain::default();
+        chain.add([3, 9, 4].into_iter());
+        chain.add([5].into_iter());
+        chain.add(std::iter::empty());
+        assert_eq!(chain, WorkChain { all: 21, longest: 14 });
+    }
 }

@@ -79,10 +79,35 @@ fn hull(points: &[Point3]) -> Option<Vec<Point3>> {
 /// The part after its cuts; `None` if nothing is left.
 fn cut(start: &Start, cutter: &mut Cutter) -> Option<Part> {
     let mut part = start.part.clone();
-    cutter.cut_all(&mut part, &start.cuts).then_some(part)
+    start.cuts.iter().all(|plane| cutter.cut(&mut part, plane)).then_some(part)
 }
 
 proptest! {
+    /// With the ball of the portal, cuts leave what they leave without it, and some are saved.
+    #[test]
+    fn a_ball_saves_cuts_and_changes_none(start in start(0), others in proptest::collection::vec(start(0), 1..6)) {
+        let planes: Vec<Plane> = others.iter().flat_map(|other| other.cuts.iter().copied()).collect();
+        let center = middle(&start.part);
+        let far = |v: &Vertex| dot(sub(v.at, center), sub(v.at, center)).sqrt();
+        let radius = start.part.iter().map(far).fold(0.0, f64::max) * (1.0 + 1e-9);
+        let ball = Ball { center, radius, clearance: Cutter::new(LARGEST).eps };
+        let (mut plain, mut saving) = (Cutter::new(LARGEST), Cutter::new(LARGEST));
+        let (mut part, mut same) = (start.part.clone(), start.part.clone());
+        let left = planes.iter().all(|plane| plain.cut(&mut part, plane));
+        prop_assert_eq!(saving.cut_all(&mut same, &ball, planes.iter()), left);
+        prop_assert!(saving.clips <= plain.clips);
+        if left {
+            prop_assert_eq!(part.len(), same.len());
+            prop_assert!(part.iter().zip(&same).all(|(a, b)| a.at == b.at));
+        }
+        // A ball that is too small is noticed.
+        let small = Ball { radius: 0.0, ..ball };
+        let across = Plane { normal: [0.0, 1.0, 0.0], origin: center, offset: 1e-3 };
+        let (mut cut, mut kept) = (start.part.clone(), start.part.clone());
+        prop_assert!(saving.cut(&mut cut, &across) && saving.cut_all(&mut kept, &small, [across].iter()));
+        prop_assert!(cut.iter().map(|v| v.at).ne(kept.iter().map(|v| v.at)));
+    }
+
     /// Points of the portal that are above all cuts are within the part, up to the radius of constructed vertices: so
     /// no plane that has the part above it by that much excludes them.
     #[test]
