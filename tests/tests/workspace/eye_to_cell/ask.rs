@@ -1,7 +1,7 @@
 //! Asking all methods, and comparing their answers.
 
 use sightlines::eye_to_cell::{
-    Doors, Image, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
+    Budget, Doors, Image, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines::pvs::{CellId, Table};
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,15 +22,44 @@ pub(crate) struct Asker<'t> {
     cells: TableCells<&'t Table>,
     subgraphs: BTreeMap<CellId, Rc<VisibleSubgraph>>,
     scratch: Scratch,
+    /// Answers of all methods that were asked for.
+    n_asked: u64,
+    /// The last bounded answer of the exact method.
+    pub(crate) bounded: Answer,
+    /// Bounded answers that are between the exact one and that of the incident portals.
+    pub(crate) n_between: usize,
 }
+
+/// Work of bounded answers: some in the middle of the search, for scenes of all sizes.
+const STEPS: [u64; 6] = [200, 500, 1000, 2000, 4000, 10_000];
 
 impl<'t> Asker<'t> {
     pub(crate) fn new(table: &'t Table) -> Self {
-        Self { cells: TableCells::new(table), subgraphs: BTreeMap::new(), scratch: Scratch::new() }
+        Self {
+            cells: TableCells::new(table),
+            subgraphs: BTreeMap::new(),
+            scratch: Scratch::new(),
+            n_asked: 0,
+            bounded: Answer::default(),
+            n_between: 0,
+        }
     }
 
     /// What a method says of a viewer in the cells `roots`, as it says it: cells, objects, what is seen in mirrors.
     pub(crate) fn ask(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> VisibleSet {
+        self.ask_within(Budget::UNLIMITED, roots, view, doors, method)
+    }
+
+    /// The same with a bound on the work.
+    fn ask_within(
+        &mut self,
+        budget: Budget,
+        roots: &[CellId],
+        view: &View,
+        doors: &Doors,
+        method: Method,
+    ) -> VisibleSet {
+        self.scratch.allow(budget);
         let mut seen = VisibleSet::new();
         seen.clear(self.cells.table().n_cells(), self.cells.table().objects().len());
         for &root in roots {
@@ -40,16 +69,44 @@ impl<'t> Asker<'t> {
         seen
     }
 
-    /// What all methods say, mirrors left out.
+    /// What all methods say, mirrors left out. Also asks the exact one with some bound on the work ([`Asker::bounded`]).
+    ///
+    /// # Panics
+    /// If the bounded answer has something that the incident portals do not lead to.
     pub(crate) fn all(&mut self, roots: &[CellId], view: &View, doors: &Doors) -> Answers {
-        Method::ALL.map(|method| answer(&self.ask(roots, view, doors, method)))
+        let answers = Method::ALL.map(|method| answer(&self.ask(roots, view, doors, method)));
+        let budget = Budget::steps(STEPS[self.n_asked as usize % STEPS.len()]);
+        self.n_asked += 1;
+        let bounded = answer(&self.ask_within(budget, roots, view, doors, Method::Exact));
+        let [.., coarser, exact] = &answers;
+        let is_within = bounded.cells.is_subset(&coarser.cells) && bounded.objects.is_subset(&coarser.objects);
+        assert!(is_within, "within {budget:?}: {view:?} in {roots:?}: {bounded:?} is not within {coarser:?}");
+        self.n_between += usize::from(bounded != *exact && bounded != *coarser);
+        self.bounded = bounded;
+        answers
     }
 
     /// What a method says of a viewer and of mirrors, of three in a row at most.
     pub(crate) fn images(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> Vec<Image> {
-        let first = self.ask(roots, view, doors, method);
+        self.images_within(Budget::UNLIMITED, roots, view, doors, method)
+    }
+
+    /// What the exact method says of mirrors with bounds on the work: one answer for each.
+    pub(crate) fn bounded_images(&mut self, roots: &[CellId], view: &View, doors: &Doors) -> [Vec<Image>; 6] {
+        STEPS.map(|steps| self.images_within(Budget::steps(steps), roots, view, doors, Method::Exact))
+    }
+
+    fn images_within(
+        &mut self,
+        budget: Budget,
+        roots: &[CellId],
+        view: &View,
+        doors: &Doors,
+        method: Method,
+    ) -> Vec<Image> {
+        let first = self.ask_within(budget, roots, view, doors, method);
         let sizes = [self.cells.table().n_cells(), self.cells.table().objects().len()];
-        let Self { cells, subgraphs, scratch } = self;
+        let Self { cells, subgraphs, scratch, .. } = self;
         follow_reflections(method, &first, 3, doors, scratch, sizes, |cell| Some(subgraph(cells, subgraphs, cell)))
     }
 }
@@ -85,6 +142,13 @@ pub(crate) fn missed(answers: &Answers, seen: &Answer) -> Option<String> {
         let cell = cell.map(|cell| format!("{method} misses cell {cell}"));
         cell.or_else(|| object.map(|object| format!("{method} misses object {object}")))
     })
+}
+
+/// Something that is seen and that a bounded answer misses.
+pub(crate) fn missed_within_bounds(bounded: &Answer, seen: &Answer) -> Option<String> {
+    let cell = seen.cells.difference(&bounded.cells).next().map(|cell| format!("a bounded answer misses cell {cell}"));
+    let object = || seen.objects.difference(&bounded.objects).next();
+    cell.or_else(|| object().map(|object| format!("a bounded answer misses object {object}")))
 }
 
 /// Cells by the mirrors, one after the other, that show them.

@@ -1,6 +1,6 @@
 //! Rooms with boxes in them, on a small grid: what is seen is known exactly.
 
-use crate::eye_to_cell::ask::{Answer, Asker, missed, not_nested};
+use crate::eye_to_cell::ask::{Answer, Asker, missed, missed_within_bounds, not_nested};
 use crate::eye_to_cell::picture::{Picture, box_around, minus};
 use crate::eye_to_cell::plans::{reachable, some_doors};
 use sightlines::bake::{SceneBakeOptions, StabOptions, bake_scene, from_table, with_stab_trees};
@@ -156,7 +156,10 @@ fn check(room: &Room, n_on_grid: usize, seed: u64, counts: &mut Counts) -> Resul
             let answers = asker.all(&roots, view, &doors);
             let trees = table.stab().map(|t| t.n_nodes());
             let what = || format!("eye {eye:?}, closed {closed:?}, view {k} {view:?}, trees {trees:?}");
-            if let Some(wrong) = not_nested(&answers).or_else(|| missed(&answers, seen)) {
+            if let Some(wrong) = not_nested(&answers)
+                .or_else(|| missed(&answers, seen))
+                .or_else(|| missed_within_bounds(&asker.bounded, seen))
+            {
                 return Err(format!("{wrong}: {}", what()));
             }
             if let Some(cell) = answers[2].cells.difference(&walked).next() {

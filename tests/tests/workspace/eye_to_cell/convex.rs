@@ -1,6 +1,6 @@
 //! Worlds of convex cells, against rays through what is solid.
 
-use crate::eye_to_cell::ask::{Answer, Asker, missed, not_nested};
+use crate::eye_to_cell::ask::{Answer, Asker, missed, missed_within_bounds, not_nested};
 use crate::eye_to_cell::picture::{Picture, along, dot, minus};
 use crate::eye_to_cell::plans::reachable;
 use sightlines::bake::{StabOptions, from_table, with_stab_trees};
@@ -183,7 +183,10 @@ fn check(world: &World, n_eyes: usize, counts: &mut Counts) -> Result<(), String
             for asker in &mut askers {
                 let answers = asker.all(&roots, view, &doors);
                 let what = || format!("eye {eye:?} in {roots:?}, view {view:?}, {} doors closed", doors.n_closed());
-                if let Some(wrong) = not_nested(&answers).or_else(|| missed(&answers, seen)) {
+                if let Some(wrong) = not_nested(&answers)
+                    .or_else(|| missed(&answers, seen))
+                    .or_else(|| missed_within_bounds(&asker.bounded, seen))
+                {
                     return Err(format!("{wrong}: {}", what()));
                 }
                 if let Some(cell) = answers[2].cells.difference(&walked).next() {

@@ -19,9 +19,9 @@ fn wrong_answers_about_a_maze_are_noticed() {
     let view = View::all_round([eye.x, eye.y, 0.0]).expect("a finite eye");
     let answers = Asker::new(&table).all(&roots, &view, &Doors::all_open());
     let fan = fan(&plan, &table, &[], eye).expect("a plan on a grid");
-    assert!(judge(&table, &roots, &answers, &fan, (0.0, TAU)).is_ok());
+    assert!(judge(&table, &roots, &answers, &answers[4], &fan, (0.0, TAU)).is_ok());
 
-    let mut n_noticed = 0;
+    let (mut n_noticed, mut n_bounded) = (0, 0);
     let seen = fan.seen(0.0, TAU);
     for &cell in &seen {
         for method in 0..5 {
@@ -29,13 +29,22 @@ fn wrong_answers_about_a_maze_are_noticed() {
             let mut less: Answers = answers.clone();
             less[method..].iter_mut().for_each(|answer| assert!(answer.cells.remove(&cell)));
             assert_eq!(not_nested(&less), None);
-            n_noticed += usize::from(judge(&table, &roots, &less, &fan, (0.0, TAU)).is_err());
+            n_noticed += usize::from(judge(&table, &roots, &less, &answers[4], &fan, (0.0, TAU)).is_err());
+            // A bounded answer that misses something is noticed, too.
+            n_bounded += usize::from(judge(&table, &roots, &answers, &less[4], &fan, (0.0, TAU)).is_err());
         }
     }
-    assert!(seen.len() > 3 && n_noticed == 5 * seen.len(), "{n_noticed} of {}", seen.len());
+    assert!(
+        seen.len() > 3 && n_noticed == 5 * seen.len() && n_bounded == n_noticed,
+        "{n_noticed} and {n_bounded} of {}",
+        seen.len()
+    );
 
     let everything: Answers = std::array::from_fn(|_| answers[0].clone());
-    assert!(judge(&table, &roots, &everything, &fan, (0.0, TAU)).is_err_and(|wrong| wrong.contains("no ray touches")));
+    assert!(
+        judge(&table, &roots, &everything, &answers[4], &fan, (0.0, TAU))
+            .is_err_and(|wrong| wrong.contains("no ray touches"))
+    );
     let mut swapped = answers;
     swapped.swap(0, 4);
     assert!(not_nested(&swapped).is_some() && missed(&swapped, &Default::default()).is_none());

@@ -178,6 +178,10 @@ struct Counts {
     n_exact: usize,
     n_confirmed: usize,
     n_incomplete: usize,
+    /// Images of bounded answers; those that fell back, and those that did not though another of the answer did.
+    n_bounded: usize,
+    n_fell_back: usize,
+    n_beside: usize,
 }
 
 fn check(name: &str, hall: &Hall, plan: &Plan, places: std::ops::Range<usize>, seed: u64, counts: &mut Counts) {
@@ -211,6 +215,18 @@ fn check(name: &str, hall: &Hall, plan: &Plan, places: std::ops::Range<usize>, s
                 assert_eq!(missed_in_mirrors(images, &reached), None, "{}", what());
                 counts.n_cells[k] += images.iter().map(|image| image.cells.len()).sum::<usize>();
                 counts.n_incomplete += images.iter().filter(|image| !image.complete).count();
+            }
+            for bounded in asker.bounded_images(&roots, &view, &doors) {
+                assert_eq!(
+                    missed_in_mirrors(&bounded, &reached),
+                    None,
+                    "{name}: eye {eye:?}, {view:?}, {:?}",
+                    hall.mirrors
+                );
+                let n_fell_back = bounded.iter().filter(|image| image.fell_back).count();
+                counts.n_bounded += bounded.len();
+                counts.n_fell_back += n_fell_back;
+                counts.n_beside += if n_fell_back > 0 { bounded.len() - n_fell_back } else { 0 };
             }
             if fov == TAU && is_off_grid && images[4].iter().all(|image| image.complete) {
                 let words: Vec<Vec<u32>> = images[4].iter().map(word_of).collect();
@@ -248,6 +264,7 @@ fn mirrors_in_plans_show_what_rays_reach() {
     }
     eprintln!("{counts:?}");
     assert!(counts.n_frames > 100 && counts.n_reached > 1_000, "{counts:?}");
+    assert!(counts.n_fell_back > 100 && counts.n_beside > 100 && counts.n_bounded > 1_000, "{counts:?}");
     assert!(counts.n_again > 100 && counts.n_thrice > 20, "{counts:?}");
     assert!(counts.n_cells.is_sorted_by(|a, b| a >= b) && counts.n_cells[4] * 2 < counts.n_cells[0], "{counts:?}");
     assert!(counts.n_exact > 200 && counts.n_confirmed == counts.n_exact, "{counts:?}");

@@ -1,6 +1,6 @@
 //! Plans, against a ray that is turned about the eye in exact arithmetic.
 
-use crate::eye_to_cell::ask::{Answer, Answers, Asker, missed, not_nested};
+use crate::eye_to_cell::ask::{Answer, Answers, Asker, missed, missed_within_bounds, not_nested};
 use crate::eye_to_cell::plan_families::{N_PLACES, bake, eye, families, furnished, gaze, tables};
 use proptest::prelude::*;
 use sightlines::bake::Subdivide;
@@ -29,6 +29,8 @@ pub(crate) struct Counts {
     pub(crate) n_surplus_objects: usize,
     /// Cells that each method shows.
     pub(crate) n_cells: [usize; 5],
+    /// Bounded answers between the exact one and that of the incident portals.
+    pub(crate) n_between: usize,
 }
 
 impl AddAssign for Counts {
@@ -39,6 +41,7 @@ impl AddAssign for Counts {
         self.n_touched += other.n_touched;
         self.n_objects += other.n_objects;
         self.n_surplus_objects += other.n_surplus_objects;
+        self.n_between += other.n_between;
         (0..5).for_each(|k| self.n_cells[k] += other.n_cells[k]);
     }
 }
@@ -80,13 +83,14 @@ pub(crate) fn judge(
     table: &Table,
     roots: &[CellId],
     answers: &Answers,
+    bounded: &Answer,
     fan: &EyeFan,
     (centre, fov): (f64, f64),
 ) -> Result<Counts, String> {
     let [seen, touched] = [fan.seen(centre, fov), fan.touched(centre, fov)].map(|regions| split(table, &regions));
     let exact = &answers[4];
     let surplus = exact.cells.difference(&touched.cells).find(|cell| !roots.contains(&CellId(**cell)));
-    let wrong = not_nested(answers).or_else(|| missed(answers, &seen));
+    let wrong = not_nested(answers).or_else(|| missed(answers, &seen)).or_else(|| missed_within_bounds(bounded, &seen));
     match wrong.or_else(|| surplus.map(|cell| format!("exact shows cell {cell}, which no ray touches"))) {
         Some(wrong) => Err(wrong),
         None => Ok(Counts {
@@ -97,6 +101,7 @@ pub(crate) fn judge(
             n_objects: exact.objects.len(),
             n_surplus_objects: exact.objects.len().saturating_sub(touched.objects.len()),
             n_cells: std::array::from_fn(|k| answers[k].cells.len()),
+            n_between: 0,
         }),
     }
 }
@@ -128,12 +133,13 @@ fn check(plan: &Plan, table: &Table, n_eyes: usize, seed: u64) -> Result<Counts,
         for _ in 0..3 {
             let (view, centre, fov) = gaze(table, eye, &mut random);
             let answers = asker.all(&roots, &view, &doors);
-            counts += judge(table, &roots, &answers, &fan, (centre, fov)).map_err(|wrong| {
+            counts += judge(table, &roots, &answers, &asker.bounded, &fan, (centre, fov)).map_err(|wrong| {
                 let what = format!("eye {eye:?} in {roots:?}, centre {centre}, field {fov}, closed {closed:?}");
                 format!("{wrong}: {what}, trees {}", table.stab().is_some())
             })?;
         }
     }
+    counts.n_between = asker.n_between;
     Ok(counts)
 }
 
@@ -202,6 +208,7 @@ fn larger_plans_are_seen_as_they_are() {
     assert!(counts.n_frames > 1_000 && counts.n_met > 10_000, "{counts:?}");
     assert!(counts.n_cells.is_sorted_by(|a, b| a > b), "{counts:?}");
     assert!(counts.n_touched * 20 < counts.n_exact, "{counts:?}");
+    assert!(counts.n_between > 5, "{counts:?}");
 }
 
 /// The same in halls with many pillars, where an eye in the open looks through very many sequences of portals: the

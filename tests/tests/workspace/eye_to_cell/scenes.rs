@@ -1,6 +1,6 @@
 //! Towers and real buildings, against a ray tracer over all triangles.
 
-use crate::eye_to_cell::ask::{Answer, Asker, missed, not_nested};
+use crate::eye_to_cell::ask::{Answer, Asker, missed, missed_within_bounds, not_nested};
 use crate::eye_to_cell::picture::{Picture, minus};
 use sightlines::bake::{SceneBakeOptions, StabOptions, bake_scene, from_table, with_stab_trees};
 use sightlines::cells::Scene;
@@ -102,7 +102,10 @@ impl Stage {
                 let seen = if frame == 3 { all.clone() } else { seen };
                 for asker in &mut askers {
                     let answers = asker.all(&roots, view, &Doors::all_open());
-                    if let Some(wrong) = not_nested(&answers).or_else(|| missed(&answers, &seen)) {
+                    if let Some(wrong) = not_nested(&answers)
+                        .or_else(|| missed(&answers, &seen))
+                        .or_else(|| missed_within_bounds(&asker.bounded, &seen))
+                    {
                         return Err(format!("{wrong}: eye {eye:?} in {roots:?}, view {view:?}"));
                     }
                     counts.n_frames += 1;
