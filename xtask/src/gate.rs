@@ -27,11 +27,12 @@ pub(crate) fn alone() -> Result<(), Failure> {
     for name in names {
         step::run(cargo().args(["check", "-p", &name, "--all-features"]))?;
     }
-    // Those with features that are off by default: without them, and the program with each alone.
+    // Those with features that are off by default, or that can be left out: without them, and the program with each alone.
     for options in [
         &["sightlines"][..],
         &["sightlines-report"],
         &["sightlines-bake"],
+        &["sightlines-walkthrough", "--no-default-features"],
         &["sightlines-cli"],
         &["sightlines-cli", "--features", "png"],
         &["sightlines-cli", "--features", "gpu"],

@@ -17,6 +17,7 @@ mod cache;
 mod coarse;
 mod levels;
 mod movers;
+#[cfg(feature = "packed")]
 mod packed;
 mod portals;
 mod predict;
@@ -30,6 +31,7 @@ pub use movers::{
     Broken, BrokenPromise, CellBoxes, CellLocator, Motion, MotionError, MoverCounters, MoverError, MoverId,
     MoverOptions, Movers,
 };
+#[cfg(feature = "packed")]
 pub use packed::PackedCells;
 pub use portals::same_portals;
 pub use prefetch::{Prefetcher, Prepare};

@@ -1,5 +1,6 @@
 //! Walks and movers, frame by frame.
 
 mod moving;
+#[cfg(feature = "packed")]
 mod sources;
 mod walk;
