@@ -22,7 +22,7 @@ pub struct WalkOptions {
     /// Maximum number of reflections in a row; 0 for no mirrors.
     pub bounces: usize,
     /// Work that the queries of a frame may do together, those in mirrors included; beyond it the exact method's answer is
-    /// exact only near the eye, and that of the incident portals behind, which is never less ([`Frame::method`]).
+    /// exact only near the eye, and that of the incident portals farther away, which is never less ([`Frame::method`]).
     pub steps: Budget,
     /// Whether subgraphs are prepared on another thread. Otherwise each frame prepares those that it requests before it
     /// returns: such a frame waits. For measurements that have to be repeatable, and for targets without threads.

@@ -110,7 +110,7 @@ pub enum Method {
     IncidentPortals,
     /// Those to which a line leads from the eye, through portals, within the view; within rounding. The cost is that of
     /// the parts into which the cells' edges cut what is seen. Where that is out of all proportion, the answer is exact
-    /// near the eye, and that of the incident portals behind; no scene that was measured came to that without a [`Budget`].
+    /// near the eye, and that of the incident portals farther away; no scene that was measured came to that without a [`Budget`].
     Exact,
 }
 

@@ -138,7 +138,7 @@ proptest! {
         }
     }
 
-    /// The impostor: rows in which cells see no object but those that they touch. Nothing is proven of one that is seen.
+    /// The impostor: rows in which cells see no object, not even those that they touch. Nothing is proven of one that is seen.
     #[test]
     fn wrong_rows_of_objects_are_not_proven(
         faces in faces(9),

@@ -52,8 +52,9 @@ pub(crate) struct WalkArgs {
     /// Memory budget for prepared data, in bytes; the blocks of a packed table get the same again
     #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = WalkOptions::default().budget)]
     budget: usize,
-    /// Work that the queries of a frame may do. Beyond it, exact is exact only near the eye, and shows what incident-portals finds behind,
-    /// which is never less; the frame counts as coarser. A step is about a test of a box; frame is 4096, none is no bound
+    /// Work that the queries of a frame may do, in steps of about a test of a box. A frame that would need more counts as coarser: exact is
+    /// then exact near the eye only, and farther away shows what incident-portals finds, which is never less. frame is 4096, none is
+    /// no bound
     #[arg(long, help_heading = "Method", value_name = "STEPS", default_value = "frame", value_parser = steps)]
     steps: Budget,
     /// Also follow reflections in mirrors, up to this many in a row

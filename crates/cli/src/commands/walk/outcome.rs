@@ -245,7 +245,7 @@ impl fmt::Display for Outcome {
         let steps = self.steps.map_or("is in proportion".to_owned(), |steps| count(steps, "step"));
         writeln!(
             f,
-            "coarser        frames that had more to do than {steps}: exact near the eye only, and what incident-portals finds behind"
+            "coarser        frames that had more to do than {steps}: exact near the eye only, farther away as incident-portals"
         )?;
         writeln!(
             f,
