@@ -8,7 +8,7 @@
 use super::proof::{self, Proof, sign_of_sum};
 use super::rows::{Octant, Row, is_forward, misses, sign};
 use super::simplex::{self, Column, FAR, N};
-use super::wide::Wide;
+use crate::wide::Wide;
 use super::witness::AxialWitness;
 use num_rational::BigRational;
 use sightlines_exact::rational;

@@ -111,16 +111,17 @@ impl Chart {
                 }
             }
         }
-        let pair = best.or(farthest)?.1;
-        let [p, q] = pair.map(|i| &plates[i]);
+        Some(Self::between(plates, best.or(farthest)?.1, best.is_some()))
+    }
+
+    /// Two portals, the earlier first, and whether the box of the second lies wholly beyond that of the first.
+    pub(super) fn between(plates: &[Plate], portals: [usize; 2], apart: bool) -> Self {
+        let reach = |p: &Plate| p.extent[0] + p.extent[1];
+        let [p, q] = portals.map(|i| &plates[i]);
         let between = sub(q.centre, p.centre);
-        Some(Self {
-            portals: pair,
-            blocks: [p.block, q.block],
-            unit: reach(p).max(reach(q)),
-            distance: dot(between, between).sqrt().max(1e-3 * reach(p).max(reach(q))),
-            apart: best.is_some(),
-        })
+        let unit = reach(p).max(reach(q));
+        let distance = dot(between, between).sqrt().max(1e-3 * unit);
+        Self { portals, blocks: [p.block, q.block], unit, distance, apart }
     }
 
     /// The points with coordinates `at`: two of the first box, two of the second; in the middle of their

@@ -68,6 +68,8 @@
 mod certificate;
 mod chart;
 mod counters;
+mod fine;
+mod game;
 mod hull;
 mod line;
 mod planes;
@@ -79,8 +81,9 @@ mod vector;
 mod verify;
 mod witness;
 
-pub use certificate::{Block, BoxProof, ConvexCertificate, ConvexNode, ConvexTerm, PlaneProof};
+pub use certificate::{Block, BoxProof, ConvexCertificate, ConvexNode, ConvexTerm, HullProof, PlaneProof};
 pub use counters::ConvexCounters;
+pub use fine::FineLine3;
 pub use line::Line3;
 pub use sequence::{ConvexSequence, ConvexUndo};
 pub use solver::{ConvexStabber, KnownPortal, StabLimits};
