@@ -68,9 +68,9 @@ impl FineLine3 {
         portal.edges().all(|[from, to]| self.is_inside(from, to))
     }
 
-    /// Points on it, rounded, in the order in which it meets them.
-    pub fn points(&self) -> [Point3; 2] {
-        [self.a, self.b].map(|p| p.map(|x| x.high))
+    /// Two points on it, in the order in which it meets them; each coordinate is the sum of two doubles.
+    pub fn points(&self) -> [[[f64; 2]; 3]; 2] {
+        [self.a, self.b].map(|p| p.map(|x| [x.high, x.low]))
     }
 
     fn is_inside(&self, from: Point3, to: Point3) -> bool {
@@ -84,8 +84,9 @@ impl FineLine3 {
         }
         let whole = |p: &Wide3| p.map(|x| &Dyadic::new(x.high) + &Dyadic::new(x.low));
         let (e, f) = (Dyadic::vector(from), Dyadic::vector(to));
-        let (q, r) = (exact::sub(&whole(&self.a), &e), exact::sub(&whole(&self.b), &e));
-        exact::determinant(&exact::sub(&f, &e), &q, &r).sign() > 0
+        let minus = exact::sub::<Dyadic>;
+        exact::determinant::<Dyadic>(&minus(&f, &e), &minus(&whole(&self.a), &e), &minus(&whole(&self.b), &e)).sign()
+            > 0
     }
 }
 

@@ -11,9 +11,9 @@ use super::ConvexCounters;
 use super::cut::{Cutter, Part, Plane, enclosing, middle};
 use super::gates::{Gates, Memory};
 use super::vector::{sub, unit};
+use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::ones;
-use sightlines_cells::Portal3;
 use sightlines_sightline::{ConvexCertificate, ConvexStabber, KnownPortal, LimitReached, Line3, StabLimits, Verdict};
 
 /// Maximum number of queries about sequences for a pair; a pair that takes more counts as visible.
