@@ -143,8 +143,16 @@ fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>, counter: &
             return;
         }
         let shapes: Vec<&Portal3> = chain.iter().map(|&gate| gates.shape(gate)).collect();
-        if let Verdict::Visible(line) = stabber.stab(&shapes, None) {
-            let _ = lines(chain[0], [line.a, line.b]).into_iter().any(|line| maker.take_line(line, 1));
+        match stabber.stab(&shapes, None) {
+            Verdict::Visible(line) => {
+                let _ = lines(chain[0], [line.a, line.b]).into_iter().any(|line| maker.take_line(line, 1));
+            }
+            Verdict::Hidden(_) => {}
+            Verdict::Undecided(_) => {
+                if let Verdict::Visible(line) = stabber.stab_finely(&shapes) {
+                    maker.take_line(ConvexLine::through_sums(chain[0], line.points()), 1);
+                }
+            }
         }
     };
     let mut beams = BeamTracer::new(gates);
