@@ -1,0 +1,3 @@
+//! Tests of the border to C.
+
+mod header;
