@@ -160,7 +160,8 @@ unsafe fn given<'a>(options: *const SlBakeOptions) -> Result<Given<'a>, Failure>
     // SAFETY: as for this function.
     unsafe {
         let options = if options.is_null() { &DEFAULT } else { border::read_sized(options, "the options")? };
-        let parse = |text: &str| text.parse().map_err(|_| Failure::argument(format!("'{text}' is no method for scenes")));
+        let parse =
+            |text: &str| text.parse().map_err(|_| Failure::argument(format!("'{text}' is no method for scenes")));
         let method = if options.method.is_null() {
             None
         } else {
@@ -173,8 +174,7 @@ unsafe fn given<'a>(options: *const SlBakeOptions) -> Result<Given<'a>, Failure>
         };
         let boxes = if options.cells == SL_CELLS_BOXES { options.box_count } else { 0 };
         let boxes = border::slice(options.boxes, boxes, "the place of the boxes")?;
-        let callback =
-            options.progress.map(|call| Callback { call, user: options.user, cancelled: Mutex::new(false) });
+        let callback = options.progress.map(|call| Callback { call, user: options.user, cancelled: Mutex::new(false) });
         Ok(Given { options, method, boxes, view_region, callback })
     }
 }

@@ -94,7 +94,8 @@ pub(crate) unsafe fn check_sized<T>(at: *const T, what: &str) -> Outcome {
     if stated == needed {
         return Ok(());
     }
-    let message = format!("struct_size of {what} is {stated} instead of {needed}: set it to sizeof, or versions differ");
+    let message =
+        format!("struct_size of {what} is {stated} instead of {needed}: set it to sizeof, or versions differ");
     Err(Failure::new(SL_ERROR_VERSION, message))
 }
 

@@ -69,9 +69,10 @@ pub(crate) unsafe fn free<H: Handle>(handle: *mut H) -> Result<(), Failure> {
 /// The state of a handle that calls change: one call at a time.
 pub(crate) fn lock<'a, S>(state: &'a Mutex<S>, name: &str) -> Result<MutexGuard<'a, S>, Failure> {
     state.try_lock().map_err(|error| match error {
-        TryLockError::WouldBlock => {
-            Failure::new(SL_ERROR_BUSY, format!("the {name} is in use by another thread, or by this one, in a callback"))
-        }
+        TryLockError::WouldBlock => Failure::new(
+            SL_ERROR_BUSY,
+            format!("the {name} is in use by another thread, or by this one, in a callback"),
+        ),
         TryLockError::Poisoned(_) => {
             Failure::new(SL_ERROR_POISONED, format!("a defect struck an earlier call that changed the {name}: free it"))
         }
@@ -106,7 +107,10 @@ mod tests {
         unsafe {
             assert_eq!(*behind(apple).expect("an apple").lock().expect("unused"), 7);
             assert_eq!(behind::<Pear>(apple.cast()).map(|_| ()).expect_err("no pear").status, SL_ERROR_HANDLE);
-            assert_eq!(behind::<Pear>(ptr::without_provenance(13)).map(|_| ()).expect_err("no").status, SL_ERROR_HANDLE);
+            assert_eq!(
+                behind::<Pear>(ptr::without_provenance(13)).map(|_| ()).expect_err("no").status,
+                SL_ERROR_HANDLE
+            );
             assert_eq!(behind::<Apple>(ptr::null()).map(|_| ()).expect_err("nothing").status, SL_ERROR_NULL);
             assert!(free::<Pear>(apple.cast()).is_err() && free::<Pear>(ptr::null_mut()).is_ok());
             assert!(free(apple).is_ok());

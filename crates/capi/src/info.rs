@@ -47,12 +47,16 @@ pub struct SlTableInfo {
     pub object_count: u32,
     /// Number of portals; portals are numbered from 0.
     pub portal_count: u32,
+    /// Number of doors; doors are numbered from 0.
+    pub door_count: u32,
     /// Number of parts of mirrors.
     pub mirror_part_count: u32,
     /// The axis that points up, 0 to 2; `SL_NONE` if it is not known.
     pub up_axis: u32,
     /// 1 if cells have names.
     pub has_cell_names: u32,
+    /// 1 if it is known where objects are in the file that the table was made of.
+    pub has_sources: u32,
     /// 1 if points can be located.
     pub has_places: u32,
     /// 1 if there may be air outside of every cell, within the box around them.
@@ -145,9 +149,11 @@ fn info_of(table: &Table) -> SlTableInfo {
         cell_count: table.n_cells() as u32,
         object_count: table.objects().len() as u32,
         portal_count: table.portals().len() as u32,
+        door_count: table.doors().len() as u32,
         mirror_part_count: table.mirrors().len() as u32,
         up_axis: table.up().map_or(SL_NONE, |axis| axis.idx() as u32),
         has_cell_names: table.has_cell_names().into(),
+        has_sources: table.has_sources().into(),
         has_places: table.has_places().into(),
         leaves_gaps: table.kind().leaves_gaps().into(),
         only_in_air: table.kind().only_in_air().into(),

@@ -20,6 +20,7 @@
 #[cfg(feature = "bake")]
 mod bake;
 mod border;
+mod doors;
 #[cfg(feature = "fuzz")]
 pub mod fuzz;
 mod handle;
@@ -36,6 +37,7 @@ mod viewer;
 
 #[cfg(feature = "bake")]
 pub use bake::*;
+pub use doors::*;
 pub use image::*;
 pub use info::*;
 pub use query::*;

@@ -215,7 +215,8 @@ pub unsafe extern "C" fn sl_scene_set_motion(scene: *mut SlScene, object: u32, w
         // SAFETY: pointers are as the header demands.
         let within = if within.is_null() { None } else { Some(*unsafe { border::read(within, "the box")? }) };
         for x in within.iter().flat_map(|b| b.min.iter().chain(&b.max)) {
-            let failed = |error| Failure::new(SL_ERROR_GEOMETRY, format!("object {object}, the box of its motion: {error}"));
+            let failed =
+                |error| Failure::new(SL_ERROR_GEOMETRY, format!("object {object}, the box of its motion: {error}"));
             check_coordinate(*x).map_err(failed)?;
         }
         scene.flags[object] |= SL_OBJECT_MOVING;

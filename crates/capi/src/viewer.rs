@@ -114,8 +114,7 @@ const KEPT_BYTES: usize = 64 << 20;
 
 impl Viewer {
     fn new(cells: Shared) -> Self {
-        let nothing =
-            SlAnswer { is_outside: 0, method: SL_NONE, cell_count: 0, object_count: 0, mirror_view_count: 0 };
+        let nothing = SlAnswer { is_outside: 0, method: SL_NONE, cell_count: 0, object_count: 0, mirror_view_count: 0 };
         Self {
             cells,
             method: Method::Exact,
@@ -133,6 +132,10 @@ impl Viewer {
 
     pub(crate) fn table(&self) -> &Table {
         self.cells.table()
+    }
+
+    pub(crate) fn table_and_doors(&mut self) -> (&Table, &mut Doors) {
+        (self.cells.table(), &mut self.doors)
     }
 
     fn look(&mut self, view: View) -> SlAnswer {
@@ -281,7 +284,7 @@ pub unsafe extern "C" fn sl_viewer_close_portal(viewer: *mut SlViewer, portal: u
     guard(|| unsafe { set_portal(viewer, portal, false) })
 }
 
-/// Opens a portal that was closed.
+/// Opens a portal that was closed, unless a shut door closes it too.
 ///
 /// @param portal  Its number, below `portal_count`.
 /// @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there is no such portal.
@@ -300,11 +303,15 @@ unsafe fn set_portal(viewer: *mut SlViewer, portal: u32, open: bool) -> Outcome 
     let mut viewer = unsafe { self::viewer(viewer)? };
     below(portal, viewer.table().portals().len(), "portal")?;
     let doors = &mut viewer.doors;
-    if open { doors.open(PortalId(portal)) } else { doors.close(PortalId(portal)) };
+    if open {
+        doors.open(PortalId(portal))
+    } else {
+        doors.close(PortalId(portal))
+    };
     Ok(())
 }
 
-/// Opens all portals that were closed.
+/// Opens all portals and doors.
 ///
 /// @return `SL_OK`.
 #[unsafe(no_mangle)]
@@ -349,11 +356,7 @@ pub unsafe extern "C" fn sl_viewer_closed_portals(
 /// @return `SL_OK`, `SL_ERROR_VIEW` for numbers that are no view of this table, or `SL_ERROR_BUSY`. After a failure the last answer
 ///         stands.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sl_viewer_look(
-    viewer: *mut SlViewer,
-    view: *const SlView,
-    answer: *mut SlAnswer,
-) -> SlStatus {
+pub unsafe extern "C" fn sl_viewer_look(viewer: *mut SlViewer, view: *const SlView, answer: *mut SlAnswer) -> SlStatus {
     guard(|| {
         // SAFETY: pointers are as the header demands.
         let (mut viewer, view) = unsafe { (self::viewer(viewer)?, border::read(view, "the view")?) };
