@@ -1,6 +1,6 @@
 //! Doors: the portals that they close, by name and by place.
 
-use crate::{DoorId, DoorRecord, Frame, ObjectId, PortalId, Table, TableError};
+use crate::{DoorId, DoorRecord, Frame, Item, ObjectId, PortalId, Table, TableError};
 
 impl Table {
     /// The doors, by id; empty in a stripped table, and in older files.
@@ -43,9 +43,15 @@ pub fn box_covers(frame: Option<&Frame>, dimension: u8, min: [f64; 3], max: [f64
     })
 }
 
-/// Checks doors against the numbers of objects and portals of their table.
+/// Checks doors against the numbers of objects and portals of their table, and their own number and names.
 pub(crate) fn check(doors: &[DoorRecord], n_objects: usize, n_portals: usize) -> Result<(), TableError> {
+    if u32::try_from(doors.len()).is_err() {
+        return Err(TableError::TooMany { item: Item::Door, n: doors.len() });
+    }
     for (door, record) in (0u32..).map(DoorId).zip(doors) {
+        if u32::try_from(record.name.len()).is_err() {
+            return Err(TableError::TooLong(record.name.len()));
+        }
         let unknown = |object: &ObjectId| object.idx() >= n_objects;
         if let Some(object) = record.object.filter(unknown) {
             return Err(TableError::DoorObject { door, object });

@@ -41,9 +41,9 @@ pub struct ObjectRecord {
 
 /// Where an object is in the file that the table was made of: a program that has loaded the same file finds it there.
 ///
-/// Of a glTF file, an object is one primitive of one node. A node that is drawn several times (`EXT_mesh_gpu_instancing`) is one object
-/// for each primitive, around all of its instances. Other formats have no nodes: objects of an OBJ file, which are told by their names, have no
-/// source.
+/// Of a glTF file, an object is one primitive of one node. Instances of a node (`EXT_mesh_gpu_instancing`) are objects each, of equal source: of
+/// several with one node and primitive, the k-th in the order of ids is instance k. Other formats have no nodes: objects of an OBJ
+/// file, which are told by their names, have no source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectSource {
     /// Index of the node in the `nodes` of the file; below 2^32 - 1.

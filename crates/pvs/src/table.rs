@@ -1,7 +1,7 @@
 //! The table and its queries.
 
 use crate::parts::TableParts;
-use crate::records::{CellRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
+use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{
     Axis, CellId, CellSet, Frame, FrameError, GeometryDigest, Locator, NodeIndex, ObjectId, PlaneTree, StabTrees,
     TableError, TableKind, bits, side,
@@ -97,6 +97,16 @@ impl Table {
     pub fn with_digest(mut self, digest: Option<GeometryDigest>) -> Self {
         self.parts.digest = digest;
         self
+    }
+
+    /// The same table with other doors.
+    ///
+    /// # Errors
+    /// [`TableError`] for objects and portals that there are not, and portals that do not ascend.
+    pub fn with_doors(mut self, doors: Vec<DoorRecord>) -> Result<Self, TableError> {
+        self.parts.doors = doors;
+        self.parts.check_doors()?;
+        Ok(self)
     }
 
     /// Whether cells can be found at points: not in a table of the clusters of a Quake map without planes.

@@ -268,6 +268,10 @@ fn defects_of_doors_are_refused() {
     let (error, text) = refused(&|p| p.doors[0].portals.push(PortalId(2)));
     assert_eq!(error, TableError::DoorOrder(DoorId(0)));
     assert_eq!(text, "the portals of door 0 are not ascending");
+    let others = Table::new(named_villa()).unwrap().with_doors(doored_villa().doors).unwrap();
+    assert_eq!(others.doors(), table().doors());
+    let error = others.with_doors(vec![door("new", None, &[9])]).unwrap_err();
+    assert_eq!(error, TableError::DoorPortal { door: DoorId(0), portal: PortalId(9) });
     let (error, text) = refused(&|p| p.object_sources.truncate(1));
     assert_eq!(error, TableError::ObjectSources { n: 1, n_objects: 2 });
     assert_eq!(text, "1 sources of objects do not fit 2 objects");
