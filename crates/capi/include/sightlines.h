@@ -172,7 +172,7 @@
 #define SL_OBJECT_SEE_THROUGH 1
 
 /**
- * A door that stands shut. Tables take it to be open; `sl_viewer_close_door` shuts it.
+ * A door that stands shut. Tables take it to be open, so it hides nothing; `sl_viewer_close_door` shuts it.
  */
 #define SL_OBJECT_DOOR 2
 
@@ -282,6 +282,10 @@ typedef struct sl_table_info {
      */
     uint32_t portal_count;
     /**
+     * Number of doors; doors are numbered from 0.
+     */
+    uint32_t door_count;
+    /**
      * Number of parts of mirrors.
      */
     uint32_t mirror_part_count;
@@ -293,6 +297,10 @@ typedef struct sl_table_info {
      * 1 if cells have names.
      */
     uint32_t has_cell_names;
+    /**
+     * 1 if it is known where objects are in the file that the table was made of.
+     */
+    uint32_t has_sources;
     /**
      * 1 if points can be located.
      */
@@ -450,6 +458,34 @@ typedef struct sl_answer {
      */
     uint32_t mirror_view_count;
 } sl_answer;
+
+/**
+ * A door: what closes portals while it is shut.
+ */
+typedef struct sl_door {
+    /**
+     * The object that is the door; `SL_NONE` for one that was given as a box.
+     */
+    uint32_t object;
+    /**
+     * Number of portals that it closes; 0 if it fills no opening, or only parts of portals.
+     */
+    uint32_t portal_count;
+} sl_door;
+
+/**
+ * Where an object is in the glTF file that its table was made of.
+ */
+typedef struct sl_source {
+    /**
+     * The index of the node in the `nodes` of the file; `SL_NONE` if it is not known.
+     */
+    uint32_t node;
+    /**
+     * The index of the primitive in the `primitives` of the node's mesh; `SL_NONE` if it is not known.
+     */
+    uint32_t primitive;
+} sl_source;
 
 /**
  * What is seen by way of one mirror after another.
@@ -1092,7 +1128,7 @@ sl_status sl_viewer_close_portal(struct sl_viewer *viewer,
                                  uint32_t portal);
 
 /**
- * Opens a portal that was closed.
+ * Opens a portal that was closed, unless a shut door closes it too.
  *
  * @param portal  Its number, below `portal_count`.
  * @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there is no such portal.
@@ -1100,7 +1136,7 @@ sl_status sl_viewer_close_portal(struct sl_viewer *viewer,
 sl_status sl_viewer_open_portal(struct sl_viewer *viewer, uint32_t portal);
 
 /**
- * Opens all portals that were closed.
+ * Opens all portals and doors.
  *
  * @return `SL_OK`.
  */
@@ -1165,6 +1201,134 @@ sl_status sl_viewer_portals(const struct sl_viewer *viewer,
                             uint32_t *portals,
                             size_t capacity,
                             size_t *count);
+
+/**
+ * Stores a door.
+ *
+ * @param door  Its number, below `door_count`.
+ * @param out   Where it goes.
+ * @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there is no such door.
+ */
+sl_status sl_table_door(const struct sl_table *table, uint32_t door, struct sl_door *out);
+
+/**
+ * The name of a door, in UTF-8. Names may repeat: the two wings of a door may have one.
+ *
+ * @param door      Its number, below `door_count`.
+ * @param buffer    Where the name goes, with a zero byte behind it, or null to ask for its length.
+ * @param capacity  Number of bytes that the buffer has room for, the zero byte included; 0 if it is null.
+ * @param length    Where the length in bytes goes, without the zero byte.
+ * @return `SL_OK`, `SL_ERROR_ARGUMENT` if there is no such door, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_table_door_name(const struct sl_table *table,
+                             uint32_t door,
+                             char *buffer,
+                             size_t capacity,
+                             size_t *length);
+
+/**
+ * The portals that a door closes while it is shut, ascending.
+ *
+ * @param door      Its number, below `door_count`.
+ * @param portals   Where their numbers go, or null to ask for how many there are.
+ * @param capacity  Number of portals that the buffer has room for; 0 if it is null.
+ * @param count     Where their number goes.
+ * @return `SL_OK`, `SL_ERROR_ARGUMENT` if there is no such door, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_table_door_portals(const struct sl_table *table,
+                                uint32_t door,
+                                uint32_t *portals,
+                                size_t capacity,
+                                size_t *count);
+
+/**
+ * The doors of a name, ascending: names may repeat. O(doors).
+ *
+ * @param name      UTF-8, with a zero byte at its end.
+ * @param doors     Where their numbers go, or null to ask for how many there are.
+ * @param capacity  Number of doors that the buffer has room for; 0 if it is null.
+ * @param count     Where their number goes: 0 if there is no such door.
+ * @return `SL_OK`, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_table_find_doors(const struct sl_table *table,
+                              const char *name,
+                              uint32_t *doors,
+                              size_t capacity,
+                              size_t *count);
+
+/**
+ * The portals that lie entirely in a closed box, ascending: those that something solid of that shape closes. What is rounded errs
+ * towards not in it. O(portals).
+ *
+ * @param bounds    The box, in scene units; z does not count in a plane. One with a NaN contains nothing.
+ * @param portals   Where their numbers go, or null to ask for how many there are.
+ * @param capacity  Number of portals that the buffer has room for; 0 if it is null.
+ * @param count     Where their number goes.
+ * @return `SL_OK`, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_table_portals_within(const struct sl_table *table,
+                                  const struct sl_box *bounds,
+                                  uint32_t *portals,
+                                  size_t capacity,
+                                  size_t *count);
+
+/**
+ * Stores where an object is in the glTF file that the table was made of.
+ *
+ * @param object  Its number, below `object_count`.
+ * @param out     Where it goes; `SL_NONE` twice if it is not known.
+ * @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there is no such object.
+ */
+sl_status sl_table_object_source(const struct sl_table *table, uint32_t object, struct sl_source *out);
+
+/**
+ * The objects of a node of the glTF file that the table was made of, ascending: one for each primitive of its mesh.
+ *
+ * @param node      Its index in the `nodes` of the file.
+ * @param objects   Where the numbers of the objects go, or null to ask for how many there are.
+ * @param capacity  Number of objects that the buffer has room for; 0 if it is null.
+ * @param count     Where their number goes: 0 for a node without a mesh, and where it is not known.
+ * @return `SL_OK`, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_table_objects_of_node(const struct sl_table *table,
+                                   uint32_t node,
+                                   uint32_t *objects,
+                                   size_t capacity,
+                                   size_t *count);
+
+/**
+ * Shuts a door for this viewer, from the next look on: nothing is seen through its portals. Shutting a shut door does nothing.
+ *
+ * @param door  Its number, below `door_count` of the table.
+ * @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there is no such door.
+ */
+sl_status sl_viewer_close_door(struct sl_viewer *viewer,
+                               uint32_t door);
+
+/**
+ * Opens a door that was shut. Its portals can be passed again, unless another shut door closes them, or they were closed alone.
+ *
+ * @param door  Its number, below `door_count` of the table.
+ * @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there is no such door.
+ */
+sl_status sl_viewer_open_door(struct sl_viewer *viewer,
+                              uint32_t door);
+
+/**
+ * Shuts all doors of a name, as the two wings of a door. O(doors).
+ *
+ * @param name  UTF-8, with a zero byte at its end.
+ * @return `SL_OK`, or `SL_ERROR_NOT_FOUND` if no door has that name.
+ */
+sl_status sl_viewer_close_doors_named(struct sl_viewer *viewer, const char *name);
+
+/**
+ * Opens all doors of a name. O(doors).
+ *
+ * @param name  UTF-8, with a zero byte at its end.
+ * @return `SL_OK`, or `SL_ERROR_NOT_FOUND` if no door has that name.
+ */
+sl_status sl_viewer_open_doors_named(struct sl_viewer *viewer, const char *name);
 
 /**
  * Follows the views into mirrors of the last look. What is found stays in the viewer until the next look. Allocates.

@@ -103,8 +103,8 @@ public:
     }
 
     /** The same in single precision. */
-    std::uint32_t add(const std::string &name, const std::vector<float> &corners,
-                      const std::vector<std::uint32_t> &indices, std::uint32_t flags = 0) {
+    std::uint32_t add_f32(const std::string &name, const std::vector<float> &corners,
+                          const std::vector<std::uint32_t> &indices, std::uint32_t flags = 0) {
         std::uint32_t object = 0;
         check(sl_scene_add_object_f32(handle_.get(), name.c_str(), corners.data(), whole(corners.size()), indices.data(),
                                       indices.size(), flags, &object));
@@ -332,10 +332,10 @@ inline table bake(const scene &of, sl_bake_options options = {}, const progress 
         const progress *call;
         std::exception_ptr thrown;
 
-        static std::int32_t run(void *user, const sl_progress *progress) noexcept {
+        static std::int32_t run(void *user, const sl_progress *so_far) noexcept {
             auto *self = static_cast<guarded *>(user);
             try {
-                return (*self->call)(*progress) ? 0 : 1;
+                return (*self->call)(*so_far) ? 0 : 1;
             } catch (...) {
                 self->thrown = std::current_exception();
                 return 1;

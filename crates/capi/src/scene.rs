@@ -22,7 +22,7 @@ impl Handle for SlScene {
 
 /// It is seen, and hides nothing: glass, leaves, fences.
 pub const SL_OBJECT_SEE_THROUGH: u32 = 1;
-/// A door that stands shut. Tables take it to be open; `sl_viewer_close_door` shuts it.
+/// A door that stands shut. Tables take it to be open, so it hides nothing; `sl_viewer_close_door` shuts it.
 pub const SL_OBJECT_DOOR: u32 = 2;
 /// Its faces are mirrors.
 pub const SL_OBJECT_MIRROR: u32 = 4;
@@ -40,7 +40,7 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// The objects with that flag.
+    /// The objects with any of these flags.
     fn with(&self, flag: u32) -> Vec<u32> {
         (0u32..).zip(&self.flags).filter(|(_, flags)| **flags & flag != 0).map(|(object, _)| object).collect()
     }
@@ -50,7 +50,7 @@ impl Parts {
         let moving = self.with(SL_OBJECT_MOVING).into_iter();
         let moving = moving.map(|object| MovingObject { object, within: self.within[object as usize] }).collect();
         Scene::new(self.objects.clone())
-            .and_then(|scene| scene.with_see_through(self.with(SL_OBJECT_SEE_THROUGH)))
+            .and_then(|scene| scene.with_see_through(self.with(SL_OBJECT_SEE_THROUGH | SL_OBJECT_DOOR)))
             .and_then(|scene| scene.with_doors(self.with(SL_OBJECT_DOOR)))
             .and_then(|scene| scene.with_mirrors(self.with(SL_OBJECT_MIRROR)))
             .and_then(|scene| scene.with_single_sided(self.with(SL_OBJECT_SINGLE_SIDED)))

@@ -135,8 +135,10 @@ static void scenes(void) {
     TRUE(user.n_calls == 1 && table == NULL);
     options.progress = NULL;
     EXPECT(SL_OK, sl_bake(scene, &options, &table, NULL));
-    EXPECT(SL_ERROR_HANDLE, sl_bake((const sl_scene *)table, &options, &table, NULL));
-    TRUE(table == NULL);
+    sl_table *none = table;
+    EXPECT(SL_ERROR_HANDLE, sl_bake((const sl_scene *)table, &options, &none, NULL));
+    TRUE(none == NULL);
+    sl_table_free(table);
     sl_scene_free(scene);
     sl_scene_free(NULL);
 }
