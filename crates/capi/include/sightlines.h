@@ -742,7 +742,9 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * The version of the library, in the form of `SL_VERSION`.
+ * The version of the library.
+ *
+ * @return It, in the form of `SL_VERSION`.
  */
 uint32_t sl_version(void);
 
@@ -753,6 +755,7 @@ uint32_t sl_version(void);
  * A library serves headers of the same major number that are not newer than itself; while the major number is 0, of the same
  * minor number.
  *
+ * @param header_version  `SL_VERSION`, as the program's header has it.
  * @return `SL_OK`, or `SL_ERROR_VERSION`: then no other function may be relied on.
  */
 sl_status sl_check_version(uint32_t header_version);
@@ -768,6 +771,7 @@ const char *sl_last_error(void);
 /**
  * The name of a status, such as "SL_ERROR_BUFFER".
  *
+ * @param status  What a function returned.
  * @return A text that ends with a zero byte and is always valid; "unknown status" for other numbers.
  */
 const char *sl_status_name(sl_status status);
@@ -953,6 +957,8 @@ sl_status sl_table_cells_at(const struct sl_table *table,
 /**
  * Whether something in one cell may be seen from somewhere in another. Symmetric. O(1).
  *
+ * @param a     The number of one cell, below `cell_count`.
+ * @param b     That of the other.
  * @param sees  Where 1 or 0 goes.
  * @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there is no such cell.
  */
@@ -961,6 +967,7 @@ sl_status sl_table_sees(const struct sl_table *table, uint32_t a, uint32_t b, ui
 /**
  * The cells that a cell may see, itself included, ascending.
  *
+ * @param cell      Its number, below `cell_count`.
  * @param cells     Where their numbers go, or null to ask for how many there are.
  * @param capacity  Number of cells that the buffer has room for; 0 if it is null.
  * @param count     Where their number goes.
@@ -975,6 +982,7 @@ sl_status sl_table_visible_cells(const struct sl_table *table,
 /**
  * The row of a cell, in place: bit `j % 64` of word `j / 64` is set if the cell may see cell `j`. Nothing is copied. O(1).
  *
+ * @param cell   Its number, below `cell_count`.
  * @param words  Where a pointer to the words goes. They must not be changed, and are valid until the table is freed, the
  *               viewers made of it do not count.
  * @param count  Where the number of words goes.
@@ -988,6 +996,7 @@ sl_status sl_table_row(const struct sl_table *table,
 /**
  * The objects that touch a cell, ascending.
  *
+ * @param cell      Its number, below `cell_count`.
  * @param objects   Where their numbers go, or null to ask for how many there are.
  * @param capacity  Number of objects that the buffer has room for; 0 if it is null.
  * @param count     Where their number goes.
@@ -1002,6 +1011,7 @@ sl_status sl_table_objects_in_cell(const struct sl_table *table,
 /**
  * The objects that a cell may see, ascending.
  *
+ * @param cell      Its number, below `cell_count`.
  * @param objects   Where their numbers go, or null to ask for how many there are.
  * @param capacity  Number of objects that the buffer has room for; 0 if it is null.
  * @param count     Where their number goes.
@@ -1016,6 +1026,7 @@ sl_status sl_table_visible_objects(const struct sl_table *table,
 /**
  * The objects that a cell may see, as bits: bit `j % 64` of word `j / 64` is set for object `j`.
  *
+ * @param cell      Its number, below `cell_count`.
  * @param words     Where the words go, or null to ask for how many there are.
  * @param capacity  Number of words that the buffer has room for; 0 if it is null.
  * @param count     Where their number goes: the number of objects divided by 64, rounded up.

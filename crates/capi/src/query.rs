@@ -59,6 +59,8 @@ pub(crate) unsafe fn put_ids(
 
 /// Whether something in one cell may be seen from somewhere in another. Symmetric. O(1).
 ///
+/// @param a     The number of one cell, below `cell_count`.
+/// @param b     That of the other.
 /// @param sees  Where 1 or 0 goes.
 /// @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there is no such cell.
 #[unsafe(no_mangle)]
@@ -74,6 +76,7 @@ pub unsafe extern "C" fn sl_table_sees(table: *const SlTable, a: u32, b: u32, se
 
 /// The cells that a cell may see, itself included, ascending.
 ///
+/// @param cell      Its number, below `cell_count`.
 /// @param cells     Where their numbers go, or null to ask for how many there are.
 /// @param capacity  Number of cells that the buffer has room for; 0 if it is null.
 /// @param count     Where their number goes.
@@ -98,6 +101,7 @@ pub unsafe extern "C" fn sl_table_visible_cells(
 
 /// The row of a cell, in place: bit `j % 64` of word `j / 64` is set if the cell may see cell `j`. Nothing is copied. O(1).
 ///
+/// @param cell   Its number, below `cell_count`.
 /// @param words  Where a pointer to the words goes. They must not be changed, and are valid until the table is freed, the
 ///               viewers made of it do not count.
 /// @param count  Where the number of words goes.
@@ -124,6 +128,7 @@ pub unsafe extern "C" fn sl_table_row(
 
 /// The objects that touch a cell, ascending.
 ///
+/// @param cell      Its number, below `cell_count`.
 /// @param objects   Where their numbers go, or null to ask for how many there are.
 /// @param capacity  Number of objects that the buffer has room for; 0 if it is null.
 /// @param count     Where their number goes.
@@ -147,6 +152,7 @@ pub unsafe extern "C" fn sl_table_objects_in_cell(
 
 /// The objects that a cell may see, ascending.
 ///
+/// @param cell      Its number, below `cell_count`.
 /// @param objects   Where their numbers go, or null to ask for how many there are.
 /// @param capacity  Number of objects that the buffer has room for; 0 if it is null.
 /// @param count     Where their number goes.
@@ -170,6 +176,7 @@ pub unsafe extern "C" fn sl_table_visible_objects(
 
 /// The objects that a cell may see, as bits: bit `j % 64` of word `j / 64` is set for object `j`.
 ///
+/// @param cell      Its number, below `cell_count`.
 /// @param words     Where the words go, or null to ask for how many there are.
 /// @param capacity  Number of words that the buffer has room for; 0 if it is null.
 /// @param count     Where their number goes: the number of objects divided by 64, rounded up.

@@ -133,6 +133,7 @@ pub extern "C" fn sl_last_error() -> *const c_char {
 
 /// The name of a status, such as "SL_ERROR_BUFFER".
 ///
+/// @param status  What a function returned.
 /// @return A text that ends with a zero byte and is always valid; "unknown status" for other numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn sl_status_name(status: SlStatus) -> *const c_char {

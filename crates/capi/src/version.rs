@@ -5,7 +5,9 @@ use crate::status::{Failure, SL_ERROR_VERSION, SlStatus, guard};
 /// The version of this header: 1,000,000 times the major, 1,000 times the minor number, and the patch.
 pub const SL_VERSION: u32 = 1_000;
 
-/// The version of the library, in the form of `SL_VERSION`.
+/// The version of the library.
+///
+/// @return It, in the form of `SL_VERSION`.
 #[unsafe(no_mangle)]
 pub extern "C" fn sl_version() -> u32 {
     SL_VERSION
@@ -17,6 +19,7 @@ pub extern "C" fn sl_version() -> u32 {
 /// A library serves headers of the same major number that are not newer than itself; while the major number is 0, of the same
 /// minor number.
 ///
+/// @param header_version  `SL_VERSION`, as the program's header has it.
 /// @return `SL_OK`, or `SL_ERROR_VERSION`: then no other function may be relied on.
 #[unsafe(no_mangle)]
 pub extern "C" fn sl_check_version(header_version: u32) -> SlStatus {

@@ -43,3 +43,60 @@ fn the_header_is_that_of_the_crate() {
     let differs = kept.lines().zip(made.lines()).position(|(a, b)| a != b);
     assert!(kept == made, "the header differs from the crate from line {:?} on: write it anew with BLESS=1", differs);
 }
+
+/// What is missing in a header: functions without a comment, arguments and results that it does not mention. And how many functions
+/// there are.
+fn gaps(header: &str) -> (Vec<String>, usize) {
+    let (mut gaps, mut n) = (Vec::new(), 0);
+    let mut comment = "";
+    for part in header.split("\n\n") {
+        let (own, code) = part.rsplit_once("*/").unwrap_or(("", part));
+        let is_comment = part.starts_with("/**");
+        comment = if is_comment { own } else { comment };
+        let code = code.trim();
+        let Some(open) = code.find("(").filter(|_| code.ends_with(");") && !code.starts_with("typedef")) else {
+            continue;
+        };
+        let name = code[..open].rsplit([' ', '*']).next().expect("a name");
+        n += 1;
+        if !is_comment {
+            gaps.push(format!("{name} has no comment"));
+            continue;
+        }
+        let arguments = code[open + 1..code.len() - 2].split(',').map(str::trim).filter(|a| *a != "void");
+        for argument in arguments {
+            let called = argument.rsplit([' ', '*']).next().expect("a name");
+            // What a handle is for is in the name of the function.
+            let is_handle = ["sl_table *", "sl_viewer *", "sl_scene *"].iter().any(|kind| argument.contains(kind));
+            if !(comment.contains(&format!("@param {called} ")) || is_handle && !argument.contains("**")) {
+                gaps.push(format!("{name} does not say what {called} is"));
+            }
+        }
+        if !code.starts_with("void") && !comment.contains("@return") {
+            gaps.push(format!("{name} does not say what it returns"));
+        }
+    }
+    (gaps, n)
+}
+
+#[test]
+fn the_header_says_what_every_argument_is() {
+    let header = fs::read_to_string(header()).expect("the header is readable");
+    let (gaps, n) = gaps(&header);
+    assert!(gaps.is_empty() && n >= 55, "{n} functions\n{}", gaps.join("\n"));
+}
+
+#[test]
+fn impostor_headers_with_gaps_are_caught() {
+    let good =
+        "/**\n * Adds.\n *\n * @param a  One.\n * @return The sum.\n */\nint sl_add(const sl_table *table, int a);\n\n";
+    assert_eq!(gaps(good), (vec![], 1));
+    let cases = [
+        (good.replace("@param a ", "@param b "), "sl_add does not say what a is"),
+        (good.replace("@return", "Returns"), "sl_add does not say what it returns"),
+        ("int sl_add(int a);\n\n".to_owned(), "sl_add has no comment"),
+    ];
+    for (header, gap) in cases {
+        assert_eq!(gaps(&header), (vec![gap.to_owned()], 1));
+    }
+}

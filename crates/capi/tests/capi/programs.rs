@@ -138,6 +138,78 @@ fn the_examples_of_the_readme_run() {
     assert_eq!(n_programs, 2, "one in C and one in C++");
 }
 
+/// Headers, the static library and the files of `cmake/` as they are installed.
+fn install(prefix: &Path) {
+    let [include, lib] = ["include", "lib"].map(|name| prefix.join(name));
+    let cmake = lib.join("cmake/sightlines");
+    for folder in [&include, &cmake] {
+        fs::create_dir_all(folder).expect("a folder is made");
+    }
+    let copy = |from: PathBuf, to: &Path| {
+        let name = from.file_name().expect("a file has a name").to_owned();
+        fs::copy(from, to.join(name)).expect("a file is copied");
+    };
+    for name in ["sightlines.h", "sightlines.hpp"] {
+        copy(folder().join("include").join(name), &include);
+    }
+    for name in ["sightlines-config.cmake", "sightlines-system.cmake"] {
+        copy(folder().join("cmake").join(name), &cmake);
+    }
+    copy(library(), &lib);
+    let template = fs::read_to_string(folder().join("cmake/sightlines.pc.in")).expect("a template");
+    let prefix = prefix.to_str().expect("UTF-8");
+    let text = template.replace("@PREFIX@", prefix).replace("@VERSION@", env!("CARGO_PKG_VERSION"));
+    fs::write(lib.join("sightlines.pc"), text).expect("a file is written");
+}
+
+#[test]
+fn an_installed_library_is_found_by_pkg_config() {
+    if !wanted("pkg-config") || !wanted("gcc") {
+        return;
+    }
+    let scratch = tempfile::tempdir().expect("a folder");
+    install(scratch.path());
+    let output = Command::new("pkg-config")
+        .args(["--static", "--cflags", "--libs", "sightlines"])
+        .env("PKG_CONFIG_PATH", scratch.path().join("lib"))
+        .output();
+    let flags = succeeded("pkg-config", &output.expect("it runs"));
+    let program = scratch.path().join("rooms");
+    let output = Command::new("gcc")
+        .args(["-std=c11", "-o"])
+        .args([&program, &folder().join("examples/c/rooms.c")])
+        .args(flags.split_whitespace())
+        .output();
+    succeeded("gcc with the flags of pkg-config", &output.expect("it runs"));
+    let printed = succeeded("the program", &Command::new(&program).output().expect("it runs"));
+    assert!(printed.starts_with("baked "), "{printed}");
+}
+
+#[test]
+fn an_installed_library_is_found_by_cmake() {
+    if !wanted("cmake") || !wanted("gcc") {
+        return;
+    }
+    let scratch = tempfile::tempdir().expect("a folder");
+    let [prefix, build] = ["prefix", "build"].map(|name| scratch.path().join(name));
+    install(&prefix);
+    let rooms = folder().join("examples/c/rooms.c");
+    let project = format!(
+        "cmake_minimum_required(VERSION 3.16)\nproject(game C)\nfind_package(sightlines CONFIG REQUIRED)\n\
+         add_executable(rooms \"{}\")\ntarget_link_libraries(rooms PRIVATE sightlines::sightlines)\n",
+        rooms.display()
+    );
+    fs::write(scratch.path().join("CMakeLists.txt"), project).expect("a file is written");
+    let output = Command::new("cmake")
+        .args([Path::new("-S"), scratch.path(), Path::new("-B"), &build])
+        .arg(format!("-DCMAKE_PREFIX_PATH={}", prefix.display()))
+        .output();
+    succeeded("cmake", &output.expect("it runs"));
+    succeeded("cmake --build", &Command::new("cmake").arg("--build").arg(&build).output().expect("it runs"));
+    let printed = succeeded("the program", &Command::new(build.join("rooms")).output().expect("it runs"));
+    assert!(printed.starts_with("baked "), "{printed}");
+}
+
 /// A program that reads what was freed, and one that leaks, are found: the checks above can fail.
 #[test]
 fn impostor_programs_with_faults_are_caught() {
