@@ -15,7 +15,7 @@ pub(crate) trait Handle: Sized {
 }
 
 /// What begins the memory of a handle that was freed, as long as nobody else uses it.
-const FREED: u64 = 0x5ee_dead_0f_f4ee;
+const FREED: u64 = 0x05ee_dead_0ff4_ee00;
 
 #[repr(C)]
 struct Tagged<S> {

@@ -1,89 +1,20 @@
 //! What C gets is what Rust answers.
 
-use sightlines_bake::{BakeOptions, Gap, PlanBakeOptions, bake, bake_plan};
+use crate::common::{Handle, Random, cell_ids, list, object_ids, plans, text, towers};
+use sightlines_bake::{BakeOptions, PlanBakeOptions, bake, bake_plan};
 use sightlines_capi::*;
-use sightlines_cells::{Plan, Scene};
 use sightlines_eye_to_cell::{
     Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer, PortalId, Table};
-use sightlines_scenes as scenes;
+use std::collections::BTreeSet;
 use std::ffi::CString;
 use std::ptr;
 use std::sync::Arc;
 
-/// Chance.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb)
-    }
-
-    /// From 0 to 1.
-    fn share(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.share()
-    }
-}
-
-/// An owned handle of a table.
-struct Handle(*mut SlTable);
-
-impl Handle {
-    fn of(bytes: &[u8]) -> Self {
-        let mut handle = ptr::null_mut();
-        // SAFETY: bytes and a place that live.
-        assert_eq!(unsafe { sl_table_from_bytes(bytes.as_ptr(), bytes.len(), &mut handle) }, SL_OK);
-        Self(handle)
-    }
-}
-
-impl Drop for Handle {
-    fn drop(&mut self) {
-        // SAFETY: it is owned.
-        unsafe { sl_table_free(self.0) };
-    }
-}
-
-/// What a function of the border lists: the size first, then the items.
-fn list<T: Clone + Default>(call: impl Fn(*mut T, usize, &mut usize) -> SlStatus) -> Vec<T> {
-    let mut n = 0;
-    assert_eq!(call(ptr::null_mut(), 0, &mut n), SL_OK);
-    let mut items = vec![T::default(); n];
-    assert_eq!(call(items.as_mut_ptr(), n, &mut n), SL_OK);
-    assert_eq!(n, items.len());
-    if n > 1 {
-        assert_eq!(call(items.as_mut_ptr(), n - 1, &mut n), SL_ERROR_BUFFER);
-    }
-    items
-}
-
-fn text(call: impl Fn(*mut i8, usize, &mut usize) -> SlStatus) -> String {
-    let mut n = 0;
-    assert_eq!(call(ptr::null_mut(), 0, &mut n), SL_OK);
-    let mut bytes = vec![1i8; n + 1];
-    assert_eq!(call(bytes.as_mut_ptr(), n + 1, &mut n), SL_OK);
-    assert_eq!(bytes.pop(), Some(0));
-    String::from_utf8(bytes.into_iter().map(|b| b as u8).collect()).expect("UTF-8")
-}
-
-fn cell_ids(cells: impl IntoIterator<Item = CellId>) -> Vec<u32> {
-    cells.into_iter().map(|cell| cell.0).collect()
-}
-
-fn object_ids(objects: impl IntoIterator<Item = ObjectId>) -> Vec<u32> {
-    objects.into_iter().map(|object| object.0).collect()
-}
-
 /// Compares everything that the border tells of cells, objects and portals; the number of answers that were compared and of those that
 /// differ.
-fn compare_content(table: &Table, c: &Handle) -> [usize; 2] {
+pub(crate) fn compare_content(table: &Table, c: &Handle) -> [usize; 2] {
     let (mut n, mut n_wrong) = (0, 0);
     let mut same = |is_same: bool| {
         n += 1;
@@ -237,6 +168,9 @@ fn compare_looks(table: &Table, c: &Handle, random: &mut Random, n_looks: usize)
     let cells = TableCells::new(Arc::new(table.clone()));
     let bounds = bounds_of(table);
     let (mut n_inside, mut n_wrong) = (0, 0);
+    let (mut n_listed, mut n_joining) = (0, 0);
+    let with_portals: BTreeSet<CellId> = table.portals().iter().flat_map(|portal| portal.cells).collect();
+    let has_apart_cells = with_portals.len() < table.n_cells();
     let mut viewer = ptr::null_mut();
     // SAFETY: the handle lives.
     assert_eq!(unsafe { sl_viewer_new(c.0, &mut viewer) }, SL_OK);
@@ -292,16 +226,41 @@ fn compare_looks(table: &Table, c: &Handle, random: &mut Random, n_looks: usize)
             let portals = list(|to, size, n| sl_viewer_portals(viewer, to, size, n));
             let joins = |&p: &u32| table.portals()[p as usize].cells.iter().all(|cell| found.contains(&cell.0));
             let are_open = portals.iter().all(|&p| outside || doors.is_open(PortalId(p)) && joins(&p));
+            let at = table.place_at(eye);
+            let reached = reached_through(table, at.cells(), &portals);
+            // What the exact method finds is on a line through open portals in view, and each of them is listed.
+            let follows =
+                method < Method::Exact || has_apart_cells || outside || found.iter().all(|c| reached.contains(c));
+            n_listed += portals.len();
+            n_joining += (0..table.portals().len() as u32).filter(|p| outside || joins(p)).count();
             let closed = list(|to, size, n| sl_viewer_closed_portals(viewer, to, size, n));
             let is_known = closed == doors.closed().map(|p| p.0).collect::<Vec<_>>();
             let images_differ = !outside && images_differ(viewer, method, &seen, &doors, &cells);
             let same_answer = answer.method == number && answer.is_outside == u32::from(outside);
-            n_wrong += usize::from(!(is_same && are_open && is_known && same_answer) || images_differ);
+            n_wrong += usize::from(!(is_same && are_open && follows && is_known && same_answer) || images_differ);
         }
     }
     // SAFETY: it is owned.
     unsafe { sl_viewer_free(viewer) };
+    assert!(n_listed < n_joining || n_joining < 40, "portals out of view are not listed: {n_listed} of {n_joining}");
     [n_inside, n_wrong]
+}
+
+/// The cells that are reached from some by way of these portals.
+fn reached_through(table: &Table, from: &[CellId], portals: &[u32]) -> BTreeSet<u32> {
+    let mut reached: BTreeSet<u32> = from.iter().map(|cell| cell.0).collect();
+    loop {
+        let before = reached.len();
+        for record in portals.iter().map(|&p| &table.portals()[p as usize]) {
+            let [a, b] = record.cells.map(|cell| cell.0);
+            if reached.contains(&a) || reached.contains(&b) {
+                reached.extend([a, b]);
+            }
+        }
+        if reached.len() == before {
+            return reached;
+        }
+    }
 }
 
 /// Whether what is seen in mirrors differs.
@@ -335,27 +294,6 @@ unsafe fn images_differ(
         };
         n as usize != images.len() || (0u32..).zip(&images).any(differs)
     }
-}
-
-fn plans() -> Vec<Plan> {
-    let mirrored = Plan::from_walls(
-        [[0., 0., 8., 0.], [8., 0., 8., 4.], [8., 4., 0., 4.], [0., 4., 0., 0.], [4., 0., 4., 1.], [4., 2., 4., 4.]]
-            .map(|[a, b, c, d]| (sightlines_geometry::Point2::new(a, b), sightlines_geometry::Point2::new(c, d))),
-    )
-    .expect("a plan")
-    .with_mirrors(vec![sightlines_cells::LineId(0), sightlines_cells::LineId(2)])
-    .expect("walls");
-    let mut plans = vec![mirrored];
-    plans.extend(scenes::maze(1, 4, 3));
-    plans.extend(scenes::doom_like(1, 1));
-    plans
-}
-
-fn towers() -> Vec<Scene> {
-    let small = scenes::TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 2, ..Default::default() };
-    [small, scenes::TowerOptions { floors: 2, rooms_y: 2, ..small }]
-        .map(|o| scenes::tower(o).expect("a tower"))
-        .to_vec()
 }
 
 /// Tables of plans, scenes and files of all versions.
@@ -415,82 +353,4 @@ fn impostor_a_table_with_a_pair_removed_differs() {
         n += 1;
     }
     assert!(n >= 5, "{n}");
-}
-
-/// A scene goes through the border object by object, and the table that comes back has the same bytes.
-#[test]
-fn bakes_are_those_of_rust() {
-    let options = BakeOptions { gap: Gap::Width(0.0), ..BakeOptions::default() };
-    let mut n = 0;
-    for scene in towers() {
-        let expected = bake(&scene, &options).expect("a scene").table.to_bytes();
-        let mut handle = ptr::null_mut();
-        // SAFETY: handles live until they are freed; all pointers are to live memory of the stated sizes.
-        unsafe {
-            assert_eq!(sl_scene_new(&mut handle), SL_OK);
-            for object in scene.objects() {
-                let name = CString::new(object.name.as_str()).expect("no zeros");
-                let (vertices, triangles) = (object.vertices.as_flattened(), object.triangles.as_flattened());
-                let [v, i] = [vertices.len() / 3, triangles.len()];
-                let mut id = SL_NONE;
-                let status =
-                    sl_scene_add_object(handle, name.as_ptr(), vertices.as_ptr(), v, triangles.as_ptr(), i, 0, &mut id);
-                assert_eq!(status, SL_OK);
-            }
-            for threads in [1, 3] {
-                let mut given = std::mem::zeroed::<SlBakeOptions>();
-                (given.struct_size, given.threads) = (size_of::<SlBakeOptions>(), threads);
-                let mut table = ptr::null_mut();
-                assert_eq!(sl_bake(handle, &given, &mut table, ptr::null_mut()), SL_OK);
-                assert_eq!(list(|to, size, n| sl_table_bytes(table, SL_FORM_PLAIN, to, size, n)), expected);
-                let packed = list(|to, size, n| sl_table_bytes(table, SL_FORM_PACKED, to, size, n));
-                assert!(packed.len() < expected.len());
-                let again = Handle::of(&packed);
-                assert_eq!(list(|to, size, n| sl_table_bytes(again.0, SL_FORM_PLAIN, to, size, n)), expected);
-                sl_table_free(table);
-                n += 1;
-            }
-            sl_scene_free(handle);
-        }
-    }
-    for plan in plans().into_iter().filter(|plan| plan.mirrors().is_empty() && plan.objects().is_empty()) {
-        let walls: Vec<f64> = plan.lines().iter().flat_map(|line| [line.a.x, line.a.y, line.b.x, line.b.y]).collect();
-        let plain = plan.lines().iter().all(|line| line.opaque && line.left.is_none() && line.right.is_none());
-        if !plain {
-            continue;
-        }
-        let expected = bake_plan(&plan, &PlanBakeOptions::default()).expect("a plan").table.to_bytes();
-        let mut table = ptr::null_mut();
-        // SAFETY: all pointers are to live memory of the stated sizes.
-        unsafe {
-            let status = sl_bake_plan(walls.as_ptr(), walls.len() / 4, ptr::null(), &mut table, ptr::null_mut());
-            assert_eq!(status, SL_OK);
-            assert_eq!(list(|to, size, n| sl_table_bytes(table, SL_FORM_PLAIN, to, size, n)), expected);
-            sl_table_free(table);
-        }
-        n += 1;
-    }
-    assert!(n >= 5, "{n}");
-}
-
-/// Files by path: written, read, and errors that name the path.
-#[test]
-fn files_are_written_and_read() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("a table.pvz");
-    let path = CString::new(path.to_str().expect("UTF-8")).expect("no zeros");
-    let table = bake_plan(&plans()[0], &PlanBakeOptions::default()).expect("a plan").table;
-    let c = Handle::of(&table.to_bytes());
-    let mut again = ptr::null_mut();
-    // SAFETY: handles live until they are freed; texts end with zeros.
-    unsafe {
-        assert_eq!(sl_table_save(c.0, path.as_ptr(), SL_FORM_PACKED), SL_OK);
-        assert_eq!(sl_table_load(path.as_ptr(), &mut again), SL_OK);
-        assert_eq!(compare_content(&table, &Handle(again))[1], 0);
-        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing else is left");
-        std::fs::write(folder.path().join("a table.pvz"), b"\x89PVP\r\n\x1a\nand no more").expect("it is writable");
-        assert_eq!(sl_table_load(path.as_ptr(), &mut again), SL_ERROR_FORMAT);
-        let message = std::ffi::CStr::from_ptr(sl_last_error()).to_str().expect("UTF-8").to_owned();
-        assert!(message.contains("a table.pvz: ") && again.is_null(), "{message}");
-    }
 }
