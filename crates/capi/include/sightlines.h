@@ -172,7 +172,8 @@
 #define SL_OBJECT_SEE_THROUGH 1
 
 /**
- * A door that stands shut. Tables take it to be open, so it hides nothing; `sl_viewer_close_door` shuts it.
+ * A door that stands shut. Tables take it to be open, so it hides nothing; `sl_viewer_close_door` shuts it. Its leaf is seen where it stands;
+ * `sl_scene_set_motion` says where else it gets to.
  */
 #define SL_OBJECT_DOOR 2
 

@@ -22,7 +22,8 @@ impl Handle for SlScene {
 
 /// It is seen, and hides nothing: glass, leaves, fences.
 pub const SL_OBJECT_SEE_THROUGH: u32 = 1;
-/// A door that stands shut. Tables take it to be open, so it hides nothing; `sl_viewer_close_door` shuts it.
+/// A door that stands shut. Tables take it to be open, so it hides nothing; `sl_viewer_close_door` shuts it. Its leaf is seen where it stands;
+/// `sl_scene_set_motion` says where else it gets to.
 pub const SL_OBJECT_DOOR: u32 = 2;
 /// Its faces are mirrors.
 pub const SL_OBJECT_MIRROR: u32 = 4;
