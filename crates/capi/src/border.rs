@@ -53,7 +53,6 @@ impl Plain for u32 {}
 impl Plain for u64 {}
 impl Plain for f32 {}
 impl Plain for f64 {}
-impl Plain for crate::info::SlBox {}
 impl<T: Plain, const N: usize> Plain for [T; N] {}
 
 /// A text that ends with a zero byte.

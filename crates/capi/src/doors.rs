@@ -1,11 +1,12 @@
 //! Doors by name, portals in a box, and where objects are in the file that a table was made of.
 
 use crate::border;
+use crate::eye::Viewer;
 use crate::info::{SlBox, below};
 use crate::query::put_ids;
 use crate::status::{Failure, SL_ERROR_NOT_FOUND, SL_NONE, SlStatus, guard};
 use crate::table::{SlTable, table};
-use crate::viewer::{SlViewer, Viewer, viewer};
+use crate::viewer::{SlViewer, viewer};
 use sightlines_pvs::{DoorId, ObjectId};
 use std::ffi::c_char;
 

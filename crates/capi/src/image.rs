@@ -1,10 +1,11 @@
 //! What is seen in mirrors.
 
 use crate::border;
+use crate::eye::Viewer;
 use crate::info::below;
 use crate::query::put_ids;
 use crate::status::{Failure, SlStatus, guard};
-use crate::viewer::{SlViewer, Viewer, viewer};
+use crate::viewer::{SlViewer, viewer};
 use sightlines_eye_to_cell::Image;
 use std::sync::MutexGuard;
 

@@ -16,6 +16,8 @@ pub struct SlBox {
     pub max: [f64; 3],
 }
 
+impl border::Plain for SlBox {}
+
 /// A table that does not say what it was made of.
 pub const SL_KIND_UNSPECIFIED: u32 = 0;
 /// A plan cut along its axis-parallel walls.

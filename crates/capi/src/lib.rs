@@ -9,8 +9,8 @@
 //!   a buffer is written only as far as its stated size; a table may be read by any number of threads, and every other handle
 //!   answers one call at a time.
 //!
-//! This is the only crate of the project with `unsafe` code. Modules that are not about pointers have none: reading and writing through
-//! them is in `border` and `handle`.
+//! This is the only crate of the project with `unsafe` code. Memory of callers is read and written in `border`, handles are made, told and freed in
+//! `handle`; all other modules pass pointers on to these two.
 
 #![expect(
     clippy::missing_safety_doc,
@@ -21,6 +21,7 @@
 mod bake;
 mod border;
 mod doors;
+mod eye;
 #[cfg(feature = "fuzz")]
 pub mod fuzz;
 mod handle;
@@ -38,6 +39,7 @@ mod viewer;
 #[cfg(feature = "bake")]
 pub use bake::*;
 pub use doors::*;
+pub use eye::*;
 pub use image::*;
 pub use info::*;
 pub use query::*;

@@ -20,7 +20,8 @@ fn generated() -> String {
         .filter(|path| !["fuzz.rs", "fuzz", "lib.rs"].iter().any(|name| path.ends_with(name)))
         .collect();
     // The order of the header: what others need comes first.
-    let order = ["version", "status", "table", "info", "query", "view", "viewer", "doors", "image", "scene", "bake"];
+    let order =
+        ["version", "status", "table", "info", "query", "view", "eye", "viewer", "doors", "image", "scene", "bake"];
     let rank = |path: &PathBuf| order.iter().position(|name| path.file_stem().is_some_and(|stem| stem == *name));
     sources.retain(|path| rank(path).is_some());
     sources.sort_by_key(rank);

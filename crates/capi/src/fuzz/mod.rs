@@ -5,50 +5,12 @@
 //! what was freed, state more than there is) is never done, so nothing here may be undefined behaviour, and every defect is a panic: a
 //! status that is none, a buffer written beyond its size or in part, a call that reports a defect.
 
+mod draw;
+
 use crate::*;
+use draw::{Bytes, Marked};
 use std::ffi::{c_char, c_void};
 use std::ptr;
-
-/// The bytes that are left.
-struct Bytes<'a> {
-    left: &'a [u8],
-}
-
-impl Bytes<'_> {
-    fn byte(&mut self) -> u8 {
-        let Some((&first, rest)) = self.left.split_first() else { return 0 };
-        self.left = rest;
-        first
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        usize::from(self.byte()) % n
-    }
-
-    /// Small as a rule, and sometimes anything.
-    fn number(&mut self) -> u32 {
-        match self.byte() {
-            255 => SL_NONE,
-            254 => u32::from_le_bytes(std::array::from_fn(|_| self.byte())),
-            small => u32::from(small % 24),
-        }
-    }
-
-    /// Of a small grid as a rule, and sometimes anything.
-    fn real(&mut self) -> f64 {
-        const SPECIAL: [f64; 8] =
-            [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, f64::MAX, 1e-310, 1e18, std::f64::consts::PI];
-        match self.byte() {
-            byte @ 248.. => SPECIAL[usize::from(byte - 248)],
-            byte @ 240.. => f64::from_bits(u64::from_le_bytes(std::array::from_fn(|_| self.byte()))) * f64::from(byte),
-            byte => f64::from(byte % 16) / 2.0 - 1.0,
-        }
-    }
-
-    fn reals<const N: usize>(&mut self) -> [f64; N] {
-        std::array::from_fn(|_| self.real())
-    }
-}
 
 /// A handle, by its kind.
 #[derive(Clone, Copy)]
@@ -64,41 +26,6 @@ impl Held {
             Self::Table(handle) => handle.cast(),
             Self::Viewer(handle) => handle.cast(),
             Self::Scene(handle) => handle.cast(),
-        }
-    }
-}
-
-/// A buffer with marks behind it.
-struct Marked<T> {
-    items: Vec<T>,
-    mark: T,
-    capacity: usize,
-    count: usize,
-    is_null: bool,
-}
-
-impl<T: Copy + PartialEq + std::fmt::Debug> Marked<T> {
-    fn new(bytes: &mut Bytes<'_>, mark: T) -> Self {
-        let is_null = bytes.below(8) == 0;
-        let capacity = [0, 1, 2, 5, 64, 4096][bytes.below(6)];
-        Self { items: vec![mark; capacity + 8], mark, capacity, count: usize::MAX, is_null }
-    }
-
-    fn place(&mut self) -> *mut T {
-        if self.is_null { ptr::null_mut() } else { self.items.as_mut_ptr() }
-    }
-
-    fn check(&self, status: SlStatus) {
-        let written = if status == SL_OK && !self.is_null { self.count.min(self.capacity) } else { 0 };
-        // A text has a zero behind it.
-        let is_text = size_of::<T>() == 1;
-        let written = written + usize::from(is_text && written < self.capacity && status == SL_OK && !self.is_null);
-        assert!(self.items[written..].iter().all(|item| *item == self.mark), "written beyond {written} items");
-        if status == SL_OK && !self.is_null {
-            assert!(self.count <= self.capacity, "{} items in a buffer for {}", self.count, self.capacity);
-        }
-        if status == SL_ERROR_BUFFER {
-            assert!(self.count >= self.capacity, "a buffer for {} has room for {}", self.capacity, self.count);
         }
     }
 }
