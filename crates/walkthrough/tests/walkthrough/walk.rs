@@ -233,7 +233,7 @@ fn doors_are_shut_until_the_table_changes() {
     gate.open();
     let mut walk = walk(&table, source, WalkOptions::default());
     let view = looking_right(0.5);
-    let mut sees = |walk: &mut Walk| until_full(walk, &view, Method::Exact).0.len();
+    let sees = |walk: &mut Walk| until_full(walk, &view, Method::Exact).0.len();
     assert_eq!(sees(&mut walk), 3);
     for door in table.door("wing") {
         assert!(walk.close_door(table.doors(), door) && !walk.close_door(table.doors(), door));
