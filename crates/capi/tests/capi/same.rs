@@ -354,3 +354,52 @@ fn impostor_a_table_with_a_pair_removed_differs() {
     }
     assert!(n >= 5, "{n}");
 }
+
+/// By a matrix in either layout one sees what one sees in Rust; the wrong layout is refused.
+#[test]
+fn matrices_are_those_of_rust() {
+    let table = bake(&towers()[1], &BakeOptions::default()).expect("a scene").table;
+    let (cells, c) = (TableCells::new(Arc::new(table.clone())), Handle::of(&table.to_bytes()));
+    let (mut random, bounds) = (Random(5), bounds_of(&table));
+    let (mut viewer, mut n, mut n_objects) = (ptr::null_mut(), 0, BTreeSet::new());
+    // SAFETY: the handle lives.
+    assert_eq!(unsafe { sl_viewer_new(c.0, &mut viewer) }, SL_OK);
+    for _ in 0..60 {
+        let eye: [f64; 3] = std::array::from_fn(|k| random.between(bounds.0[k], bounds.1[k]));
+        let Place::Inside(here) = table.place_at(eye) else { continue };
+        // A camera turned about y, with a lens of reversed infinite depth, as rows.
+        let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
+        let (right, ahead, f) = ([cos, 0.0, -sin], [sin, 0.0, cos], 1.3);
+        let along = |v: [f64; 3], scale: f64| {
+            let at: f64 = (0..3).map(|k| v[k] * eye[k]).sum();
+            [v[0] * scale, v[1] * scale, v[2] * scale, -at * scale]
+        };
+        let rows = [along(right, f / 1.5), along([0.0, 1.0, 0.0], f), [0.0, 0.0, 0.0, 0.1], along(ahead, 1.0)];
+        let columns: [[f64; 4]; 4] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
+        let view = View::from_view_projection(eye, columns).expect("a perspective");
+        let mut seen = VisibleSet::new();
+        seen.clear(table.n_cells(), table.objects().len());
+        for &cell in here.cells() {
+            let Ok(subgraph) = VisibleSubgraph::prepare(&cells, cell);
+            Method::Exact.look(&subgraph, &view, &Doors::all_open(), &mut Scratch::new(), &mut seen);
+        }
+        seen.sort();
+        let expected = object_ids(seen.objects().iter().copied());
+        let flat = |m: [[f64; 4]; 4]| std::array::from_fn(|i| m[i / 4][i % 4]);
+        let given = |kind, matrix| SlView { matrix, ..nothing_seen(kind, eye, [0.0; 3]) };
+        for view in [given(SL_VIEW_MATRIX, flat(columns)), given(SL_VIEW_MATRIX_TRANSPOSED, flat(rows))] {
+            // SAFETY: the viewer lives.
+            assert_eq!(unsafe { sl_viewer_look(viewer, &view, ptr::null_mut()) }, SL_OK);
+            // SAFETY: the viewer lives; results go to buffers of the stated sizes.
+            assert_eq!(list(|to, size, n| unsafe { sl_viewer_objects(viewer, to, size, n) }), expected);
+        }
+        let wrong = given(SL_VIEW_MATRIX, flat(rows));
+        // SAFETY: the viewer lives.
+        assert_eq!(unsafe { sl_viewer_look(viewer, &wrong, ptr::null_mut()) }, SL_ERROR_VIEW);
+        n_objects.insert(expected.len());
+        n += 1;
+    }
+    // SAFETY: it is owned.
+    unsafe { sl_viewer_free(viewer) };
+    assert!(n > 20 && n_objects.len() > 5, "{n} views, {n_objects:?}");
+}
