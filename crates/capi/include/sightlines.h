@@ -734,7 +734,7 @@ typedef struct sl_bake_report {
 #define SL_ERROR_INTERNAL 15
 
 /**
- * A defect of the library struck an earlier call while it changed this handle. Only freeing it does anything.
+ * A defect of the library struck an earlier call that used this handle. Only freeing it does anything.
  */
 #define SL_ERROR_POISONED 16
 
@@ -1476,7 +1476,8 @@ sl_status sl_scene_set_motion(struct sl_scene *scene,
                               const struct sl_box *within);
 
 /**
- * Makes the table of a scene. The same scene and options give the same table, byte for byte, with any number of threads.
+ * Makes the table of a scene. The same scene and options give the same table, byte for byte, with any number of threads, unless there is
+ * a time limit.
  *
  * @param scene    The scene; it is not changed, and may be freed afterwards.
  * @param options  How to make it; null for all defaults.
@@ -1492,7 +1493,7 @@ sl_status sl_bake(const struct sl_scene *scene,
 /**
  * Makes the table of a plan: walls in the plane, which hide from both sides. Objects and doors belong to scenes.
  *
- * Of the options only `threads`, `progress` and `user` count.
+ * Of the options only `threads`, `progress` and `user` change anything; the others have to be valid all the same.
  *
  * @param walls       x and y of the two ends of one wall after the other: four numbers each.
  * @param wall_count  Number of walls.

@@ -302,7 +302,8 @@ impl Given<'_> {
     }
 }
 
-/// Makes the table of a scene. The same scene and options give the same table, byte for byte, with any number of threads.
+/// Makes the table of a scene. The same scene and options give the same table, byte for byte, with any number of threads, unless there is
+/// a time limit.
 ///
 /// @param scene    The scene; it is not changed, and may be freed afterwards.
 /// @param options  How to make it; null for all defaults.
@@ -329,7 +330,7 @@ pub unsafe extern "C" fn sl_bake(
 
 /// Makes the table of a plan: walls in the plane, which hide from both sides. Objects and doors belong to scenes.
 ///
-/// Of the options only `threads`, `progress` and `user` count.
+/// Of the options only `threads`, `progress` and `user` change anything; the others have to be valid all the same.
 ///
 /// @param walls       x and y of the two ends of one wall after the other: four numbers each.
 /// @param wall_count  Number of walls.

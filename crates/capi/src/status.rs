@@ -40,7 +40,7 @@ pub const SL_ERROR_NOT_FOUND: SlStatus = 13;
 pub const SL_ERROR_UNSUPPORTED: SlStatus = 14;
 /// A defect of the library: a panic was caught. Please report it.
 pub const SL_ERROR_INTERNAL: SlStatus = 15;
-/// A defect of the library struck an earlier call while it changed this handle. Only freeing it does anything.
+/// A defect of the library struck an earlier call that used this handle. Only freeing it does anything.
 pub const SL_ERROR_POISONED: SlStatus = 16;
 
 /// No cell, object, portal, group or method: a number that none of them has.

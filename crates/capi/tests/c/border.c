@@ -199,6 +199,8 @@ static void tables(sl_table *table) {
     EXPECT(SL_ERROR_ARGUMENT, sl_table_cell_corners(table, info.cell_count, NULL, 0, &n));
     EXPECT(SL_ERROR_ARGUMENT, sl_table_object_name(table, 0, text, sizeof text, &n));
     EXPECT(SL_ERROR_NOT_FOUND, sl_table_find_object(table, "x", &answer));
+    EXPECT(SL_OK, sl_table_find_doors(table, "x", NULL, 0, &n));
+    TRUE(n == 0);
     const uint64_t *row = NULL;
     EXPECT(SL_OK, sl_table_row(table, cell, &row, &n));
     TRUE(n == (info.cell_count + 63) / 64 && (row[cell / 64] >> (cell % 64) & 1) == 1);
@@ -245,6 +247,7 @@ static void viewers(sl_table *table) {
 
 int main(void) {
     EXPECT(SL_OK, sl_check_version(SL_VERSION));
+    TRUE(sl_version() == SL_VERSION);
     EXPECT(SL_ERROR_VERSION, sl_check_version(SL_VERSION + 1000));
     scenes();
     sl_table *table = NULL;

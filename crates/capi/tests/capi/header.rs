@@ -101,3 +101,24 @@ fn impostor_headers_with_gaps_are_caught() {
         assert_eq!(gaps(&header), (vec![gap.to_owned()], 1));
     }
 }
+
+/// Functions of a header of which none of these texts speaks.
+fn not_called<'a>(header: &'a str, texts: &str) -> Vec<&'a str> {
+    let names = header.lines().filter(|line| !line.starts_with([' ', '/', '#'])).filter_map(|line| {
+        let name = line[..line.find('(')?].rsplit([' ', '*']).next()?;
+        name.starts_with("sl_").then_some(name)
+    });
+    names.filter(|name| !texts.contains(&format!("{name}(")) && !texts.contains(&format!(", {name},"))).collect()
+}
+
+#[test]
+fn every_function_is_called_by_a_test() {
+    let header = fs::read_to_string(header()).expect("the header is readable");
+    let read = |path: &str| fs::read_to_string(folder().join(path)).expect("a test is readable");
+    let texts = ["tests/capi/same.rs", "tests/capi/bakes.rs", "tests/c/border.c", "src/fuzz/mod.rs"].map(read).concat();
+    assert_eq!(not_called(&header, &texts), [""; 0]);
+    // The impostor: without the tests in C nobody calls these.
+    let without = texts.replace("sl_check_version", "");
+    assert_eq!(not_called(&header, &without), ["sl_check_version"]);
+    assert!(not_called(&header, "").len() > 55);
+}

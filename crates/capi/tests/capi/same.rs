@@ -100,6 +100,9 @@ pub(crate) fn compare_content(table: &Table, c: &Handle) -> [usize; 2] {
             let portals = list(|to, size, n| sl_table_door_portals(c, id, to, size, n));
             same(portals == record.portals.iter().map(|p| p.0).collect::<Vec<_>>());
             same(text(|to, size, n| sl_table_door_name(c, id, to.cast(), size, n)) == record.name);
+            let name = CString::new(record.name.as_str()).expect("names here have no zeros");
+            let named = list(|to, size, n| sl_table_find_doors(c, name.as_ptr(), to, size, n));
+            same(named == table.door(&record.name).map(|door| door.0).collect::<Vec<_>>() && named.contains(&id));
         }
     }
     [n, n_wrong]
