@@ -1091,7 +1091,7 @@ sl_status sl_table_cells_touching(const struct sl_table *table,
                                   size_t *count);
 
 /**
- * Makes a viewer of a table: exact, without a bound on its work, with all doors open.
+ * Makes a viewer of a table: exact within the work of a frame (`SL_STEPS_FRAME`), with all doors open.
  *
  * @param table   The table, which may be freed before the viewer.
  * @param viewer  Where the handle goes; free it with `sl_viewer_free`. Null is stored there if the call fails.

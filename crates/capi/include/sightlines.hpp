@@ -271,7 +271,7 @@ public:
         handle_.reset(made);
     }
 
-    void set_method(std::uint32_t method, std::uint64_t max_steps = SL_STEPS_UNLIMITED) {
+    void set_method(std::uint32_t method, std::uint64_t max_steps = SL_STEPS_FRAME) {
         check(sl_viewer_set_method(get(), method, max_steps));
     }
 

@@ -101,7 +101,7 @@ impl Viewer {
         Self {
             cells,
             method: Method::Exact,
-            budget: Budget::UNLIMITED,
+            budget: Budget::FRAME,
             doors: Doors::all_open(),
             kept: Kept { subgraphs: BTreeMap::new(), n_bytes: 0, limit: KEPT_BYTES, clock: 0 },
             scratch: Scratch::new(),

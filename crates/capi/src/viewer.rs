@@ -33,7 +33,7 @@ pub(crate) unsafe fn viewer<'a>(handle: *const SlViewer) -> Result<MutexGuard<'a
     lock(unsafe { handle::behind(handle)? }, SlViewer::NAME)
 }
 
-/// Makes a viewer of a table: exact, without a bound on its work, with all doors open.
+/// Makes a viewer of a table: exact within the work of a frame (`SL_STEPS_FRAME`), with all doors open.
 ///
 /// @param table   The table, which may be freed before the viewer.
 /// @param viewer  Where the handle goes; free it with `sl_viewer_free`. Null is stored there if the call fails.
