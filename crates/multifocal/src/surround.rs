@@ -146,6 +146,8 @@ pub struct Surrounded<'a> {
     buffers: &'a [Vec<Buffer>; 6],
     /// For each side the unit of its values.
     units: [f64; 6],
+    /// The middle of the volume.
+    middle: Point3,
 }
 
 impl<'a> Surrounded<'a> {
@@ -159,7 +161,9 @@ impl<'a> Surrounded<'a> {
             let sizes = side.planes.iter().map(Plane::texels);
             assert!(sizes.eq(buffers.iter().map(Buffer::texels)), "a buffer for each plane");
         }
-        Self { surround, buffers, units }
+        let b = surround.volume.bounds();
+        let middle = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
+        Self { surround, buffers, units, middle }
     }
 
     /// Whether a closed box is certainly hidden from the whole volume.
@@ -179,8 +183,11 @@ impl<'a> Surrounded<'a> {
         if (0..3).all(|k| target.min[k] <= v.max[k] && v.min[k] <= target.max[k]) {
             return false;
         }
-        (0..6).any(|side| self.one_plane_hides(side, points, target))
-            || self.surround.measure.is_height() && (0..self.n_boxes()).any(|k| self.box_hides(k, target))
+        let sum = points.iter().fold([0.0; 3], |sum, p| [0, 1, 2].map(|k| sum[k] + p[k]));
+        let centre = sum.map(|x| x / points.len() as f64);
+        (0..6).any(|side| self.one_plane_hides(side, points, centre, target))
+            || self.surround.measure.is_height()
+                && (0..self.n_boxes()).any(|k| self.may_box_hide(k, centre, target) && self.box_hides(k, target))
     }
 
     fn n_boxes(&self) -> usize {
@@ -188,14 +195,57 @@ impl<'a> Surrounded<'a> {
     }
 
     /// Whether one of the planes of a side hides the target alone.
-    fn one_plane_hides(&self, side: usize, points: &[Point3], target: &Aabb<3>) -> bool {
+    ///
+    /// * `centre`: of the points, rounded
+    fn one_plane_hides(&self, side: usize, points: &[Point3], centre: Point3, target: &Aabb<3>) -> bool {
         let (axis, positive) = (side / 2, side % 2 == 1);
         let v = self.surround.volume.bounds();
         let beyond = if positive { v.max[axis] < target.min[axis] } else { target.max[axis] < v.min[axis] };
         beyond && {
             let planes = &self.surround.directions[side].planes;
-            (0..planes.len()).rev().any(|k| self.plane_hides(side, k, points, target))
+            let may = |k: usize| self.may_plane_hide(side, k, points, centre, target);
+            (0..planes.len()).rev().any(|k| may(k) && self.plane_hides(side, k, points, target))
         }
+    }
+
+    /// Whether a few lines meet the plane where it is blocked. If one of them does not, then no footprint of all lines is blocked; so this
+    /// spares footprints, and decides nothing else.
+    fn may_plane_hide(&self, side: usize, k: usize, points: &[Point3], centre: Point3, target: &Aabb<3>) -> bool {
+        let (plane, buffer) = (&self.surround.directions[side].planes[k], &self.buffers[side][k]);
+        // Distances are larger than heights.
+        let limit = limit(plane.height(target.min).max(plane.height(target.max)), self.units[side]);
+        let b = self.surround.volume.bounds();
+        let [u, v] = plane.across();
+        let corner = |k: usize| {
+            let mut eye = self.middle;
+            eye[u] = if k & 1 == 0 { b.min[u] } else { b.max[u] };
+            eye[v] = if k & 2 == 0 { b.min[v] } else { b.max[v] };
+            eye
+        };
+        is_blocked_along(plane, buffer, limit, self.middle, centre)
+            && (0..4).all(|k| is_blocked_along(plane, buffer, limit, corner(k), points[k % points.len()]))
+    }
+
+    /// Whether the line from the middle to the centre of a target leaves a box where it is blocked. If it does not, then the sides of the
+    /// box do not hide the target.
+    fn may_box_hide(&self, at: usize, centre: Point3, target: &Aabb<3>) -> bool {
+        let mut first = (f64::INFINITY, 0);
+        for axis in 0..3 {
+            let way = centre[axis] - self.middle[axis];
+            let side = 2 * axis + usize::from(way > 0.0);
+            let direction = &self.surround.directions[side];
+            let Some(k) = direction.plane_of_box[at] else { return false };
+            let until = (direction.planes[k].at() - self.middle[axis]) / way;
+            if until < first.0 {
+                first = (until, side);
+            }
+        }
+        let side = first.1;
+        let direction = &self.surround.directions[side];
+        let Some(k) = direction.plane_of_box[at].filter(|_| first.0 < f64::INFINITY) else { return true };
+        let (plane, buffer) = (&direction.planes[k], &self.buffers[side][k]);
+        let limit = limit(plane.height(target.min).max(plane.height(target.max)), self.units[side]);
+        is_blocked_along(plane, buffer, limit, self.middle, centre)
     }
 
     fn plane_hides(&self, side: usize, k: usize, points: &[Point3], target: &Aabb<3>) -> bool {
@@ -234,6 +284,20 @@ impl<'a> Surrounded<'a> {
             }
         })
     }
+}
+
+/// Whether the line from an eye through a point meets a plane in its window, at a texel with more than `limit`. In plain doubles.
+#[inline]
+fn is_blocked_along(plane: &Plane, buffer: &Buffer, limit: u32, eye: Point3, point: Point3) -> bool {
+    let height = plane.height(eye);
+    let ratio = height / (height - plane.height(point));
+    let ([u, v], origin, step) = (plane.across(), plane.origin(), plane.step());
+    let place = |k: usize, axis: usize| (eye[axis] + ratio * (point[axis] - eye[axis]) - origin[k]) / step[k];
+    let (x, y) = (place(0, u), place(1, v));
+    let [width, rows] = buffer.texels();
+    // NaN is nowhere.
+    let is_inside = x >= 0.0 && y >= 0.0 && x < f64::from(width) && y < f64::from(rows);
+    is_inside && buffer.get(x as u32, y as u32) > limit
 }
 
 /// Where lines from a volume towards a target leave a box through one of its sides.

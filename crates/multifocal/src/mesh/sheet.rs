@@ -39,6 +39,8 @@ pub struct Sheets {
     /// The triangles of each edge in their order around it, as the mesh lists them.
     around: Vec<u32>,
     around_starts: Vec<u32>,
+    /// For each triangle the piece of the mesh that it belongs to: triangles that hang together by edges.
+    piece: Vec<u32>,
 }
 
 impl Sheets {
@@ -61,7 +63,7 @@ impl Sheets {
             }
             around_starts.push(around.len() as u32);
         }
-        Self { mesh, boxes, tree, around, around_starts }
+        Self { piece: pieces(&mesh), mesh, boxes, tree, around, around_starts }
     }
 
     /// The mesh.
@@ -79,6 +81,11 @@ impl Sheets {
             codes: vec![(0, 0); self.mesh.vertices().len()],
             odd: vec![0; self.mesh.edges().len()],
             queue: Vec::new(),
+            starts: Vec::new(),
+            pieces: Vec::new(),
+            met: Vec::new(),
+            from_volume: vec![0; n],
+            volume: (Aabb::EMPTY, 0),
             forked: false,
             chain: Vec::new(),
         }
@@ -133,6 +140,25 @@ impl Side {
     }
 }
 
+/// For each triangle the least one of its piece: of those that hang together by edges. O(n) but for a factor that never exceeds 5.
+fn pieces(mesh: &Mesh) -> Vec<u32> {
+    let mut parents: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
+    let root = |parents: &mut [u32], mut t: u32| {
+        while parents[t as usize] != t {
+            parents[t as usize] = parents[parents[t as usize] as usize];
+            t = parents[t as usize];
+        }
+        t
+    };
+    for edge in 0..mesh.edges().len() as u32 {
+        for pair in mesh.triangles_at(edge).windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|t| root(&mut parents, t));
+            parents[a.max(b) as usize] = a.min(b);
+        }
+    }
+    (0..parents.len() as u32).map(|t| root(&mut parents, t)).collect()
+}
+
 /// Sorts triangles by their angle around an edge, upwards as seen against the direction of the edge. Any order is
 /// valid; this one makes walks follow the visible surface.
 fn sort_around(mesh: &Mesh, edge: u32, triangles: &mut [u32]) {
@@ -171,6 +197,17 @@ pub struct SheetTester<'a> {
     /// Parity of the triangles of the chain that end at each edge.
     odd: Vec<u32>,
     queue: Vec<Side>,
+    /// Triangles that the first segment meets, with the parameters of the hits.
+    starts: Vec<(f64, u32)>,
+    /// Pieces of the mesh that all segments met so far, ascending, and whether the current one does.
+    pieces: Vec<(u32, bool)>,
+    /// Triangles of these that some segment met.
+    met: Vec<u32>,
+    /// For each triangle whether it may hide from the volume of the current queries, if that was asked: the mark of the volume, and the
+    /// answer in the lowest bit.
+    from_volume: Vec<u32>,
+    /// The volume of the current queries, and its mark.
+    volume: (Aabb<3>, u32),
     /// Whether the walk met an edge without exactly two triangles.
     forked: bool,
     chain: Vec<u32>,
@@ -204,19 +241,33 @@ impl SheetTester<'_> {
             let Some(inner) = segment(v, e, i) else { return false };
             *s = inner;
         }
-        if !segments.iter().all(|&s| self.sheets.blocks(s)) {
-            return false;
-        }
-        let mut starts: Vec<(f64, u32)> = Vec::new();
-        self.sheets.hits(segments[0], |t, at| {
-            starts.push((at, t));
-            true
-        });
-        starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.find_starts(&segments);
+        let starts = std::mem::take(&mut self.starts);
+        let hides = !starts.is_empty() && self.any_hides(v, e, &segments, &starts, limit);
+        self.starts = starts;
+        hides
+    }
+
+    /// Whether a walk from one of the starts finds a chain that hides.
+    fn any_hides(
+        &mut self,
+        v: &Aabb<3>,
+        e: &Aabb<3>,
+        segments: &[[Point3; 2]],
+        starts: &[(f64, u32)],
+        limit: usize,
+    ) -> bool {
         self.next_epoch(2 * starts.len() as u32 + 2);
+        if self.volume.0 != *v || self.volume.1 == 0 {
+            if self.volume.1 == u32::MAX >> 1 {
+                self.from_volume.fill(0);
+                self.volume.1 = 0;
+            }
+            self.volume = (*v, self.volume.1 + 1);
+        }
         let pair = Pair { v, e, shaft: Shaft::new(v, e), since: self.epoch };
         let mut left = limit;
-        for &(_, triangle) in &starts {
+        for &(_, triangle) in starts {
             let [a, b, c] = self.sheets.mesh.corners(triangle);
             let front = orient3d(a, b, c, segments[0][0]) > 0.0;
             for front in [front, !front] {
@@ -226,7 +277,7 @@ impl SheetTester<'_> {
                 }
                 self.epoch += 1;
                 self.forked = false;
-                if self.walk(&pair, start, &mut left) && segments[..4].iter().any(|s| self.certifies(&pair, s)) {
+                if self.walk(&pair, start, &mut left) && self.certifies(&pair, &segments[..4]) {
                     return true;
                 }
                 if left == 0 {
@@ -239,6 +290,59 @@ impl SheetTester<'_> {
             }
         }
         false
+    }
+
+    /// Finds the triangles from which a walk may find a chain: those that the first segment meets, in the order in which it does, of
+    /// pieces of the mesh that all other segments meet as well. A chain is of one piece, and all segments cross it.
+    fn find_starts(&mut self, segments: &[[Point3; 2]]) {
+        let sheets = self.sheets;
+        let (starts, pieces, met) = (&mut self.starts, &mut self.pieces, &mut self.met);
+        starts.clear();
+        sheets.hits(segments[0], |t, at| {
+            starts.push((at, t));
+            true
+        });
+        pieces.clear();
+        pieces.extend(starts.iter().map(|s| (sheets.piece[s.1 as usize], false)));
+        pieces.sort_unstable();
+        pieces.dedup();
+        met.clear();
+        met.extend(starts.iter().map(|s| s.1));
+        for &[p, q] in &segments[1..] {
+            if pieces.is_empty() {
+                break;
+            }
+            pieces.iter_mut().for_each(|piece| piece.1 = false);
+            let mut n_left = pieces.len();
+            let mut note = |t: u32, n_left: &mut usize| {
+                let at = pieces.binary_search_by_key(&sheets.piece[t as usize], |piece| piece.0);
+                let is_new = at.is_ok_and(|at| !std::mem::replace(&mut pieces[at].1, true));
+                *n_left -= usize::from(is_new);
+                is_new
+            };
+            // What earlier segments met is met by most.
+            let d = sub(q, p);
+            for &t in met.iter() {
+                if meet(sheets.mesh.corners(t), p, d).is_some() {
+                    note(t, &mut n_left);
+                }
+            }
+            if n_left > 0 {
+                sheets.hits([p, q], |t, _| {
+                    if note(t, &mut n_left) {
+                        met.push(t);
+                    }
+                    n_left > 0
+                });
+            }
+            if n_left > 0 {
+                pieces.retain(|piece| piece.1);
+                met.retain(|&t| pieces.binary_search_by_key(&sheets.piece[t as usize], |piece| piece.0).is_ok());
+            }
+        }
+        let is_met = |t: u32| pieces.binary_search_by_key(&sheets.piece[t as usize], |piece| piece.0).is_ok();
+        starts.retain(|s| is_met(s.1));
+        starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
     /// Makes room for `n` marks that no query has used.
@@ -288,9 +392,15 @@ impl SheetTester<'_> {
     }
 
     /// Condition 1.
-    fn may_hide(&self, pair: &Pair<'_>, triangle: u32) -> bool {
-        let corners = self.sheets.mesh.corners(triangle);
-        avoids(&corners, pair.e, false) && avoids(&corners, pair.v, true)
+    fn may_hide(&mut self, pair: &Pair<'_>, triangle: u32) -> bool {
+        let (b, e) = (&self.sheets.boxes[triangle as usize], pair.e);
+        let is_apart = (0..3).any(|k| b.min[k] > e.max[k] || b.max[k] < e.min[k]);
+        let known = &mut self.from_volume[triangle as usize];
+        if *known >> 1 != self.volume.1 {
+            let avoids = avoids(&self.sheets.mesh.corners(triangle), pair.v, true);
+            *known = self.volume.1 << 1 | u32::from(avoids);
+        }
+        *known & 1 == 1 && (is_apart || avoids(&self.sheets.mesh.corners(triangle), e, false))
     }
 
     /// Whether an edge certainly misses the relative interior of the hull.
@@ -309,39 +419,34 @@ impl SheetTester<'_> {
         s & t != 0 || pair.shaft.certainly_misses(a, b)
     }
 
-    /// Whether the chain satisfies the three conditions, the third with this segment.
-    fn certifies(&mut self, pair: &Pair<'_>, segment: &[Point3; 2]) -> bool {
+    /// Whether the chain satisfies the three conditions, the third with the first of the segments that touches no edge: with the others
+    /// it is the same, if the first two are satisfied.
+    fn certifies(&mut self, pair: &Pair<'_>, segments: &[[Point3; 2]]) -> bool {
         let mesh = &self.sheets.mesh;
         let chain = std::mem::take(&mut self.chain);
-        let edges = || chain.iter().flat_map(|&t| mesh.outline_edges(t).iter().copied());
-        edges().for_each(|e| self.odd[e as usize] += 1);
-        let closed = edges().all(|e| self.odd[e as usize].is_multiple_of(2) || self.misses(pair, e));
-        edges().for_each(|e| self.odd[e as usize] = 0);
-        let mut n_crossings = Some(0u32);
-        for &t in &chain {
-            let crosses = crosses(&self.sheets.boxes[t as usize], mesh.corners(t), segment);
-            n_crossings = n_crossings.zip(crosses).map(|(n, c)| n + u32::from(c));
-        }
-        let free = chain.iter().all(|&t| self.may_hide(pair, t));
+        let n_crossings = |segment: &[Point3; 2]| {
+            let mut n = 0u32;
+            for &t in &chain {
+                n += u32::from(crosses(&self.sheets.boxes[t as usize], mesh.corners(t), segment)?);
+            }
+            Some(n)
+        };
+        let is_odd = segments.iter().find_map(n_crossings).is_some_and(|n| n % 2 == 1);
+        let certifies = is_odd && chain.iter().all(|&t| self.may_hide(pair, t)) && {
+            let edges = || chain.iter().flat_map(|&t| mesh.outline_edges(t).iter().copied());
+            edges().for_each(|e| self.odd[e as usize] += 1);
+            let closed = edges().all(|e| self.odd[e as usize].is_multiple_of(2) || self.misses(pair, e));
+            edges().for_each(|e| self.odd[e as usize] = 0);
+            closed
+        };
         self.chain = chain;
-        closed && free && n_crossings.is_some_and(|n| n % 2 == 1)
+        certifies
     }
 }
 
 impl Sheets {
-    /// Whether a segment meets a triangle, in doubles. Only used where an error leads to the answer `false`, or to a
-    /// walk.
-    fn blocks(&self, segment: [Point3; 2]) -> bool {
-        let mut any = false;
-        self.hits(segment, |_, _| {
-            any = true;
-            false
-        });
-        any
-    }
-
     /// Passes the triangles that a segment meets to `each`, with the parameter of the hit, until it returns `false`; in
-    /// doubles.
+    /// doubles. Only used where an error leads to the answer `false`, or to a walk.
     fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64) -> bool) {
         let d = sub(q, p);
         let inverse = d.map(|x| 1.0 / x);
