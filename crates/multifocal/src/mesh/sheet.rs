@@ -241,7 +241,7 @@ impl SheetTester<'_> {
             let Some(inner) = segment(v, e, i) else { return false };
             *s = inner;
         }
-        self.find_starts(&segments);
+        self.find_starts(v, e, &segments);
         let starts = std::mem::take(&mut self.starts);
         let hides = !starts.is_empty() && self.any_hides(v, e, &segments, &starts, limit);
         self.starts = starts;
@@ -258,13 +258,6 @@ impl SheetTester<'_> {
         limit: usize,
     ) -> bool {
         self.next_epoch(2 * starts.len() as u32 + 2);
-        if self.volume.0 != *v || self.volume.1 == 0 {
-            if self.volume.1 == u32::MAX >> 1 {
-                self.from_volume.fill(0);
-                self.volume.1 = 0;
-            }
-            self.volume = (*v, self.volume.1 + 1);
-        }
         let pair = Pair { v, e, shaft: Shaft::new(v, e), since: self.epoch };
         let mut left = limit;
         for &(_, triangle) in starts {
@@ -293,19 +286,33 @@ impl SheetTester<'_> {
     }
 
     /// Finds the triangles from which a walk may find a chain: those that the first segment meets, in the order in which it does, of
-    /// pieces of the mesh that all other segments meet as well. A chain is of one piece, and all segments cross it.
-    fn find_starts(&mut self, segments: &[[Point3; 2]]) {
+    /// pieces of the mesh that all other segments meet as well. A chain is of one piece, all segments cross it, and none of its triangles
+    /// touches the target.
+    fn find_starts(&mut self, v: &Aabb<3>, e: &Aabb<3>, segments: &[[Point3; 2]]) {
         let sheets = self.sheets;
-        let (starts, pieces, met) = (&mut self.starts, &mut self.pieces, &mut self.met);
+        let Self { starts, pieces, met, from_volume, volume, .. } = self;
+        if volume.0 != *v || volume.1 == 0 {
+            if volume.1 == u32::MAX >> 1 {
+                from_volume.fill(0);
+                volume.1 = 0;
+            }
+            *volume = (*v, volume.1 + 1);
+        }
+        let mut may_hide = |t: u32| sheets.may_hide(v, e, t, volume.1, &mut from_volume[t as usize]);
         starts.clear();
         sheets.hits(segments[0], |t, at| {
-            starts.push((at, t));
+            if may_hide(t) {
+                starts.push((at, t));
+            }
             true
         });
         pieces.clear();
         pieces.extend(starts.iter().map(|s| (sheets.piece[s.1 as usize], false)));
         pieces.sort_unstable();
         pieces.dedup();
+        let place = |pieces: &[(u32, bool)], t: u32| {
+            pieces.binary_search_by_key(&sheets.piece[t as usize], |piece| piece.0).ok()
+        };
         met.clear();
         met.extend(starts.iter().map(|s| s.1));
         for &[p, q] in &segments[1..] {
@@ -314,34 +321,37 @@ impl SheetTester<'_> {
             }
             pieces.iter_mut().for_each(|piece| piece.1 = false);
             let mut n_left = pieces.len();
-            let mut note = |t: u32, n_left: &mut usize| {
-                let at = pieces.binary_search_by_key(&sheets.piece[t as usize], |piece| piece.0);
-                let is_new = at.is_ok_and(|at| !std::mem::replace(&mut pieces[at].1, true));
-                *n_left -= usize::from(is_new);
-                is_new
-            };
             // What earlier segments met is met by most.
             let d = sub(q, p);
             for &t in met.iter() {
-                if meet(sheets.mesh.corners(t), p, d).is_some() {
-                    note(t, &mut n_left);
+                if let Some(at) = place(pieces, t)
+                    && !pieces[at].1
+                    && meet(sheets.mesh.corners(t), p, d).is_some()
+                {
+                    pieces[at].1 = true;
+                    n_left -= 1;
                 }
             }
-            if n_left > 0 {
-                sheets.hits([p, q], |t, _| {
-                    if note(t, &mut n_left) {
-                        met.push(t);
-                    }
-                    n_left > 0
-                });
+            if n_left == 0 {
+                continue;
             }
+            sheets.hits([p, q], |t, _| {
+                if let Some(at) = place(pieces, t)
+                    && !pieces[at].1
+                    && may_hide(t)
+                {
+                    pieces[at].1 = true;
+                    n_left -= 1;
+                    met.push(t);
+                }
+                n_left > 0
+            });
             if n_left > 0 {
                 pieces.retain(|piece| piece.1);
-                met.retain(|&t| pieces.binary_search_by_key(&sheets.piece[t as usize], |piece| piece.0).is_ok());
+                met.retain(|&t| place(pieces, t).is_some());
             }
         }
-        let is_met = |t: u32| pieces.binary_search_by_key(&sheets.piece[t as usize], |piece| piece.0).is_ok();
-        starts.retain(|s| is_met(s.1));
+        starts.retain(|s| place(pieces, s.1).is_some());
         starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
@@ -393,14 +403,7 @@ impl SheetTester<'_> {
 
     /// Condition 1.
     fn may_hide(&mut self, pair: &Pair<'_>, triangle: u32) -> bool {
-        let (b, e) = (&self.sheets.boxes[triangle as usize], pair.e);
-        let is_apart = (0..3).any(|k| b.min[k] > e.max[k] || b.max[k] < e.min[k]);
-        let known = &mut self.from_volume[triangle as usize];
-        if *known >> 1 != self.volume.1 {
-            let avoids = avoids(&self.sheets.mesh.corners(triangle), pair.v, true);
-            *known = self.volume.1 << 1 | u32::from(avoids);
-        }
-        *known & 1 == 1 && (is_apart || avoids(&self.sheets.mesh.corners(triangle), e, false))
+        self.sheets.may_hide(pair.v, pair.e, triangle, self.volume.1, &mut self.from_volume[triangle as usize])
     }
 
     /// Whether an edge certainly misses the relative interior of the hull.
@@ -445,6 +448,19 @@ impl SheetTester<'_> {
 }
 
 impl Sheets {
+    /// Whether a triangle may hide `e` from `v`: it touches neither `e` nor the inside of `v`.
+    ///
+    /// * `mark`: that of the volume
+    /// * `known`: the mark of the last volume that was asked about, and the answer in the lowest bit
+    fn may_hide(&self, v: &Aabb<3>, e: &Aabb<3>, triangle: u32, mark: u32, known: &mut u32) -> bool {
+        if *known >> 1 != mark {
+            *known = mark << 1 | u32::from(avoids(&self.mesh.corners(triangle), v, true));
+        }
+        let b = &self.boxes[triangle as usize];
+        let is_apart = || (0..3).any(|k| b.min[k] > e.max[k] || b.max[k] < e.min[k]);
+        *known & 1 == 1 && (is_apart() || avoids(&self.mesh.corners(triangle), e, false))
+    }
+
     /// Passes the triangles that a segment meets to `each`, with the parameter of the hit, until it returns `false`; in
     /// doubles. Only used where an error leads to the answer `false`, or to a walk.
     fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64) -> bool) {
