@@ -23,6 +23,8 @@
 //!
 //! Source: parity as for the ShieldTester of Navazo, Rossignac, Jou and Shariff, Computer Graphics Forum 22(3), 2003; the walk
 //! on sides and the treatment of borders were chosen here.
+//!
+//! Parts of a query are functions of their own for the compiler, too: as one, they take twice as long.
 
 use super::probe::{N_SEGMENTS, crosses, meet, segment};
 use super::shaft::{Shaft, avoids};
@@ -249,6 +251,7 @@ impl SheetTester<'_> {
     }
 
     /// Whether a walk from one of the starts finds a chain that hides.
+    #[inline(never)]
     fn any_hides(
         &mut self,
         v: &Aabb<3>,
@@ -288,6 +291,7 @@ impl SheetTester<'_> {
     /// Finds the triangles from which a walk may find a chain: those that the first segment meets, in the order in which it does, of
     /// pieces of the mesh that all other segments meet as well. A chain is of one piece, all segments cross it, and none of its triangles
     /// touches the target.
+    #[inline(never)]
     fn find_starts(&mut self, v: &Aabb<3>, e: &Aabb<3>, segments: &[[Point3; 2]]) {
         let sheets = self.sheets;
         let Self { starts, pieces, met, from_volume, volume, .. } = self;
@@ -367,6 +371,7 @@ impl SheetTester<'_> {
 
     /// Walks over the surface from a side, within the hull; returns whether the walk ended. The chain then has the
     /// triangles visited on one side only.
+    #[inline(never)]
     fn walk(&mut self, pair: &Pair<'_>, start: Side, left: &mut usize) -> bool {
         let sheets = self.sheets;
         self.queue.clear();
@@ -407,6 +412,7 @@ impl SheetTester<'_> {
     }
 
     /// Whether an edge certainly misses the relative interior of the hull.
+    #[inline(never)]
     fn misses(&mut self, pair: &Pair<'_>, edge: u32) -> bool {
         let ends = self.sheets.mesh.edges()[edge as usize];
         let [a, b] = ends.map(|v| self.sheets.mesh.vertices()[v as usize]);
@@ -458,11 +464,17 @@ impl Sheets {
         }
         let b = &self.boxes[triangle as usize];
         let is_apart = || (0..3).any(|k| b.min[k] > e.max[k] || b.max[k] < e.min[k]);
-        *known & 1 == 1 && (is_apart() || avoids(&self.mesh.corners(triangle), e, false))
+        if *known & 1 == 0 {
+            return false;
+        }
+        let corners = || self.mesh.corners(triangle);
+        // Most that touch the target have a corner in common with it.
+        is_apart() || !corners().iter().any(|&p| e.contains(p)) && avoids(&corners(), e, false)
     }
 
     /// Passes the triangles that a segment meets to `each`, with the parameter of the hit, until it returns `false`; in
     /// doubles. Only used where an error leads to the answer `false`, or to a walk.
+    #[inline(never)]
     fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64) -> bool) {
         let d = sub(q, p);
         let inverse = d.map(|x| 1.0 / x);
