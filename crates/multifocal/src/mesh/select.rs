@@ -11,6 +11,8 @@ struct Sketch {
     middle: Point3,
     /// Area, along the normal.
     area: Point3,
+    /// The same with length 1.
+    normal: Point3,
     /// Directions of length 1 in its plane, and its total extent along each.
     axes: [Point3; 2],
     widths: [f64; 2],
@@ -67,7 +69,7 @@ impl Sketch {
             let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
             high - low
         });
-        Self { middle, area, axes, widths }
+        Self { middle, area, normal, axes, widths }
     }
 
     /// The approximate space behind it, up to the plane, that is hidden from the volume; `None` if the volume is not on
@@ -75,16 +77,16 @@ impl Sketch {
     fn hidden_space(&self, volume: &Volume, plane: &Plane) -> Option<f64> {
         let b = volume.bounds();
         let eye: Point3 = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
-        // The total extent of the volume along a direction.
-        let reach = |a: Point3| (0..3).map(|k| (b.max[k] - b.min[k]) * a[k].abs()).sum::<f64>();
-        let way = sub(self.middle, eye);
-        let facing = dot(unit(self.area), way).abs();
-        if facing <= reach(unit(self.area)) / 2.0 {
-            return None;
-        }
         // Along the view axis: from the eye to it, and from it to the plane.
         let (in_front, behind) = (plane.height(eye) - plane.height(self.middle), plane.height(self.middle));
         if in_front <= 0.0 || behind <= 0.0 {
+            return None;
+        }
+        // The total extent of the volume along a direction.
+        let reach = |a: Point3| (0..3).map(|k| (b.max[k] - b.min[k]) * a[k].abs()).sum::<f64>();
+        let way = sub(self.middle, eye);
+        let facing = dot(self.normal, way).abs();
+        if facing <= reach(self.normal) / 2.0 {
             return None;
         }
         let shift = behind / in_front;

@@ -30,7 +30,7 @@ use super::probe::{N_SEGMENTS, crosses, meet, segment};
 use super::shaft::{Shaft, avoids};
 use super::vector::{basis, dot, sub, unit};
 use super::weld::Mesh;
-use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d};
+use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d, ray_box};
 
 /// A mesh, prepared for separation tests. Can be shared by threads.
 #[derive(Debug)]
@@ -86,6 +86,7 @@ impl Sheets {
             starts: Vec::new(),
             pieces: Vec::new(),
             met: Vec::new(),
+            segment_order: std::array::from_fn(|k| k + 1),
             from_volume: vec![0; n],
             volume: (Aabb::EMPTY, 0),
             forked: false,
@@ -205,6 +206,8 @@ pub struct SheetTester<'a> {
     pieces: Vec<(u32, bool)>,
     /// Triangles of these that some segment met.
     met: Vec<u32>,
+    /// In which order segments are looked at after the first one. Changes no answer.
+    segment_order: [usize; N_SEGMENTS as usize - 1],
     /// For each triangle whether it may hide from the volume of the current queries, if that was asked: the mark of the volume, and the
     /// answer in the lowest bit.
     from_volume: Vec<u32>,
@@ -294,7 +297,7 @@ impl SheetTester<'_> {
     #[inline(never)]
     fn find_starts(&mut self, v: &Aabb<3>, e: &Aabb<3>, segments: &[[Point3; 2]]) {
         let sheets = self.sheets;
-        let Self { starts, pieces, met, from_volume, volume, .. } = self;
+        let Self { starts, pieces, met, from_volume, volume, segment_order, .. } = self;
         if volume.0 != *v || volume.1 == 0 {
             if volume.1 == u32::MAX >> 1 {
                 from_volume.fill(0);
@@ -319,10 +322,11 @@ impl SheetTester<'_> {
         };
         met.clear();
         met.extend(starts.iter().map(|s| s.1));
-        for &[p, q] in &segments[1..] {
+        for at in 0..segment_order.len() {
             if pieces.is_empty() {
                 break;
             }
+            let [p, q] = segments[segment_order[at]];
             pieces.iter_mut().for_each(|piece| piece.1 = false);
             let mut n_left = pieces.len();
             // What earlier segments met is met by most.
@@ -353,6 +357,10 @@ impl SheetTester<'_> {
             if n_left > 0 {
                 pieces.retain(|piece| piece.1);
                 met.retain(|&t| place(pieces, t).is_some());
+            }
+            if pieces.is_empty() {
+                // What lies beside this target is often found out by the same segment.
+                segment_order[..=at].rotate_right(1);
             }
         }
         starts.retain(|s| place(pieces, s.1).is_some());
@@ -477,21 +485,11 @@ impl Sheets {
     #[inline(never)]
     fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64) -> bool) {
         let d = sub(q, p);
-        let inverse = d.map(|x| 1.0 / x);
+        // An axis without motion is left out.
+        let inverse = d.map(|x| if x == 0.0 { f64::NAN } else { 1.0 / x });
         let enter = |b: &Aabb<3>| {
-            let (mut first, mut last) = (0.0f64, 1.0f64);
-            for k in 0..3 {
-                if d[k] == 0.0 {
-                    if p[k] < b.min[k] || p[k] > b.max[k] {
-                        return false;
-                    }
-                    continue;
-                }
-                let [s, t] = [b.min[k], b.max[k]].map(|x| (x - p[k]) * inverse[k]);
-                first = first.max(s.min(t));
-                last = last.min(s.max(t));
-            }
-            first <= last + 1e-12
+            let [first, last] = ray_box(b, p, inverse);
+            first.max(0.0) <= last.min(1.0) + 1e-12
         };
         let more = std::cell::Cell::new(true);
         let wanted = |b: &Aabb<3>| more.get() && enter(b);
