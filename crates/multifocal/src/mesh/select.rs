@@ -22,12 +22,15 @@ struct Sketch {
 #[derive(Debug, Clone)]
 pub struct Chooser {
     sketches: Vec<Sketch>,
+    /// The middles of the sketches once more, close together: half of the occluders lie on the other side.
+    middles: Vec<Point3>,
 }
 
 impl Chooser {
     /// Examines each once. O(corners).
     pub fn new(occluders: &[Occluder]) -> Self {
-        Self { sketches: occluders.iter().map(|o| Sketch::of(o.outline())).collect() }
+        let sketches: Vec<Sketch> = occluders.iter().map(|o| Sketch::of(o.outline())).collect();
+        Self { middles: sketches.iter().map(|s| s.middle).collect(), sketches }
     }
 
     /// The up to `n` occluders that hide most space in front of `plane` from all of `volume`, best first. Estimated, as
@@ -37,8 +40,13 @@ impl Chooser {
     ///
     /// O(number of occluders).
     pub fn select(&self, volume: &Volume, plane: &Plane, n: usize) -> Vec<u32> {
-        let hidden = |(i, s): (u32, &Sketch)| Some((s.hidden_space(volume, plane)?, i)).filter(|h| h.0 > 0.0);
-        let mut ranked: Vec<(f64, u32)> = (0..).zip(&self.sketches).filter_map(hidden).collect();
+        let highest = plane.height(middle_of(volume));
+        let is_between = |middle: Point3| (0.0..highest).contains(&plane.height(middle));
+        let hidden = |(i, &middle): (u32, &Point3)| {
+            let space = || self.sketches[i as usize].hidden_space(volume, plane);
+            is_between(middle).then(space).flatten().filter(|space| *space > 0.0).map(|space| (space, i))
+        };
+        let mut ranked: Vec<(f64, u32)> = (0..).zip(&self.middles).filter_map(hidden).collect();
         let better = |a: &(f64, u32), b: &(f64, u32)| -> Ordering { b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)) };
         if n < ranked.len() {
             ranked.select_nth_unstable_by(n, better);
@@ -52,6 +60,11 @@ impl Chooser {
 /// Like [`Chooser::select`], for a single query.
 pub fn select(volume: &Volume, plane: &Plane, occluders: &[Occluder], n: usize) -> Vec<u32> {
     Chooser::new(occluders).select(volume, plane, n)
+}
+
+fn middle_of(volume: &Volume) -> Point3 {
+    let b = volume.bounds();
+    std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0)
 }
 
 impl Sketch {
@@ -75,8 +88,7 @@ impl Sketch {
     /// The approximate space behind it, up to the plane, that is hidden from the volume; `None` if the volume is not on
     /// one side of it.
     fn hidden_space(&self, volume: &Volume, plane: &Plane) -> Option<f64> {
-        let b = volume.bounds();
-        let eye: Point3 = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
+        let (b, eye) = (volume.bounds(), middle_of(volume));
         // Along the view axis: from the eye to it, and from it to the plane.
         let (in_front, behind) = (plane.height(eye) - plane.height(self.middle), plane.height(self.middle));
         if in_front <= 0.0 || behind <= 0.0 {

@@ -86,7 +86,7 @@ impl Sheets {
             starts: Vec::new(),
             pieces: Vec::new(),
             met: Vec::new(),
-            segment_order: std::array::from_fn(|k| k + 1),
+            segment_order: std::array::from_fn(|k| k as u32 + 1),
             from_volume: vec![0; n],
             volume: (Aabb::EMPTY, 0),
             forked: false,
@@ -207,7 +207,7 @@ pub struct SheetTester<'a> {
     /// Triangles of these that some segment met.
     met: Vec<u32>,
     /// In which order segments are looked at after the first one. Changes no answer.
-    segment_order: [usize; N_SEGMENTS as usize - 1],
+    segment_order: [u32; N_SEGMENTS as usize - 1],
     /// For each triangle whether it may hide from the volume of the current queries, if that was asked: the mark of the volume, and the
     /// answer in the lowest bit.
     from_volume: Vec<u32>,
@@ -241,28 +241,23 @@ impl SheetTester<'_> {
         if !usable(v) || !usable(e) || (0..3).all(|k| v.min[k] <= e.max[k] && e.min[k] <= v.max[k]) {
             return false;
         }
-        let mut segments = [[[0.0; 3]; 2]; N_SEGMENTS as usize];
-        for (i, s) in (0..).zip(&mut segments) {
-            let Some(inner) = segment(v, e, i) else { return false };
-            *s = inner;
+        if !self.find_starts(v, e) {
+            return false;
         }
-        self.find_starts(v, e, &segments);
         let starts = std::mem::take(&mut self.starts);
-        let hides = !starts.is_empty() && self.any_hides(v, e, &segments, &starts, limit);
+        let hides = self.any_hides(v, e, &starts, limit);
         self.starts = starts;
         hides
     }
 
     /// Whether a walk from one of the starts finds a chain that hides.
     #[inline(never)]
-    fn any_hides(
-        &mut self,
-        v: &Aabb<3>,
-        e: &Aabb<3>,
-        segments: &[[Point3; 2]],
-        starts: &[(f64, u32)],
-        limit: usize,
-    ) -> bool {
+    fn any_hides(&mut self, v: &Aabb<3>, e: &Aabb<3>, starts: &[(f64, u32)], limit: usize) -> bool {
+        let mut segments = [[[0.0; 3]; 2]; 4];
+        for (i, s) in (0..).zip(&mut segments) {
+            let Some(inner) = segment(v, e, i) else { return false };
+            *s = inner;
+        }
         self.next_epoch(2 * starts.len() as u32 + 2);
         let pair = Pair { v, e, shaft: Shaft::new(v, e), since: self.epoch };
         let mut left = limit;
@@ -276,7 +271,7 @@ impl SheetTester<'_> {
                 }
                 self.epoch += 1;
                 self.forked = false;
-                if self.walk(&pair, start, &mut left) && self.certifies(&pair, &segments[..4]) {
+                if self.walk(&pair, start, &mut left) && self.certifies(&pair, &segments) {
                     return true;
                 }
                 if left == 0 {
@@ -293,9 +288,9 @@ impl SheetTester<'_> {
 
     /// Finds the triangles from which a walk may find a chain: those that the first segment meets, in the order in which it does, of
     /// pieces of the mesh that all other segments meet as well. A chain is of one piece, all segments cross it, and none of its triangles
-    /// touches the target.
+    /// touches the target. Returns whether there are any.
     #[inline(never)]
-    fn find_starts(&mut self, v: &Aabb<3>, e: &Aabb<3>, segments: &[[Point3; 2]]) {
+    fn find_starts(&mut self, v: &Aabb<3>, e: &Aabb<3>) -> bool {
         let sheets = self.sheets;
         let Self { starts, pieces, met, from_volume, volume, segment_order, .. } = self;
         if volume.0 != *v || volume.1 == 0 {
@@ -307,7 +302,8 @@ impl SheetTester<'_> {
         }
         let mut may_hide = |t: u32| sheets.may_hide(v, e, t, volume.1, &mut from_volume[t as usize]);
         starts.clear();
-        sheets.hits(segments[0], |t, at| {
+        let Some(first) = segment(v, e, 0) else { return false };
+        sheets.hits(first, |t, at| {
             if may_hide(t) {
                 starts.push((at, t));
             }
@@ -324,9 +320,9 @@ impl SheetTester<'_> {
         met.extend(starts.iter().map(|s| s.1));
         for at in 0..segment_order.len() {
             if pieces.is_empty() {
-                break;
+                return false;
             }
-            let [p, q] = segments[segment_order[at]];
+            let Some([p, q]) = segment(v, e, segment_order[at]) else { return false };
             pieces.iter_mut().for_each(|piece| piece.1 = false);
             let mut n_left = pieces.len();
             // What earlier segments met is met by most.
@@ -365,6 +361,7 @@ impl SheetTester<'_> {
         }
         starts.retain(|s| place(pieces, s.1).is_some());
         starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        !starts.is_empty()
     }
 
     /// Makes room for `n` marks that no query has used.
@@ -433,7 +430,8 @@ impl SheetTester<'_> {
             self.codes[v as usize] = (pair.since, code);
             code
         });
-        s & t != 0 || pair.shaft.certainly_misses(a, b)
+        // An end without a bit is inside.
+        s & t != 0 || s != 0 && t != 0 && pair.shaft.certainly_misses(a, b)
     }
 
     /// Whether the chain satisfies the three conditions, the third with the first of the segments that touches no edge: with the others
