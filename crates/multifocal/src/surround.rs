@@ -4,6 +4,8 @@
 //! lines. Several nested boxes give more: near planes separate the gaps between things better, and planes behind a
 //! target also show what blocks in front of it.
 
+mod lines;
+
 use crate::footprint::{is_blocked_by_distance, limit};
 use crate::{Buffer, Footprint, Job, JobError, Measure, Occluder, Plane, PlaneError, Volume};
 use sightlines_geometry::{Aabb, Point3};
@@ -208,46 +210,6 @@ impl<'a> Surrounded<'a> {
         }
     }
 
-    /// Whether a few lines meet the plane where it is blocked. If one of them does not, then no footprint of all lines is blocked; so this
-    /// spares footprints, and decides nothing else.
-    fn may_plane_hide(&self, side: usize, k: usize, points: &[Point3], centre: Point3, target: &Aabb<3>) -> bool {
-        let (plane, buffer) = (&self.surround.directions[side].planes[k], &self.buffers[side][k]);
-        // Distances are larger than heights.
-        let limit = limit(plane.height(target.min).max(plane.height(target.max)), self.units[side]);
-        let b = self.surround.volume.bounds();
-        let [u, v] = plane.across();
-        let corner = |k: usize| {
-            let mut eye = self.middle;
-            eye[u] = if k & 1 == 0 { b.min[u] } else { b.max[u] };
-            eye[v] = if k & 2 == 0 { b.min[v] } else { b.max[v] };
-            eye
-        };
-        is_blocked_along(plane, buffer, limit, self.middle, centre)
-            && (0..4).all(|k| is_blocked_along(plane, buffer, limit, corner(k), points[k % points.len()]))
-    }
-
-    /// Whether the line from the middle to the centre of a target leaves a box where it is blocked. If it does not, then the sides of the
-    /// box do not hide the target.
-    fn may_box_hide(&self, at: usize, centre: Point3, target: &Aabb<3>) -> bool {
-        let mut first = (f64::INFINITY, 0);
-        for axis in 0..3 {
-            let way = centre[axis] - self.middle[axis];
-            let side = 2 * axis + usize::from(way > 0.0);
-            let direction = &self.surround.directions[side];
-            let Some(k) = direction.plane_of_box[at] else { return false };
-            let until = (direction.planes[k].at() - self.middle[axis]) / way;
-            if until < first.0 {
-                first = (until, side);
-            }
-        }
-        let side = first.1;
-        let direction = &self.surround.directions[side];
-        let Some(k) = direction.plane_of_box[at].filter(|_| first.0 < f64::INFINITY) else { return true };
-        let (plane, buffer) = (&direction.planes[k], &self.buffers[side][k]);
-        let limit = limit(plane.height(target.min).max(plane.height(target.max)), self.units[side]);
-        is_blocked_along(plane, buffer, limit, self.middle, centre)
-    }
-
     fn plane_hides(&self, side: usize, k: usize, points: &[Point3], target: &Aabb<3>) -> bool {
         let (plane, buffer, unit) =
             (&self.surround.directions[side].planes[k], &self.buffers[side][k], self.units[side]);
@@ -284,20 +246,6 @@ impl<'a> Surrounded<'a> {
             }
         })
     }
-}
-
-/// Whether the line from an eye through a point meets a plane in its window, at a texel with more than `limit`. In plain doubles.
-#[inline]
-fn is_blocked_along(plane: &Plane, buffer: &Buffer, limit: u32, eye: Point3, point: Point3) -> bool {
-    let height = plane.height(eye);
-    let ratio = height / (height - plane.height(point));
-    let ([u, v], origin, step) = (plane.across(), plane.origin(), plane.step());
-    let place = |k: usize, axis: usize| (eye[axis] + ratio * (point[axis] - eye[axis]) - origin[k]) / step[k];
-    let (x, y) = (place(0, u), place(1, v));
-    let [width, rows] = buffer.texels();
-    // NaN is nowhere.
-    let is_inside = x >= 0.0 && y >= 0.0 && x < f64::from(width) && y < f64::from(rows);
-    is_inside && buffer.get(x as u32, y as u32) > limit
 }
 
 /// Where lines from a volume towards a target leave a box through one of its sides.
@@ -370,37 +318,4 @@ fn exits(volume: &Volume, plane: &Plane, face: &[[f64; 2]; 2], target: &Aabb<3>)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Lines that leave a side of the box beside the window of its plane are not known to be blocked.
-    #[test]
-    fn exits_beside_the_window_are_unknown() {
-        let volume = Volume::new(Aabb { min: [-1.0; 3], max: [1.0; 3] }).unwrap();
-        let target = Aabb { min: [20.0, 6.0, 0.0], max: [20.0, 7.0, 1.0] };
-        let plane = |window: f64| Plane::new(0, true, 10.0, [-window; 2], [window; 2], [4, 4]).unwrap();
-        let face = [[-9.0, 9.0]; 2];
-        assert!(matches!(exits(&volume, &plane(9.0), &face, &target), Exits::Texels(_)));
-        assert_eq!(exits(&volume, &plane(3.0), &face, &target), Exits::Unknown);
-        assert_eq!(exits(&volume, &plane(9.0), &[[-9.0, 2.0]; 2], &target), Exits::None);
-    }
-
-    /// Boxes so far away that their planes round to one coordinate have one plane.
-    #[test]
-    fn planes_that_round_to_one_coordinate_are_left_out() {
-        let far = (1u64 << 53) as f64;
-        let volume = Volume::new(Aabb { min: [far - 8_388_672.0, -1.0, -1.0], max: [far, 1.0, 1.0] }).unwrap();
-        let wide = 4_194_304.0;
-        let scene = Aabb { min: [far - 8_388_672.0, -wide, -wide], max: [far + 40.0, wide, wide] };
-        let layout = Layout { planes: 400, texels: 1, growth: 1.5, ..Layout::default() };
-        let surround = Surround::new(&volume, &scene, &layout).unwrap();
-        let up = &surround.directions()[1];
-        assert!(up.plane_of_box.contains(&None) && up.plane_of_box.iter().flatten().count() == up.planes.len());
-        for growth in [-1.0, f64::NAN, f64::INFINITY, 0.0] {
-            // Whatever comes out, planes are in order.
-            if let Ok(surround) = Surround::new(&volume, &scene, &Layout { growth, ..layout }) {
-                assert!((0..6).all(|side| surround.job(side, []).is_ok()), "{growth}");
-            }
-        }
-    }
-}
+mod tests;

@@ -154,7 +154,8 @@ mod tests {
     use super::*;
     use sightlines_geometry::{Aabb, Random};
 
-    /// Edges along an axis are looked at in the plane across it, with the same corner as in space.
+    /// Edges along an axis are looked at in the plane across it, with the same corner as in space. A box that the line of the edge meets
+    /// is not on one side of a facet there, and is left out.
     #[test]
     fn the_farthest_corner_is_that_of_exact_predicates() {
         let (mut random, mut counts) = (Random::new(5), [0; 2]);
@@ -163,19 +164,25 @@ mod tests {
             let min = [0; 3].map(|_| whole());
             let corners = Aabb { min, max: min.map(|x| x + (whole() + 3.0) / 2.0) }.corners();
             let (p, mut q) = ([0; 3].map(|_| whole()), [0; 3].map(|_| whole()));
-            let axis = (whole() + 3.0) as usize;
+            let axis = ((whole() + 3.0) as usize).min(3);
             if axis < 3 {
                 let end = q[axis];
                 q = p;
                 q[axis] = end;
             }
+            // Others may be along an axis by chance.
+            let differs = |k: usize| p[k] != q[k];
+            let axis = (0..3).find(|&k| (0..3).all(|i| differs(i) == (i == k))).unwrap_or(3);
             for sign in [1.0, -1.0] {
                 let outside = |v: Point3, other: Point3| sign * orient3d(v, p, q, other) < 0.0;
                 let want = corners[1..].iter().fold(corners[0], |v, &other| if outside(v, other) { other } else { v });
-                assert_eq!(farthest(&corners, p, q, sign), want, "{corners:?} {p:?} {q:?} {sign}");
-                counts[usize::from(axis < 3)] += 1;
+                let is_met = |k: usize| corners[0][k] <= p[k] && p[k] <= corners[7][k];
+                if axis == 3 || !(is_met((axis + 1) % 3) && is_met((axis + 2) % 3)) {
+                    assert_eq!(farthest(&corners, p, q, sign), want, "{corners:?} {p:?} {q:?} {sign}");
+                    counts[usize::from(axis < 3)] += 1;
+                }
             }
         }
-        assert!(counts.iter().all(|&n| n > 10_000), "{counts:?}");
+        assert!(counts.iter().all(|&n| n > 8000), "{counts:?}");
     }
 }

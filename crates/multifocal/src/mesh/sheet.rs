@@ -26,11 +26,14 @@
 //!
 //! Parts of a query are functions of their own for the compiler, too: as one, they take twice as long.
 
-use super::probe::{N_SEGMENTS, crosses, meet, segment};
+mod starts;
+
+use super::probe::{N_SEGMENTS, crosses, segment};
 use super::shaft::{Shaft, avoids};
 use super::vector::{basis, dot, sub, unit};
 use super::weld::Mesh;
-use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d, ray_box};
+use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d};
+use starts::pieces;
 
 /// A mesh, prepared for separation tests. Can be shared by threads.
 #[derive(Debug)]
@@ -83,6 +86,7 @@ impl Sheets {
             codes: vec![(0, 0); self.mesh.vertices().len()],
             odd: vec![0; self.mesh.edges().len()],
             queue: Vec::new(),
+            n_walked: 0,
             starts: Vec::new(),
             pieces: Vec::new(),
             met: Vec::new(),
@@ -143,25 +147,6 @@ impl Side {
     }
 }
 
-/// For each triangle the least one of its piece: of those that hang together by edges. O(n) but for a factor that never exceeds 5.
-fn pieces(mesh: &Mesh) -> Vec<u32> {
-    let mut parents: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
-    let root = |parents: &mut [u32], mut t: u32| {
-        while parents[t as usize] != t {
-            parents[t as usize] = parents[parents[t as usize] as usize];
-            t = parents[t as usize];
-        }
-        t
-    };
-    for edge in 0..mesh.edges().len() as u32 {
-        for pair in mesh.triangles_at(edge).windows(2) {
-            let [a, b] = [pair[0], pair[1]].map(|t| root(&mut parents, t));
-            parents[a.max(b) as usize] = a.min(b);
-        }
-    }
-    (0..parents.len() as u32).map(|t| root(&mut parents, t)).collect()
-}
-
 /// Sorts triangles by their angle around an edge, upwards as seen against the direction of the edge. Any order is
 /// valid; this one makes walks follow the visible surface.
 fn sort_around(mesh: &Mesh, edge: u32, triangles: &mut [u32]) {
@@ -200,6 +185,8 @@ pub struct SheetTester<'a> {
     /// Parity of the triangles of the chain that end at each edge.
     odd: Vec<u32>,
     queue: Vec<Side>,
+    /// Number of sides that walks visited so far.
+    n_walked: u64,
     /// Triangles that the first segment meets, with the parameters of the hits.
     starts: Vec<(f64, u32)>,
     /// Pieces of the mesh that all segments met so far, ascending, and whether the current one does.
@@ -250,6 +237,11 @@ impl SheetTester<'_> {
         hides
     }
 
+    /// Number of triangle sides that walks visited so far, in all queries: what targets cost that are not hidden.
+    pub fn n_walked(&self) -> u64 {
+        self.n_walked
+    }
+
     /// Whether a walk from one of the starts finds a chain that hides.
     #[inline(never)]
     fn any_hides(&mut self, v: &Aabb<3>, e: &Aabb<3>, starts: &[(f64, u32)], limit: usize) -> bool {
@@ -286,84 +278,6 @@ impl SheetTester<'_> {
         false
     }
 
-    /// Finds the triangles from which a walk may find a chain: those that the first segment meets, in the order in which it does, of
-    /// pieces of the mesh that all other segments meet as well. A chain is of one piece, all segments cross it, and none of its triangles
-    /// touches the target. Returns whether there are any.
-    #[inline(never)]
-    fn find_starts(&mut self, v: &Aabb<3>, e: &Aabb<3>) -> bool {
-        let sheets = self.sheets;
-        let Self { starts, pieces, met, from_volume, volume, segment_order, .. } = self;
-        if volume.0 != *v || volume.1 == 0 {
-            if volume.1 == u32::MAX >> 1 {
-                from_volume.fill(0);
-                volume.1 = 0;
-            }
-            *volume = (*v, volume.1 + 1);
-        }
-        let mut may_hide = |t: u32| sheets.may_hide(v, e, t, volume.1, &mut from_volume[t as usize]);
-        starts.clear();
-        let Some(first) = segment(v, e, 0) else { return false };
-        sheets.hits(first, |t, at| {
-            if may_hide(t) {
-                starts.push((at, t));
-            }
-            true
-        });
-        pieces.clear();
-        pieces.extend(starts.iter().map(|s| (sheets.piece[s.1 as usize], false)));
-        pieces.sort_unstable();
-        pieces.dedup();
-        let place = |pieces: &[(u32, bool)], t: u32| {
-            pieces.binary_search_by_key(&sheets.piece[t as usize], |piece| piece.0).ok()
-        };
-        met.clear();
-        met.extend(starts.iter().map(|s| s.1));
-        for at in 0..segment_order.len() {
-            if pieces.is_empty() {
-                return false;
-            }
-            let Some([p, q]) = segment(v, e, segment_order[at]) else { return false };
-            pieces.iter_mut().for_each(|piece| piece.1 = false);
-            let mut n_left = pieces.len();
-            // What earlier segments met is met by most.
-            let d = sub(q, p);
-            for &t in met.iter() {
-                if let Some(at) = place(pieces, t)
-                    && !pieces[at].1
-                    && meet(sheets.mesh.corners(t), p, d).is_some()
-                {
-                    pieces[at].1 = true;
-                    n_left -= 1;
-                }
-            }
-            if n_left == 0 {
-                continue;
-            }
-            sheets.hits([p, q], |t, _| {
-                if let Some(at) = place(pieces, t)
-                    && !pieces[at].1
-                    && may_hide(t)
-                {
-                    pieces[at].1 = true;
-                    n_left -= 1;
-                    met.push(t);
-                }
-                n_left > 0
-            });
-            if n_left > 0 {
-                pieces.retain(|piece| piece.1);
-                met.retain(|&t| place(pieces, t).is_some());
-            }
-            if pieces.is_empty() {
-                // What lies beside this target is often found out by the same segment.
-                segment_order[..=at].rotate_right(1);
-            }
-        }
-        starts.retain(|s| place(pieces, s.1).is_some());
-        starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        !starts.is_empty()
-    }
-
     /// Makes room for `n` marks that no query has used.
     fn next_epoch(&mut self, n: u32) {
         if self.epoch > u32::MAX - n - 2 {
@@ -389,6 +303,7 @@ impl SheetTester<'_> {
                 return false;
             }
             *left -= 1;
+            self.n_walked += 1;
             for at in 0..sheets.mesh.outline_edges(side.triangle).len() {
                 if self.misses(pair, sheets.mesh.outline_edges(side.triangle)[at]) {
                     continue;
@@ -476,27 +391,5 @@ impl Sheets {
         let corners = || self.mesh.corners(triangle);
         // Most that touch the target have a corner in common with it.
         is_apart() || !corners().iter().any(|&p| e.contains(p)) && avoids(&corners(), e, false)
-    }
-
-    /// Passes the triangles that a segment meets to `each`, with the parameter of the hit, until it returns `false`; in
-    /// doubles. Only used where an error leads to the answer `false`, or to a walk.
-    #[inline(never)]
-    fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64) -> bool) {
-        let d = sub(q, p);
-        // An axis without motion is left out.
-        let inverse = d.map(|x| if x == 0.0 { f64::NAN } else { 1.0 / x });
-        let enter = |b: &Aabb<3>| {
-            let [first, last] = ray_box(b, p, inverse);
-            first.max(0.0) <= last.min(1.0) + 1e-12
-        };
-        let more = std::cell::Cell::new(true);
-        let wanted = |b: &Aabb<3>| more.get() && enter(b);
-        self.tree.visit(wanted, |t| {
-            if wanted(&self.boxes[t as usize])
-                && let Some(at) = meet(self.mesh.corners(t), p, d)
-            {
-                more.set(each(t, at));
-            }
-        });
     }
 }
