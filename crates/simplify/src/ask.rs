@@ -173,10 +173,12 @@ impl Search<'_> {
         open: Vec<u32>,
         rows: &mut [Row],
     ) -> Result<(), BackendError> {
-        let mut seen = vec![true; if rows.len() > 1 { 0 } else { self.asker.faces.len() }];
+        // Towards what no ray from the group reached, few are sent from each box.
+        let mut seen = vec![true; self.asker.faces.len()];
         if rows.len() > 1 {
             self.shoot(|_| N_RAYS_OF_GROUP, start, &open, rows, None);
-            seen.extend((0..self.asker.faces.len()).map(|f| rows.iter().any(|row| row[f] == State::Visible)));
+            let is_seen = |f: usize| rows.iter().any(|row| row[f] == State::Visible);
+            seen.iter_mut().enumerate().for_each(|(f, seen)| *seen = is_seen(f));
             let mut question = Vec::new();
             self.with_method(|method| {
                 let mut umbra = method.umbra(&volume_of(around))?;
