@@ -34,8 +34,8 @@ impl Surrounded<'_> {
     /// box do not hide the target.
     pub(super) fn may_box_hide(&self, at: usize, centre: Point3, target: &Aabb<3>) -> bool {
         let mut first = (f64::INFINITY, 0);
-        for axis in 0..3 {
-            let way = centre[axis] - self.middle[axis];
+        for (axis, at_centre) in centre.into_iter().enumerate() {
+            let way = at_centre - self.middle[axis];
             let side = 2 * axis + usize::from(way > 0.0);
             let direction = &self.surround.directions[side];
             let Some(k) = direction.plane_of_box[at] else { return false };
