@@ -367,6 +367,8 @@ fn matrices_are_those_of_rust() {
     let (mut viewer, mut n, mut n_objects) = (ptr::null_mut(), 0, BTreeSet::new());
     // SAFETY: the handle lives.
     assert_eq!(unsafe { sl_viewer_new(c.0, &mut viewer) }, SL_OK);
+    // SAFETY: the viewer lives.
+    assert_eq!(unsafe { sl_viewer_set_method(viewer, SL_METHOD_EXACT, SL_STEPS_UNLIMITED) }, SL_OK);
     for _ in 0..60 {
         let eye: [f64; 3] = std::array::from_fn(|k| random.between(bounds.0[k], bounds.1[k]));
         let Place::Inside(here) = table.place_at(eye) else { continue };
