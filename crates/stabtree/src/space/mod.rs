@@ -10,8 +10,10 @@
 //! the answer depends neither on how cells are grouped nor on the order of work.
 
 mod atomic_bits;
+mod columns;
 mod explain;
 mod from_boxes;
+mod horizons;
 mod limited;
 mod live;
 mod objects;
@@ -26,6 +28,8 @@ pub use live::{LiveSpace, SpaceUpdate};
 
 use crate::search::SearchOptions;
 pub(crate) use atomic_bits::AtomicBitMatrix;
+use columns::Columns;
+use horizons::Horizons;
 use opaque::opaque_rectangles;
 pub(crate) use opaque::opaque_without_solid;
 use pairs::Pair;
@@ -106,6 +110,10 @@ struct SpaceSearch<'a> {
     maybe: AtomicBitMatrix,
     /// The only pairs to decide; `None` for all pairs.
     doubt: Option<PairsInDoubt>,
+    /// What is decided for several cells in a row; none for a search that keeps its lines, or decides few pairs.
+    columns: Columns,
+    /// The same for groups; none likewise.
+    horizons: Horizons,
     /// What was not decided because the budget was spent: places by places, and objects by places.
     left: Option<[AtomicBitMatrix; 2]>,
     /// Whether lines are kept for later.
@@ -164,6 +172,7 @@ pub fn space_visibility(
 ) -> Result<SpaceVisibility, Cancelled> {
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
     let mut search = SpaceSearch::new(graph, objects, &blockers);
+    search.use_columns();
     if options.budget.is_limited() {
         search.expect_to_leave_pairs();
     }
@@ -239,6 +248,8 @@ impl<'a> SpaceSearch<'a> {
             objects,
             maybe,
             doubt: None,
+            columns: Columns::default(),
+            horizons: Horizons::default(),
             left: None,
             logging: false,
             n_assumed: AtomicU64::new(0),

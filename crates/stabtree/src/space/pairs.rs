@@ -48,16 +48,21 @@ impl SpaceSearch<'_> {
             }
             return;
         }
-        if self.cells.all(rows, cols) {
+        if self.cells.all(rows, cols) || self.are_known_by_columns(rows, cols) {
             return;
         }
         if na.is_leaf() && nb.is_leaf() {
-            self.settle_cells([rows[0], cols[0]], [&na.bounds, &nb.bounds], worker);
+            if !self.is_beyond_horizon([a, b], worker) {
+                self.settle_cells([rows[0], cols[0]], [&na.bounds, &nb.bounds], worker);
+            }
             return;
         }
         let few = |doubt: &PairsInDoubt| doubt.cells.count_beyond(&self.cells, rows, cols, FEW) <= FEW;
         let worth_it = self.doubt.as_ref().is_none_or(|doubt| !few(doubt));
         if worth_it && apart(&na.bounds, &nb.bounds) && !self.cells.any(rows, cols) {
+            if self.is_beyond_horizon([a, b], worker) {
+                return;
+            }
             match worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, self.group_budget()) {
                 Verdict::Hidden(()) => return,
                 Verdict::Visible(ShaftLine::Free(line)) => {
@@ -73,13 +78,10 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// For a search in which only some pairs are in doubt and so not all groups are tested: whether two groups that
-    /// contain two cells, given by their places in order, are hidden from each other. A search over all pairs has
-    /// tested these groups and never reached the cells.
-    fn is_hidden_in_groups(&self, [first, second]: [usize; 2], worker: &mut Worker<'_>) -> bool {
-        if self.doubt.is_none() {
-            return false;
-        }
+    /// Whether two groups that contain two cells, given by their places in order, are hidden from each other. Not all of these
+    /// groups have been tested: not those for which a [horizon](super::horizons) had not been sought yet, and few in a search in
+    /// which only some pairs are in doubt.
+    pub(super) fn is_hidden_in_groups(&self, [first, second]: [usize; 2], worker: &mut Worker<'_>) -> bool {
         let has = |n: u32, place: usize| {
             let node = &self.tree.nodes()[n as usize];
             (node.start as usize..node.end as usize).contains(&place)
@@ -95,6 +97,9 @@ impl SpaceSearch<'_> {
                 continue;
             }
             let [na, nb] = [a, b].map(|n| self.tree.nodes()[n as usize]);
+            if self.is_beyond([a, b], 0, worker) {
+                return true;
+            }
             if na.is_leaf() && nb.is_leaf() {
                 return false;
             }
@@ -116,7 +121,7 @@ impl SpaceSearch<'_> {
     }
 
     fn settle_cells(&self, [a, b]: [usize; 2], bounds: [&Aabb<3>; 2], worker: &mut Worker<'_>) {
-        if !self.may_see_cell(a, b) {
+        if !self.may_see_cell(a, b) || self.is_hidden_in_columns(a, b, worker) || self.cells.get(a, b) {
             return;
         }
         match worker.shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
