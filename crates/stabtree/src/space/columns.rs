@@ -30,7 +30,7 @@ const FAR: usize = 3;
 const LOOKED_UP: usize = 4096;
 
 /// Linear programs spent on a cell and a part of a column.
-const COLUMN_BUDGET: u32 = 512;
+const COLUMN_BUDGET: u32 = 128;
 
 /// The column of a cell that is in none.
 const NONE: u32 = u32::MAX;
@@ -151,6 +151,17 @@ impl SpaceSearch<'_> {
             && is_in_column(cols[0])
             && (rows[1] - rows[0]) * (cols[1] - cols[0]) <= LOOKED_UP
             && (rows[0]..rows[1]).all(|a| (cols[0]..cols[1]).all(|b| known(a, b)))
+    }
+
+    /// Whether all of some places and others are far pairs of columns, as far as the first of them tells. Columns decide those, and
+    /// nearly all that is left sees each other.
+    pub(super) fn are_columns(&self, rows: [usize; 2], cols: [usize; 2]) -> bool {
+        let in_columns = |places: [usize; 2]| self.columns.of[places[0]..places[1]].iter().all(|of| of[0] != NONE);
+        !self.columns.of.is_empty()
+            && in_columns(rows)
+            && in_columns(cols)
+            && self.far_pair(rows[0], cols[0]).is_some()
+            && self.far_pair(rows[1] - 1, cols[1] - 1).is_some()
     }
 
     /// Whether two cells are hidden from each other by their columns, which are examined if they are far from each

@@ -10,7 +10,7 @@
 
 use super::SpaceSearch;
 use super::columns::first_true;
-use super::pairs::{GROUP_BUDGET, Pair};
+use super::pairs::Pair;
 use super::witness_log::{FoundFor, Worker};
 use sightlines_geometry::Aabb;
 use sightlines_sightline::{ShaftLine, Target, Verdict};
@@ -19,6 +19,9 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// Queries about a group in one direction before its horizon is sought.
 const PATIENCE: u32 = 16;
+
+/// Linear programs spent on a group and all that is beyond a plane: what hides that is simple.
+const HORIZON_BUDGET: u32 = 16;
 
 /// Most planes that are tried for a horizon, each twice as far away as the one before.
 const PLANES: u32 = 32;
@@ -122,9 +125,10 @@ impl SpaceSearch<'_> {
             Some(rest).filter(|rest| rest.min[axis] < rest.max[axis])
         };
         let end = (0..PLANES).find(|&k| beyond(plane(k)).is_none()).unwrap_or(PLANES);
-        let found = first_true(0, end, 0, |k| {
+        // Most that have no horizon are found out by one query, about the farthest plane.
+        let found = first_true(0, end, end.saturating_sub(1), |k| {
             let Some(rest) = beyond(plane(k)) else { return true };
-            match worker.shaft.decide(from, &rest, Target::Inside, GROUP_BUDGET) {
+            match worker.shaft.decide(from, &rest, Target::Inside, HORIZON_BUDGET) {
                 Verdict::Hidden(()) => true,
                 Verdict::Visible(ShaftLine::Free(line)) => {
                     self.follow(&line, [from, &rest], FoundFor::Groups, worker);

@@ -1,5 +1,6 @@
 //! Pairs of groups of cells, halved until one is hidden from the other or they are single cells.
 
+use super::atomic_bits::words_of;
 use super::witness_log::{FoundFor, Line, Proof, Worker};
 use super::{PairsInDoubt, SpaceSearch};
 use sightlines_geometry::{Aabb, BoxTree};
@@ -63,6 +64,10 @@ impl SpaceSearch<'_> {
             if self.is_beyond_horizon([a, b], worker) {
                 return;
             }
+            if self.are_columns(rows, cols) {
+                self.halve([a, b], smaller);
+                return;
+            }
             match worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, self.group_budget()) {
                 Verdict::Hidden(()) => return,
                 Verdict::Visible(ShaftLine::Free(line)) => {
@@ -71,6 +76,10 @@ impl SpaceSearch<'_> {
                 Verdict::Visible(ShaftLine::Fine(_)) | Verdict::Undecided(_) => {}
             }
         }
+        self.halve([a, b], smaller);
+    }
+
+    fn halve(&self, [a, b]: Pair, smaller: &mut impl FnMut(Pair)) {
         if halves_first(&self.tree, [a, b]) {
             self.tree.children(a).into_iter().for_each(|a| smaller([a, b]));
         } else {
@@ -189,11 +198,14 @@ impl SpaceSearch<'_> {
         found_for: FoundFor,
         worker: &mut Worker<'_>,
     ) {
-        let logging = worker.log.is_some();
+        if worker.log.is_none() {
+            self.mark_all(&span, cells, found_for);
+            return;
+        }
         let number = worker.log.as_ref().map_or(0, |log| log.lines.len() as u32);
         let (mut pairs, mut seen) = (Vec::new(), Vec::new());
         let mut join = |a: usize, b: usize| {
-            if self.join(a, b) && logging {
+            if self.join(a, b) {
                 pairs.push(Proof { pair: [a, b].map(|place| self.cell_at[place]), line: number });
             }
         };
@@ -204,7 +216,7 @@ impl SpaceSearch<'_> {
             join(a, b);
         }
         let mut see = |object: usize, place: usize| {
-            if self.objects.set(object, place) && logging {
+            if self.objects.set(object, place) {
                 seen.push(Proof { pair: [object as u32, self.cell_at[place]], line: number });
             }
         };
@@ -224,6 +236,29 @@ impl SpaceSearch<'_> {
             log.cells.append(&mut pairs);
             log.objects.append(&mut seen);
         }
+    }
+
+    /// The same if nobody keeps the line: a word of bits at a time, as a line down a stairwell passes cells of all storeys.
+    fn mark_all(&self, span: &FreeSpan, cells: &[usize], found_for: FoundFor) {
+        let words = words_of(cells);
+        cells.iter().for_each(|&a| self.cells.set_words(a, &words));
+        match found_for {
+            FoundFor::Groups => {}
+            FoundFor::Cells([a, b]) => {
+                self.join(a, b);
+            }
+            FoundFor::Object([object, place]) => {
+                self.objects.set(object, place);
+            }
+        }
+        self.object_tree.visit(
+            |b| span.may_meet(b),
+            |object| {
+                if span.meets(&self.boxes[object as usize]) {
+                    self.objects.set_words(object as usize, &words);
+                }
+            },
+        );
     }
 
     /// Marks what the free part of a line passes among places and objects that are new (`is_new`), paired with all that
