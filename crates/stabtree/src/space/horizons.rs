@@ -18,10 +18,10 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// Queries about a group in one direction before its horizon is sought.
-const PATIENCE: u32 = 16;
+const PATIENCE: u32 = 48;
 
 /// Linear programs spent on a group and all that is beyond a plane: what hides that is simple.
-const HORIZON_BUDGET: u32 = 16;
+const HORIZON_BUDGET: u32 = 8;
 
 /// Most planes that are tried for a horizon, each twice as far away as the one before.
 const PLANES: u32 = 32;
