@@ -12,7 +12,6 @@
 
 use super::SpaceSearch;
 use super::horizons::Horizons;
-use super::pairs::GROUP_BUDGET;
 use super::witness_log::{FoundFor, Worker};
 use sightlines_geometry::Aabb;
 use sightlines_sightline::{ShaftLine, Target, Verdict};
@@ -29,6 +28,9 @@ const FAR: usize = 3;
 
 /// Most pairs of two groups that are looked up one by one.
 const LOOKED_UP: usize = 4096;
+
+/// Linear programs spent on a cell and a part of a column: what hides that is simple, or else pairs of cells are decided one by one.
+const BUDGET: u32 = 32;
 
 /// The column of a cell that is in none.
 const NONE: u32 = u32::MAX;
@@ -198,7 +200,7 @@ impl SpaceSearch<'_> {
         }
         let from = self.bounds_at(place as usize);
         let rest = Aabb { min: self.bounds_at(first).min, max: self.bounds_at(last).max };
-        match worker.shaft.decide(from, &rest, Target::Inside, GROUP_BUDGET) {
+        match worker.shaft.decide(from, &rest, Target::Inside, BUDGET) {
             Verdict::Hidden(()) => true,
             Verdict::Visible(ShaftLine::Free(line)) => {
                 self.follow(&line, [from, &rest], FoundFor::Groups, worker);

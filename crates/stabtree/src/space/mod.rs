@@ -309,29 +309,28 @@ impl<'a> SpaceSearch<'a> {
 
     fn into_seen(self, counters: ShaftCounters) -> SpaceVisibility {
         let n = self.graph.n_cells();
-        let mut cells = BitMatrix::identity(n);
-        let mut objects = BitMatrix::new(n, self.boxes.len());
-        for (place, &cell) in self.cell_at.iter().enumerate() {
-            for other in self.cells.ones(place) {
-                cells.set(cell as usize, self.cell_at[other] as usize, true);
-            }
-        }
-        for object in 0..self.boxes.len() {
-            for place in self.objects.ones(object) {
-                objects.set(self.cell_at[place] as usize, object, true);
-            }
-        }
-        slivers::fill(self.graph, |cell| self.place[cell] == SLIVER, &self.touching, &mut cells, &mut objects);
         let n_assumed = self.n_assumed.load(Relaxed);
         let left = self.left_pairs();
-        SpaceVisibility {
-            cells,
-            objects,
-            touching: self.touching,
-            n_blockers: self.blockers.len(),
-            n_assumed,
-            left,
-            counters,
+        let Self {
+            graph, boxes, blockers, cell_at, place, touching, cells: by_place, objects: by_object, maybe, ..
+        } = self;
+        // What is not needed any more is dropped at once: these matrices are most of the memory.
+        drop(maybe);
+        let mut cells = BitMatrix::identity(n);
+        for (place, &cell) in cell_at.iter().enumerate() {
+            for other in by_place.ones(place) {
+                cells.set(cell as usize, cell_at[other] as usize, true);
+            }
         }
+        drop(by_place);
+        let mut objects = BitMatrix::new(n, boxes.len());
+        for object in 0..boxes.len() {
+            for place in by_object.ones(object) {
+                objects.set(cell_at[place] as usize, object, true);
+            }
+        }
+        drop(by_object);
+        slivers::fill(graph, |cell| place[cell] == SLIVER, &touching, &mut cells, &mut objects);
+        SpaceVisibility { cells, objects, touching, n_blockers: blockers.len(), n_assumed, left, counters }
     }
 }
