@@ -257,7 +257,70 @@ pub(super) fn first_true(start: u32, end: u32, guess: u32, mut has: impl FnMut(u
 
 #[cfg(test)]
 mod tests {
+    use super::super::opaque::opaque_rectangles;
     use super::*;
+    use crate::search::SearchOptions;
+    use sightlines_cells::{Axial, BoxCell, CellGraph, Portal};
+    use sightlines_geometry::AxialDoor;
+    use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
+    use sightlines_sightline::Blockers;
+
+    /// Two rooms above each other on each storey, both with a hole in the floor, the second hole every other time smaller; the
+    /// graph of its cells.
+    fn wells(storeys: usize) -> CellGraph<Axial> {
+        let slab = |x: f64, y: f64, wide: f64| AxialFace::new(1, [x, y, 0.0], [x + wide, y, 2.0]);
+        let storey = |k: usize| {
+            let y = k as f64;
+            // Between wells, half a wall on each storey.
+            [
+                slab(0.0, y, 1.0),
+                slab(2.0, y, 1.0 - 0.25 * (k % 2) as f64),
+                AxialFace::new(0, [1.0, y, 0.0], [1.0, y + 0.5, 2.0]),
+            ]
+        };
+        let faces: Vec<AxialFace<3>> = (1..storeys).flat_map(storey).collect();
+        let bounds = Aabb { min: [0.0; 3], max: [3.0, storeys as f64, 2.0] };
+        let tree = subdivide(&faces, bounds, &Options::default()).unwrap();
+        let portal = |p: &AxialPortal<3>| {
+            let shape = AxialDoor { extent: Aabb { min: p.min, max: p.max }, axis: p.axis as u8, forward: true };
+            Portal { cells: p.cells, sides: [2 * p.axis as u32 + 1, 2 * p.axis as u32], shape }
+        };
+        let cells = tree.cells().iter().map(|cell| BoxCell { bounds: cell.bounds }).collect();
+        CellGraph::new(cells, tree.portals().iter().map(portal).collect())
+    }
+
+    /// The impostor: thresholds that are one member too near hide what is seen, and a comparison notices.
+    #[test]
+    fn thresholds_that_are_too_near_hide_what_is_seen() {
+        let graph = wells(16);
+        let blockers = Blockers::new(opaque_rectangles(&graph, &[]));
+        let seen = |by: Option<u32>| {
+            let mut search = SpaceSearch::new(&graph, &[], &blockers);
+            if let Some(by) = by {
+                search.use_columns();
+                let other = {
+                    let mut other = SpaceSearch::new(&graph, &[], &blockers);
+                    other.use_columns();
+                    other
+                };
+                let n = search.columns.columns.len() as u32;
+                let pairs = (0..n).flat_map(|a| (0..n).map(move |b| [a, b]));
+                let along_one = |[a, b]: &[u32; 2]| {
+                    search.columns.columns[*a as usize].axis == search.columns.columns[*b as usize].axis
+                };
+                for pair in pairs.filter(along_one) {
+                    let mut near = other.thresholds_of(pair, &mut other.worker());
+                    near.iter_mut().for_each(|threshold| *threshold = threshold.saturating_sub(by));
+                    search.columns.between(pair).set(near).unwrap();
+                }
+            }
+            let (counters, _) = search.answer(1, &SearchOptions::default()).unwrap();
+            search.into_seen(counters).cells
+        };
+        let (right, exact, near) = (seen(Some(0)), seen(None), seen(Some(2)));
+        assert_eq!(right, exact);
+        assert!(near.count_ones() < exact.count_ones(), "{} of {}", near.count_ones(), exact.count_ones());
+    }
 
     #[test]
     fn thresholds_are_found_wherever_they_are_expected() {

@@ -8,6 +8,9 @@
 //! A group is tested with the bounding box of its cells: if nothing of its box is visible, none of its cells is;
 //! otherwise nothing follows, and its halves are tested. Single cells are decided exactly, except for [`slivers`]. So
 //! the answer depends neither on how cells are grouped nor on the order of work.
+//!
+//! In a tower, groups are not enough: stairs join each storey with each other. What is far is decided for many
+//! pairs at once, by [`columns`] and [`horizons`].
 
 mod atomic_bits;
 mod columns;
@@ -136,7 +139,7 @@ fn components(graph: &CellGraph<Axial>) -> Vec<u32> {
     of
 }
 
-/// The share of a budget that pairs of cells may spend; the rest is for objects.
+/// The share of a budget that pairs of cells may spend; the rest is for objects. About what they take.
 const PAIRS: f64 = 0.6;
 
 /// The index of a cell that is too thin to be decided.
@@ -291,6 +294,8 @@ impl<'a> SpaceSearch<'a> {
         let tasks: Vec<Pair> = scattered(tasks.len()).map(|i| tasks[i]).collect();
         let n_units = tasks.len() + self.boxes.len();
         let counter = Counter::new(options.progress, "pairs and objects", n_units).of(Work::Deciding);
+        // There are many times as many objects, each of which takes little.
+        let counter = counter.with_first(tasks.len(), PAIRS);
         let pairs = self.settle_pairs(tasks, threads, budget.part(PAIRS), &counter)?;
         let survey = (0..n).into_par_iter().map(|place| {
             let mut log = self.logging.then(WitnessLog::default);
