@@ -124,7 +124,9 @@ impl<'a> Legend<'a> {
                 Swatch::Line(colour, wide) => {
                     let path = format!("M{} {}H{}", Px(x), Px(0.5 * (low + high)), Px(x + 1.2 * self.text));
                     if colour == theme::PORTAL_FAINT {
-                        stroke(out, &path, theme::SEEN, wide.max(1.0) + 0.5 * self.text);
+                        let ground =
+                            format!("M{} {}H{}V{}H{}Z", Px(x), Px(low), Px(x + 1.2 * self.text), Px(high), Px(x));
+                        fill(out, &ground, theme::SEEN);
                     }
                     stroke(out, &path, colour, wide.max(1.0));
                 }
