@@ -48,6 +48,11 @@ pub fn app() -> App {
 
 /// The same with another folder of assets.
 pub fn app_in(folder: &Path) -> App {
+    app_with(folder, |_| {})
+}
+
+/// The same with more plugins.
+pub fn app_with(folder: &Path, more: impl FnOnce(&mut App)) -> App {
     let mut app = App::new();
     app.add_plugins((
         MinimalPlugins,
@@ -61,6 +66,7 @@ pub fn app_in(folder: &Path) -> App {
         GltfPlugin::default(),
         SightlinesPlugin,
     ));
+    more(&mut app);
     app.finish();
     app.cleanup();
     app
