@@ -2,7 +2,7 @@
 
 use sightlines_cells::{Axial, CellGraph, Scene};
 use sightlines_kdtree::shut_doors;
-use sightlines_pvs::PortalId;
+use sightlines_pvs::{DoorRecord, ObjectId, PortalId};
 
 /// A door, and the portals of the table that it closes while it stands as it does in the scene. The table takes it to be open; a program
 /// that knows that it is shut may close these portals, for every eye that is not inside the door.
@@ -24,4 +24,14 @@ pub(crate) fn of_scene(graph: &CellGraph<Axial>, scene: &Scene) -> Vec<DoorPorta
         DoorPortals { object, portals: portals.collect() }
     };
     scene.doors().iter().map(of).collect()
+}
+
+/// Doors as a table stores them: each has the name of its object.
+pub(crate) fn records(scene: &Scene, doors: &[DoorPortals]) -> Vec<DoorRecord> {
+    let record = |DoorPortals { object, portals }: &DoorPortals| DoorRecord {
+        name: scene.objects()[*object as usize].name.clone(),
+        object: Some(ObjectId(*object)),
+        portals: portals.clone(),
+    };
+    doors.iter().map(record).collect()
 }

@@ -125,6 +125,7 @@ pub(crate) fn see_scene(
         cut: cut.summary,
     };
     let mut parts = scene_parts(&graph, seen, scene, &boxes, info(options, &report.cut), found.parts);
+    parts.doors = doors::records(scene, &report.doors);
     state_file(&mut parts, options.file);
     Ok((graph, parts, report, left))
 }
@@ -187,6 +188,7 @@ pub(crate) fn scene_parts(
         rows: seen.cells,
         objects: scene.objects().iter().zip(boxes).map(|(o, b)| object_record(&o.name, b)).collect(),
         object_polygons: scene.objects().iter().map(n_triangles).collect(),
+        object_sources: scene.sources().to_vec(),
         cell_objects: object_lists(seen.touching),
         objects_seen: Some(seen.objects),
         locator: Locator::build(&bounds, 3),

@@ -2,6 +2,7 @@
 
 use sightlines_geometry::coordinate::MAX_MAGNITUDE;
 use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate};
+use sightlines_pvs::ObjectSource;
 use std::borrow::Cow;
 
 /// Something that is seen or not as a whole: a mesh of triangles.
@@ -45,6 +46,8 @@ pub struct Scene {
     single_sided: Vec<u32>,
     /// Ascending.
     doors: Vec<u32>,
+    /// One for each object, or none at all.
+    sources: Vec<Option<ObjectSource>>,
 }
 
 /// An object that moves or changes its shape at run time. It is drawn, even if none of its triangles has an area at rest, and if
@@ -102,6 +105,14 @@ pub enum SceneError {
     SingleSided {
         /// Index of the object.
         object: usize,
+    },
+    /// Sources of objects, but not one for each object.
+    #[error("{n} sources of objects do not fit {n_objects} objects")]
+    Sources {
+        /// Number of sources.
+        n: usize,
+        /// Number of objects.
+        n_objects: usize,
     },
     /// What is marked as a door is no object.
     #[error("object {object} cannot be a door: there is no such object")]
@@ -231,6 +242,25 @@ impl Scene {
     /// The objects that are doors, ascending.
     pub fn doors(&self) -> &[u32] {
         &self.doors
+    }
+
+    /// The same scene, with where each of its objects is in the file that it was read from, in their order; none at all if that is not
+    /// known. That changes nothing of what is seen.
+    ///
+    /// # Errors
+    /// [`SceneError::Sources`] for another number than there are objects.
+    pub fn with_sources(mut self, sources: Vec<Option<ObjectSource>>) -> Result<Self, SceneError> {
+        let n_objects = self.objects.len();
+        if !sources.is_empty() && sources.len() != n_objects {
+            return Err(SceneError::Sources { n: sources.len(), n_objects });
+        }
+        self.sources = sources;
+        Ok(self)
+    }
+
+    /// Where each object is in the file that the scene was read from, in the order of the objects; empty if that is not known.
+    pub fn sources(&self) -> &[Option<ObjectSource>] {
+        &self.sources
     }
 
     /// The objects that were marked as seen from the fronts of their triangles only, ascending, whether they move or not.
@@ -363,6 +393,10 @@ mod tests {
         assert_eq!(error, "object 1 cannot be single-sided: there is no such object");
         let error = scene.clone().with_doors(vec![0, 1]).unwrap_err().to_string();
         assert_eq!(error, "object 1 cannot be a door: there is no such object");
+        let error = scene.clone().with_sources(vec![None; 2]).unwrap_err().to_string();
+        assert_eq!(error, "2 sources of objects do not fit 1 objects");
+        let source = Some(ObjectSource { node: 3, primitive: 1 });
+        assert_eq!(scene.clone().with_sources(vec![source]).unwrap().sources(), [source]);
         let door = scene.clone().with_doors(vec![0, 0]).unwrap();
         assert!(door.doors() == [0] && door.is_opaque(0) && scene.doors().is_empty());
         let single = scene.clone().with_single_sided(vec![0]).unwrap();

@@ -3,7 +3,7 @@
 use crate::output::{bytes, count, percent, seconds};
 use serde::Serialize;
 use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
-use sightlines::pvs::{Frame, GeometryDigest, Table};
+use sightlines::pvs::{DoorRecord, Frame, GeometryDigest, ObjectSource, Table};
 use sightlines::report::Summary;
 use std::fmt;
 use std::time::Duration;
@@ -96,6 +96,68 @@ impl fmt::Display for DigestFacts {
         writeln!(f, "digests        {} of what hides", self.hiding)?;
         writeln!(f, "               {} of what can be seen", self.seen)
     }
+}
+
+/// Where an object is in the file that a table was made of.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Source {
+    node: u32,
+    primitive: u32,
+}
+
+impl From<ObjectSource> for Source {
+    fn from(ObjectSource { node, primitive }: ObjectSource) -> Self {
+        Self { node, primitive }
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "node {} primitive {}", self.node, self.primitive)
+    }
+}
+
+/// A door of a table.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct DoorFacts {
+    name: String,
+    /// Null for one that was given as a box.
+    object: Option<u32>,
+    portals: Vec<u32>,
+}
+
+impl From<&DoorRecord> for DoorFacts {
+    fn from(DoorRecord { name, object, portals }: &DoorRecord) -> Self {
+        let portals = portals.iter().map(|portal| portal.0).collect();
+        Self { name: name.clone(), object: object.map(|object| object.0), portals }
+    }
+}
+
+impl fmt::Display for DoorFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // As a Rust string: a name may hold anything, and the door should stay one line.
+        let Self { name, object, portals } = self;
+        write!(f, "{name:?}, ")?;
+        match object {
+            Some(object) => write!(f, "object {object}, ")?,
+            None => f.write_str("given as a box, ")?,
+        }
+        match &portals[..] {
+            [] => f.write_str("closes no portal"),
+            portals => {
+                let ids: Vec<String> = portals.iter().map(u32::to_string).collect();
+                write!(f, "closes {}", ids.join(" "))
+            }
+        }
+    }
+}
+
+/// The lines about the doors of a table; none without doors.
+pub(crate) fn write_doors(f: &mut fmt::Formatter<'_>, doors: &[DoorFacts]) -> fmt::Result {
+    for (k, door) in doors.iter().enumerate() {
+        writeln!(f, "{:<14} {door}", if k == 0 { "doors" } else { "" })?;
+    }
+    Ok(())
 }
 
 /// The frame of a table.

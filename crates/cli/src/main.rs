@@ -9,6 +9,7 @@ mod args;
 mod buffers;
 mod clusters;
 mod commands;
+mod doors;
 mod error;
 mod eye;
 mod facts;

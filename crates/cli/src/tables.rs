@@ -5,7 +5,7 @@ use crate::input;
 use sightlines::eye_to_cell::{CellSource, TableCells};
 use sightlines::formats::InputKind;
 use sightlines::packed::{Packed, PackedError};
-use sightlines::pvs::{Axis, CellId, ObjectId, Table};
+use sightlines::pvs::{Axis, CellId, DoorRecord, ObjectId, ObjectSource, Table};
 use sightlines::walkthrough::{CoarseVisibility, PackedCells};
 use std::convert::Infallible;
 use std::fs::File;
@@ -56,7 +56,12 @@ pub(crate) trait Cells: CellSource<Error: Send + 'static> + CoarseVisibility + C
 
     fn n_portals(&self) -> usize;
 
+    fn doors(&self) -> &[DoorRecord];
+
     fn object_name(&self, object: ObjectId) -> Result<String, Self::Error>;
+
+    /// Where an object is in the file that the table was made of; `None` if that is not known.
+    fn source_of(&self, object: ObjectId) -> Result<Option<ObjectSource>, Self::Error>;
 
     /// `None` if the cells of the table have no names.
     fn cell_name(&self, cell: CellId) -> Result<Option<String>, Self::Error>;
@@ -102,6 +107,14 @@ impl Cells for TableCells<Arc<Table>> {
         self.table().portals().len()
     }
 
+    fn doors(&self) -> &[DoorRecord] {
+        self.table().doors()
+    }
+
+    fn source_of(&self, object: ObjectId) -> Result<Option<ObjectSource>, Infallible> {
+        Ok(self.table().source_of(object))
+    }
+
     fn object_name(&self, object: ObjectId) -> Result<String, Infallible> {
         Ok(self.table().objects()[object.idx()].name.clone())
     }
@@ -134,6 +147,14 @@ impl Cells for PackedCells<File> {
 
     fn n_portals(&self) -> usize {
         self.packed().n_portals()
+    }
+
+    fn doors(&self) -> &[DoorRecord] {
+        self.packed().doors()
+    }
+
+    fn source_of(&self, object: ObjectId) -> Result<Option<ObjectSource>, PackedError> {
+        self.packed().source_of(object)
     }
 
     fn object_name(&self, object: ObjectId) -> Result<String, PackedError> {

@@ -10,11 +10,11 @@
 //! ```
 
 use sightlines_eye_to_cell::{
-    Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
+    Budget, Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, MirrorId, MirrorRecord, PortalId, PortalRecord, Table, TableError,
-    TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, DoorRecord, Locator, MirrorId, MirrorRecord, PortalId, PortalRecord, Table,
+    TableError, TableKind, TableParts,
 };
 
 /// Three rooms of 4 by 4 units that all see each other; a baked table would be read from a file.
@@ -29,6 +29,7 @@ fn house() -> Result<Table, TableError> {
     parts.locator = Locator::build(&corners, 2);
     parts.cells = corners.map(|(min, max)| CellRecord { min, max, group: None, polygon: vec![] }).to_vec();
     parts.portals = vec![door(0, 4.0, 0.0), door(1, 8.0, 3.0)];
+    parts.doors = vec![DoorRecord { name: "second door".to_owned(), object: None, portals: vec![PortalId(1)] }];
     parts.rows = BitMatrix::identity(3);
     for (a, b) in [(0, 1), (1, 0), (1, 2), (2, 1), (0, 2), (2, 0)] {
         parts.rows.set(a, b, true);
@@ -45,6 +46,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cells = TableCells::new(&table);
     let subgraphs = (0..3).map(|cell| VisibleSubgraph::prepare(&cells, CellId(cell))).collect::<Result<Vec<_>, _>>()?;
     let (mut seen, mut scratch, mut doors) = (VisibleSet::new(), Scratch::new(), Doors::all_open());
+    // What a frame may spend: without it, the exact method takes as long as it needs.
+    scratch.allow(Budget::FRAME);
     let eye = [4.5, 0.5];
     for degrees in [0, 60, 90, 180] {
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
@@ -52,7 +55,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("at {eye:?}, towards {degrees} degrees:");
         for shut in [false, true] {
             if shut {
-                doors.close(PortalId(1));
+                for door in table.door("second door") {
+                    doors.close_door(table.doors(), door);
+                }
             } else {
                 doors.open_all();
             }

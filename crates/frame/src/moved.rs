@@ -101,7 +101,8 @@ impl Moved {
             .and_then(|moved| moved.with_moving(scene.moving().iter().map(moving).collect()))
             .and_then(|moved| moved.with_see_through(scene.see_through().to_vec()))
             .and_then(|moved| moved.with_single_sided(single_sided))
-            .and_then(|moved| moved.with_doors(scene.doors().to_vec()));
+            .and_then(|moved| moved.with_doors(scene.doors().to_vec()))
+            .and_then(|moved| moved.with_sources(scene.sources().to_vec()));
         Ok(Self { scene: moved.map_err(MoveError::Scene)?, snaps, n_corners, n_snapped, most })
     }
 

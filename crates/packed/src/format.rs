@@ -30,6 +30,8 @@
 //! | `KIND`, optional | as in a `.pvs` file of version 1.4; new in 1.2 here |
 //! | `FRAM` | as in a `.pvs` file of version 1.5, and like there without leave to skip it; new in 1.3 here |
 //! | `DGST`, optional | as in a `.pvs` file of version 1.6; new in 1.4 here |
+//! | `OSRC`, optional | for each object a varint: its node plus 1, or 0 if it has no source; and if it has one, its primitive as a varint; new in 1.5 here |
+//! | `DOOR`, optional | varint number; for each: varint object plus 1, or 0; name as varint number of bytes and UTF-8; portals; new in 1.5 here |
 //! | `INFO` | varint number; for each: key, value, each as varint number of bytes and UTF-8 |
 //! | `COAR` | pages by pages of cells, a bit if some cell of the one sees some cell of the other, rows of `u64` |
 //! | `CLAS` | classes of cells in `ROWS`, counted by their first members; empty if each is its own, else the unpacked length (`u32`) and, packed by zstd, for each cell a varint: how far its class is below the least that no cell before has |
@@ -59,7 +61,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVP\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the smallest version that supports the content of a table,
 /// so that files without newer features stay unchanged.
-pub const MINOR: u16 = 4;
+pub const MINOR: u16 = 5;
 /// Largest unpacked block that a reader accepts, in bytes, so that no file can demand more memory at once. The size of
 /// *written* blocks is [`BLOCK_BYTES`] and [`ROW_BLOCK_BYTES`].
 pub const MAX_UNPACKED_BLOCK: u32 = 1 << 24;
@@ -80,6 +82,8 @@ pub(crate) const MIRRORS: SectionId = SectionId(*b"MIRR");
 pub(crate) const KIND: SectionId = SectionId(*b"KIND");
 pub(crate) const FRAME: SectionId = SectionId(*b"FRAM");
 pub(crate) const DIGEST: SectionId = SectionId(*b"DGST");
+pub(crate) const SOURCES: SectionId = SectionId(*b"OSRC");
+pub(crate) const DOORS: SectionId = SectionId(*b"DOOR");
 pub(crate) const INFO: SectionId = SectionId(*b"INFO");
 pub(crate) const COARSE: SectionId = SectionId(*b"COAR");
 pub(crate) const CLASSES: SectionId = SectionId(*b"CLAS");
@@ -88,7 +92,7 @@ pub(crate) const SEEN_COLUMNS: SectionId = SectionId(*b"SCLC");
 pub(crate) const BLOCKS: SectionId = SectionId(*b"BLKS");
 
 /// The sections of this version, and whether readers may skip them.
-pub(crate) const SECTIONS: [(SectionId, bool); 15] = [
+pub(crate) const SECTIONS: [(SectionId, bool); 17] = [
     (HEAD, false),
     (BOXES, false),
     (POLYGONS, true),
@@ -98,6 +102,8 @@ pub(crate) const SECTIONS: [(SectionId, bool); 15] = [
     (KIND, true),
     (FRAME, false),
     (DIGEST, true),
+    (SOURCES, true),
+    (DOORS, true),
     (INFO, false),
     (COARSE, false),
     (CLASSES, false),
@@ -122,6 +128,8 @@ pub(crate) const SINCE_KIND: u16 = 2;
 pub(crate) const SINCE_FRAME: u16 = 3;
 /// The minor version that added digests of the geometry.
 pub(crate) const SINCE_DIGEST: u16 = 4;
+/// The minor version that added sources of objects and doors.
+pub(crate) const SINCE_SOURCES_DOORS: u16 = 5;
 
 /// Bytes before the section table.
 pub(crate) const FIXED: usize = 24;

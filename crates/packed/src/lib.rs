@@ -23,6 +23,7 @@ mod bytes;
 mod cache;
 pub mod classes;
 mod container;
+mod doors;
 mod error;
 pub mod format;
 mod locate;

@@ -5,6 +5,7 @@ use crate::classes::{Classes, Distinct};
 use crate::error::PackError;
 use crate::format::{
     self, ENTRY, FIXED, MAGIC, MAJOR, OPTIONAL, SINCE_CELL_NAMES, SINCE_DIGEST, SINCE_FRAME, SINCE_KIND,
+    SINCE_SOURCES_DOORS,
 };
 use crate::merge::{Sight, after, merge_order, merged};
 use crate::store::Store;
@@ -210,6 +211,12 @@ impl Frame {
         if let Some(digest) = &parts.digest {
             sections.push((format::DIGEST, digest.to_bytes().to_vec()));
         }
+        if !parts.object_sources.is_empty() {
+            sections.push((format::SOURCES, write::sources(&parts.object_sources)));
+        }
+        if !parts.doors.is_empty() {
+            sections.push((format::DOORS, write::doors(&parts.doors)));
+        }
         sections.push((format::INFO, write::info(&parts.info)));
         let mut stores = vec![
             Store::of_records(format::CELLS, &write::cells(parts))?,
@@ -268,12 +275,13 @@ impl Frame {
         let mut out = Writer(Vec::with_capacity(total as usize));
         out.0.extend(MAGIC);
         out.0.extend(MAJOR.to_le_bytes());
-        let has_kind = ordered.iter().any(|(id, ..)| *id == format::KIND);
+        let has = |section: SectionId| ordered.iter().any(|(id, ..)| *id == section);
         let needed = [
             (table.has_cell_names(), SINCE_CELL_NAMES),
-            (has_kind, SINCE_KIND),
+            (has(format::KIND), SINCE_KIND),
             (table.frame().is_some(), SINCE_FRAME),
             (table.digest().is_some(), SINCE_DIGEST),
+            (has(format::SOURCES) || has(format::DOORS), SINCE_SOURCES_DOORS),
         ];
         let minor = needed.into_iter().filter(|(there, _)| *there).map(|(_, since)| since).max().unwrap_or(0);
         out.0.extend(minor.to_le_bytes());

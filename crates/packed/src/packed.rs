@@ -4,13 +4,16 @@ use crate::bytes::{Place, Reader, u32_at, u64_at, words_of};
 use crate::cache::{Block, Cache, PackedStats};
 use crate::classes::Members;
 use crate::container::{Index, ResidentPart, StoreIndex};
+use crate::doors::{self, Sources};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, HAS_SEEN, HEAD_LEN, MAX_UNPACKED_BLOCK, NONE};
 use crate::locate::PointLocation;
 use crate::source::Source;
 use sightlines_pvs::bits::ones;
 use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
-use sightlines_pvs::{Axis, CellId, Frame, FrameError, GeometryDigest, MirrorId, MirrorRecord, SectionId, TableKind};
+use sightlines_pvs::{
+    Axis, CellId, DoorRecord, Frame, FrameError, GeometryDigest, MirrorId, MirrorRecord, SectionId, TableKind,
+};
 use std::sync::Arc;
 
 /// A packed table that is read piece by piece within a memory budget.
@@ -30,6 +33,8 @@ pub struct Packed<S: Source> {
     digest: Option<GeometryDigest>,
     up: Option<Axis>,
     mirrors: Vec<MirrorRecord>,
+    pub(crate) doors: Vec<DoorRecord>,
+    pub(crate) sources: Sources,
     pub(crate) rows: RowStore,
     pub(crate) seen: Option<RowStore>,
     pub(crate) cells: StoreIndex,
@@ -225,6 +230,8 @@ impl<S: Source> Packed<S> {
             digest: digest(&resident)?,
             up,
             mirrors: mirrors(&resident, &head)?,
+            doors: doors::read(&resident, &head)?,
+            sources: Sources::read(&resident, n_objects)?,
             rows,
             seen,
             cells: index.need_records(format::CELLS, n_cells)?,

@@ -6,7 +6,8 @@ use crate::error::PackError;
 use crate::format::{HAS_SEEN, MAX_UNPACKED_BLOCK, NONE, POLYGONS_KNOWN, page_size};
 use crate::store::LEVEL;
 use sightlines_pvs::{
-    BitMatrix, CellRecord, Locator, LocatorNode, PlaneChild, PlaneTree, SectionId, StabTrees, TableParts,
+    BitMatrix, CellRecord, DoorRecord, Locator, LocatorNode, ObjectSource, PlaneChild, PlaneTree, SectionId, StabTrees,
+    TableParts,
 };
 
 /// Numbers of cells, objects, portals and nodes, and the flags of `HEAD`. A checked table counts with 32 bits.
@@ -91,6 +92,26 @@ pub(crate) fn mirrors(parts: &TableParts) -> Vec<u8> {
         out.varint(u64::from(mirror.mirror.0));
         out.varint(mirror.points.len() as u64);
         mirror.points.iter().for_each(|p| out.floats(&p[..d]));
+    }
+    out.0
+}
+
+pub(crate) fn sources(sources: &[Option<ObjectSource>]) -> Vec<u8> {
+    let mut out = Writer::default();
+    for source in sources {
+        out.varint(source.map_or(0, |source| u64::from(source.node) + 1));
+        source.iter().for_each(|source| out.varint(u64::from(source.primitive)));
+    }
+    out.0
+}
+
+pub(crate) fn doors(doors: &[DoorRecord]) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.varint(doors.len() as u64);
+    for DoorRecord { name, object, portals } in doors {
+        out.varint(object.map_or(0, |object| u64::from(object.0) + 1));
+        out.text(name);
+        out.ascending(portals.iter().map(|portal| portal.0));
     }
     out.0
 }

@@ -1,8 +1,11 @@
 //! The validation of a table's parts.
 
 use crate::parts::TableParts;
-use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
-use crate::{BitMatrix, CellId, FrameError, LocatorError, ObjectId, PlaneError, StabError, TableKind, side};
+use crate::records::{CellRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
+use crate::{
+    BitMatrix, CellId, DoorId, FrameError, LocatorError, ObjectId, PlaneError, PortalId, StabError, TableKind, door,
+    side,
+};
 
 /// A kind of thing with coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,6 +20,8 @@ pub enum Item {
     Object,
     /// A part of a mirror.
     Mirror,
+    /// A door.
+    Door,
 }
 
 impl std::fmt::Display for Item {
@@ -27,6 +32,7 @@ impl std::fmt::Display for Item {
             Self::Portal => "portal",
             Self::Object => "object",
             Self::Mirror => "mirror",
+            Self::Door => "door",
         })
     }
 }
@@ -195,6 +201,36 @@ pub enum TableError {
         /// Number of objects.
         n_objects: usize,
     },
+    /// Sources of objects, but not one for each object.
+    #[error("{n} sources of objects do not fit {n_objects} objects")]
+    ObjectSources {
+        /// Number of sources.
+        n: usize,
+        /// Number of objects.
+        n_objects: usize,
+    },
+    /// An object of a node whose number is reserved.
+    #[error("object {0} cannot be of node 4294967295")]
+    ObjectNode(ObjectId),
+    /// A door that is an object that does not exist.
+    #[error("door {door} is object {object}, which does not exist")]
+    DoorObject {
+        /// The door.
+        door: DoorId,
+        /// The object.
+        object: ObjectId,
+    },
+    /// A door that closes a portal that does not exist.
+    #[error("door {door} closes portal {portal}, which does not exist")]
+    DoorPortal {
+        /// The door.
+        door: DoorId,
+        /// The portal.
+        portal: PortalId,
+    },
+    /// The portals of a door are not ascending.
+    #[error("the portals of door {0} are not ascending")]
+    DoorOrder(DoorId),
     /// Names of cells, but not one for each cell.
     #[error("{n} names of cells do not fit {n_cells} cells")]
     CellNames {
@@ -262,6 +298,7 @@ impl TableParts {
         self.check_objects()?;
         self.objects_seen.as_ref().map_or(Ok(()), |seen| self.check_seen(seen))?;
         self.mirrors.iter().enumerate().try_for_each(|(i, mirror)| self.check_mirror(i, mirror))?;
+        self.check_doors()?;
         self.locator.check(&self.cell_bounds(), self.dimension)?;
         self.planes.as_ref().map_or(Ok(()), |planes| planes.check(self.cells.len(), self.dimension))?;
         self.stab.as_ref().map_or(Ok(()), |stab| stab.check(&self.portals, self.cells.len()))?;
@@ -269,6 +306,11 @@ impl TableParts {
             Some(i) => Err(TableError::InfoOrder(i + 1)),
             None => Ok(()),
         }
+    }
+
+    /// Whether there are the objects and portals of all doors, and their counts and names have 32 bits.
+    pub(crate) fn check_doors(&self) -> Result<(), TableError> {
+        door::check(&self.doors, self.objects.len(), self.portals.len())
     }
 
     /// Every count and length has 32 bits in a file.
@@ -392,6 +434,13 @@ impl TableParts {
         let n_objects = self.objects.len();
         if !self.object_polygons.is_empty() && self.object_polygons.len() != n_objects {
             return Err(TableError::ObjectPolygons { n: self.object_polygons.len(), n_objects });
+        }
+        if !self.object_sources.is_empty() && self.object_sources.len() != n_objects {
+            return Err(TableError::ObjectSources { n: self.object_sources.len(), n_objects });
+        }
+        let reserved = |source: &Option<ObjectSource>| source.is_some_and(|source| source.node == u32::MAX);
+        if let Some(object) = self.object_sources.iter().position(reserved) {
+            return Err(TableError::ObjectNode(ObjectId(object as u32)));
         }
         let (n, n_cells) = (self.cell_objects.len(), self.cells.len());
         if n != n_cells {

@@ -90,19 +90,22 @@ impl Frame {
     /// is the smallest one but for rounding. A NaN bounds nothing: where one is in the way, a side of the result is infinite or NaN.
     #[inline]
     pub fn around(&self, min: [f64; 3], max: [f64; 3]) -> ([f64; 3], [f64; 3]) {
-        self.box_along(self.axes, min, max)
+        self.box_along(self.axes, [1.0; 3], min, max)
     }
 
-    /// A box of the scene that contains everything that lies within the gap of a box of the frame. The axes are taken to be exactly at
-    /// right angles, as they are to within 2^-48.
+    /// A box of the scene that contains everything that lies within the gap of a box of the frame, along each axis of the frame. The axes
+    /// are taken to be exactly at right angles, as they are to within 2^-48.
     pub fn around_in_scene(&self, min: [f64; 3], max: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let [x, y, z] = self.axes;
-        self.box_along(std::array::from_fn(|k| [x[k], y[k], z[k]]), min, max)
+        let axes = std::array::from_fn(|k| [x[k], y[k], z[k]]);
+        // A step of one gap along each axis of the frame. Rounded up by `box_along`, as the sum is off by less than two units of rounding.
+        let n_gaps = axes.map(|[a, b, c]| a.abs() + b.abs() + c.abs());
+        self.box_along(axes, n_gaps, min, max)
     }
 
-    /// The box along these axes around a box, widened by the gap and by rounding.
+    /// The box along these axes around a box, widened along each by a number of gaps and by rounding.
     #[inline]
-    fn box_along(&self, axes: [[f64; 3]; 3], min: [f64; 3], max: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    fn box_along(&self, axes: [[f64; 3]; 3], n_gaps: [f64; 3], min: [f64; 3], max: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let (mut lower, mut upper) = ([0.0; 3], [0.0; 3]);
         for (k, a) in axes.iter().enumerate() {
             let (mut low, mut high, mut size) = (0.0, 0.0, 0.0);
@@ -119,7 +122,8 @@ impl Frame {
             }
             // As in `rounding`; widening rounds once more, by a unit of the size and of the gap. The rest is for axes that are not quite
             // at right angles.
-            let wide = self.gap * (1.0 + 4.0 * f64::EPSILON) + size * (128.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+            let wide =
+                self.gap * n_gaps[k] * (1.0 + 8.0 * f64::EPSILON) + size * (128.0 * f64::EPSILON) + f64::MIN_POSITIVE;
             (lower[k], upper[k]) = (low - wide, high + wide);
         }
         (lower, upper)
@@ -165,6 +169,11 @@ mod tests {
         assert!(close(min, [0.0, -0.6, 0.0]) && close(max, [1.4, 0.8, 1.0]));
         let (wide, _) = turned(0.5).around([0.0; 3], [1.0; 3]);
         assert!(close(wide, [-0.5, -1.1, -0.5]));
+        // Back in the scene, a step of a gap along two axes at once is inside.
+        let (low, high) = turned(0.5).around_in_scene([0.0; 3], [0.0; 3]);
+        assert!(close(low, [-0.7, -0.7, -0.5]) && close(high, [0.7, 0.7, 0.5]), "{low:?}");
+        let off = turned(0.0).to_scene([0.5, -0.5, 0.5]);
+        assert!((0..3).all(|k| low[k] <= off[k] && off[k] <= high[k]));
         // Each corner is inside, by its exact coordinates: 0.8 and 0.6 as doubles are off by less than a unit of rounding.
         for i in 0..8 {
             let p: [f64; 3] = std::array::from_fn(|k| f64::from(i >> k & 1));

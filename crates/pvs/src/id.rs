@@ -31,4 +31,6 @@ ids! {
     PortalId
     /// A mirror, of which there may be parts in several cells.
     MirrorId
+    /// A door, in the order of the table.
+    DoorId
 }

@@ -1,6 +1,6 @@
 //! The parts of a table.
 
-use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
+use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{Axis, BitMatrix, Frame, GeometryDigest, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
 
 /// The parts of a [`crate::Table`], not yet checked.
@@ -33,6 +33,11 @@ pub struct TableParts {
     pub objects_seen: Option<BitMatrix>,
     /// Number of polygons of each object, in the order of `objects`. Empty: not known.
     pub object_polygons: Vec<u32>,
+    /// Where each object is in the file that the table was made of, in the order of `objects`; `None`: not in one place, or not known.
+    /// Empty: not known of any.
+    pub object_sources: Vec<Option<ObjectSource>>,
+    /// The doors; may be empty. Their index is their id.
+    pub doors: Vec<DoorRecord>,
     /// The parts of mirrors; may be empty.
     pub mirrors: Vec<MirrorRecord>,
     /// The name of each cell for users, in the order of `cells`; names may repeat. Empty: cells have no names.
@@ -63,6 +68,8 @@ impl TableParts {
             cell_objects: Vec::new(),
             objects_seen: None,
             object_polygons: Vec::new(),
+            object_sources: Vec::new(),
+            doors: Vec::new(),
             mirrors: Vec::new(),
             cell_names: Vec::new(),
             locator: Locator::default(),

@@ -1,6 +1,6 @@
 //! Cells, portals, objects and mirrors as a table stores them.
 
-use crate::{CellId, MirrorId};
+use crate::{CellId, MirrorId, ObjectId, PortalId};
 
 /// A convex cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +37,33 @@ pub struct ObjectRecord {
     pub min: [f64; 3],
     /// Upper corner of that box.
     pub max: [f64; 3],
+}
+
+/// Where an object is in the file that the table was made of: a program that has loaded the same file finds it there.
+///
+/// Of a glTF file, an object is one primitive of one node. Instances of a node (`EXT_mesh_gpu_instancing`) are objects each, of equal source: of
+/// several with one node and primitive, the k-th in the order of ids is instance k. Other formats have no nodes: objects of an OBJ
+/// file, which are told by their names, have no source.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ObjectSource {
+    /// Index of the node in the `nodes` of the file; below 2^32 - 1.
+    pub node: u32,
+    /// Index of the primitive in the `primitives` of the node's mesh.
+    pub primitive: u32,
+}
+
+/// A door, and the portals that nothing is seen through while it is shut.
+///
+/// A table takes all doors to be open. A program that knows that one is shut closes its portals, for every eye that is not
+/// inside the door.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DoorRecord {
+    /// The name of the door for users; names may repeat.
+    pub name: String,
+    /// The object that is the door; `None` for one that was given as a box.
+    pub object: Option<ObjectId>,
+    /// The portals that it closes, ascending. None if it fills no opening, or only parts of portals: then it changes nothing.
+    pub portals: Vec<PortalId>,
 }
 
 /// The part of a mirror that lies in a cell or on its border.

@@ -1,10 +1,10 @@
 //! The table and its queries.
 
 use crate::parts::TableParts;
-use crate::records::{CellRecord, MirrorRecord, ObjectRecord, PortalRecord};
+use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{
-    Axis, CellId, CellSet, Frame, FrameError, GeometryDigest, Locator, ObjectId, PlaneTree, StabTrees, TableError,
-    TableKind, bits, side,
+    Axis, CellId, CellSet, Frame, FrameError, GeometryDigest, Locator, NodeIndex, ObjectId, PlaneTree, StabTrees,
+    TableError, TableKind, bits, side,
 };
 
 /// Which cells of a scene can see each other: checked, and immutable.
@@ -13,6 +13,8 @@ use crate::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     parts: TableParts,
+    /// The objects of each node, by the parts.
+    nodes: NodeIndex,
 }
 
 impl Table {
@@ -23,7 +25,7 @@ impl Table {
     /// The first [`TableError`].
     pub fn new(parts: TableParts) -> Result<Self, TableError> {
         parts.check()?;
-        Ok(Self { parts })
+        Ok(Self { nodes: NodeIndex::new(&parts.object_sources), parts })
     }
 
     /// The parts, for inspection.
@@ -36,18 +38,19 @@ impl Table {
         self.parts
     }
 
-    /// The same table without portals, stab trees and polygons: smaller, and enough for a game that queries by cell or
+    /// The same table without portals, doors, stab trees and polygons: smaller, and enough for a game that queries by cell or
     /// by position.
     ///
     /// The cells become their boxes, so a point may be found in more cells than before, and never in
-    /// fewer. Rows, objects, mirrors, planes, ids and names stay.
+    /// fewer. Rows, objects, mirrors, planes, ids and names of cells and objects stay.
     #[must_use]
     pub fn strip_geometry(&self) -> Self {
         let mut parts = self.parts.clone();
         parts.portals.clear();
+        parts.doors.clear();
         parts.stab = None;
         parts.cells.iter_mut().for_each(|cell| cell.polygon.clear());
-        Self { parts }
+        Self { parts, nodes: self.nodes.clone() }
     }
 
     /// 2 for a plane, 3 for space.
@@ -96,6 +99,16 @@ impl Table {
         self
     }
 
+    /// The same table with other doors.
+    ///
+    /// # Errors
+    /// [`TableError`] for objects and portals that there are not, and portals that do not ascend.
+    pub fn with_doors(mut self, doors: Vec<DoorRecord>) -> Result<Self, TableError> {
+        self.parts.doors = doors;
+        self.parts.check_doors()?;
+        Ok(self)
+    }
+
     /// Whether cells can be found at points: not in a table of the clusters of a Quake map without planes.
     pub fn has_places(&self) -> bool {
         !self.parts.kind.is_quake() || self.parts.planes.is_some()
@@ -134,6 +147,28 @@ impl Table {
         let n_objects = self.parts.objects.len();
         assert!(object.idx() < n_objects, "object {object} of {n_objects}");
         self.parts.object_polygons.get(object.idx()).copied().unwrap_or(1)
+    }
+
+    /// Where an object is in the file that the table was made of; `None` if that is not known, as in older files, or if it has no
+    /// place there. O(1).
+    ///
+    /// # Panics
+    /// If the table has no such object.
+    pub fn source_of(&self, object: ObjectId) -> Option<ObjectSource> {
+        let n_objects = self.parts.objects.len();
+        assert!(object.idx() < n_objects, "object {object} of {n_objects}");
+        self.parts.object_sources.get(object.idx()).copied().flatten()
+    }
+
+    /// Whether it is known where any of the objects are in the file that the table was made of ([`Table::source_of`]).
+    pub fn has_sources(&self) -> bool {
+        !self.nodes.is_empty()
+    }
+
+    /// The objects of a node of that file, ascending: one for each primitive of its mesh that can be seen. None for a node without a mesh,
+    /// and where sources are not known. O(log n).
+    pub fn objects_of_node(&self, node: u32) -> impl Iterator<Item = ObjectId> + '_ {
+        self.nodes.objects_of(node)
     }
 
     /// The name of a cell for users; `None` if the cells of the table have no names. O(1).

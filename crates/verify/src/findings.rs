@@ -2,7 +2,7 @@
 
 use crate::options::VerifyOptions;
 use sightlines_geometry::Point3;
-use sightlines_pvs::{CellId, PortalId};
+use sightlines_pvs::{CellId, DoorId, PortalId};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -118,6 +118,28 @@ pub enum Violation {
         /// The object.
         object: u32,
     },
+    /// An object that is another node or primitive of the file than the table says.
+    ObjectSource {
+        /// The object.
+        object: u32,
+    },
+    /// A door that is an object which is no door in the scene.
+    NoDoor {
+        /// The door.
+        door: DoorId,
+    },
+    /// A door with another name than the object that it is.
+    DoorName {
+        /// The door.
+        door: DoorId,
+    },
+    /// A portal that a door closes, and that its leaf does not cover: what is seen past the leaf would be hidden when the door is shut.
+    OpenDoor {
+        /// The door.
+        door: DoorId,
+        /// The portal.
+        portal: PortalId,
+    },
     /// An object that touches a cell, and is not listed there.
     UnlistedObject {
         /// The cell.
@@ -159,6 +181,10 @@ impl Violation {
             Self::Count { .. } => "count",
             Self::ObjectName { .. } => "object-name",
             Self::ObjectBox { .. } => "object-box",
+            Self::ObjectSource { .. } => "object-source",
+            Self::NoDoor { .. } => "no-door",
+            Self::DoorName { .. } => "door-name",
+            Self::OpenDoor { .. } => "open-door",
             Self::UnlistedObject { .. } => "unlisted-object",
         }
     }
@@ -188,6 +214,7 @@ impl Violation {
             Self::HiddenObject { object, .. }
             | Self::ObjectName { object }
             | Self::ObjectBox { object }
+            | Self::ObjectSource { object }
             | Self::UnlistedObject { object, .. } => Some(object),
             _ => None,
         }
@@ -272,6 +299,14 @@ impl fmt::Display for Violation {
             Self::Count { what, table, scene } => write!(f, "the table has {table} {what}, the scene {scene}"),
             Self::ObjectName { object } => write!(f, "object {object} has another name in the scene"),
             Self::ObjectBox { object } => write!(f, "object {object} has another extent in the scene"),
+            Self::ObjectSource { object } => {
+                write!(f, "object {object} is another node or primitive in the scene")
+            }
+            Self::NoDoor { door } => write!(f, "door {door} is an object that is no door in the scene"),
+            Self::DoorName { door } => write!(f, "door {door} has another name than its object in the scene"),
+            Self::OpenDoor { door, portal } => {
+                write!(f, "door {door} closes portal {portal}, which its leaf does not cover")
+            }
             Self::UnlistedObject { cell, object } => {
                 write!(f, "object {object} touches cell {cell}, which does not list it")
             }
@@ -331,6 +366,10 @@ pub struct Remarks {
     /// Hidden pairs of a table with a frame that a ray joins in the scene as the file has it, and not in the scene along the frame: what they
     /// see of each other, they see through openings narrower than the gap or past things thinner than it, which the premise allows.
     pub cracks: u64,
+    /// Doors that are not compared with the scene: those that were given as boxes, and those of tables of plans and maps.
+    pub doors_as_boxes: u64,
+    /// Pairs of a door and a portal that its leaf covers, and that the door does not close: it lets through what it could hide.
+    pub unlisted_door_portals: u64,
     /// Triangles that have an area in the file and none along the frame: they are thinner than the gap.
     pub flattened: u64,
 }
@@ -344,6 +383,8 @@ pub struct Findings {
     pub n_portals: usize,
     /// Objects.
     pub n_objects: usize,
+    /// Doors.
+    pub n_doors: usize,
     /// Random rays.
     pub n_rays: u64,
     /// Segments, free as far as doubles tell, that were followed through the portals of the table, and its stab trees if it has any.

@@ -115,7 +115,7 @@ fn exact(x: f64, y: f64) -> Option<Exact> {
 }
 
 /// A point of a rectangle that no closed triangle covers, in the middle of a part that is not covered, rounded; `None` if there is no such part.
-fn uncovered([x0, y0, x1, y1]: [f64; 4], triangles: &[[Point2; 3]]) -> Option<[f64; 2]> {
+pub(crate) fn uncovered([x0, y0, x1, y1]: [f64; 4], triangles: &[[Point2; 3]]) -> Option<[f64; 2]> {
     let corners: Option<Vec<Exact>> =
         [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| exact(x, y)).into_iter().collect();
     let mut pieces = vec![corners?];

@@ -1,7 +1,9 @@
 //! A viewer walks along a corridor of ten rooms; one of the doors is closed in between.
 
 use sightlines_eye_to_cell::{Method, TableCells, View};
-use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalId, PortalRecord, Table, TableKind, TableParts};
+use sightlines_pvs::{
+    BitMatrix, CellId, CellRecord, DoorRecord, Locator, PortalId, PortalRecord, Table, TableKind, TableParts,
+};
 use sightlines_walkthrough::{WalkOptions, Walkthrough};
 use std::error::Error;
 use std::sync::Arc;
@@ -23,16 +25,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         cells,
         rows,
         portals: (0..9).map(door).collect(),
+        doors: vec![DoorRecord { name: "last but one".to_owned(), object: None, portals: vec![PortalId(7)] }],
         cell_objects: vec![vec![]; 10],
         locator: Locator::build(&bounds, 2),
         ..TableParts::empty(2, TableKind::Unspecified)
     })?;
 
-    let cells = TableCells::new(Arc::new(table));
+    let table = Arc::new(table);
+    let cells = TableCells::new(Arc::clone(&table));
     let mut walk = Walkthrough::new(cells.clone(), cells, WalkOptions::default());
     for k in 0..20 {
         if k == 10 {
-            walk.close(PortalId(7));
+            for door in table.door("last but one") {
+                walk.close_door(table.doors(), door);
+            }
         }
         let view = View::planar([0.25 + 0.5 * f64::from(k), 0.5], [1.0, 0.0], 0.3)?;
         walk.frame(&view, Method::Exact);

@@ -6,7 +6,7 @@ use crate::prefetch::{Prefetcher, Prepare};
 use sightlines_eye_to_cell::{
     Budget, CellSource, Doors, Image, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
-use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer, PortalId};
+use sightlines_pvs::{CellId, DoorId, DoorRecord, ObjectId, Place, PlaceBuffer, PortalId};
 use std::fmt;
 
 /// Parameters of a [`Walkthrough`].
@@ -299,6 +299,20 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         self.note_doors(changed)
     }
 
+    /// Shuts a door, given the doors of the table ([`sightlines_pvs::Table::doors`], or those of a packed table): closes its portals, as
+    /// [`Doors::close_door`]. Returns whether it was open.
+    pub fn close_door(&mut self, doors: &[DoorRecord], door: DoorId) -> bool {
+        let changed = self.doors.close_door(doors, door);
+        self.note_doors(changed)
+    }
+
+    /// Opens a door. Returns whether it was shut. A portal stays closed while another shut door closes it, or if it was closed by
+    /// [`Walkthrough::close`].
+    pub fn open_door(&mut self, door: DoorId) -> bool {
+        let changed = self.doors.open_door(door);
+        self.note_doors(changed)
+    }
+
     fn note_doors(&mut self, changed: bool) -> bool {
         if let Some(last) = &mut self.last {
             last.doors_changed |= changed;
@@ -312,12 +326,13 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
     ///
     /// `keep` maps a closed portal of the old table to the same portal of the new one, which stays closed. Portals
     /// mapped to `None` are forgotten, and whatever took their place is open, which errs towards visible. `Some` keeps
-    /// the numbers; [`crate::same_portals`] compares corners. O(closed portals), and a new thread.
+    /// the numbers; [`crate::same_portals`] compares corners. Doors that were shut by [`Walkthrough::close_door`] are open, as the new
+    /// table may have others: shut them again. O(closed portals), and a new thread.
     ///
     /// Movers follow by [`crate::Movers::replace`], simplified levels by [`crate::Levels::forget`].
     pub fn replace(&mut self, resident: R, source: S, keep: impl Fn(PortalId) -> Option<PortalId>) {
         let mut doors = Doors::all_open();
-        self.doors.closed().filter_map(keep).for_each(|portal| {
+        self.doors.closed_alone().filter_map(keep).for_each(|portal| {
             doors.close(portal);
         });
         self.doors = doors;

@@ -11,6 +11,7 @@
 
 mod cut;
 
+use crate::doors;
 use crate::error::BakeError;
 use crate::mirrors;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, info, scene_parts};
@@ -185,6 +186,7 @@ fn tabulate(scene: &Scene, boxes: &[Aabb<3>], cut: &Cut, space: &LiveSpace, how:
     let info = info(&how.options(), &cut.summary);
     let mirrors = mirrors::of_scene(&cut.graph, scene).parts;
     let mut parts = scene_parts(&cut.graph, space.seen().clone(), scene, boxes, info, mirrors);
+    parts.doors = doors::records(scene, &doors::of_scene(&cut.graph, scene));
     state_file(&mut parts, how.file.as_ref());
     Ok(Table::new(parts)?)
 }

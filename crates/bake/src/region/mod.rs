@@ -210,11 +210,13 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let limit = Some(LimitReport::of(&left, &objects)).filter(LimitReport::is_any);
     let (n_visible_pairs, n_objects_seen) = ((rows.count_ones() - n as u64) / 2, objects.count_ones());
     parts.rows = rows;
+    parts.doors = doors::records(scene, &doors);
     parts.cell_objects = object_lists(touching);
     parts.objects_seen = Some(objects);
     if parts.objects.is_empty() {
         parts.objects = scene.objects().iter().zip(&boxes).map(|(o, b)| object_record(&o.name, b)).collect();
         parts.object_polygons = scene.objects().iter().map(n_triangles).collect();
+        parts.object_sources = scene.sources().to_vec();
     }
     let (method, only_in_air) = method.map_or((None, false), |(name, only_in_air)| (Some(name), only_in_air));
     let text = method.clone().unwrap_or_default();

@@ -8,6 +8,7 @@ use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplified};
 use crate::point::are_collinear;
 use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
+use sightlines_pvs::ObjectSource;
 
 /// A mesh of which every corner is used.
 #[derive(Debug, Default)]
@@ -47,6 +48,8 @@ pub(super) struct Builder {
     /// With the object of each; an empty box where it has no triangles.
     view_volumes: Vec<(u32, Aabb<3>)>,
     doors: Vec<u32>,
+    /// Of all objects up to the last that has one.
+    sources: Vec<Option<ObjectSource>>,
     simplified: Option<Simplified>,
     /// What a user should hear of the file.
     pub(super) warnings: Vec<String>,
@@ -86,6 +89,14 @@ impl Builder {
     /// Index of the object that was added last.
     fn last(&self) -> Option<u32> {
         self.objects.len().checked_sub(1).and_then(|last| u32::try_from(last).ok())
+    }
+
+    /// Notes which primitive of which node the object that was added last is. What 32 bits do not count is not noted.
+    pub(super) fn note_source(&mut self, node: usize, primitive: usize) {
+        let [node, primitive] =
+            [node, primitive].map(|index| u32::try_from(index).ok().filter(|&index| index < u32::MAX));
+        self.sources.resize(self.objects.len().saturating_sub(1), None);
+        self.sources.push(node.zip(primitive).map(|(node, primitive)| ObjectSource { node, primitive }));
     }
 
     /// Marks the object that was added last as a mirror.
@@ -168,7 +179,7 @@ impl Builder {
         let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let scene = scene.with_see_through(self.see_through)?.with_moving(self.moving)?;
-        let scene = scene.with_single_sided(self.fronts_only)?.with_doors(self.doors)?;
+        let scene = scene.with_single_sided(self.fronts_only)?.with_doors(self.doors)?.with_sources(self.sources)?;
         let n_triangles = scene.n_triangles();
         if n_triangles == 0 {
             return Err(SceneReadError::NoTriangles { n_objects, n_degenerate });

@@ -223,6 +223,7 @@ fn build(
                 _ => moved,
             };
             builder.add(name, vertices, local.mesh.triangles.iter().copied(), at.world.mirrors(), moved.is_some());
+            builder.note_source(at.index, k);
             if at.is_mirror(document, primitive) {
                 builder.mark_mirror();
             }

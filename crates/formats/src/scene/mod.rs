@@ -55,7 +55,7 @@ pub use obj::{parse_obj, parse_obj_with};
 pub use pattern::{EmptyPattern, NamePattern};
 pub use rewrite::RewriteError;
 pub use role::Role;
-pub use source::{GltfSource, ObjectSource, parse_glb_with_source};
+pub use source::{GltfSource, ObjectOrigin, parse_glb_with_source};
 pub use surface::{Classified, SceneReadOptions};
 pub use write::{Rounding, write_glb, write_rounded_glb, write_simplified_glb};
 pub use write_error::{ObjLimit, SceneWriteError};

@@ -34,7 +34,7 @@ pub(super) struct NodeOrigin {
 
 /// What an object comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ObjectSource<'a> {
+pub struct ObjectOrigin<'a> {
     /// Its node, as an index in the document.
     pub node: usize,
     /// The mesh of the node, as an index in the document.
@@ -91,10 +91,10 @@ impl GltfSource {
     }
 
     /// What object `k` comes from; `None` if there is no such object.
-    pub fn object(&self, k: usize) -> Option<ObjectSource<'_>> {
+    pub fn object(&self, k: usize) -> Option<ObjectOrigin<'_>> {
         let &(origin, primitive) = self.objects.get(k)?;
         let (origin, primitive) = (&self.origins[origin as usize], primitive as usize);
         let corners = &self.corners[origin.mesh][primitive];
-        Some(ObjectSource { node: origin.node, mesh: origin.mesh, primitive, corners, is_mirrored: origin.mirrors })
+        Some(ObjectOrigin { node: origin.node, mesh: origin.mesh, primitive, corners, is_mirrored: origin.mirrors })
     }
 }

@@ -315,6 +315,18 @@ proptest! {
         // Meshes stay what they were.
         prop_assert_eq!(text_of(&after)["meshes"].as_array().unwrap().len(), 3);
     }
+
+    /// Invariant: the node and primitive of an object in its scene are those by which the file is written again.
+    #[test]
+    fn objects_are_where_they_come_from(doc in documents()) {
+        let Ok((file, source)) = parse_glb_with_source(doc.glb(), None) else { return Ok(()) };
+        prop_assert_eq!(file.scene.sources().len(), source.n_objects());
+        for (k, found) in file.scene.sources().iter().enumerate() {
+            let origin = source.object(k).unwrap();
+            let found = found.map(|found| (found.node as usize, found.primitive as usize));
+            prop_assert_eq!(found, Some((origin.node, origin.primitive)));
+        }
+    }
 }
 
 /// Whether three corners lie on a line: by the area of the shadows on three planes, exact for the coordinates here as

@@ -8,6 +8,7 @@ use sightlines_formats::scene::{
     parse_glb_with_source, parse_gltf_with, parse_obj, read_scene, write_glb,
 };
 use sightlines_formats::{SceneFile, atomic_write};
+use sightlines_pvs::ObjectSource;
 
 fn read(doc: &Doc) -> SceneFile {
     parse_glb(&doc.glb(), None).unwrap_or_else(|e| panic!("{e}"))
@@ -517,6 +518,11 @@ fn scene(objects: Vec<SceneObject>) -> Scene {
     Scene::new(objects).unwrap()
 }
 
+/// The scene as it is without a file.
+fn unplaced(scene: Scene) -> Scene {
+    scene.with_sources(Vec::new()).unwrap()
+}
+
 #[test]
 fn what_was_written_is_read() {
     let triangle = |name: &str, x: f64| SceneObject {
@@ -532,7 +538,10 @@ fn what_was_written_is_read() {
     };
     let scene = scene(vec![triangle("a \"b\"\u{1}", 0.0), points, large, triangle("a", -3.5)]);
     let bytes = write_glb(&scene).unwrap();
-    assert_eq!(parse_glb(&bytes, None).unwrap().scene, scene);
+    let placed = |k: u32| Some(ObjectSource { node: k, primitive: 0 });
+    let read = parse_glb(&bytes, None).unwrap().scene;
+    assert_eq!(read.sources(), (0..4).map(placed).collect::<Vec<_>>(), "each object is a node of its own");
+    assert_eq!(unplaced(read), scene);
     assert_eq!(write_glb(&scene).unwrap(), bytes);
     // An impostor with one bit of a coordinate flipped is another scene.
     let mut other = bytes;
@@ -566,6 +575,7 @@ fn mirrors_are_marked_and_written() {
     assert_eq!(names(&groups), ["wall-mirror"]);
     let marked = read.clone().with_mirrors(vec![1, 2]).unwrap();
     let again = parse_glb(&write_glb(&marked).unwrap(), None).unwrap().scene;
+    let again = unplaced(again);
     assert_eq!(again, marked);
     assert_ne!(again, read, "an impostor");
 }
@@ -609,6 +619,9 @@ fn instances_are_objects() {
     let scene = parse_glb(&doc.glb(), None).unwrap().scene;
     let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();
     assert_eq!(names, ["tree[1]", "tree[2]", "tree[3]", "nest"]);
+    // Instances have the node and the primitive in common, and come in their order.
+    let nodes: Vec<u32> = scene.sources().iter().map(|source| source.unwrap().node).collect();
+    assert!(nodes[..3] == [1; 3] && nodes[3] != 1, "{nodes:?}");
     let corners = |k: usize| scene.objects()[k].corners().next().unwrap();
     assert_eq!(corners(0), [[0., 100., 0.], [2., 100., 0.], [0., 102., 0.]]);
     // A quarter turn about y, five to the side, and all of it twice as large.

@@ -2,12 +2,13 @@
 
 use proptest::prelude::*;
 use sightlines_pvs::{
-    Axis, BitMatrix, CellId, CellRecord, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord, PlaneChild,
-    PlaneNode, PlaneTree, PortalId, PortalRecord, SceneMethods, StabParts, StabTrees, Table, TableKind, TableParts,
+    Axis, BitMatrix, CellId, CellRecord, DoorRecord, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord,
+    ObjectSource, PlaneChild, PlaneNode, PlaneTree, PortalId, PortalRecord, SceneMethods, StabParts, StabTrees, Table,
+    TableKind, TableParts,
 };
 
-/// What a table is made from: dimension, columns, rows, seed (cells have names if it is odd), and which optional
-/// parts it has.
+/// What a table is made from: dimension, columns, rows, seed (cells have names if it is odd, and there are doors and sources of
+/// objects if it leaves 1 by 4), and which optional parts it has.
 pub(crate) type Recipe = (u8, u32, u32, u64, u8);
 
 pub(crate) fn recipes() -> impl Strategy<Value = Recipe> {
@@ -86,6 +87,17 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
     if seed % 2 == 1 {
         // Some are equal, some empty, some not ASCII.
         out.cell_names = (0..n).map(|i| ["", "room", "Küche", "room0_Living Room"][i % 4].repeat(1 + i % 3)).collect();
+    }
+    if seed % 4 == 1 {
+        let n_portals = out.portals.len() as u32;
+        let door = |k: u32| DoorRecord {
+            name: ["Tür", "", "gate"][k as usize % 3].to_owned(),
+            object: (k % 2 == 0 && k < n_objects).then_some(ObjectId(k)),
+            portals: (0..n_portals).filter(|portal| portal % (k + 2) == 0).map(PortalId).collect(),
+        };
+        out.doors = (0..dice.below(5)).map(door).collect();
+        let of = |o: u32| (o % 5 != 3).then_some(ObjectSource { node: o * o % 7 * 60, primitive: o % 3 });
+        out.object_sources = (0..n_objects).map(of).collect();
     }
     Table::new(out).expect("a table")
 }

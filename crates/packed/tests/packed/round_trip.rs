@@ -52,7 +52,18 @@ pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
             None => assert!(open && numbers.is_empty()),
         }
     }
+    assert_eq!((packed.doors(), packed.has_sources()), (table.doors(), table.has_sources()));
+    for name in ["Tür", "", "door"] {
+        assert!(packed.door(name).eq(table.door(name)));
+    }
+    for node in [0, 60, 120, 240, 1] {
+        assert!(packed.objects_of_node(node).eq(table.objects_of_node(node)));
+    }
+    for (min, max) in [([0.0; 3], [2.0; 3]), ([1.0, 0.0, 0.0], [1.0, 1.0, 1.5]), ([-9.0; 3], [99.0; 3])] {
+        assert_eq!(packed.portals_within(min, max).unwrap(), table.portals_within(min, max));
+    }
     for (o, object) in (0u32..).map(ObjectId).zip(table.objects()) {
+        assert_eq!(packed.source_of(o).unwrap(), table.source_of(o));
         assert_eq!(packed.object_box(o).unwrap(), (object.min, object.max));
         assert_eq!(
             (packed.object_name(o).unwrap(), packed.object_polygons(o).unwrap()),

@@ -4,9 +4,9 @@ use super::container::{self, Section, array};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::{Reader, read};
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, FRAME, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS,
-    OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_from_bytes, kind_from_info,
-    n_row_words, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, DOORS, FRAME, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS,
+    OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_from_bytes,
+    kind_from_info, n_row_words, planes, stab,
 };
 use crate::digest::{DIGEST_LEN, GeometryDigest};
 use crate::frame::FRAME_LEN;
@@ -40,6 +40,8 @@ impl Table {
         let mirrors = sections.find(MIRRORS).map_or(Ok(Vec::new()), |s| read(s, |r| mirrors(r, d)))?;
         let polygons_of = |s| read(s, |r: &mut Reader<'_>| r.u32s(objects.len() as u64));
         let object_polygons = sections.find(OBJECT_POLYGONS).map_or(Ok(Vec::new()), polygons_of)?;
+        let sources_of = |s| read(s, |r: &mut Reader<'_>| doors::read_sources(r, objects.len()));
+        let object_sources = sections.find(SOURCES).map_or(Ok(Vec::new()), sources_of)?;
         let names_of = |s| read(s, |r: &mut Reader<'_>| cell_names(r, cells.len()));
         let cell_names = sections.find(CELL_NAMES).map_or(Ok(Vec::new()), names_of)?;
         // Stab trees refer to the portals of cells, so these cells must exist.
@@ -59,6 +61,8 @@ impl Table {
             digest: sections.find(DIGEST).map(|s| read(s, digest)).transpose()?,
             mirrors,
             object_polygons,
+            object_sources,
+            doors: sections.find(DOORS).map_or(Ok(Vec::new()), |s| read(s, doors::read))?,
             cell_names,
             planes: sections.find(PLANES).map(planes::parse).transpose()?,
             stab,
@@ -115,6 +119,7 @@ fn section_of(error: &TableError) -> SectionId {
             Item::Portal => PORTALS,
             Item::Object => OBJECTS,
             Item::Mirror => MIRRORS,
+            Item::Door => DOORS,
         },
         TableError::Dimension(_) => CELLS,
         TableError::Kind { .. } => KIND,
@@ -127,6 +132,8 @@ fn section_of(error: &TableError) -> SectionId {
         TableError::CellObjects { .. } | TableError::ObjectOrder(_) | TableError::UnknownObject { .. } => CELL_OBJECTS,
         TableError::SeenShape { .. } | TableError::SeenTail(_) | TableError::Unseen { .. } => SEEN,
         TableError::ObjectPolygons { .. } => OBJECT_POLYGONS,
+        TableError::ObjectSources { .. } | TableError::ObjectNode(_) => SOURCES,
+        TableError::DoorObject { .. } | TableError::DoorPortal { .. } | TableError::DoorOrder(_) => DOORS,
         TableError::CellNames { .. } => CELL_NAMES,
         TableError::MirrorCell { .. } | TableError::MirrorPoints { .. } => MIRRORS,
         TableError::Frame(_) => FRAME,

@@ -3,8 +3,8 @@
 use super::container::{self, Payload};
 use super::writer::Writer;
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, FRAME, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS, OBJECTS,
-    PLANES, POLYGONS, PORTALS, ROWS, SEEN, STAB, SectionId, kind_section, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, DOORS, FRAME, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS,
+    OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_section, planes, stab,
 };
 use crate::locator::Node;
 use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectId, ObjectRecord, PortalRecord, Table, TableParts};
@@ -53,6 +53,12 @@ impl Table {
         }
         if let Some(digest) = &parts.digest {
             sections.push(section(DIGEST, |out| out.0.extend(digest.to_bytes())));
+        }
+        if !parts.object_sources.is_empty() {
+            sections.push(section(SOURCES, |out| doors::write_sources(out, &parts.object_sources)));
+        }
+        if !parts.doors.is_empty() {
+            sections.push(section(DOORS, |out| doors::write(out, &parts.doors)));
         }
         sections.push(section(INFO, |out| info(out, &parts.info)));
         container::write(&sections)

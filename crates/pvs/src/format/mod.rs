@@ -40,6 +40,8 @@
 //! | `KIND`, optional | what kind of table it is (`u32`): 0 not stated, 1 plan by k-d tree, 2 plan by triangulation, 3 scene by k-d tree, 4 scene with given cells, 5 Quake portal file, 6 Quake map; for scenes, what found the hidden (`u32`): 1 sight lines, plus 2 a from-region method, plus 4 if nothing is promised for eyes inside solid matter; the axis that points up (`u32`): 0 not known, 1 to 3 |
 //! | `FRAM` | the axes of the frame (3 each), the gap |
 //! | `DGST`, optional | digests of what hides and of what is seen in what the table was made of, 16 bytes each |
+//! | `OSRC`, optional | for each object its node and its primitive (`u32`), or 2^32 - 1 twice |
+//! | `DOOR`, optional | number of doors; for each: the object plus 1, or 0 (`u32`), number of bytes of the name, the name in UTF-8, number of portals, portals (`u32`) |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
 //! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are their boxes, a
@@ -51,7 +53,8 @@
 //! `method` and `up` ([`kind_from_info`]), or unknown; a later minor version may add kinds, which a reader treats as
 //! not stated. Without a `FRAM` (new in 1.5) all coordinates are along the axes of the scene. Because it changes what coordinates mean,
 //! `FRAM` is not optional for a reader: one that does not have it refuses the file. Files without it are as before. A missing
-//! `DGST` (new in 1.6) means that the digests are unknown.
+//! `DGST` (new in 1.6) means that the digests are unknown, a missing `OSRC` (new in 1.7) that the places of objects in their file are, and a
+//! missing `DOOR` (new in 1.7) that there are no doors.
 //!
 //! # Stab trees
 //!
@@ -81,6 +84,7 @@
 
 mod container;
 mod decode;
+mod doors;
 mod encode;
 mod error;
 mod kind;
@@ -101,7 +105,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the smallest version with all the sections of a table, so
 /// that files without newer sections stay unchanged.
-pub const MINOR: u16 = 6;
+pub const MINOR: u16 = 7;
 
 const CELLS: SectionId = SectionId(*b"CELL");
 const POLYGONS: SectionId = SectionId(*b"POLY");
@@ -119,6 +123,8 @@ const CELL_NAMES: SectionId = SectionId(*b"CNAM");
 const KIND: SectionId = SectionId(*b"KIND");
 const FRAME: SectionId = SectionId(*b"FRAM");
 const DIGEST: SectionId = SectionId(*b"DGST");
+const SOURCES: SectionId = SectionId(*b"OSRC");
+const DOORS: SectionId = SectionId(*b"DOOR");
 const INFO: SectionId = SectionId(*b"INFO");
 
 /// The minor version that added rows of objects.
@@ -133,9 +139,11 @@ const SINCE_KIND: u16 = 4;
 const SINCE_FRAME: u16 = 5;
 /// The minor version that added digests of the geometry.
 const SINCE_DIGEST: u16 = 6;
+/// The minor version that added sources of objects and doors.
+const SINCE_SOURCES_DOORS: u16 = 7;
 
 /// The sections of this version, whether readers may skip them, and the minor version that added each, which is a constant.
-const KNOWN: [(SectionId, bool, u16); 17] = [
+const KNOWN: [(SectionId, bool, u16); 19] = [
     (CELLS, false, 0),
     (POLYGONS, true, 0),
     (PORTALS, true, 0),
@@ -152,6 +160,8 @@ const KNOWN: [(SectionId, bool, u16); 17] = [
     (KIND, true, SINCE_KIND),
     (FRAME, false, SINCE_FRAME),
     (DIGEST, true, SINCE_DIGEST),
+    (SOURCES, true, SINCE_SOURCES_DOORS),
+    (DOORS, true, SINCE_SOURCES_DOORS),
     (INFO, false, 0),
 ];
 

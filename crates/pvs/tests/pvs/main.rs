@@ -1,6 +1,7 @@
 //! Tests of the table through its public interface.
 
 mod common;
+mod doors;
 mod extras;
 mod format;
 mod frame;

@@ -1,6 +1,7 @@
 //! Checks that the structure of a table matches its scene. The promises of the format (symmetry, the diagonal, ids) are
 //! checked when it is read (`pvs`).
 
+mod doors;
 mod mirrors;
 mod objects;
 mod planar;
@@ -25,16 +26,22 @@ pub(crate) fn check(table: &Table, truth: &Truth<'_>) -> Findings {
             planar::check(table, plan, &mut findings);
             objects::of_plan(table, plan, &mut findings);
             mirrors::of_plan(table, plan, &mut findings);
+            doors::of_others(table, &mut findings);
         }
         Truth::Scene(scene) => {
             spatial::check(table, &mut findings);
             objects::of_scene(table, scene, &mut findings);
             mirrors::of_scene(table, scene, &mut findings);
+            doors::of_scene(table, scene, &mut findings);
         }
-        Truth::Portals(graph) => world::portals(table, graph, &mut findings),
+        Truth::Portals(graph) => {
+            world::portals(table, graph, &mut findings);
+            doors::of_others(table, &mut findings);
+        }
         Truth::World(graph, tree) => {
             world::portals(table, graph, &mut findings);
             world::faces(table, tree, &mut findings);
+            doors::of_others(table, &mut findings);
         }
     }
     findings

@@ -24,7 +24,7 @@ pub(super) fn of_plan(table: &Table, plan: &Plan, findings: &mut Findings) {
     }
 }
 
-/// Compares names, boxes, numbers of triangles and lists with those of a scene in space.
+/// Compares names, boxes, numbers of triangles, places in the file, and lists with those of a scene in space.
 pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
     let drawn = |object: usize| {
         let b = scene.extent(object as u32);
@@ -39,6 +39,10 @@ pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
         let n = u32::try_from(o.triangles.len()).unwrap_or(u32::MAX);
         if !table.parts().object_polygons.is_empty() && table.polygons_of(ObjectId(object)) != n {
             findings.add(Violation::ObjectBox { object });
+        }
+        let source = scene.sources().get(object as usize).copied().flatten();
+        if table.has_sources() && !scene.sources().is_empty() && table.source_of(ObjectId(object)) != source {
+            findings.add(Violation::ObjectSource { object });
         }
     }
     let is_drawn: Vec<bool> = (0u32..).zip(scene.objects()).map(|(k, _)| !scene.extent(k).is_empty()).collect();

@@ -73,6 +73,7 @@ impl fmt::Display for BriefBuilt<'_> {
         writeln!(f, "method         {method}; {cells}")?;
         let (size, time) = (bytes(n_bytes as u64), Duration::try_from_secs_f64(time).unwrap_or_default());
         writeln!(f, "wrote          {out}, {size}, in {}: {visible}", seconds(time))?;
+        self.0.given_doors.iter().try_for_each(|door| write!(f, "{door}"))?;
         self.0.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         self.0.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))
     }

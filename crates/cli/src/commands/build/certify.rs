@@ -2,7 +2,7 @@
 
 use super::Error;
 use crate::error::OutputError;
-use crate::output::{self, bytes, seconds};
+use crate::output::{self, bytes, count, seconds};
 use crate::progress::Bar;
 use crate::unproven::Unproven;
 use serde::Serialize;
@@ -75,6 +75,7 @@ impl CertifyArgs {
             proofs: file.display().to_string(),
             n_proof_bytes: content.len(),
             certify_seconds: made.time.as_secs_f64(),
+            n_excess: found.n_excess,
         };
         Ok(Some(Certified { file: Some(file), unproven: Unproven::new(&baked.table, &found) }))
     }
@@ -94,14 +95,19 @@ struct ProofFile {
     proofs: String,
     n_proof_bytes: usize,
     certify_seconds: f64,
+    /// Pairs that the table shows, although they are proven to be hidden.
+    n_excess: u64,
 }
 
 impl fmt::Display for Certified {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.file {
-            Some(ProofFile { proofs, n_proof_bytes, certify_seconds }) => {
+            Some(ProofFile { proofs, n_proof_bytes, certify_seconds, n_excess }) => {
                 let time = Duration::try_from_secs_f64(*certify_seconds).unwrap_or_default();
                 writeln!(f, "proofs         {proofs}, {}, in {}", bytes(*n_proof_bytes as u64), seconds(time))?;
+                if *n_excess > 0 {
+                    writeln!(f, "               {} are proven to be hidden", count(*n_excess, "visible pair"))?;
+                }
             }
             None => writeln!(f, "proofs         none: there are none about cells without portals")?,
         }

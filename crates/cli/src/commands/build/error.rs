@@ -38,6 +38,9 @@ pub(crate) enum Error {
     /// What is proven is not what the table states: our bug.
     #[error("{}: the proofs contradict the table: {first}{}; nothing was written", path.display(), and_more(*n_violations))]
     Contradiction { path: PathBuf, n_violations: u64, first: ProofViolation },
+    /// A door with a box of another dimension than the table.
+    #[error("{}: the box of the door {name:?} has {found} numbers: here it needs {needed}", path.display())]
+    DoorDimension { path: PathBuf, name: String, found: usize, needed: usize },
     /// A table cannot have stab trees.
     #[error("{}: {source}", path.display())]
     Stab { path: PathBuf, source: StabBakeError },

@@ -4,6 +4,7 @@ mod announce;
 mod auto;
 mod brief;
 mod certify;
+mod doors;
 mod error;
 mod framed;
 mod limit;
@@ -22,6 +23,7 @@ pub(crate) use error::Error;
 pub(crate) use source::bake_visibly;
 
 use crate::Answer;
+use crate::doors::DoorBox;
 use crate::input::{self, refuse};
 use crate::numbers::duration;
 use crate::output;
@@ -60,6 +62,10 @@ pub(crate) struct BuildArgs {
     /// long they take; so is what comes after, such as writing, which does not count. With a limit that is reached, the table depends on the machine and differs from run to run
     #[arg(long, help_heading = "Method", value_name = "DURATION", value_parser = duration)]
     time_limit: Option<Duration>,
+    /// A door that is a box: what fills it when it is shut. It is open in the table; a game, or `query --closed NAME`, shuts it, which closes
+    /// the portals that lie wholly within the closed box. In a plan NAME=X0,Y0,X1,Y1. Names may repeat; scenes may have doors of their own
+    #[arg(long = "door", help_heading = "Input", value_name = "NAME=X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    doors: Vec<DoorBox>,
     /// The table to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     output: PathBuf,
@@ -115,6 +121,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     let baked = baked.map_err(|error| source.failed(path, error))?;
     clock.warn(path, &baked.report);
     let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, show_progress)?;
+    let (baked, given_doors) = doors::add(path, baked, &args.doors)?;
     let bytes = baked.table.to_bytes();
     // Proofs that contradict the table leave an older one untouched.
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
@@ -124,7 +131,8 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
         Bakeable::Scene(file) => Some(Surfaces::new(file).with_backs(&baked.table, &file.scene)),
         _ => None,
     };
-    output::print(args.json, &Built { auto, outcome, viewers, placed, surfaces, stab, proofs, verbose })?;
+    let built = Built { auto, outcome, viewers, placed, surfaces, given_doors, stab, proofs, verbose };
+    output::print(args.json, &built)?;
     Ok(Answer::Yes)
 }
 
@@ -225,6 +233,9 @@ struct Built {
     /// Of a scene in space.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     surfaces: Option<Surfaces>,
+    /// Doors that were given as boxes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    given_doors: Vec<doors::GivenDoor>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<stab::Added>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
@@ -244,6 +255,7 @@ impl fmt::Display for Built {
         self.viewers.iter().try_for_each(|viewers| write!(f, "{viewers}"))?;
         write!(f, "{}", self.placed)?;
         self.surfaces.iter().try_for_each(|surfaces| write!(f, "{surfaces}"))?;
+        self.given_doors.iter().try_for_each(|door| write!(f, "{door}"))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))
     }

@@ -8,14 +8,14 @@ mod wad;
 
 use crate::Answer;
 use crate::error::InputError;
-use crate::facts::{DigestFacts, Facts, FrameFacts, StabFacts};
+use crate::facts::{DigestFacts, DoorFacts, Facts, FrameFacts, Source, StabFacts, write_doors};
 use crate::file_error::{FileError, from_file_error};
 use crate::input;
-use crate::output::{self, bytes};
+use crate::output::{self, bytes, count};
 use crate::surfaces::SurfaceArgs;
 use serde::Serialize;
 use sightlines::formats::InputKind;
-use sightlines::pvs::Table;
+use sightlines::pvs::{ObjectId, Table};
 use sightlines::report::Summary;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -39,6 +39,9 @@ pub(crate) struct InfoArgs {
     file: PathBuf,
     #[command(flatten)]
     surfaces: SurfaceArgs,
+    /// Tables: also list the objects, with node and primitive in the glTF that the table was made of
+    #[arg(long, help_heading = "Output")]
+    objects: bool,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -50,9 +53,14 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer, Error> {
     if kind.is_some_and(|kind| kind != InputKind::Scene) {
         input::refuse(path, &args.surfaces.given(), "scenes in space", "none")?;
     }
+    if !matches!(kind, Some(InputKind::Table | InputKind::Packed)) {
+        input::refuse(path, &[("--objects", args.objects)], "tables", "none")?;
+    }
     match kind {
-        Some(InputKind::Table) => output::print(args.json, &TableInfo::new(path, &input::table(path)?))?,
-        Some(InputKind::Packed) => output::print(args.json, &packed::PackedInfo::read(path)?)?,
+        Some(InputKind::Table) => {
+            output::print(args.json, &TableInfo::new(path, &input::table(path)?, args.objects))?;
+        }
+        Some(InputKind::Packed) => output::print(args.json, &packed::PackedInfo::read(path, args.objects)?)?,
         Some(InputKind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
         Some(InputKind::Plan) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
         Some(InputKind::Scene) => output::print(args.json, &scene::SceneInfo::read(path, &args.surfaces.options())?)?,
@@ -76,6 +84,12 @@ struct TableInfo {
     /// If the table has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<StabFacts>,
+    /// Objects of which node and primitive are known.
+    n_objects_with_source: usize,
+    doors: Vec<DoorFacts>,
+    /// If they are asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    objects: Option<Vec<Object>>,
     /// If the table stands along axes of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<FrameFacts>,
@@ -87,12 +101,37 @@ struct TableInfo {
     info: Vec<(String, String)>,
 }
 
+/// An object of a table.
+#[derive(Debug, Serialize)]
+struct Object {
+    id: u32,
+    name: String,
+    /// If it is known.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    source: Option<Source>,
+}
+
+impl fmt::Display for Object {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "  {:>5} {}", self.id, self.name)?;
+        self.source.iter().try_for_each(|source| write!(f, ", {source}"))
+    }
+}
+
+/// The line about the objects that can be found again.
+fn write_sources(f: &mut fmt::Formatter<'_>, n: usize) -> fmt::Result {
+    if n == 0 {
+        return Ok(());
+    }
+    writeln!(f, "found again    {}, by node and primitive", count(n as u64, "object"))
+}
+
 fn as_map<S: serde::Serializer>(pairs: &[(String, String)], out: S) -> Result<S::Ok, S::Error> {
     out.collect_map(pairs.iter().map(|(key, value)| (key, value)))
 }
 
 impl TableInfo {
-    fn new(path: &Path, table: &Table) -> Self {
+    fn new(path: &Path, table: &Table, with_objects: bool) -> Self {
         let file = path.display().to_string();
         let mut summary = Summary::of(table);
         if input::is_of_portals(table) {
@@ -101,7 +140,24 @@ impl TableInfo {
         }
         let (stab, frame) = (StabFacts::of(table), table.frame().map(FrameFacts::from));
         let digests = table.digest().map(DigestFacts::from);
-        Self { file, kind: "table", summary, stab, frame, digests, info: table.info().to_vec() }
+        let ids = || (0..table.objects().len() as u32).map(ObjectId);
+        let object = |id: ObjectId| Object {
+            id: id.0,
+            name: table.objects()[id.idx()].name.clone(),
+            source: table.source_of(id).map(Source::from),
+        };
+        Self {
+            file,
+            kind: "table",
+            summary,
+            stab,
+            n_objects_with_source: ids().filter(|&id| table.source_of(id).is_some()).count(),
+            doors: table.doors().iter().map(DoorFacts::from).collect(),
+            objects: with_objects.then(|| ids().map(object).collect()),
+            frame,
+            digests,
+            info: table.info().to_vec(),
+        }
     }
 }
 
@@ -111,6 +167,9 @@ impl fmt::Display for TableInfo {
         writeln!(f, "{}: visibility table in {dimension}D, {}", self.file, bytes(self.summary.n_bytes as u64))?;
         write!(f, "{}", Facts(&self.summary))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
+        write_sources(f, self.n_objects_with_source)?;
+        write_doors(f, &self.doors)?;
+        self.objects.iter().flatten().try_for_each(|object| writeln!(f, "{object}"))?;
         self.frame.iter().try_for_each(|frame| writeln!(f, "frame          {frame}"))?;
         self.digests.iter().try_for_each(|digests| write!(f, "{digests}"))?;
         self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))

@@ -1,14 +1,17 @@
 //! What a packed table holds, without unpacking it.
 
-use super::Error;
-use super::as_map;
+use super::{Error, Object, as_map, write_sources};
 use crate::error::InputError;
-use crate::facts::{DigestFacts, FrameFacts};
+use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
 use crate::output::{bytes, percent};
 use crate::tables;
 use serde::Serialize;
+use sightlines::pvs::ObjectId;
 use std::fmt;
 use std::path::Path;
+
+/// Bytes of blocks that are kept while objects are listed.
+const CACHE: usize = 1 << 20;
 
 /// The numbers of a packed table.
 #[derive(Debug, Serialize)]
@@ -24,6 +27,12 @@ pub(super) struct PackedInfo {
     /// Null without stab trees.
     n_stab_nodes: Option<u32>,
     n_mirror_parts: usize,
+    /// Objects of which node and primitive are known.
+    n_objects_with_source: usize,
+    doors: Vec<DoorFacts>,
+    /// If they are asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    objects: Option<Vec<Object>>,
     /// Bytes that stay in memory as they are in the file.
     resident_bytes: usize,
     parts: Vec<Part>,
@@ -49,7 +58,7 @@ struct Part {
 }
 
 /// What the parts are.
-const PARTS: [(&str, &str); 22] = [
+const PARTS: [(&str, &str); 24] = [
     ("HEAD", "numbers"),
     ("BOXS", "boxes of cells"),
     ("POLY", "corners of cells"),
@@ -64,6 +73,8 @@ const PARTS: [(&str, &str); 22] = [
     ("SCLR", "equal rows of objects"),
     ("SCLC", "equal objects"),
     ("DGST", "digests of the scene"),
+    ("OSRC", "objects in their file"),
+    ("DOOR", "doors"),
     ("BLKS", "index of blocks"),
     ("ROWS", "cells seen"),
     ("SEEN", "objects seen"),
@@ -75,8 +86,17 @@ const PARTS: [(&str, &str); 22] = [
 ];
 
 impl PackedInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, Error> {
-        let packed = tables::packed(path, 0)?;
+    pub(super) fn read(path: &Path, with_objects: bool) -> Result<Self, Error> {
+        let packed = tables::packed(path, if with_objects { CACHE } else { 0 })?;
+        let failed = |source| Error::from(InputError::Packed { path: path.to_owned(), source });
+        let (mut n_objects_with_source, mut objects) = (0, Vec::new());
+        for id in (0..packed.n_objects() as u32).map(ObjectId) {
+            let source = packed.source_of(id).map_err(failed)?.map(Source::from);
+            n_objects_with_source += usize::from(source.is_some());
+            if with_objects {
+                objects.push(Object { id: id.0, name: packed.object_name(id).map_err(failed)?, source });
+            }
+        }
         let part = |part: sightlines::packed::PartSize| {
             let name = part.id.to_string();
             let what = PARTS.iter().find(|(known, _)| *known == name).map_or("unknown", |(_, what)| what);
@@ -94,6 +114,9 @@ impl PackedInfo {
             n_objects: packed.n_objects(),
             n_stab_nodes: packed.n_stab_nodes(),
             n_mirror_parts: packed.mirrors().len(),
+            n_objects_with_source,
+            doors: packed.doors().iter().map(DoorFacts::from).collect(),
+            objects: with_objects.then_some(objects),
             resident_bytes: packed.resident_bytes(),
             parts: packed.part_sizes().into_iter().map(part).collect(),
             frame: packed.frame().map(FrameFacts::from),
@@ -118,6 +141,9 @@ impl fmt::Display for PackedInfo {
         if self.n_mirror_parts > 0 {
             writeln!(f, "mirrors        {} parts in cells", self.n_mirror_parts)?;
         }
+        write_sources(f, self.n_objects_with_source)?;
+        write_doors(f, &self.doors)?;
+        self.objects.iter().flatten().try_for_each(|object| writeln!(f, "{object}"))?;
         writeln!(f, "in memory      {}, the rest is read on demand", bytes(self.resident_bytes as u64))?;
         for Part { name, what, n_bytes, resident } in &self.parts {
             let share = percent(*n_bytes as f64 / self.n_bytes.max(1) as f64);

@@ -1,9 +1,9 @@
 //! Why `query` fails.
 
+use crate::doors::ClosedError;
 use crate::file_error::{FileError, from_file_error};
 use crate::place::LookupError;
 use sightlines::eye_to_cell::ViewError;
-use std::path::PathBuf;
 
 /// Why `query` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -20,9 +20,9 @@ pub(crate) enum Error {
     /// An angle of view without a direction.
     #[error("--fov, --aspect and --up need --dir: without it the viewer looks all round")]
     LensWithoutDirection,
-    /// A portal that the table does not have.
-    #[error("{}: there is no portal {portal}: the table has {n_portals} portals", path.display())]
-    NoSuchPortal { path: PathBuf, portal: u32, n_portals: usize },
+    /// A portal or a door that the table does not have.
+    #[error(transparent)]
+    Closed(#[from] ClosedError),
 }
 
 from_file_error!(Error);

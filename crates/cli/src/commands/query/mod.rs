@@ -4,6 +4,7 @@ mod error;
 mod sight;
 
 use crate::Answer;
+use crate::facts::Source;
 use crate::output::{self, count};
 use crate::place::Point;
 use crate::tables::{self, Cells, Opened};
@@ -78,7 +79,11 @@ fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found, C::Err
 
 /// Objects with their names.
 fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = ObjectId>) -> Result<Vec<Object>, C::Error> {
-    objects.into_iter().map(|id| Ok(Object { id: id.0, name: cells.object_name(id)? })).collect()
+    let object = |id: ObjectId| {
+        let source = cells.source_of(id)?.map(Source::from);
+        Ok(Object { id: id.0, name: cells.object_name(id)?, source })
+    };
+    objects.into_iter().map(object).collect()
 }
 
 /// Where the viewer is.
@@ -133,6 +138,9 @@ fn ids(ids: &[u32]) -> String {
 struct Object {
     id: u32,
     name: String,
+    /// If it is known.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    source: Option<Source>,
 }
 
 /// What was found at a point.
@@ -169,5 +177,9 @@ fn write_seen(
         let end = if objects.is_empty() { "" } else { ":" };
         writeln!(f, "sees {} of {}{end}", objects.len(), count(n_objects as u64, "object"))?;
     }
-    objects.iter().try_for_each(|object| writeln!(f, "  {:>5} {}", object.id, object.name))
+    objects.iter().try_for_each(|object| {
+        write!(f, "  {:>5} {}", object.id, object.name)?;
+        object.source.iter().try_for_each(|source| write!(f, ", {source}"))?;
+        writeln!(f)
+    })
 }

@@ -8,7 +8,7 @@ use crate::tables::Cells;
 use crate::view::{LensArgs, Methods, lifted, method_help};
 use serde::Serialize;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections};
-use sightlines::pvs::{CellId, ObjectId, PortalId};
+use sightlines::pvs::{CellId, ObjectId};
 use sightlines::walkthrough::CameraPose;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -31,9 +31,10 @@ pub(super) struct SightArgs {
     #[arg(long, help_heading = "Method", value_name = "NAME")]
     #[arg(help = method_help(" [default: exact if an option describes the view, else the visible set of the eye's cell]"))]
     method: Option<Methods>,
-    /// Closed portals, by number, separated by commas
-    #[arg(long, help_heading = "Method", value_name = "P,P,...", value_delimiter = ',')]
-    closed: Vec<u32>,
+    /// Closed portals by number, and shut doors by name, separated by commas; all doors of a name are shut. A name with a comma is given
+    /// alone. A number is a portal; door:12 is a door that is called 12. May be given several times
+    #[arg(long, help_heading = "Method", value_name = "PORTAL|NAME,...")]
+    closed: Vec<String>,
     /// Also list what is visible in mirrors, up to this many reflections in a row
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = crate::view::bounces)]
     bounces: Option<usize>,
@@ -58,13 +59,10 @@ impl SightArgs {
         Ok((view.map_err(|source| Error::View { option: "--dir", source })?, Some(lens.fov)))
     }
 
-    fn doors(&self, n_portals: usize, path: &Path) -> Result<Doors, Error> {
+    fn doors<C: Cells>(&self, cells: &C, path: &Path) -> Result<Doors, Error> {
         let mut doors = Doors::all_open();
-        for &portal in &self.closed {
-            if portal as usize >= n_portals {
-                return Err(Error::NoSuchPortal { path: path.to_owned(), portal, n_portals });
-            }
-            doors.close(PortalId(portal));
+        for text in &self.closed {
+            crate::doors::close(text, cells.doors(), cells.n_portals(), path, &mut doors)?;
         }
         Ok(doors)
     }
@@ -79,7 +77,7 @@ pub(super) fn look<C: Cells>(
     args: &SightArgs,
 ) -> Result<Sight, Error> {
     let (view, fov) = args.view(cells, path, eye)?;
-    let doors = args.doors(cells.n_portals(), path)?;
+    let doors = args.doors(cells, path)?;
     let all = args.method == Some(Methods::All);
     let viewer =
         Viewer { cells, at, view, doors, bounces: args.bounces.unwrap_or(0), subgraphs: VisibleSubgraphs::default() };

@@ -24,6 +24,7 @@ pub(super) struct Outcome {
     n_cells: usize,
     n_portals: usize,
     n_objects: usize,
+    n_doors: usize,
     n_rays: u64,
     /// Free segments that were followed through the portals of the table.
     n_followed: u64,
@@ -50,6 +51,10 @@ pub(super) struct Outcome {
     n_portals_in_walls: u64,
     n_listed_apart: u64,
     n_cells_without_places: u64,
+    /// Doors that are not compared with the scene.
+    n_doors_as_boxes: u64,
+    /// Portals that a door does not close though its leaf covers them.
+    n_unlisted_door_portals: u64,
     /// With a frame: hidden pairs that only openings narrower than the gap join.
     #[serde(skip_serializing_if = "Option::is_none")]
     n_cracks: Option<u64>,
@@ -131,7 +136,8 @@ impl Outcome {
             aimed_rays: found.cells.aimed + found.objects.aimed > 0,
             proofs: proofs.is_some_and(|proofs| !proofs.is_stale),
         };
-        let Remarks { portals_in_walls, listed_apart, cells_without_places, cracks, flattened } = found.remarks;
+        let remarks = found.remarks;
+        let Remarks { portals_in_walls, listed_apart, cells_without_places, cracks, flattened, .. } = remarks;
         Self {
             table: table.display().to_string(),
             scene: scene.display().to_string(),
@@ -139,6 +145,7 @@ impl Outcome {
             n_cells: found.n_cells,
             n_portals: found.n_portals,
             n_objects: found.n_objects,
+            n_doors: found.n_doors,
             n_rays: found.n_rays,
             n_followed: found.n_followed,
             n_sequences: found.n_sequences,
@@ -154,6 +161,8 @@ impl Outcome {
             n_portals_in_walls: portals_in_walls,
             n_listed_apart: listed_apart,
             n_cells_without_places: cells_without_places,
+            n_doors_as_boxes: remarks.doors_as_boxes,
+            n_unlisted_door_portals: remarks.unlisted_door_portals,
             n_cracks: Some(cracks),
             n_flattened: Some(flattened),
             wide_gap: None,
@@ -203,7 +212,10 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "checked        {} against {}", self.table, self.scene)?;
         let things = [(self.n_cells, "cell"), (self.n_portals, "portal"), (self.n_objects, "object")];
-        let things = things.map(|(n, noun)| count(n as u64, noun)).join(", ");
+        let mut things = things.map(|(n, noun)| count(n as u64, noun)).join(", ");
+        if self.n_doors > 0 {
+            things += &format!(", {}", count(self.n_doors as u64, "door"));
+        }
         self.own.iter().try_for_each(|own| write!(f, "{own}"))?;
         writeln!(f, "structure      {things}")?;
         if !self.checked.digests && self.own.is_none() {
@@ -248,6 +260,8 @@ impl fmt::Display for Outcome {
             (self.n_portals_in_walls, "portal", "with a wall in it: more is shown there"),
             (self.n_listed_apart, "object", "listed in a cell that it does not touch"),
             (self.n_cells_without_places, "cell", "from which no ray was shot: too thin, or without a portal"),
+            (self.n_doors_as_boxes, "door", "that the scene does not have: what was given as a box is not compared"),
+            (self.n_unlisted_door_portals, "portal", "that a door could close and does not: more is shown there"),
             (self.n_flattened.unwrap_or(0), "triangle", "thinner than the gap, which the table takes to be none"),
             (
                 self.n_cracks.unwrap_or(0),

@@ -71,7 +71,10 @@ fn some_cells(table: &Table) -> Vec<usize> {
 fn plans(all: &mut Results) {
     let folder = Folder::with_office();
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
-    add("build of a plan", "build office.geojson -o o.pvs --certify --stab-trees=64 --method auto");
+    add(
+        "build of a plan",
+        "build office.geojson -o o.pvs --certify --stab-trees=64 --method auto --door all=0,0,99,99",
+    );
     add("info of a table", "info o.pvs");
     add("info of a plan", "info office.geojson");
     add("verify", "verify o.pvs office.geojson --rays 100 --pairs 10");
@@ -149,10 +152,19 @@ fn scenes(all: &mut Results) {
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     let least = "--floors 1 --rooms-x 1 --rooms-y 1 --furniture 0";
     add("generate tower", &format!("generate tower -o least.glb {least}"));
-    add("build of a scene", "build least.glb -o least.pvs");
+    add("build of a scene", "build least.glb -o least.pvs --door all=-99,-99,-99,99,99,99");
+    add("query of a point", "query least.pvs --eye 2,1,2");
+    add("query of a view", "query least.pvs --eye 2,1,2 --closed all");
+    add("query of a view by all methods", "query least.pvs --eye 2,1,2 --method all");
+    add("pack", "pack least.pvs -o least.pvz");
+    add("info of a table", "info least.pvs --objects");
+    add("info of a packed table", "info least.pvz --objects");
     add("build of a scene", "build triangles.obj -o t.pvs --method auto --certify --stab-trees=16");
     add("build of a scene by regions", "build slanted.obj -o s.pvs --method auto");
-    add("build of a scene by regions", "build least.glb -o r.pvs --method shafts --grid 2,1,2");
+    add(
+        "build of a scene by regions",
+        "build least.glb -o r.pvs --method shafts --grid 2,1,2 --door all=-9,-9,-9,9,9,9",
+    );
     add("verify", "verify r.pvs least.glb --rays 100 --pairs 10");
     add("build of a scene by regions", "build triangles.obj -o r.pvs --method shafts --stab-trees=16 --certify");
     let least = read_scene(folder.path("least.glb")).expect("a scene").scene;
@@ -231,7 +243,9 @@ fn maps(all: &mut Results) {
     add("info of a Quake map", "info map.bsp");
     add("info of a Quake map", "info out.bsp");
     add("info of a portal file", "info map.prt");
-    add("build of a portal file", "build map.prt -o p.pvs --method auto --certify --stab-trees=64");
+    let door = "--door all=-999,-999,-999,999,999,999";
+    let build = format!("build map.prt -o p.pvs --method auto --certify --stab-trees=64 {door}");
+    add("build of a portal file", &build);
     add("verify", "verify p.pvs map.prt --rays 100 --pairs 10");
     for cell in some_cells(&table(&folder, "p.pvs")).into_iter().chain([14]) {
         add("explain of clusters", &format!("explain map.prt 0 {cell}"));
@@ -246,5 +260,5 @@ fn maps(all: &mut Results) {
     folder.run(&["vis", "map.bsp", "-o", "seen.bsp"]).expect(0);
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     add("verify", "verify seen.bsp map.bsp --rays 100 --pairs 10");
-    add("build of a Quake map", "build map.bsp -o m.pvs --method auto --certify --stab-trees=64");
+    add("build of a Quake map", &format!("build map.bsp -o m.pvs --method auto --certify --stab-trees=64 {door}"));
 }

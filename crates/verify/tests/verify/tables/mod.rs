@@ -3,6 +3,7 @@
 mod changes;
 mod common;
 mod damage;
+mod doors;
 mod flips;
 mod impostors;
 mod sampled;

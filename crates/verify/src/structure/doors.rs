@@ -1,0 +1,58 @@
+//! Doors: a portal that a door closes has to be covered by the door's leaf, or what is behind would be hidden when it is shut.
+//!
+//! A leaf covers a portal if triangles of the door lie in the plane of the portal and cover all of it, exactly, as they cover
+//! [walls](crate::walls). Of a door that was given as a box the scene has no leaf: it is counted, and not compared.
+
+use crate::findings::{Findings, Violation};
+use crate::walls::uncovered;
+use sightlines_cells::{Scene, SceneObject};
+use sightlines_geometry::{Aabb, Point2, orient2d};
+use sightlines_pvs::{DoorId, PortalId, PortalRecord, Table};
+
+/// Compares the doors of a table with those of a scene. O(doors × portals) comparisons of boxes.
+pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
+    findings.n_doors = table.doors().len();
+    for (door, record) in (0u32..).map(DoorId).zip(table.doors()) {
+        let Some(object) = record.object else {
+            findings.remarks.doors_as_boxes += 1;
+            continue;
+        };
+        // A table of another scene may have objects that this one has not; that is found where they are counted.
+        let Some(leaf) = scene.objects().get(object.idx()).filter(|_| scene.doors().contains(&object.0)) else {
+            findings.add(Violation::NoDoor { door });
+            continue;
+        };
+        if leaf.name != record.name {
+            findings.add(Violation::DoorName { door });
+        }
+        let around = leaf.bounds();
+        for (portal, opening) in (0u32..).map(PortalId).zip(table.portals()) {
+            let is_listed = record.portals.binary_search(&portal).is_ok();
+            let is_near = opening.points.iter().all(|&p| around.contains(p));
+            match (is_listed, is_near && covers(leaf, opening)) {
+                (true, false) => findings.add(Violation::OpenDoor { door, portal }),
+                (false, true) => findings.remarks.unlisted_door_portals += 1,
+                _ => {}
+            }
+        }
+    }
+}
+
+/// For tables of something else than a scene in space: no door of theirs is compared.
+pub(super) fn of_others(table: &Table, findings: &mut Findings) {
+    findings.n_doors = table.doors().len();
+    findings.remarks.doors_as_boxes = table.doors().len() as u64;
+}
+
+/// Whether triangles of a leaf in the plane of a portal cover all of it.
+fn covers(leaf: &SceneObject, portal: &PortalRecord) -> bool {
+    let extent = Aabb::<3>::around(portal.points.iter().copied());
+    // Portals that are no rectangles along the axes are found elsewhere.
+    let Some(axis) = (0..3).find(|&axis| extent.min[axis] == extent.max[axis]) else { return false };
+    let at = extent.min[axis];
+    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    let in_plane = leaf.corners().filter(|t| t.iter().all(|p| p[axis] == at));
+    let flat = in_plane.map(|t| t.map(|p| Point2::new(p[u], p[v])));
+    let triangles: Vec<[Point2; 3]> = flat.filter(|[a, b, c]| orient2d(*a, *b, *c) != 0.0).collect();
+    uncovered([extent.min[u], extent.min[v], extent.max[u], extent.max[v]], &triangles).is_none()
+}
