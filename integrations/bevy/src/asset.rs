@@ -5,7 +5,7 @@ use bevy::asset::io::Reader;
 use bevy::asset::{AssetLoader, LoadContext};
 use bevy::prelude::*;
 use sightlines_eye_to_cell::TableCells;
-use sightlines_pvs::{CellId, DecodeError, Frame, ObjectId, Place, PlaceBuffer, PortalId, Table};
+use sightlines_pvs::{CellId, DecodeError, DoorRecord, Frame, ObjectId, Place, PlaceBuffer, PortalId, Table};
 use sightlines_walkthrough::WalkOptions;
 use std::sync::Arc;
 
@@ -33,6 +33,8 @@ enum Form {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TableObject {
     pub(crate) name: String,
+    /// Its node and primitive, if that is known.
+    pub(crate) source: Option<(u32, u32)>,
     pub(crate) min: [f64; 3],
     pub(crate) max: [f64; 3],
 }
@@ -179,16 +181,21 @@ impl PvsTable {
     /// What cannot be read, as text.
     pub(crate) fn objects(&self) -> Result<Vec<TableObject>, String> {
         match &self.form {
-            Form::Plain(table) => Ok(table
-                .objects()
-                .iter()
-                .map(|object| TableObject { name: object.name.clone(), min: object.min, max: object.max })
+            Form::Plain(table) => Ok((0..)
+                .map(ObjectId)
+                .zip(table.objects())
+                .map(|(id, object)| {
+                    let source = table.source_of(id).map(|source| (source.node, source.primitive));
+                    TableObject { name: object.name.clone(), source, min: object.min, max: object.max }
+                })
                 .collect()),
             #[cfg(feature = "packed")]
             Form::Packed { cells, .. } => (0..cells.packed().n_objects() as u32)
                 .map(|object| {
-                    let (min, max) = cells.packed().object_box(ObjectId(object))?;
-                    Ok(TableObject { name: cells.packed().object_name(ObjectId(object))?, min, max })
+                    let (table, object) = (cells.packed(), ObjectId(object));
+                    let (min, max) = table.object_box(object)?;
+                    let source = table.source_of(object)?.map(|source| (source.node, source.primitive));
+                    Ok(TableObject { name: table.object_name(object)?, source, min, max })
                 })
                 .collect::<Result<_, PackedError>>()
                 .map_err(|error| error.to_string()),
@@ -236,23 +243,22 @@ impl PvsTable {
         }
     }
 
-    /// The portals that lie within a box of the scene, ascending; none where they cannot be read.
+    /// The portals that lie within a box of the scene, ascending; none where they cannot be read. O(portals).
     pub fn portals_within(&self, min: [f64; 3], max: [f64; 3]) -> Vec<PortalId> {
-        let mut found = Vec::new();
-        let frame = self.frame().copied();
-        let is_read = self.for_each_portal(|portal, corners| {
-            let is_within = corners.iter().all(|corner| {
-                let corner = frame.map_or(*corner, |frame| frame.to_scene(*corner));
-                (0..3).all(|k| min[k] <= corner[k] && corner[k] <= max[k])
-            });
-            if is_within {
-                found.push(portal);
-            }
-        });
-        if is_read.is_err() {
-            found.clear();
+        match &self.form {
+            Form::Plain(table) => table.portals_within(min, max),
+            #[cfg(feature = "packed")]
+            Form::Packed { cells, .. } => cells.packed().portals_within(min, max).unwrap_or_default(),
         }
-        found
+    }
+
+    /// The doors of the table: names, and the portals that each closes.
+    pub fn doors(&self) -> &[DoorRecord] {
+        match &self.form {
+            Form::Plain(table) => table.doors(),
+            #[cfg(feature = "packed")]
+            Form::Packed { cells, .. } => cells.packed().doors(),
+        }
     }
 
     /// The box of a cell, along the axes of the table; `None` where it cannot be read.

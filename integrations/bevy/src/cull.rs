@@ -134,7 +134,7 @@ pub(crate) fn cull(
         let Some(mut follower) = walk.follower.take() else { continue };
         if walk.doors != Some(doorways.version()) {
             walk.doors = Some(doorways.version());
-            follower.close(&doorways.closed(table, scene));
+            follower.close(&doorways.closed(table));
         }
         let tie = walk.tie.as_ref().map(|(_, tie)| tie);
         let asked = Instant::now();

@@ -25,6 +25,9 @@ pub struct PvsDoor {
 #[derive(Debug, Clone, PartialEq, Reflect)]
 #[reflect(Clone, PartialEq)]
 pub enum PvsDoorway {
+    /// Those of the doors of this name, of which the table knows the portals: of leaves that were named or marked as doors in the file, and of
+    /// those that `sightlines build --door` was given.
+    Name(String),
     /// These, by number.
     Portals(Vec<u32>),
     /// Those that lie within a box, in the coordinates of the scene as its file has them.
@@ -37,6 +40,17 @@ pub enum PvsDoorway {
 }
 
 impl PvsDoor {
+    /// A door that is open, by its name in the table.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self { way: PvsDoorway::Name(name.into()), is_open: true }
+    }
+
+    /// The same door, shut.
+    #[must_use]
+    pub fn shut(self) -> Self {
+        Self { is_open: false, ..self }
+    }
+
     /// A door that is open, by the numbers of its portals.
     pub fn portals(portals: impl IntoIterator<Item = u32>) -> Self {
         Self { way: PvsDoorway::Portals(portals.into_iter().collect()), is_open: true }
@@ -76,10 +90,14 @@ impl Doorways<'_, '_> {
     }
 
     /// The portals of a table that are shut.
-    pub(crate) fn closed(&self, table: &PvsTable, _scene: Entity) -> BTreeSet<PortalId> {
+    pub(crate) fn closed(&self, table: &PvsTable) -> BTreeSet<PortalId> {
         let mut closed = BTreeSet::new();
         for door in self.doors.iter().filter(|door| !door.is_open) {
             match &door.way {
+                PvsDoorway::Name(name) => {
+                    let named = table.doors().iter().filter(|record| record.name == *name);
+                    closed.extend(named.flat_map(|record| record.portals.iter().copied()));
+                }
                 PvsDoorway::Portals(portals) => closed.extend(portals.iter().copied().map(PortalId)),
                 PvsDoorway::Within { min, max } => {
                     closed.extend(table.portals_within(min.to_array().map(f64::from), max.to_array().map(f64::from)));

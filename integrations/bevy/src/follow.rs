@@ -22,9 +22,6 @@ pub(crate) trait Follow: Send {
 
     /// The last error of reading the table, as text.
     fn take_error(&mut self) -> Option<String>;
-
-    /// Whether everything that the last frame asked for is prepared.
-    fn is_idle(&mut self) -> bool;
 }
 
 /// A walk, and the places of the cells for what moves.
@@ -74,9 +71,5 @@ where
 
     fn take_error(&mut self) -> Option<String> {
         self.walk.take_error().map(|(cell, error)| format!("cell {cell}: {error}"))
-    }
-
-    fn is_idle(&mut self) -> bool {
-        self.walk.is_idle()
     }
 }

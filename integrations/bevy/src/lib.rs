@@ -16,9 +16,13 @@ mod cull;
 mod diagnostics;
 mod doors;
 mod follow;
+#[cfg(feature = "gizmos")]
+mod gizmos;
 mod gltf;
 mod level;
 mod movers;
+#[cfg(feature = "overlay")]
+mod overlay;
 mod space;
 mod tie;
 
@@ -30,8 +34,12 @@ pub use camera::{
 };
 pub use diagnostics::{CULLED, DRAWN, QUERY_US};
 pub use doors::{PvsDoor, PvsDoorway};
+#[cfg(feature = "gizmos")]
+pub use gizmos::PvsGizmos;
 pub use gltf::{PvsObject, PvsScene, PvsSource};
 pub use movers::PvsMover;
+#[cfg(feature = "overlay")]
+pub use overlay::{PvsOverlay, PvsOverlayPlugin};
 pub use sightlines_pvs as pvs;
 pub use tie::PvsMisfit;
 
@@ -41,7 +49,7 @@ use bevy::prelude::*;
 
 /// Culls what cannot be seen, for every camera with a [`PvsCamera`].
 ///
-/// May be added before or after Bevy's plugins, but before the app runs.
+/// Added after Bevy's own plugins, as it needs those of assets.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SightlinesPlugin;
 
@@ -88,6 +96,8 @@ impl Plugin for SightlinesPlugin {
             )
             .configure_sets(PostUpdate, SightlinesSystems.after(VisibilitySystems::CheckVisibility));
         diagnostics::register(app);
+        #[cfg(feature = "gizmos")]
+        gizmos::build(app);
     }
 
     fn finish(&self, app: &mut App) {

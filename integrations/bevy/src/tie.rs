@@ -1,12 +1,13 @@
 //! Which object of a table a mesh of a scene is.
 //!
-//! A table lists one object for each node and primitive of the scene that it was made of, in the order of the file. A scene fits if it has
-//! the same number of them, with the same names, in the same places.
+//! A table says of which node and primitive of its file each object is. A scene fits if it has all of them, with the same names, in the same
+//! places. Older tables only list one object for each node and primitive, in the order of the file: then a scene has to have as many.
 
-use crate::asset::PvsTable;
+use crate::asset::{PvsTable, TableObject};
 use crate::gltf::{PvsScene, PvsSource};
 use crate::space::{around, corners};
 use sightlines_pvs::{Frame, ObjectId};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// For each source of a scene its object in a table.
@@ -35,6 +36,13 @@ pub enum PvsMisfit {
         /// The name of the mesh in its place.
         scene: String,
     },
+    /// An object is not in the scene.
+    Missing {
+        /// Index of the object, in the order of the table.
+        object: usize,
+        /// Its name.
+        name: String,
+    },
     /// An object is somewhere else.
     Place {
         /// Index of the object, in the order of the file.
@@ -56,6 +64,7 @@ impl fmt::Display for PvsMisfit {
             Self::Name { object, table, scene } => {
                 write!(f, "object {object} is {table:?} in the table and {scene:?} in the scene")
             }
+            Self::Missing { object, name } => write!(f, "object {object}, {name:?}, is not in the scene"),
             Self::Place { object, name } => write!(f, "object {object}, {name:?}, is elsewhere in the scene"),
             Self::Read { error } => write!(f, "the table cannot be read: {error}"),
         }
@@ -63,25 +72,26 @@ impl fmt::Display for PvsMisfit {
 }
 
 impl Tie {
-    /// Compares the objects of a table with the sources of a scene. O(objects).
+    /// Compares the objects of a table with the sources of a scene. O(objects · log objects).
     pub(crate) fn new(table: &PvsTable, scene: &PvsScene) -> Result<Self, PvsMisfit> {
-        let (n_table, n_scene) = (table.n_objects(), scene.sources.len());
-        if n_table != n_scene {
-            return Err(PvsMisfit::Count { table: n_table, scene: n_scene });
-        }
         let read = |error| PvsMisfit::Read { error };
         let (objects, in_cells) = (table.objects().map_err(read)?, table.in_cells().map_err(read)?);
-        let mut tied = Vec::with_capacity(n_scene);
-        for (k, (object, source)) in objects.iter().zip(&scene.sources).enumerate() {
+        let places = places(&objects, scene)?;
+        let mut tied = vec![None; scene.sources.len()];
+        for (k, (object, place)) in objects.iter().zip(&places).enumerate() {
+            let Some(place) = *place else { continue };
+            let source = &scene.sources[place];
             if object.name != source.name {
                 let (table, scene) = (object.name.clone(), source.name.clone());
                 return Err(PvsMisfit::Name { object: k, table, scene });
             }
-            if in_cells[k] && !is_there((object.min, object.max), source, table.frame()) {
-                return Err(PvsMisfit::Place { object: k, name: object.name.clone() });
-            }
             // What touches no cell is not drawn by those who made the table, or not known: that is left to Bevy.
-            tied.push(in_cells[k].then_some(ObjectId(k as u32)));
+            if in_cells[k] {
+                if !is_there((object.min, object.max), source, table.frame()) {
+                    return Err(PvsMisfit::Place { object: k, name: object.name.clone() });
+                }
+                tied[place] = Some(ObjectId(k as u32));
+            }
         }
         Ok(Self { objects: tied })
     }
@@ -96,6 +106,32 @@ impl Tie {
     pub(crate) fn n_tied(&self) -> usize {
         self.objects.iter().flatten().count()
     }
+}
+
+/// For each object of a table its place among the sources of a scene; `None` for one that is nowhere in the file, or one of several
+/// instances of a mesh, which Bevy draws as one.
+fn places(objects: &[TableObject], scene: &PvsScene) -> Result<Vec<Option<usize>>, PvsMisfit> {
+    let (n_table, n_scene) = (objects.len(), scene.sources.len());
+    if objects.iter().all(|object| object.source.is_none()) {
+        // An older table: its objects are in the order of the file.
+        return match n_table == n_scene {
+            true => Ok((0..n_scene).map(Some).collect()),
+            false => Err(PvsMisfit::Count { table: n_table, scene: n_scene }),
+        };
+    }
+    let there: BTreeMap<(u32, u32), usize> =
+        (0..).zip(&scene.sources).map(|(place, source)| ((source.node, source.primitive), place)).collect();
+    let mut n_of = BTreeMap::<(u32, u32), usize>::new();
+    objects.iter().filter_map(|object| object.source).for_each(|source| *n_of.entry(source).or_default() += 1);
+    let place = |(k, object): (usize, &TableObject)| match object.source {
+        None => Ok(None),
+        Some(source) => match there.get(&source) {
+            Some(&place) => Ok((n_of[&source] == 1).then_some(place)),
+            None if k + 1 > n_scene => Err(PvsMisfit::Count { table: n_table, scene: n_scene }),
+            None => Err(PvsMisfit::Missing { object: k, name: object.name.clone() }),
+        },
+    };
+    objects.iter().enumerate().map(place).collect()
 }
 
 /// Whether the box of an object may be around the same mesh as that of a source: one of the two contains the other.

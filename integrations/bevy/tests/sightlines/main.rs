@@ -5,3 +5,4 @@
 mod app;
 mod lists;
 mod misfits;
+mod pictures;
