@@ -196,6 +196,7 @@ fn walk(app: &mut App, table: &Table, poses: &[CameraPose], doors: &[(PortalId, 
     let cut = add(app, table.clone());
     let impostor = add(app, without(table, cell, object));
     let cameras = [cut, whole, impostor];
+    cameras.iter().for_each(|camera| put(app, *camera, &poses[0]));
     for _ in 0..10 {
         app.update();
     }
