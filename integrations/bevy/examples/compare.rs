@@ -60,10 +60,16 @@ fn main() {
     let level = words.first().map_or_else(|| assets.join("tower16.glb"), PathBuf::from);
     let table = words.get(1).map_or_else(|| assets.join("tower16.pvs"), PathBuf::from);
     let n_frames = words.get(2).and_then(|n| n.parse().ok()).unwrap_or(300);
-    let bytes = std::fs::read(&table).unwrap_or_else(|e| panic!("{}: {e}; see `cargo xtask bevy-assets`", table.display()));
+    let bytes =
+        std::fs::read(&table).unwrap_or_else(|e| panic!("{}: {e}; see `cargo xtask bevy-assets`", table.display()));
     let table = Table::from_bytes(&bytes).expect("a table");
     let poses = wander(&TableCells::new(&table), n_frames, 0.05, 5).expect("a table in memory can be read");
-    println!("{}: {} objects, {} frames; microseconds of one thread in a frame", level.display(), table.objects().len(), poses.len());
+    println!(
+        "{}: {} objects, {} frames; microseconds of one thread in a frame",
+        level.display(),
+        table.objects().len(),
+        poses.len()
+    );
     println!("| | drawn | main | extract | up to prepare | encode | all | of it the plugin | of that the query |");
     println!("| --- | --: | --: | --: | --: | --: | --: | --: | --: |");
     for (name, has_plugin, occludes) in [

@@ -26,7 +26,10 @@ pub struct PvsTable {
 enum Form {
     Plain(Arc<Table>),
     #[cfg(feature = "packed")]
-    Packed { cells: PackedCells<PackedBytes>, boxes: Arc<CellBoxes> },
+    Packed {
+        cells: PackedCells<PackedBytes>,
+        boxes: Arc<CellBoxes>,
+    },
 }
 
 /// The name and the box of an object of a table, along the axes of the table.

@@ -1,9 +1,7 @@
 //! Takes out of a camera's lists what cannot be seen from where it is.
 
 use crate::asset::PvsTable;
-use crate::camera::{
-    PvsCamera, PvsChanged, PvsLock, PvsProblem, PvsProblemKind, PvsState, PvsView, Walk, Walker,
-};
+use crate::camera::{PvsCamera, PvsChanged, PvsLock, PvsProblem, PvsProblemKind, PvsState, PvsView, Walk, Walker};
 use crate::diagnostics::Counts;
 use crate::doors::Doorways;
 use crate::gltf::{PvsScene, corners_of};
@@ -11,9 +9,9 @@ use crate::level::{Judged, Slots};
 use crate::space::Affine;
 use crate::tie::Tie;
 use bevy::asset::LoadState;
+use bevy::camera::CameraProjection;
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::{NoFrustumCulling, VisibleEntities};
-use bevy::camera::CameraProjection;
 use bevy::platform::collections::HashMap;
 use bevy::platform::time::Instant;
 use bevy::prelude::*;
@@ -123,7 +121,8 @@ pub(crate) fn cull(
             continue;
         };
         view.level = Some(scene);
-        let eye = if is_locked && walk.view.is_some() { walk.view.clone() } else { eye(place, projection, scene_place) };
+        let eye =
+            if is_locked && walk.view.is_some() { walk.view.clone() } else { eye(place, projection, scene_place) };
         let (Some(eye), Some(to_scene)) = (eye, Affine::of(scene_place.affine()).inverse()) else {
             view.state = PvsState::NoEye;
             warn(walk, PvsProblemKind::NoPerspective);
@@ -156,8 +155,7 @@ pub(crate) fn cull(
                 let is_kept = match slots.judge(*entity) {
                     Judged::ByBevy => true,
                     Judged::ByTable { scene: of, source } => {
-                        of != scene
-                            || tie.and_then(|tie| tie.object(source)).is_none_or(|o| frame.seen.has_object(o))
+                        of != scene || tie.and_then(|tie| tie.object(source)).is_none_or(|o| frame.seen.has_object(o))
                     }
                     Judged::ByBox => boxes.get(*entity).map_or(true, |(bounds, at, is_exempt)| {
                         let (min, max) = corners_of(bounds);

@@ -4,9 +4,7 @@ use crate::space::Point;
 use sightlines_eye_to_cell::{CellSource, Method, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::PortalId;
-use sightlines_walkthrough::{
-    CellLocator, CoarseVisibility, Frame, MoverOptions, Movers, WalkOptions, Walkthrough,
-};
+use sightlines_walkthrough::{CellLocator, CoarseVisibility, Frame, MoverOptions, Movers, WalkOptions, Walkthrough};
 use std::collections::BTreeSet;
 
 /// Whether a box of the scene meets a cell that is seen.
@@ -40,10 +38,7 @@ where
     P: CellLocator,
 {
     pub(crate) fn new(resident: R, source: S, places: P, options: WalkOptions) -> Self {
-        Self {
-            walk: Walkthrough::new(resident, source, options),
-            movers: Movers::new(places, MoverOptions::default()),
-        }
+        Self { walk: Walkthrough::new(resident, source, options), movers: Movers::new(places, MoverOptions::default()) }
     }
 }
 

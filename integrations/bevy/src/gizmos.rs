@@ -3,9 +3,9 @@
 use crate::asset::PvsTable;
 use crate::camera::{PvsCamera, PvsView};
 use crate::space::{Point, corners};
+use bevy::gizmos::AppGizmoBuilder;
 use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
 use bevy::gizmos::gizmos::Gizmos;
-use bevy::gizmos::AppGizmoBuilder;
 use bevy::prelude::*;
 use sightlines_pvs::{CellId, Frame};
 
@@ -81,10 +81,8 @@ fn draw(
         if config.portals {
             // What cannot be read is not drawn.
             let _ = table.for_each_portal(|_, corners| {
-                gizmos.lineloop(
-                    corners.iter().map(|corner| shown(*corner, frame.as_ref(), place)),
-                    config.portal_color,
-                );
+                gizmos
+                    .lineloop(corners.iter().map(|corner| shown(*corner, frame.as_ref(), place)), config.portal_color);
             });
         }
     }

@@ -164,7 +164,8 @@ impl Hierarchy<'_, '_> {
 /// extents are rounded, and files round the bounds of their meshes.
 fn has_grown(object: &PvsObject, bounds: &Aabb) -> bool {
     let [center, half_extents] = object.bounds.map(Vec3::from_array);
-    let (at_rest, now) = (corners_of(&Aabb { center: center.into(), half_extents: half_extents.into() }), corners_of(bounds));
+    let (at_rest, now) =
+        (corners_of(&Aabb { center: center.into(), half_extents: half_extents.into() }), corners_of(bounds));
     let size = (0..3).map(|k| at_rest.0[k].abs().max(at_rest.1[k].abs())).fold(0.0, f64::max);
     let slack = size * 64.0 / f64::from(1u32 << 24);
     (0..3).any(|k| now.0[k] < at_rest.0[k] - slack || now.1[k] > at_rest.1[k] + slack)

@@ -29,9 +29,7 @@ mod tie;
 #[cfg(feature = "packed")]
 pub use asset::{PackedPvsLoader, PackedPvsSettings};
 pub use asset::{PvsLoadError, PvsLoader, PvsTable};
-pub use camera::{
-    PvsCamera, PvsChanged, PvsLock, PvsMethod, PvsProblem, PvsProblemKind, PvsState, PvsView,
-};
+pub use camera::{PvsCamera, PvsChanged, PvsLock, PvsMethod, PvsProblem, PvsProblemKind, PvsState, PvsView};
 pub use diagnostics::{CULLED, DRAWN, QUERY_US};
 pub use doors::{PvsDoor, PvsDoorway};
 #[cfg(feature = "gizmos")]

@@ -31,10 +31,7 @@ fn spawn(mut commands: Commands<'_, '_>) {
     ));
 }
 
-fn write(
-    mut texts: Query<&mut Text, With<PvsOverlay>>,
-    cameras: Query<(&PvsCamera, &PvsView, Has<PvsLock>)>,
-) {
+fn write(mut texts: Query<&mut Text, With<PvsOverlay>>, cameras: Query<(&PvsCamera, &PvsView, Has<PvsLock>)>) {
     for mut text in &mut texts {
         text.0.clear();
         for (camera, view, is_locked) in &cameras {

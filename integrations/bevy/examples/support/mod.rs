@@ -10,7 +10,10 @@ pub fn need(files: &[&str]) {
     for file in files {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(file);
         if !path.is_file() {
-            eprintln!("{} is not there: `cargo xtask bevy-assets` in the folder of the project makes it", path.display());
+            eprintln!(
+                "{} is not there: `cargo xtask bevy-assets` in the folder of the project makes it",
+                path.display()
+            );
             std::process::exit(2);
         }
     }

@@ -35,7 +35,10 @@ pub fn without(table: &Table, cell: CellId, object: ObjectId) -> Table {
     let (n_cells, n_objects) = (table.n_cells(), table.objects().len());
     let mut seen = BitMatrix::new(n_cells, n_objects);
     for from in (0..n_cells as u32).map(CellId) {
-        table.visible_objects(from).into_iter().for_each(|o| seen.set(from.idx(), o.idx(), (from, o) != (cell, object)));
+        table
+            .visible_objects(from)
+            .into_iter()
+            .for_each(|o| seen.set(from.idx(), o.idx(), (from, o) != (cell, object)));
     }
     let parts = TableParts { objects_seen: Some(seen), ..table.clone().into_parts() };
     Table::new(parts).expect("a row may be shorter")

@@ -165,12 +165,15 @@ fn with_a_hidden_pair(table: &Table) -> Table {
     let mut oracle = Oracle::new(table.clone());
     for pose in walk(table, 3000, 7).iter().skip(1500) {
         let eye = DVec3::from_array(pose.eye);
-        let camera = Transform::from_translation(eye.as_vec3()).looking_to(DVec3::from_array(pose.dir).as_vec3(), Vec3::Y);
+        let camera =
+            Transform::from_translation(eye.as_vec3()).looking_to(DVec3::from_array(pose.dir).as_vec3(), Vec3::Y);
         let view = DMat4::from(affine(&GlobalTransform::from(camera)).inverse());
         let Projection::Perspective(lens) = lens() else { unreachable!("the lens is one") };
         let clip = bevy::camera::CameraProjection::get_clip_from_view(&lens).as_dmat4() * view;
         let mut buffer = PlaceBuffer::new();
-        let Some(&[cell]) = table.cells_at(camera.translation.to_array().map(f64::from), &mut buffer).inside() else { continue };
+        let Some(&[cell]) = table.cells_at(camera.translation.to_array().map(f64::from), &mut buffer).inside() else {
+            continue;
+        };
         let seen = oracle.objects(camera.translation.as_dvec3(), clip, Method::Exact).expect("it is inside");
         let far = seen.into_iter().find(|object| !table.objects_of(cell).contains(object));
         if let Some(object) = far {
@@ -206,10 +209,9 @@ fn other_cameras_and_shadows_keep_what_they_had() {
             DirectionalLight { shadow_maps_enabled: true, ..default() },
             Transform::default().looking_to(Vec3::new(0.3, -1.0, 0.2), Vec3::Y),
         ));
-        let lamp = app.world_mut().spawn((
-            PointLight { shadow_maps_enabled: true, ..default() },
-            Transform::from_xyz(9.0, 2.0, 5.0),
-        ));
+        let lamp = app
+            .world_mut()
+            .spawn((PointLight { shadow_maps_enabled: true, ..default() }, Transform::from_xyz(9.0, 2.0, 5.0)));
         let lamp = lamp.id();
         let pose = walk(&table, 40, 3)[39];
         look(&mut app, &[cut, whole], pose_in(&Transform::IDENTITY, &pose));
@@ -229,7 +231,10 @@ fn other_cameras_and_shadows_keep_what_they_had() {
             .flat_map(|cascades| {
                 let mut views: Vec<_> = cascades.entities.iter().collect();
                 views.sort_by_key(|(view, _)| **view);
-                views.into_iter().flat_map(|(_, list)| list.iter().map(|cascade| cascade.entities.len())).collect::<Vec<_>>()
+                views
+                    .into_iter()
+                    .flat_map(|(_, list)| list.iter().map(|cascade| cascade.entities.len()))
+                    .collect::<Vec<_>>()
             })
             .collect();
         (drawn(&app, cut), drawn(&app, whole), cube, cascades)

@@ -92,7 +92,8 @@ fn with_a_table_of_another_level_everything_is_drawn_and_one_warning_is_given() 
     };
     let other_place = |app: &mut App| {
         let mut parts = table("tower.pvs").into_parts();
-        (parts.objects[5].min[1], parts.objects[5].max[1]) = (parts.objects[5].min[1] + 0.25, parts.objects[5].max[1] + 0.25);
+        (parts.objects[5].min[1], parts.objects[5].max[1]) =
+            (parts.objects[5].min[1] + 0.25, parts.objects[5].max[1] + 0.25);
         add_table(app, bevy_sightlines::pvs::Table::new(parts).expect("boxes are free"))
     };
     let fewer = |app: &mut App| add_table(app, table("small.pvs"));
@@ -266,9 +267,12 @@ fn changes_of_what_may_be_seen_are_sent() {
     #[derive(Resource, Default)]
     struct Changes(Vec<PvsChanged>);
     let (mut app, cut, _) = two(fits);
-    app.init_resource::<Changes>().add_systems(Last, |mut sent: MessageReader<PvsChanged>, mut all: ResMut<Changes>| {
-        all.0.extend(sent.read().cloned());
-    });
+    app.init_resource::<Changes>().add_systems(
+        Last,
+        |mut sent: MessageReader<PvsChanged>, mut all: ResMut<Changes>| {
+            all.0.extend(sent.read().cloned());
+        },
+    );
     app.update();
     app.world_mut().resource_mut::<Changes>().0.clear();
     app.update();

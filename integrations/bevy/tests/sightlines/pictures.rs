@@ -13,7 +13,7 @@ use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::gpu_readback::{Readback, ReadbackComplete};
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
-use bevy::render::render_resource::{TextureFormat, TextureUsages};
+use bevy::render::render_resource::{Face, TextureFormat, TextureUsages};
 use bevy::render::view::Msaa;
 use bevy::window::{ExitCondition, WindowPlugin};
 use bevy::winit::WinitPlugin;
@@ -60,12 +60,13 @@ fn app(folder: &Path) -> App {
     app
 }
 
-/// A camera that draws into an image which is read back.
+/// A camera that draws into an image which is read back. Its near plane is as good as in its eye: one that cuts a wall open shows what is
+/// behind it, of which the table knows nothing.
 fn camera(app: &mut App, pvs: Option<PvsCamera>) -> Entity {
     let mut image = Image::new_target_texture(SIZE.x, SIZE.y, TextureFormat::Rgba8UnormSrgb, None);
     image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
     let image = app.world_mut().resource_mut::<Assets<Image>>().add(image);
-    let lens = Projection::Perspective(PerspectiveProjection { fov: 1.2, near: 0.05, ..default() });
+    let lens = Projection::Perspective(PerspectiveProjection { fov: 1.2, near: 0.0005, ..default() });
     let camera = app.world_mut().spawn((
         Camera3d::default(),
         Camera { clear_color: ClearColorConfig::Custom(Color::BLACK), ..default() },
@@ -158,15 +159,19 @@ fn load(app: &mut App, n_objects: usize, doors: &[(PortalId, [Vec3; 2])]) {
         app.update();
     }
     let all: Vec<(Entity, u32)> = objects.iter(app.world()).map(|(entity, object)| (entity, object.source)).collect();
-    let paint = |app: &mut App, k: u32| {
-        let material = StandardMaterial { base_color: color(k), unlit: true, cull_mode: None, ..default() };
+    // Backs of faces are drawn if the file says so.
+    let paint = |app: &mut App, k: u32, cull_mode: Option<Face>| {
+        let material = StandardMaterial { base_color: color(k), unlit: true, cull_mode, ..default() };
         app.world_mut().resource_mut::<Assets<StandardMaterial>>().add(material)
     };
     for (entity, source) in all {
-        let material = paint(app, source);
+        let material = app.world().get::<MeshMaterial3d<StandardMaterial>>(entity).expect("it has one");
+        let material = app.world().resource::<Assets<StandardMaterial>>().get(material).expect("it is loaded");
+        let cull_mode = material.cull_mode.filter(|_| !both_sides);
+        let material = paint(app, source, cull_mode);
         app.world_mut().entity_mut(entity).insert(MeshMaterial3d(material));
     }
-    let wood = paint(app, LEAF);
+    let wood = paint(app, LEAF, None);
     for (portal, [min, max]) in doors {
         let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(Cuboid::from_size(*max - *min));
         let leaf = (Mesh3d(mesh), MeshMaterial3d(wood.clone()), Transform::from_translation((*min + *max) / 2.0));
