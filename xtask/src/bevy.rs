@@ -37,6 +37,17 @@ fn make(levels: &[(&str, &[&str])]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The table of the real building that pictures are compared in, if the folder of real data is there.
+fn make_real() -> Result<(), Failure> {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
+        eprintln!("!! SIGHTLINES_DATA has no folder: pictures of a real building WILL NOT be compared");
+        return Ok(());
+    };
+    let (scene, table) =
+        (Path::new(&data).join("scenes/office_a/office_a.glb"), folder().join("assets").join("office.pvs"));
+    program(&["build", "-q", "--both-sides", text(&scene), "-o", text(&table)])
+}
+
 fn text(path: &Path) -> &str {
     path.to_str().expect("the folder of the project has a name in Unicode")
 }
@@ -57,6 +68,7 @@ fn plugin() -> Command {
 /// * `gpu`: which device the tests that compare pictures run on
 pub(crate) fn check(gpu: Wish) -> Result<(), Failure> {
     make(&FOR_TESTS)?;
+    make_real()?;
     step::run(plugin().args(["fmt", "--check"]))?;
     let lints = ["clippy", "--locked", "--all-targets", "--all-features", "--", "-D", "warnings"];
     step::run(plugin().args(lints))?;

@@ -56,6 +56,11 @@ pub fn app_in(folder: &Path) -> App {
 
 /// The same with more plugins.
 pub fn app_with(folder: &Path, more: impl FnOnce(&mut App)) -> App {
+    app_of(folder, GltfPlugin::default(), more)
+}
+
+/// The same with another way to load files.
+pub fn app_of(folder: &Path, gltf: GltfPlugin, more: impl FnOnce(&mut App)) -> App {
     let mut app = App::new();
     app.add_plugins((
         MinimalPlugins,
@@ -66,7 +71,7 @@ pub fn app_with(folder: &Path, more: impl FnOnce(&mut App)) -> App {
         ImagePlugin::default(),
         MeshPlugin,
         CameraPlugin,
-        GltfPlugin::default(),
+        gltf,
         SightlinesPlugin,
     ));
     more(&mut app);
