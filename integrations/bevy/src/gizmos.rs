@@ -4,6 +4,7 @@ use crate::asset::PvsTable;
 use crate::camera::{PvsCamera, PvsView};
 use crate::space::{Point, corners};
 use bevy::gizmos::AppGizmoBuilder;
+use bevy::gizmos::GizmoPlugin;
 use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
 use bevy::gizmos::gizmos::Gizmos;
 use bevy::prelude::*;
@@ -42,8 +43,11 @@ impl Default for PvsGizmos {
     }
 }
 
-/// Adds the gizmos.
+/// Adds the gizmos, to apps that draw some.
 pub(crate) fn build(app: &mut App) {
+    if !app.is_plugin_added::<GizmoPlugin>() {
+        return;
+    }
     app.init_gizmo_group::<PvsGizmos>().add_systems(PostUpdate, draw.after(crate::SightlinesSystems));
 }
 

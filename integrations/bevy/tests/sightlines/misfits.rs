@@ -5,6 +5,7 @@ use crate::app::*;
 use bevy::camera::primitives::{Aabb, Frustum, Sphere};
 use bevy::camera::visibility::{NoCpuCulling, NoFrustumCulling};
 use bevy::prelude::*;
+use bevy_sightlines::pvs::{ObjectSource, Table, TableParts};
 use bevy_sightlines::{
     PvsCamera, PvsChanged, PvsMisfit, PvsMover, PvsObject, PvsProblemKind, PvsScene, PvsState, PvsTable,
 };
@@ -88,25 +89,37 @@ fn with_a_table_of_another_level_everything_is_drawn_and_one_warning_is_given() 
     let other_name = |app: &mut App| {
         let mut parts = table("tower.pvs").into_parts();
         parts.objects[3].name = "a name".to_owned();
-        add_table(app, bevy_sightlines::pvs::Table::new(parts).expect("names are free"))
+        add_table(app, Table::new(parts).expect("names are free"))
     };
     let other_place = |app: &mut App| {
         let mut parts = table("tower.pvs").into_parts();
         (parts.objects[5].min[1], parts.objects[5].max[1]) =
             (parts.objects[5].min[1] + 0.25, parts.objects[5].max[1] + 0.25);
-        add_table(app, bevy_sightlines::pvs::Table::new(parts).expect("boxes are free"))
+        add_table(app, Table::new(parts).expect("boxes are free"))
     };
-    let fewer = |app: &mut App| add_table(app, table("small.pvs"));
-    let kinds = [two(fewer), two(other_name), two(other_place)].map(|(app, cut, whole)| {
-        assert_eq!(drawn(&app, cut), drawn(&app, whole));
-        assert_eq!(view(&app, cut).state, PvsState::NoLevel);
-        let [PvsProblemKind::NoLevel(misfit)] = &problems(&app)[..] else { panic!("{:?}", problems(&app)) };
-        misfit.clone()
-    });
+    // As older files have it: without the nodes of the objects.
+    let fewer = |app: &mut App| {
+        let parts = TableParts { object_sources: Vec::new(), ..table("small.pvs").into_parts() };
+        add_table(app, Table::new(parts).expect("sources are free"))
+    };
+    let other_nodes = |app: &mut App| {
+        let mut parts = table("tower.pvs").into_parts();
+        parts.object_sources[7] = parts.object_sources[7].map(|source| ObjectSource { node: 100_000, ..source });
+        add_table(app, Table::new(parts).expect("sources are free"))
+    };
+    let small = |app: &mut App| add_table(app, table("small.pvs"));
+    let kinds =
+        [two(fewer), two(other_name), two(other_place), two(other_nodes), two(small)].map(|(app, cut, whole)| {
+            assert_eq!(drawn(&app, cut), drawn(&app, whole));
+            assert_eq!(view(&app, cut).state, PvsState::NoLevel);
+            let [PvsProblemKind::NoLevel(misfit)] = &problems(&app)[..] else { panic!("{:?}", problems(&app)) };
+            misfit.clone()
+        });
     let n_small = table("small.pvs").objects().len();
     assert_eq!(kinds[0], PvsMisfit::Count { table: n_small, scene: n });
     assert!(matches!(&kinds[1], PvsMisfit::Name { object: 3, table, .. } if table == "a name"), "{:?}", kinds[1]);
     assert!(matches!(&kinds[2], PvsMisfit::Place { object: 5, .. }), "{:?}", kinds[2]);
+    assert!(matches!(&kinds[3], PvsMisfit::Missing { object: 7, .. }), "{:?}", kinds[3]);
 }
 
 #[test]
