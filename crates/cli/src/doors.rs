@@ -198,7 +198,7 @@ mod tests {
         assert_eq!(closed("door:a,b"), Ok(vec![3]));
         assert_eq!(closed("front, 7,door:12"), Ok(vec![1, 2, 4, 7]));
         assert_eq!(closed("20"), Err("t.pvs: there is no portal 20: the table has 20 portals".into()));
-        let error = "t.pvs: there is no door called \"Frond\": the nearest names are \"front\", \"a,b\", \"12\"";
+        let error = "t.pvs: there is no door called \"Frond\": the nearest names are \"front\", \"12\", \"a,b\"";
         assert_eq!(closed("Frond"), Err(error.into()));
         assert!(closed("front,back").is_err_and(|error| error.contains("\"back\"")));
         let error = close("front", &[], 3, Path::new("t.pvs"), &mut Doors::all_open()).unwrap_err();

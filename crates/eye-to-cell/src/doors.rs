@@ -171,6 +171,8 @@ impl Eq for Portals {}
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeSet;
 
     #[test]
     fn doors_open_and_close() {
@@ -193,9 +195,12 @@ mod tests {
         assert!(doors.is_open(PortalId(3)) && doors.n_closed() == 0);
     }
 
+    fn record(portals: impl Iterator<Item = u32>) -> DoorRecord {
+        DoorRecord { name: String::new(), object: None, portals: portals.map(PortalId).collect() }
+    }
+
     fn door(portals: &[u32]) -> DoorRecord {
-        let portals = portals.iter().copied().map(PortalId).collect();
-        DoorRecord { name: String::new(), object: None, portals }
+        record(portals.iter().copied())
     }
 
     #[test]
@@ -217,5 +222,61 @@ mod tests {
         assert!(doors.open_door(DoorId(1)) && !doors.is_open(PortalId(70)) && doors.is_open(PortalId(200)));
         assert!(doors.open(PortalId(70)) && doors.open_door(DoorId(2)));
         assert_eq!(doors, Doors::all_open());
+    }
+
+    /// The oracle: what is closed by number, and which doors are shut; nothing else is kept.
+    #[derive(Default)]
+    struct Plain {
+        own: BTreeSet<u32>,
+        shut: BTreeSet<u32>,
+    }
+
+    impl Plain {
+        fn closed(&self, doors: &[DoorRecord]) -> BTreeSet<u32> {
+            let by_doors = self.shut.iter().flat_map(|&door| &doors[door as usize].portals).map(|portal| portal.0);
+            by_doors.chain(self.own.iter().copied()).collect()
+        }
+    }
+
+    proptest! {
+        /// Invariant: a portal is closed if and only if it was closed by its number, or a shut door closes it.
+        #[test]
+        fn doors_keep_what_a_plain_list_keeps(
+            doors in prop::collection::vec(prop::collection::btree_set(0u32..130, 0..6), 1..6),
+            steps in prop::collection::vec((0u8..9, any::<prop::sample::Index>(), 0u32..130), 0..60),
+        ) {
+            let all: Vec<DoorRecord> = doors.iter().map(|door| record(door.iter().copied())).collect();
+            let (mut doors, mut plain) = (Doors::all_open(), Plain::default());
+            for (step, door, portal) in steps {
+                let (before, door) = (plain.closed(&all), door.index(all.len()) as u32);
+                match step {
+                    0..3 => prop_assert_eq!(doors.close_door(&all, DoorId(door)), plain.shut.insert(door)),
+                    3..6 => prop_assert_eq!(doors.open_door(DoorId(door)), plain.shut.remove(&door)),
+                    6 => {
+                        plain.own.insert(portal);
+                        prop_assert_eq!(doors.close(PortalId(portal)), !before.contains(&portal));
+                    }
+                    7 => {
+                        plain.own.remove(&portal);
+                        let opens = before.contains(&portal) && !plain.closed(&all).contains(&portal);
+                        prop_assert_eq!(doors.open(PortalId(portal)), opens);
+                    }
+                    _ => {
+                        // Rarely, or nothing would be shut for long.
+                        if portal < 5 {
+                            plain = Plain::default();
+                            doors.open_all();
+                        }
+                    }
+                }
+                let closed = plain.closed(&all);
+                prop_assert!((0..130).all(|p| doors.is_open(PortalId(p)) != closed.contains(&p)));
+                prop_assert!(doors.closed().map(|p| p.0).eq(closed.iter().copied()));
+                prop_assert!(doors.closed_alone().map(|p| p.0).eq(plain.own.iter().copied()));
+                prop_assert!(doors.shut().map(|d| d.0).eq(plain.shut.iter().copied()));
+                prop_assert_eq!(doors.n_closed(), closed.len());
+                prop_assert_eq!(doors == Doors::all_open(), plain.own.is_empty() && plain.shut.is_empty());
+            }
+        }
     }
 }

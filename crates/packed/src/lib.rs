@@ -25,6 +25,7 @@ pub mod classes;
 mod container;
 mod doors;
 mod error;
+mod find;
 pub mod format;
 mod locate;
 mod merge;

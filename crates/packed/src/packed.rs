@@ -230,7 +230,7 @@ impl<S: Source> Packed<S> {
             digest: digest(&resident)?,
             up,
             mirrors: mirrors(&resident, &head)?,
-            doors: doors::read(&resident, &head)?,
+            doors: doors::read(&resident, [n_objects, head.n_portals])?,
             sources: Sources::read(&resident, n_objects)?,
             rows,
             seen,

@@ -26,7 +26,7 @@ impl<S: Source> Packed<S> {
             rows: self.matrix(format::ROWS, n_cells, |cell, out| self.items(&self.rows, cell, out, |i| i))?,
             info: self.info().to_vec(),
             mirrors: self.mirrors().to_vec(),
-            object_sources: self.sources.of_objects().to_vec(),
+            object_sources: self.sources.of_objects.clone(),
             doors: self.doors().to_vec(),
             planes: self.planes().cloned(),
             locator: Locator::from_nodes(&self.places.locator_nodes(&self.resident))

@@ -3,8 +3,7 @@
 use crate::parts::TableParts;
 use crate::records::{CellRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{
-    BitMatrix, CellId, DoorId, FrameError, LocatorError, ObjectId, PlaneError, PortalId, StabError, TableKind, door,
-    side,
+    BitMatrix, CellId, DoorId, FrameError, LocatorError, ObjectId, PlaneError, PortalId, StabError, TableKind, side,
 };
 
 /// A kind of thing with coordinates.
@@ -310,7 +309,25 @@ impl TableParts {
 
     /// Whether there are the objects and portals of all doors, and their counts and names have 32 bits.
     pub(crate) fn check_doors(&self) -> Result<(), TableError> {
-        door::check(&self.doors, self.objects.len(), self.portals.len())
+        if u32::try_from(self.doors.len()).is_err() {
+            return Err(TableError::TooMany { item: Item::Door, n: self.doors.len() });
+        }
+        for (door, record) in (0u32..).map(DoorId).zip(&self.doors) {
+            if u32::try_from(record.name.len()).is_err() {
+                return Err(TableError::TooLong(record.name.len()));
+            }
+            if let Some(object) = record.object.filter(|object| object.idx() >= self.objects.len()) {
+                return Err(TableError::DoorObject { door, object });
+            }
+            if !record.portals.is_sorted_by(|a, b| a < b) {
+                return Err(TableError::DoorOrder(door));
+            }
+            // They ascend, so the last is the largest.
+            if let Some(&portal) = record.portals.last().filter(|portal| portal.idx() >= self.portals.len()) {
+                return Err(TableError::DoorPortal { door, portal });
+            }
+        }
+        Ok(())
     }
 
     /// Every count and length has 32 bits in a file.

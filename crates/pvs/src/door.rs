@@ -1,6 +1,6 @@
 //! Doors: the portals that they close, by name and by place.
 
-use crate::{DoorId, DoorRecord, Frame, Item, ObjectId, PortalId, Table, TableError};
+use crate::{DoorId, DoorRecord, Frame, PortalId, Table};
 
 impl Table {
     /// The doors, by id; empty in a stripped table, and in older files.
@@ -41,28 +41,4 @@ pub fn box_covers(frame: Option<&Frame>, dimension: u8, min: [f64; 3], max: [f64
         let (low, high) = frame.map_or((p, p), |frame| frame.around_in_scene(p, p));
         (0..usize::from(dimension)).all(|k| min[k] <= low[k] && high[k] <= max[k])
     })
-}
-
-/// Checks doors against the numbers of objects and portals of their table, and their own number and names.
-pub(crate) fn check(doors: &[DoorRecord], n_objects: usize, n_portals: usize) -> Result<(), TableError> {
-    if u32::try_from(doors.len()).is_err() {
-        return Err(TableError::TooMany { item: Item::Door, n: doors.len() });
-    }
-    for (door, record) in (0u32..).map(DoorId).zip(doors) {
-        if u32::try_from(record.name.len()).is_err() {
-            return Err(TableError::TooLong(record.name.len()));
-        }
-        let unknown = |object: &ObjectId| object.idx() >= n_objects;
-        if let Some(object) = record.object.filter(unknown) {
-            return Err(TableError::DoorObject { door, object });
-        }
-        if !record.portals.is_sorted_by(|a, b| a < b) {
-            return Err(TableError::DoorOrder(door));
-        }
-        // They ascend, so the last is the largest.
-        if let Some(&portal) = record.portals.last().filter(|portal| portal.idx() >= n_portals) {
-            return Err(TableError::DoorPortal { door, portal });
-        }
-    }
-    Ok(())
 }

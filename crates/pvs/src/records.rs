@@ -31,7 +31,7 @@ pub struct PortalRecord {
 /// Something that is visible or not, and hides nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectRecord {
-    /// The name of the object for users.
+    /// The name of the object for users; names may repeat, see [`ObjectSource`].
     pub name: String,
     /// Lower corner of a box around the object, in scene units; z is 0 in a plane.
     pub min: [f64; 3],

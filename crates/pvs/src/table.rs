@@ -165,8 +165,8 @@ impl Table {
         !self.nodes.is_empty()
     }
 
-    /// The objects of a node of that file, ascending: one for each primitive of its mesh that can be seen. None for a node without a mesh,
-    /// and where sources are not known. O(log n).
+    /// The objects of a node of that file, ascending: one for each primitive of its mesh, and of each of its instances. None for a node without a
+    /// mesh, and where sources are not known. O(log n).
     pub fn objects_of_node(&self, node: u32) -> impl Iterator<Item = ObjectId> + '_ {
         self.nodes.objects_of(node)
     }

@@ -4,6 +4,7 @@ mod auto;
 mod cell_names;
 mod certify;
 mod common;
+mod doors;
 mod errors;
 mod explain_boxes;
 mod explain_portals;

@@ -92,8 +92,8 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
         let n_portals = out.portals.len() as u32;
         let door = |k: u32| DoorRecord {
             name: ["Tür", "", "gate"][k as usize % 3].to_owned(),
-            object: (k % 2 == 0 && k < n_objects).then_some(ObjectId(k)),
-            portals: (0..n_portals).filter(|portal| portal % (k + 2) == 0).map(PortalId).collect(),
+            object: (k.is_multiple_of(2) && k < n_objects).then_some(ObjectId(k)),
+            portals: (0..n_portals).filter(|portal| portal.is_multiple_of(k + 2)).map(PortalId).collect(),
         };
         out.doors = (0..dice.below(5)).map(door).collect();
         let of = |o: u32| (o % 5 != 3).then_some(ObjectSource { node: o * o % 7 * 60, primitive: o % 3 });

@@ -33,6 +33,7 @@ fn table() -> Table {
 
 type AnyDoor = (String, Option<Index>, u32);
 type AnySource = (u8, u8);
+type AnyParts = (TableParts, Vec<AnyDoor>, Option<Vec<AnySource>>, Vec<[i8; 3]>);
 
 /// Random tables with doors and sources of objects; the corners of each portal are of their own, on a small grid.
 fn any_doored() -> impl Strategy<Value = TableParts> {
@@ -42,9 +43,7 @@ fn any_doored() -> impl Strategy<Value = TableParts> {
     (any_parts(), doors, sources, corners).prop_map(with_doors)
 }
 
-fn with_doors(
-    (mut parts, doors, sources, corners): (TableParts, Vec<AnyDoor>, Option<Vec<AnySource>>, Vec<[i8; 3]>),
-) -> TableParts {
+fn with_doors((mut parts, doors, sources, corners): AnyParts) -> TableParts {
     let (flat, n_objects, n_portals) = (parts.dimension == 2, parts.objects.len(), parts.portals.len() as u32);
     let mut next = corners.iter().cycle();
     for p in parts.portals.iter_mut().flat_map(|portal| &mut portal.points) {

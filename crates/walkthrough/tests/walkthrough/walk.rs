@@ -3,8 +3,8 @@
 use sightlines_eye_to_cell::{Budget, CellSource, Method, MirrorPiece, PortalEdge, StabStep, TableCells, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Frame, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord, PortalId,
-    PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, DoorId, DoorRecord, Frame, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord,
+    PortalId, PortalRecord, Table, TableKind, TableParts,
 };
 use sightlines_walkthrough::{Answer, Prefetcher, Prepare, WalkOptions, Walkthrough};
 use std::collections::BTreeSet;
@@ -217,6 +217,37 @@ fn frames_are_repeated_and_doors_are_heard() {
     assert_eq!(until_full(&mut walk, &view, Method::CellToCell).0, open, "the table knows no doors");
     assert!(walk.open(PortalId(1)));
     assert_eq!(until_full(&mut walk, &view, Method::Exact).0, open);
+}
+
+/// A frame hears of doors that are shut and opened by their ids; another table has other doors, so there they are open, and portals that were
+/// closed by their numbers stay closed.
+#[test]
+fn doors_are_shut_until_the_table_changes() {
+    let wings = [PortalId(0), PortalId(1)].map(|portal| DoorRecord {
+        name: "wing".to_owned(),
+        object: None,
+        portals: if portal.0 == 0 { vec![portal, PortalId(1)] } else { vec![portal] },
+    });
+    let table = Arc::new(rooms(5).as_ref().clone().with_doors(wings.to_vec()).unwrap());
+    let (source, gate) = slow(&table, None);
+    gate.open();
+    let mut walk = walk(&table, source, WalkOptions::default());
+    let view = looking_right(0.5);
+    let sees = |walk: &mut Walk| until_full(walk, &view, Method::Exact).0.len();
+    assert_eq!(sees(&mut walk), 3);
+    for door in table.door("wing") {
+        assert!(walk.close_door(table.doors(), door) && !walk.close_door(table.doors(), door));
+    }
+    assert_eq!(sees(&mut walk), 1);
+    assert!(walk.open_door(DoorId(0)) && !walk.open_door(DoorId(0)));
+    assert_eq!(sees(&mut walk), 2, "the other door is shut");
+    walk.close(PortalId(0));
+    let (source, gate) = slow(&table, None);
+    gate.open();
+    walk.replace(TableCells::new(Arc::clone(&table)), source, Some);
+    assert_eq!((sees(&mut walk), walk.doors().n_closed(), walk.doors().shut().count()), (1, 1, 0));
+    walk.open(PortalId(0));
+    assert_eq!(sees(&mut walk), 3);
 }
 
 #[test]

@@ -2,32 +2,40 @@
 
 use super::Error;
 use crate::doors::DoorBox;
+use crate::output::count;
 use serde::Serialize;
-use sightlines::bake::Baked;
+use sightlines::bake::{Bakeable, Baked};
 use sightlines::pvs::{DoorRecord, Table};
 use std::fmt;
 use std::path::Path;
 
+/// Refuses doors whose boxes have another dimension than what is baked.
+pub(super) fn check(path: &Path, content: &Bakeable, given: &[DoorBox]) -> Result<(), Error> {
+    let dimension = if matches!(content, Bakeable::Plan { .. }) { 2 } else { 3 };
+    match given.iter().find(|door| door.n_dimensions() != dimension) {
+        None => Ok(()),
+        Some(door) => {
+            let (path, name) = (path.to_owned(), door.name.clone());
+            Err(Error::DoorDimension { path, name, found: 2 * door.n_dimensions(), needed: 2 * dimension })
+        }
+    }
+}
+
 /// Adds doors to the table of what was baked from `path`. Warns of those that close nothing.
-pub(super) fn add(path: &Path, baked: Baked, given: &[DoorBox]) -> Result<(Baked, Vec<GivenDoor>), Error> {
+pub(super) fn add(path: &Path, baked: Baked, given: &[DoorBox]) -> (Baked, Vec<GivenDoor>) {
     if given.is_empty() {
-        return Ok((baked, Vec::new()));
+        return (baked, Vec::new());
     }
     let Baked { graph, table, report } = baked;
     let mut doors = table.doors().to_vec();
-    let records: Vec<DoorRecord> = given.iter().map(|door| record(path, door, &table)).collect::<Result<_, _>>()?;
+    let records: Vec<DoorRecord> = given.iter().map(|door| record(path, door, &table)).collect();
     let facts = records.iter().map(GivenDoor::new).collect();
     doors.extend(records);
     let table = table.with_doors(doors).expect("the portals within a box are portals of the table, ascending");
-    Ok((Baked { graph, table, report }, facts))
+    (Baked { graph, table, report }, facts)
 }
 
-fn record(path: &Path, door: &DoorBox, table: &Table) -> Result<DoorRecord, Error> {
-    let (found, dimension) = (door.n_dimensions(), usize::from(table.dimension()));
-    if found != dimension {
-        let (path, name) = (path.to_owned(), door.name.clone());
-        return Err(Error::DoorDimension { path, name, found: 2 * found, needed: 2 * dimension });
-    }
+fn record(path: &Path, door: &DoorBox, table: &Table) -> DoorRecord {
     let [min, max] = door.corners();
     let portals = table.portals_within(min, max);
     let (path, name) = (path.display(), &door.name);
@@ -40,7 +48,7 @@ fn record(path: &Path, door: &DoorBox, table: &Table) -> Result<DoorRecord, Erro
         });
         tracing::warn!("{path}: the door {name:?} closes nothing: no portal is wholly within its box{gap}");
     }
-    Ok(DoorRecord { name: door.name.clone(), object: None, portals })
+    DoorRecord { name: door.name.clone(), object: None, portals }
 }
 
 /// A door that was given as a box.
@@ -58,6 +66,7 @@ impl GivenDoor {
 
 impl fmt::Display for GivenDoor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "given door     {:?}, open; closes {} portals when shut", self.name, self.portals.len())
+        let portals = count(self.portals.len() as u64, "portal");
+        writeln!(f, "given door     {:?}, open; closes {portals} when shut", self.name)
     }
 }

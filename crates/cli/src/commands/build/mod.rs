@@ -95,6 +95,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
     let mut source = Source::new(path, input, chosen, out, &args.bake)?;
+    doors::check(path, &source.content, &args.doors)?;
     let mut options: BakeOptions<'_> = args.bake.options();
     options.budget = clock.budget();
     args.region.apply(&mut options)?;
@@ -121,7 +122,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     let baked = baked.map_err(|error| source.failed(path, error))?;
     clock.warn(path, &baked.report);
     let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, show_progress)?;
-    let (baked, given_doors) = doors::add(path, baked, &args.doors)?;
+    let (baked, given_doors) = doors::add(path, baked, &args.doors);
     let bytes = baked.table.to_bytes();
     // Proofs that contradict the table leave an older one untouched.
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
