@@ -30,7 +30,8 @@ fn make(levels: &[(&str, &[&str])]) -> Result<(), Failure> {
     for (name, options) in levels {
         let file = |ending: &str| folder.join(name).with_extension(ending);
         let (scene, table, packed) = (file("glb"), file("pvs"), file("pvz"));
-        program(&[&["generate", "tower", "-q", "-o"], &[text(&scene)], *options].concat())?;
+        let words = ["generate", "tower", "-q", "-o", text(&scene)];
+        program(&[&words, *options].concat())?;
         program(&["build", "-q", text(&scene), "-o", text(&table)])?;
         program(&["pack", "-q", text(&table), "-o", text(&packed)])?;
     }

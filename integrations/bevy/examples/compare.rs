@@ -12,7 +12,7 @@ use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::ecs::schedule::{ScheduleLabel, SingleThreadedExecutor};
 use bevy::log::LogPlugin;
 use bevy::prelude::*;
-use bevy::render::experimental::occlusion_culling::OcclusionCulling;
+use bevy::render::occlusion_culling::OcclusionCulling;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::view::Msaa;

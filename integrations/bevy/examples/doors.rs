@@ -1,5 +1,5 @@
 //! Doors that open and close: space shuts and opens the nearest one. `cargo xtask bevy-assets` first, then
-//! `cargo run --release --example doors --features gizmos,overlay`.
+//! `cargo run --release --example doors --features overlay`.
 //!
 //! A door of a level of yours has a name in its table: `PvsDoor::named("front door")`. The generated tower has no doors, so this example hangs
 //! leaves into the narrow openings of its ground floor: each fills its portal, and shuts it by number.

@@ -207,7 +207,7 @@ impl fmt::Display for PvsProblemKind {
 pub struct PvsChanged {
     /// The camera.
     pub camera: Entity,
-    /// The cells of the eye, ascending; none outside, where everything may be seen.
+    /// The cells of the eye, ascending; none outside, where everything may be seen, whatever `left` has.
     pub at: Vec<CellId>,
     /// Cells that may be seen now and could not before, ascending.
     pub entered: Vec<CellId>,

@@ -64,14 +64,12 @@ type Boxes<'w, 's> = Query<'w, 's, (&'static Aabb, &'static GlobalTransform, Has
 /// Culls every camera that has a [`PvsCamera`].
 pub(crate) fn cull(
     mut cameras: Cameras<'_, '_>,
-    (scenes, parents): (Scenes<'_, '_>, Query<&ChildOf>),
-    boxes: Boxes<'_, '_>,
-    (tables, server): (Res<Assets<PvsTable>>, Option<Res<AssetServer>>),
-    (versions, slots): (Res<Versions>, Res<Slots>),
+    (scenes, parents): (Scenes<'_, '_>, Query<'_, '_, &ChildOf>),
+    (boxes, slots): (Boxes<'_, '_>, Res<'_, Slots>),
+    (tables, server, versions): (Res<'_, Assets<PvsTable>>, Option<Res<'_, AssetServer>>, Res<'_, Versions>),
     doorways: Doorways<'_, '_>,
-    mut problems: MessageWriter<PvsProblem>,
-    mut changes: MessageWriter<PvsChanged>,
-    mut counts: ResMut<Counts>,
+    (mut problems, mut changes): (MessageWriter<'_, PvsProblem>, MessageWriter<'_, PvsChanged>),
+    mut counts: ResMut<'_, Counts>,
 ) {
     *counts = Counts::default();
     for (camera, state, pvs, mut view, mut walker, place, projection, mut visible, is_locked) in &mut cameras {
@@ -153,11 +151,12 @@ pub(crate) fn cull(
             let mut culled = 0;
             let mut keep = |entity: &Entity| {
                 let is_kept = match slots.judge(*entity) {
-                    Judged::ByBevy => true,
-                    Judged::ByTable { scene: of, source } => {
+                    Judged::Free => true,
+                    Judged::Table { scene: of, source } => {
                         of != scene || tie.and_then(|tie| tie.object(source)).is_none_or(|o| frame.seen.has_object(o))
                     }
-                    Judged::ByBox => boxes.get(*entity).map_or(true, |(bounds, at, is_exempt)| {
+                    Judged::Box { scene: Some(of) } if of != scene => true,
+                    Judged::Box { .. } => boxes.get(*entity).map_or(true, |(bounds, at, is_exempt)| {
                         let (min, max) = corners_of(bounds);
                         let (min, max) = to_scene.after(&Affine::of(at.affine())).box_around(min, max);
                         is_exempt || sees_box(min, max)

@@ -30,11 +30,11 @@ pub(crate) struct Slot {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Judged {
     /// Left to Bevy.
-    ByBevy,
+    Free,
     /// By the answer for this source of this scene.
-    ByTable { scene: Entity, source: u32 },
-    /// By the cells that its box meets.
-    ByBox,
+    Table { scene: Entity, source: u32 },
+    /// By the cells that its box meets: for all cameras, or for those in this scene.
+    Box { scene: Option<Entity> },
 }
 
 /// All entities that may be culled, by the index of the entity.
@@ -66,10 +66,11 @@ impl Slots {
     #[inline]
     pub(crate) fn judge(&self, entity: Entity) -> Judged {
         match self.slot(entity) {
-            None => Judged::ByBevy,
-            Some(slot) if slot.is_exempt => Judged::ByBevy,
-            Some(slot) if slot.is_mover || slot.is_elsewhere || slot.is_outgrown => Judged::ByBox,
-            Some(slot) => Judged::ByTable { scene: slot.scene, source: slot.source },
+            None => Judged::Free,
+            Some(slot) if slot.is_exempt => Judged::Free,
+            Some(slot) if slot.is_mover => Judged::Box { scene: None },
+            Some(slot) if slot.is_elsewhere || slot.is_outgrown => Judged::Box { scene: Some(slot.scene) },
+            Some(slot) => Judged::Table { scene: slot.scene, source: slot.source },
         }
     }
 }
@@ -93,7 +94,6 @@ pub(crate) fn note(
     mut rests: Query<(Entity, &Transform, Option<&ChildOf>, &mut Rest)>,
     moved: Query<Entity, (With<Rest>, Moved)>,
     fresh: Query<(Entity, &PvsObject), Added<PvsObject>>,
-    boxes: Query<(Entity, &PvsObject, &Aabb), Changed<Aabb>>,
     objects: Query<&PvsObject>,
     (mut gone, mut loose): (RemovedComponents<PvsObject>, RemovedComponents<ChildOf>),
 ) {
@@ -134,6 +134,10 @@ pub(crate) fn note(
             }
         }
     }
+}
+
+/// Notes meshes of levels whose boxes have changed: other meshes, or other vertices.
+pub(crate) fn note_boxes(mut slots: ResMut<Slots>, boxes: Query<(Entity, &PvsObject, &Aabb), Changed<Aabb>>) {
     for (entity, object, bounds) in &boxes {
         if let Some(slot) = slots.slot_mut(entity) {
             slot.is_outgrown = has_grown(object, bounds);

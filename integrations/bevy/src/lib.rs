@@ -41,6 +41,7 @@ pub use overlay::{PvsOverlay, PvsOverlayPlugin};
 pub use sightlines_pvs as pvs;
 pub use tie::PvsMisfit;
 
+use bevy::asset::AssetEventSystems;
 use bevy::camera::visibility::VisibilitySystems;
 use bevy::gltf::extensions::GltfExtensionHandlers;
 use bevy::prelude::*;
@@ -83,6 +84,7 @@ impl Plugin for SightlinesPlugin {
                 PostUpdate,
                 (
                     level::note,
+                    level::note_boxes,
                     level::note_movers,
                     doors::note_doors,
                     cull::note_tables,
@@ -92,7 +94,10 @@ impl Plugin for SightlinesPlugin {
                     .chain()
                     .in_set(SightlinesSystems),
             )
-            .configure_sets(PostUpdate, SightlinesSystems.after(VisibilitySystems::CheckVisibility));
+            .configure_sets(
+                PostUpdate,
+                SightlinesSystems.after(VisibilitySystems::CheckVisibility).after(AssetEventSystems),
+            );
         diagnostics::register(app);
         #[cfg(feature = "gizmos")]
         gizmos::build(app);

@@ -94,14 +94,10 @@ pub(crate) fn corners(min: Point, max: Point) -> [Point; 8] {
 
 /// The smallest box around some points.
 pub(crate) fn around<const N: usize>(points: [Point; N]) -> (Point, Point) {
-    let mut bounds = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for point in points {
-        for k in 0..3 {
-            bounds.0[k] = bounds.0[k].min(point[k]);
-            bounds.1[k] = bounds.1[k].max(point[k]);
-        }
-    }
-    bounds
+    let start = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    points.iter().fold(start, |(min, max), point| {
+        (std::array::from_fn(|k| min[k].min(point[k])), std::array::from_fn(|k| max[k].max(point[k])))
+    })
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use bevy::window::{CursorGrabMode, CursorOptions};
 use std::path::Path;
 
 /// Ends the program with a hint if a generated file is not there.
-pub fn need(files: &[&str]) {
+pub(crate) fn need(files: &[&str]) {
     for file in files {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(file);
         if !path.is_file() {
@@ -21,13 +21,13 @@ pub fn need(files: &[&str]) {
 
 /// A camera that walks: W A S D, Q and E down and up, shift to run, the mouse to look around.
 #[derive(Component)]
-pub struct Walker {
+pub(crate) struct Walker {
     /// Metres a second.
-    pub speed: f32,
+    pub(crate) speed: f32,
 }
 
 /// Moves the walkers.
-pub fn walk(
+pub(crate) fn walk(
     time: Res<Time>,
     keys: Res<ButtonInput<KeyCode>>,
     mouse: Res<AccumulatedMouseMotion>,
@@ -55,7 +55,7 @@ pub fn walk(
 }
 
 /// A sun and some light from everywhere.
-pub fn light(commands: &mut Commands<'_, '_>) {
+pub(crate) fn light(commands: &mut Commands<'_, '_>) {
     commands.insert_resource(GlobalAmbientLight { brightness: 400.0, ..default() });
     commands.spawn((
         DirectionalLight { illuminance: 4000.0, ..default() },

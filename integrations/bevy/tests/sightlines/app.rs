@@ -15,23 +15,23 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The folder of generated levels.
-pub fn assets() -> PathBuf {
+pub(crate) fn assets() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets")
 }
 
 /// The bytes of a generated file.
-pub fn bytes(name: &str) -> Vec<u8> {
+pub(crate) fn bytes(name: &str) -> Vec<u8> {
     let path = assets().join(name);
     std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}; make it by `cargo xtask bevy-assets`", path.display()))
 }
 
 /// A generated table.
-pub fn table(name: &str) -> Table {
+pub(crate) fn table(name: &str) -> Table {
     Table::from_bytes(&bytes(name)).expect("the program writes tables")
 }
 
 /// The table, with an object hidden from a cell that sees it.
-pub fn without(table: &Table, cell: CellId, object: ObjectId) -> Table {
+pub(crate) fn without(table: &Table, cell: CellId, object: ObjectId) -> Table {
     let (n_cells, n_objects) = (table.n_cells(), table.objects().len());
     let mut seen = BitMatrix::new(n_cells, n_objects);
     for from in (0..n_cells as u32).map(CellId) {
@@ -45,22 +45,22 @@ pub fn without(table: &Table, cell: CellId, object: ObjectId) -> Table {
 }
 
 /// An app with everything that visibility needs, in which a frame is an `update`.
-pub fn app() -> App {
+pub(crate) fn app() -> App {
     app_in(&assets())
 }
 
 /// The same with another folder of assets.
-pub fn app_in(folder: &Path) -> App {
+pub(crate) fn app_in(folder: &Path) -> App {
     app_with(folder, |_| {})
 }
 
 /// The same with more plugins.
-pub fn app_with(folder: &Path, more: impl FnOnce(&mut App)) -> App {
+pub(crate) fn app_with(folder: &Path, more: impl FnOnce(&mut App)) -> App {
     app_of(folder, GltfPlugin::default(), more)
 }
 
 /// The same with another way to load files.
-pub fn app_of(folder: &Path, gltf: GltfPlugin, more: impl FnOnce(&mut App)) -> App {
+pub(crate) fn app_of(folder: &Path, gltf: GltfPlugin, more: impl FnOnce(&mut App)) -> App {
     let mut app = App::new();
     app.add_plugins((
         MinimalPlugins,
@@ -81,23 +81,23 @@ pub fn app_of(folder: &Path, gltf: GltfPlugin, more: impl FnOnce(&mut App)) -> A
 }
 
 /// Spawns a level.
-pub fn spawn_level(app: &mut App, path: &str, at: Transform) -> Entity {
+pub(crate) fn spawn_level(app: &mut App, path: &str, at: Transform) -> Entity {
     let scene = app.world().resource::<AssetServer>().load(GltfAssetLabel::Scene(0).from_asset(path.to_owned()));
     app.world_mut().spawn((WorldAssetRoot(scene), at)).id()
 }
 
 /// A camera that looks through a wide lens.
-pub fn lens() -> Projection {
+pub(crate) fn lens() -> Projection {
     Projection::Perspective(PerspectiveProjection { fov: 1.2, aspect_ratio: 16.0 / 9.0, near: 0.05, ..default() })
 }
 
 /// Adds a table as it is.
-pub fn add_table(app: &mut App, table: Table) -> Handle<PvsTable> {
+pub(crate) fn add_table(app: &mut App, table: Table) -> Handle<PvsTable> {
     app.world_mut().resource_mut::<Assets<PvsTable>>().add(PvsTable::new(table))
 }
 
 /// Spawns a camera, with a table or without.
-pub fn spawn_camera(app: &mut App, pvs: Option<PvsCamera>) -> Entity {
+pub(crate) fn spawn_camera(app: &mut App, pvs: Option<PvsCamera>) -> Entity {
     let camera = app.world_mut().spawn((Camera3d::default(), Camera::default(), lens(), Transform::default())).id();
     if let Some(pvs) = pvs {
         app.world_mut().entity_mut(camera).insert(pvs);
@@ -106,7 +106,7 @@ pub fn spawn_camera(app: &mut App, pvs: Option<PvsCamera>) -> Entity {
 }
 
 /// Updates until `done`.
-pub fn until(app: &mut App, what: &str, mut done: impl FnMut(&mut World) -> bool) {
+pub(crate) fn until(app: &mut App, what: &str, mut done: impl FnMut(&mut World) -> bool) {
     let begin = Instant::now();
     while !done(app.world_mut()) {
         assert!(begin.elapsed() < Duration::from_secs(120), "waited in vain for {what}");
@@ -116,13 +116,13 @@ pub fn until(app: &mut App, what: &str, mut done: impl FnMut(&mut World) -> bool
 }
 
 /// Updates until so many meshes of levels are there.
-pub fn until_level(app: &mut App, n_objects: usize) {
+pub(crate) fn until_level(app: &mut App, n_objects: usize) {
     until(app, "a level", |world| world.query::<&PvsObject>().iter(world).count() == n_objects);
     app.update();
 }
 
 /// Updates until an asset is there, or has failed.
-pub fn until_loaded(app: &mut App, table: &Handle<PvsTable>) {
+pub(crate) fn until_loaded(app: &mut App, table: &Handle<PvsTable>) {
     until(app, "a table", |world| {
         let server = world.resource::<AssetServer>();
         matches!(
@@ -133,29 +133,29 @@ pub fn until_loaded(app: &mut App, table: &Handle<PvsTable>) {
 }
 
 /// Puts cameras somewhere.
-pub fn look(app: &mut App, cameras: &[Entity], at: Transform) {
+pub(crate) fn look(app: &mut App, cameras: &[Entity], at: Transform) {
     for &camera in cameras {
         *app.world_mut().get_mut::<Transform>(camera).expect("a camera has one") = at;
     }
 }
 
 /// The meshes that a camera draws.
-pub fn drawn(app: &App, camera: Entity) -> Vec<Entity> {
+pub(crate) fn drawn(app: &App, camera: Entity) -> Vec<Entity> {
     let visible = app.world().get::<VisibleEntities>(camera).expect("a camera has one");
     visible.get(std::any::TypeId::of::<Mesh3d>()).to_vec()
 }
 
 /// What the plugin notes of a camera.
-pub fn view(app: &App, camera: Entity) -> &PvsView {
+pub(crate) fn view(app: &App, camera: Entity) -> &PvsView {
     app.world().get::<PvsView>(camera).expect("a camera with a table has one")
 }
 
 /// The problems that were reported.
 #[derive(Resource, Default)]
-pub struct Problems(pub Vec<PvsProblem>);
+pub(crate) struct Problems(pub(crate) Vec<PvsProblem>);
 
 /// Collects the problems that are reported from now on.
-pub fn collect_problems(app: &mut App) {
+pub(crate) fn collect_problems(app: &mut App) {
     app.init_resource::<Problems>().add_systems(
         Last,
         |mut found: MessageReader<PvsProblem>, mut problems: ResMut<Problems>| {
