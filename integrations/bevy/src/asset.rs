@@ -230,6 +230,7 @@ impl PvsTable {
     ///
     /// # Errors
     /// What cannot be read, as text.
+    #[cfg(feature = "gizmos")]
     pub(crate) fn for_each_portal(&self, mut show: impl FnMut(PortalId, &[[f64; 3]])) -> Result<(), String> {
         match &self.form {
             Form::Plain(table) => {
