@@ -4,10 +4,11 @@ use num_bigint::{BigInt, Sign};
 
 /// The first bytes of every proof file.
 const MAGIC: [u8; 8] = *b"SLPROOFS";
-/// The newest version: with proofs about objects, which only scenes in space have.
+/// The newest version: with proofs about objects, which only scenes in space have, or with lines of two doubles, which only maps
+/// have.
 pub const VERSION: u32 = 2;
-/// The version before: without proofs about objects. Proofs that have none are written in it, and both are read.
-pub(crate) const WITHOUT_OBJECTS: u32 = 1;
+/// The version before: without these. Proofs that have none are written in it, and both are read.
+pub(crate) const FIRST_VERSION: u32 = 1;
 /// Magic, version, kind; then the body; then the checksum.
 const HEAD: usize = 8 + 4 + 1;
 
@@ -110,7 +111,7 @@ pub(crate) fn unframed(bytes: &[u8]) -> Result<(Kind, Reader<'_>), ReadError> {
     }
     let four = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
     let version = four(8);
-    if !(WITHOUT_OBJECTS..=VERSION).contains(&version) {
+    if !(FIRST_VERSION..=VERSION).contains(&version) {
         return fail(8, ReadErrorKind::Version(version));
     }
     let end = bytes.len() - 4;
@@ -118,7 +119,7 @@ pub(crate) fn unframed(bytes: &[u8]) -> Result<(Kind, Reader<'_>), ReadError> {
         return fail(end, ReadErrorKind::Checksum);
     }
     match Kind::ALL.into_iter().find(|kind| kind.code() == bytes[12]) {
-        Some(kind) if version != WITHOUT_OBJECTS && kind != Kind::Space => fail(8, ReadErrorKind::Version(version)),
+        Some(kind) if version != FIRST_VERSION && kind == Kind::Plan => fail(8, ReadErrorKind::Version(version)),
         Some(kind) => Ok((kind, Reader { bytes: &bytes[..end], at: HEAD, version })),
         None => fail(12, ReadErrorKind::Kind(bytes[12])),
     }
@@ -237,9 +238,9 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Whether the frame has a version in which proofs about objects follow.
-    pub(crate) fn has_objects(&self) -> bool {
-        self.version > WITHOUT_OBJECTS
+    /// Whether the frame has the newest version, and not the first one.
+    pub(crate) fn is_newer(&self) -> bool {
+        self.version > FIRST_VERSION
     }
 
     /// An error at the offset `back` bytes before the current one.
@@ -368,7 +369,7 @@ mod tests {
             writer.whole(&BigInt::from(y));
             writer.double(z, true);
             writer.double(f64::from(z as f32), false);
-            let bytes = framed(Kind::Space, WITHOUT_OBJECTS, writer);
+            let bytes = framed(Kind::Space, FIRST_VERSION, writer);
             let (kind, mut reader) = unframed(&bytes).unwrap();
             prop_assert_eq!(kind, Kind::Space);
             prop_assert_eq!(reader.number().unwrap(), x);
@@ -380,7 +381,7 @@ mod tests {
     }
 
     fn of(body: &[u8]) -> Vec<u8> {
-        framed(Kind::Plan, WITHOUT_OBJECTS, Writer(body.to_vec()))
+        framed(Kind::Plan, FIRST_VERSION, Writer(body.to_vec()))
     }
 
     #[test]

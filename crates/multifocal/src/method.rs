@@ -42,10 +42,12 @@ impl<B: MultifocalBackend> FromRegion for Multifocal<B> {
         let Ok(surround) = Surround::new(volume, &self.scene, &self.layout) else { return Ok(Box::new(Nothing)) };
         let surround = &*self.surround.insert(surround);
         let mut units = [1.0; 6];
+        let farthest =
+            surround.directions().each_ref().map(|d| d.planes.last().expect("there is a plane on each side"));
+        let chosen = self.occluders.choose(volume, farthest);
         for (side, unit) in units.iter_mut().enumerate() {
-            let planes = &surround.directions()[side].planes;
-            let farthest = planes.last().expect("there is a plane on each side");
-            let Ok(job) = surround.job(side, self.occluders.choose(volume, farthest)) else {
+            let occluders = chosen[side].iter().map(|&i| &self.occluders.occluders[i as usize]);
+            let Ok(job) = surround.job(side, occluders) else {
                 return Ok(Box::new(Nothing));
             };
             *unit = job.unit();
@@ -85,9 +87,9 @@ impl OccluderSelection {
         &self.occluders
     }
 
-    fn choose(&self, volume: &Volume, plane: &Plane) -> impl Iterator<Item = &Occluder> {
-        let chosen = self.chooser.select(volume, plane, self.most);
-        chosen.into_iter().map(|i| &self.occluders[i as usize])
+    /// For each of the planes around a volume.
+    fn choose(&self, volume: &Volume, planes: [&Plane; 6]) -> [Vec<u32>; 6] {
+        self.chooser.select_for(volume, planes, self.most)
     }
 }
 

@@ -105,7 +105,13 @@ impl Occluder {
     /// Whether all of `eyes` are strictly in front of all facets (`Some(true)`), or strictly behind all
     /// (`Some(false)`). With `None` the occluder hides nothing from them. Exact.
     pub fn side_of(&self, eyes: &[Point3]) -> Option<bool> {
-        let mut sides = self.facets.iter().flat_map(|&[a, b, c]| eyes.iter().map(move |&v| orient3d(a, b, c, v)));
+        let mut sides = self.facets.iter().flat_map(|facet| {
+            let across = across(facet);
+            eyes.iter().map(move |&v| {
+                across
+                    .map_or_else(|| orient3d(facet[0], facet[1], facet[2], v), |(k, turn)| turn * (v[k] - facet[0][k]))
+            })
+        });
         let first = sides.next()?;
         if first > 0.0 {
             sides.all(|s| s > 0.0).then_some(true)
@@ -115,6 +121,14 @@ impl Occluder {
             None
         }
     }
+}
+
+/// The axis that a triangle is perpendicular to, if there is one, and 1 or -1: whether its normal points along it. Exact.
+fn across(&[a, b, c]: &[Point3; 3]) -> Option<(usize, f64)> {
+    let k = (0..3).find(|&k| a[k] == b[k] && a[k] == c[k])?;
+    let of = |p: Point3| robust::Coord { x: p[(k + 1) % 3], y: p[(k + 2) % 3] };
+    let turn = robust::orient2d(of(a), of(b), of(c));
+    (turn != 0.0).then_some((k, turn.signum()))
 }
 
 /// Whether two triangles lie in one plane, and turn the same way. Exact.

@@ -127,25 +127,36 @@ impl RaySampler {
     fn first_triangle_before(&self, origin: Point3, direction: Point3, end: f64) -> Option<u32> {
         let inverse = direction.map(|d| 1.0 / d);
         let mut best = (end, None);
-        let mut pending = vec![0];
-        while let Some(n) = pending.pop() {
-            let node = &self.tree.nodes()[n as usize];
-            if enters(&node.bounds, origin, inverse) >= best.0 {
+        let nodes = self.tree.nodes();
+        let enter = |n: u32| (enters(&nodes[n as usize].bounds, origin, inverse), n);
+        let mut pending = Vec::with_capacity(64);
+        pending.push(enter(0));
+        while let Some((at, mut n)) = pending.pop() {
+            if at >= best.0 {
                 continue;
             }
-            if node.is_leaf() {
-                for &i in &self.tree.order()[node.start as usize..node.end as usize] {
-                    let t = hit(&self.triangles[i as usize], origin, direction);
-                    if t < best.0 {
-                        best = (t, Some(i));
-                    }
+            // Down to a leaf, always into the nearer child.
+            while !nodes[n as usize].is_leaf() {
+                let [a, b] = self.tree.children(n).map(enter);
+                let (near, far) = if a.0 < b.0 { (a, b) } else { (b, a) };
+                if far.0 < best.0 {
+                    pending.push(far);
                 }
+                n = near.1;
+                if near.0 >= best.0 {
+                    break;
+                }
+            }
+            let node = &nodes[n as usize];
+            if !node.is_leaf() {
                 continue;
             }
-            let [a, b] = self.tree.children(n);
-            let [ta, tb] = [a, b].map(|c| enters(&self.tree.nodes()[c as usize].bounds, origin, inverse));
-            // The nearer one is visited first.
-            pending.extend(if ta < tb { [b, a] } else { [a, b] });
+            for &i in &self.tree.order()[node.start as usize..node.end as usize] {
+                let t = hit(&self.triangles[i as usize], origin, direction);
+                if t < best.0 {
+                    best = (t, Some(i));
+                }
+            }
         }
         best.1
     }

@@ -20,6 +20,7 @@ pub mod planar;
 mod simplex;
 mod stabber;
 mod verdict;
+mod wide;
 
 pub use axial::shaft::{
     BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, FineLine, FreeLine, FreeSpan, ProofSize, Shaft,
@@ -31,7 +32,7 @@ pub use axial::{
 };
 pub use convex::{
     Block, BoxProof, ConvexCertificate, ConvexCounters, ConvexNode, ConvexSequence, ConvexStabber, ConvexTerm,
-    ConvexUndo, ConvexVerdict, KnownPortal, Line3, PlaneProof, StabLimits,
+    ConvexUndo, ConvexVerdict, FineLine3, HullProof, KnownPortal, Line3, PlaneProof, StabLimits,
 };
 pub use planar::{End, Funnel, FunnelUndo, PlanarCertificate, PlanarVerdict, PlanarWitness, stabbing_line};
 pub use stabber::{Proof, Stabber, Witness};

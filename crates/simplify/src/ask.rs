@@ -17,10 +17,10 @@ pub type MakeMethod<'a> = &'a (dyn Fn() -> Box<dyn FromRegion + Send> + Sync);
 
 /// Rays towards each face that is open, from a group of boxes.
 const N_RAYS_OF_GROUP: u32 = 2;
-/// Rays from each box.
+/// Rays from each box towards each face that is open.
 const N_RAYS: u32 = 4;
-/// Rays from each box towards what would be asked about one by one, if a sample tells that many reach something.
-const MORE_RAYS: u32 = 24;
+/// The same, if no ray from the group of the box reached the face.
+const N_RAYS_OF_UNSEEN: u32 = 1;
 /// Most boxes of a group that is asked about, if each box is wanted.
 const MOST_BOXES: usize = 8;
 /// Faces of samples.
@@ -173,8 +173,12 @@ impl Search<'_> {
         open: Vec<u32>,
         rows: &mut [Row],
     ) -> Result<(), BackendError> {
+        // Towards what no ray from the group reached, few are sent from each box.
+        let mut seen = vec![true; self.asker.faces.len()];
         if rows.len() > 1 {
-            self.shoot(N_RAYS_OF_GROUP, start, &open, rows, None);
+            self.shoot(|_| N_RAYS_OF_GROUP, start, &open, rows, None);
+            let is_seen = |f: usize| rows.iter().any(|row| row[f] == State::Visible);
+            seen.iter_mut().enumerate().for_each(|(f, seen)| *seen = is_seen(f));
             let mut question = Vec::new();
             self.with_method(|method| {
                 let mut umbra = method.umbra(&volume_of(around))?;
@@ -186,7 +190,8 @@ impl Search<'_> {
             })?;
         }
         let rows = rows.par_iter_mut().enumerate();
-        rows.try_for_each(|(k, row)| self.decide(start + k, &open, std::slice::from_mut(row), None))
+        let n_rays = |f: u32| if seen[f as usize] { N_RAYS } else { N_RAYS_OF_UNSEEN };
+        rows.try_for_each(|(k, row)| self.decide(start + k, &open, n_rays, std::slice::from_mut(row), None))
     }
 
     /// Decides which faces some box of a group sees.
@@ -199,16 +204,17 @@ impl Search<'_> {
         known: &mut [bool],
     ) -> Result<(), BackendError> {
         if rows.len() > 1 {
-            self.shoot(N_RAYS_OF_GROUP, start, &open, rows, Some(&mut *known));
+            self.shoot(|_| N_RAYS_OF_GROUP, start, &open, rows, Some(&mut *known));
             self.with_method(|method| {
                 let mut umbra = method.umbra(&volume_of(around))?;
                 self.hide_groups(&mut *umbra, &in_doubt(&open, rows, Some(known)), rows);
                 Ok(())
             })?;
         }
+        let n_rays = if rows.len() > 1 { N_RAYS_OF_UNSEEN } else { N_RAYS };
         for k in 0..rows.len() {
             // What one box sees is not asked of the next.
-            self.decide(start + k, &open, &mut rows[k..=k], Some(&mut *known))?;
+            self.decide(start + k, &open, |_| n_rays, &mut rows[k..=k], Some(&mut *known))?;
             if k == 0 && rows.len() > 1 {
                 // Most of what is not hidden from the first box is seen from it, and is not asked of the group.
                 self.with_method(|method| {
@@ -225,15 +231,18 @@ impl Search<'_> {
     }
 
     /// Decides about all open faces and one box.
+    ///
+    /// * `n_rays`: how many rays are sent towards a face
     fn decide(
         &self,
         at: usize,
         open: &[u32],
+        n_rays: impl Fn(u32) -> u32,
         rows: &mut [Row],
         mut known: Option<&mut [bool]>,
     ) -> Result<(), BackendError> {
         let open = in_doubt(open, rows, known.as_deref());
-        self.shoot(N_RAYS, at, &open, rows, known.as_deref_mut());
+        self.shoot(n_rays, at, &open, rows, known.as_deref_mut());
         let open = in_doubt(&open, rows, known.as_deref());
         if open.is_empty() {
             return Ok(());
@@ -241,8 +250,6 @@ impl Search<'_> {
         self.with_method(|method| {
             let mut umbra = method.umbra(self.volume(at))?;
             let rest = self.hide_groups(&mut *umbra, &open, rows);
-            self.shoot_more(at, &rest, rows, known.as_deref_mut());
-            let rest = in_doubt(&rest, rows, known.as_deref());
             self.hide_singles(&mut *umbra, &rest, rows);
             Ok(())
         })?;
@@ -291,25 +298,22 @@ impl Search<'_> {
         n_boxes * hidden.count() > 2 * n
     }
 
-    /// Sends more rays towards faces that few rays did not reach, if it can be expected that they spare questions.
-    fn shoot_more(&self, at: usize, rest: &[u32], rows: &mut [Row], mut known: Option<&mut [bool]>) {
-        let sample: Vec<u32> = rest.iter().copied().step_by((rest.len() / N_SAMPLES).max(1)).collect();
-        self.shoot(MORE_RAYS, at, &sample, rows, known.as_deref_mut());
-        let n_hit = sample.iter().filter(|&&f| rows[0][f as usize] == State::Visible).count();
-        if 5 * n_hit > sample.len() {
-            self.shoot(MORE_RAYS, at, rest, rows, known);
-        }
-    }
-
     /// Sends rays towards faces, from boxes for which they are open, and notes what they hit.
-    fn shoot(&self, n_rays: u32, start: usize, open: &[u32], rows: &mut [Row], mut known: Option<&mut [bool]>) {
+    fn shoot(
+        &self,
+        n_rays: impl Fn(u32) -> u32,
+        start: usize,
+        open: &[u32],
+        rows: &mut [Row],
+        mut known: Option<&mut [bool]>,
+    ) {
         let asker = self.asker;
         let b = self.volume(start).bounds();
         let seed = b.min[0].to_bits() ^ b.max[1].to_bits().rotate_left(17) ^ b.min[2].to_bits().rotate_left(41);
-        let mut random = Random::new(seed ^ rows.len() as u64 ^ u64::from(n_rays) << 32);
+        let mut random = Random::new(seed ^ rows.len() as u64);
         for &f in open {
             let t = asker.face(f);
-            for _ in 0..n_rays {
+            for _ in 0..n_rays(f) {
                 let any = random.below(rows.len());
                 let is_decided = match &known {
                     Some(known) => known[f as usize],

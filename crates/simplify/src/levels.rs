@@ -179,7 +179,7 @@ impl LevelBuilder<'_> {
             let intercepts = Intercepts::of_hider(self.faces, &views, &self.hider, options.depth)?;
             (views, intercepts)
         };
-        let simplified = within_budget(self.scene, self.faces, self.mesh.clone(), &views, &intercepts, options);
+        let simplified = within_budget(self.scene, self.faces, || self.mesh.clone(), &views, &intercepts, options);
         let simplified = simplified.with_moving_of(self.whole);
         let n_bytes = simplified.counts.left as u64;
         let n_bytes = n_bytes.saturating_mul(self.options.bytes_per_triangle);

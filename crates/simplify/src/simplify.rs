@@ -164,7 +164,7 @@ impl<'a> Prepared<'a> {
     pub fn simplify(&self, options: &SimplifyOptions) -> Result<Simplified, SimplifyError> {
         options.check()?;
         let Self { whole, scene, faces, views, intercepts } = self;
-        let run = || within_budget(scene, faces, Mesh::new(scene), views, intercepts, options).with_moving_of(whole);
+        let run = || within_budget(scene, faces, || Mesh::new(scene), views, intercepts, options).with_moving_of(whole);
         Ok(in_threads(options.threads, run))
     }
 
@@ -230,15 +230,21 @@ pub(crate) fn check_table(scene: &Scene, table: &Table) -> Result<(), SimplifyEr
     unlike.map_or(Ok(()), |unlike| Err(SimplifyError::OtherScene(unlike)))
 }
 
-/// Simplifies within the budget, given bounds on what faces intercept; `mesh` is that of the whole scene.
+/// Simplifies within the budget, given bounds on what faces can intercept.
+///
+/// * `mesh`: makes that of the whole scene; it is not needed where only hidden faces go
 pub(crate) fn within_budget(
     scene: &Scene,
     faces: &Faces,
-    mut mesh: Mesh,
+    mesh: impl FnOnce() -> Mesh,
     views: &Views,
     intercepts: &Intercepts,
     options: &SimplifyOptions,
 ) -> Simplified {
+    if options.budget == 0.0 && !options.flat {
+        return without_hidden(scene, faces, intercepts);
+    }
+    let mut mesh = mesh();
     let mut counts = Counts { before: faces.len(), ..Counts::default() };
     let mut hidden = vec![Vec::new(); scene.objects().len()];
     let mut first = 0;
@@ -292,6 +298,33 @@ pub(crate) fn within_budget(
         counts.merged_away = before - mesh.n_left();
     }
     Simplified { hidden, ..finish(scene, &mesh, counts, account.most(), [deviation, shift]) }
+}
+
+/// What is left without faces that are hidden or have no area.
+fn without_hidden(scene: &Scene, faces: &Faces, intercepts: &Intercepts) -> Simplified {
+    let mut counts = Counts { before: faces.len(), ..Counts::default() };
+    let n = scene.objects().len();
+    let (mut triangles, mut origin, mut hidden) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n));
+    let mut face = 0;
+    for object in scene.objects() {
+        let (mut kept, mut gone) = (Vec::new(), Vec::new());
+        for k in 0..object.triangles.len() as u32 {
+            if !faces.has_area(face) {
+                counts.without_area += 1;
+            } else if intercepts.is_hidden(face) {
+                gone.push(k);
+            } else {
+                kept.push(k);
+            }
+            face += 1;
+        }
+        counts.hidden += gone.len();
+        counts.left += kept.len();
+        triangles.push(kept.iter().map(|&k| object.triangles[k as usize]).collect());
+        origin.push(kept.into_iter().map(Some).collect());
+        hidden.push(gone);
+    }
+    Simplified { triangles, origin, hidden, bound: 0.0, deviation: 0.0, shift: 0.0, counts }
 }
 
 pub(crate) fn finish(

@@ -23,6 +23,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::{CellId, PlaceBuffer, Table};
 use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
+use sightlines_capi::fuzz::drive;
 use sightlines_packed::{PackOptions, Packed, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
 use sightlines_tests::certificates;
@@ -43,7 +44,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 19] = [
+const TARGETS: [Target; 20] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "geojson", seeds: plans, check: check_geojson },
@@ -62,8 +63,20 @@ const TARGETS: [Target; 19] = [
     Target { name: "bsp", seeds: maps, check: check_map },
     Target { name: "vis-state", seeds: vis_states, check: check_vis_state },
     Target { name: "certificates", seeds: certificates::seeds, check: certificates::check },
+    Target { name: "capi", seeds: calls, check: check_calls },
     Target { name: "garbage", seeds: garbage, check: check_anything },
 ];
+
+/// Bytes that stand for sequences of calls across the border to C.
+fn calls() -> Vec<Vec<u8>> {
+    let mut random = SplitMix::new(11);
+    (0..8).map(|_| (0..3000).map(|_| random.next() as u8).collect()).collect()
+}
+
+/// What C may call in any order is a status or an answer; some of it is an answer.
+fn check_calls(bytes: &[u8]) -> bool {
+    drive(bytes) > 0
+}
 
 /// Bytes that stand for small worlds of triangles.
 fn small_worlds() -> Vec<Vec<u8>> {

@@ -14,6 +14,8 @@ struct Layer {
     uses: BTreeSet<String>,
     packages: BTreeSet<String>,
     files: bool,
+    /// Whether its lints are a copy of the workspace's, but for that of `unsafe` code.
+    uses_unsafe: bool,
 }
 
 /// The whole of `docs/layers.toml`.
@@ -22,6 +24,8 @@ struct Layers {
     crates: BTreeMap<String, Layer>,
     dev: BTreeSet<String>,
     only: BTreeMap<String, BTreeSet<String>>,
+    /// The lints of the workspace.
+    lints: toml::Table,
 }
 
 /// One package of the workspace, named by its folder.
@@ -34,6 +38,8 @@ struct Package {
     published: bool,
     inherits_rust_version: bool,
     inherits_lints: bool,
+    /// Its own lints, if it does not inherit them.
+    lints: toml::Table,
     /// Path and text of each source file that is not a test; only for packages below `crates/`.
     sources: Vec<(String, String)>,
 }
@@ -66,11 +72,15 @@ fn read_layers(text: &str) -> Layers {
             uses: strings(entry.get("uses")),
             packages: strings(entry.get("packages")),
             files: entry.get("files").and_then(toml::Value::as_bool).unwrap_or(false),
+            uses_unsafe: entry.get("unsafe").and_then(toml::Value::as_bool).unwrap_or(false),
         };
         (name.clone(), layer)
     });
     let only = file["only"].as_table().expect("[only]").iter().map(|(name, list)| (name.clone(), strings(Some(list))));
-    Layers { crates: crates.collect(), dev: strings(file["dev"].get("packages")), only: only.collect() }
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("the workspace has a manifest");
+    let manifest: toml::Table = manifest.parse().expect("a manifest is TOML");
+    let lints = manifest["workspace"]["lints"].as_table().expect("the workspace has lints").clone();
+    Layers { crates: crates.collect(), dev: strings(file["dev"].get("packages")), only: only.collect(), lints }
 }
 
 /// All packages, from `cargo metadata` and, for what it does not tell, from their manifests.
@@ -104,6 +114,7 @@ fn read_package(package: &serde_json::Value) -> Package {
         published: package["publish"].is_null(),
         inherits_rust_version: inherits(toml["package"].get("rust-version")),
         inherits_lints: inherits(toml.get("lints")),
+        lints: toml.get("lints").and_then(toml::Value::as_table).cloned().unwrap_or_default(),
         sources: if in_crates { read_sources(&folder.join("src")) } else { Vec::new() },
     }
 }
@@ -213,16 +224,42 @@ fn check_dependencies(layers: &Layers, packages: &[Package], complaints: &mut Ve
     }
 }
 
-/// One rust-version and one set of lints for all.
-fn check_inheritance(packages: &[Package], complaints: &mut Vec<String>) {
+/// One rust-version and one set of lints for all; a crate with `unsafe` code has a copy of them with that lint as the one difference.
+fn check_inheritance(layers: &Layers, packages: &[Package], complaints: &mut Vec<String>) {
     for package in packages {
+        let folder = &package.folder;
         if !package.inherits_rust_version {
-            complaints.push(format!("{} does not inherit rust-version", package.folder));
+            complaints.push(format!("{folder} does not inherit rust-version"));
         }
-        if !package.inherits_lints {
-            complaints.push(format!("{} does not inherit the lints", package.folder));
+        if !layers.crates.get(folder).is_some_and(|layer| layer.uses_unsafe) {
+            if !package.inherits_lints {
+                complaints.push(format!("{folder} does not inherit the lints"));
+            }
+            continue;
+        }
+        let (ours, theirs) = (without_unsafe(&layers.lints), without_unsafe(&package.lints));
+        if ours.is_empty() || ours != theirs {
+            complaints.push(format!("{folder} has other lints than the workspace, not only for unsafe code"));
+        }
+        if unsafe_code(&package.lints) != Some("allow") {
+            complaints.push(format!("{folder} does not allow unsafe code: it can inherit the lints"));
         }
     }
+    if unsafe_code(&layers.lints) != Some("forbid") {
+        complaints.push("the workspace does not forbid unsafe code".to_owned());
+    }
+}
+
+fn unsafe_code(lints: &toml::Table) -> Option<&str> {
+    lints.get("rust")?.get("unsafe_code")?.as_str()
+}
+
+fn without_unsafe(lints: &toml::Table) -> toml::Table {
+    let mut lints = lints.clone();
+    if let Some(rust) = lints.get_mut("rust").and_then(toml::Value::as_table_mut) {
+        rust.remove("unsafe_code");
+    }
+    lints
 }
 
 /// Whether a line of code opens files: `std::fs`, `fs::…`, `File::…`, `OpenOptions`.
@@ -247,7 +284,7 @@ fn check(layers: &Layers, packages: &[Package]) -> (Vec<String>, Counts) {
     let mut complaints = Vec::new();
     check_listing(layers, packages, &mut complaints);
     check_dependencies(layers, packages, &mut complaints);
-    check_inheritance(packages, &mut complaints);
+    check_inheritance(layers, packages, &mut complaints);
     check_files(layers, packages, &mut complaints);
     let sources = || packages.iter().flat_map(|p| &p.sources);
     let counts = Counts {
@@ -347,6 +384,33 @@ fn impostor_an_own_rust_version_and_own_lints_are_caught() {
     assert_eq!(version, ["pvs does not inherit rust-version"]);
     let lints = complaints_after(|_, p| package(p, "xtask").inherits_lints = false);
     assert_eq!(lints, ["xtask does not inherit the lints"]);
+}
+
+#[test]
+fn impostor_a_copy_of_the_lints_that_differs_is_caught() {
+    let with = |change: fn(&mut toml::Table)| complaints_after(|_, p| change(&mut package(p, "capi").lints));
+    let differs = ["capi has other lints than the workspace, not only for unsafe code"];
+    let table = |lints: &mut toml::Table, key: &str| lints[key].as_table().expect("lints of a tool").clone();
+    assert!(table(&mut real_layers().lints, "clippy").contains_key("undocumented_unsafe_blocks"));
+    let dropped = |lints: &mut toml::Table| {
+        lints["clippy"].as_table_mut().map(|clippy| clippy.remove("undocumented_unsafe_blocks"));
+    };
+    assert_eq!(with(dropped), differs);
+    let weaker = |lints: &mut toml::Table| {
+        lints["rust"].as_table_mut().map(|rust| rust.insert("missing_docs".into(), "allow".into()));
+    };
+    assert_eq!(with(weaker), differs);
+    assert_eq!(with(|lints| drop(lints.remove("rustdoc"))), differs);
+    let idle = |lints: &mut toml::Table| {
+        lints["rust"].as_table_mut().map(|rust| rust.insert("unsafe_code".into(), "forbid".into()));
+    };
+    assert_eq!(with(idle), ["capi does not allow unsafe code: it can inherit the lints"]);
+    let lifted = complaints_after(|layers, _| {
+        layers.lints["rust"].as_table_mut().map(|rust| rust.insert("unsafe_code".into(), "warn".into()));
+    });
+    assert_eq!(lifted, ["the workspace does not forbid unsafe code"]);
+    let unlisted = complaints_after(|layers, _| layers.crates.entry("capi".into()).or_default().uses_unsafe = false);
+    assert_eq!(unlisted, ["capi does not inherit the lints"]);
 }
 
 #[test]

@@ -8,12 +8,14 @@ use super::{
     ConvexBlock, ConvexCut, ConvexLine, ConvexPlane, ConvexProofs, ConvexSums, ConvexTerm, ConvexTree, ConvexWalk,
 };
 use crate::bytes::{
-    Coded, Kind, ReadError, ReadErrorKind, Reader, WITHOUT_OBJECTS, Writer, framed, is_narrow, is_wide, unframed_of,
+    Coded, FIRST_VERSION, Kind, ReadError, ReadErrorKind, Reader, VERSION, Writer, framed, is_narrow, is_wide,
+    unframed_of,
 };
 
-/// Forms of lines.
+/// Forms of lines: coordinates of four bytes, of eight, and sums of two of eight.
 const NARROW: u8 = 0;
 const WIDE: u8 = 1;
+const SUMS: u8 = 2;
 
 /// Forms of blocks and their parts: a plane; sums with multipliers that are whole, in four bytes, in eight; a cut of the earlier
 /// gate's part, and of the later one's.
@@ -31,7 +33,8 @@ impl ConvexProofs {
         writer.list(&self.lines);
         writer.pairs(&self.unproven);
         writer.list(&self.walks);
-        framed(Kind::Convex, WITHOUT_OBJECTS, writer)
+        let has_sums = self.lines.iter().any(ConvexLine::has_rest);
+        framed(Kind::Convex, if has_sums { VERSION } else { FIRST_VERSION }, writer)
     }
 
     /// Reads proofs without checking what they prove: see [`ConvexProofs::check`].
@@ -50,8 +53,13 @@ impl Coded for ConvexLine {
 
     fn write(&self, writer: &mut Writer) {
         let bits = self.bits.as_flattened();
-        let wide = is_wide(bits);
         writer.number(self.gate);
+        if self.has_rest() {
+            writer.byte(SUMS);
+            writer.coordinates(bits, true);
+            return writer.coordinates(self.rest.as_flattened(), true);
+        }
+        let wide = is_wide(bits);
         writer.byte(if wide { WIDE } else { NARROW });
         writer.coordinates(bits, wide);
     }
@@ -59,7 +67,8 @@ impl Coded for ConvexLine {
     fn read(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
         let gate = reader.number()?;
         match reader.byte()? {
-            code @ (NARROW | WIDE) => Ok(Self { gate, bits: reader.points(code == WIDE)? }),
+            code @ (NARROW | WIDE) => Ok(Self { gate, bits: reader.points(code == WIDE)?, rest: [[0; 3]; 2] }),
+            SUMS if reader.is_newer() => Ok(Self { gate, bits: reader.points(true)?, rest: reader.points(true)? }),
             code => reader.fail(1, ReadErrorKind::Code(code)),
         }
     }

@@ -1,6 +1,6 @@
 //! The geometry that proofs of a map speak of: cells joined by polygons in space.
 
-use super::line::ConvexLine;
+use super::line::{ConvexLine, LinePoints};
 use super::vector::{Exact, Point, cross, dot, exact, minus, plus, times, turn};
 use crate::exact::{Dyadic, is_coordinate};
 use crate::graph::Gates;
@@ -183,27 +183,30 @@ impl ConvexNetwork {
     /// The cells that a line passes, in order, followed from its gate both ways through gates that it passes one after the other. An
     /// open set of lines joins any two of them. Empty if the line does not pass its gate, or if there is no such gate. Exact.
     pub fn follow(&self, line: &ConvexLine) -> Vec<u32> {
-        let Some([p, q]) = line.points().filter(|_| (line.gate as usize) < self.gates.len()) else { return Vec::new() };
-        if !self.passes(line.gate, p, q) {
+        let gate = line.gate;
+        let Some(points) = line.points().filter(|_| (gate as usize) < self.gates.len()) else { return Vec::new() };
+        if !self.passes(gate, &points) {
             return Vec::new();
         }
         let mut cells = Vec::new();
-        self.go(line.gate ^ 1, [q, p], &mut cells);
+        let back = points.reversed();
+        self.go(gate ^ 1, &back, &mut cells);
         cells.reverse();
-        self.go(line.gate, [p, q], &mut cells);
+        self.go(gate, &back.reversed(), &mut cells);
         cells
     }
 
     /// Adds the cell behind a gate, and the cells that follow it along a line.
-    fn go(&self, first: u32, [p, q]: [Point; 2], cells: &mut Vec<u32>) {
-        let way = minus(&exact(q), &exact(p));
+    fn go(&self, first: u32, line: &LinePoints, cells: &mut Vec<u32>) {
+        let [p, q] = &line.exact;
+        let way = minus(q, p);
         let (mut last, mut at) = (first, None);
         for _ in 0..self.n_cells() {
             let cell = self.cells(last)[1];
             cells.push(cell);
             let from = at.get_or_insert_with(|| self.place(last, p, &way)).clone();
             let next = self.gates.exits(cell).iter().find_map(|&gate| {
-                let place = (gate != last ^ 1 && self.passes(gate, p, q)).then(|| self.place(gate, p, &way))?;
+                let place = (gate != last ^ 1 && self.passes(gate, line)).then(|| self.place(gate, p, &way))?;
                 let is_later = (&(&from[0] * &place[1]) - &(&place[0] * &from[1])).sign() == Ordering::Less;
                 is_later.then_some((gate, place))
             });
@@ -214,15 +217,23 @@ impl ConvexNetwork {
 
     /// Where a line that passes a gate crosses the plane through the gate's first corner, perpendicular to its normal: a share of
     /// the way between two points of the line, as numerator and positive denominator.
-    fn place(&self, gate: u32, p: Point, way: &Exact) -> [Dyadic; 2] {
+    fn place(&self, gate: u32, p: &Exact, way: &Exact) -> [Dyadic; 2] {
         let normal = &self.planes[gate as usize].normal;
-        let from = minus(&exact(self.corners(gate)[0]), &exact(p));
+        let from = minus(&exact(self.corners(gate)[0]), p);
         [dot(normal, &from), dot(normal, way)]
     }
 
-    fn passes(&self, gate: u32, p: Point, q: Point) -> bool {
+    fn passes(&self, gate: u32, line: &LinePoints) -> bool {
         let corners = self.corners(gate);
-        (0..corners.len()).all(|k| turn(corners[k], corners[(k + 1) % corners.len()], p, q) == Ordering::Greater)
+        let mut edges = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]);
+        match line.rounded {
+            Some([p, q]) => edges.all(|[e, f]| turn(e, f, p, q) == Ordering::Greater),
+            None => edges.all(|[e, f]| {
+                let from = exact(e);
+                let [f, p, q] = [&exact(f), &line.exact[0], &line.exact[1]].map(|p| minus(p, &from));
+                dot(&f, &cross(&p, &q)).sign() == Ordering::Greater
+            }),
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::{LineForm, PlanBlock, PlanLine, PlanProofs, PlanWalk};
 use crate::bytes::{
-    Coded, Kind, ReadError, ReadErrorKind, Reader, WITHOUT_OBJECTS, Writer, framed, is_wide, unframed_of,
+    Coded, FIRST_VERSION, Kind, ReadError, ReadErrorKind, Reader, Writer, framed, is_wide, unframed_of,
 };
 
 /// Forms of lines.
@@ -23,7 +23,7 @@ impl PlanProofs {
         writer.list(&self.lines);
         writer.pairs(&self.unproven);
         writer.list(&self.walks);
-        framed(Kind::Plan, WITHOUT_OBJECTS, writer)
+        framed(Kind::Plan, FIRST_VERSION, writer)
     }
 
     /// Reads proofs without checking what they prove: see [`PlanProofs::check`].

@@ -7,7 +7,7 @@ use super::branch::{Branch, Bypass, Claim, Sum};
 use super::network::{BoxLine, BoxName};
 use super::{BoxProof, BoxProofs, ObjectProof};
 use crate::bytes::{
-    Coded, Kind, ReadError, ReadErrorKind, Reader, VERSION, WITHOUT_OBJECTS, Writer, framed, is_wide, unframed_of,
+    Coded, FIRST_VERSION, Kind, ReadError, ReadErrorKind, Reader, VERSION, Writer, framed, is_wide, unframed_of,
 };
 use num_bigint::BigInt;
 
@@ -50,7 +50,7 @@ impl BoxProofs {
         writer.list(&self.blockers);
         writer.list(&self.boxes);
         if self.objects.is_empty() {
-            return framed(Kind::Space, WITHOUT_OBJECTS, writer);
+            return framed(Kind::Space, FIRST_VERSION, writer);
         }
         self.objects_checksum.to_le_bytes().into_iter().for_each(|byte| writer.byte(byte));
         writer.list(&self.objects);
@@ -65,7 +65,7 @@ impl BoxProofs {
         let (checksum, mut reader) = unframed_of(Kind::Space, bytes)?;
         let (lines, blockers, boxes) = (reader.list()?, reader.list()?, reader.list()?);
         let mut proofs = Self { checksum, lines, blockers, boxes, ..Self::default() };
-        if reader.has_objects() {
+        if reader.is_newer() {
             let four = reader.bytes(4)?;
             proofs.objects_checksum = u32::from_le_bytes([four[0], four[1], four[2], four[3]]);
             proofs.objects = reader.list()?;

@@ -443,3 +443,46 @@ fn corners_of_very_many_digits_are_refused() {
         |depth: usize| ConvexBlock::Sums(ConvexSums { ends: [1, 0], tree: tree(depth) }).holds(&network, &[0], 2);
     assert!(!holds(24));
 }
+
+/// Three doors that leave a slit of one unit in the last place, in which there is no double.
+fn slit() -> ConvexNetwork {
+    let below = 64.0f64.next_down();
+    let door = |a: u32, y: [f64; 2]| {
+        let x = 4.0 * f64::from(a + 1);
+        let corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[k, z]| [x, y[k], f64::from(z as u8)]);
+        ConvexPortal { cells: [a, a + 1], corners: corners.to_vec() }
+    };
+    ConvexNetwork::new(4, &[door(0, [0.0, 64.0]), door(1, [below, 100.0]), door(2, [0.0, 64.0])], 0.0).unwrap()
+}
+
+/// Lines of two doubles pass where none of doubles does, and are stored in the newest version only.
+#[test]
+fn lines_of_two_doubles_pass_slits_of_a_unit() {
+    let network = slit();
+    let half = 0.5 * (64.0f64.next_down() - 64.0);
+    let with = |y: [f64; 2]| ConvexLine::through_sums(0, [4.0, 12.0].map(|x| [[x, 0.0], y, [0.5, 0.0]]));
+    let proofs = |line| ConvexProofs { checksum: network.checksum(), lines: vec![line], ..ConvexProofs::default() };
+    let fine = proofs(with([64.0, half]));
+    assert_eq!(fine.check(&network).unwrap().visible.len(), 6);
+    assert_eq!(network.follow(&with([64.0, half])), [0, 1, 2, 3]);
+    // The impostors: both ends of the slit, and beyond.
+    for rest in [0.0, 2.0 * half, 3.0 * half] {
+        assert_ne!(network.follow(&with([64.0, rest])).len(), 4, "{rest:e}");
+    }
+    assert_eq!(proofs(with([64.0, 0.0])).check(&network).unwrap_err(), Refusal::Gate { index: 0, gate: 0 });
+    assert!(proofs(with([64.0, f64::NAN])).check(&network).is_err());
+
+    let bytes = fine.to_bytes();
+    assert_eq!(ConvexProofs::from_bytes(&bytes), Ok(fine.clone()));
+    assert_eq!((bytes[8], proofs(with([63.0, 0.0])).to_bytes()[8]), (2, 1));
+    for n in 0..bytes.len() {
+        assert!(ConvexProofs::from_bytes(&bytes[..n]).is_err(), "{n} bytes");
+    }
+    // The same bytes as of the first version, which has no such lines.
+    let mut old = bytes;
+    old[8] = 1;
+    let end = old.len() - 4;
+    let sum = crc32fast::hash(&old[..end]).to_le_bytes();
+    old[end..].copy_from_slice(&sum);
+    assert_eq!(ConvexProofs::from_bytes(&old).unwrap_err().kind, ReadErrorKind::Code(2));
+}

@@ -2,7 +2,7 @@
 
 use super::affine::{Around, Edge, Window};
 use crate::Occluder;
-use sightlines_geometry::{Point3, orient3d};
+use sightlines_geometry::{Point2, Point3, orient2d, orient3d};
 
 /// A plane that bounds an umbra, as a function that is not negative for what is hidden: `normal · (p - point)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +43,11 @@ impl Side {
         Around { about, error: error * (1.0 + 8.0 * f64::EPSILON) }
     }
 
+    /// The function at `p`, rounded as by [`Self::at`].
+    fn about(&self, p: Point3) -> f64 {
+        (0..3).fold(0.0, |about, k| about + self.normal[k] * (p[k] - self.point[k]))
+    }
+
     fn at_corners(&self, window: &Window<'_>, bounds: [i32; 4]) -> [Around; 4] {
         Window::places(bounds).map(|place| self.at(window.point(place)))
     }
@@ -68,12 +73,24 @@ pub(crate) fn sides(occluder: &Occluder, corners: &[Point3; 8], out: &mut Vec<Si
     let outline = occluder.outline();
     for (i, &p) in outline.iter().enumerate() {
         let q = outline[(i + 1) % outline.len()];
-        let outside = |v: Point3, other: Point3| sign * orient3d(v, p, q, other) < 0.0;
-        let first = corners[0];
-        let farthest = corners[1..].iter().fold(first, |v, &other| if outside(v, other) { other } else { v });
-        out.push(Side::through([farthest, p, q], sign));
+        out.push(Side::through([farthest(corners, p, q, sign), p, q], sign));
     }
     true
+}
+
+/// The corner of the box that has no other one outside of its plane through `p` and `q`; the first of several. Exact.
+fn farthest(corners: &[Point3; 8], p: Point3, q: Point3, sign: f64) -> Point3 {
+    let first = corners[0];
+    let Some(k) = (0..3).find(|&k| p[k] != q[k] && (1..3).all(|i| p[(k + i) % 3] == q[(k + i) % 3])) else {
+        let outside = |v: Point3, other: Point3| sign * orient3d(v, p, q, other) < 0.0;
+        return corners[1..].iter().fold(first, |v, &other| if outside(v, other) { other } else { v });
+    };
+    // Corners that differ along the edge have one plane, and the question is one of the plane across it.
+    let flat = |p: Point3| Point2::new(p[(k + 1) % 3], p[(k + 2) % 3]);
+    let (p, sign) = (flat(p), if q[k] > p[k] { -sign } else { sign });
+    let outside = |v: Point3, other: Point3| sign * orient2d(flat(v), p, flat(other)) < 0.0;
+    let lower = (1..8).filter(|corner| corner >> k & 1 == 0).map(|corner| corners[corner]);
+    lower.fold(first, |v, other| if outside(v, other) { other } else { v })
 }
 
 /// The texels around the umbra, widened to whole ones; `None` if it is empty. Rounding may lose texels, never add any:
@@ -83,8 +100,12 @@ pub(crate) fn bounds(sides: &[Side], window: &Window<'_>) -> Option<[i32; 4]> {
     let (w, h) = (f64::from(all[2]), f64::from(all[3]));
     let mut polygon = vec![[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]];
     let mut clipped = Vec::new();
+    let corners = Window::places(all).map(|place| window.point(place));
     for side in sides {
-        let at = side.at_corners(window, all).map(|f| f.about);
+        let at = corners.map(|p| side.about(p));
+        if at.iter().all(|&f| f < 0.0) {
+            return None;
+        }
         let (dx, dy) = ((at[1] - at[0]) / w, (at[2] - at[0]) / h);
         clip(&polygon, |[x, y]| at[0] + dx * x + dy * y, &mut clipped);
         std::mem::swap(&mut polygon, &mut clipped);
@@ -126,4 +147,42 @@ pub(crate) fn push_edges(sides: &[Side], window: &Window<'_>, bounds: [i32; 4], 
         }
     }
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sightlines_geometry::{Aabb, Random};
+
+    /// Edges along an axis are looked at in the plane across it, with the same corner as in space. A box that the line of the edge meets
+    /// is not on one side of a facet there, and is left out.
+    #[test]
+    fn the_farthest_corner_is_that_of_exact_predicates() {
+        let (mut random, mut counts) = (Random::new(5), [0; 2]);
+        let mut whole = || random.below(7) as f64 - 3.0;
+        for _ in 0..20_000 {
+            let min = [0; 3].map(|_| whole());
+            let corners = Aabb { min, max: min.map(|x| x + (whole() + 3.0) / 2.0) }.corners();
+            let (p, mut q) = ([0; 3].map(|_| whole()), [0; 3].map(|_| whole()));
+            let axis = ((whole() + 3.0) as usize).min(3);
+            if axis < 3 {
+                let end = q[axis];
+                q = p;
+                q[axis] = end;
+            }
+            // Others may be along an axis by chance.
+            let differs = |k: usize| p[k] != q[k];
+            let axis = (0..3).find(|&k| (0..3).all(|i| differs(i) == (i == k))).unwrap_or(3);
+            for sign in [1.0, -1.0] {
+                let outside = |v: Point3, other: Point3| sign * orient3d(v, p, q, other) < 0.0;
+                let want = corners[1..].iter().fold(corners[0], |v, &other| if outside(v, other) { other } else { v });
+                let is_met = |k: usize| corners[0][k] <= p[k] && p[k] <= corners[7][k];
+                if axis == 3 || !(is_met((axis + 1) % 3) && is_met((axis + 2) % 3)) {
+                    assert_eq!(farthest(&corners, p, q, sign), want, "{corners:?} {p:?} {q:?} {sign}");
+                    counts[usize::from(axis < 3)] += 1;
+                }
+            }
+        }
+        assert!(counts.iter().all(|&n| n > 8000), "{counts:?}");
+    }
 }

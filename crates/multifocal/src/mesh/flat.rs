@@ -178,7 +178,11 @@ impl Piece {
                     && p.len() <= options.max_corners
             });
             for polygon in polygons {
-                let inside = |t: &u32| is_inside(&polygon, centre(mesh.corners(*t).map(|p| flat(self.axis, p))));
+                let (low, high) = box_of(&polygon);
+                let inside = |t: &u32| {
+                    let middle = centre(mesh.corners(*t).map(|p| flat(self.axis, p)));
+                    middle.cmpgt(low).all() && middle.cmplt(high).all() && is_inside(&polygon, middle)
+                };
                 covered.extend(self.triangles.iter().copied().filter(inside));
                 let key: Vec<[u64; 2]> = rotated(&polygon).iter().map(|p| [p.x.to_bits(), p.y.to_bits()]).collect();
                 if known.insert(key) {
@@ -226,10 +230,13 @@ impl Piece {
     fn checked(&self, polygon: Vec<Point2>, triangle: [Point2; 3], middle: Point2) -> Option<Vec<Point2>> {
         let polygon = simplified(polygon);
         let is_good = |p: &[Point2]| {
+            let (low, high) = box_of(p);
+            // What is beside the box is beside the polygon.
+            let is_beside = |a: Point2, b: Point2| a.max(b).cmple(low).any() || a.min(b).cmpge(high).any();
             is_strictly_convex(p)
                 && is_inside(p, middle)
                 && is_inside(&counter_clockwise(triangle), middle)
-                && self.borders.iter().all(|&[a, b]| stays_out(p, a, b))
+                && self.borders.iter().all(|&[a, b]| is_beside(a, b) || stays_out(p, a, b))
         };
         if is_good(&polygon) {
             return Some(polygon);
@@ -254,6 +261,11 @@ impl Piece {
 
 /// Most cuts for one polygon.
 const MAX_CUTS: usize = 256;
+
+/// The lower and the upper corner of the box around a polygon.
+fn box_of(polygon: &[Point2]) -> (Point2, Point2) {
+    polygon.iter().fold((Point2::INFINITY, Point2::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)))
+}
 
 fn centre([a, b, c]: [Point2; 3]) -> Point2 {
     (a + b + c) / 3.0

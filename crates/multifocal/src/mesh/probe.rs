@@ -2,8 +2,8 @@
 
 use sightlines_geometry::{Aabb, Point3, check_coordinate, orient3d, ray_triangle};
 
-/// Number of segments tried before a walk: if one passes freely, nothing is hidden.
-pub(super) const N_SEGMENTS: u32 = 16;
+/// Number of segments tried before a walk: if one passes freely, or meets other pieces than the others, nothing is hidden.
+pub(super) const N_SEGMENTS: u32 = 8;
 
 /// Segment `i` between two boxes, between inner points: spread by fractional parts of roots, so that few edges are hit.
 pub(super) fn segment(v: &Aabb<3>, e: &Aabb<3>, i: u32) -> Option<[Point3; 2]> {

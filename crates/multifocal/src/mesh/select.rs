@@ -11,6 +11,8 @@ struct Sketch {
     middle: Point3,
     /// Area, along the normal.
     area: Point3,
+    /// The same with length 1.
+    normal: Point3,
     /// Directions of length 1 in its plane, and its total extent along each.
     axes: [Point3; 2],
     widths: [f64; 2],
@@ -35,21 +37,51 @@ impl Chooser {
     ///
     /// O(number of occluders).
     pub fn select(&self, volume: &Volume, plane: &Plane, n: usize) -> Vec<u32> {
-        let hidden = |(i, s): (u32, &Sketch)| Some((s.hidden_space(volume, plane)?, i)).filter(|h| h.0 > 0.0);
-        let mut ranked: Vec<(f64, u32)> = (0..).zip(&self.sketches).filter_map(hidden).collect();
-        let better = |a: &(f64, u32), b: &(f64, u32)| -> Ordering { b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)) };
-        if n < ranked.len() {
-            ranked.select_nth_unstable_by(n, better);
-            ranked.truncate(n);
+        let [chosen] = self.select_for(volume, [plane], n);
+        chosen
+    }
+
+    /// The same for several planes around one volume: how an occluder looks from there is the same for all of them.
+    pub fn select_for<const N: usize>(&self, volume: &Volume, planes: [&Plane; N], n: usize) -> [Vec<u32>; N] {
+        let eye = middle_of(volume);
+        let mut ranked: [Vec<(f64, u32)>; N] = std::array::from_fn(|_| Vec::new());
+        for (i, sketch) in (0..).zip(&self.sketches) {
+            let Some(shadow) = sketch.shadow(volume, eye) else { continue };
+            for (plane, ranked) in planes.iter().zip(&mut ranked) {
+                let space = sketch.hidden_space(&shadow, eye, plane);
+                ranked.extend(space.filter(|space| *space > 0.0).map(|space| (space, i)));
+            }
         }
-        ranked.sort_unstable_by(better);
-        ranked.into_iter().map(|r| r.1).collect()
+        let better = |a: &(f64, u32), b: &(f64, u32)| -> Ordering { b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)) };
+        ranked.map(|mut ranked| {
+            if n < ranked.len() {
+                ranked.select_nth_unstable_by(n, better);
+                ranked.truncate(n);
+            }
+            ranked.sort_unstable_by(better);
+            ranked.into_iter().map(|r| r.1).collect()
+        })
     }
 }
 
 /// Like [`Chooser::select`], for a single query.
 pub fn select(volume: &Volume, plane: &Plane, occluders: &[Occluder], n: usize) -> Vec<u32> {
     Chooser::new(occluders).select(volume, plane, n)
+}
+
+/// How an occluder looks from a volume.
+struct Shadow {
+    /// By how much of its width the shadow grows along both axes, for each time its distance from the eye.
+    growth: [f64; 2],
+    /// Its area as it is seen.
+    seen: f64,
+    /// From the middle of the volume to its own.
+    distance: f64,
+}
+
+fn middle_of(volume: &Volume) -> Point3 {
+    let b = volume.bounds();
+    std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0)
 }
 
 impl Sketch {
@@ -67,27 +99,19 @@ impl Sketch {
             let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
             high - low
         });
-        Self { middle, area, axes, widths }
+        Self { middle, area, normal, axes, widths }
     }
 
-    /// The approximate space behind it, up to the plane, that is hidden from the volume; `None` if the volume is not on
-    /// one side of it.
-    fn hidden_space(&self, volume: &Volume, plane: &Plane) -> Option<f64> {
+    /// How it looks from the volume; `None` if the volume is not on one side of it.
+    fn shadow(&self, volume: &Volume, eye: Point3) -> Option<Shadow> {
         let b = volume.bounds();
-        let eye: Point3 = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
         // The total extent of the volume along a direction.
         let reach = |a: Point3| (0..3).map(|k| (b.max[k] - b.min[k]) * a[k].abs()).sum::<f64>();
         let way = sub(self.middle, eye);
-        let facing = dot(unit(self.area), way).abs();
-        if facing <= reach(unit(self.area)) / 2.0 {
+        let facing = dot(self.normal, way).abs();
+        if facing <= reach(self.normal) / 2.0 {
             return None;
         }
-        // Along the view axis: from the eye to it, and from it to the plane.
-        let (in_front, behind) = (plane.height(eye) - plane.height(self.middle), plane.height(self.middle));
-        if in_front <= 0.0 || behind <= 0.0 {
-            return None;
-        }
-        let shift = behind / in_front;
         // From one eye the shadow grows with the distance; eyes apart from each other reduce it on both sides.
         let view = unit(way);
         let growth: [f64; 2] = std::array::from_fn(|i| {
@@ -95,15 +119,26 @@ impl Sketch {
             let (width, spread) = (self.widths[i] * length(across), reach(unit(across)));
             if width > 0.0 { 1.0 - spread / width } else { f64::NEG_INFINITY }
         });
+        let seen = dot(self.area, view).abs();
+        Some(Shadow { growth, seen, distance: length(way) })
+    }
+
+    /// The approximate space behind it, up to the plane, that is hidden from the volume; `None` if it is not between the two.
+    fn hidden_space(&self, shadow: &Shadow, eye: Point3, plane: &Plane) -> Option<f64> {
+        // Along the view axis: from the eye to it, and from it to the plane.
+        let (in_front, behind) = (plane.height(eye) - plane.height(self.middle), plane.height(self.middle));
+        if in_front <= 0.0 || behind <= 0.0 {
+            return None;
+        }
+        let shift = behind / in_front;
         // Up to where it vanishes, as a multiple of the distance from the eye.
-        let last = growth.iter().filter(|g| **g < 0.0).map(|g| -1.0 / g).fold(shift, f64::min);
+        let last = shadow.growth.iter().filter(|g| **g < 0.0).map(|g| -1.0 / g).fold(shift, f64::min);
         if last <= 0.0 {
             return None;
         }
-        let [g, h] = growth;
+        let [g, h] = shadow.growth;
         let space = last + (g + h) * last * last / 2.0 + g * h * last * last * last / 3.0;
-        let seen = dot(self.area, view).abs();
-        Some(space * seen * length(way) * self.share_of_window(eye, last, plane))
+        Some(space * shadow.seen * shadow.distance * self.share_of_window(eye, last, plane))
     }
 
     /// The share of the shadow's end that falls into the plane's window, by the middle and the widths of the shadow.

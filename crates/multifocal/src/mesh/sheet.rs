@@ -23,12 +23,17 @@
 //!
 //! Source: parity as for the ShieldTester of Navazo, Rossignac, Jou and Shariff, Computer Graphics Forum 22(3), 2003; the walk
 //! on sides and the treatment of borders were chosen here.
+//!
+//! Parts of a query are functions of their own for the compiler, too: as one, they take twice as long.
 
-use super::probe::{N_SEGMENTS, crosses, meet, segment};
+mod starts;
+
+use super::probe::{N_SEGMENTS, crosses, segment};
 use super::shaft::{Shaft, avoids};
 use super::vector::{basis, dot, sub, unit};
 use super::weld::Mesh;
 use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate, orient3d};
+use starts::pieces;
 
 /// A mesh, prepared for separation tests. Can be shared by threads.
 #[derive(Debug)]
@@ -39,6 +44,8 @@ pub struct Sheets {
     /// The triangles of each edge in their order around it, as the mesh lists them.
     around: Vec<u32>,
     around_starts: Vec<u32>,
+    /// For each triangle the piece of the mesh that it belongs to: triangles that hang together by edges.
+    piece: Vec<u32>,
 }
 
 impl Sheets {
@@ -61,7 +68,7 @@ impl Sheets {
             }
             around_starts.push(around.len() as u32);
         }
-        Self { mesh, boxes, tree, around, around_starts }
+        Self { piece: pieces(&mesh), mesh, boxes, tree, around, around_starts }
     }
 
     /// The mesh.
@@ -79,6 +86,13 @@ impl Sheets {
             codes: vec![(0, 0); self.mesh.vertices().len()],
             odd: vec![0; self.mesh.edges().len()],
             queue: Vec::new(),
+            n_walked: 0,
+            starts: Vec::new(),
+            pieces: Vec::new(),
+            met: Vec::new(),
+            segment_order: std::array::from_fn(|k| k as u32 + 1),
+            from_volume: vec![0; n],
+            volume: (Aabb::EMPTY, 0),
             forked: false,
             chain: Vec::new(),
         }
@@ -171,6 +185,21 @@ pub struct SheetTester<'a> {
     /// Parity of the triangles of the chain that end at each edge.
     odd: Vec<u32>,
     queue: Vec<Side>,
+    /// Number of sides that walks visited so far.
+    n_walked: u64,
+    /// Triangles that the first segment meets, with the parameters of the hits.
+    starts: Vec<(f64, u32)>,
+    /// Pieces of the mesh that all segments met so far, ascending, and whether the current one does.
+    pieces: Vec<(u32, bool)>,
+    /// Triangles of these that some segment met.
+    met: Vec<u32>,
+    /// In which order segments are looked at after the first one. Changes no answer.
+    segment_order: [u32; N_SEGMENTS as usize - 1],
+    /// For each triangle whether it may hide from the volume of the current queries, if that was asked: the mark of the volume, and the
+    /// answer in the lowest bit.
+    from_volume: Vec<u32>,
+    /// The volume of the current queries, and its mark.
+    volume: (Aabb<3>, u32),
     /// Whether the walk met an edge without exactly two triangles.
     forked: bool,
     chain: Vec<u32>,
@@ -199,24 +228,32 @@ impl SheetTester<'_> {
         if !usable(v) || !usable(e) || (0..3).all(|k| v.min[k] <= e.max[k] && e.min[k] <= v.max[k]) {
             return false;
         }
-        let mut segments = [[[0.0; 3]; 2]; N_SEGMENTS as usize];
+        if !self.find_starts(v, e) {
+            return false;
+        }
+        let starts = std::mem::take(&mut self.starts);
+        let hides = self.any_hides(v, e, &starts, limit);
+        self.starts = starts;
+        hides
+    }
+
+    /// Number of triangle sides that walks visited so far, in all queries: what targets cost that are not hidden.
+    pub fn n_walked(&self) -> u64 {
+        self.n_walked
+    }
+
+    /// Whether a walk from one of the starts finds a chain that hides.
+    #[inline(never)]
+    fn any_hides(&mut self, v: &Aabb<3>, e: &Aabb<3>, starts: &[(f64, u32)], limit: usize) -> bool {
+        let mut segments = [[[0.0; 3]; 2]; 4];
         for (i, s) in (0..).zip(&mut segments) {
             let Some(inner) = segment(v, e, i) else { return false };
             *s = inner;
         }
-        if !segments.iter().all(|&s| self.sheets.blocks(s)) {
-            return false;
-        }
-        let mut starts: Vec<(f64, u32)> = Vec::new();
-        self.sheets.hits(segments[0], |t, at| {
-            starts.push((at, t));
-            true
-        });
-        starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.next_epoch(2 * starts.len() as u32 + 2);
         let pair = Pair { v, e, shaft: Shaft::new(v, e), since: self.epoch };
         let mut left = limit;
-        for &(_, triangle) in &starts {
+        for &(_, triangle) in starts {
             let [a, b, c] = self.sheets.mesh.corners(triangle);
             let front = orient3d(a, b, c, segments[0][0]) > 0.0;
             for front in [front, !front] {
@@ -226,7 +263,7 @@ impl SheetTester<'_> {
                 }
                 self.epoch += 1;
                 self.forked = false;
-                if self.walk(&pair, start, &mut left) && segments[..4].iter().any(|s| self.certifies(&pair, s)) {
+                if self.walk(&pair, start, &mut left) && self.certifies(&pair, &segments) {
                     return true;
                 }
                 if left == 0 {
@@ -253,6 +290,7 @@ impl SheetTester<'_> {
 
     /// Walks over the surface from a side, within the hull; returns whether the walk ended. The chain then has the
     /// triangles visited on one side only.
+    #[inline(never)]
     fn walk(&mut self, pair: &Pair<'_>, start: Side, left: &mut usize) -> bool {
         let sheets = self.sheets;
         self.queue.clear();
@@ -265,6 +303,7 @@ impl SheetTester<'_> {
                 return false;
             }
             *left -= 1;
+            self.n_walked += 1;
             for at in 0..sheets.mesh.outline_edges(side.triangle).len() {
                 if self.misses(pair, sheets.mesh.outline_edges(side.triangle)[at]) {
                     continue;
@@ -288,12 +327,12 @@ impl SheetTester<'_> {
     }
 
     /// Condition 1.
-    fn may_hide(&self, pair: &Pair<'_>, triangle: u32) -> bool {
-        let corners = self.sheets.mesh.corners(triangle);
-        avoids(&corners, pair.e, false) && avoids(&corners, pair.v, true)
+    fn may_hide(&mut self, pair: &Pair<'_>, triangle: u32) -> bool {
+        self.sheets.may_hide(pair.v, pair.e, triangle, self.volume.1, &mut self.from_volume[triangle as usize])
     }
 
     /// Whether an edge certainly misses the relative interior of the hull.
+    #[inline(never)]
     fn misses(&mut self, pair: &Pair<'_>, edge: u32) -> bool {
         let ends = self.sheets.mesh.edges()[edge as usize];
         let [a, b] = ends.map(|v| self.sheets.mesh.vertices()[v as usize]);
@@ -306,68 +345,51 @@ impl SheetTester<'_> {
             self.codes[v as usize] = (pair.since, code);
             code
         });
-        s & t != 0 || pair.shaft.certainly_misses(a, b)
+        // An end without a bit is inside.
+        s & t != 0 || s != 0 && t != 0 && pair.shaft.certainly_misses(a, b)
     }
 
-    /// Whether the chain satisfies the three conditions, the third with this segment.
-    fn certifies(&mut self, pair: &Pair<'_>, segment: &[Point3; 2]) -> bool {
+    /// Whether the chain satisfies the three conditions, the third with the first of the segments that touches no edge: with the others
+    /// it is the same, if the first two are satisfied.
+    fn certifies(&mut self, pair: &Pair<'_>, segments: &[[Point3; 2]]) -> bool {
         let mesh = &self.sheets.mesh;
         let chain = std::mem::take(&mut self.chain);
-        let edges = || chain.iter().flat_map(|&t| mesh.outline_edges(t).iter().copied());
-        edges().for_each(|e| self.odd[e as usize] += 1);
-        let closed = edges().all(|e| self.odd[e as usize].is_multiple_of(2) || self.misses(pair, e));
-        edges().for_each(|e| self.odd[e as usize] = 0);
-        let mut n_crossings = Some(0u32);
-        for &t in &chain {
-            let crosses = crosses(&self.sheets.boxes[t as usize], mesh.corners(t), segment);
-            n_crossings = n_crossings.zip(crosses).map(|(n, c)| n + u32::from(c));
-        }
-        let free = chain.iter().all(|&t| self.may_hide(pair, t));
+        let n_crossings = |segment: &[Point3; 2]| {
+            let mut n = 0u32;
+            for &t in &chain {
+                n += u32::from(crosses(&self.sheets.boxes[t as usize], mesh.corners(t), segment)?);
+            }
+            Some(n)
+        };
+        let is_odd = segments.iter().find_map(n_crossings).is_some_and(|n| n % 2 == 1);
+        let certifies = is_odd && chain.iter().all(|&t| self.may_hide(pair, t)) && {
+            let edges = || chain.iter().flat_map(|&t| mesh.outline_edges(t).iter().copied());
+            edges().for_each(|e| self.odd[e as usize] += 1);
+            let closed = edges().all(|e| self.odd[e as usize].is_multiple_of(2) || self.misses(pair, e));
+            edges().for_each(|e| self.odd[e as usize] = 0);
+            closed
+        };
         self.chain = chain;
-        closed && free && n_crossings.is_some_and(|n| n % 2 == 1)
+        certifies
     }
 }
 
 impl Sheets {
-    /// Whether a segment meets a triangle, in doubles. Only used where an error leads to the answer `false`, or to a
-    /// walk.
-    fn blocks(&self, segment: [Point3; 2]) -> bool {
-        let mut any = false;
-        self.hits(segment, |_, _| {
-            any = true;
-            false
-        });
-        any
-    }
-
-    /// Passes the triangles that a segment meets to `each`, with the parameter of the hit, until it returns `false`; in
-    /// doubles.
-    fn hits(&self, [p, q]: [Point3; 2], mut each: impl FnMut(u32, f64) -> bool) {
-        let d = sub(q, p);
-        let inverse = d.map(|x| 1.0 / x);
-        let enter = |b: &Aabb<3>| {
-            let (mut first, mut last) = (0.0f64, 1.0f64);
-            for k in 0..3 {
-                if d[k] == 0.0 {
-                    if p[k] < b.min[k] || p[k] > b.max[k] {
-                        return false;
-                    }
-                    continue;
-                }
-                let [s, t] = [b.min[k], b.max[k]].map(|x| (x - p[k]) * inverse[k]);
-                first = first.max(s.min(t));
-                last = last.min(s.max(t));
-            }
-            first <= last + 1e-12
-        };
-        let more = std::cell::Cell::new(true);
-        let wanted = |b: &Aabb<3>| more.get() && enter(b);
-        self.tree.visit(wanted, |t| {
-            if wanted(&self.boxes[t as usize])
-                && let Some(at) = meet(self.mesh.corners(t), p, d)
-            {
-                more.set(each(t, at));
-            }
-        });
+    /// Whether a triangle may hide `e` from `v`: it touches neither `e` nor the inside of `v`.
+    ///
+    /// * `mark`: that of the volume
+    /// * `known`: the mark of the last volume that was asked about, and the answer in the lowest bit
+    fn may_hide(&self, v: &Aabb<3>, e: &Aabb<3>, triangle: u32, mark: u32, known: &mut u32) -> bool {
+        if *known >> 1 != mark {
+            *known = mark << 1 | u32::from(avoids(&self.mesh.corners(triangle), v, true));
+        }
+        let b = &self.boxes[triangle as usize];
+        let is_apart = || (0..3).any(|k| b.min[k] > e.max[k] || b.max[k] < e.min[k]);
+        if *known & 1 == 0 {
+            return false;
+        }
+        let corners = || self.mesh.corners(triangle);
+        // Most that touch the target have a corner in common with it.
+        is_apart() || !corners().iter().any(|&p| e.contains(p)) && avoids(&corners(), e, false)
     }
 }

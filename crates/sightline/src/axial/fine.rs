@@ -8,8 +8,8 @@
 use super::proof::{self, Proof, sign_of_sum};
 use super::rows::{Octant, Row, is_forward, misses, sign};
 use super::simplex::{self, Column, FAR, N};
-use super::wide::Wide;
 use super::witness::AxialWitness;
+use crate::wide::Wide;
 use num_rational::BigRational;
 use sightlines_exact::rational;
 use sightlines_geometry::AxialDoor;

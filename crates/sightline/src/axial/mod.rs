@@ -36,7 +36,6 @@ mod rows;
 pub mod shaft;
 mod simplex;
 mod stabber;
-mod wide;
 mod witness;
 
 pub use certificate::{AxialCertificate, AxialRow, OctantProof};

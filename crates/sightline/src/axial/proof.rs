@@ -8,7 +8,7 @@
 //! clearly negative; otherwise the weights are recomputed as the integers with which the sum vanishes exactly.
 
 use super::rows::{Octant, Row, sign};
-use super::wide::Wide;
+use crate::wide::Wide;
 use num_bigint::BigInt;
 use num_traits::{CheckedDiv, CheckedMul, CheckedSub, FromPrimitive, One, Signed, ToPrimitive, Zero};
 

@@ -55,6 +55,8 @@ pub enum ConvexCertificate {
     Boxes(BoxProof),
     /// A plane stops them.
     Plane(PlaneProof),
+    /// A sum of sides is positive for none of them.
+    Hulls(HullProof),
 }
 
 /// A plane that has a portal on one side, a later one on the other, and a still later one on the first
@@ -80,6 +82,18 @@ pub struct BoxProof {
     pub nodes: Vec<ConvexNode>,
 }
 
+/// Lines from the hull of one portal's corners to that of a later one: the sum of these rows is not positive for any of
+/// them, although for a line that passes each row is.
+///
+/// The sum is affine in both points, so it is largest at a pair of corners.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HullProof {
+    /// The portals from and to which lines lead, the earlier one first.
+    pub portals: [usize; 2],
+    /// The rows, at least one. A row may occur more than once: its multipliers then add up to a number that no double is.
+    pub terms: Vec<ConvexTerm>,
+}
+
 /// A point or a vector times a power of two.
 type Whole = [BigInt; 3];
 
@@ -89,13 +103,14 @@ impl ConvexCertificate {
         let mut named: Vec<usize> = match self {
             Self::Boxes(proof) => proof.portals.into_iter().chain(proof.terms().map(|t| t.portal)).collect(),
             Self::Plane(proof) => proof.stops.into_iter().chain([proof.edge.0, proof.corner.0]).collect(),
+            Self::Hulls(proof) => proof.portals.into_iter().chain(proof.terms.iter().map(|t| t.portal)).collect(),
         };
         named.sort_unstable();
         named.dedup();
         named
     }
 
-    /// Number of boxes that are refuted; 0 for a plane.
+    /// Number of boxes that are refuted; 0 where there are none.
     pub fn n_leaves(&self) -> usize {
         let Self::Boxes(proof) = self else { return 0 };
         proof.nodes.iter().filter(|node| matches!(node, ConvexNode::Leaf(_))).count()
@@ -107,6 +122,7 @@ impl ConvexCertificate {
         match self {
             Self::Boxes(proof) => proof.check(portals),
             Self::Plane(proof) => proof.check(portals),
+            Self::Hulls(proof) => proof.check(portals),
         }
     }
 }
@@ -133,6 +149,24 @@ impl PlaneProof {
         };
         !normal.iter().all(Zero::is_zero)
             && ((side(i, -1) && side(j, 1) && side(k, -1)) || (side(i, 1) && side(j, -1) && side(k, 1)))
+    }
+}
+
+impl HullProof {
+    pub(super) fn check(&self, portals: &[&Portal3]) -> bool {
+        let [first, last] = self.portals;
+        if self.terms.is_empty() || first >= last || last >= portals.len() {
+            return false;
+        }
+        let scales = || {
+            let corners = portals.iter().flat_map(|p| p.corners()).flatten().copied();
+            Some((least(corners)?, least(self.terms.iter().map(|t| t.multiplier))?))
+        };
+        let Some((place, multiplier)) = scales() else { return false };
+        let Some(sum) = Sum::of(&self.terms, portals, place, multiplier) else { return false };
+        let corners = |i: usize| portals[i].corners().iter().map(|p| p.map(|x| whole(x, place))).collect::<Vec<_>>();
+        let later = corners(last);
+        corners(first).iter().all(|q| later.iter().all(|r| !sum.at(q, r, &BigInt::from(1)).is_positive()))
     }
 }
 
@@ -242,24 +276,7 @@ impl Scales {
         [low, high]: [[f64; 4]; 2],
         portals: &[&Portal3],
     ) -> bool {
-        // The line from q to r has the edge from e to f inside if (f - e) · (q × r) + (e × f) · (r - q) is
-        // The factors of the line are added up.
-        let (mut along, mut moment) = (Whole::default(), Whole::default());
-        for term in terms {
-            let Some(portal) = portals.get(term.portal) else { return false };
-            let corners = portal.corners();
-            if term.edge >= corners.len() || term.multiplier <= 0.0 {
-                return false;
-            }
-            let times = whole(term.multiplier, self.multiplier);
-            let e = self.place(corners[term.edge]);
-            let f = self.place(corners[(term.edge + 1) % corners.len()]);
-            let (d, m) = (minus(&f, &e), product(&e, &f));
-            for i in 0..3 {
-                along[i] += &times * &d[i];
-                moment[i] += &times * &m[i];
-            }
-        }
+        let Some(sum) = Sum::of(terms, portals, self.place, self.multiplier) else { return false };
         // Points are scaled once more than directions, by the scale of coordinates.
         let ends = |i: usize, k: usize| [low[2 * i + k], high[2 * i + k]].map(|x| whole(x, self.coordinate));
         let one = BigInt::from(1) << self.coordinate;
@@ -277,12 +294,43 @@ impl Scales {
             points
         };
         let later = corners(1);
-        corners(0).iter().all(|q| {
-            later.iter().all(|r| {
-                let sum = scalar(&along, &product(q, r)) + scalar(&moment, &minus(r, q)) * &one;
-                sum.is_negative()
-            })
-        })
+        corners(0).iter().all(|q| later.iter().all(|r| sum.at(q, r, &one).is_negative()))
+    }
+}
+
+/// A weighted sum of sides, as a function of a line.
+///
+/// The line from q to r has the edge from e to f inside if (f - e) · (q × r) + (e × f) · (r - q) is positive. The factors of
+/// the line are added up.
+struct Sum {
+    along: Whole,
+    moment: Whole,
+}
+
+impl Sum {
+    /// `None` if a term names no edge, or its multiplier is not positive. `place` and `multiplier` are the powers of two that
+    /// make corners and multipliers integers.
+    fn of(terms: &[ConvexTerm], portals: &[&Portal3], place: i32, multiplier: i32) -> Option<Self> {
+        let (mut along, mut moment) = (Whole::default(), Whole::default());
+        for term in terms {
+            let corners = portals.get(term.portal)?.corners();
+            if term.edge >= corners.len() || term.multiplier.is_nan() || term.multiplier <= 0.0 {
+                return None;
+            }
+            let times = whole(term.multiplier, multiplier);
+            let [e, f] = [term.edge, (term.edge + 1) % corners.len()].map(|k| corners[k].map(|x| whole(x, place)));
+            let (d, m) = (minus(&f, &e), product(&e, &f));
+            for i in 0..3 {
+                along[i] += &times * &d[i];
+                moment[i] += &times * &m[i];
+            }
+        }
+        Some(Self { along, moment })
+    }
+
+    /// For the line from `q` to `r`, points that are multiplied by `one` more than the corners are.
+    fn at(&self, q: &Whole, r: &Whole, one: &BigInt) -> BigInt {
+        scalar(&self.along, &product(q, r)) + scalar(&self.moment, &minus(r, q)) * one
     }
 }
 

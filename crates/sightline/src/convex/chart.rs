@@ -61,6 +61,23 @@ impl Plate {
         })
     }
 
+    /// Length and width together.
+    fn reach(&self) -> f64 {
+        self.extent[0] + self.extent[1]
+    }
+
+    /// From centre to centre.
+    fn distance(&self, other: &Self) -> f64 {
+        let between = sub(other.centre, self.centre);
+        dot(between, between).sqrt()
+    }
+
+    /// How far the other box lies beyond this one, across one of them; negative if it does not.
+    fn gap(&self, other: &Self) -> f64 {
+        let gap = |w: Point3| other.span(w)[0] - self.span(w)[1];
+        gap(self.normal).max(gap(other.normal))
+    }
+
     /// The least and the greatest of `w · x` in it.
     fn span(&self, w: Point3) -> [f64; 2] {
         let middle = dot(w, self.centre);
@@ -89,38 +106,50 @@ impl Chart {
     /// is least. Boxes that touch or overlap are the last resort; of those, the farthest apart. `None` if there are not
     /// two portals. O(n²), with little work for most pairs.
     pub(super) fn best(plates: &[Plate]) -> Option<Self> {
-        let reach = |p: &Plate| p.extent[0] + p.extent[1];
         let mut best: Option<(f64, [usize; 2])> = None;
         let mut farthest: Option<(f64, [usize; 2])> = None;
         for j in 1..plates.len() {
             for i in 0..j {
                 let (p, q) = (&plates[i], &plates[j]);
-                let between = sub(q.centre, p.centre);
-                let distance = dot(between, between).sqrt();
-                let likeness = reach(p) * reach(q);
+                let distance = p.distance(q);
+                let likeness = p.reach() * q.reach();
                 if best.is_some_and(|(score, _)| likeness >= score * distance) {
                     continue;
                 }
                 if best.is_none() && farthest.is_none_or(|(d, _)| distance > d) {
                     farthest = Some((distance, [i, j]));
                 }
-                let gap = |w: Point3| q.span(w)[0] - p.span(w)[1];
-                let gap = gap(p.normal).max(gap(q.normal));
+                let gap = p.gap(q);
                 if gap > 1e-6 * distance && best.is_none_or(|(score, _)| likeness < score * gap) {
                     best = Some((likeness / gap, [i, j]));
                 }
             }
         }
-        let pair = best.or(farthest)?.1;
-        let [p, q] = pair.map(|i| &plates[i]);
-        let between = sub(q.centre, p.centre);
-        Some(Self {
-            portals: pair,
-            blocks: [p.block, q.block],
-            unit: reach(p).max(reach(q)),
-            distance: dot(between, between).sqrt().max(1e-3 * reach(p).max(reach(q))),
-            apart: best.is_some(),
-        })
+        Some(Self::between(plates, best.or(farthest)?.1, best.is_some()))
+    }
+
+    /// At most `n` pairs of portals whose boxes lie apart, those between which lines differ least first.
+    pub(super) fn several(plates: &[Plate], n: usize) -> Vec<[usize; 2]> {
+        let mut pairs: Vec<(f64, [usize; 2])> = Vec::new();
+        for j in 1..plates.len() {
+            for i in 0..j {
+                let (p, q) = (&plates[i], &plates[j]);
+                let gap = p.gap(q);
+                if gap > 1e-6 * p.distance(q) {
+                    pairs.push((p.reach() * q.reach() / gap, [i, j]));
+                }
+            }
+        }
+        pairs.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        pairs.into_iter().take(n).map(|(_, pair)| pair).collect()
+    }
+
+    /// Two portals, the earlier first, and whether the box of the second lies wholly beyond that of the first.
+    pub(super) fn between(plates: &[Plate], portals: [usize; 2], apart: bool) -> Self {
+        let [p, q] = portals.map(|i| &plates[i]);
+        let unit = p.reach().max(q.reach());
+        let distance = p.distance(q).max(1e-3 * unit);
+        Self { portals, blocks: [p.block, q.block], unit, distance, apart }
     }
 
     /// The points with coordinates `at`: two of the first box, two of the second; in the middle of their

@@ -30,11 +30,17 @@ pub struct ConvexCounters {
     pub n_hidden_plane: u64,
     /// Given up.
     pub n_undecided: u64,
+    /// Sequences looked at in numbers of two doubles.
+    pub n_finely: u64,
+    /// Visible by a line in such numbers.
+    pub n_by_fine: u64,
+    /// Hidden by a sum over hulls, found in such numbers.
+    pub n_hidden_fine: u64,
 }
 
 impl ConvexCounters {
     /// Every counter, in the order of declaration.
-    const fn all(&mut self) -> [&mut u64; 13] {
+    const fn all(&mut self) -> [&mut u64; 16] {
         [
             &mut self.n_asked,
             &mut self.n_programs,
@@ -49,6 +55,9 @@ impl ConvexCounters {
             &mut self.n_hidden_cut,
             &mut self.n_hidden_plane,
             &mut self.n_undecided,
+            &mut self.n_finely,
+            &mut self.n_by_fine,
+            &mut self.n_hidden_fine,
         ]
     }
 }

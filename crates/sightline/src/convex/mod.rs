@@ -45,6 +45,9 @@
 //! the plane is then a line through o, and the first portal's corners are all on one side of it, although every open
 //! half-plane at o contains one.
 //!
+//! Or a weighted sum of sides that is not positive at any pair of corners of two portals' hulls ([`HullProof`]): it is affine in both
+//! points, so it is positive for no line between the hulls. It needs no blocks, and none of the margin that their thickness takes.
+//!
 //! # Method
 //! * A hint is tried, exactly.
 //! * By turns: with `q` fixed, the best `r` is a linear program of two coordinates and a margin; then `q`
@@ -57,6 +60,9 @@
 //! * Otherwise the box is cut across the product that is relaxed most, near the relaxed line, and the part with the
 //!   largest bound is next; the error of the relaxation shrinks like the square of the box.
 //!
+//! What is left open is mostly a matter of rounding: lines that graze, or pass slits as wide as the rounding of corners.
+//! [`ConvexStabber::stab_finely`] looks at it in numbers of two doubles.
+//!
 //! Doubles only propose. What is visible has passed exact predicates, what is hidden a rigorous check; everything else
 //! is [`Verdict::Undecided`], which a caller has to treat as visible.
 //!
@@ -68,6 +74,8 @@
 mod certificate;
 mod chart;
 mod counters;
+mod fine;
+mod game;
 mod hull;
 mod line;
 mod planes;
@@ -79,8 +87,9 @@ mod vector;
 mod verify;
 mod witness;
 
-pub use certificate::{Block, BoxProof, ConvexCertificate, ConvexNode, ConvexTerm, PlaneProof};
+pub use certificate::{Block, BoxProof, ConvexCertificate, ConvexNode, ConvexTerm, HullProof, PlaneProof};
 pub use counters::ConvexCounters;
+pub use fine::FineLine3;
 pub use line::Line3;
 pub use sequence::{ConvexSequence, ConvexUndo};
 pub use solver::{ConvexStabber, KnownPortal, StabLimits};

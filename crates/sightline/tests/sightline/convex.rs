@@ -48,7 +48,7 @@ fn corridor(random: &mut Random, n: usize, size: f64, grid: f64, noise: f64) -> 
 }
 
 /// A coordinate times 2^200, which is an integer for all that occur here.
-fn whole(p: Point3) -> [BigInt; 3] {
+pub(crate) fn whole(p: Point3) -> [BigInt; 3] {
     p.map(|x| {
         let (mantissa, exponent, sign) = Float::integer_decode(x);
         assert!(mantissa == 0 || exponent >= -200, "{x:e}");
@@ -70,7 +70,7 @@ fn passes_exactly(line: &Line3, portal: &Portal3) -> bool {
     })
 }
 
-fn refs(portals: &[Portal3]) -> Vec<&Portal3> {
+pub(crate) fn refs(portals: &[Portal3]) -> Vec<&Portal3> {
     portals.iter().collect()
 }
 
@@ -193,7 +193,7 @@ proptest! {
 }
 
 /// A door as a polygon that is crossed the same way.
-fn polygon(door: &AxialDoor) -> Portal3 {
+pub(crate) fn polygon(door: &AxialDoor) -> Portal3 {
     let axis = usize::from(door.axis);
     let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
     let corner = |low_b: bool, low_c: bool| {

@@ -3,4 +3,5 @@
 mod axial;
 mod conformance;
 mod convex;
+mod convex_fine;
 mod stabbing;

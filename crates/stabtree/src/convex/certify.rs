@@ -16,7 +16,7 @@ use sightlines_geometry::Random;
 use sightlines_geometry::check_coordinate;
 use sightlines_progress::{Cancelled, Counter};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::convex::{Block, BoxProof, ConvexCertificate, ConvexNode, PlaneProof};
+use sightlines_sightline::convex::{Block, BoxProof, ConvexCertificate, ConvexNode, HullProof, PlaneProof};
 use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
 
 /// Lines are added in rounds: at first only those that prove at least this many new pairs.
@@ -143,8 +143,16 @@ fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>, counter: &
             return;
         }
         let shapes: Vec<&Portal3> = chain.iter().map(|&gate| gates.shape(gate)).collect();
-        if let Verdict::Visible(line) = stabber.stab(&shapes, None) {
-            let _ = lines(chain[0], [line.a, line.b]).into_iter().any(|line| maker.take_line(line, 1));
+        match stabber.stab(&shapes, None) {
+            Verdict::Visible(line) => {
+                let _ = lines(chain[0], [line.a, line.b]).into_iter().any(|line| maker.take_line(line, 1));
+            }
+            Verdict::Hidden(_) => {}
+            Verdict::Undecided(_) => {
+                if let Verdict::Visible(line) = stabber.stab_finely(&shapes) {
+                    maker.take_line(ConvexLine::through_sums(chain[0], line.points()), 1);
+                }
+            }
         }
     };
     let mut beams = BeamTracer::new(gates);
@@ -203,6 +211,16 @@ impl<'a> Guide<'a> {
                 let block = ConvexBlock::Sums(ConvexSums { ends: proof.portals.map(back), tree });
                 Some(block).filter(|block| block.holds(self.network, chain, gate))
             }),
+            ConvexCertificate::Hulls(HullProof { portals, terms }) => {
+                let term = |t: &sightlines_sightline::convex::ConvexTerm| ConvexTerm {
+                    gate: back(t.portal),
+                    edge: t.edge as u32,
+                    times: t.multiplier,
+                };
+                let tree = ConvexTree::Sum(terms.iter().map(term).collect());
+                let block = ConvexBlock::Sums(ConvexSums { ends: portals.map(back), tree });
+                Some(block).filter(|block| block.holds(self.network, chain, gate))
+            }
             _ => None,
         }
     }
@@ -223,14 +241,21 @@ impl ChainSolver for Guide<'_> {
         self.left -= 1;
         let shapes: Vec<&Portal3> = chain.iter().chain([&gate]).map(|&g| self.gates.shape(g)).collect();
         let hint = self.lines.last().copied().flatten();
-        let line = match self.stabber.stab(&shapes, hint.as_ref()) {
-            Verdict::Visible(line) => Some(line),
-            Verdict::Hidden(proof) => match self.block(&proof, chain, gate) {
-                Some(block) => return ChainStep::Blocked(block),
-                None => None,
+        let mut line = None;
+        let proof = match self.stabber.stab(&shapes, hint.as_ref()) {
+            Verdict::Visible(found) => {
+                line = Some(found);
+                None
+            }
+            Verdict::Hidden(proof) => Some(proof),
+            Verdict::Undecided(_) => match self.stabber.stab_finely(&shapes) {
+                Verdict::Hidden(proof) => Some(proof),
+                Verdict::Visible(_) | Verdict::Undecided(_) => None,
             },
-            Verdict::Undecided(_) => None,
         };
+        if let Some(block) = proof.and_then(|proof| self.block(&proof, chain, gate)) {
+            return ChainStep::Blocked(block);
+        }
         self.lines.push(line);
         ChainStep::Open
     }

@@ -11,9 +11,10 @@ use super::ConvexCounters;
 use super::cut::{Cutter, Part, Plane, enclosing, middle};
 use super::gates::{Gates, Memory};
 use super::vector::{sub, unit};
+use sightlines_cells::Portal3;
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::ones;
-use sightlines_sightline::{ConvexStabber, KnownPortal, LimitReached, Line3, StabLimits, Verdict};
+use sightlines_sightline::{ConvexCertificate, ConvexStabber, KnownPortal, LimitReached, Line3, StabLimits, Verdict};
 
 /// Maximum number of queries about sequences for a pair; a pair that takes more counts as visible.
 const MOST_QUESTIONS: u64 = 20_000;
@@ -284,27 +285,41 @@ impl SequenceTracer {
                 self.levels[depth].line = Some(line);
                 goal.is_none()
             }
-            Verdict::Undecided(_) => {
-                self.undecided |= goal.is_none();
+            Verdict::Hidden(proof) => {
+                self.learn(&proof, &sequence, depth, goal);
                 false
             }
-            Verdict::Hidden(proof) => {
-                let mut named = proof.named();
-                if let Some(mut last) = named.pop() {
-                    if named.len() <= MOST_LEARNT {
-                        let others = named.iter().map(|&place| sequence[place]).collect();
-                        let gate = sequence[last];
-                        self.learnt[gate as usize].push(others);
-                        self.learnt_of.push(gate);
+            Verdict::Undecided(_) if goal.is_some() => false,
+            Verdict::Undecided(_) => {
+                let shapes: Vec<&Portal3> = shapes.iter().map(|known| known.shape()).collect();
+                match self.stabber.stab_finely(&shapes) {
+                    Verdict::Visible(_) => {
+                        self.chain = sequence;
+                        return true;
                     }
-                    // The goal comes last, whatever lies between.
-                    if goal.is_some() && last > depth {
-                        last = named.pop().unwrap_or(0);
-                    }
-                    self.blocked = last;
+                    Verdict::Hidden(proof) => self.learn(&proof, &sequence, depth, goal),
+                    Verdict::Undecided(_) => self.undecided = true,
                 }
                 false
             }
+        }
+    }
+
+    /// Learns which gates of a sequence no line passes, and up to which level none does.
+    fn learn(&mut self, proof: &ConvexCertificate, sequence: &[u32], depth: usize, goal: Option<u32>) {
+        let mut named = proof.named();
+        if let Some(mut last) = named.pop() {
+            if named.len() <= MOST_LEARNT {
+                let others = named.iter().map(|&place| sequence[place]).collect();
+                let gate = sequence[last];
+                self.learnt[gate as usize].push(others);
+                self.learnt_of.push(gate);
+            }
+            // The goal comes last, whatever lies between.
+            if goal.is_some() && last > depth {
+                last = named.pop().unwrap_or(0);
+            }
+            self.blocked = last;
         }
     }
 

@@ -8,7 +8,7 @@ use crate::place::Place;
 use serde::Serialize;
 use serde_json::{Value, json};
 use sightlines::cells::{CellGraph, CellId, Convex};
-use sightlines::sightline::{ConvexCertificate, ConvexNode, Line3, Verdict};
+use sightlines::sightline::{ConvexCertificate, ConvexNode, ConvexTerm, HullProof, Line3, Verdict};
 use sightlines::stabtree::{
     Barrier, BlockedConvex, Blocking, ConvexDoubt, ConvexExplanation, ConvexGate, ConvexPath, ConvexProof, SearchLimit,
     Sight, check_convex, explain_convex,
@@ -144,6 +144,10 @@ fn blocked_way(graph: &CellGraph<Convex>, blocked: &BlockedConvex) -> Blocked {
                 format!("sums of edges are negative for all lines, in {n}"),
             )
         }
+        Some(ConvexCertificate::Hulls(HullProof { portals, terms })) => (
+            json!({"hulls": {"portals": portals, "terms": terms.iter().map(term).collect::<Vec<_>>()}}),
+            "a sum of edges is positive for no line".to_owned(),
+        ),
         Some(_) => (Value::Null, "a certificate of another kind".to_owned()),
     };
     Blocked { portals: blocked.gates.iter().map(|&gate| passed(graph, gate, None)).collect(), certificate, words }
@@ -152,10 +156,12 @@ fn blocked_way(graph: &CellGraph<Convex>, blocked: &BlockedConvex) -> Blocked {
 fn node(node: &ConvexNode) -> Value {
     match node {
         ConvexNode::Split { axis, at, parts } => json!({"axis": axis, "at": at, "parts": parts}),
-        ConvexNode::Leaf(terms) => {
-            terms.iter().map(|t| json!({"portal": t.portal, "edge": t.edge, "times": t.multiplier})).collect()
-        }
+        ConvexNode::Leaf(terms) => terms.iter().map(term).collect(),
     }
+}
+
+fn term(term: &ConvexTerm) -> Value {
+    json!({"portal": term.portal, "edge": term.edge, "times": term.multiplier})
 }
 
 fn place([x, y, z]: [f64; 3]) -> String {

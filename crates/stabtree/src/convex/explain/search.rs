@@ -6,8 +6,8 @@ use super::{BlockedConvex, Blocking, ConvexDoubt, ConvexExplanation, ConvexGate,
 use crate::explanation::{Barrier, SearchLimit, Sight};
 use sightlines_cells::{CellId, Portal3, PortalId};
 use sightlines_sightline::{
-    BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexTerm, ConvexVerdict, Line3, PlaneProof, StabLimits,
-    Verdict,
+    BoxProof, ConvexCertificate, ConvexNode, ConvexStabber, ConvexTerm, ConvexVerdict, HullProof, Line3, PlaneProof,
+    StabLimits, Verdict,
 };
 
 /// A gate into the goal that lines may reach through the chain, and one that does.
@@ -222,7 +222,12 @@ impl<'g> Search<'g> {
     fn ask(&mut self, sequence: &[u32], hint: Option<&Line3>) -> ConvexVerdict {
         self.asked += 1;
         let shapes: Vec<&Portal3> = sequence.iter().map(|&gate| self.gates.shape(gate)).collect();
-        let answer = self.stabber.stab(&shapes, hint);
+        let mut answer = self.stabber.stab(&shapes, hint);
+        if matches!(answer, Verdict::Undecided(_))
+            && let Verdict::Hidden(proof) = self.stabber.stab_finely(&shapes)
+        {
+            answer = Verdict::Hidden(proof);
+        }
         if let Verdict::Hidden(proof) = &answer {
             let (places, certificate) = narrowed(proof);
             let gates: Vec<u32> = places.into_iter().map(|place| sequence[place]).collect();
@@ -299,6 +304,10 @@ fn narrowed(proof: &ConvexCertificate) -> (Vec<usize>, ConvexCertificate) {
         ConvexCertificate::Plane(PlaneProof { edge, corner, stops }) => {
             let at = |(portal, k): (usize, usize)| (rank(portal), k);
             ConvexCertificate::Plane(PlaneProof { edge: at(*edge), corner: at(*corner), stops: stops.map(rank) })
+        }
+        ConvexCertificate::Hulls(HullProof { portals, terms }) => {
+            let terms = terms.iter().map(|t| ConvexTerm { portal: rank(t.portal), ..*t }).collect();
+            ConvexCertificate::Hulls(HullProof { portals: portals.map(rank), terms })
         }
         // A certificate of another kind is for the sequence up to its last position.
         other => return ((0..=places.last().copied().unwrap_or(0)).collect(), other.clone()),

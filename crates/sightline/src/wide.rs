@@ -10,9 +10,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 ///
 /// Sums, differences and products err by less than 2^-103 of the result, unless they leave the range of doubles.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Wide {
-    pub(super) high: f64,
-    pub(super) low: f64,
+pub(crate) struct Wide {
+    pub(crate) high: f64,
+    pub(crate) low: f64,
 }
 
 fn two_sum(a: f64, b: f64) -> Wide {
@@ -28,20 +28,20 @@ fn quick_sum(a: f64, b: f64) -> Wide {
 }
 
 impl Wide {
-    pub(super) const ZERO: Self = Self::of(0.0);
-    pub(super) const ONE: Self = Self::of(1.0);
+    pub(crate) const ZERO: Self = Self::of(0.0);
+    pub(crate) const ONE: Self = Self::of(1.0);
 
-    pub(super) const fn of(x: f64) -> Self {
+    pub(crate) const fn of(x: f64) -> Self {
         Self { high: x, low: 0.0 }
     }
 
     /// A difference of two doubles, exactly.
-    pub(super) fn difference(a: f64, b: f64) -> Self {
+    pub(crate) fn difference(a: f64, b: f64) -> Self {
         two_sum(a, -b)
     }
 
     /// Its product with a power of two.
-    pub(super) fn scaled(self, power: f64) -> Self {
+    pub(crate) fn scaled(self, power: f64) -> Self {
         Self { high: self.high * power, low: self.low * power }
     }
 }

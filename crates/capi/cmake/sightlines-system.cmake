@@ -1,0 +1,12 @@
+# The libraries of the system that Rust's standard library needs, where the library is linked statically.
+function(sightlines_system_libraries target)
+  find_package(Threads REQUIRED)
+  if(WIN32)
+    set(libraries ws2_32 userenv ntdll bcrypt)
+  elseif(APPLE)
+    set(libraries Threads::Threads)
+  else()
+    set(libraries Threads::Threads ${CMAKE_DL_LIBS} m)
+  endif()
+  set_property(TARGET ${target} APPEND PROPERTY INTERFACE_LINK_LIBRARIES ${libraries})
+endfunction()

@@ -1,0 +1,207 @@
+//! What C bakes is what Rust bakes.
+
+use crate::common::{Handle, list, plans, towers};
+use crate::same::compare_content;
+use sightlines_bake::methods::OcclusionMethod;
+use sightlines_bake::places::PlaceOptions;
+use sightlines_bake::region::CellsFrom;
+use sightlines_bake::{BakeOptions, Gap, PlanBakeOptions, SceneMethod, bake, bake_plan};
+use sightlines_capi::*;
+use sightlines_cells::MovingObject;
+use sightlines_formats::ViewCells;
+use sightlines_formats::view_cells::ViewCell;
+use sightlines_geometry::Aabb;
+use sightlines_kdtree::SceneOptions;
+use std::collections::BTreeSet;
+use std::ffi::CString;
+use std::ptr;
+
+/// A scene goes through the border object by object, and the table that comes back has the same bytes.
+#[test]
+fn bakes_are_those_of_rust() {
+    let options = BakeOptions { gap: Gap::Width(0.0), ..BakeOptions::default() };
+    let mut n = 0;
+    for scene in towers() {
+        let expected = bake(&scene, &options).expect("a scene").table.to_bytes();
+        let mut handle = ptr::null_mut();
+        // SAFETY: handles live until they are freed; all pointers are to live memory of the stated sizes.
+        unsafe {
+            assert_eq!(sl_scene_new(&mut handle), SL_OK);
+            for object in scene.objects() {
+                let name = CString::new(object.name.as_str()).expect("no zeros");
+                let (vertices, triangles) = (object.vertices.as_flattened(), object.triangles.as_flattened());
+                let [v, i] = [vertices.len() / 3, triangles.len()];
+                let mut id = SL_NONE;
+                let status =
+                    sl_scene_add_object(handle, name.as_ptr(), vertices.as_ptr(), v, triangles.as_ptr(), i, 0, &mut id);
+                assert_eq!(status, SL_OK);
+            }
+            for threads in [1, 3] {
+                let mut given = std::mem::zeroed::<SlBakeOptions>();
+                (given.struct_size, given.threads) = (size_of::<SlBakeOptions>(), threads);
+                let mut table = ptr::null_mut();
+                assert_eq!(sl_bake(handle, &given, &mut table, ptr::null_mut()), SL_OK);
+                assert_eq!(list(|to, size, n| sl_table_bytes(table, SL_FORM_PLAIN, to, size, n)), expected);
+                let packed = list(|to, size, n| sl_table_bytes(table, SL_FORM_PACKED, to, size, n));
+                assert!(packed.len() < expected.len());
+                let again = Handle::of(&packed);
+                assert_eq!(list(|to, size, n| sl_table_bytes(again.0, SL_FORM_PLAIN, to, size, n)), expected);
+                sl_table_free(table);
+                n += 1;
+            }
+            sl_scene_free(handle);
+        }
+    }
+    for plan in plans().into_iter().filter(|plan| plan.mirrors().is_empty() && plan.objects().is_empty()) {
+        let walls: Vec<f64> = plan.lines().iter().flat_map(|line| [line.a.x, line.a.y, line.b.x, line.b.y]).collect();
+        let plain = plan.lines().iter().all(|line| line.opaque && line.left.is_none() && line.right.is_none());
+        if !plain {
+            continue;
+        }
+        let expected = bake_plan(&plan, &PlanBakeOptions::default()).expect("a plan").table.to_bytes();
+        let mut table = ptr::null_mut();
+        // SAFETY: all pointers are to live memory of the stated sizes.
+        unsafe {
+            let status = sl_bake_plan(walls.as_ptr(), walls.len() / 4, ptr::null(), &mut table, ptr::null_mut());
+            assert_eq!(status, SL_OK);
+            assert_eq!(list(|to, size, n| sl_table_bytes(table, SL_FORM_PLAIN, to, size, n)), expected);
+            sl_table_free(table);
+        }
+        n += 1;
+    }
+    assert!(n >= 5, "{n}");
+}
+
+/// Flags and options mean what they mean in Rust.
+#[test]
+fn flags_and_options_are_those_of_rust() {
+    const FLAGS: [u32; 7] = [
+        0,
+        SL_OBJECT_SEE_THROUGH,
+        0,
+        SL_OBJECT_MIRROR,
+        SL_OBJECT_SINGLE_SIDED,
+        SL_OBJECT_MOVING,
+        SL_OBJECT_DOOR | SL_OBJECT_SINGLE_SIDED,
+    ];
+    let plain = towers().remove(0);
+    let within = Aabb { min: [1.0, 0.5, 1.0], max: [3.0, 1.5, 2.0] };
+    let with = |flag: u32| {
+        let flagged = move |i: &u32| FLAGS[*i as usize % FLAGS.len()] & flag != 0;
+        (0..plain.objects().len() as u32).filter(flagged).collect::<Vec<_>>()
+    };
+    // Those that move are 5, 12, 19, …: one of them stays in a box.
+    let moving = with(SL_OBJECT_MOVING);
+    assert!(moving.len() > 1 && with(SL_OBJECT_DOOR).len() > 1, "{} objects", plain.objects().len());
+    let moves = |&object: &u32| MovingObject { object, within: (object == moving[0]).then_some(within) };
+    let scene = plain
+        .clone()
+        .with_see_through(with(SL_OBJECT_SEE_THROUGH | SL_OBJECT_DOOR))
+        .and_then(|scene| scene.with_doors(with(SL_OBJECT_DOOR)))
+        .and_then(|scene| scene.with_mirrors(with(SL_OBJECT_MIRROR)))
+        .and_then(|scene| scene.with_single_sided(with(SL_OBJECT_SINGLE_SIDED)))
+        .and_then(|scene| scene.with_moving(moving.iter().map(moves).collect()))
+        .expect("a scene");
+    let bounds = scene.bounds();
+    let half = Aabb { min: bounds.min, max: std::array::from_fn(|k| (bounds.min[k] + bounds.max[k]) / 2.0) };
+    let boxes = [half, bounds].map(|b| SlBox { min: b.min, max: b.max });
+    let cell = |(i, b): (usize, &SlBox)| ViewCell { id: i.to_string(), bounds: Aabb { min: b.min, max: b.max } };
+    let given = ViewCells { cells: boxes.iter().enumerate().map(cell).collect(), axes: None };
+    // SAFETY: all zeros are a value of every field.
+    let mut zero = unsafe { std::mem::zeroed::<SlBakeOptions>() };
+    (zero.struct_size, zero.gap) = (size_of::<SlBakeOptions>(), 0.0);
+    let exact = BakeOptions { gap: Gap::Width(0.0), ..BakeOptions::default() };
+    let cut = exact.cut;
+    let places = PlaceOptions { n_cells: Some(6), cell_size: None };
+    let cases: [(SlBakeOptions, BakeOptions<'_>); 6] = [
+        (zero, exact.clone()),
+        (
+            SlBakeOptions { cells: SL_CELLS_GRID, grid: [2, 1, 2], method: c"multifocal".as_ptr(), ..zero },
+            BakeOptions {
+                cells: CellsFrom::Grid([2, 1, 2]),
+                method: SceneMethod::FromRegion(OcclusionMethod::Multifocal),
+                ..exact.clone()
+            },
+        ),
+        (
+            SlBakeOptions { cells: SL_CELLS_BOXES, boxes: boxes.as_ptr(), box_count: 2, ..zero },
+            BakeOptions { cells: CellsFrom::Boxes(given), ..exact.clone() },
+        ),
+        (
+            SlBakeOptions { cells: SL_CELLS_PLACES, place_count: 6, method: c"both".as_ptr(), ..zero },
+            BakeOptions { cells: CellsFrom::Places(places), method: SceneMethod::Both, ..exact.clone() },
+        ),
+        (
+            SlBakeOptions {
+                cells: SL_CELLS_KD_TREE,
+                view_region: &boxes[0],
+                keep_solid: 1,
+                detail_below: -1.0,
+                ..zero
+            },
+            BakeOptions {
+                cut: SceneOptions { view_region: Some(half), keep_solid: true, detail_below: Some(0.0), ..cut },
+                ..exact.clone()
+            },
+        ),
+        (
+            SlBakeOptions { gap: 0.01, detail_below: 0.5, method: c"auto".as_ptr(), cells: SL_CELLS_KD_TREE, ..zero },
+            BakeOptions {
+                gap: Gap::Width(0.01),
+                cut: SceneOptions { detail_below: Some(0.5), ..cut },
+                method: SceneMethod::Auto,
+                ..exact.clone()
+            },
+        ),
+    ];
+    let mut handle = ptr::null_mut();
+    let mut all = BTreeSet::new();
+    // SAFETY: handles live until they are freed; all pointers are to live memory of the stated sizes.
+    unsafe {
+        assert_eq!(sl_scene_new(&mut handle), SL_OK);
+        for (i, object) in plain.objects().iter().enumerate() {
+            let name = CString::new(object.name.as_str()).expect("no zeros");
+            let (vertices, triangles) = (object.vertices.as_flattened(), object.triangles.as_flattened());
+            let (n_vertices, n_indices, flags) = (vertices.len() / 3, triangles.len(), FLAGS[i % FLAGS.len()]);
+            let (vertices, indices, name) = (vertices.as_ptr(), triangles.as_ptr(), name.as_ptr());
+            let status =
+                sl_scene_add_object(handle, name, vertices, n_vertices, indices, n_indices, flags, ptr::null_mut());
+            assert_eq!(status, SL_OK);
+        }
+        let stays = SlBox { min: within.min, max: within.max };
+        assert_eq!(sl_scene_set_motion(handle, moving[0], &stays), SL_OK);
+        for (i, (given, options)) in cases.iter().enumerate() {
+            let expected = bake(&scene, options).expect("a scene").table;
+            let mut table = ptr::null_mut();
+            assert_eq!(sl_bake(handle, given, &mut table, ptr::null_mut()), SL_OK, "case {i}");
+            let bytes = list(|to, size, n| sl_table_bytes(table, SL_FORM_PLAIN, to, size, n));
+            assert!(bytes == expected.to_bytes(), "case {i}");
+            assert_eq!(compare_content(&expected, &Handle(table))[1], 0, "case {i}");
+            all.insert(bytes);
+        }
+        sl_scene_free(handle);
+    }
+    assert_eq!(all.len(), cases.len(), "every option changes something");
+}
+
+/// Files by path: written, read, and errors that name the path.
+#[test]
+fn files_are_written_and_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a table.pvz");
+    let path = CString::new(path.to_str().expect("UTF-8")).expect("no zeros");
+    let table = bake_plan(&plans()[0], &PlanBakeOptions::default()).expect("a plan").table;
+    let c = Handle::of(&table.to_bytes());
+    let mut again = ptr::null_mut();
+    // SAFETY: handles live until they are freed; texts end with zeros.
+    unsafe {
+        assert_eq!(sl_table_save(c.0, path.as_ptr(), SL_FORM_PACKED), SL_OK);
+        assert_eq!(sl_table_load(path.as_ptr(), &mut again), SL_OK);
+        assert_eq!(compare_content(&table, &Handle(again))[1], 0);
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing else is left");
+        std::fs::write(folder.path().join("a table.pvz"), b"\x89PVP\r\n\x1a\nand no more").expect("it is writable");
+        assert_eq!(sl_table_load(path.as_ptr(), &mut again), SL_ERROR_FORMAT);
+        let message = std::ffi::CStr::from_ptr(sl_last_error()).to_str().expect("UTF-8").to_owned();
+        assert!(message.contains("a table.pvz: ") && again.is_null(), "{message}");
+    }
+}
