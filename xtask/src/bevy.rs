@@ -71,8 +71,9 @@ pub(crate) fn check(gpu: Wish) -> Result<(), Failure> {
     make(&FOR_TESTS)?;
     make_real()?;
     step::run(plugin().args(["fmt", "--check"]))?;
-    let lints = ["clippy", "--locked", "--all-targets", "--all-features", "--", "-D", "warnings"];
-    step::run(plugin().args(lints))?;
+    let lints = ["--", "-D", "warnings"];
+    step::run(plugin().args(["clippy", "--locked", "--all-targets", "--all-features"]).args(lints))?;
+    step::run(plugin().args(["clippy", "--locked", "--lib"]).args(lints))?;
     let device = gpu::environment(gpu)?;
     step::run(plugin().args(["test", "--locked", "--all-features"]).envs(device))
 }

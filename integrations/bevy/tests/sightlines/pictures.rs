@@ -10,11 +10,12 @@ use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::log::LogPlugin;
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
 use bevy::prelude::*;
-use bevy::render::RenderPlugin;
 use bevy::render::gpu_readback::{Readback, ReadbackComplete};
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
-use bevy::render::render_resource::{TextureFormat, TextureUsages};
+use bevy::render::render_resource::{PollType, TextureFormat, TextureUsages};
+use bevy::render::renderer::RenderDevice;
 use bevy::render::view::Msaa;
+use bevy::render::{RenderApp, RenderPlugin};
 use bevy::window::{ExitCondition, WindowPlugin};
 use bevy::winit::WinitPlugin;
 use bevy_sightlines::pvs::{CellId, ObjectId, PortalId, Table};
@@ -120,12 +121,20 @@ fn read(app: &App, camera: Entity) -> &[Vec<u8>] {
     &app.world().get::<Pictures>(camera).expect("it has some").0
 }
 
+/// A frame, until the device has ended it. So the pictures of all cameras come equally late, and the k-th of each are of one frame, however
+/// slow the device is. Without, an app that is dropped gives the device some seconds, and panics then.
+fn frame(app: &mut App) {
+    app.update();
+    let device = app.sub_app(RenderApp).world().resource::<RenderDevice>();
+    device.poll(PollType::wait_indefinitely()).expect("the device ends its work");
+}
+
 /// Updates until a camera has so many pictures.
 fn until_read(app: &mut App, camera: Entity, n: usize) {
     let begin = Instant::now();
     while read(app, camera).len() < n {
         assert!(begin.elapsed() < Duration::from_secs(120), "{} of {n} pictures", read(app, camera).len());
-        app.update();
+        frame(app);
     }
 }
 
@@ -200,7 +209,7 @@ fn walk(app: &mut App, table: &Table, poses: &[CameraPose], doors: &[(PortalId, 
     let cameras = [cut, whole, impostor];
     cameras.iter().for_each(|camera| put(app, *camera, &poses[0]));
     for _ in 0..10 {
-        app.update();
+        frame(app);
     }
     let mut tally = Tally { frames: poses.len(), ..Tally::default() };
     for camera in cameras {
@@ -214,7 +223,7 @@ fn walk(app: &mut App, table: &Table, poses: &[CameraPose], doors: &[(PortalId, 
     };
     for pose in poses {
         cameras.iter().for_each(|camera| put(app, *camera, pose));
-        app.update();
+        frame(app);
         let state = app.world().get::<PvsView>(cut).expect("it has one").state;
         tally.inside += usize::from(matches!(state, PvsState::Inside | PvsState::Late));
         tally.bevy += count(app, whole);
