@@ -9,7 +9,7 @@
 //! answers do not, a pair of cells that nothing else decides asks [all that might hide it](SpaceSearch::is_hidden_in_groups).
 
 use super::SpaceSearch;
-use super::columns::first_true;
+use super::first_true::first_true;
 use super::pairs::Pair;
 use super::witness_log::{FoundFor, Worker};
 use sightlines_geometry::Aabb;

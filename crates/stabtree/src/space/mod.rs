@@ -15,6 +15,7 @@
 mod atomic_bits;
 mod columns;
 mod explain;
+mod first_true;
 mod from_boxes;
 mod horizons;
 mod limited;
