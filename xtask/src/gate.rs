@@ -2,7 +2,7 @@
 
 use crate::gpu::Wish;
 use crate::step::{self, Failure, cargo, root};
-use crate::{lab, tally, tidy};
+use crate::{bevy, lab, tally, tidy};
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -102,6 +102,7 @@ pub(crate) fn ci(gpu: Wish) -> Result<(), Failure> {
     for (name, step) in steps {
         timed(name, &mut times, step)?;
     }
+    timed("bevy", &mut times, || bevy::check(gpu))?;
     let tally = timed("test", &mut times, || tally::test(gpu))?;
     for (name, time) in times {
         println!("{name:>9} {:6.1} s", time.as_secs_f64());

@@ -3,6 +3,7 @@
 //! Owns: how tests, benches, documentation and checks are called, and in which order. Depends on
 //! nothing of the workspace, so that it builds in seconds and also where the workspace does not.
 
+mod bevy;
 mod circles;
 mod debian;
 mod freedoom;
@@ -87,6 +88,14 @@ enum Task {
     },
     /// Finds or fetches the Freedoom WADs and prints their folder.
     Freedoom,
+    /// Formatting, lints and tests of the plugin for Bevy.
+    Bevy {
+        /// Which GPU the tests that compare pictures run on.
+        #[arg(long, value_enum, default_value_t)]
+        gpu: gpu::Wish,
+    },
+    /// Generates the levels that the plugin for Bevy is tested and shown with.
+    BevyAssets,
 }
 
 /// What the fuzzing program can break, one name in each line; a test of that program compares.
@@ -124,6 +133,8 @@ fn run(task: Task) -> Result<(), Failure> {
             }
             Ok(())
         }
+        Task::Bevy { gpu } => bevy::check(gpu),
+        Task::BevyAssets => bevy::assets(),
         Task::Freedoom => freedoom::find_or_fetch().map(|folder| println!("{}", folder.display())),
     }
 }

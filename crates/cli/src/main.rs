@@ -25,6 +25,7 @@ mod picture;
 mod place;
 mod progress;
 mod region;
+mod sight;
 mod simplification;
 mod surfaces;
 mod tables;

@@ -66,7 +66,7 @@ impl PictureKind {
 }
 
 /// The picture of a plan's table that came from `source`.
-pub(crate) fn draw_plan(source: &Path, table: &Table, options: &DrawOptions) -> Result<String, PictureError> {
+pub(crate) fn draw_plan(source: &Path, table: &Table, options: &DrawOptions<'_>) -> Result<String, PictureError> {
     plan_svg(table, options).map_err(|error| PictureError::Draw { path: source.to_owned(), source: error })
 }
 

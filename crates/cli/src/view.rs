@@ -75,6 +75,16 @@ impl LensArgs {
         self.fov.is_some() || self.aspect.is_some() || self.up.is_some()
     }
 
+    /// Whether an option is given that only a direction of view has.
+    pub(crate) fn has_angles(&self) -> bool {
+        self.fov.is_some() || self.aspect.is_some()
+    }
+
+    /// The up direction that is given.
+    pub(crate) fn up(&self) -> Option<Up> {
+        self.up
+    }
+
     /// The lens for a table; refuses what means nothing in a plane.
     pub(crate) fn lens(&self, cells: &impl Cells, path: &Path) -> Result<Lens, InputError> {
         let fov = self.fov.unwrap_or(FOV);

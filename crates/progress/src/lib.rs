@@ -86,6 +86,8 @@ pub struct Counter<'a> {
     phase: &'static str,
     work: Work,
     total: u64,
+    /// How many units come first, and the share of the time that they take.
+    first: (u64, f64),
     done: AtomicU64,
     cancelled: AtomicBool,
 }
@@ -106,7 +108,7 @@ impl<'a> Counter<'a> {
     /// None of `total` units, of [`Work::Other`], are done. Without an observer nothing is reported, and nothing cancels.
     pub const fn new(observer: Option<&'a dyn Observer>, phase: &'static str, total: usize) -> Self {
         let (done, cancelled) = (AtomicU64::new(0), AtomicBool::new(false));
-        Self { observer, phase, work: Work::Other, total: total as u64, done, cancelled }
+        Self { observer, phase, work: Work::Other, total: total as u64, first: (0, 0.0), done, cancelled }
     }
 
     /// The same counter for units of a kind of work.
@@ -115,15 +117,32 @@ impl<'a> Counter<'a> {
         Self { work, ..self }
     }
 
+    /// The same counter for units of two kinds: the first `n` take about this share of the time, however many others there are.
+    #[must_use]
+    pub fn with_first(self, n: usize, share: f64) -> Self {
+        Self { first: (n as u64, share), ..self }
+    }
+
+    /// The share of the time that is over once `done` units are done.
+    fn share(&self, done: u64) -> Option<f64> {
+        let (n, share) = self.first;
+        let part = |done: u64, of: u64| done as f64 / of as f64;
+        // With units of one kind, a report knows the share itself.
+        (0 < n && n < self.total).then(|| match done.checked_sub(n) {
+            None => share * part(done, n),
+            Some(later) => share + (1.0 - share) * part(later.min(self.total - n), self.total - n),
+        })
+    }
+
     /// Counts a unit and reports it.
     ///
     /// # Errors
     /// [`Cancelled`] if the observer cancels, or has cancelled before.
     pub fn step(&self) -> Result<(), Cancelled> {
         let done = self.done.fetch_add(1, Relaxed) + 1;
-        if let Some(observer) = self.observer
-            && observer.report(Progress::new(self.phase, done, self.total).of(self.work)).is_break()
-        {
+        let progress = Progress::new(self.phase, done, self.total).of(self.work);
+        let progress = self.share(done).map_or(progress, |share| progress.with_share(share));
+        if self.observer.is_some_and(|observer| observer.report(progress).is_break()) {
             self.cancelled.store(true, Relaxed);
         }
         self.check()
@@ -184,6 +203,24 @@ mod tests {
     fn without_an_observer_nothing_cancels() {
         let counter = Counter::new(None, "units", 2);
         assert_eq!([counter.step(), counter.step(), counter.check()], [Ok(()); 3]);
+    }
+
+    /// Few long units come before many short ones; counted alike, the first of them would promise hours.
+    #[test]
+    fn shares_are_of_time_where_units_differ() {
+        let seen = std::sync::Mutex::new(Vec::new());
+        let observer = |progress: Progress| {
+            seen.lock().unwrap().push(progress.share);
+            ControlFlow::Continue(())
+        };
+        for first in [2, 0, 6] {
+            let counter = Counter::new(Some(&observer), "pairs and objects", 6).with_first(first, 0.5);
+            (0..6).for_each(|_| counter.step().unwrap());
+        }
+        let alike = (1..=6).map(|done| f64::from(done) / 6.0);
+        let expected: Vec<f64> =
+            [0.25, 0.5, 0.625, 0.75, 0.875, 1.0].into_iter().chain(alike.clone()).chain(alike).collect();
+        assert_eq!(*seen.lock().unwrap(), expected);
     }
 
     #[test]

@@ -8,7 +8,8 @@ use std::fmt::Write;
 pub(crate) struct Frame {
     left: f64,
     top: f64,
-    scale: f64,
+    /// Pixels for a scene unit.
+    pub(crate) scale: f64,
     margin: f64,
     /// Width of the picture in pixels.
     pub(crate) width: u32,
@@ -19,14 +20,21 @@ pub(crate) struct Frame {
 impl Frame {
     /// A picture whose longer side has `size` pixels and shows all of `bounds`, with a margin around.
     pub(crate) fn around(bounds: Aabb<2>, size: u32) -> Self {
+        Self::within(bounds, [f64::from(size); 2], size)
+    }
+
+    /// A picture that is at most `room` pixels wide and high and shows all of `bounds`, with the margin of a picture whose longer side
+    /// has `size` pixels.
+    pub(crate) fn within(bounds: Aabb<2>, room: [f64; 2], size: u32) -> Self {
         let bounds = if bounds.is_empty() { Aabb { min: [0.0; 2], max: [1.0; 2] } } else { bounds };
         let [w, h] = [bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]];
         let margin = (f64::from(size) / 50.0).max(1.0);
-        let longest = w.max(h);
-        let scale = if longest > 0.0 { (f64::from(size) - 2.0 * margin) / longest } else { 1.0 };
-        // At most `size`, so the cast is exact.
-        let pixels = |x: f64| (x * scale + 2.0 * margin).ceil().clamp(1.0, f64::from(size)) as u32;
-        Self { left: bounds.min[0], top: bounds.max[1], scale, margin, width: pixels(w), height: pixels(h) }
+        let [across, down] = room.map(|room| (room - 2.0 * margin).max(1.0));
+        let scale = if w.max(h) > 0.0 { (across / w).min(down / h) } else { 1.0 };
+        // At most a size, so the cast is exact.
+        let pixels = |x: f64, room: f64| (x * scale + 2.0 * margin).ceil().clamp(1.0, room.max(1.0)) as u32;
+        let [width, height] = [pixels(w, room[0]), pixels(h, room[1])];
+        Self { left: bounds.min[0], top: bounds.max[1], scale, margin, width, height }
     }
 
     /// A point of the plan, in pixels from the upper left corner.

@@ -10,12 +10,13 @@
 //!   pictures of soft shadows ([`light_png`]).
 //! - **Out of scope**: how a table was made, files, how the numbers are worded.
 //! - **Invariants**: a table is only read, and pictures show only what it contains; the same table and options
-//!   give the same bytes on every machine; pictures of tables have no text, so they need no fonts.
+//!   give the same bytes on every machine; words in pictures are drawn as lines, so they need no fonts.
 
 mod draw;
 mod export;
 mod faces;
 mod frame;
+mod letters;
 mod light;
 mod multifocal;
 mod outline;
@@ -26,8 +27,8 @@ mod theme;
 mod walk;
 
 pub use draw::{
-    DrawError, DrawOptions, IsometricOptions, MAX_SIZE, MIN_SIZE, SliceOptions, Up, View, isometric_svg, plan_svg,
-    slice_svg,
+    DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Up, View,
+    isometric_drawing, isometric_svg, plan_drawing, plan_svg, slice_drawing, slice_svg,
 };
 pub use export::{export_json, write_json};
 pub use faces::{MARK, NO_FACE, NOWHERE, SheetPicture, face_colour, faces_png, sheet_png, sheet_size};

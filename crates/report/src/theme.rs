@@ -8,10 +8,14 @@ pub(crate) const CELL: &str = "#e8ecf1";
 pub(crate) const HIDDEN: &str = "#eceef1";
 /// A cell that is seen. Colour-blind eyes can distinguish blue from orange too.
 pub(crate) const SEEN: &str = "#8fc4f5";
+/// A cell that the viewer's cell sees, and the viewer does not.
+pub(crate) const SEEN_BY_CELL: &str = "#cfe4fa";
 /// The cell looked from.
 pub(crate) const FROM: &str = "#f0701a";
 /// The cell looked for.
 pub(crate) const TARGET: &str = "#8a5cd6";
+/// Words and scale bars.
+pub(crate) const INK: &str = "#1c2733";
 /// What blocks sight.
 pub(crate) const WALL: &str = "#1c2733";
 /// Portals, where they are what the picture shows.

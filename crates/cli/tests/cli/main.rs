@@ -5,6 +5,7 @@ mod cell_names;
 mod certify;
 mod common;
 mod doors;
+mod draw;
 mod errors;
 mod explain_boxes;
 mod explain_portals;

@@ -201,8 +201,12 @@ fn draw_makes_floor_plans_and_isometric_views() {
     assert_eq!(boxes.matches("fill-opacity").count(), 3 * made.n_cells());
     let lower = svg(&["--isometric", "--height", "1"]);
     assert!(lower.matches("fill-opacity").count() < 3 * made.n_cells());
-    let seen = svg(&["--isometric", "--eye", &at]);
+    let seen = svg(&["--isometric", "--cell", "9"]);
     assert_eq!(seen.matches("fill-opacity").count(), 3 * made.visible(CellId(9)).count());
+    // What the viewer sees is drawn over what their cell sees, so nothing is missing.
+    let by_eye = svg(&["--isometric", "--eye", &at]);
+    assert_eq!(by_eye.matches("fill-opacity").count(), seen.matches("fill-opacity").count());
+    assert!(by_eye.contains("seen from elsewhere in that cell") && !seen.contains("elsewhere"));
     for args in [&["--eye", &at[..]][..], &["--isometric", "--cell", "9"]] {
         let drawn = draw(&format!("one.{DRAWN}"), args);
         assert!(is_drawn(&drawn) && drawn == draw(&format!("two.{DRAWN}"), args));

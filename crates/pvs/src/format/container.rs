@@ -1,13 +1,15 @@
 //! Header, section table, checksums: everything in the file except the meaning of sections.
 
 use super::error::{DecodeError, DecodeErrorKind as Kind, SectionId};
+use super::writer::Writer;
 use super::{ENTRY, FIXED, KNOWN, MAGIC, MAJOR, OPTIONAL};
 use std::collections::BTreeSet;
 
 /// A section to be written.
-pub(super) struct Payload {
+pub(super) struct Payload<'a> {
     pub(super) id: SectionId,
-    pub(super) bytes: Vec<u8>,
+    /// Appends its bytes.
+    pub(super) fill: Box<dyn FnOnce(&mut Writer) + 'a>,
 }
 
 /// A known section with the right checksum.
@@ -23,35 +25,38 @@ fn known(id: SectionId) -> Option<bool> {
     KNOWN.iter().find(|(known, ..)| *known == id).map(|&(_, optional, _)| optional)
 }
 
-/// Writes the sections behind a header.
-pub(super) fn write(sections: &[Payload]) -> Vec<u8> {
+/// Writes the sections behind a header. None is held twice: large tables have sections of hundreds of megabytes.
+pub(super) fn write(sections: Vec<Payload<'_>>) -> Vec<u8> {
     let first = FIXED + ENTRY * sections.len() + 8;
-    let total = first + sections.iter().map(|s| s.bytes.len().next_multiple_of(8)).sum::<usize>();
-    let mut out = Vec::with_capacity(total);
-    out.extend(MAGIC);
-    out.extend(MAJOR.to_le_bytes());
-    let written = |id: SectionId| sections.iter().any(|section| section.id == id);
+    let mut out = Writer(vec![0; first]);
+    let mut entries: Vec<(SectionId, [usize; 2])> = Vec::with_capacity(sections.len());
+    for Payload { id, fill } in sections {
+        let begin = out.0.len();
+        fill(&mut out);
+        entries.push((id, [begin, out.0.len()]));
+        out.0.resize(out.0.len().next_multiple_of(8), 0);
+    }
+    let mut out = out.0;
+    let mut header = Vec::with_capacity(first);
+    header.extend(MAGIC);
+    header.extend(MAJOR.to_le_bytes());
+    let written = |id: SectionId| entries.iter().any(|entry| entry.0 == id);
     let minor = KNOWN.iter().filter(|known| written(known.0)).map(|known| known.2).max().unwrap_or(0);
-    out.extend(minor.to_le_bytes());
-    out.extend((sections.len() as u32).to_le_bytes());
-    out.extend((total as u64).to_le_bytes());
-    let mut offset = first;
-    for Payload { id, bytes } in sections {
-        let flags = if known(*id) == Some(false) { 0 } else { OPTIONAL };
-        out.extend(id.0);
-        out.extend(flags.to_le_bytes());
-        out.extend((offset as u64).to_le_bytes());
-        out.extend((bytes.len() as u64).to_le_bytes());
-        out.extend(crc32fast::hash(bytes).to_le_bytes());
-        out.extend([0; 4]);
-        offset += bytes.len().next_multiple_of(8);
+    header.extend(minor.to_le_bytes());
+    header.extend((entries.len() as u32).to_le_bytes());
+    header.extend((out.len() as u64).to_le_bytes());
+    for &(id, [begin, end]) in &entries {
+        let flags = if known(id) == Some(false) { 0 } else { OPTIONAL };
+        header.extend(id.0);
+        header.extend(flags.to_le_bytes());
+        header.extend((begin as u64).to_le_bytes());
+        header.extend(((end - begin) as u64).to_le_bytes());
+        header.extend(crc32fast::hash(&out[begin..end]).to_le_bytes());
+        header.extend([0; 4]);
     }
-    out.extend(crc32fast::hash(&out).to_le_bytes());
-    out.extend([0; 4]);
-    for Payload { bytes, .. } in sections {
-        out.extend_from_slice(bytes);
-        out.resize(out.len().next_multiple_of(8), 0);
-    }
+    header.extend(crc32fast::hash(&header).to_le_bytes());
+    header.extend([0; 4]);
+    out[..first].copy_from_slice(&header);
     out
 }
 

@@ -21,17 +21,17 @@ impl Table {
             sections.push(section(POLYGONS, |out| polygons(out, &parts.cells)));
         }
         if !parts.portals.is_empty() {
-            sections.push(section(PORTALS, |out| portals(out, &parts.portals, d)));
+            sections.push(section(PORTALS, move |out| portals(out, &parts.portals, d)));
         }
         sections.push(section(ROWS, |out| rows(out, &parts.rows)));
         sections.push(section(LOCATOR, |out| locator(out, parts)));
-        sections.push(section(OBJECTS, |out| objects(out, &parts.objects, d)));
+        sections.push(section(OBJECTS, move |out| objects(out, &parts.objects, d)));
         sections.push(section(CELL_OBJECTS, |out| cell_objects(out, &parts.cell_objects)));
         if let Some(seen) = &parts.objects_seen {
             sections.push(section(SEEN, |out| whole_rows(out, seen)));
         }
         if !parts.mirrors.is_empty() {
-            sections.push(section(MIRRORS, |out| mirrors(out, &parts.mirrors, d)));
+            sections.push(section(MIRRORS, move |out| mirrors(out, &parts.mirrors, d)));
         }
         if !parts.object_polygons.is_empty() {
             sections.push(section(OBJECT_POLYGONS, |out| parts.object_polygons.iter().for_each(|&n| out.u32(n))));
@@ -46,7 +46,7 @@ impl Table {
             sections.push(section(CELL_NAMES, |out| parts.cell_names.iter().for_each(|name| out.text(name))));
         }
         if let Some(kind) = kind_section(parts.dimension, parts.kind, parts.up, &parts.info) {
-            sections.push(section(KIND, |out| out.0.extend(kind)));
+            sections.push(section(KIND, move |out| out.0.extend(kind)));
         }
         if let Some(frame) = &parts.frame {
             sections.push(section(FRAME, |out| out.0.extend(frame.to_bytes())));
@@ -61,14 +61,12 @@ impl Table {
             sections.push(section(DOORS, |out| doors::write(out, &parts.doors)));
         }
         sections.push(section(INFO, |out| info(out, &parts.info)));
-        container::write(&sections)
+        container::write(sections)
     }
 }
 
-fn section(id: SectionId, fill: impl FnOnce(&mut Writer)) -> Payload {
-    let mut out = Writer::default();
-    fill(&mut out);
-    Payload { id, bytes: out.0 }
+fn section<'a>(id: SectionId, fill: impl FnOnce(&mut Writer) + 'a) -> Payload<'a> {
+    Payload { id, fill: Box::new(fill) }
 }
 
 fn cells(out: &mut Writer, parts: &TableParts) {
@@ -108,6 +106,7 @@ fn mirrors(out: &mut Writer, mirrors: &[MirrorRecord], d: usize) {
 }
 
 fn rows(out: &mut Writer, rows: &BitMatrix) {
+    out.0.reserve_exact((0..rows.n_rows()).map(|i| 8 * (i / 64 + 1)).sum());
     for i in 0..rows.n_rows() {
         let (last, bits) = (i / 64, i % 64);
         for (k, word) in rows.row(i)[..=last].iter().enumerate() {
@@ -118,6 +117,7 @@ fn rows(out: &mut Writer, rows: &BitMatrix) {
 }
 
 fn whole_rows(out: &mut Writer, rows: &BitMatrix) {
+    out.0.reserve_exact((0..rows.n_rows()).map(|i| 8 * rows.row(i).len()).sum());
     (0..rows.n_rows()).flat_map(|i| rows.row(i)).for_each(|word| out.0.extend(word.to_le_bytes()));
 }
 

@@ -1,10 +1,11 @@
 //! Isometric views of the cells of a scene in space.
 
+use super::legend::Entry;
 use super::order::back_to_front;
-use super::slice::{look, title};
+use super::slice::{Looked, look, title};
 use super::space::Up;
 use super::visible_set::VisibleSet;
-use super::{DrawError, View, svg};
+use super::{DrawError, Drawing, Sight, View, svg};
 use crate::frame::{Frame, Px};
 use crate::theme;
 use sightlines_geometry::{Aabb, Point2};
@@ -13,22 +14,26 @@ use std::fmt::Write;
 
 /// How to draw an isometric view.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct IsometricOptions {
+pub struct IsometricOptions<'a> {
     /// Whose visible set is shown.
     pub view: View<[f64; 3]>,
+    /// With [`View::Eye`]: what the viewer sees of that.
+    pub sight: Option<Sight<'a, [f64; 3]>>,
     /// Which way is up.
     pub up: Up,
     /// Where to cut off what is above, as a coordinate on the axis that points up, in scene units.
     pub below: Option<f64>,
+    /// Whether a legend and a scale bar, for lengths along the axes, stand below, if there is room for words.
+    pub legend: bool,
     /// The longer side of the picture in pixels, from [`MIN_SIZE`](super::MIN_SIZE) to
     /// [`MAX_SIZE`](super::MAX_SIZE).
     pub size: u32,
 }
 
-impl Default for IsometricOptions {
-    /// All cells alone, y up, 1600 pixels.
+impl Default for IsometricOptions<'_> {
+    /// All cells alone, y up, with a legend, 1600 pixels.
     fn default() -> Self {
-        Self { view: View::Plan, up: Up::Y, below: None, size: 1600 }
+        Self { view: View::Plan, sight: None, up: Up::Y, below: None, legend: true, size: 1600 }
     }
 }
 
@@ -40,9 +45,17 @@ impl Default for IsometricOptions {
 /// # Errors
 /// [`DrawError`] for a table of a plan, a cell that does not exist, nothing below the height, an unusable
 /// size or point.
-pub fn isometric_svg(table: &Table, options: &IsometricOptions) -> Result<String, DrawError> {
-    let IsometricOptions { view, up, below, size } = *options;
-    let (seen, eye) = look(table, view, size)?;
+pub fn isometric_svg(table: &Table, options: &IsometricOptions<'_>) -> Result<String, DrawError> {
+    Ok(isometric_drawing(table, options)?.to_svg())
+}
+
+/// The picture of [`isometric_svg`], to be put beside others.
+///
+/// # Errors
+/// As for [`isometric_svg`].
+pub fn isometric_drawing(table: &Table, options: &IsometricOptions<'_>) -> Result<Drawing, DrawError> {
+    let IsometricOptions { view, sight, up, below, legend, size } = *options;
+    let Looked { seen, eye, .. } = look(table, view, sight, size)?;
     if below.is_some_and(|height| !height.is_finite()) {
         return Err(DrawError::NotFinite);
     }
@@ -52,16 +65,19 @@ pub fn isometric_svg(table: &Table, options: &IsometricOptions) -> Result<String
         let high = table.cells().iter().map(|c| c.max[up.axis()]).fold(f64::NEG_INFINITY, f64::max);
         return Err(DrawError::NoCellAt { height, low, high });
     }
-    let frame = Frame::around(Aabb::around(boxes.iter().flat_map(|b| outline(b, up)).map(|p| [p.x, p.y])), size);
-    let mut out = svg::open(&title(view), [frame.width, frame.height]);
+    let bounds = Aabb::around(boxes.iter().flat_map(|b| outline(b, up)).map(|p| [p.x, p.y]));
+    let looks: Vec<Look> = ids.iter().map(|&id| Look::of(id, seen.as_ref())).collect();
+    let entries = Look::entries(&looks, seen.as_ref().is_some_and(VisibleSet::is_narrowed));
+    let mut drawing = Drawing::new(title(view, seen.as_ref()), bounds, size, entries, legend);
+    let frame = drawing.frame();
+    let out = drawing.body();
     for i in back_to_front(&boxes) {
-        draw(&mut out, &frame, &boxes[i], up, Look::of(ids[i], seen.as_ref()), size);
+        draw(out, &frame, &boxes[i], up, looks[i], size);
     }
     if let Some(eye) = eye {
-        svg::dot(&mut out, frame.place(project(eye, up)), f64::from(size) / 320.0, theme::SIGHTLINE);
+        svg::dot(out, frame.place(project(eye, up)), f64::from(size) / 320.0, theme::SIGHTLINE);
     }
-    out.push_str(svg::CLOSE);
-    Ok(out)
+    Ok(drawing)
 }
 
 /// The cells that begin below a height, cut there.
@@ -110,6 +126,8 @@ enum Look {
     Plain,
     From,
     VisibleSet,
+    /// Seen by the viewer's cell, and not by the viewer.
+    OfCell,
     Hidden,
 }
 
@@ -118,9 +136,24 @@ impl Look {
         match seen {
             None => Self::Plain,
             Some(seen) if seen.is_from(cell) => Self::From,
-            Some(seen) if seen.sees(cell) => Self::VisibleSet,
+            Some(seen) if seen.is_in_sight(cell) => Self::VisibleSet,
+            Some(seen) if seen.sees(cell) => Self::OfCell,
             Some(_) => Self::Hidden,
         }
+    }
+
+    /// What the colours mean; only of what is there.
+    fn entries(looks: &[Self], is_narrowed: bool) -> Vec<Entry> {
+        let (from, in_sight) =
+            if is_narrowed { ("the viewer's cell", "seen by the viewer") } else { ("the cell", "seen from the cell") };
+        let all = [
+            (Self::Plain, Entry::area(theme::CELL_SHADES[1], "cells")),
+            (Self::From, Entry::area(theme::FROM, from)),
+            (Self::VisibleSet, Entry::area(theme::SEEN, in_sight)),
+            (Self::OfCell, Entry::area(theme::SEEN_BY_CELL, "seen from elsewhere in that cell")),
+            (Self::Hidden, Entry::area(theme::PAPER, "not seen")),
+        ];
+        all.into_iter().filter(|(look, _)| looks.contains(look)).map(|(_, entry)| entry).collect()
     }
 
     /// The shades of the top, of the face to the left and of that to the right, and how opaque they are.
@@ -129,6 +162,7 @@ impl Look {
             Self::Plain => Some((theme::CELL_SHADES, ".45")),
             Self::From => Some((theme::FROM_SHADES, ".85")),
             Self::VisibleSet => Some((theme::SEEN_SHADES, ".3")),
+            Self::OfCell => Some((theme::SEEN_SHADES, ".1")),
             Self::Hidden => None,
         }
     }

@@ -1,7 +1,9 @@
 //! Tables as SVG: plans, floor plans of scenes in space, isometric views.
 
+mod drawing;
 mod figure;
 mod isometric;
+mod legend;
 mod order;
 mod picture;
 mod plan;
@@ -10,13 +12,14 @@ mod space;
 mod svg;
 mod visible_set;
 
-pub use isometric::{IsometricOptions, isometric_svg};
-pub use plan::{DrawOptions, plan_svg};
-pub use slice::{SliceOptions, slice_svg};
+pub use drawing::Drawing;
+pub use isometric::{IsometricOptions, isometric_drawing, isometric_svg};
+pub use plan::{DrawOptions, plan_drawing, plan_svg};
+pub use slice::{SliceOptions, slice_drawing, slice_svg};
 pub use space::Up;
 
 use sightlines_geometry::Point2;
-use sightlines_pvs::{CellId, Table};
+use sightlines_pvs::{CellId, ObjectId, Table};
 
 /// Smallest longer side of a picture, in pixels.
 pub const MIN_SIZE: u32 = 16;
@@ -33,8 +36,21 @@ pub enum View<P = Point2> {
     Plan,
     /// The cells that this cell sees.
     Cell(CellId),
-    /// What a viewer at this point sees: the union over the cells that contain it.
+    /// What the cells that contain this point see. What a viewer at the point sees of that is for [`Sight`] to state.
     Eye(P),
+}
+
+/// What a viewer sees, which is part of what their cell sees: the answer of an eye-to-cell method, for a picture with [`View::Eye`].
+///
+/// `P` is a direction in scene units: a [`Point2`] of a plan, three coordinates in space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight<'a, P = Point2> {
+    /// The cells, in any order.
+    pub cells: &'a [CellId],
+    /// The objects, in any order.
+    pub objects: &'a [ObjectId],
+    /// The direction of view and its angle in radians, to be marked; none for a viewer who looks all round.
+    pub looks: Option<(P, f64)>,
 }
 
 /// Why a table cannot be drawn so.
@@ -73,6 +89,14 @@ pub enum DrawError {
         /// Where the highest cell ends.
         high: f64,
     },
+    /// An object that the table does not have.
+    #[error("there is no object {object}: the table has {n_objects} objects")]
+    NoSuchObject {
+        /// The object asked for.
+        object: u32,
+        /// Number of objects of the table.
+        n_objects: usize,
+    },
     /// A picture too small to show anything or too large for memory.
     #[error("a picture of {0} pixels is not from {MIN_SIZE} to {MAX_SIZE} pixels")]
     Size(u32),
@@ -86,6 +110,17 @@ fn check_cells(table: &Table, cells: impl IntoIterator<Item = CellId>) -> Result
     let n_cells = table.n_cells();
     match cells.into_iter().find(|cell| cell.idx() >= n_cells) {
         Some(cell) => Err(DrawError::NoSuchCell { cell: cell.0, n_cells }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that a table has what a viewer sees.
+fn check_sight<P>(table: &Table, sight: Option<&Sight<'_, P>>) -> Result<(), DrawError> {
+    let Some(sight) = sight else { return Ok(()) };
+    check_cells(table, sight.cells.iter().copied())?;
+    let n_objects = table.objects().len();
+    match sight.objects.iter().find(|object| object.idx() >= n_objects) {
+        Some(object) => Err(DrawError::NoSuchObject { object: object.0, n_objects }),
         None => Ok(()),
     }
 }

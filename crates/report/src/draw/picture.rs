@@ -1,6 +1,8 @@
 //! The drawing of a planar figure.
 
+use super::Drawing;
 use super::figure::{Figure, Shape};
+use super::legend::{Entry, Swatch};
 use super::svg::{self, fill, stroke};
 use super::visible_set::VisibleSet;
 use crate::frame::{Frame, Px};
@@ -20,10 +22,53 @@ pub(super) struct Annotations<'a> {
     pub(super) line: Option<[Point2; 2]>,
     /// Where the viewer is.
     pub(super) eye: Option<Point2>,
+    /// Where they look, and the angle of view in radians.
+    pub(super) looks: Option<(Point2, f64)>,
 }
 
+/// What is drawn besides the cells and what is seen.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    pub(super) objects: bool,
+    pub(super) group_colours: bool,
+    pub(super) legend: bool,
+}
+
+/// Draws a figure; the longer side of the picture has `size` pixels.
+pub(super) fn draw(
+    title: String,
+    figure: &Figure,
+    seen: Option<&VisibleSet>,
+    annotations: &Annotations<'_>,
+    look: Look,
+    size: u32,
+) -> Drawing {
+    let strokes = |frame: Frame| {
+        let area: f64 = figure.cells.iter().map(|c| signed_area(&c.corners)).sum();
+        let cell = (frame.area(area) / (figure.cells.len().max(1) as f64)).sqrt();
+        Strokes::for_cells(cell, f64::from(size))
+    };
+    let bounds = figure.bounds();
+    let about =
+        Picture { figure, frame: Frame::around(bounds, size), strokes: strokes(Frame::around(bounds, size)), seen };
+    let mut drawing = Drawing::new(title, bounds, size, about.entries(annotations, look), look.legend);
+    let frame = drawing.frame();
+    let picture = Picture { figure, frame, strokes: strokes(frame), seen };
+    let out = drawing.body();
+    picture.fills(out, annotations.target, look.group_colours);
+    picture.lines(out);
+    if look.objects {
+        picture.objects(out);
+    }
+    picture.annotations(out, annotations);
+    drawing
+}
+
+/// Which cells are meant.
+type Keep<'a> = &'a dyn Fn(CellId) -> bool;
+
 /// A picture while it is drawn.
-pub(super) struct Picture<'a> {
+struct Picture<'a> {
     figure: &'a Figure,
     frame: Frame,
     strokes: Strokes,
@@ -31,32 +76,60 @@ pub(super) struct Picture<'a> {
     seen: Option<&'a VisibleSet>,
 }
 
-impl<'a> Picture<'a> {
-    /// A picture of which the longer side has `size` pixels.
-    pub(super) fn new(figure: &'a Figure, seen: Option<&'a VisibleSet>, size: u32) -> Self {
-        let frame = Frame::around(figure.bounds(), size);
-        let area: f64 = figure.cells.iter().map(|c| signed_area(&c.corners)).sum();
-        let cell = (frame.area(area) / (figure.cells.len().max(1) as f64)).sqrt();
-        Self { figure, frame, strokes: Strokes::for_cells(cell, f64::from(size)), seen }
-    }
-
-    /// The whole picture.
-    pub(super) fn draw(
-        &self,
-        title: &str,
-        annotations: &Annotations<'_>,
-        objects: bool,
-        group_colours: bool,
-    ) -> String {
-        let mut out = svg::open(title, [self.frame.width, self.frame.height]);
-        self.fills(&mut out, annotations.target, group_colours);
-        self.lines(&mut out);
-        if objects {
-            self.objects(&mut out);
+impl Picture<'_> {
+    /// What the colours of this picture mean; only of what is there.
+    fn entries(&self, annotations: &Annotations<'_>, look: Look) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        let any = |keep: Keep<'_>| self.figure.cells.iter().any(|cell| keep(cell.id));
+        if let Some(seen) = self.seen {
+            let is_eye = annotations.eye.is_some();
+            let [from, in_sight] = match (is_eye, seen.is_narrowed()) {
+                (_, true) => ["the viewer's cell", "seen by the viewer"],
+                (true, false) => ["the cell of the point", "seen from that cell"],
+                (false, false) => ["the cell", "seen from the cell"],
+            };
+            let kinds: [(&str, &str, Keep<'_>); 4] = [
+                (theme::FROM, from, &|id| seen.is_from(id)),
+                (theme::SEEN, in_sight, &|id| seen.is_in_sight(id) && !seen.is_from(id)),
+                (theme::SEEN_BY_CELL, "seen from elsewhere in that cell", &|id| seen.sees(id) && !seen.is_in_sight(id)),
+                (theme::HIDDEN, "not seen", &|id| !seen.sees(id) && !seen.is_in_sight(id)),
+            ];
+            entries.extend(kinds.into_iter().filter(|(_, _, keep)| any(keep)).map(|(c, l, _)| Entry::area(c, l)));
+            if annotations.target.is_some_and(|target| any(&|id| id == target)) {
+                entries.push(Entry::area(theme::TARGET, "the cell looked for"));
+            }
+        } else if look.group_colours && self.figure.cells.iter().any(|cell| cell.group.is_some()) {
+            entries.push(Entry::area(theme::GROUPS[0], "cells, tinted by group"));
+        } else {
+            entries.push(Entry::area(theme::CELL, "cells"));
         }
-        self.annotations(&mut out, annotations);
-        out.push_str(svg::CLOSE);
-        out
+        let line = |colour, width, label| Entry { swatch: Swatch::Line(colour, width), label };
+        if !self.figure.walls.is_empty() {
+            entries.push(line(theme::WALL, self.strokes.wall, "walls"));
+        }
+        if !self.figure.doors.is_empty() {
+            let colour = if self.seen.is_some() { theme::PORTAL_FAINT } else { theme::PORTAL };
+            entries.push(line(colour, self.strokes.portal, "portals"));
+        }
+        if look.objects && !self.figure.objects.is_empty() {
+            let is_seen = |id: u32| self.seen.is_none_or(|seen| seen.sees_object(id));
+            let all = || self.figure.objects.iter().map(|(id, _)| *id);
+            if all().any(is_seen) {
+                entries.push(Entry::area(theme::OBJECT, if self.seen.is_some() { "objects seen" } else { "objects" }));
+            }
+            if !all().all(is_seen) {
+                entries.push(Entry::area(theme::OBJECT_HIDDEN, "objects not seen"));
+            }
+        }
+        if annotations.line.is_some() {
+            entries.push(line(theme::SIGHTLINE, self.strokes.line, "a line of sight"));
+        } else if !annotations.portals.is_empty() {
+            entries.push(line(theme::SIGHTLINE, self.strokes.wall, "portals of a blocked way"));
+        }
+        if annotations.eye.is_some() {
+            entries.push(Entry { swatch: Swatch::Dot(theme::SIGHTLINE), label: "the viewer" });
+        }
+        entries
     }
 
     /// The cells, one path for each colour: cells that share a side leave no seam in a common path.
@@ -71,7 +144,10 @@ impl<'a> Picture<'a> {
         let base = if self.seen.is_some() { theme::HIDDEN } else { theme::CELL };
         fill(out, &chosen(&|_| true), base);
         if let Some(seen) = self.seen {
-            fill(out, &chosen(&|cell| seen.sees(cell.id)), theme::SEEN);
+            if seen.is_narrowed() {
+                fill(out, &chosen(&|cell| seen.sees(cell.id) && !seen.is_in_sight(cell.id)), theme::SEEN_BY_CELL);
+            }
+            fill(out, &chosen(&|cell| seen.is_in_sight(cell.id)), theme::SEEN);
         } else if group_colours {
             let n = theme::GROUPS.len();
             for (k, colour) in theme::GROUPS.iter().enumerate() {
@@ -160,9 +236,29 @@ impl<'a> Picture<'a> {
             stroke(out, &path, theme::PAPER, 2.2 * self.strokes.line);
             stroke(out, &path, theme::SIGHTLINE, self.strokes.line);
         }
+        if let (Some(eye), Some((direction, angle))) = (annotations.eye, annotations.looks) {
+            self.view(out, eye, direction, angle);
+        }
         for point in annotations.line.into_iter().flatten().chain(annotations.eye) {
             svg::dot(out, self.frame.place(point), self.strokes.mark, theme::SIGHTLINE);
         }
+    }
+
+    /// The two sides of the view, as short lines from the eye; nothing for one who looks straight up or down.
+    fn view(&self, out: &mut String, eye: Point2, direction: Point2, angle: f64) {
+        let length = direction.length();
+        if !(length > 0.0 && length.is_finite()) {
+            return;
+        }
+        let ahead = direction * (f64::from(self.frame.width.max(self.frame.height)) / 12.0 / self.frame.scale / length);
+        let mut path = String::new();
+        for half in [0.5 * angle, -0.5 * angle] {
+            let (sin, cos) = half.sin_cos();
+            let side = Point2::new(ahead.x * cos - ahead.y * sin, ahead.x * sin + ahead.y * cos);
+            self.frame.polyline(&mut path, &[eye, eye + side]);
+        }
+        stroke(out, &path, theme::PAPER, 2.2 * self.strokes.line);
+        stroke(out, &path, theme::SIGHTLINE, self.strokes.line);
     }
 
     fn ring_if_thin(&self, out: &mut String, cell: &Shape, colour: &str) {

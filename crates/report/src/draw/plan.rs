@@ -1,17 +1,19 @@
 //! Plans: the whole of a planar table.
 
 use super::figure::Figure;
-use super::picture::{Annotations, Picture};
+use super::picture::{Annotations, Look, draw};
 use super::visible_set::VisibleSet;
-use super::{DrawError, View, check_cells, check_size, svg};
+use super::{DrawError, Drawing, Sight, View, check_cells, check_sight, check_size, svg};
 use sightlines_geometry::Point2;
 use sightlines_pvs::{CellId, Table};
 
 /// How to draw a plan.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DrawOptions {
+pub struct DrawOptions<'a> {
     /// Whose visible set is shown.
     pub view: View,
+    /// With [`View::Eye`]: what the viewer sees of that, drawn over it.
+    pub sight: Option<Sight<'a>>,
     /// A cell to mark as the one looked for.
     pub target: Option<CellId>,
     /// A line of sight, in scene units.
@@ -20,6 +22,8 @@ pub struct DrawOptions {
     pub marked_portals: Vec<usize>,
     /// Whether objects are drawn.
     pub objects: bool,
+    /// Whether a legend and a scale bar stand below, if there is room for words.
+    pub legend: bool,
     /// Whether [`View::Plan`] tints the cells by group, if they have any.
     pub group_colours: bool,
     /// The longer side of the picture in pixels, from [`MIN_SIZE`](super::MIN_SIZE) to
@@ -27,15 +31,17 @@ pub struct DrawOptions {
     pub size: u32,
 }
 
-impl Default for DrawOptions {
-    /// The plan alone, with objects and group colours, 1600 pixels.
+impl Default for DrawOptions<'_> {
+    /// The plan alone, with objects, group colours and a legend, 1600 pixels.
     fn default() -> Self {
         Self {
             view: View::Plan,
+            sight: None,
             target: None,
             line: None,
             marked_portals: Vec::new(),
             objects: true,
+            legend: true,
             group_colours: true,
             size: 1600,
         }
@@ -47,26 +53,45 @@ impl Default for DrawOptions {
 /// the cells. O(table).
 ///
 /// # Errors
-/// [`DrawError`] for a table in space, cells or portals that do not exist, an unusable size or point.
-pub fn plan_svg(table: &Table, options: &DrawOptions) -> Result<String, DrawError> {
+/// [`DrawError`] for a table in space, cells, objects or portals that do not exist, an unusable size or point.
+pub fn plan_svg(table: &Table, options: &DrawOptions<'_>) -> Result<String, DrawError> {
+    Ok(plan_drawing(table, options)?.to_svg())
+}
+
+/// The picture of [`plan_svg`], to be put beside others.
+///
+/// # Errors
+/// As for [`plan_svg`].
+pub fn plan_drawing(table: &Table, options: &DrawOptions<'_>) -> Result<Drawing, DrawError> {
     check(table, options)?;
     let figure = Figure::of_plan(table);
+    let sight = options.sight.as_ref().filter(|_| matches!(options.view, View::Eye(_)));
     let (seen, eye) = match options.view {
         View::Plan => (None, None),
         View::Cell(cell) => (Some(VisibleSet::from_cell(table, cell)), None),
         View::Eye(eye) => (Some(VisibleSet::from_point(table, [eye.x, eye.y, 0.0])), Some(eye)),
     };
-    let annotations = Annotations { target: options.target, portals: &options.marked_portals, line: options.line, eye };
+    let seen = match (seen, sight) {
+        (Some(seen), Some(sight)) => Some(seen.narrowed(sight)),
+        (seen, _) => seen,
+    };
+    let annotations = Annotations {
+        target: options.target,
+        portals: &options.marked_portals,
+        line: options.line,
+        eye,
+        looks: sight.and_then(|sight| sight.looks),
+    };
     let title = match options.view {
         View::Plan => "Cells and portals".to_owned(),
         View::Cell(cell) => svg::seen_from_cell(cell),
-        View::Eye(eye) => svg::seen_from_point(&[eye.x, eye.y]),
+        View::Eye(eye) => svg::seen_from_point(&[eye.x, eye.y], sight.is_some()),
     };
-    let picture = Picture::new(&figure, seen.as_ref(), options.size);
-    Ok(picture.draw(&title, &annotations, options.objects, options.group_colours))
+    let look = Look { objects: options.objects, group_colours: options.group_colours, legend: options.legend };
+    Ok(draw(title, &figure, seen.as_ref(), &annotations, look, options.size))
 }
 
-fn check(table: &Table, options: &DrawOptions) -> Result<(), DrawError> {
+fn check(table: &Table, options: &DrawOptions<'_>) -> Result<(), DrawError> {
     if table.dimension() != 2 {
         return Err(DrawError::NotPlanar(table.dimension()));
     }
@@ -77,7 +102,9 @@ fn check(table: &Table, options: &DrawOptions) -> Result<(), DrawError> {
         return Err(DrawError::NoSuchPortal { portal, n_portals });
     }
     check_size(options.size)?;
+    check_sight(table, options.sight.as_ref())?;
     let eye = if let View::Eye(eye) = options.view { Some(eye) } else { None };
-    let finite = options.line.into_iter().flatten().chain(eye).all(Point2::is_finite);
+    let direction = options.sight.and_then(|sight| sight.looks).map(|(direction, _)| direction);
+    let finite = options.line.into_iter().flatten().chain(eye).chain(direction).all(Point2::is_finite);
     if finite { Ok(()) } else { Err(DrawError::NotFinite) }
 }

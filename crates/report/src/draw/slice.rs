@@ -1,33 +1,37 @@
 //! Floor plans of scenes in space.
 
 use super::figure::Figure;
-use super::picture::{Annotations, Picture};
+use super::picture::{Annotations, Look, draw};
 use super::space::Up;
 use super::visible_set::VisibleSet;
-use super::{DrawError, View, check_cells, check_size, svg};
+use super::{DrawError, Drawing, Sight, View, check_cells, check_sight, check_size, svg};
 use sightlines_geometry::Point2;
 use sightlines_pvs::Table;
 
 /// How to draw a floor plan of a scene in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SliceOptions {
+pub struct SliceOptions<'a> {
     /// Whose visible set is shown; the viewer may be at another height.
     pub view: View<[f64; 3]>,
+    /// With [`View::Eye`]: what the viewer sees of that, drawn over it.
+    pub sight: Option<Sight<'a, [f64; 3]>>,
     /// Which way is up.
     pub up: Up,
     /// Where to cut, as a coordinate on the axis that points up, in scene units.
     pub height: f64,
     /// A line of sight to draw, as it is seen from above, in scene units; it may be at other heights.
     pub line: Option<[[f64; 3]; 2]>,
+    /// Whether a legend and a scale bar stand below, if there is room for words.
+    pub legend: bool,
     /// The longer side of the picture in pixels, from [`MIN_SIZE`](super::MIN_SIZE) to
     /// [`MAX_SIZE`](super::MAX_SIZE).
     pub size: u32,
 }
 
-impl Default for SliceOptions {
-    /// The cells alone at height 0, y up, 1600 pixels.
+impl Default for SliceOptions<'_> {
+    /// The cells alone at height 0, y up, with a legend, 1600 pixels.
     fn default() -> Self {
-        Self { view: View::Plan, up: Up::Y, height: 0.0, line: None, size: 1600 }
+        Self { view: View::Plan, sight: None, up: Up::Y, height: 0.0, line: None, legend: true, size: 1600 }
     }
 }
 
@@ -38,9 +42,17 @@ impl Default for SliceOptions {
 /// # Errors
 /// [`DrawError`] for a table of a plan, a cell that does not exist, a height without cells, an unusable size
 /// or point.
-pub fn slice_svg(table: &Table, options: &SliceOptions) -> Result<String, DrawError> {
-    let SliceOptions { view, up, height, line, size } = *options;
-    let (seen, eye) = look(table, view, size)?;
+pub fn slice_svg(table: &Table, options: &SliceOptions<'_>) -> Result<String, DrawError> {
+    Ok(slice_drawing(table, options)?.to_svg())
+}
+
+/// The picture of [`slice_svg`], to be put beside others.
+///
+/// # Errors
+/// As for [`slice_svg`].
+pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawing, DrawError> {
+    let SliceOptions { view, sight, up, height, line, legend, size } = *options;
+    let Looked { seen, eye, looks } = look(table, view, sight, size)?;
     if !height.is_finite() || !line.iter().flatten().flatten().all(|x| x.is_finite()) {
         return Err(DrawError::NotFinite);
     }
@@ -51,42 +63,62 @@ pub fn slice_svg(table: &Table, options: &SliceOptions) -> Result<String, DrawEr
         return Err(DrawError::NoCellAt { height, low, high });
     }
     let on_floor = |p: [f64; 3]| Point2::from(up.on_floor(p));
-    let annotations =
-        Annotations { eye: eye.map(on_floor), line: line.map(|ends| ends.map(on_floor)), ..Annotations::default() };
-    let title = format!("{} at height {height}", title(view));
-    Ok(Picture::new(&figure, seen.as_ref(), size).draw(&title, &annotations, false, true))
+    let annotations = Annotations {
+        eye: eye.map(on_floor),
+        line: line.map(|ends| ends.map(on_floor)),
+        looks: looks.map(|(direction, angle)| (on_floor(direction), angle)),
+        ..Annotations::default()
+    };
+    let title = format!("{} at height {height}", title(view, seen.as_ref()));
+    let look = Look { objects: false, group_colours: true, legend };
+    Ok(draw(title, &figure, seen.as_ref(), &annotations, look, size))
 }
 
 /// What a picture of a scene in space is called.
-pub(super) fn title(view: View<[f64; 3]>) -> String {
+pub(super) fn title(view: View<[f64; 3]>, seen: Option<&VisibleSet>) -> String {
     match view {
         View::Plan => "Cells".to_owned(),
         View::Cell(cell) => svg::seen_from_cell(cell),
-        View::Eye(eye) => svg::seen_from_point(&eye),
+        View::Eye(eye) => svg::seen_from_point(&eye, seen.is_some_and(VisibleSet::is_narrowed)),
     }
+}
+
+/// What is seen, and from where; along the axes of the table.
+#[derive(Debug, Default)]
+pub(super) struct Looked {
+    pub(super) seen: Option<VisibleSet>,
+    pub(super) eye: Option<[f64; 3]>,
+    pub(super) looks: Option<([f64; 3], f64)>,
 }
 
 /// Checks what all pictures of scenes in space have in common; what is seen, and the viewer.
 pub(super) fn look(
     table: &Table,
     view: View<[f64; 3]>,
+    sight: Option<Sight<'_, [f64; 3]>>,
     size: u32,
-) -> Result<(Option<VisibleSet>, Option<[f64; 3]>), DrawError> {
+) -> Result<Looked, DrawError> {
     if table.dimension() != 3 {
         return Err(DrawError::NotSpatial(table.dimension()));
     }
     check_size(size)?;
     match view {
-        View::Plan => Ok((None, None)),
+        View::Plan => Ok(Looked::default()),
         View::Cell(cell) => {
             check_cells(table, [cell])?;
-            Ok((Some(VisibleSet::from_cell(table, cell)), None))
+            Ok(Looked { seen: Some(VisibleSet::from_cell(table, cell)), ..Looked::default() })
         }
-        View::Eye(eye) if eye.iter().all(|x| x.is_finite()) => {
+        View::Eye(eye) => {
+            check_sight(table, sight.as_ref())?;
+            let looks = sight.and_then(|sight| sight.looks);
+            if !eye.iter().chain(looks.iter().flat_map(|(direction, _)| direction)).all(|x| x.is_finite()) {
+                return Err(DrawError::NotFinite);
+            }
             // Pictures are along the axes of the table.
-            let along = table.frame().map_or(eye, |frame| frame.to_frame(eye));
-            Ok((Some(VisibleSet::from_point(table, eye)), Some(along)))
+            let along = |p: [f64; 3]| table.frame().map_or(p, |frame| frame.to_frame(p));
+            let seen = VisibleSet::from_point(table, eye);
+            let seen = if let Some(sight) = &sight { seen.narrowed(sight) } else { seen };
+            Ok(Looked { seen: Some(seen), eye: Some(along(eye)), looks: looks.map(|(to, angle)| (along(to), angle)) })
         }
-        View::Eye(_) => Err(DrawError::NotFinite),
     }
 }

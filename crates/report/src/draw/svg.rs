@@ -23,10 +23,11 @@ pub(super) fn seen_from_cell(cell: CellId) -> String {
     format!("What cell {} sees", cell.0)
 }
 
-/// A title.
-pub(super) fn seen_from_point(point: &[f64]) -> String {
+/// A title: of the viewer's own set, or of that of the cell that they are in.
+pub(super) fn seen_from_point(point: &[f64], is_narrowed: bool) -> String {
     let numbers: Vec<String> = point.iter().map(f64::to_string).collect();
-    format!("What a viewer at ({}) sees", numbers.join(", "))
+    let who = if is_narrowed { "a viewer at" } else { "the cell of" };
+    format!("What {who} ({}) sees", numbers.join(", "))
 }
 
 /// Adds a path that is filled, if there is any.

@@ -1,5 +1,6 @@
 //! What is seen in a picture, and from where.
 
+use super::Sight;
 use sightlines_pvs::{CellId, ObjectId, Place, Table};
 
 /// What a cell or a viewer sees.
@@ -11,6 +12,8 @@ pub(super) struct VisibleSet {
     cells: Vec<bool>,
     /// The objects that are seen, ascending.
     objects: Vec<ObjectId>,
+    /// For each cell whether the viewer sees it, if that is known apart from what their cell sees.
+    viewer: Option<Vec<bool>>,
 }
 
 impl VisibleSet {
@@ -30,10 +33,30 @@ impl VisibleSet {
     fn new(table: &Table, from: Vec<CellId>, ids: impl Iterator<Item = CellId>, objects: Vec<ObjectId>) -> Self {
         let mut cells = vec![false; table.n_cells()];
         ids.for_each(|id| cells[id.idx()] = true);
-        Self { from, cells, objects }
+        Self { from, cells, objects, viewer: None }
     }
 
-    /// Whether a cell is seen.
+    /// The same, of which a viewer sees only this.
+    pub(super) fn narrowed<P>(mut self, sight: &Sight<'_, P>) -> Self {
+        let mut seen = vec![false; self.cells.len()];
+        sight.cells.iter().for_each(|id| seen[id.idx()] = true);
+        self.objects = sight.objects.to_vec();
+        self.objects.sort_unstable();
+        self.viewer = Some(seen);
+        self
+    }
+
+    /// Whether what the viewer sees is told apart from what their cell sees.
+    pub(super) fn is_narrowed(&self) -> bool {
+        self.viewer.is_some()
+    }
+
+    /// Whether a cell is seen by the viewer; by their cell, if only that is known.
+    pub(super) fn is_in_sight(&self, cell: CellId) -> bool {
+        self.viewer.as_ref().map_or_else(|| self.sees(cell), |seen| seen[cell.idx()])
+    }
+
+    /// Whether a cell is seen by the cells looked from.
     pub(super) fn sees(&self, cell: CellId) -> bool {
         self.cells[cell.idx()]
     }

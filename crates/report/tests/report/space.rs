@@ -20,12 +20,12 @@ fn pixel(pixels: &Pixmap, x: f64, y: f64) -> Rgb {
     [pixel.red(), pixel.green(), pixel.blue()]
 }
 
-fn slice(view: View<[f64; 3]>, height: f64) -> SliceOptions {
-    SliceOptions { view, height, size: 625, ..SliceOptions::default() }
+fn slice(view: View<[f64; 3]>, height: f64) -> SliceOptions<'static> {
+    SliceOptions { view, height, size: 625, legend: false, ..SliceOptions::default() }
 }
 
 /// Colours at places `[x, z]` of the house, which is 6 by 2 units of a hundred pixels, less the margin.
-fn colours<const N: usize>(options: &SliceOptions, places: [[f64; 2]; N]) -> [Rgb; N] {
+fn colours<const N: usize>(options: &SliceOptions<'_>, places: [[f64; 2]; N]) -> [Rgb; N] {
     let png = svg_to_png(&slice_svg(&house(), options).unwrap()).unwrap();
     let pixels = Pixmap::decode_png(&png).unwrap();
     assert_eq!((pixels.width(), pixels.height()), (625, 225));
@@ -84,8 +84,8 @@ fn up_is_respected() {
     assert_eq!([at(1.0, 1.0), at(4.0, 1.0)], [FROM, HIDDEN]);
 }
 
-fn isometric(table: &Table, options: &IsometricOptions) -> String {
-    isometric_svg(table, &IsometricOptions { size: 500, ..*options }).unwrap()
+fn isometric(table: &Table, options: &IsometricOptions<'_>) -> String {
+    isometric_svg(table, &IsometricOptions { size: 500, legend: false, ..*options }).unwrap()
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn boxes_are_drawn_from_back_to_front() {
     assert!(isometric(&house(), &IsometricOptions { up: Up::Z, ..from(0) }) != seen);
     let eye = IsometricOptions { view: View::Eye([1.0, 1.0, 1.0]), ..IsometricOptions::default() };
     let eye = isometric(&house(), &eye);
-    assert!(eye.contains("<circle") && eye.contains("<title>What a viewer at (1, 1, 1) sees</title>"));
+    assert!(eye.contains("<circle") && eye.contains("<title>What the cell of (1, 1, 1) sees</title>"));
 }
 
 /// Up is up: the picture of a tall box is taller than wide, and paper is left beside it.
@@ -123,7 +123,7 @@ fn isometric_pictures_stand_upright() {
 #[test]
 fn what_cannot_be_drawn_is_refused() {
     let table = house();
-    let refused = |options: SliceOptions| slice_svg(&table, &options).unwrap_err();
+    let refused = |options: SliceOptions<'_>| slice_svg(&table, &options).unwrap_err();
     let view = |view| slice(view, 1.0);
     assert_eq!(refused(view(View::Cell(CellId(3)))), DrawError::NoSuchCell { cell: 3, n_cells: 3 });
     assert_eq!(refused(SliceOptions { size: 15, ..view(View::Plan) }), DrawError::Size(15));

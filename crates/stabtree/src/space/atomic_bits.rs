@@ -2,6 +2,19 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+/// The words that have the bits of some columns, each with its index. Fewest if the columns ascend.
+pub(super) fn words_of(cols: &[usize]) -> Vec<(usize, u64)> {
+    let mut words: Vec<(usize, u64)> = Vec::new();
+    for &col in cols {
+        let (at, bit) = (col / 64, 1 << (col % 64));
+        match words.last_mut() {
+            Some((last, bits)) if *last == at => *bits |= bit,
+            _ => words.push((at, bit)),
+        }
+    }
+    words
+}
+
 /// A matrix of bits that are only ever set, never cleared.
 #[derive(Debug)]
 pub(crate) struct AtomicBitMatrix {
@@ -25,6 +38,16 @@ impl AtomicBitMatrix {
         for (own, &bits) in self.words[row * self.width..(row + 1) * self.width].iter().zip(words) {
             if bits & !own.load(Relaxed) != 0 {
                 own.fetch_or(bits, Relaxed);
+            }
+        }
+    }
+
+    /// Sets the bits of a row that are ones in some of its words, each given with its index.
+    pub(super) fn set_words(&self, row: usize, words: &[(usize, u64)]) {
+        let own = &self.words[row * self.width..][..self.width];
+        for &(at, bits) in words {
+            if bits & !own[at].load(Relaxed) != 0 {
+                own[at].fetch_or(bits, Relaxed);
             }
         }
     }
@@ -104,6 +127,10 @@ mod tests {
             }
         }
         assert_eq!(marks.ones(1).collect::<Vec<_>>(), [63, 64]);
+        let some = AtomicBitMatrix::new(2, 130);
+        some.set(1, 1);
+        some.set_words(1, &words_of(&[0, 63, 64, 129, 2]));
+        assert_eq!((some.ones(0).count(), some.ones(1).collect::<Vec<_>>()), (0, vec![0, 1, 2, 63, 64, 129]));
         let other = AtomicBitMatrix::new(3, 130);
         assert!([(0, 0), (1, 63)].into_iter().all(|(r, c)| other.set(r, c)) && !other.set(1, 63));
         assert!(marks.any_beyond(&other, [0, 3], [0, 130]) && marks.any_beyond(&other, [1, 2], [63, 65]));

@@ -8,10 +8,16 @@
 //! A group is tested with the bounding box of its cells: if nothing of its box is visible, none of its cells is;
 //! otherwise nothing follows, and its halves are tested. Single cells are decided exactly, except for [`slivers`]. So
 //! the answer depends neither on how cells are grouped nor on the order of work.
+//!
+//! In a tower, groups are not enough: stairs join each storey with each other. What is far is decided for many
+//! pairs at once, by [`columns`] and [`horizons`].
 
 mod atomic_bits;
+mod columns;
 mod explain;
+mod first_true;
 mod from_boxes;
+mod horizons;
 mod limited;
 mod live;
 mod objects;
@@ -26,6 +32,8 @@ pub use live::{LiveSpace, SpaceUpdate};
 
 use crate::search::SearchOptions;
 pub(crate) use atomic_bits::AtomicBitMatrix;
+use columns::Columns;
+use horizons::Horizons;
 use opaque::opaque_rectangles;
 pub(crate) use opaque::opaque_without_solid;
 use pairs::Pair;
@@ -106,6 +114,10 @@ struct SpaceSearch<'a> {
     maybe: AtomicBitMatrix,
     /// The only pairs to decide; `None` for all pairs.
     doubt: Option<PairsInDoubt>,
+    /// What is decided for several cells in a row; none for a search that keeps its lines, or decides few pairs.
+    columns: Columns,
+    /// The same for groups; none likewise.
+    horizons: Horizons,
     /// What was not decided because the budget was spent: places by places, and objects by places.
     left: Option<[AtomicBitMatrix; 2]>,
     /// Whether lines are kept for later.
@@ -128,7 +140,7 @@ fn components(graph: &CellGraph<Axial>) -> Vec<u32> {
     of
 }
 
-/// The share of a budget that pairs of cells may spend; the rest is for objects.
+/// The share of a budget that pairs of cells may spend; the rest is for objects. About what they take.
 const PAIRS: f64 = 0.6;
 
 /// The index of a cell that is too thin to be decided.
@@ -164,6 +176,7 @@ pub fn space_visibility(
 ) -> Result<SpaceVisibility, Cancelled> {
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
     let mut search = SpaceSearch::new(graph, objects, &blockers);
+    search.use_columns();
     if options.budget.is_limited() {
         search.expect_to_leave_pairs();
     }
@@ -239,6 +252,8 @@ impl<'a> SpaceSearch<'a> {
             objects,
             maybe,
             doubt: None,
+            columns: Columns::default(),
+            horizons: Horizons::default(),
             left: None,
             logging: false,
             n_assumed: AtomicU64::new(0),
@@ -280,6 +295,8 @@ impl<'a> SpaceSearch<'a> {
         let tasks: Vec<Pair> = scattered(tasks.len()).map(|i| tasks[i]).collect();
         let n_units = tasks.len() + self.boxes.len();
         let counter = Counter::new(options.progress, "pairs and objects", n_units).of(Work::Deciding);
+        // There are many times as many objects, each of which takes little.
+        let counter = counter.with_first(tasks.len(), PAIRS);
         let pairs = self.settle_pairs(tasks, threads, budget.part(PAIRS), &counter)?;
         let survey = (0..n).into_par_iter().map(|place| {
             let mut log = self.logging.then(WitnessLog::default);
@@ -298,29 +315,28 @@ impl<'a> SpaceSearch<'a> {
 
     fn into_seen(self, counters: ShaftCounters) -> SpaceVisibility {
         let n = self.graph.n_cells();
-        let mut cells = BitMatrix::identity(n);
-        let mut objects = BitMatrix::new(n, self.boxes.len());
-        for (place, &cell) in self.cell_at.iter().enumerate() {
-            for other in self.cells.ones(place) {
-                cells.set(cell as usize, self.cell_at[other] as usize, true);
-            }
-        }
-        for object in 0..self.boxes.len() {
-            for place in self.objects.ones(object) {
-                objects.set(self.cell_at[place] as usize, object, true);
-            }
-        }
-        slivers::fill(self.graph, |cell| self.place[cell] == SLIVER, &self.touching, &mut cells, &mut objects);
         let n_assumed = self.n_assumed.load(Relaxed);
         let left = self.left_pairs();
-        SpaceVisibility {
-            cells,
-            objects,
-            touching: self.touching,
-            n_blockers: self.blockers.len(),
-            n_assumed,
-            left,
-            counters,
+        let Self {
+            graph, boxes, blockers, cell_at, place, touching, cells: by_place, objects: by_object, maybe, ..
+        } = self;
+        // What is not needed any more is dropped at once: these matrices are most of the memory.
+        drop(maybe);
+        let mut cells = BitMatrix::identity(n);
+        for (place, &cell) in cell_at.iter().enumerate() {
+            for other in by_place.ones(place) {
+                cells.set(cell as usize, cell_at[other] as usize, true);
+            }
         }
+        drop(by_place);
+        let mut objects = BitMatrix::new(n, boxes.len());
+        for object in 0..boxes.len() {
+            for place in by_object.ones(object) {
+                objects.set(cell_at[place] as usize, object, true);
+            }
+        }
+        drop(by_object);
+        slivers::fill(graph, |cell| place[cell] == SLIVER, &touching, &mut cells, &mut objects);
+        SpaceVisibility { cells, objects, touching, n_blockers: blockers.len(), n_assumed, left, counters }
     }
 }

@@ -1,5 +1,6 @@
 //! Pairs of groups of cells, halved until one is hidden from the other or they are single cells.
 
+use super::atomic_bits::words_of;
 use super::witness_log::{FoundFor, Line, Proof, Worker};
 use super::{PairsInDoubt, SpaceSearch};
 use sightlines_geometry::{Aabb, BoxTree};
@@ -48,16 +49,25 @@ impl SpaceSearch<'_> {
             }
             return;
         }
-        if self.cells.all(rows, cols) {
+        if self.cells.all(rows, cols) || self.are_known_by_columns(rows, cols) {
             return;
         }
         if na.is_leaf() && nb.is_leaf() {
-            self.settle_cells([rows[0], cols[0]], [&na.bounds, &nb.bounds], worker);
+            if !self.is_beyond_horizon([a, b], worker) {
+                self.settle_cells([rows[0], cols[0]], [&na.bounds, &nb.bounds], worker);
+            }
             return;
         }
         let few = |doubt: &PairsInDoubt| doubt.cells.count_beyond(&self.cells, rows, cols, FEW) <= FEW;
         let worth_it = self.doubt.as_ref().is_none_or(|doubt| !few(doubt));
         if worth_it && apart(&na.bounds, &nb.bounds) && !self.cells.any(rows, cols) {
+            if self.is_beyond_horizon([a, b], worker) {
+                return;
+            }
+            if self.are_columns(rows, cols) {
+                self.halve([a, b], smaller);
+                return;
+            }
             match worker.shaft.decide(&na.bounds, &nb.bounds, Target::Inside, self.group_budget()) {
                 Verdict::Hidden(()) => return,
                 Verdict::Visible(ShaftLine::Free(line)) => {
@@ -66,6 +76,10 @@ impl SpaceSearch<'_> {
                 Verdict::Visible(ShaftLine::Fine(_)) | Verdict::Undecided(_) => {}
             }
         }
+        self.halve([a, b], smaller);
+    }
+
+    fn halve(&self, [a, b]: Pair, smaller: &mut impl FnMut(Pair)) {
         if halves_first(&self.tree, [a, b]) {
             self.tree.children(a).into_iter().for_each(|a| smaller([a, b]));
         } else {
@@ -73,13 +87,10 @@ impl SpaceSearch<'_> {
         }
     }
 
-    /// For a search in which only some pairs are in doubt and so not all groups are tested: whether two groups that
-    /// contain two cells, given by their places in order, are hidden from each other. A search over all pairs has
-    /// tested these groups and never reached the cells.
-    fn is_hidden_in_groups(&self, [first, second]: [usize; 2], worker: &mut Worker<'_>) -> bool {
-        if self.doubt.is_none() {
-            return false;
-        }
+    /// Whether two groups that contain two cells, given by their places in order, are hidden from each other. Not all of these
+    /// groups have been tested: not those for which a [horizon](super::horizons) had not been sought yet, and few in a search in
+    /// which only some pairs are in doubt.
+    pub(super) fn is_hidden_in_groups(&self, [first, second]: [usize; 2], worker: &mut Worker<'_>) -> bool {
         let has = |n: u32, place: usize| {
             let node = &self.tree.nodes()[n as usize];
             (node.start as usize..node.end as usize).contains(&place)
@@ -95,6 +106,9 @@ impl SpaceSearch<'_> {
                 continue;
             }
             let [na, nb] = [a, b].map(|n| self.tree.nodes()[n as usize]);
+            if self.is_beyond([a, b], 0, worker) {
+                return true;
+            }
             if na.is_leaf() && nb.is_leaf() {
                 return false;
             }
@@ -116,7 +130,7 @@ impl SpaceSearch<'_> {
     }
 
     fn settle_cells(&self, [a, b]: [usize; 2], bounds: [&Aabb<3>; 2], worker: &mut Worker<'_>) {
-        if !self.may_see_cell(a, b) {
+        if !self.may_see_cell(a, b) || self.is_hidden_in_columns(a, b, worker) || self.cells.get(a, b) {
             return;
         }
         match worker.shaft.decide(bounds[0], bounds[1], Target::Inside, CELL_BUDGET) {
@@ -184,11 +198,14 @@ impl SpaceSearch<'_> {
         found_for: FoundFor,
         worker: &mut Worker<'_>,
     ) {
-        let logging = worker.log.is_some();
+        if worker.log.is_none() {
+            self.mark_all(&span, cells, found_for);
+            return;
+        }
         let number = worker.log.as_ref().map_or(0, |log| log.lines.len() as u32);
         let (mut pairs, mut seen) = (Vec::new(), Vec::new());
         let mut join = |a: usize, b: usize| {
-            if self.join(a, b) && logging {
+            if self.join(a, b) {
                 pairs.push(Proof { pair: [a, b].map(|place| self.cell_at[place]), line: number });
             }
         };
@@ -199,7 +216,7 @@ impl SpaceSearch<'_> {
             join(a, b);
         }
         let mut see = |object: usize, place: usize| {
-            if self.objects.set(object, place) && logging {
+            if self.objects.set(object, place) {
                 seen.push(Proof { pair: [object as u32, self.cell_at[place]], line: number });
             }
         };
@@ -219,6 +236,29 @@ impl SpaceSearch<'_> {
             log.cells.append(&mut pairs);
             log.objects.append(&mut seen);
         }
+    }
+
+    /// The same if nobody keeps the line: a word of bits at a time, as a line down a stairwell passes cells of all storeys.
+    fn mark_all(&self, span: &FreeSpan, cells: &[usize], found_for: FoundFor) {
+        let words = words_of(cells);
+        cells.iter().for_each(|&a| self.cells.set_words(a, &words));
+        match found_for {
+            FoundFor::Groups => {}
+            FoundFor::Cells([a, b]) => {
+                self.join(a, b);
+            }
+            FoundFor::Object([object, place]) => {
+                self.objects.set(object, place);
+            }
+        }
+        self.object_tree.visit(
+            |b| span.may_meet(b),
+            |object| {
+                if span.meets(&self.boxes[object as usize]) {
+                    self.objects.set_words(object as usize, &words);
+                }
+            },
+        );
     }
 
     /// Marks what the free part of a line passes among places and objects that are new (`is_new`), paired with all that

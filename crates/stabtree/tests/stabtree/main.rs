@@ -2,6 +2,7 @@
 
 mod boxes;
 mod certify;
+mod columns;
 mod explain_convex;
 mod explain_space;
 mod from_boxes;

@@ -2,6 +2,7 @@
 
 use crate::file_error::{FileError, from_file_error};
 use crate::place::LookupError;
+use crate::sight::SightError;
 use std::path::PathBuf;
 
 /// Why `draw` fails; exit code 2.
@@ -13,6 +14,12 @@ pub(crate) enum Error {
     /// A cell or a point that the table does not have.
     #[error(transparent)]
     Lookup(#[from] LookupError),
+    /// There is no such view.
+    #[error(transparent)]
+    Sight(#[from] SightError),
+    /// A view without an eye.
+    #[error("{0} is of a viewer: give --eye")]
+    SightWithoutEye(&'static str),
     /// A floor plan without a height.
     #[error("{}: a floor plan of a scene in space needs --height (cells reach from {low} to {high}), --eye or --cell; \
              without, there is --isometric", path.display())]

@@ -3,19 +3,26 @@
 pub(crate) mod space;
 
 mod error;
+mod viewer;
 use crate::Answer;
 use crate::input::refuse;
-use crate::picture::{PictureKind, draw_plan, save_picture};
+use crate::picture::{PictureError, PictureKind, save_picture};
 use crate::place::{self, Point};
+use crate::sight::SightArgs;
 use crate::{input, output};
 use error::Error;
-use sightlines::geometry::check_coordinate;
+use sightlines::geometry::{Point2, check_coordinate};
 use sightlines::pvs::Table;
-use sightlines::report::{DrawOptions, MAX_SIZE, MIN_SIZE, View};
-use std::path::PathBuf;
+use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, View, plan_drawing};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use viewer::{Shown, Viewer};
 
 /// Arguments of `draw`.
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("up", |up| up.help("Scenes in space: the axis that points up in the picture; with --dir also the up direction of the view, \
+    which may be a vector [default: the one stored in the table, else y]").help_heading("Picture")))]
+#[command(mut_arg("method", |method| method.help(crate::view::method_help(", side by side [default: exact]"))))]
 pub(crate) struct DrawArgs {
     /// The table
     #[arg(value_name = "FILE.pvs")]
@@ -23,9 +30,12 @@ pub(crate) struct DrawArgs {
     /// Show what is visible from this cell
     #[arg(long, help_heading = "Viewer", value_name = "N", conflicts_with = "eye")]
     cell: Option<u32>,
-    /// Show what is visible from the cell of this point, in scene units; exit code 1 and no picture outside every cell
+    /// Show what a viewer at this point sees, in scene units, and paler what is seen from elsewhere in their cell; exit code 1 and no
+    /// picture outside every cell
     #[arg(long, help_heading = "Viewer", value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     eye: Option<Point>,
+    #[command(flatten)]
+    sight: SightArgs,
     /// Scenes in space: height of the floor plan, in scene units [default: that of the eye or of the middle of the
     /// cell]. With --isometric: leave out everything above
     #[arg(long, help_heading = "Picture", value_name = "Y", value_parser = height, allow_hyphen_values = true)]
@@ -33,10 +43,10 @@ pub(crate) struct DrawArgs {
     /// Scenes in space: draw the cells as boxes, viewed from the positive side of all axes
     #[arg(long, help_heading = "Picture")]
     isometric: bool,
-    /// Scenes in space: the axis that points up [default: the one stored in the table, else y]
-    #[arg(long, help_heading = "Picture", value_name = "AXIS")]
-    up: Option<space::UpAxis>,
-    /// Longer side of the picture, in pixels
+    /// Leave out the legend and the scale bar
+    #[arg(long, help_heading = "Picture")]
+    no_legend: bool,
+    /// Longer side of the picture, of each with --method all, in pixels
     #[arg(long, help_heading = "Picture", value_name = "PX", default_value_t = 1600)]
     #[arg(value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIZE)..=i64::from(MAX_SIZE)))]
     size: u32,
@@ -53,26 +63,64 @@ fn height(text: &str) -> Result<f64, String> {
 pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
     PictureKind::of(&args.output)?;
     output::check(&[&args.table], &[&args.output])?;
-    let table = input::table(&args.table)?;
+    viewer::refuse_without_eye(args)?;
+    let table = Arc::new(input::table(&args.table)?);
     input::refuse_without_places(&table, &args.table, "there is nothing to draw")?;
-    if let Some(eye) = &args.eye
-        && table.place_at(eye.lifted(&table, &args.table)?).is_outside()
-    {
-        output::stdout(|out| std::io::Write::write_fmt(out, format_args!("the point {eye} is outside every cell\n")))?;
-        return Ok(Answer::No);
+    let is_plan = table.dimension() == 2;
+    if is_plan {
+        let up = args.sight.lens.up().is_some();
+        let given = [("--height", args.height.is_some()), ("--isometric", args.isometric), ("--up", up)];
+        refuse(&args.table, &given, "scenes in space", "the table of a plan")?;
     }
-    let svg = if table.dimension() == 2 { plan(args, &table)? } else { space::draw(args, &table)? };
+    let viewer = match &args.eye {
+        Some(eye) => {
+            let viewer = Viewer::new(args, eye, &table)?;
+            if viewer.is_outside() {
+                let told = format_args!("the point {eye} is outside every cell\n");
+                output::stdout(|out| std::io::Write::write_fmt(out, told))?;
+                return Ok(Answer::No);
+            }
+            Some(viewer)
+        }
+        None => None,
+    };
+    let svg = match viewer {
+        None => picture(args, &table, None, !args.no_legend)?.to_svg(),
+        Some(viewer) => {
+            let mut drawn = viewer.methods().into_iter().map(|method| {
+                let drawing =
+                    picture(args, &table, Some(&viewer.shown(method)?), !args.no_legend && !viewer.has_panels())?;
+                Ok((method.name().to_owned(), drawing))
+            });
+            if viewer.has_panels() {
+                let drawn = drawn.collect::<Result<Vec<_>, Error>>()?;
+                Drawing::side_by_side("What a viewer sees by each eye-to-cell method", &drawn)
+            } else {
+                drawn.next().expect("there is one method at least")?.1.to_svg()
+            }
+        }
+    };
     save_picture(&svg, &args.output)?;
     Ok(Answer::Yes)
 }
 
-fn plan(args: &DrawArgs, table: &Table) -> Result<String, Error> {
-    let given = [("--height", args.height.is_some()), ("--isometric", args.isometric), ("--up", args.up.is_some())];
-    refuse(&args.table, &given, "scenes in space", "the table of a plan")?;
+/// One picture of the table.
+fn picture(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing, Error> {
+    if table.dimension() == 2 { plan(args, table, shown, legend) } else { space::draw(args, table, shown, legend) }
+}
+
+fn plan(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing, Error> {
     let view = match (args.cell, &args.eye) {
         (Some(id), _) => View::Cell(place::cell(id, table, &args.table)?),
         (None, Some(eye)) => View::Eye(eye.planar(table, &args.table)?),
         (None, None) => View::Plan,
     };
-    Ok(draw_plan(&args.table, table, &DrawOptions { view, size: args.size, ..DrawOptions::default() })?)
+    let sight = shown.map(|shown| shown.sight(|[x, y, _]| Point2::new(x, y)));
+    let options = DrawOptions { view, sight, size: args.size, legend, ..DrawOptions::default() };
+    plan_drawing(table, &options).map_err(failed(&args.table))
+}
+
+/// What becomes of an error of a picture of a table.
+fn failed(path: &Path) -> impl FnOnce(DrawError) -> Error + '_ {
+    move |source| PictureError::Draw { path: path.to_owned(), source }.into()
 }

@@ -1,42 +1,42 @@
 //! Pictures of tables in space.
 
-use super::DrawArgs;
-use super::Error;
-use crate::picture::PictureError;
+use super::viewer::Shown;
+use super::{DrawArgs, Error, failed};
 use crate::picture::{middle, up_of};
 use crate::place;
+use crate::view;
 use sightlines::pvs::Table;
-use sightlines::report::{IsometricOptions, SliceOptions, Up, View, isometric_svg, slice_svg};
+use sightlines::report::{Drawing, IsometricOptions, SliceOptions, Up, View, isometric_drawing, slice_drawing};
 
-/// An axis as an argument.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum UpAxis {
-    X,
-    Y,
-    Z,
+/// The axis that points up: the one that was given, if it is an axis, else that of the table.
+fn up(args: &DrawArgs, table: &Table) -> Up {
+    match args.sight.lens.up() {
+        Some(view::Up([1.0, 0.0, 0.0])) => Up::X,
+        Some(view::Up([0.0, 1.0, 0.0])) => Up::Y,
+        Some(view::Up([0.0, 0.0, 1.0])) => Up::Z,
+        _ => up_of(table),
+    }
 }
 
 /// The requested picture.
-pub(super) fn draw(args: &DrawArgs, table: &Table) -> Result<String, Error> {
+pub(super) fn draw(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing, Error> {
     let path = &args.table;
-    let up = args.up.map_or(up_of(table), |axis| match axis {
-        UpAxis::X => Up::X,
-        UpAxis::Y => Up::Y,
-        UpAxis::Z => Up::Z,
-    });
+    let up = up(args, table);
     let view = match (args.cell, &args.eye) {
         (Some(id), _) => View::Cell(place::cell(id, table, path)?),
         (None, Some(eye)) => View::Eye(eye.spatial(table, path)?),
         (None, None) => View::Plan,
     };
+    let sight = shown.map(|shown| shown.sight(|p| p));
     let drawn = if args.isometric {
-        isometric_svg(table, &IsometricOptions { view, up, below: args.height, size: args.size })
+        isometric_drawing(table, &IsometricOptions { view, sight, up, below: args.height, legend, size: args.size })
     } else {
         let height = args.height.or_else(|| height_of(table, view, up));
         let height = height.ok_or_else(|| nowhere(args, table, up))?;
-        slice_svg(table, &SliceOptions { view, up, height, size: args.size, ..SliceOptions::default() })
+        let options = SliceOptions { view, sight, up, height, legend, size: args.size, ..SliceOptions::default() };
+        slice_drawing(table, &options)
     };
-    Ok(drawn.map_err(|source| PictureError::Draw { path: path.clone(), source })?)
+    drawn.map_err(failed(path))
 }
 
 /// The height of the eye.

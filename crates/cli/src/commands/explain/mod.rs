@@ -225,7 +225,7 @@ fn choose(table: &Table, from: &[CellId], to: &[CellId]) -> (CellId, CellId) {
 }
 
 /// The picture of an explanation: what A sees, B, the line through the portals or the first blocked way.
-fn options(graph: &CellGraph<Planar>, [a, b]: [CellId; 2], explanation: &PlanExplanation) -> DrawOptions {
+fn options(graph: &CellGraph<Planar>, [a, b]: [CellId; 2], explanation: &PlanExplanation) -> DrawOptions<'static> {
     let mut options = DrawOptions { view: View::Cell(a), target: Some(b), ..DrawOptions::default() };
     match explanation {
         Verdict::Visible(Sight::Along(path)) => {

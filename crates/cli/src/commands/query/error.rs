@@ -1,9 +1,8 @@
 //! Why `query` fails.
 
-use crate::doors::ClosedError;
 use crate::file_error::{FileError, from_file_error};
 use crate::place::LookupError;
-use sightlines::eye_to_cell::ViewError;
+use crate::sight::SightError;
 
 /// Why `query` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -14,15 +13,9 @@ pub(crate) enum Error {
     /// A cell or a point that the table does not have.
     #[error(transparent)]
     Lookup(#[from] LookupError),
-    /// An invalid direction, angle or aspect ratio of the view.
-    #[error("{option}: {source}")]
-    View { option: &'static str, source: ViewError },
-    /// An angle of view without a direction.
-    #[error("--fov, --aspect and --up need --dir: without it the viewer looks all round")]
-    LensWithoutDirection,
-    /// A portal or a door that the table does not have.
+    /// There is no such view.
     #[error(transparent)]
-    Closed(#[from] ClosedError),
+    Sight(#[from] SightError),
 }
 
 from_file_error!(Error);

@@ -11,7 +11,7 @@ use crate::tables::{self, Cells, Opened};
 use crate::view::lifted;
 use error::Error;
 use serde::Serialize;
-use sight::SightArgs;
+use sight::ViewerArgs;
 use sightlines::pvs::{CellId, ObjectId, PlaceBuffer};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -30,7 +30,7 @@ pub(crate) struct QueryArgs {
     #[arg(long, help_heading = "Viewer", value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     eye: Point,
     #[command(flatten)]
-    sight: SightArgs,
+    sight: ViewerArgs,
     /// Print the result as JSON; `cell` is null outside every cell
     #[arg(long, help_heading = "Output")]
     json: bool,

@@ -3,13 +3,12 @@
 use super::Error;
 use super::{Object, Place, ids, named, write_seen};
 use crate::output::count;
-use crate::place::Point;
+use crate::sight::{Sight, SightArgs, SightError};
 use crate::tables::Cells;
-use crate::view::{LensArgs, Methods, lifted, method_help};
+use crate::view::Methods;
 use serde::Serialize;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections};
 use sightlines::pvs::{CellId, ObjectId};
-use sightlines::walkthrough::CameraPose;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,49 +21,19 @@ const RUNS: usize = 9;
 
 /// The view, as arguments.
 #[derive(Debug, clap::Args)]
-pub(super) struct SightArgs {
-    /// Direction of view [default: all directions]
-    #[arg(long, help_heading = "Viewer", value_name = "DX,DY[,DZ]", allow_hyphen_values = true)]
-    dir: Option<Point>,
+pub(super) struct ViewerArgs {
     #[command(flatten)]
-    lens: LensArgs,
-    #[arg(long, help_heading = "Method", value_name = "NAME")]
-    #[arg(help = method_help(" [default: exact if an option describes the view, else the visible set of the eye's cell]"))]
-    method: Option<Methods>,
-    /// Closed portals by number, and shut doors by name, separated by commas; all doors of a name are shut. A name with a comma is given
-    /// alone. A number is a portal; door:12 is a door that is called 12. May be given several times
-    #[arg(long, help_heading = "Method", value_name = "PORTAL|NAME,...")]
-    closed: Vec<String>,
+    sight: SightArgs,
     /// Also list what is visible in mirrors, up to this many reflections in a row
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = crate::view::bounces)]
     bounces: Option<usize>,
 }
 
-impl SightArgs {
+impl ViewerArgs {
     /// Whether any option describes the view.
     pub(super) fn is_given(&self) -> bool {
-        let Self { dir, lens, method, closed, bounces } = self;
+        let Self { sight: SightArgs { dir, lens, method, closed }, bounces } = self;
         dir.is_some() || lens.is_given() || method.is_some() || !closed.is_empty() || bounces.is_some()
-    }
-
-    /// The view of an eye.
-    fn view<C: Cells>(&self, cells: &C, path: &Path, eye: &[f64]) -> Result<(View, Option<f64>), Error> {
-        let lens = self.lens.lens(cells, path)?;
-        let Some(dir) = &self.dir else {
-            let view = View::all_round(lifted(eye)).map_err(|source| Error::View { option: "--eye", source })?;
-            return if self.lens.is_given() { Err(Error::LensWithoutDirection) } else { Ok((view, None)) };
-        };
-        let dir = lifted(dir.coordinates(cells.n_dimensions(), path)?);
-        let view = lens.view(CameraPose { eye: lifted(eye), dir });
-        Ok((view.map_err(|source| Error::View { option: "--dir", source })?, Some(lens.fov)))
-    }
-
-    fn doors<C: Cells>(&self, cells: &C, path: &Path) -> Result<Doors, Error> {
-        let mut doors = Doors::all_open();
-        for text in &self.closed {
-            crate::doors::close(text, cells.doors(), cells.n_portals(), path, &mut doors)?;
-        }
-        Ok(doors)
     }
 }
 
@@ -74,21 +43,25 @@ pub(super) fn look<C: Cells>(
     path: &Path,
     eye: &[f64],
     at: &[CellId],
-    args: &SightArgs,
-) -> Result<Sight, Error> {
-    let (view, fov) = args.view(cells, path, eye)?;
+    args: &ViewerArgs,
+) -> Result<Seen, Error> {
+    let ViewerArgs { sight: args, bounces } = args;
+    let Sight { view, looks } = args.sight(cells, path, eye)?;
+    if looks.is_none() && args.lens.is_given() {
+        return Err(SightError::LensWithoutDirection("--fov, --aspect and --up").into());
+    }
     let doors = args.doors(cells, path)?;
     let all = args.method == Some(Methods::All);
     let viewer =
-        Viewer { cells, at, view, doors, bounces: args.bounces.unwrap_or(0), subgraphs: VisibleSubgraphs::default() };
+        Viewer { cells, at, view, doors, bounces: bounces.unwrap_or(0), subgraphs: VisibleSubgraphs::default() };
     let methods = args.method.unwrap_or(Methods::One(Method::Exact)).list();
     let answers = methods.into_iter().map(|method| viewer.answer(method));
     let mut answers = answers.collect::<Result<Vec<_>, _>>().map_err(|error| C::fail(path, error))?;
     let one = if all { None } else { answers.pop() };
-    let dir = args.dir.as_ref().and_then(|dir| dir.coordinates(cells.n_dimensions(), path).ok()).map(<[f64]>::to_vec);
+    let (dir, fov) = looks.unzip();
     let outside = at.is_empty();
     let place = Place::new(cells, eye, at).map_err(|error| C::fail(path, error))?;
-    Ok(Sight { place, outside, dir, fov, one, methods: answers, all: cells.counts() })
+    Ok(Seen { place, outside, dir, fov, one, methods: answers, all: cells.counts() })
 }
 
 /// VisibleSubgraphs that were prepared already.
@@ -159,7 +132,7 @@ impl<C: Cells> Viewer<'_, C> {
 
 /// What a viewer sees.
 #[derive(Debug, Serialize)]
-pub(super) struct Sight {
+pub(super) struct Seen {
     #[serde(flatten)]
     place: Place,
     /// Outside of every cell everything may be seen.
@@ -209,7 +182,7 @@ impl fmt::Display for ImageSeen {
     }
 }
 
-impl fmt::Display for Sight {
+impl fmt::Display for Seen {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [n_cells, n_objects] = self.all;
         if self.outside {

@@ -9,9 +9,19 @@ use sightlines_geometry::{Aabb, AxialDoor};
 /// Times closer than this share of themselves may be equal: twice the error of a time.
 const SAME_TIME: f64 = 8.0 * f64::EPSILON;
 
+/// Parts of a line, each eight times as long as the one before, that are searched for its ends before all of it is.
+const WINDOWS: u32 = 3;
+
 /// Whether one time is certainly before another.
 fn apart(early: f64, late: f64) -> bool {
     late - early > SAME_TIME * (early.abs() + late.abs())
+}
+
+/// The last time up to a middle, and the first after it, at which something is met.
+fn ends_around(middle: f64, met: &[(f64, usize, f64)]) -> [f64; 2] {
+    let times = || met.iter().map(|m| m.0);
+    let before = times().filter(|t| *t <= middle).fold(f64::NEG_INFINITY, f64::max);
+    [before, times().filter(|t| *t > middle).fold(f64::INFINITY, f64::min)]
 }
 
 /// A line that was checked to lead from one box to another.
@@ -61,19 +71,41 @@ impl FreeLine {
     }
 
     /// How far the line goes both ways from where it leaves `from` and enters `to`, the boxes that it
-    /// was found for. O(log n) for each rectangle near it.
+    /// was found for. O(log n) for each rectangle near that part of it, and a little beyond.
     pub fn span(&self, from: &Aabb<3>, to: &Aabb<3>, blockers: &Blockers) -> FreeSpan {
         let (leave, enter) = (self.ray.span(from)[1], self.ray.span(to)[0]);
         let middle = leave + (enter - leave) / 2.0;
-        let mut met: Vec<(f64, usize, f64)> = Vec::new();
-        blockers.near(&self.ray, [f64::NEG_INFINITY, f64::INFINITY], |i| {
+        let [start, end] = [self.ray.span(from)[0], self.ray.span(to)[1]];
+        // Most lines end soon, so what is far along the line is looked at last.
+        let windows = (0..WINDOWS).map(|k| f64::from(1u32 << (3 * k)) * (end - start));
+        let windows = windows.map(|beyond| [start - beyond, end + beyond]);
+        let part = windows.filter(|[from, to]| from < to && from.is_finite() && to.is_finite()).find_map(|within| {
+            let met = self.met(within, blockers);
+            let ends = ends_around(middle, &met);
+            // Whatever is at the same time as an end has to be within, too.
+            let is_within = |t: f64| within.iter().all(|w| (t - w).abs() > 4.0 * SAME_TIME * (t.abs() + w.abs()));
+            ends.into_iter().all(|t| t.is_finite() && is_within(t)).then(|| self.free_between(ends, &met))
+        });
+        part.unwrap_or_else(|| {
+            let met = self.met([f64::NEG_INFINITY, f64::INFINITY], blockers);
+            self.free_between(ends_around(middle, &met), &met)
+        })
+    }
+
+    /// The rectangles met: when, and their planes. All that are met between two times are among them.
+    fn met(&self, times: [f64; 2], blockers: &Blockers) -> Vec<(f64, usize, f64)> {
+        let mut met = Vec::new();
+        blockers.near(&self.ray, times, |i| {
             if !blockers.missed(i, &self.line, self.octant) {
                 let (axis, at) = (blockers.axis(i), blockers.rectangle(i).min[blockers.axis(i)]);
                 met.push((self.ray.time(axis, at), axis, at));
             }
         });
-        let before = met.iter().map(|m| m.0).filter(|t| *t <= middle).fold(f64::NEG_INFINITY, f64::max);
-        let behind = met.iter().map(|m| m.0).filter(|t| *t > middle).fold(f64::INFINITY, f64::min);
+        met
+    }
+
+    /// The part between two times, of which all rectangles met at them are given.
+    fn free_between(&self, [before, behind]: [f64; 2], met: &[(f64, usize, f64)]) -> FreeSpan {
         let close = |limit: f64| {
             let near = |m: &&(f64, usize, f64)| (m.0 - limit).abs() <= SAME_TIME * (m.0.abs() + limit.abs());
             met.iter().filter(near).map(|m| (m.1, m.2)).collect()

@@ -32,9 +32,12 @@ pub(crate) fn objects() -> impl Strategy<Value = Vec<Aabb<3>>> {
 
 /// Cuts the cube along faces, and leaves out the cells with `out` set.
 pub(crate) fn cut(faces: &[AxialFace<3>], out: &[bool]) -> (CellGraph<Axial>, Vec<Aabb<3>>) {
-    let side = f64::from(SIDE);
-    let tree =
-        subdivide(faces, Aabb { min: [0.0; 3], max: [side; 3] }, &Options::default()).expect("the scene is good");
+    cut_box(faces, Aabb { min: [0.0; 3], max: [f64::from(SIDE); 3] }, out)
+}
+
+/// The same in any box.
+pub(crate) fn cut_box(faces: &[AxialFace<3>], bounds: Aabb<3>, out: &[bool]) -> (CellGraph<Axial>, Vec<Aabb<3>>) {
+    let tree = subdivide(faces, bounds, &Options::default()).expect("the scene is good");
     let is_out = |cell: CellId| out[cell.idx() % out.len()];
     let (mut cells, mut solid, mut ids) = (Vec::new(), Vec::new(), Vec::new());
     for (id, cell) in (0u32..).map(CellId).zip(tree.cells()) {

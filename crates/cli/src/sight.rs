@@ -1,0 +1,98 @@
+//! What a viewer sees, as arguments: in a direction, by a method, with doors closed.
+
+use crate::doors::{ClosedError, close};
+use crate::error::InputError;
+use crate::place::{LookupError, Point};
+use crate::tables::Cells;
+use crate::view::{LensArgs, Methods, lifted, method_help};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, View, ViewError, VisibleSet, VisibleSubgraph};
+use sightlines::pvs::CellId;
+use sightlines::walkthrough::CameraPose;
+use std::path::Path;
+
+/// Why there is no view.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SightError {
+    /// An option that means nothing for the table.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A direction with the wrong number of coordinates.
+    #[error(transparent)]
+    Lookup(#[from] LookupError),
+    /// An invalid direction, angle or aspect ratio of the view.
+    #[error("{option}: {source}")]
+    View { option: &'static str, source: ViewError },
+    /// An angle of view without a direction.
+    #[error("{0} need --dir: without it the viewer looks all round")]
+    LensWithoutDirection(&'static str),
+    /// A portal or a door that the table does not have.
+    #[error(transparent)]
+    Closed(#[from] ClosedError),
+}
+
+/// The view, as arguments.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SightArgs {
+    /// Direction of view [default: all directions]
+    #[arg(long, help_heading = "Viewer", value_name = "DX,DY[,DZ]", allow_hyphen_values = true)]
+    pub(crate) dir: Option<Point>,
+    #[command(flatten)]
+    pub(crate) lens: LensArgs,
+    #[arg(long, help_heading = "Method", value_name = "NAME")]
+    #[arg(help = method_help(" [default: exact if an option describes the view, else the visible set of the eye's cell]"))]
+    pub(crate) method: Option<Methods>,
+    /// Closed portals by number, and shut doors by name, separated by commas; all doors of a name are shut. A name with a comma is given
+    /// alone. A number is a portal; door:12 is a door that is called 12. May be given several times
+    #[arg(long, help_heading = "Method", value_name = "PORTAL|NAME,...")]
+    pub(crate) closed: Vec<String>,
+}
+
+/// A view, and what of it is marked in a picture.
+#[derive(Debug, Clone)]
+pub(crate) struct Sight {
+    pub(crate) view: View,
+    /// The direction as it was given, and the angle in degrees; none all round.
+    pub(crate) looks: Option<(Vec<f64>, f64)>,
+}
+
+impl SightArgs {
+    /// The view of an eye. The caller has refused a lens without a direction, if it means nothing to them.
+    pub(crate) fn sight<C: Cells>(&self, cells: &C, path: &Path, eye: &[f64]) -> Result<Sight, SightError> {
+        let lens = self.lens.lens(cells, path)?;
+        let Some(dir) = &self.dir else {
+            let view = View::all_round(lifted(eye)).map_err(|source| SightError::View { option: "--eye", source })?;
+            return Ok(Sight { view, looks: None });
+        };
+        let given = dir.coordinates(cells.n_dimensions(), path)?;
+        let view = lens.view(CameraPose { eye: lifted(eye), dir: lifted(given) });
+        let view = view.map_err(|source| SightError::View { option: "--dir", source })?;
+        Ok(Sight { view, looks: Some((given.to_vec(), lens.fov)) })
+    }
+
+    /// The doors that are shut.
+    pub(crate) fn doors<C: Cells>(&self, cells: &C, path: &Path) -> Result<Doors, SightError> {
+        let mut doors = Doors::all_open();
+        for text in &self.closed {
+            close(text, cells.doors(), cells.n_portals(), path, &mut doors)?;
+        }
+        Ok(doors)
+    }
+}
+
+/// What a viewer in the cells `at` sees by a method: cells and objects, each ascending.
+pub(crate) fn seen<C: Cells>(
+    method: Method,
+    cells: &C,
+    at: &[CellId],
+    view: &View,
+    doors: &Doors,
+) -> Result<VisibleSet, C::Error> {
+    let [n_cells, n_objects] = cells.counts();
+    let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
+    seen.clear(n_cells, n_objects);
+    for &cell in at {
+        method.look(&VisibleSubgraph::prepare(cells, cell)?, view, doors, &mut scratch, &mut seen);
+    }
+    seen.sort();
+    Ok(seen)
+}

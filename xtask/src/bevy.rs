@@ -1,0 +1,79 @@
+//! The plugin for Bevy, a workspace of its own below `integrations/bevy`.
+
+use crate::debian::in_file;
+use crate::gpu::{self, Wish};
+use crate::step::{self, Failure, cargo, root};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What its tests read: name, and how the scene is generated.
+const FOR_TESTS: [(&str, &[&str]); 2] =
+    [("small", &["--floors", "1", "--rooms-x", "2", "--rooms-y", "2"]), ("tower", &["--floors", "2"])];
+
+/// What only its examples read.
+const FOR_EXAMPLES: [(&str, &[&str]); 1] = [("tower16", &["--floors", "16"])];
+
+fn folder() -> PathBuf {
+    root().join("integrations").join("bevy")
+}
+
+/// Generates the levels of the tests and examples, with their tables, by the program.
+pub(crate) fn assets() -> Result<(), Failure> {
+    let all: Vec<_> = FOR_TESTS.into_iter().chain(FOR_EXAMPLES).collect();
+    make(&all)
+}
+
+fn make(levels: &[(&str, &[&str])]) -> Result<(), Failure> {
+    let folder = folder().join("assets");
+    in_file(&folder, fs::create_dir_all(&folder))?;
+    for (name, options) in levels {
+        let file = |ending: &str| folder.join(name).with_extension(ending);
+        let (scene, table, packed) = (file("glb"), file("pvs"), file("pvz"));
+        let words = ["generate", "tower", "-q", "-o", text(&scene)];
+        program(&[&words, *options].concat())?;
+        program(&["build", "-q", text(&scene), "-o", text(&table)])?;
+        program(&["pack", "-q", text(&table), "-o", text(&packed)])?;
+    }
+    Ok(())
+}
+
+/// The table of the real building that pictures are compared in, if the folder of real data is there.
+fn make_real() -> Result<(), Failure> {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
+        eprintln!("!! SIGHTLINES_DATA has no folder: pictures of a real building WILL NOT be compared");
+        return Ok(());
+    };
+    let (scene, table) =
+        (Path::new(&data).join("scenes/office_a/office_a.glb"), folder().join("assets").join("office.pvs"));
+    program(&["build", "-q", "--both-sides", text(&scene), "-o", text(&table)])
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("the folder of the project has a name in Unicode")
+}
+
+fn program(words: &[&str]) -> Result<(), Failure> {
+    step::run(cargo().args(["run", "--quiet", "--release", "-p", "sightlines-cli", "--"]).args(words))
+}
+
+/// The cargo that runs this program, in the folder of the plugin, without what the cargo of this workspace has set for it.
+fn plugin() -> Command {
+    let mut command = cargo();
+    command.current_dir(folder()).env_remove("CARGO_TARGET_DIR");
+    command
+}
+
+/// Formatting, lints and tests of the plugin, with the versions of its own lock file.
+///
+/// * `gpu`: which device the tests that compare pictures run on
+pub(crate) fn check(gpu: Wish) -> Result<(), Failure> {
+    make(&FOR_TESTS)?;
+    make_real()?;
+    step::run(plugin().args(["fmt", "--check"]))?;
+    let lints = ["--", "-D", "warnings"];
+    step::run(plugin().args(["clippy", "--locked", "--all-targets", "--all-features"]).args(lints))?;
+    step::run(plugin().args(["clippy", "--locked", "--lib"]).args(lints))?;
+    let device = gpu::environment(gpu)?;
+    step::run(plugin().args(["test", "--locked", "--all-features"]).envs(device))
+}
