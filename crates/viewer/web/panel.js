@@ -76,7 +76,9 @@ class Panel {
   hereText() {
     const { model } = this;
     const { table } = model;
-    if (!model.eye && model.cells.length === 0) return "Click into the picture to put the eye there.";
+    if (!model.eye && model.cells.length === 0) {
+      return "On the map, a click puts the eye there. In space it is where you are: fly with W, A, S and D.";
+    }
     if (model.isOutside) return "The eye is outside every cell: nothing is known there, so everything is drawn.";
     const names = model.cells.map((cell) => this.cellText(cell)).join(" and ");
     const parts = [`${model.lock ? "Kept: the eye was" : "The eye is"} in ${names}.`];
