@@ -4,7 +4,6 @@ use crate::figure::Figure;
 use crate::payload::{harmless_json, hash_source, packed};
 use serde::Serialize;
 use sightlines_pvs::{Table, TableParts};
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// The scripts, in the order in which they are read. Together they are one script.
@@ -38,22 +37,10 @@ pub struct Page<'a> {
     pub figure: Option<&'a Figure>,
     /// An older table of the same cells, to compare with.
     pub against: Option<&'a Table>,
-    /// Explanations of pairs of cells, the lower number first.
-    pub explanations: BTreeMap<(u32, u32), Explanation>,
     /// A walk to replay; may be empty.
     pub walk: Vec<Frame>,
     /// The most bytes of the page; the smallest triangles are left out above it.
     pub max_bytes: usize,
-}
-
-/// Why two cells see each other, or do not.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Explanation {
-    /// In words; plain text.
-    pub text: String,
-    /// A line of sight, in scene units.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub line: Option<[[f64; 3]; 2]>,
 }
 
 /// Where a walker is in a frame, and looks to; z is 0 in a plane.
@@ -93,7 +80,9 @@ pub enum PageError {
         table: u8,
     },
     /// The older table has other cells.
-    #[error("the tables have {now} and {before} cells, or cells at different places, so their pairs cannot be compared")]
+    #[error(
+        "the tables have {now} and {before} cells, or cells at different places, so their pairs cannot be compared"
+    )]
     Against {
         /// Cells of the table.
         now: usize,
@@ -119,8 +108,6 @@ struct Head<'a> {
     title: &'a str,
     table: &'a str,
     figure: Option<FigureHead>,
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    explanations: BTreeMap<String, &'a Explanation>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     walk: &'a [Frame],
 }
@@ -157,16 +144,7 @@ impl<'a> Page<'a> {
 
     /// A page of a table alone.
     pub fn new(title: &'a str, table_name: &'a str, table: &'a Table) -> Self {
-        Self {
-            title,
-            table_name,
-            table,
-            figure: None,
-            against: None,
-            explanations: BTreeMap::new(),
-            walk: Vec::new(),
-            max_bytes: Self::MAX_BYTES,
-        }
+        Self { title, table_name, table, figure: None, against: None, walk: Vec::new(), max_bytes: Self::MAX_BYTES }
     }
 
     /// Writes the page. O(table + figure), some hundred megabytes a second.
@@ -223,13 +201,8 @@ impl<'a> Page<'a> {
 
     fn assemble(&self, table: &str, against: Option<&str>, figure: Option<&Figure>) -> Result<String, PageError> {
         let failed = |error: &dyn std::fmt::Display| PageError::Write(error.to_string());
-        let head = Head {
-            title: self.title,
-            table: self.table_name,
-            figure: figure.map(FigureHead::new),
-            explanations: self.explanations.iter().map(|(&(a, b), why)| (format!("{a}-{b}"), why)).collect(),
-            walk: &self.walk,
-        };
+        let head =
+            Head { title: self.title, table: self.table_name, figure: figure.map(FigureHead::new), walk: &self.walk };
         let head = harmless_json(&head).map_err(|e| failed(&e))?;
         let figure = figure.map(|figure| packed(&figure.to_bytes())).transpose().map_err(|e| failed(&e))?;
         let script = format!("\"use strict\";\n(() => {{\n{}\n}})();\n", SCRIPTS.join("\n"));

@@ -115,18 +115,11 @@ class App {
   explain(from, to) {
     const { model } = this;
     const isSeen = model.table.sees(from, to);
-    model.why = { from, to, line: null };
+    model.why = { from, to };
     const names = [from, to].map((cell) => this.panel.cellText(cell));
     const verdict = isSeen ? "may see each other" : "cannot see each other";
-    const reason = model.head.explanations?.[`${Math.min(from, to)}-${Math.max(from, to)}`];
-    const parts = [`${names[0]} and ${names[1]} ${verdict}.`];
-    if (reason?.line) {
-      model.why.line = reason.line;
-      parts.push("The line is drawn.");
-    }
-    if (reason?.text) parts.push(reason.text);
-    if (!reason) parts.push(`For the line or the proof: sightlines explain ${model.head.table} ${from} ${to}`);
-    document.getElementById("why-text").textContent = parts.join(" ");
+    const ask = `For the line or the reason: sightlines explain ${model.head.table} ${from} ${to}`;
+    document.getElementById("why-text").textContent = `${names[0]} and ${names[1]} ${verdict}. ${ask}`;
     model.changed();
   }
 

@@ -169,7 +169,6 @@ class FlatMap {
     }
     const flatOf = (p) => this.toScreen(this.flat(model.table.toTable(p)));
     if (model.walk) pen.stroke(model.walk.frames.map((frame) => flatOf(frame.eye)), colours.line, 1);
-    if (model.why?.line) pen.stroke(model.why.line.map(flatOf), colours.line, 2);
     if (model.eye) pen.dot(flatOf(model.eye), 6, colours.from, colours.paper);
     if (model.lock) pen.dot(flatOf(model.lock), 6, colours.target, colours.paper);
   }

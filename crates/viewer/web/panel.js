@@ -111,7 +111,7 @@ class Panel {
     document.getElementById("n-found").textContent = text.trim() === "" ? "" : `${found.length} found`;
   }
 
-  /** Says why a cell sees another, as far as the table knows. */
+  /** Says whether two cells see each other, and how to ask why. */
   ask() {
     const [from, to] = ["why-from", "why-to"].map((id) => Number(document.getElementById(id).value));
     const out = document.getElementById("why-text");

@@ -197,7 +197,6 @@ class Space {
     gl.uniform1f(gl.getUniformLocation(this.line, "ceiling"), 1e30);
     const here = model.cells.flatMap((cell) => boxEdges(model.table, model.table.cells[cell]));
     this.strokeNow(here, colours.from);
-    if (model.why?.line) this.strokeNow(model.why.line, colours.line);
     if (model.lock) this.strokeNow(crossAt(model.lock, model.size / 60), colours.target);
     if (model.walk) {
       const path = model.walk.frames.map((frame) => frame.eye);

@@ -1,6 +1,7 @@
 //! Pages of tables in a real browser: the sets that the page's own code finds are those of the table, nothing is asked from outside,
 //! and names of a scene stay names. Without Chromium these tests do not run, and say so.
 
+use serde_json::{Value, json};
 use sightlines::bake::{BakeOptions, Bakeable, bake};
 use sightlines::cells::{Plan, Scene, SceneObject};
 use sightlines::formats::Source;
@@ -12,7 +13,6 @@ use sightlines::viewer::{Figure, Page};
 use sightlines_testkit::mutate::SplitMix;
 use sightlines_tests::data_folder;
 use sightlines_tests::world_files::{bsp_bytes, prt_of_world};
-use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -177,7 +177,9 @@ fn hostile_names_run_nothing() {
 fn pages_of_real_scenes_find_what_the_tables_say() {
     let Some(data) = data_folder("SIGHTLINES_DATA") else { return };
     let Some(browser) = chromium() else { return };
-    for name in ["plans/duplex_0.geojson", "doom/freedoom1_E1M1.wad", "scenes/whale_large/whale_large.glb", "quake/e1m7.bsp"] {
+    for name in
+        ["plans/duplex_0.geojson", "doom/freedoom1_E1M1.wad", "scenes/whale_large/whale_large.glb", "quake/e1m7.bsp"]
+    {
         let path = data.join(name);
         let read = Bakeable::read(&Source::File(&path), None).expect("real input is read");
         let table = bake(&read, &BakeOptions::default()).expect("a table").table;
