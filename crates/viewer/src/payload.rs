@@ -32,7 +32,7 @@ mod tests {
 
     #[test]
     fn bytes_come_back() {
-        let bytes: Vec<u8> = (0..10_000u32).map(|i| (i * i >> 3) as u8).collect();
+        let bytes: Vec<u8> = (0..10_000u32).map(|i| ((i * i) >> 3) as u8).collect();
         let text = packed(&bytes).unwrap();
         assert!(text.bytes().all(|b| b.is_ascii_alphanumeric() || b"+/=".contains(&b)));
         let mut back = Vec::new();
