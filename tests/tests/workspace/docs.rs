@@ -9,7 +9,8 @@ fn root() -> PathBuf {
 
 /// All files of the workspace but those of git, of builds, and of the demo, sorted.
 fn files_of_workspace() -> Vec<PathBuf> {
-    let outputs = ["target", "demo"].map(|name| root().join(name));
+    let outputs =
+        ["target", "demo", "integrations/bevy/target", "integrations/bevy/assets"].map(|name| root().join(name));
     let mut files = Vec::new();
     let mut folders = vec![root()];
     while let Some(folder) = folders.pop() {
