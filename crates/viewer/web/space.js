@@ -69,7 +69,7 @@ class Space {
     this.canvas = canvas;
     this.model = model;
     this.camera = new Camera(model.up);
-    const gl = canvas.getContext("webgl2", { antialias: true });
+    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
     if (!gl) throw new Error("this browser shows no scenes in space: it has no WebGL 2");
     this.gl = gl;
     this.solid = program(gl, SOLID_VERTEX, SOLID_FRAGMENT);
