@@ -70,7 +70,7 @@ fn plugin() -> Command {
 fn device(gpu: Wish) -> Result<Vec<(&'static str, OsString)>, Failure> {
     match gpu {
         Wish::Auto | Wish::Require => gpu::environment(Wish::Lavapipe).or_else(|failure| {
-            eprintln!("Lavapipe: {failure}");
+            eprintln!("!! Lavapipe: {failure}: on SwiftShader pictures of a real building WILL NOT be compared");
             gpu::environment(gpu)
         }),
         named => gpu::environment(named),

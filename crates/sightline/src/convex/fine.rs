@@ -2,13 +2,13 @@
 //!
 //! Corners of maps lie on a grid, but for the rounding of the program that cut the portals. So many sequences have no line but
 //! grazing ones, or, by that rounding, lines through slits some `1e-13` units wide. The numbers here have two doubles, and what
-//! they propose is decided exactly.
+//! they propose is decided exactly: the thresholds below choose what is proposed, so none of them can make an answer wrong.
 //!
 //! Lines lead from the hull of one portal's corners to that of a later one ([the module above](super) says why). The sides of
 //! edges are affine in both points, so a relaxed line is a mixture of pairs of corners, and its edges and corners play a
 //! [game](super::game). If the value is not positive, the weights of edges prove that no line passes ([`HullProof`]): as
 //! they are, or as the fractions with small denominators near which they are, since on a grid the value is 0 and they have to be
-//! exact. If it is positive, points of the hulls are moved by turns, each turn a game, until a line passes exactly.
+//! exact. If it is positive, the points of the hulls are improved, alternately at the two ends by a game each, until a line passes exactly.
 
 use super::certificate::{ConvexTerm, HullProof};
 use super::game;
