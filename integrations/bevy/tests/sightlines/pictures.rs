@@ -230,10 +230,11 @@ fn walk(app: &mut App, table: &Table, poses: &[CameraPose], doors: &[(PortalId, 
     }
     let mut scenes = BTreeSet::new();
     let leaf = color(LEAF).to_srgba().to_u8_array();
-    for k in 0..poses.len() {
-        let [cut, whole, impostor] = [0, 1, 2].map(|camera| &pictures[camera][k][..]);
-        assert_eq!([cut, whole, impostor].map(<[u8]>::len), [4 * (SIZE.x * SIZE.y) as usize; 3]);
-        let n_different = |a: &[u8], b: &[u8]| a.chunks_exact(4).zip(b.chunks_exact(4)).filter(|(a, b)| a != b).count();
+    let n_different = |a: &[u8], b: &[u8]| a.chunks_exact(4).zip(b.chunks_exact(4)).filter(|(a, b)| a != b).count();
+    let [cut, whole, impostor] = pictures;
+    assert_eq!([cut.len(), whole.len(), impostor.len()], [poses.len(); 3]);
+    for ((cut, whole), impostor) in cut.iter().zip(&whole).zip(&impostor) {
+        assert_eq!([cut, whole, impostor].map(Vec::len), [4 * (SIZE.x * SIZE.y) as usize; 3]);
         let (n, n_impostor) = (n_different(cut, whole), n_different(impostor, whole));
         tally.different += usize::from(n > 0);
         tally.pixels += n;
