@@ -17,6 +17,7 @@ use crate::commands::{
     render::RenderArgs,
     simplify::SimplifyArgs,
     verify::VerifyArgs,
+    view::ViewArgs,
     vis::VisArgs,
     walk::WalkArgs,
 };
@@ -69,6 +70,8 @@ pub(crate) enum Command {
     Explain(ExplainArgs),
     /// Draw a table, and what is visible from a cell or a point, as a plan, a floor plan or an isometric view
     Draw(DrawArgs),
+    /// Write one HTML file that shows a table in a browser: the map, the scene, what is seen from where, and why
+    View(ViewArgs),
     /// Draw the multifocal buffer of a view volume on a plane: the heights below which everything is hidden
     Multifocal(MultifocalArgs),
     /// Draw the visible surfaces of a scene for one eye by a classical method, or compare all methods

@@ -31,6 +31,7 @@ mod surfaces;
 mod tables;
 mod unproven;
 mod view;
+mod walk_path;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -79,6 +80,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::Export(args) => commands::export::run(args)?,
         Command::Explain(args) => commands::explain::run(args)?,
         Command::Draw(args) => commands::draw::run(args)?,
+        Command::View(args) => commands::view::run(args)?,
         Command::Multifocal(args) => commands::multifocal::run(args)?,
         Command::Render(args) => commands::render::run(args, show_progress)?,
         Command::Light(args) => commands::light::run(args)?,

@@ -58,6 +58,8 @@ pub use sightlines_stabtree as stabtree;
 pub use sightlines_triangulation as triangulation;
 #[cfg(feature = "verify")]
 pub use sightlines_verify as verify;
+#[cfg(feature = "viewer")]
+pub use sightlines_viewer as viewer;
 #[cfg(feature = "visible-surface")]
 pub use sightlines_visible_surface as visible_surface;
 #[cfg(feature = "walkthrough")]

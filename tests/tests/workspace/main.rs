@@ -14,4 +14,5 @@ mod oracles;
 mod quake_tables;
 mod scenes;
 mod simplify;
+mod viewer;
 mod visible_surface;

@@ -16,5 +16,6 @@ pub(crate) mod reject;
 pub(crate) mod render;
 pub(crate) mod simplify;
 pub(crate) mod verify;
+pub(crate) mod view;
 pub(crate) mod vis;
 pub(crate) mod walk;

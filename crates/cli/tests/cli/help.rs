@@ -3,7 +3,7 @@
 use crate::common::Folder;
 
 /// All commands, with those that have others below them.
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     "build",
     "reject",
     "vis",
@@ -15,6 +15,7 @@ const COMMANDS: [&str; 19] = [
     "export",
     "explain",
     "draw",
+    "view",
     "multifocal",
     "render",
     "simplify",

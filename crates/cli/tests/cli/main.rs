@@ -31,6 +31,7 @@ mod space_errors;
 mod stab_trees;
 mod tables;
 mod verify;
+mod view;
 mod vis;
 mod vis_errors;
 mod vis_real;

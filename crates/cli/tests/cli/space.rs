@@ -409,7 +409,7 @@ fn the_demo_builds_a_tower() {
     let names = crate::common::names(&folder.path("one"));
     let pictures = ["cells", "floor", "seen"].iter().flat_map(|n| ["png", "svg"].map(|k| format!("tower-{n}.{k}")));
     let pictures = pictures.filter(|name| cfg!(feature = "png") || !name.ends_with(".png"));
-    let expected: Vec<String> = pictures.chain(["tower.glb", "tower.pvs"].map(str::to_owned)).collect();
+    let expected: Vec<String> = pictures.chain(["tower.glb", "tower.pvs", "view.html"].map(str::to_owned)).collect();
     assert_eq!(names, expected);
     assert!(names.iter().all(|name| reply.contains(name.as_str())), "{reply}");
     assert!(reply.contains("of the polygons; the rest is hidden"), "{reply}");

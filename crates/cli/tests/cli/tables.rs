@@ -300,7 +300,7 @@ fn the_demo_writes_what_it_names() {
     let all = ["plan.geojson", "plan.png", "plan.pvs", "plan.svg", "seen-little.png", "seen-little.svg"];
     let expected: Vec<_> = all.into_iter().filter(|name| cfg!(feature = "png") || !name.ends_with(".png")).collect();
     assert_eq!(names[..expected.len()], expected);
-    assert_eq!(names.len(), if cfg!(feature = "png") { 10 } else { 6 });
+    assert_eq!(names.len(), if cfg!(feature = "png") { 11 } else { 7 });
     assert!(names.iter().all(|name| reply.contains(name.as_str())), "{reply}");
     for word in ["cells", "portals", "visible pairs", "time", "of the floor on average"] {
         assert!(reply.contains(word), "{word} in {reply}");

@@ -4,6 +4,7 @@ use crate::file_error::{FileError, from_file_error};
 use crate::glb::GlbError;
 use sightlines::bake::BakeError;
 use sightlines::scenes::SceneError;
+use sightlines::viewer::PageError;
 use std::path::PathBuf;
 
 /// Why `demo` fails; exit code 2.
@@ -18,6 +19,9 @@ pub(crate) enum Error {
     /// A table that cannot be baked.
     #[error("{}: {source}", path.display())]
     Bake { path: PathBuf, source: Box<BakeError> },
+    /// A page of a table that cannot be made.
+    #[error("{}: {source}", path.display())]
+    Page { path: PathBuf, source: PageError },
     /// A scene cannot be generated.
     #[error(transparent)]
     Generate(#[from] SceneError),

@@ -7,9 +7,11 @@ mod tower;
 use crate::Answer;
 use crate::error::OutputError;
 use crate::memory;
-use crate::output::bytes;
+use crate::output::{self, bytes};
 use error::Error;
 use serde::Serialize;
+use sightlines::pvs::Table;
+use sightlines::viewer::{Figure, Page};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -47,6 +49,15 @@ pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     }
 }
 
+/// Writes the page of a table into the folder of the demo; returns its name there.
+fn save_page(args: &DemoArgs, title: &str, table_name: &str, table: &Table, figure: &Figure) -> Result<String, Error> {
+    let name = "view.html".to_owned();
+    let page = Page { figure: Some(figure), ..Page::new(title, table_name, table) };
+    let written = page.html().map_err(|source| Error::Page { path: args.out.join(table_name), source })?;
+    output::save(&args.out.join(&name), written.html.as_bytes())?;
+    Ok(name)
+}
+
 /// What all demos did: where their files are, and what they took.
 #[derive(Debug, Serialize)]
 struct Done {
@@ -76,7 +87,7 @@ impl Done {
     }
 
     fn list_files(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "Pictures and table are in {}:", self.folder)?;
+        writeln!(f, "Open the first of these in a browser; pictures and table are there too, in {}:", self.folder)?;
         self.files.iter().try_for_each(|file| writeln!(f, "  {}", Path::new(&self.folder).join(file).display()))
     }
 }

@@ -1,7 +1,7 @@
 //! The demo in the plane: an office floor.
 
 use super::Error;
-use super::{DemoArgs, Done};
+use super::{DemoArgs, Done, save_page};
 use crate::Answer;
 use crate::commands::build::{bake_visibly, plan};
 use crate::output::{self, bytes, percent};
@@ -12,6 +12,7 @@ use sightlines::formats::geojson;
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{DrawOptions, View};
 use sightlines::scenes::{OfficeOptions, office};
+use sightlines::viewer::Figure;
 use std::fmt;
 use std::time::Instant;
 
@@ -27,7 +28,9 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     let baked = bake_visibly(&plan_path, (&floor).into(), &BakeOptions::default(), show_progress);
     let baked = baked.map_err(|source| Error::Bake { path: plan_path, source: Box::new(source) })?;
     output::save(&table_path, &baked.table.to_bytes())?;
-    let mut files = vec!["plan.geojson".to_owned(), "plan.pvs".to_owned()];
+    let figure = Figure::of_plan(&floor);
+    let page = save_page(args, "An office floor", "plan.pvs", &baked.table, &figure)?;
+    let mut files = vec![page, "plan.geojson".to_owned(), "plan.pvs".to_owned()];
     for (name, view) in views(&baked.table) {
         let options = DrawOptions { view, ..DrawOptions::default() };
         for kind in PictureKind::ENDINGS {

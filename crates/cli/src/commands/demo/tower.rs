@@ -1,7 +1,7 @@
 //! The demo in space: a small furnished tower.
 
 use super::Error;
-use super::{DemoArgs, Done};
+use super::{DemoArgs, Done, save_page};
 use crate::Answer;
 use crate::commands::build::{bake_visibly, space};
 use crate::glb::save_glb;
@@ -13,6 +13,7 @@ use sightlines::formats::scene::read_scene;
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{IsometricOptions, SliceOptions, View, isometric_svg, slice_svg};
 use sightlines::scenes::{TowerOptions, tower};
+use sightlines::viewer::Figure;
 use std::fmt;
 use std::path::Path;
 use std::time::Instant;
@@ -28,7 +29,9 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     let baked = bake_visibly(&scene_path, (&file).into(), &standard, show_progress);
     let baked = baked.map_err(|source| Error::Bake { path: scene_path, source: Box::new(source) })?;
     output::save(&table_path, &baked.table.to_bytes())?;
-    let mut files = vec!["tower.glb".to_owned(), "tower.pvs".to_owned()];
+    let figure = Figure::of_scene(&file.scene);
+    let page = save_page(args, "A small tower", "tower.pvs", &baked.table, &figure)?;
+    let mut files = vec![page, "tower.glb".to_owned(), "tower.pvs".to_owned()];
     for (name, svg) in pictures(&table_path, &baked.table)? {
         for kind in PictureKind::ENDINGS {
             let picture = format!("tower-{name}.{kind}");

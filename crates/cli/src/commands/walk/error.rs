@@ -2,8 +2,8 @@
 
 use super::nesting::Found;
 use crate::file_error::{FileError, from_file_error};
-use sightlines::eye_to_cell::{Method, ViewError};
-use sightlines::geometry::CoordinateError;
+use crate::walk_path::PathError;
+use sightlines::eye_to_cell::Method;
 use sightlines::walkthrough::LevelError;
 use std::path::PathBuf;
 
@@ -36,21 +36,4 @@ pub(crate) enum UnlikeLevels {
     Count { levels: usize, path: PathBuf, table: usize },
     #[error(transparent)]
     Index(#[from] LevelError),
-}
-
-/// Why a file is not a walk. Frames count from 0.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum PathError {
-    #[error("{0}")]
-    Text(serde_json::Error),
-    #[error("there are no frames in the walk")]
-    Empty,
-    #[error("frame {frame}: {source}")]
-    Frame { frame: usize, source: serde_json::Error },
-    #[error("frame {frame}: {what} has {found} numbers, but the table has {dimension} dimensions")]
-    Count { frame: usize, what: &'static str, found: usize, dimension: u8 },
-    #[error("frame {frame}: {what}: {source}")]
-    Coordinate { frame: usize, what: &'static str, source: CoordinateError },
-    #[error("frame {frame}: {source}")]
-    View { frame: usize, source: ViewError },
 }

@@ -5,14 +5,14 @@ mod levels;
 mod measure;
 mod nesting;
 mod outcome;
-mod path;
 
 use crate::Answer;
 use crate::output;
 use crate::progress::Bar;
 use crate::tables::{self, Cells, Opened};
 use crate::view::{LensArgs, Methods, method_help};
-use error::{Error, PathError};
+use crate::walk_path::{self, PathError};
+use error::Error;
 use measure::Walk;
 use outcome::Outcome;
 use sightlines::eye_to_cell::{Budget, CellSource, Method, View};
@@ -107,7 +107,11 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
     let lens = args.lens.lens(cells, file)?;
     let fail = |error| C::fail(file, error);
     let (stands, step) = match (&args.path, args.random) {
-        (Some(path), _) => (path::read(path, cells.n_dimensions())?, None),
+        (Some(path), _) => (
+            walk_path::read(path, cells.n_dimensions())?
+                .map_err(|source| Error::Path { path: path.to_owned(), source })?,
+            None,
+        ),
         (None, n) => {
             let step = args.step.map_or_else(|| usual_step(cells), Ok).map_err(fail)?;
             let stands = wander(cells, n.unwrap_or(0) as usize, step, args.seed).map_err(fail)?;

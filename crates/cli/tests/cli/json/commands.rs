@@ -83,6 +83,7 @@ fn plans(all: &mut Results) {
     add("query of a view", "query o.pvs --eye 1e5,3 --dir 1,0");
     add("query of a view by all methods", "query o.pvs --eye 3,3 --method all");
     add("walk", "walk o.pvs --random 20");
+    add("view", "view o.pvs -o o.html");
     add("pack", "pack o.pvs -o o.pvz");
     add("walk", "walk o.pvz --random 20");
     add("info of a packed table", "info o.pvz");

@@ -1,11 +1,28 @@
 //! Walks in files.
 
-use super::error::{Error, PathError};
 use crate::error::InputError;
 use serde::Deserialize;
-use sightlines::geometry::check_coordinate;
+use sightlines::eye_to_cell::ViewError;
+use sightlines::geometry::{CoordinateError, check_coordinate};
 use sightlines::walkthrough::CameraPose;
 use std::path::Path;
+
+/// Why a file is not a walk. Frames count from 0.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum PathError {
+    #[error("{0}")]
+    Text(serde_json::Error),
+    #[error("there are no frames in the walk")]
+    Empty,
+    #[error("frame {frame}: {source}")]
+    Frame { frame: usize, source: serde_json::Error },
+    #[error("frame {frame}: {what} has {found} numbers, but the table has {dimension} dimensions")]
+    Count { frame: usize, what: &'static str, found: usize, dimension: u8 },
+    #[error("frame {frame}: {what}: {source}")]
+    Coordinate { frame: usize, what: &'static str, source: CoordinateError },
+    #[error("frame {frame}: {source}")]
+    View { frame: usize, source: ViewError },
+}
 
 /// The file.
 #[derive(Debug, Deserialize)]
@@ -21,10 +38,10 @@ struct FrameText {
     dir: Vec<f64>,
 }
 
-/// Reads a walk for a table with so many dimensions.
-pub(super) fn read(path: &Path, dimension: u8) -> Result<Vec<CameraPose>, Error> {
+/// Reads a walk for a table with so many dimensions. The outer error is that of reading, the inner one of what was read.
+pub(crate) fn read(path: &Path, dimension: u8) -> Result<Result<Vec<CameraPose>, PathError>, InputError> {
     let bytes = std::fs::read(path).map_err(|source| InputError::Open { path: path.to_owned(), source })?;
-    parse(&bytes, dimension).map_err(|source| Error::Path { path: path.to_owned(), source })
+    Ok(parse(&bytes, dimension))
 }
 
 fn parse(bytes: &[u8], dimension: u8) -> Result<Vec<CameraPose>, PathError> {

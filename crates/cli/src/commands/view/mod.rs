@@ -1,0 +1,141 @@
+//! `view`: a table as one HTML file.
+
+mod error;
+mod scene;
+
+use crate::Answer;
+use crate::error::InputError;
+use crate::output::{self, bytes};
+use crate::surfaces::SurfaceArgs;
+use crate::{input, tables, walk_path};
+use error::Error;
+use serde::Serialize;
+use sightlines::formats::InputKind;
+use sightlines::pvs::Table;
+use sightlines::viewer::{Frame, Page};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Bytes of blocks of a packed table that are kept while it is unpacked.
+const CACHE: usize = 64 << 20;
+
+/// Arguments of `view`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ViewArgs {
+    /// The table, plain or packed
+    #[arg(value_name = "FILE.pvs")]
+    table: PathBuf,
+    /// What it was built from: a WAD, a GeoJSON floor plan, a scene as GLB, glTF or OBJ, or a Quake map [default: the page shows cells
+    /// and boxes of objects]
+    #[arg(long, help_heading = "Input", value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// The map of the WAD; optional if there is only one
+    #[arg(long, help_heading = "Input", value_name = "NAME", requires = "scene")]
+    map: Option<String>,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
+    /// Another table of the same cells: the page shows which pairs became visible and which hidden since
+    #[arg(long, help_heading = "Input", value_name = "OLD.pvs")]
+    against: Option<PathBuf>,
+    /// A walk to replay, as `walk --path` takes it
+    #[arg(long, help_heading = "Input", value_name = "FILE.json")]
+    walk: Option<PathBuf>,
+    /// The heading [default: the name of the table's file]
+    #[arg(long, help_heading = "Output", value_name = "TEXT")]
+    title: Option<String>,
+    /// The most megabytes of the page; above it the smallest triangles are left out, with a notice
+    #[arg(long, help_heading = "Output", value_name = "MB", default_value_t = (Page::MAX_BYTES / 1_000_000) as u32)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=4_000))]
+    max_mb: u32,
+    /// Also open it in the browser
+    #[arg(long, help_heading = "Output")]
+    open: bool,
+    /// The page to write
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.html")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+pub(crate) fn run(args: &ViewArgs) -> Result<Answer, Error> {
+    let others = [&args.scene, &args.against, &args.walk];
+    let inputs: Vec<&Path> =
+        std::iter::once(args.table.as_path()).chain(others.into_iter().filter_map(Option::as_deref)).collect();
+    output::check(&inputs, &[&args.output])?;
+    let table = read(&args.table)?;
+    let figure = args.scene.as_ref().map(|path| scene::figure(path, args, &table)).transpose()?;
+    let against = args.against.as_deref().map(read).transpose()?;
+    let name = args.table.file_name().unwrap_or_default().to_string_lossy();
+    let page = Page {
+        figure: figure.as_ref(),
+        against: against.as_ref(),
+        walk: args.walk.as_ref().map_or(Ok(Vec::new()), |path| frames(path, table.dimension()))?,
+        max_bytes: args.max_mb as usize * 1_000_000,
+        ..Page::new(args.title.as_deref().unwrap_or(&name), &name, &table)
+    };
+    let written = page.html().map_err(|source| Error::Page { path: args.table.clone(), source })?;
+    output::save(&args.output, written.html.as_bytes())?;
+    let outcome = Outcome {
+        out: args.output.display().to_string(),
+        n_bytes: written.html.len() as u64,
+        n_triangles: figure.as_ref().map_or(0, |figure| figure.n_triangles() - written.n_left_out),
+        n_left_out: written.n_left_out,
+    };
+    output::print(args.json, &outcome)?;
+    if args.open {
+        open(&args.output).map_err(|source| Error::Browser { path: args.output.clone(), source })?;
+    }
+    Ok(Answer::Yes)
+}
+
+/// Reads a table of either kind.
+fn read(path: &Path) -> Result<Table, Error> {
+    if input::kind_of(path)? == Some(InputKind::Packed) {
+        let packed = tables::packed(path, CACHE)?;
+        let failed = |source| InputError::Packed { path: path.to_owned(), source };
+        return Ok(packed.to_table().map_err(failed)?);
+    }
+    Ok(input::table(path)?)
+}
+
+fn frames(path: &Path, dimension: u8) -> Result<Vec<Frame>, Error> {
+    let poses = walk_path::read(path, dimension)?.map_err(|source| Error::Walk { path: path.to_owned(), source })?;
+    Ok(poses.into_iter().map(|pose| Frame { eye: pose.eye, dir: pose.dir }).collect())
+}
+
+/// Lets the system show a file, and does not wait for it.
+fn open(path: &Path) -> std::io::Result<()> {
+    let path = path.canonicalize()?;
+    let (program, first): (_, &[&str]) = match std::env::consts::OS {
+        "macos" => ("open", &[]),
+        "windows" => ("cmd", &["/C", "start", ""]),
+        _ => ("xdg-open", &[]),
+    };
+    let mut command = Command::new(program);
+    command.args(first).arg(path).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().map(drop)
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    out: String,
+    n_bytes: u64,
+    /// On the page.
+    n_triangles: usize,
+    /// Left out to keep the page small.
+    n_left_out: usize,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}: open it in a browser", self.out, bytes(self.n_bytes))?;
+        if self.n_left_out > 0 {
+            let all = self.n_left_out + self.n_triangles;
+            writeln!(f, "the {} smallest of {all} triangles are left out: see --max-mb", self.n_left_out)?;
+        }
+        Ok(())
+    }
+}

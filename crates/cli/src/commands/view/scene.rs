@@ -1,0 +1,65 @@
+//! The scene that a table was made of, as it is drawn.
+
+use super::{Error, ViewArgs};
+use crate::input;
+use sightlines::bake::Bakeable;
+use sightlines::cells::{Plan, Scene};
+use sightlines::formats::quake::Bsp;
+use sightlines::formats::{Input, ReadError};
+use sightlines::pvs::Table;
+use sightlines::viewer::Figure;
+use std::path::Path;
+
+/// Reads a scene, and refuses one that the table was not made of.
+pub(super) fn figure(path: &Path, args: &ViewArgs, table: &Table) -> Result<Figure, Error> {
+    match input::read(path, args.map.as_deref(), &args.surfaces.options_with(table.info()))? {
+        Input::Scene(file) => of_scene(path, &file.scene, table),
+        Input::Bsp(bsp) => of_map(path, &bsp, table),
+        Input::Prt(_) => Err(other(path, "a portal file has nothing to draw; name its map")),
+        other => match input::bakeable(path, other, args.map.as_deref(), None)? {
+            Bakeable::Plan { plan, .. } => of_plan(path, &plan, table),
+            _ => Err(self::other(path, "it is of another kind")),
+        },
+    }
+}
+
+fn other(path: &Path, what: impl Into<String>) -> Error {
+    Error::OtherScene { path: path.to_owned(), what: what.into() }
+}
+
+/// Objects are told by their names.
+fn of_scene(path: &Path, scene: &Scene, table: &Table) -> Result<Figure, Error> {
+    let (found, listed) = (scene.objects(), table.objects());
+    if table.dimension() != 3 {
+        return Err(other(path, "the table is of a plan"));
+    }
+    if found.len() != listed.len() {
+        return Err(other(path, format!("it has {} objects, and this file has {}", listed.len(), found.len())));
+    }
+    match found.iter().zip(listed).enumerate().find(|(_, (object, record))| object.name != record.name) {
+        Some((k, (object, record))) => {
+            Err(other(path, format!("its object {k} is {:?}, and that of this file {:?}", record.name, object.name)))
+        }
+        None => Ok(Figure::of_scene(scene)),
+    }
+}
+
+/// The objects of the table of a Quake map are the faces of its world.
+fn of_map(path: &Path, bsp: &Bsp, table: &Table) -> Result<Figure, Error> {
+    let faces = bsp.world_faces().map_err(|error| ReadError::new(path, error))?;
+    let (found, listed) = (faces.n_faces(), table.objects().len());
+    match table.kind().is_quake() && found == listed {
+        true => Ok(Figure::of_polygons((0..found).map(|k| faces.corners(k)))),
+        false => Err(other(path, format!("it has {listed} objects, and the world of this map {found} faces"))),
+    }
+}
+
+fn of_plan(path: &Path, plan: &Plan, table: &Table) -> Result<Figure, Error> {
+    if table.dimension() != 2 {
+        return Err(other(path, "the table is of a scene in space"));
+    }
+    match table.digest().is_some_and(|digest| digest != plan.digest()) {
+        true => Err(other(path, "its lines or objects differ from those of this file")),
+        false => Ok(Figure::of_plan(plan)),
+    }
+}

@@ -1,0 +1,363 @@
+// Starts the page: reads what it carries, and ties the pictures to pointer, touch and keys.
+
+class App {
+  constructor(model) {
+    this.model = model;
+    this.flatCanvas = document.getElementById("flat");
+    this.spaceCanvas = document.getElementById("space");
+    this.map = new FlatMap(this.flatCanvas, model);
+    this.space = null;
+    this.view = "map";
+    this.held = new Set();
+    this.pending = false;
+    const actions = {
+      savePng: () => this.savePng(),
+      saveSvg: () => this.save(new Blob([this.map.svg()], { type: "image/svg+xml" }), "view.svg"),
+      goToCell: (cell) => this.goToCell(cell),
+      chooseObject: (object) => this.chooseObject(object),
+      explain: (from, to) => this.explain(from, to),
+    };
+    this.panel = new Panel(model, actions);
+    model.onChange(() => this.redraw());
+    this.bindPointer(this.flatCanvas);
+    this.bindPointer(this.spaceCanvas);
+    this.bindKeys();
+    document.getElementById("view-space").addEventListener("click", () => this.setView("space"));
+    document.getElementById("view-map").addEventListener("click", () => this.setView("map"));
+    new ResizeObserver(() => this.redraw()).observe(document.getElementById("stage"));
+    darkPage.addEventListener("change", () => this.redraw());
+    window.addEventListener("hashchange", () => this.openLink(location.hash));
+  }
+
+  /** Shows the scene in space, or the map. */
+  setView(view) {
+    if (view === "space" && !this.space) {
+      try {
+        this.space = new Space(this.spaceCanvas, this.model);
+        this.frameAll();
+      } catch (error) {
+        this.notice(String(error.message));
+        return;
+      }
+    }
+    this.view = view;
+    this.flatCanvas.hidden = view !== "map";
+    this.spaceCanvas.hidden = view !== "space";
+    document.getElementById("view-space").setAttribute("aria-pressed", String(view === "space"));
+    document.getElementById("view-map").setAttribute("aria-pressed", String(view === "map"));
+    this.redraw();
+  }
+
+  /** Puts the camera where all of the scene is in view. */
+  frameAll() {
+    const { model } = this;
+    this.map.fitted = false;
+    if (!this.space) return;
+    const { camera } = this.space;
+    const middle = model.table.toScene([0, 1, 2].map((k) => (model.bounds.min[k] + model.bounds.max[k]) / 2));
+    camera.near = model.size / 5000;
+    camera.far = model.size * 4;
+    camera.yaw = 0.8;
+    camera.pitch = -0.6;
+    camera.pivot = null;
+    const forward = camera.direction();
+    camera.eye = middle.map((x, k) => x - 0.9 * model.size * forward[k]);
+  }
+
+  notice(text) {
+    const box = document.getElementById("notice");
+    box.textContent = text ?? "";
+    box.hidden = !text;
+  }
+
+  /** Draws once before the next frame, however often it is called. */
+  redraw() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      this.drawNow();
+    });
+  }
+
+  drawNow() {
+    if (this.view === "space") this.space.draw();
+    else this.map.draw();
+    clearTimeout(this.linkTimer);
+    this.linkTimer = setTimeout(() => {
+      history.replaceState(null, "", writeLink(this.model, this.view, this.space?.camera));
+    }, 300);
+  }
+
+  goToCell(cell) {
+    const { model } = this;
+    model.goTo(cell);
+    this.map.goTo(model.eye);
+    if (this.space) this.space.camera.eye = [...model.eye];
+  }
+
+  /** Names an object, and says whether it is seen. */
+  chooseObject(object) {
+    const { model } = this;
+    model.chosen = object;
+    const under = document.getElementById("under");
+    if (object === null || object >= model.table.objects.length) {
+      under.textContent = "";
+    } else {
+      const { name, polygons } = model.table.objects[object];
+      const triangles = model.figure ? model.figure.nTriangles(object) : polygons;
+      const isSeen = model.isOutside || model.objects.has(object) ? "may be seen" : "is hidden";
+      under.textContent = `Object ${object} (${name}), ${counted(triangles, "triangle")}, ${isSeen}.`;
+    }
+    model.changed();
+  }
+
+  explain(from, to) {
+    const { model } = this;
+    const isSeen = model.table.sees(from, to);
+    model.why = { from, to };
+    const names = [from, to].map((cell) => this.panel.cellText(cell));
+    const verdict = isSeen ? "may see each other" : "cannot see each other";
+    const ask = `For the line or the reason: sightlines explain ${model.head.table} ${from} ${to}`;
+    document.getElementById("why-text").textContent = `${names[0]} and ${names[1]} ${verdict}. ${ask}`;
+    model.changed();
+  }
+
+  bindPointer(canvas) {
+    const pointers = new Map();
+    let moved = 0;
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.focus({ preventScroll: true });
+      canvas.setPointerCapture?.(event.pointerId);
+      pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
+      moved = 0;
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const before = pointers.get(event.pointerId);
+      if (!before) return;
+      const now = [event.offsetX, event.offsetY];
+      const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
+      moved += Math.abs(dx) + Math.abs(dy);
+      if (pointers.size === 2) {
+        const other = [...pointers].find(([id]) => id !== event.pointerId)[1];
+        const length = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
+        this.zoom(length(now) / length(before), (now[0] + other[0]) / 2, (now[1] + other[1]) / 2);
+      } else {
+        this.drag(dx, dy);
+      }
+      pointers.set(event.pointerId, now);
+    });
+    const end = (event) => {
+      if (pointers.delete(event.pointerId) && event.type === "pointerup" && moved < 6) {
+        this.click(event.offsetX, event.offsetY);
+      }
+    };
+    canvas.addEventListener("pointerup", end);
+    canvas.addEventListener("pointercancel", end);
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
+    }, { passive: false });
+  }
+
+  drag(dx, dy) {
+    if (this.view === "map") this.map.pan(dx, dy);
+    else {
+      this.space.camera.turn(dx / 250, dy / 250);
+      this.follow();
+    }
+    this.redraw();
+  }
+
+  zoom(factor, x, y) {
+    if (this.view === "map") this.map.zoom(factor, x, y);
+    else {
+      this.space.camera.move(Math.log(factor) * this.model.size * 0.15, 0, 0);
+      this.follow();
+    }
+    this.redraw();
+  }
+
+  click(x, y) {
+    if (this.view === "map") {
+      this.model.look(this.map.pick(x, y));
+      if (this.space && !this.model.lock) this.space.camera.eye = [...this.model.eye];
+    } else {
+      this.chooseObject(this.space.pick(x, y));
+    }
+  }
+
+  /** The eye is where the camera is. */
+  follow() {
+    this.model.look([...this.space.camera.eye]);
+  }
+
+  bindKeys() {
+    const held = this.held;
+    const isText = (target) => target instanceof HTMLInputElement && target.type !== "checkbox" && target.type !== "range";
+    window.addEventListener("keydown", (event) => {
+      if (isText(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.target instanceof HTMLSelectElement || document.getElementById("keys").open) return;
+      const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+      const toggle = { l: "lock", g: "ghosts", c: "cells", p: "portals" }[key];
+      if (toggle) document.getElementById(toggle).click();
+      else if (key === "?") document.getElementById("keys").showModal();
+      else if (key === "m" && this.model.table.dimension === 3) this.setView(this.view === "map" ? "space" : "map");
+      else if (key === "f") this.frameAll();
+      else if (key === "o") this.toggleOrbit();
+      else if (key === "/") document.getElementById("find").focus();
+      else if (!this.isMove(key, event.target)) return;
+      event.preventDefault();
+      held.add(key);
+      held.fast = event.shiftKey;
+      this.redraw();
+      if (this.isMove(key, event.target)) this.walkOn();
+    });
+    window.addEventListener("keyup", (event) => {
+      held.delete(event.key.length === 1 ? event.key.toLowerCase() : event.key);
+    });
+    window.addEventListener("blur", () => held.clear());
+  }
+
+  isMove(key, target) {
+    if (["w", "a", "s", "d", "q", "e"].includes(key)) return true;
+    const isPicture = target instanceof HTMLCanvasElement || target === document.body;
+    return isPicture && ["ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight", "+", "-", "="].includes(key);
+  }
+
+  toggleOrbit() {
+    if (this.view !== "space") return;
+    const { camera } = this.space;
+    const forward = camera.direction();
+    camera.pivot = camera.pivot ? null : camera.eye.map((x, k) => x + 0.3 * this.model.size * forward[k]);
+    this.notice(camera.pivot ? "Going round the point in front; O flies again." : null);
+  }
+
+  /** Moves as long as a key is held. */
+  walkOn() {
+    if (this.walking) return;
+    this.walking = true;
+    let last = performance.now();
+    const step = (now) => {
+      const seconds = Math.min((now - last) / 1000, 0.1) || 1 / 60;
+      last = now;
+      if (!this.moveBy(seconds)) {
+        this.walking = false;
+        return;
+      }
+      requestAnimationFrame(step);
+    };
+    // The first step is made at once, so that a key that is tapped moves too.
+    this.moveBy(1 / 30);
+    requestAnimationFrame(step);
+  }
+
+  /** Whether a key that moves is held. */
+  moveBy(seconds) {
+    const { held, model } = this;
+    const on = (...keys) => keys.some((key) => held.has(key));
+    const axis = (plus, minus) => Number(on(...plus)) - Number(on(...minus));
+    const ahead = axis(["w"], ["s"]);
+    const aside = axis(["d"], ["a"]);
+    const upwards = axis(["e"], ["q"]);
+    const [across, along] = [axis(["ArrowRight"], ["ArrowLeft"]), axis(["ArrowUp"], ["ArrowDown"])];
+    const near = axis(["+", "="], ["-"]);
+    if (!ahead && !aside && !upwards && !across && !along && !near) return false;
+    const speed = seconds * (held.fast ? 4 : 1);
+    if (this.view === "map") {
+      const { clientWidth, clientHeight } = this.flatCanvas;
+      if (near) this.map.zoom(Math.exp(near * seconds), clientWidth / 2, clientHeight / 2);
+      const from = model.eye ? this.map.flat(model.table.toTable(model.eye)) : [...this.map.centre];
+      const length = (speed * 160) / this.map.scale;
+      const to = [from[0] + (across + aside) * length, from[1] + (along + ahead) * length];
+      if (across || along || ahead || aside) model.look(model.table.toScene(this.map.unflat(to)));
+    } else {
+      const length = speed * model.size * 0.08;
+      this.space.camera.turn(-across * seconds * 1.5, -along * seconds * 1.2);
+      this.space.camera.move(ahead * length, aside * length, upwards * length);
+      this.follow();
+    }
+    this.redraw();
+    return true;
+  }
+
+  savePng() {
+    this.drawNow();
+    const canvas = this.view === "space" ? this.spaceCanvas : this.flatCanvas;
+    canvas.toBlob((blob) => this.save(blob, "view.png"), "image/png");
+  }
+
+  save(blob, name) {
+    const link = element("a", { href: URL.createObjectURL(blob), download: name });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  openLink(text) {
+    const link = readLink(text);
+    const { model } = this;
+    if (link.heat) {
+      model.heat = link.heat;
+      document.getElementById("heat").value = link.heat;
+    }
+    if (link.view) this.setView(model.table.dimension === 3 ? link.view : "map");
+    if (this.space && link.yaw !== null) this.space.camera.yaw = link.yaw;
+    if (this.space && link.pitch !== null) this.space.camera.pitch = link.pitch;
+    if (link.lock || link.isLocked) {
+      model.lock = null;
+      model.look(link.lock ?? link.eye ?? model.eye ?? [0, 0, 0]);
+      model.setLock(true);
+    }
+    if (link.cell !== null && link.cell >= 0 && link.cell < model.table.cells.length) this.goToCell(link.cell);
+    if (link.eye) {
+      if (model.table.dimension === 3 && !model.lock) model.height = model.table.toTable(link.eye)[model.up];
+      model.look(link.eye);
+      if (this.space) this.space.camera.eye = [...link.eye];
+    }
+  }
+}
+
+/** The middle of the largest cell, where the page opens. */
+function largestCell(table) {
+  const sizes = table.cells.map(({ min, max }) =>
+    [0, 1, 2].slice(0, table.dimension).reduce((size, k) => size * (max[k] - min[k]), 1),
+  );
+  return sizes.indexOf(sizes.reduce((most, size) => Math.max(most, size), 0));
+}
+
+async function start() {
+  const head = JSON.parse(document.getElementById("head").textContent);
+  const table = new Table(await carriedBytes("table"));
+  const shapes = await carriedBytes("figure");
+  const model = new Model(table, shapes ? new Figure(head.figure, shapes) : null, head);
+  const older = await carriedBytes("against");
+  if (older) model.change = new Change(table, new Table(older));
+  if (head.walk) model.walk = new Walk(head.walk);
+  document.title = `${head.title} – sightlines`;
+  document.getElementById("title").textContent = head.title;
+  const app = new App(model);
+  bindWalk(model, (frame) => {
+    model.lock = null;
+    if (app.space) {
+      app.space.camera.eye = [...frame.eye];
+      app.space.camera.lookAt(frame.eye.map((x, k) => x + frame.dir[k]));
+    }
+    model.look(frame.eye);
+  });
+  app.notice(head.figure?.notice ?? (table.hasPlaces ? null : "This table does not store where its cells are."));
+  if (table.dimension === 3) app.setView("space");
+  else app.setView("map");
+  if (location.hash.length > 1) app.openLink(location.hash);
+  else if (table.cells.length > 0 && table.dimension === 2) app.goToCell(largestCell(table));
+  model.changed();
+  window.sightlines = app;
+  return app;
+}
+
+/** Resolves when the page is ready; for scripts that look at it. */
+window.ready = start().catch((error) => {
+  const box = document.getElementById("notice");
+  box.textContent = `This page cannot be shown: ${error.message}`;
+  box.hidden = false;
+  throw error;
+});

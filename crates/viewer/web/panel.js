@@ -1,0 +1,189 @@
+// The panel beside the picture. Every text of the scene goes in as text, never as markup.
+
+function element(name, properties = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(properties)) {
+    if (key.startsWith("aria-") || key === "role" || key === "for") made.setAttribute(key, value);
+    else made[key] = value;
+  }
+  made.append(...children);
+  return made;
+}
+
+function percent(share) {
+  return `${(100 * share).toFixed(share < 0.1 ? 2 : 1)} %`;
+}
+
+function counted(n, noun) {
+  return `${n.toLocaleString("en")} ${noun}${n === 1 ? "" : "s"}`;
+}
+
+class Panel {
+  constructor(model, actions) {
+    this.model = model;
+    this.actions = actions;
+    this.bind("lock", "change", (input) => model.setLock(input.checked));
+    this.bind("ghosts", "change", (input) => this.show("ghosts", input.checked));
+    this.bind("cells", "change", (input) => this.show("cells", input.checked));
+    this.bind("portals", "change", (input) => this.show("portals", input.checked));
+    this.bind("heat", "change", (input) => {
+      model.heat = input.value === "none" ? null : input.value;
+      model.changed();
+    });
+    this.bind("find", "input", (input) => this.listFound(input.value));
+    this.bind("ceiling", "input", (input) => this.setCeiling(Number(input.value)));
+    this.bind("png", "click", () => actions.savePng());
+    this.bind("svg", "click", () => actions.saveSvg());
+    this.bind("help", "click", () => document.getElementById("keys").showModal());
+    this.bind("why-ask", "click", () => this.ask());
+    this.bind("numbers", "toggle", (details) => details.open && this.showNumbers());
+    const inSpace = model.table.dimension === 3;
+    for (const name of document.querySelectorAll(".space-only")) name.hidden = !inSpace;
+    this.showChange();
+    model.onChange(() => this.refresh());
+  }
+
+  bind(id, event, action) {
+    const found = document.getElementById(id);
+    found?.addEventListener(event, () => action(found));
+  }
+
+  show(what, on) {
+    this.model.shows[what] = on;
+    this.model.changed();
+  }
+
+  /** Cuts the scene at a share of its height, and moves the map there. */
+  setCeiling(share) {
+    const { model } = this;
+    const [low, high] = [model.bounds.min[model.up], model.bounds.max[model.up]];
+    model.ceiling = share >= 1 ? Infinity : low + share * (high - low);
+    model.height = low + Math.min(share, 0.999) * (high - low);
+    model.changed();
+  }
+
+  refresh() {
+    const { model } = this;
+    document.getElementById("lock").checked = model.lock !== null;
+    document.getElementById("here").textContent = this.hereText();
+    const list = document.getElementById("seen");
+    const shown = [...model.objects].slice(0, 60);
+    list.replaceChildren(...shown.map((o) => this.objectButton(o)));
+    const rest = model.objects.size - shown.length;
+    if (rest > 0) list.append(element("li", {}, `and ${counted(rest, "object")} more`));
+  }
+
+  hereText() {
+    const { model } = this;
+    const { table } = model;
+    if (!model.eye && model.cells.length === 0) {
+      return "On the map, a click puts the eye there. In space it is where you are: fly with W, A, S and D.";
+    }
+    if (model.isOutside) return "The eye is outside every cell: nothing is known there, so everything is drawn.";
+    const names = model.cells.map((cell) => this.cellText(cell)).join(" and ");
+    const parts = [`${model.lock ? "Kept: the eye was" : "The eye is"} in ${names}.`];
+    parts.push(`From there ${model.visible.size} of ${counted(table.cells.length, "cell")} may be seen`);
+    if (table.objects.length > 0) parts.push(`and ${model.objects.size} of ${counted(table.objects.length, "object")}`);
+    return `${parts.join(" ")}.`;
+  }
+
+  cellText(cell) {
+    const { name, group } = this.model.table.cells[cell];
+    const label = name ?? (group === null ? null : `group ${group}`);
+    return label === null ? `cell ${cell}` : `cell ${cell} (${label})`;
+  }
+
+  objectButton(id) {
+    const { name } = this.model.table.objects[id];
+    const choose = () => this.actions.chooseObject(id);
+    return element("li", {}, element("button", { type: "button", onclick: choose }, `${id} ${name}`));
+  }
+
+  listFound(text) {
+    const found = this.model.find(text, 40);
+    const list = document.getElementById("found");
+    list.replaceChildren(
+      ...found.map(({ kind, id, name }) => {
+        const act = kind === "cell" ? () => this.actions.goToCell(id) : () => this.actions.chooseObject(id);
+        return element("li", {}, element("button", { type: "button", onclick: act }, `${kind} ${id} ${name ?? ""}`));
+      }),
+    );
+    document.getElementById("n-found").textContent = text.trim() === "" ? "" : `${found.length} found`;
+  }
+
+  /** Says whether two cells see each other, and how to ask why. */
+  ask() {
+    const [from, to] = ["why-from", "why-to"].map((id) => Number(document.getElementById(id).value));
+    const out = document.getElementById("why-text");
+    const n = this.model.table.cells.length;
+    if (![from, to].every((cell) => Number.isInteger(cell) && cell >= 0 && cell < n)) {
+      out.textContent = `Cells have the numbers from 0 to ${n - 1}.`;
+      return;
+    }
+    this.actions.explain(from, to);
+  }
+
+  showNumbers() {
+    const { model } = this;
+    const { table } = model;
+    const { cells, polygons, hasPolygons } = model.measure();
+    const n = table.cells.length;
+    const pairs = cells.reduce((sum, share) => sum + share * n, 0);
+    const mean = (list) => list.reduce((sum, x) => sum + x, 0) / Math.max(list.length, 1);
+    const rows = [
+      ["cells", n.toLocaleString("en")],
+      ["portals", table.portals.length.toLocaleString("en")],
+      ["objects", table.objects.length.toLocaleString("en")],
+      ["visible pairs of cells, in both directions", Math.round(pairs).toLocaleString("en")],
+      ["cells that a cell sees, on average", percent(mean(cells))],
+    ];
+    if (hasPolygons) rows.push(["polygons that a cell sees, on average", percent(mean(polygons))]);
+    const body = rows.map(([key, value]) =>
+      element("tr", {}, element("th", { scope: "row" }, key), element("td", {}, value)),
+    );
+    document.getElementById("facts").replaceChildren(...body);
+    this.showHistogram(hasPolygons ? polygons : cells, hasPolygons ? "polygons" : "cells");
+    this.listWorst(hasPolygons ? polygons : cells);
+  }
+
+  showHistogram(shares, noun) {
+    const bins = new Array(20).fill(0);
+    for (const share of shares) bins[Math.min(19, Math.floor(20 * share))] += 1;
+    const most = Math.max(...bins, 1);
+    const bars = bins.map((n, k) => {
+      const bar = element("span", { title: `${n} cells see ${5 * k} to ${5 * k + 5} % of the ${noun}` });
+      bar.style.height = `${(100 * n) / most}%`;
+      return bar;
+    });
+    const box = document.getElementById("histogram");
+    box.replaceChildren(...bars);
+    const text = bins.flatMap((n, k) => (n > 0 ? [`${n} cells see ${5 * k} to ${5 * k + 5} %`] : [])).join(", ");
+    box.setAttribute("aria-label", `Share of the ${noun} that cells see: ${text}`);
+    document.getElementById("histogram-text").textContent = `Number of cells by the share of the ${noun} that each sees.`;
+  }
+
+  listWorst(shares) {
+    const worst = [...shares.keys()].sort((a, b) => shares[b] - shares[a] || a - b).slice(0, 12);
+    document.getElementById("worst").replaceChildren(
+      ...worst.map((cell) => {
+        const text = `${this.cellText(cell)}: ${percent(shares[cell])}`;
+        const go = () => this.actions.goToCell(cell);
+        return element("li", {}, element("button", { type: "button", onclick: go }, text));
+      }),
+    );
+  }
+
+  showChange() {
+    const { change } = this.model;
+    document.getElementById("change").hidden = !change;
+    if (!change) return;
+    const text = `${counted(change.gained.length, "pair")} became visible, ${counted(change.lost.length, "pair")} hidden.`;
+    document.getElementById("change-text").textContent = text;
+    const line = (sign) => ([a, b]) => {
+      const go = () => this.actions.goToCell(a);
+      return element("li", {}, element("button", { type: "button", onclick: go }, `${sign} ${a} and ${b}`));
+    };
+    const all = [...change.gained.map(line("visible:")), ...change.lost.map(line("hidden:"))];
+    document.getElementById("changes").replaceChildren(...all.slice(0, 200));
+  }
+}
