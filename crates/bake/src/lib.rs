@@ -8,7 +8,7 @@
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
 //!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); cells for scenes without
 //!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
-//!   search ([`quake`]), the table of a changing scene ([`live`]).
+//!   search ([`quake`]), the table of a changing scene ([`live`]), lines of sight for the pairs of a table ([`lines`]).
 //! - **Out of scope**: paths, the command line, pictures.
 //! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
 //!   threads; every approximation on the way errs towards visible.
@@ -27,6 +27,7 @@ mod graph;
 mod grid;
 mod input;
 mod limit;
+pub mod lines;
 pub mod live;
 pub mod methods;
 mod mirrors;

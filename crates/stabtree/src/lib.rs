@@ -38,8 +38,8 @@ pub use explanation::{Barrier, Explanation, SearchLimit, Sight};
 pub use network::Network;
 pub use search::{SearchOptions, SearchSummary, ZoneVisibility, visible_zones};
 pub use space::{
-    BoxVisibility, LiveSpace, PairMask, SpaceExplanation, SpacePath, SpaceProof, SpaceUpdate, SpaceVisibility,
-    box_visibility, explain_space, space_visibility,
+    BoxVisibility, LiveSpace, PairMask, SpaceExplainer, SpaceExplanation, SpacePath, SpaceProof, SpaceUpdate,
+    SpaceVisibility, box_visibility, explain_space, space_visibility,
 };
 pub use tree::{
     ByPolygons, ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of,

@@ -42,14 +42,7 @@ pub struct SpaceProof {
 const MAX_TRIES: u32 = 10_000;
 
 /// Searches for a line from inside of `from` to inside of `to`, or for a proof that no open set of lines
-/// leads there.
-///
-/// * `solid`: boxes beside the cells that no line from a cell enters, as for
-///   [`space_visibility`](super::space_visibility); may be empty.
-/// * `budget`: linear programs after which it gives up.
-///
-/// Exact. Both a line and a proof were checked by code that shares nothing with the code that found them. Undecided
-/// means that the budget, or the digits of two doubles, were not enough.
+/// leads there; one pair of [`SpaceExplainer`], which is for many.
 ///
 /// # Panics
 /// If there are no such cells.
@@ -60,29 +53,59 @@ pub fn explain_space(
     to: CellId,
     budget: u32,
 ) -> SpaceExplanation {
-    if from == to {
-        return Verdict::Visible(Sight::SameCell);
+    SpaceExplainer::new(graph, solid).explain(from, to, budget)
+}
+
+/// Explains pairs of cells in space. Its walls are merged once, O(portals log portals).
+#[derive(Debug)]
+pub struct SpaceExplainer<'a> {
+    graph: &'a CellGraph<Axial>,
+    blockers: Blockers,
+}
+
+impl<'a> SpaceExplainer<'a> {
+    /// For the cells of a graph.
+    ///
+    /// `solid`: boxes beside the cells that no line from a cell enters, as for
+    /// [`space_visibility`](super::space_visibility); may be empty.
+    pub fn new(graph: &'a CellGraph<Axial>, solid: &[Aabb<3>]) -> Self {
+        Self { graph, blockers: Blockers::new(opaque_rectangles(graph, solid)) }
     }
-    let useful = crate::explain::reaching(graph, to);
-    if !useful[from.idx()] {
-        return Verdict::Hidden(Barrier::NotConnected);
+
+    /// Searches for a line from inside of `from` to inside of `to`, or for a proof that no open set of lines
+    /// leads there. `budget`: linear programs after which it gives up.
+    ///
+    /// Exact. Both a line and a proof were checked by code that shares nothing with the code that found them. Undecided
+    /// means that the budget, or the digits of two doubles, were not enough. The answer does not depend on pairs that were
+    /// asked before.
+    ///
+    /// # Panics
+    /// If there are no such cells.
+    pub fn explain(&self, from: CellId, to: CellId, budget: u32) -> SpaceExplanation {
+        let Self { graph, blockers } = self;
+        if from == to {
+            return Verdict::Visible(Sight::SameCell);
+        }
+        let useful = crate::explain::reaching(graph, to);
+        if !useful[from.idx()] {
+            return Verdict::Hidden(Barrier::NotConnected);
+        }
+        let [a, b] = [from, to].map(|cell| &graph.cell(cell).bounds);
+        let mut shaft = Shaft::new(blockers);
+        let explanation = match shaft.decide(a, b, Target::Inside, budget) {
+            Verdict::Visible(line) => Walk::new(graph, &useful, &line, to).explain(from),
+            // Cases that are left open may still be decided by the fractions of a proof.
+            Verdict::Hidden(()) | Verdict::Undecided(_) => shaft
+                .certify(a, b, Target::Inside, budget)
+                .and_then(|proof| proof.narrowed(blockers.rectangles()))
+                .filter(|(proof, walls)| proof.holds(a, b, Target::Inside, walls))
+                .map(|(proof, walls)| {
+                    let proof = SpaceProof { proof: Box::new(proof), walls, n_blockers: blockers.len() };
+                    Verdict::Hidden(Barrier::Blocked(proof))
+                }),
+        };
+        explanation.unwrap_or(Verdict::Undecided(SearchLimit(budget.into())))
     }
-    let blockers = Blockers::new(opaque_rectangles(graph, solid));
-    let [a, b] = [from, to].map(|cell| &graph.cell(cell).bounds);
-    let mut shaft = Shaft::new(&blockers);
-    let explanation = match shaft.decide(a, b, Target::Inside, budget) {
-        Verdict::Visible(line) => Walk::new(graph, &useful, &line, to).explain(from),
-        // Cases that are left open may still be decided by the fractions of a proof.
-        Verdict::Hidden(()) | Verdict::Undecided(_) => shaft
-            .certify(a, b, Target::Inside, budget)
-            .and_then(|proof| proof.narrowed(blockers.rectangles()))
-            .filter(|(proof, walls)| proof.holds(a, b, Target::Inside, walls))
-            .map(|(proof, walls)| {
-                let proof = SpaceProof { proof: Box::new(proof), walls, n_blockers: blockers.len() };
-                Verdict::Hidden(Barrier::Blocked(proof))
-            }),
-    };
-    explanation.unwrap_or(Verdict::Undecided(SearchLimit(budget.into())))
 }
 
 /// Follows a free line through portals. Where it passes the common edge of portals, nearby lines pass one or the other,

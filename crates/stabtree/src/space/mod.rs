@@ -26,7 +26,7 @@ mod pairs;
 mod slivers;
 mod witness_log;
 
-pub use explain::{SpaceExplanation, SpacePath, SpaceProof, explain_space};
+pub use explain::{SpaceExplainer, SpaceExplanation, SpacePath, SpaceProof, explain_space};
 pub use from_boxes::{BoxVisibility, PairMask, box_visibility};
 pub use live::{LiveSpace, SpaceUpdate};
 

@@ -3,7 +3,6 @@
 mod boxes;
 mod convex;
 mod error;
-mod line;
 mod plan;
 mod report;
 mod space;
@@ -20,6 +19,7 @@ use error::Error;
 use plan::PlanReason;
 use report::{ExplanationReport, Outside};
 use sightlines::bake::from_table::{axial_graph, convex_graph};
+use sightlines::bake::lines::ends_in_plan;
 use sightlines::cells::{CellGraph, Convex, Planar};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::{graph_of_prt, read_prt};
@@ -230,7 +230,7 @@ fn options(graph: &CellGraph<Planar>, [a, b]: [CellId; 2], explanation: &PlanExp
     match explanation {
         Verdict::Visible(Sight::Along(path)) => {
             options.marked_portals = path.portals.iter().map(|p| p.idx()).collect();
-            options.line = line::between(&graph.cell(a).polygon, &graph.cell(b).polygon, &path.doors, &path.witness);
+            options.line = ends_in_plan([&graph.cell(a).polygon, &graph.cell(b).polygon], &path.doors, &path.witness);
         }
         Verdict::Hidden(Barrier::Blocked(proof)) => {
             let first = proof.blocked.first().map_or(&[][..], |way| &way.portals);

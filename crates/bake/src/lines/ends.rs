@@ -1,16 +1,11 @@
 //! The part of a line of sight that is drawn: from inside the first cell to inside the last.
 
-use sightlines::geometry::{Point2, Portal2};
-use sightlines::sightline::PlanarWitness;
+use sightlines_geometry::{Point2, Portal2};
+use sightlines_sightline::PlanarWitness;
 
 /// Two points on the line, rounded: halfway between the first door and the far side of the first cell,
 /// and likewise in the last cell. `None` for no doors.
-pub(crate) fn between(
-    first: &[Point2],
-    last: &[Point2],
-    doors: &[Portal2],
-    witness: &PlanarWitness,
-) -> Option<[Point2; 2]> {
+pub fn ends_in_plan([first, last]: [&[Point2]; 2], doors: &[Portal2], witness: &PlanarWitness) -> Option<[Point2; 2]> {
     let (entry, exit) = (doors.first()?, doors.last()?);
     let [p, q] = [witness.crossing(*entry), witness.crossing(*exit)];
     // One door, or two that the line crosses in one point: straight through the door.
@@ -44,11 +39,11 @@ mod tests {
     fn lines_reach_into_both_cells() {
         let door = Portal2 { left: Point2::new(2., 2.), right: Point2::new(2., 0.) };
         let witness = PlanarWitness::through(Point2::new(0., 1.), Point2::new(4., 1.));
-        let line = between(&square(0., 0.), &square(2., 0.), &[door], &witness);
+        let line = ends_in_plan([&square(0., 0.), &square(2., 0.)], &[door], &witness);
         assert_eq!(line, Some([Point2::new(1., 1.), Point2::new(3., 1.)]));
         let far = Portal2 { left: Point2::new(6., 2.), right: Point2::new(6., 0.) };
-        let line = between(&square(0., 0.), &square(6., 0.), &[door, far], &witness);
+        let line = ends_in_plan([&square(0., 0.), &square(6., 0.)], &[door, far], &witness);
         assert_eq!(line, Some([Point2::new(1., 1.), Point2::new(7., 1.)]));
-        assert_eq!(between(&square(0., 0.), &square(2., 0.), &[], &witness), None);
+        assert_eq!(ends_in_plan([&square(0., 0.), &square(2., 0.)], &[], &witness), None);
     }
 }
