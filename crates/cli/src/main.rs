@@ -24,6 +24,7 @@ mod output;
 mod picture;
 mod place;
 mod progress;
+mod reasons;
 mod region;
 mod sight;
 mod simplification;
@@ -80,7 +81,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::Export(args) => commands::export::run(args)?,
         Command::Explain(args) => commands::explain::run(args)?,
         Command::Draw(args) => commands::draw::run(args)?,
-        Command::View(args) => commands::view::run(args)?,
+        Command::View(args) => commands::view::run(args, show_progress)?,
         Command::Multifocal(args) => commands::multifocal::run(args)?,
         Command::Render(args) => commands::render::run(args, show_progress)?,
         Command::Light(args) => commands::light::run(args)?,

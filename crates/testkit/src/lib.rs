@@ -5,7 +5,7 @@
 //! - **Owns**: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
 //!   [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`], [`eye_fan`]), what a
 //!   point among boxes sees ([`directions_among_boxes`]), sampled lower bounds (from a volume: [`sampled_view`]), what is known of worlds of convex
-//!   cells ([`convex`]), stabbing lines as linear programs ([`lp`]), and strategies that draw from small grids.
+//!   cells ([`convex`]), stabbing lines as linear programs ([`lp`]), pages in a browser ([`browser`]), and strategies that draw from small grids.
 //! - **Out of scope**: the code under test; an oracle that shares a method with it proves nothing.
 //! - **Invariants**: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
 //!   space are traced in doubles, and what is sampled with them stands clear of rounding.
@@ -14,6 +14,7 @@
 //! the errors of what makes them.
 
 pub mod axial;
+pub mod browser;
 mod bvh;
 mod candidates;
 pub mod convex;

@@ -2,15 +2,17 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the page ([`Page`]), what is drawn beside the table ([`Figure`]), and the scripts of the page in `web/`, which have the rules of
+//! - **Owns**: the page ([`Page`]), what is drawn beside the table ([`Figure`]), lines and reasons as it carries them ([`Reasons`]), and the scripts of the page in `web/`, which have the rules of
 //!   `sightlines-pvs` once more, in JavaScript.
-//! - **Out of scope**: files, how a table was made, why cells see each other: the page names the command that says it.
+//! - **Out of scope**: files, how a table was made, how lines are found.
 //! - **Invariants**: the page asks for nothing from outside, and says so to the browser; texts of a scene are never markup; the
 //!   same input gives the same bytes; what is left out is said on the page.
 
 mod figure;
 mod page;
 mod payload;
+mod reasons;
 
 pub use figure::Figure;
 pub use page::{Frame, Page, PageError, Written};
+pub use reasons::{Line, Obstacle, Reasons};

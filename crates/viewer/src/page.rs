@@ -2,12 +2,13 @@
 
 use crate::figure::Figure;
 use crate::payload::{harmless_json, hash_source, packed};
+use crate::reasons::Reasons;
 use serde::Serialize;
 use sightlines_pvs::{Table, TableParts};
 use std::fmt::Write as _;
 
 /// The scripts, in the order in which they are read. Together they are one script.
-const SCRIPTS: [&str; 12] = [
+const SCRIPTS: [&str; 13] = [
     include_str!("../web/bytes.js"),
     include_str!("../web/table.js"),
     include_str!("../web/figure.js"),
@@ -17,6 +18,7 @@ const SCRIPTS: [&str; 12] = [
     include_str!("../web/model.js"),
     include_str!("../web/map.js"),
     include_str!("../web/camera.js"),
+    include_str!("../web/why.js"),
     include_str!("../web/space.js"),
     concat!(include_str!("../web/panel.js"), "\n", include_str!("../web/walk.js")),
     include_str!("../web/main.js"),
@@ -37,6 +39,8 @@ pub struct Page<'a> {
     pub figure: Option<&'a Figure>,
     /// An older table of the same cells, to compare with.
     pub against: Option<&'a Table>,
+    /// Why cells see each other, and why they do not.
+    pub reasons: Option<&'a Reasons>,
     /// A walk to replay; may be empty.
     pub walk: Vec<Frame>,
     /// The most bytes of the page; the smallest triangles are left out above it.
@@ -59,6 +63,8 @@ pub struct Written {
     pub html: String,
     /// Triangles that are not on it.
     pub n_left_out: usize,
+    /// Lines of sight on it: all that were given, or none if it would have become too large.
+    pub n_lines: usize,
 }
 
 /// Why no page can be made.
@@ -110,6 +116,8 @@ struct Head<'a> {
     figure: Option<FigureHead>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     walk: &'a [Frame],
+    /// Visible pairs, and how many of them some line joins.
+    joined: Option<[usize; 2]>,
 }
 
 #[derive(Serialize)]
@@ -144,7 +152,16 @@ impl<'a> Page<'a> {
 
     /// A page of a table alone.
     pub fn new(title: &'a str, table_name: &'a str, table: &'a Table) -> Self {
-        Self { title, table_name, table, figure: None, against: None, walk: Vec::new(), max_bytes: Self::MAX_BYTES }
+        Self {
+            title,
+            table_name,
+            table,
+            figure: None,
+            against: None,
+            reasons: None,
+            walk: Vec::new(),
+            max_bytes: Self::MAX_BYTES,
+        }
     }
 
     /// Writes the page. O(table + figure), some hundred megabytes a second.
@@ -153,17 +170,28 @@ impl<'a> Page<'a> {
     /// [`PageError`] for a figure or an older table that does not belong to the table, and for a table that is too large.
     pub fn html(&self) -> Result<Written, PageError> {
         self.check()?;
-        let table = packed(&lookup_bytes(self.table)).map_err(|e| PageError::Write(e.to_string()))?;
-        let against = self.against.map(|old| packed(&lookup_bytes(old))).transpose();
-        let against = against.map_err(|e| PageError::Write(e.to_string()))?;
-        let without = self.assemble(&table, against.as_deref(), None)?;
-        let Some(figure) = self.figure else { return self.bounded(without, 0) };
+        let pack = |bytes: Option<Vec<u8>>| {
+            bytes.map(|bytes| packed(&bytes)).transpose().map_err(|e| PageError::Write(e.to_string()))
+        };
+        let mut carried = [
+            ("table", pack(Some(lookup_bytes(self.table)))?),
+            ("against", pack(self.against.map(lookup_bytes))?),
+            ("reasons", pack(self.reasons.map(Reasons::to_bytes))?),
+        ];
+        let mut without = self.assemble(&carried, None)?;
+        let mut n_lines = self.reasons.map_or(0, |reasons| reasons.lines.len());
+        if without.len() > self.max_bytes && n_lines > 0 {
+            // What is seen matters more than why.
+            (carried[2].1, n_lines) = (None, 0);
+            without = self.assemble(&carried, None)?;
+        }
+        let Some(figure) = self.figure else { return self.bounded(without, 0, n_lines) };
         let mut most = figure.n_triangles();
         loop {
             let shown = figure.with_at_most(most);
-            let page = self.assemble(&table, against.as_deref(), Some(&shown))?;
+            let page = self.assemble(&carried, Some(&shown))?;
             if page.len() <= self.max_bytes || most == 0 {
-                return self.bounded(page, shown.n_left_out);
+                return self.bounded(page, shown.n_left_out, n_lines);
             }
             // As many as should fit, and a tenth less each time that they do not.
             let (room, share) = (self.max_bytes.saturating_sub(without.len()), page.len() - without.len());
@@ -172,9 +200,9 @@ impl<'a> Page<'a> {
         }
     }
 
-    fn bounded(&self, html: String, n_left_out: usize) -> Result<Written, PageError> {
+    fn bounded(&self, html: String, n_left_out: usize, n_lines: usize) -> Result<Written, PageError> {
         match html.len() <= self.max_bytes {
-            true => Ok(Written { html, n_left_out }),
+            true => Ok(Written { html, n_left_out, n_lines }),
             false => Err(PageError::TooLarge { bytes: html.len(), max: self.max_bytes }),
         }
     }
@@ -199,10 +227,15 @@ impl<'a> Page<'a> {
         }
     }
 
-    fn assemble(&self, table: &str, against: Option<&str>, figure: Option<&Figure>) -> Result<String, PageError> {
+    fn assemble(&self, carried: &[(&str, Option<String>)], figure: Option<&Figure>) -> Result<String, PageError> {
         let failed = |error: &dyn std::fmt::Display| PageError::Write(error.to_string());
-        let head =
-            Head { title: self.title, table: self.table_name, figure: figure.map(FigureHead::new), walk: &self.walk };
+        let head = Head {
+            title: self.title,
+            table: self.table_name,
+            figure: figure.map(FigureHead::new),
+            walk: &self.walk,
+            joined: self.reasons.map(|reasons| [reasons.n_pairs, reasons.n_joined]),
+        };
         let head = harmless_json(&head).map_err(|e| failed(&e))?;
         let figure = figure.map(|figure| packed(&figure.to_bytes())).transpose().map_err(|e| failed(&e))?;
         let script = format!("\"use strict\";\n(() => {{\n{}\n}})();\n", SCRIPTS.join("\n"));
@@ -218,8 +251,8 @@ impl<'a> Page<'a> {
              <title>sightlines</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{SHELL}\
              <script type=\"application/json\" id=\"head\">{head}</script>\n"
         );
-        let payloads = [("table", Some(table)), ("against", against), ("figure", figure.as_deref())];
-        for (id, bytes) in payloads {
+        let figure = ("figure", figure);
+        for (id, bytes) in carried.iter().chain([&figure]) {
             if let Some(bytes) = bytes {
                 writeln!(html, "<script type=\"application/octet-stream\" id=\"{id}\">{bytes}</script>")
                     .map_err(|e| failed(&e))?;

@@ -15,8 +15,15 @@ function readLink(text) {
     pitch: numbers("pitch", 1)?.[0] ?? null,
     cell: cell && Number.isInteger(cell[0]) ? cell[0] : null,
     view: ["map", "space"].includes(fields.get("view")) ? fields.get("view") : null,
+    why: whyOf(fields.get("why")),
     heat: ["cells", "polygons"].includes(fields.get("heat")) ? fields.get("heat") : null,
   };
+}
+
+/** Two cells, such as 3-17. */
+function whyOf(text) {
+  const found = /^(\d+)-(\d+)$/.exec(text ?? "");
+  return found ? [Number(found[1]), Number(found[2])] : null;
 }
 
 function writeLink(model, view, camera) {
@@ -27,6 +34,7 @@ function writeLink(model, view, camera) {
   if (model.lock) fields.push(`lock=${model.lock.slice(0, d).join(",")}`);
   if (view === "space" && camera) fields.push(`yaw=${camera.yaw.toFixed(4)}&pitch=${camera.pitch.toFixed(4)}`);
   if (d === 3) fields.push(`view=${view}`);
+  if (model.why) fields.push(`why=${model.why.from}-${model.why.to}`);
   if (model.heat) fields.push(`heat=${model.heat}`);
   return `#${fields.join("&")}`;
 }

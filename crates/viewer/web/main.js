@@ -16,6 +16,7 @@ class App {
       goToCell: (cell) => this.goToCell(cell),
       chooseObject: (object) => this.chooseObject(object),
       explain: (from, to) => this.explain(from, to),
+      explainObject: (from, object) => this.explainObject(from, object),
     };
     this.panel = new Panel(model, actions);
     model.onChange(() => this.redraw());
@@ -107,20 +108,29 @@ class App {
       const { name, polygons } = model.table.objects[object];
       const triangles = model.figure ? model.figure.nTriangles(object) : polygons;
       const isSeen = model.isOutside || model.objects.has(object) ? "may be seen" : "is hidden";
-      under.textContent = `Object ${object} (${name}), ${counted(triangles, "triangle")}, ${isSeen}.`;
+      under.textContent = `Object ${object} (${name}), ${counted(triangles, "triangle")}, ${isSeen}. `;
+      if (model.cells.length > 0) {
+        const ask = () => this.explainObject(model.cells[0], object);
+        under.append(element("button", { type: "button", onclick: ask }, "Why?"));
+      }
     }
     model.changed();
   }
 
   explain(from, to) {
-    const { model } = this;
-    const isSeen = model.table.sees(from, to);
-    model.why = { from, to };
-    const names = [from, to].map((cell) => this.panel.cellText(cell));
-    const verdict = isSeen ? "may see each other" : "cannot see each other";
-    const ask = `For the line or the reason: sightlines explain ${model.head.table} ${from} ${to}`;
-    document.getElementById("why-text").textContent = `${names[0]} and ${names[1]} ${verdict}. ${ask}`;
-    model.changed();
+    this.showWhy(explainCells(this.model, from, to));
+  }
+
+  explainObject(from, object) {
+    this.showWhy(explainObject(this.model, from, object));
+  }
+
+  showWhy(why) {
+    this.model.why = why;
+    this.panel.showWhy(why);
+    const { min } = this.model.table.cells[why.to];
+    if (!this.map.isInView(min)) this.map.fitted = false;
+    this.model.changed();
   }
 
   bindPointer(canvas) {
@@ -149,7 +159,7 @@ class App {
     });
     const end = (event) => {
       if (pointers.delete(event.pointerId) && event.type === "pointerup" && moved < 6) {
-        this.click(event.offsetX, event.offsetY);
+        this.click(event.offsetX, event.offsetY, event);
       }
     };
     canvas.addEventListener("pointerup", end);
@@ -178,9 +188,15 @@ class App {
     this.redraw();
   }
 
-  click(x, y) {
+  click(x, y, event) {
     if (this.view === "map") {
-      this.model.look(this.map.pick(x, y));
+      const at = this.map.pick(x, y);
+      const [here, there] = [this.model.cells[0], this.model.table.locate(at)[0]];
+      if (event?.shiftKey && here !== undefined && there !== undefined) {
+        this.explain(here, there);
+        return;
+      }
+      this.model.look(at);
       if (this.space && !this.model.lock) this.space.camera.eye = [...this.model.eye];
     } else {
       this.chooseObject(this.space.pick(x, y));
@@ -309,6 +325,7 @@ class App {
       model.setLock(true);
     }
     if (link.cell !== null && link.cell >= 0 && link.cell < model.table.cells.length) this.goToCell(link.cell);
+    if (link.why?.every((cell) => cell < model.table.cells.length)) this.explain(...link.why);
     if (link.eye) {
       if (model.table.dimension === 3 && !model.lock) model.height = model.table.toTable(link.eye)[model.up];
       model.look(link.eye);
@@ -331,6 +348,8 @@ async function start() {
   const shapes = await carriedBytes("figure");
   const model = new Model(table, shapes ? new Figure(head.figure, shapes) : null, head);
   const older = await carriedBytes("against");
+  const reasons = await carriedBytes("reasons");
+  if (reasons) model.reasons = new Reasons(table, reasons);
   if (older) model.change = new Change(table, new Table(older));
   if (head.walk) model.walk = new Walk(head.walk);
   document.title = `${head.title} – sightlines`;

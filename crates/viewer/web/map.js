@@ -101,6 +101,12 @@ class FlatMap {
     return [clientWidth / 2 + (u - this.centre[0]) * this.scale, clientHeight / 2 - (v - this.centre[1]) * this.scale];
   }
 
+  /** Whether a point along the axes of the table is on the canvas. */
+  isInView(p) {
+    const [x, y] = this.toScreen(this.flat(p));
+    return x >= 0 && y >= 0 && x <= this.canvas.clientWidth && y <= this.canvas.clientHeight;
+  }
+
   fromScreen(x, y) {
     const { clientWidth, clientHeight } = this.canvas;
     return [
@@ -169,8 +175,30 @@ class FlatMap {
     }
     const flatOf = (p) => this.toScreen(this.flat(model.table.toTable(p)));
     if (model.walk) pen.stroke(model.walk.frames.map((frame) => flatOf(frame.eye)), colours.line, 1);
+    this.paintWhy(pen, colours);
     if (model.eye) pen.dot(flatOf(model.eye), 6, colours.from, colours.paper);
     if (model.lock) pen.dot(flatOf(model.lock), 6, colours.target, colours.paper);
+  }
+
+  /** The line between two cells with the portals that it crosses, or what is in the way. */
+  paintWhy(pen, colours) {
+    const { why, table } = this.model;
+    if (!why) return;
+    const onMap = (p) => this.toScreen(this.flat(p));
+    const portals = why.line?.portals ?? why.obstacle?.portals ?? [];
+    for (const portal of portals) {
+      const { points } = table.portals[portal];
+      pen.stroke([...points, points[0]].map(onMap), why.line ? colours.portal : colours.lost, 3);
+    }
+    for (const { min, max } of why.obstacle?.walls ?? []) {
+      const [[a, b], [c, d]] = [onMap(min), onMap(max)];
+      pen.stroke([[a, b], [c, b], [c, d], [a, d], [a, b]], colours.lost, 3);
+    }
+    if (why.line?.ends[0]) {
+      const places = placesOf(why.line).map(onMap);
+      pen.stroke(places, colours.line, 2);
+      for (const place of places.slice(1, -1)) pen.dot(place, 3, colours.line, colours.paper);
+    }
   }
 }
 

@@ -15,7 +15,9 @@ class Model {
     /** The eye whose set is kept while the camera flies on. */
     this.lock = null;
     this.chosen = null;
+    /** What is explained, and what the page knows about reasons. */
     this.why = null;
+    this.reasons = null;
     this.walk = null;
     this.heat = null;
     this.change = null;
@@ -84,7 +86,8 @@ class Model {
       if (found > 0) return colours.gained;
       if (found < 0) return colours.lost;
     }
-    if (this.why && (this.why.from === cell || this.why.to === cell)) return colours.target;
+    if (this.why && this.why.to === cell && this.why.from !== cell) return colours.target;
+    if (this.why && this.why.from === cell) return colours.from;
     if (this.cells.includes(cell)) return colours.from;
     if (this.heat) return heatColour(this.share(this.heat, cell));
     if (this.isOutside) return colours.cell;

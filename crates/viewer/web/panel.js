@@ -18,6 +18,11 @@ function counted(n, noun) {
   return `${n.toLocaleString("en")} ${noun}${n === 1 ? "" : "s"}`;
 }
 
+/** A point of the table in words, in the scene's coordinates. */
+function placeText(table, p) {
+  return `(${table.toScene(p).slice(0, table.dimension).map((x) => Number(x.toPrecision(6))).join(", ")})`;
+}
+
 class Panel {
   constructor(model, actions) {
     this.model = model;
@@ -36,6 +41,14 @@ class Panel {
     this.bind("svg", "click", () => actions.saveSvg());
     this.bind("help", "click", () => document.getElementById("keys").showModal());
     this.bind("why-ask", "click", () => this.ask());
+    this.bind("why-here", "click", () => {
+      if (model.cells.length > 0) document.getElementById("why-from").value = model.cells[0];
+    });
+    this.bind("why-end", "click", () => {
+      model.why = null;
+      this.showWhy(null);
+      model.changed();
+    });
     this.bind("numbers", "toggle", (details) => details.open && this.showNumbers());
     const inSpace = model.table.dimension === 3;
     for (const name of document.querySelectorAll(".space-only")) name.hidden = !inSpace;
@@ -111,16 +124,76 @@ class Panel {
     document.getElementById("n-found").textContent = text.trim() === "" ? "" : `${found.length} found`;
   }
 
-  /** Says whether two cells see each other, and how to ask why. */
+  /** Asks why for the two places of the fields. */
   ask() {
-    const [from, to] = ["why-from", "why-to"].map((id) => Number(document.getElementById(id).value));
-    const out = document.getElementById("why-text");
-    const n = this.model.table.cells.length;
-    if (![from, to].every((cell) => Number.isInteger(cell) && cell >= 0 && cell < n)) {
-      out.textContent = `Cells have the numbers from 0 to ${n - 1}.`;
+    const numberIn = (id, n) => {
+      const text = document.getElementById(id).value.trim();
+      return /^\d+$/.test(text) && Number(text) < n ? Number(text) : null;
+    };
+    const { cells, objects } = this.model.table;
+    const toObject = document.getElementById("why-kind").value === "object";
+    const n = toObject ? objects.length : cells.length;
+    const [from, to] = [numberIn("why-from", cells.length), numberIn("why-to", n)];
+    if (from === null || to === null) {
+      const kinds = [`Cells have the numbers from 0 to ${cells.length - 1}`];
+      if (objects.length > 0) kinds.push(`objects from 0 to ${objects.length - 1}`);
+      document.getElementById("why-text").textContent = `${kinds.join(", ")}.`;
       return;
     }
-    this.actions.explain(from, to);
+    if (toObject) this.actions.explainObject(from, to);
+    else this.actions.explain(from, to);
+  }
+
+  /** Says why in words: the way door by door, or what is in the way. */
+  showWhy(why) {
+    const [text, way] = ["why-text", "why-way"].map((id) => document.getElementById(id));
+    way.replaceChildren();
+    document.getElementById("why-end").hidden = !why;
+    if (!why) {
+      text.textContent = "";
+      return;
+    }
+    document.getElementById("why").open = true;
+    document.getElementById("why-from").value = why.from;
+    document.getElementById("why-kind").value = why.object === null ? "cell" : "object";
+    document.getElementById("why-to").value = why.object ?? why.to;
+    const words = this.whyText(why);
+    text.textContent = words[0].toUpperCase() + words.slice(1);
+    const step = (cell, words) => {
+      const go = () => this.actions.goToCell(cell);
+      return element("li", {}, element("button", { type: "button", onclick: go }, words));
+    };
+    if (why.line) {
+      const { cells, portals, points } = why.line;
+      const at = (p) => (p ? ` at ${placeText(this.model.table, p)}` : "");
+      way.append(step(cells[0], `from ${this.cellText(cells[0])}`));
+      portals.forEach((portal, k) => {
+        way.append(step(cells[k + 1], `through portal ${portal}${at(points[k])} into ${this.cellText(cells[k + 1])}`));
+      });
+    }
+    for (const { min, max } of why.obstacle?.walls ?? []) {
+      way.append(element("li", {}, `wall from ${placeText(this.model.table, min)} to ${placeText(this.model.table, max)}`));
+    }
+  }
+
+  whyText({ from, to, object, isSeen, line, obstacle, around }) {
+    const { head, table } = this.model;
+    const target = object === null ? this.cellText(to) : `object ${object} (${table.objects[object].name})`;
+    const here = this.cellText(from);
+    const ask = `sightlines explain ${head.table} ${from} ${to}`;
+    if (object !== null && around.length === 0) return `${target} touches no cell, so the table says nothing of it by cells.`;
+    if (isSeen) {
+      const by = object === null || to === from ? "" : ` It touches ${this.cellText(to)}.`;
+      if (from === to) return object === null ? `It is one cell, which sees itself.` : `${target} touches ${here} itself.`;
+      if (line) return `A line leads from ${here} to ${target}, through ${counted(line.portals.length, "portal")}.${by}`;
+      return `${here} and ${target} may see each other.${by} This page has no line for them; ask ${ask}`;
+    }
+    const hidden = `${target} is hidden from ${here}.`;
+    if (object !== null && table.sees(from, to)) return `${hidden} What is seen of the cells that it touches is not where it is.`;
+    if (obstacle?.kind === "not connected") return `${hidden} No way through portals joins them.`;
+    if (obstacle?.kind === "walls") return `${hidden} Every line meets one of ${counted(obstacle.walls.length, "wall")}, which are drawn:`;
+    if (obstacle) return `${hidden} Every way through portals ends where no line passes; the first at portals ${obstacle.portals.join(", ")}.`;
+    return `${hidden} For the proof ask ${ask}`;
   }
 
   showNumbers() {

@@ -197,11 +197,30 @@ class Space {
     gl.uniform1f(gl.getUniformLocation(this.line, "ceiling"), 1e30);
     const here = model.cells.flatMap((cell) => boxEdges(model.table, model.table.cells[cell]));
     this.strokeNow(here, colours.from);
+    this.drawWhy(colours);
     if (model.lock) this.strokeNow(crossAt(model.lock, model.size / 60), colours.target);
     if (model.walk) {
       const path = model.walk.frames.map((frame) => frame.eye);
       this.strokeNow(path.slice(1).flatMap((p, i) => [path[i], p]), colours.line);
     }
+  }
+
+  /** The line between two cells with the portals that it crosses, or the walls in the way. */
+  drawWhy(colours) {
+    const { why, table } = this.model;
+    if (!why) return;
+    // It is shown through walls, so that it is found.
+    this.gl.disable(this.gl.DEPTH_TEST);
+    if (why.to !== why.from) this.strokeNow(boxEdges(table, table.cells[why.to]), colours.target);
+    const ring = (points) => points.flatMap((p, k) => [p, points[(k + 1) % points.length]]).map((p) => table.toScene(p));
+    const portals = why.line?.portals ?? why.obstacle?.portals ?? [];
+    this.strokeNow(portals.flatMap((portal) => ring(table.portals[portal].points)), why.line ? colours.portal : colours.lost);
+    this.strokeNow((why.obstacle?.walls ?? []).flatMap((wall) => boxEdges(table, wall)), colours.lost);
+    if (why.line?.ends[0]) {
+      const places = placesOf(why.line).map((p) => table.toScene(p));
+      this.strokeNow(places.slice(1).flatMap((p, i) => [places[i], p]), colours.line);
+    }
+    this.gl.enable(this.gl.DEPTH_TEST);
   }
 
   /** Draws pairs of points that change seldom. */

@@ -9,6 +9,7 @@ mod eye_to_cell;
 mod frames;
 mod from_region;
 mod layers;
+mod lines;
 mod materials;
 mod oracles;
 mod quake_tables;

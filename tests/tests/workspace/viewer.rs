@@ -10,11 +10,11 @@ use sightlines::pvs::{CellId, ObjectId, Place, Table};
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines::viewer::{Figure, Page};
+use sightlines_testkit::browser::{Opened, chromium};
 use sightlines_testkit::mutate::SplitMix;
 use sightlines_tests::data_folder;
 use sightlines_tests::world_files::{bsp_bytes, prt_of_world};
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 /// Eyes that are looked from in each table.
 const N_EYES: usize = 1000;
@@ -22,40 +22,9 @@ const N_EYES: usize = 1000;
 /// Compares the sets of all eyes, and gathers what went wrong on the page.
 const CHECK: &str = include_str!("viewer_check.js");
 
-/// The browser, if there is one.
-fn chromium() -> Option<PathBuf> {
-    let path = std::env::var_os("PATH")?;
-    let found = std::env::split_paths(&path).map(|folder| folder.join("chromium")).find(|file| file.is_file());
-    if found.is_none() {
-        eprintln!("NOT RUN: there is no chromium in the path, so no page is opened");
-    }
-    found
-}
-
-/// The result of a page in a window of this width; the page also runs the check.
+/// What the check says of a page.
 fn open(browser: &Path, html: &str, eyes: &Value, width: u32) -> Value {
-    let folder = tempfile::tempdir().expect("a folder");
-    // The check is one more script; all else that the policy forbids stays forbidden.
-    let from = html.find("script-src 'sha256-").expect("the policy names the script");
-    let to = from + html[from..].find(';').expect("the policy goes on");
-    let html = format!("{}script-src 'unsafe-inline'{}", &html[..from], &html[to..]);
-    let eyes = eyes.to_string().replace('<', "\\u003c");
-    let more = format!("<script type=\"application/json\" id=\"eyes\">{eyes}</script><script>{CHECK}</script></body>");
-    let page = folder.path().join("page.html");
-    std::fs::write(&page, html.replace("</body>", &more)).expect("a file");
-    let output = Command::new(browser)
-        .args(["--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking"])
-        .args(["--disable-component-update", "--disable-sync", "--enable-unsafe-swiftshader", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
-        .arg(format!("--window-size={width},700"))
-        .arg("--virtual-time-budget=60000")
-        .arg(format!("file://{}", page.display()))
-        .output()
-        .expect("the browser starts");
-    let dom = String::from_utf8_lossy(&output.stdout);
-    let result = dom.split("<pre id=\"result\">").nth(1).and_then(|rest| rest.split("</pre>").next());
-    let result = result.unwrap_or_else(|| panic!("no result; {}", String::from_utf8_lossy(&output.stderr)));
-    serde_json::from_str(&result.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")).expect("JSON")
+    Opened { html, script: CHECK, given: eyes, size: [width, 700], link: "" }.result(browser)
 }
 
 /// Random eyes in and around the cells, some on borders, with what the table says.
@@ -101,7 +70,7 @@ fn check(browser: &Path, table: &Table, figure: Option<&Figure>) {
     assert_eq!(result["wrong"], 0, "{result}");
     assert_eq!(result["problems"], json!([]), "{result}");
     assert_eq!(result["requests"], 0, "{result}");
-    for what in ["walked", "locked", "helped", "isSvg", "wide"] {
+    for what in ["walked", "locked", "helped", "tapped", "dragged", "pinched", "asked", "isSvg", "wide"] {
         assert_eq!(result[what], true, "{what}: {result}");
     }
     assert!(result["found"].as_u64() > Some(0) && result["worst"].as_u64() > Some(0), "{result}");

@@ -6,15 +6,15 @@ use sightlines_cells::{CellGraph, CellId, Convex, Planar, PortalId};
 use sightlines_geometry::Aabb;
 use sightlines_sightline::{Branch, Line3, Verdict};
 use sightlines_stabtree::{
-    Barrier, ConvexGate, ConvexPath, ConvexProof, PlanPath, Sight, SpaceExplainer, SpacePath, SpaceProof, explain,
-    explain_convex,
+    Barrier, ConvexExplainer, ConvexGate, ConvexPath, ConvexProof, PlanPath, Sight, SpaceExplainer, SpacePath,
+    SpaceProof, explain,
 };
 
 /// Cells entered in a plan, linear programs in space, and sequences of portals of a Quake map, after which a pair is given up. Fewer than
 /// where one pair is asked for alone.
 const MAX_VISITS: u64 = 100_000;
 const MAX_PROGRAMS: u32 = 2_000;
-const MAX_QUESTIONS: u64 = 5_000;
+const MAX_QUESTIONS: u64 = 1_000;
 
 /// The most walls that are named.
 const MAX_WALLS: usize = 12;
@@ -22,7 +22,7 @@ const MAX_WALLS: usize = 12;
 pub(super) enum Engine<'a> {
     Plan(&'a CellGraph<Planar>),
     Space(SpaceExplainer<'a>),
-    Convex(&'a CellGraph<Convex>),
+    Convex(&'a CellGraph<Convex>, ConvexExplainer),
 }
 
 type Found = Verdict<SightLine, Obstacle, ()>;
@@ -34,7 +34,7 @@ impl<'a> Engine<'a> {
             TableGraph::Planar(graph) => Some(Self::Plan(graph)),
             // The table does not record what was left out beside its cells, and no answer depends on it.
             TableGraph::Axial(graph) => Some(Self::Space(SpaceExplainer::new(graph, &[]))),
-            TableGraph::Convex(graph) => Some(Self::Convex(graph)),
+            TableGraph::Convex(graph) => Some(Self::Convex(graph, ConvexExplainer::new(graph))),
             TableGraph::Boxes(_) => None,
         }
     }
@@ -65,8 +65,8 @@ impl<'a> Engine<'a> {
                 let line = |path: SpacePath| Some(space_line(from, path));
                 found(explainer.explain(from, to, MAX_PROGRAMS), line, |proof| Some(Obstacle::Walls(walls(&proof))))
             }
-            Self::Convex(graph) => found(
-                explain_convex(graph, from, to, MAX_QUESTIONS),
+            Self::Convex(graph, explainer) => found(
+                explainer.explain(from, to, MAX_QUESTIONS),
                 |path| Some(convex_line(graph, &path)),
                 |proof: ConvexProof| {
                     let first = proof.blocked.into_iter().next()?;

@@ -1,7 +1,8 @@
 //! Lines of sight for the pairs of a table: few lines, each of which passes through many cells.
 //!
 //! A line through portals shows not only that its first cell sees its last, but the same of any two cells that it passes. So far pairs
-//! are asked first, and what their lines pass is not asked again: in buildings a tenth of the pairs, or less, has to be.
+//! are asked first, and what their lines pass is not asked again: in buildings one pair in six or seven has to be, in plans of small rooms every
+//! second.
 
 mod ends;
 mod engine;

@@ -1,7 +1,9 @@
 //! Pages of tables: what is refused, what is left out. That they show what the tables say is tested in a browser.
 
 use crate::common::Folder;
-use serde_json::json;
+use serde_json::{Value, json};
+use sightlines_testkit::browser::{Opened, chromium};
+use std::path::Path;
 
 #[test]
 fn a_page_is_written_of_plain_and_packed_tables() {
@@ -81,4 +83,103 @@ fn two_bakes_and_a_walk_are_on_the_page() {
     folder.run(&["view", "plan.pvs", "--against", "plan.pvs", "--walk", "walk.json", "-o", "page.html"]).expect(0);
     let page = String::from_utf8(folder.read("page.html")).expect("a text");
     assert!(page.contains(r#"id="against""#) && page.contains(r#""walk":[{"eye":[1.0,2.0,0.0]"#));
+}
+
+/// Asks the page for the lines of some pairs that were looked for, and for the reasons of some hidden ones.
+const LINES: &str = r#"
+ready.then(({ model }) => {
+  const { reasons } = model;
+  const pick = (list) => list.filter((_, i) => i % Math.ceil(list.length / 25) === 0);
+  const seen = pick(reasons.lines).map(({ cells }) => [cells[0], cells.at(-1)]);
+  const lines = seen.map(([from, to]) => ({ pair: [from, to], back: reasons.line(to, from).cells, ...reasons.line(from, to) }));
+  const hidden = pick([...reasons.hidden.keys()]).map((key) => ({ pair: key.split(",").map(Number), ...reasons.hidden.get(key) }));
+  tell({ lines, hidden });
+});"#;
+
+/// Opens the page of a table and compares with `explain`; returns how many pairs were compared, seen and hidden.
+fn compare_lines(folder: &Folder, browser: &Path, view: &[&str], table: &str) -> [usize; 2] {
+    folder.run(&[&["view", table], view, &["-o", "page.html"]].concat()).expect(0);
+    let html = String::from_utf8(folder.read("page.html")).expect("a text");
+    let found = Opened { html: &html, script: LINES, given: &Value::Null, size: [1000, 700], link: "" }.result(browser);
+    let list = |key: &str| found[key].as_array().expect("a list").clone();
+    let explain = |pair: &Value, code: i32| {
+        let [a, b] = [0, 1].map(|k| pair[k].to_string());
+        folder.run(&["explain", table, &a, &b, "--json"]).expect(code).json()
+    };
+    let mut last = Value::Null;
+    for line in list("lines") {
+        let told = explain(&line["pair"], 0);
+        // Clusters name portals and cells together.
+        let together = |key: &str| {
+            told["portals"]
+                .as_array()
+                .expect("portals")
+                .iter()
+                .map(|p| p.get(key).unwrap_or(p).clone())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(line["portals"], json!(together("portal")), "{line}");
+        let entered = if told["cells"].is_array() { told["cells"].clone() } else { json!(together("cell")) };
+        let cells = line["cells"].as_array().expect("cells");
+        assert_eq!(json!(cells[1..]), entered);
+        assert_eq!(line["back"], json!(cells.iter().rev().collect::<Vec<_>>()), "the way back");
+        let points = if told["points"].is_array() { told["points"].clone() } else { json!(together("at")) };
+        for (at, told) in line["points"].as_array().expect("points").iter().zip(points.as_array().expect("points")) {
+            let far =
+                |k: usize| at[k].as_f64().zip(told[k].as_f64()).map_or(0.0, |(a, b)| (a - b).abs() / (1.0 + b.abs()));
+            assert!((0..3).all(|k| far(k) < 1e-9), "{at} and {told}");
+        }
+        // Other pairs have other lines: the comparison can fail.
+        assert_ne!(line["cells"], last);
+        last = line["cells"].clone();
+    }
+    for pair in list("hidden") {
+        let told = explain(&pair["pair"], 1);
+        assert_eq!(told["answer"], "hidden");
+        let count = |value: &Value| value.as_array().map_or(0, Vec::len);
+        match pair["kind"].as_str().expect("a kind") {
+            "walls" => assert_eq!(count(&pair["walls"]), count(&told["walls"]).min(12)),
+            "portals" => assert!(count(&pair["portals"]) > 0 && count(&told["blocked"]) > 0),
+            kind => assert!(kind == "not connected" && count(&told["walls"]) + count(&told["blocked"]) == 0),
+        }
+    }
+    [list("lines").len(), list("hidden").len()]
+}
+
+#[test]
+fn lines_of_pages_are_those_of_explain() {
+    let Some(browser) = chromium() else { return };
+    let folder = Folder::new();
+    folder.run(&["demo", "--out", "."]).expect(0);
+    folder.run(&["generate", "tower", "--floors", "1", "-o", "t.glb"]).expect(0);
+    folder.run(&["build", "t.glb", "-o", "t.pvs"]).expect(0);
+    for (table, view) in [("plan.pvs", &[][..]), ("t.pvs", &["--scene", "t.glb", "--lines", "400"][..])] {
+        let [n_seen, n_hidden] = compare_lines(&folder, &browser, view, table);
+        assert!(n_seen >= 20 && n_hidden >= 20, "{n_seen} and {n_hidden}");
+    }
+    // Without lines the page still opens, and has none.
+    folder.run(&["view", "plan.pvs", "--lines", "0", "-o", "page.html"]).expect(0);
+    let html = String::from_utf8(folder.read("page.html")).expect("a text");
+    let script = "ready.then((app) => { app.explain(0, 1); tell([app.model.reasons, document.getElementById('why-text').textContent]); })";
+    let told = Opened { html: &html, script, given: &Value::Null, size: [1000, 700], link: "" }.result(&browser);
+    assert!(
+        told[0].is_null() && told[1].as_str().is_some_and(|text| text.contains("sightlines explain plan.pvs 0 1")),
+        "{told}"
+    );
+}
+
+#[test]
+fn lines_of_pages_of_real_scenes_are_those_of_explain() {
+    let Some(data) = std::env::var_os("SIGHTLINES_DATA").map(std::path::PathBuf::from) else {
+        eprintln!("SKIPPED lines_of_pages_of_real_scenes_are_those_of_explain: SIGHTLINES_DATA is not set");
+        return;
+    };
+    let Some(browser) = chromium() else { return };
+    let folder = Folder::new();
+    for name in ["doom/freedoom1_E1M1.wad", "quake/e1m7.bsp", "scenes/whale_tall/whale_tall.glb"] {
+        let scene = data.join(name).display().to_string();
+        folder.run(&["build", &scene, "-o", "r.pvs"]).expect(0);
+        let [n_seen, n_hidden] = compare_lines(&folder, &browser, &["--lines", "400"], "r.pvs");
+        assert!(n_seen >= 15 && n_hidden > 0, "{name}: {n_seen} and {n_hidden}");
+    }
 }

@@ -152,7 +152,8 @@ impl ConvexExplainer {
         }
         // It is not known in advance which side has fewer chains: both are tried, with ever more queries.
         let mut left = limit;
-        let mut share = (limit / 256).max(64);
+        // That share does not depend on the limit, or else the answer would.
+        let mut share = 256;
         while left > 0 {
             for start in [from, to] {
                 let goal = if start == from { to } else { from };

@@ -8,6 +8,7 @@ use crate::Answer;
 use crate::error::OutputError;
 use crate::memory;
 use crate::output::{self, bytes};
+use crate::reasons::reasons;
 use error::Error;
 use serde::Serialize;
 use sightlines::pvs::Table;
@@ -49,10 +50,14 @@ pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     }
 }
 
+/// The most lines of sight on the page.
+const MAX_LINES: usize = 20_000;
+
 /// Writes the page of a table into the folder of the demo; returns its name there.
 fn save_page(args: &DemoArgs, title: &str, table_name: &str, table: &Table, figure: &Figure) -> Result<String, Error> {
     let name = "view.html".to_owned();
-    let page = Page { figure: Some(figure), ..Page::new(title, table_name, table) };
+    let reasons = reasons(table, MAX_LINES, false);
+    let page = Page { figure: Some(figure), reasons: reasons.as_ref(), ..Page::new(title, table_name, table) };
     let written = page.html().map_err(|source| Error::Page { path: args.out.join(table_name), source })?;
     output::save(&args.out.join(&name), written.html.as_bytes())?;
     Ok(name)

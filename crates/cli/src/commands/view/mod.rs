@@ -5,7 +5,8 @@ mod scene;
 
 use crate::Answer;
 use crate::error::InputError;
-use crate::output::{self, bytes};
+use crate::output::{self, bytes, count};
+use crate::reasons::reasons;
 use crate::surfaces::SurfaceArgs;
 use crate::{input, tables, walk_path};
 use error::Error;
@@ -41,6 +42,9 @@ pub(crate) struct ViewArgs {
     /// A walk to replay, as `walk --path` takes it
     #[arg(long, help_heading = "Input", value_name = "FILE.json")]
     walk: Option<PathBuf>,
+    /// The most lines of sight on the page, for `Why?`; each stands for all pairs of cells that it passes. 0 for none
+    #[arg(long, help_heading = "Output", value_name = "N", default_value_t = 20_000)]
+    lines: u32,
     /// The heading [default: the name of the table's file]
     #[arg(long, help_heading = "Output", value_name = "TEXT")]
     title: Option<String>,
@@ -59,7 +63,7 @@ pub(crate) struct ViewArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ViewArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &ViewArgs, show_progress: bool) -> Result<Answer, Error> {
     let others = [&args.scene, &args.against, &args.walk];
     let inputs: Vec<&Path> =
         std::iter::once(args.table.as_path()).chain(others.into_iter().filter_map(Option::as_deref)).collect();
@@ -68,8 +72,10 @@ pub(crate) fn run(args: &ViewArgs) -> Result<Answer, Error> {
     let figure = args.scene.as_ref().map(|path| scene::figure(path, args, &table)).transpose()?;
     let against = args.against.as_deref().map(read).transpose()?;
     let name = args.table.file_name().unwrap_or_default().to_string_lossy();
+    let reasons = reasons(&table, args.lines as usize, show_progress);
     let page = Page {
         figure: figure.as_ref(),
+        reasons: reasons.as_ref(),
         against: against.as_ref(),
         walk: args.walk.as_ref().map_or(Ok(Vec::new()), |path| frames(path, table.dimension()))?,
         max_bytes: args.max_mb as usize * 1_000_000,
@@ -82,6 +88,9 @@ pub(crate) fn run(args: &ViewArgs) -> Result<Answer, Error> {
         n_bytes: written.html.len() as u64,
         n_triangles: figure.as_ref().map_or(0, |figure| figure.n_triangles() - written.n_left_out),
         n_left_out: written.n_left_out,
+        n_lines: written.n_lines,
+        n_pairs: reasons.as_ref().map_or(0, |reasons| reasons.n_pairs),
+        n_joined: reasons.as_ref().map_or(0, |reasons| reasons.n_joined),
     };
     output::print(args.json, &outcome)?;
     if args.open {
@@ -127,6 +136,12 @@ struct Outcome {
     n_triangles: usize,
     /// Left out to keep the page small.
     n_left_out: usize,
+    /// Lines of sight on the page.
+    n_lines: usize,
+    /// Visible pairs of cells; 0 if no lines were looked for.
+    n_pairs: usize,
+    /// Those that some line joins.
+    n_joined: usize,
 }
 
 impl fmt::Display for Outcome {
@@ -135,6 +150,12 @@ impl fmt::Display for Outcome {
         if self.n_left_out > 0 {
             let all = self.n_left_out + self.n_triangles;
             writeln!(f, "the {} smallest of {all} triangles are left out: see --max-mb", self.n_left_out)?;
+        }
+        if self.n_pairs > 0 && self.n_lines == 0 {
+            writeln!(f, "lines of sight are left out: see --max-mb")?;
+        } else if self.n_pairs > 0 {
+            let (lines, joined) = (count(self.n_lines as u64, "line"), self.n_joined);
+            writeln!(f, "{lines} of sight for {joined} of {} visible pairs of cells", self.n_pairs)?;
         }
         Ok(())
     }
