@@ -58,7 +58,7 @@ impl Opened<'_> {
         let (page, picture) = (self.write(folder.path()), folder.path().join("page.png"));
         let output = self
             .command(browser, folder.path())
-            .args(["--virtual-time-budget=20000", "--hide-scrollbars", "--force-device-scale-factor=1"])
+            .arg("--virtual-time-budget=20000")
             .arg(format!("--screenshot={}", picture.display()))
             .arg(format!("file://{}{}", page.display(), self.link))
             .output()
@@ -71,6 +71,7 @@ impl Opened<'_> {
         command
             .args(["--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking"])
             .args(["--disable-component-update", "--disable-sync", "--enable-unsafe-swiftshader"])
+            .args(["--hide-scrollbars", "--force-device-scale-factor=1"])
             .arg(format!("--user-data-dir={}", folder.join("profile").display()))
             .arg(format!("--window-size={},{}", self.size[0], self.size[1]));
         command

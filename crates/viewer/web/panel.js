@@ -78,6 +78,8 @@ class Panel {
   refresh() {
     const { model } = this;
     document.getElementById("lock").checked = model.lock !== null;
+    for (const legend of document.querySelectorAll(".keys")) legend.hidden = (model.heat !== null) !== (legend.id === "scale");
+    document.getElementById("scale").textContent = darkPage.matches ? "dark: few, light: many" : "light: few, dark: many";
     document.getElementById("here").textContent = this.hereText();
     const list = document.getElementById("seen");
     const shown = [...model.objects].slice(0, 60);

@@ -23,6 +23,8 @@ struct Layer {
 struct Layers {
     crates: BTreeMap<String, Layer>,
     dev: BTreeSet<String>,
+    /// Packages of `dev` that may open files too.
+    dev_files: BTreeSet<String>,
     only: BTreeMap<String, BTreeSet<String>>,
     /// The lints of the workspace.
     lints: toml::Table,
@@ -80,7 +82,8 @@ fn read_layers(text: &str) -> Layers {
     let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("the workspace has a manifest");
     let manifest: toml::Table = manifest.parse().expect("a manifest is TOML");
     let lints = manifest["workspace"]["lints"].as_table().expect("the workspace has lints").clone();
-    Layers { crates: crates.collect(), dev: strings(file["dev"].get("packages")), only: only.collect(), lints }
+    let dev = |key: &str| strings(file["dev"].get(key));
+    Layers { crates: crates.collect(), dev: dev("packages"), dev_files: dev("files"), only: only.collect(), lints }
 }
 
 /// All packages, from `cargo metadata` and, for what it does not tell, from their manifests.
@@ -272,7 +275,8 @@ fn touches_files(line: &str) -> bool {
 
 /// Only crates marked so open files.
 fn check_files(layers: &Layers, packages: &[Package], complaints: &mut Vec<String>) {
-    let may = |p: &Package| layers.crates.get(&p.folder).is_some_and(|l| l.files);
+    let may =
+        |p: &Package| layers.crates.get(&p.folder).is_some_and(|l| l.files) || layers.dev_files.contains(&p.folder);
     for (path, text) in packages.iter().filter(|p| !may(p)).flat_map(|p| &p.sources) {
         for line in text.lines().filter(|l| touches_files(l)) {
             complaints.push(format!("{path} opens files: {}", line.trim()));

@@ -170,8 +170,15 @@ fn assert_same_picture(name: &str, drawn: &[u8]) {
 }
 
 #[test]
+fn the_guide_to_the_viewer_works() {
+    let folder = Folder::new();
+    assert_eq!(follow(&folder, "viewer.md"), 3);
+    assert!(folder.read("tower.html").starts_with(b"<!DOCTYPE html>"));
+}
+
+#[test]
 fn the_commands_of_the_readme_work() {
-    assert_eq!(follow(&Folder::new(), "../../README.md"), 6);
+    assert_eq!(follow(&Folder::new(), "../../README.md"), 7);
 }
 
 #[test]

@@ -32,6 +32,7 @@ mod stab_trees;
 mod tables;
 mod verify;
 mod view;
+mod view_pictures;
 mod vis;
 mod vis_errors;
 mod vis_real;

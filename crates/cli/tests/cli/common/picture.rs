@@ -18,7 +18,7 @@ pub(crate) struct Picture {
 }
 
 impl Picture {
-    /// The picture in an RGB or grey PNG of eight bits.
+    /// The picture in an RGB, RGBA or grey PNG of eight bits.
     pub(crate) fn decode(png: &[u8]) -> Self {
         let mut reader = Decoder::new(std::io::Cursor::new(png)).read_info().expect("a PNG");
         let mut bytes = vec![0; reader.output_buffer_size().expect("a picture that fits into memory")];
@@ -26,6 +26,7 @@ impl Picture {
         assert_eq!(info.bit_depth, BitDepth::Eight);
         let pixels = match info.color_type {
             ColorType::Rgb => bytes.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect(),
+            ColorType::Rgba => bytes.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect(),
             ColorType::Grayscale => bytes.iter().map(|&grey| [grey; 3]).collect(),
             other => panic!("{other:?}"),
         };

@@ -1,0 +1,107 @@
+//! What pages look like: the pictures of the documents, drawn again in a browser and compared within a tolerance, as letters and
+//! edges are drawn a little differently everywhere.
+
+use crate::common::Folder;
+use crate::common::picture::Picture;
+use serde_json::Value;
+use sightlines_testkit::browser::{Opened, chromium};
+use std::path::Path;
+
+/// A view of a page: the name of its picture, the page, the end of its address, and what is done on it.
+const VIEWS: [(&str, &str, &str, &str); 3] = [
+    (
+        "view-set.png",
+        "tower.html",
+        "#eye=9,1.7,5&lock=1&view=space",
+        "app.frameAll(); document.getElementById('ghosts').click(); const cut = document.getElementById('ceiling'); \
+         cut.value = 0.4; cut.dispatchEvent(new Event('input'));",
+    ),
+    ("view-why.png", "tower.html", "#cell=48&view=map&why=48-141", "app.frameAll();"),
+    ("view-heat.png", "office.html", "#heat=cells", "app.frameAll(); document.getElementById('numbers').open = true;"),
+];
+
+/// Pages of a tower and of an office.
+fn pages() -> Folder {
+    let folder = Folder::new();
+    folder.run(&["generate", "tower", "--floors", "2", "-o", "tower.glb"]).expect(0);
+    folder.run(&["build", "tower.glb", "-o", "tower.pvs"]).expect(0);
+    let named = ["--title", "A tower of two floors", "-o", "tower.html"];
+    folder.run(&[&["view", "tower.pvs", "--scene", "tower.glb"], &named[..]].concat()).expect(0);
+    folder.run(&["demo", "--out", "."]).expect(0);
+    let named = ["--title", "An office floor", "-o", "office.html"];
+    folder.run(&[&["view", "plan.pvs", "--scene", "plan.geojson"], &named[..]].concat()).expect(0);
+    folder
+}
+
+/// Draws at once, and tells where the canvas is on the page and the average colour of each block of it.
+const MEANS: &str = r"
+app.drawNow();
+const canvas = app.view === 'space' ? app.spaceCanvas : app.flatCanvas;
+const copy = document.createElement('canvas');
+[copy.width, copy.height] = [canvas.width, canvas.height];
+const context = copy.getContext('2d');
+context.drawImage(canvas, 0, 0);
+const { left, top } = canvas.getBoundingClientRect();
+const means = [];
+for (let y = 0; y + 10 <= copy.height; y += 10) {
+  for (let x = 0; x + 10 <= copy.width; x += 10) {
+    const sums = [0, 0, 0];
+    context.getImageData(x, y, 10, 10).data.forEach((value, i) => i % 4 < 3 && (sums[i % 4] += value));
+    means.push([x, y, ...sums.map((sum) => sum / 100)]);
+  }
+}
+tell([left, top, means]);";
+
+/// A page as it is opened, with a script that ends like this.
+fn with_page<R>(folder: &Folder, page: &str, link: &str, script: &str, then: impl Fn(&Opened<'_>) -> R) -> R {
+    let html = String::from_utf8(folder.read(page)).expect("a text");
+    // Windows without frames are not as high as they are told to be in every mode.
+    let high = "document.documentElement.style.height = document.body.style.height = '700px';";
+    let script = format!("ready.then((app) => {{ {high} {script} }});");
+    then(&Opened { html: &html, script: &script, given: &Value::Null, size: [1100, 700], link })
+}
+
+/// The share of blocks of the map or the scene that look different in a picture of the whole page.
+fn difference(browser: &Path, folder: &Folder, (page, link, script): (&str, &str, &str), picture: &Picture) -> f64 {
+    let told = with_page(folder, page, link, &format!("{script}{MEANS}"), |opened| opened.result(browser));
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let (left, top) = (number(&told[0]).round() as usize, number(&told[1]).round() as usize);
+    let [width, height] = picture.size.map(|x| x as usize);
+    let (mut n, mut differ) = (0, 0);
+    for block in told[2].as_array().expect("blocks") {
+        let (x, y) = (left + number(&block[0]) as usize, top + number(&block[1]) as usize);
+        if x + 10 > width || y + 10 > height {
+            continue;
+        }
+        let pixels = (y..y + 10).flat_map(|row| &picture.pixels[row * width + x..row * width + x + 10]);
+        let sums =
+            pixels.fold([0.0; 3], |sums: [f64; 3], pixel| std::array::from_fn(|k| sums[k] + f64::from(pixel[k])));
+        n += 1;
+        differ += usize::from((0..3).any(|k| (sums[k] / 100.0 - number(&block[k + 2])).abs() > 20.0));
+    }
+    assert!(n > 2000, "{n} blocks");
+    differ as f64 / f64::from(n)
+}
+
+#[test]
+fn pages_look_like_the_pictures_of_the_documents() {
+    let Some(browser) = chromium() else { return };
+    let folder = pages();
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures");
+    for (k, (name, page, link, script)) in VIEWS.into_iter().enumerate() {
+        if std::env::var_os("BLESS").is_some_and(|value| value == "1") {
+            let script = format!("{script} app.redraw();");
+            let png = with_page(&folder, page, link, &script, |opened| opened.picture(&browser));
+            std::fs::write(kept.join(name), png).expect("the picture can be written");
+        }
+        let picture = Picture::decode(&std::fs::read(kept.join(name)).expect("a picture"));
+        let share = difference(&browser, &folder, (page, link, script), &picture);
+        println!("{name}: {:.2} % of the blocks differ", 100.0 * share);
+        assert!(share < 0.03, "{name}: {share}; BLESS=1 draws it anew");
+        // The comparison can fail: by the same view from another place, or of other cells.
+        let others = ["#eye=20,1.7,15&lock=1&view=space", "#cell=60&view=map", "#cell=7"];
+        let share = difference(&browser, &folder, (page, others[k], script), &picture);
+        println!("{name}: {:.2} % from another eye", 100.0 * share);
+        assert!(share > 0.06, "{name}: {share}");
+    }
+}
