@@ -8,7 +8,7 @@ use sightlines_pvs::{Table, TableParts};
 use std::fmt::Write as _;
 
 /// The scripts, in the order in which they are read. Together they are one script.
-const SCRIPTS: [&str; 13] = [
+const SCRIPTS: [&str; 14] = [
     include_str!("../web/bytes.js"),
     include_str!("../web/table.js"),
     include_str!("../web/figure.js"),
@@ -19,6 +19,7 @@ const SCRIPTS: [&str; 13] = [
     include_str!("../web/map.js"),
     include_str!("../web/camera.js"),
     include_str!("../web/why.js"),
+    include_str!("../web/methods.js"),
     include_str!("../web/space.js"),
     concat!(include_str!("../web/panel.js"), "\n", include_str!("../web/walk.js")),
     include_str!("../web/main.js"),

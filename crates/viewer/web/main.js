@@ -1,5 +1,8 @@
 // Starts the page: reads what it carries, and ties the pictures to pointer, touch and keys.
 
+/** The angle of view on the map. */
+const MAP_ANGLE = (75 * Math.PI) / 180;
+
 class App {
   constructor(model) {
     this.model = model;
@@ -16,6 +19,7 @@ class App {
       goToCell: (cell) => this.goToCell(cell),
       chooseObject: (object) => this.chooseObject(object),
       explain: (from, to) => this.explain(from, to),
+      compareMethods: () => this.compareMethods(),
       explainObject: (from, object) => this.explainObject(from, object),
     };
     this.panel = new Panel(model, actions);
@@ -81,7 +85,56 @@ class App {
     });
   }
 
+  /** The view of the viewer, along the axes of the table: the camera's in space, and one to the heading on the map. */
+  currentView() {
+    const { model } = this;
+    const { table, up } = model;
+    const vertical = table.toTable(axisVector(up));
+    if (this.view === "space") {
+      const { clientWidth, clientHeight } = this.spaceCanvas;
+      const aspect = Math.max(clientWidth, 1) / Math.max(clientHeight, 1);
+      const fov = 2 * Math.atan(Math.tan(VERTICAL_ANGLE / 2) * aspect);
+      return new View(table, vertical, table.toTable(model.eye), table.toTable(this.space.camera.direction()), fov, aspect);
+    }
+    const at = this.map.flat(table.toTable(model.eye));
+    const ahead = this.map.unflat([at[0] + Math.cos(model.heading), at[1] + Math.sin(model.heading)]);
+    const from = this.map.unflat(at);
+    return new View(table, vertical, table.toTable(model.eye), ahead.map((x, k) => x - from[k]), MAP_ANGLE, 4 / 3);
+  }
+
+  /** Narrows the set of the cell to that of the viewer. A kept set stays as it is. */
+  narrow() {
+    const { model } = this;
+    const isKept = model.lock !== null && model.narrow !== null && model.narrow.method === model.method;
+    if (isKept) return;
+    model.narrow = null;
+    if (!model.method || !model.eye || model.isOutside) return;
+    const view = this.currentView();
+    model.narrow = { method: model.method, view, ...lookBy(model, model.method, view) };
+  }
+
+  /** What each method keeps, now. */
+  compareMethods() {
+    const { model } = this;
+    if (!model.eye || model.isOutside) return [];
+    return this.keptBy(model.lock && model.narrow ? model.narrow.view : this.currentView());
+  }
+
+  keptBy(view) {
+    return METHODS.map((method) => ({ method, ...lookBy(this.model, method, view) }));
+  }
+
+  /** What each method keeps of a view from a point of the scene. Angles in radians, the horizontal one; for scripts that look at the page. */
+  methodsAt(eye, direction, fov, aspect) {
+    const { model } = this;
+    const { table } = model;
+    model.look(eye);
+    const up = table.toTable(axisVector(model.up));
+    return this.keptBy(new View(table, up, table.toTable(eye), table.toTable(direction), fov, aspect));
+  }
+
   drawNow() {
+    this.narrow();
     if (this.view === "space") this.space.draw();
     else this.map.draw();
     clearTimeout(this.linkTimer);

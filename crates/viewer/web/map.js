@@ -176,8 +176,20 @@ class FlatMap {
     const flatOf = (p) => this.toScreen(this.flat(model.table.toTable(p)));
     if (model.walk) pen.stroke(model.walk.frames.map((frame) => flatOf(frame.eye)), colours.line, 1);
     this.paintWhy(pen, colours);
+    this.paintView(pen, colours);
     if (model.eye) pen.dot(flatOf(model.eye), 6, colours.from, colours.paper);
     if (model.lock) pen.dot(flatOf(model.lock), 6, colours.target, colours.paper);
+  }
+
+  /** The borders of the view, as far as they lie in the plane of the map. */
+  paintView(pen, colours) {
+    const { narrow, size } = this.model;
+    if (!narrow) return;
+    const { eye, rays } = narrow.view;
+    for (const ray of rays) {
+      const end = eye.map((x, k) => x + (size * ray[k]) / Math.hypot(...ray));
+      pen.stroke([this.toScreen(this.flat(eye)), this.toScreen(this.flat(end))], colours.from, 1);
+    }
   }
 
   /** The line between two cells with the portals that it crosses, or what is in the way. */

@@ -18,6 +18,10 @@ class Model {
     /** What is explained, and what the page knows about reasons. */
     this.why = null;
     this.reasons = null;
+    /** The eye-to-cell method that is shown, or null for the table alone; what it keeps; and where the view looks to on the map. */
+    this.method = null;
+    this.narrow = null;
+    this.heading = 0;
     this.walk = null;
     this.heat = null;
     this.change = null;
@@ -91,6 +95,7 @@ class Model {
     if (this.cells.includes(cell)) return colours.from;
     if (this.heat) return heatColour(this.share(this.heat, cell));
     if (this.isOutside) return colours.cell;
+    if (this.narrow && !this.narrow.cells.has(cell) && this.visible.has(cell)) return colours.pale;
     return this.visible.has(cell) ? colours.seen : colours.hidden;
   }
 
@@ -98,7 +103,7 @@ class Model {
   objectStates() {
     const n = Math.max(this.table.objects.length, this.figure?.nObjects() ?? 0);
     const states = new Uint8Array(n).fill(this.isOutside ? STATE.seen : STATE.hidden);
-    for (const object of this.objects) states[object] = STATE.seen;
+    for (const object of this.narrow?.objects ?? this.objects) states[object] = STATE.seen;
     // What belongs to no object of the table is always drawn.
     states.fill(STATE.seen, this.table.objects.length);
     if (this.chosen !== null && states[this.chosen] === STATE.seen) states[this.chosen] = STATE.chosen;

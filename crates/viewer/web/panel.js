@@ -50,6 +50,11 @@ class Panel {
       model.changed();
     });
     this.bind("numbers", "toggle", (details) => details.open && this.showNumbers());
+    this.bind("methods", "toggle", () => this.showMethods());
+    this.bind("heading", "input", (input) => {
+      model.heading = (Number(input.value) * Math.PI) / 180;
+      model.changed();
+    });
     const inSpace = model.table.dimension === 3;
     for (const name of document.querySelectorAll(".space-only")) name.hidden = !inSpace;
     this.showChange();
@@ -81,6 +86,7 @@ class Panel {
     for (const legend of document.querySelectorAll(".keys")) legend.hidden = (model.heat !== null) !== (legend.id === "scale");
     document.getElementById("scale").textContent = darkPage.matches ? "dark: few, light: many" : "light: few, dark: many";
     document.getElementById("here").textContent = this.hereText();
+    this.showMethods();
     const list = document.getElementById("seen");
     const shown = [...model.objects].slice(0, 60);
     list.replaceChildren(...shown.map((o) => this.objectButton(o)));
@@ -196,6 +202,34 @@ class Panel {
     if (obstacle?.kind === "walls") return `${hidden} Every line meets one of ${counted(obstacle.walls.length, "wall")}, which are drawn:`;
     if (obstacle) return `${hidden} Every way through portals ends where no line passes; the first at portals ${obstacle.portals.join(", ")}.`;
     return `${hidden} For the proof ask ${ask}`;
+  }
+
+  /** The methods side by side, with what each keeps; one of them can be shown. */
+  showMethods() {
+    if (!document.getElementById("methods").open) return;
+    clearTimeout(this.methodsTimer);
+    this.methodsTimer = setTimeout(() => this.listMethods(), 150);
+  }
+
+  listMethods() {
+    const { model } = this;
+    const found = this.actions.compareMethods();
+    const row = ({ method, cells, objects, answered }) => {
+      const shown = model.method ?? "cell-to-cell";
+      const choose = () => {
+        model.method = method === "cell-to-cell" ? null : method;
+        model.changed();
+      };
+      const radio = element("input", { type: "radio", name: "method", checked: shown === method, onchange: choose });
+      const note = answered === method ? METHOD_HELP[method] : `too much to do: as ${answered}`;
+      const label = element("label", { title: note }, radio, ` ${method}`);
+      return element(
+        "tr", {}, element("th", { scope: "row" }, label), element("td", {}, String(cells.size)), element("td", {}, String(objects.size)),
+      );
+    };
+    document.getElementById("method-rows").replaceChildren(...found.map(row));
+    const text = found.length > 0 ? "" : "The eye is in no cell.";
+    document.getElementById("methods-text").textContent = text;
   }
 
   showNumbers() {

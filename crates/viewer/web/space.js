@@ -199,6 +199,11 @@ class Space {
     this.strokeNow(here, colours.from);
     this.drawWhy(colours);
     if (model.lock) this.strokeNow(crossAt(model.lock, model.size / 60), colours.target);
+    if (model.lock && model.narrow) {
+      const { eye, rays } = model.narrow.view;
+      const far = (ray) => eye.map((x, k) => x + (0.2 * model.size * ray[k]) / Math.hypot(...ray));
+      this.strokeNow(rays.flatMap((ray) => [eye, far(ray)]).map((p) => model.table.toScene(p)), colours.from);
+    }
     if (model.walk) {
       const path = model.walk.frames.map((frame) => frame.eye);
       this.strokeNow(path.slice(1).flatMap((p, i) => [path[i], p]), colours.line);

@@ -16,4 +16,5 @@ mod quake_tables;
 mod scenes;
 mod simplify;
 mod viewer;
+mod viewer_methods;
 mod visible_surface;

@@ -1,0 +1,230 @@
+// What the viewer sees of what their cell may see: the eye-to-cell methods of Teller and Séquin, each within the one before. Doors stand
+// open, and mirrors are not followed. All but the plain table look through the view only.
+
+const METHODS = ["cell-to-cell", "disjoint-cell", "connected-component", "incident-portals", "exact"];
+const METHOD_HELP = {
+  "cell-to-cell": "all that the table lists for the cell",
+  "disjoint-cell": "cells whose box the view meets",
+  "connected-component": "those reached through such cells",
+  "incident-portals": "those reached through portals in view",
+  exact: "those that a line from the eye leads to",
+};
+/** Portals that the exact method looks at before it takes the answer of the incident portals. */
+const MOST_STEPS = 100000;
+
+/** A view as half-spaces through the eye: kept is what none of the normals points away from. */
+class View {
+  /** `fov` is the horizontal angle in radians, below a half turn; all along the axes of the table. */
+  constructor(table, up, eye, direction, fov, aspect) {
+    this.eye = eye;
+    const length = Math.hypot(...direction) || 1;
+    const f = direction.map((x) => x / length);
+    const w = Math.tan(fov / 2);
+    const plane = (by, axis, sign) => f.map((x, k) => x * by + sign * axis[k]);
+    if (table.dimension === 2) {
+      const right = [f[1], -f[0], 0];
+      this.sides = [plane(w, right, 1), plane(w, right, -1)];
+      this.rays = [-1, 1].map((sign) => plane(1, right, sign * w));
+    } else {
+      const right = unit3(cross3(f, up));
+      const above = cross3(right, f);
+      this.sides = [plane(w, right, 1), plane(w, right, -1), plane(w / aspect, above, 1), plane(w / aspect, above, -1)];
+      const corner = (x, y) => f.map((z, k) => z + x * w * right[k] + (y * w * above[k]) / aspect);
+      this.rays = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)];
+    }
+    /** Along the edges of the view; and what rounding may move a border by, for vectors of some length. */
+    this.share = 2 ** -40;
+  }
+
+  vector(p) {
+    return p.map((x, k) => x - this.eye[k]);
+  }
+
+  /** Whether a side certainly keeps none of these vectors. */
+  excludes(side, vectors) {
+    const size = Math.hypot(...side);
+    return vectors.every((v) => dot3(side, v) < -this.share * size * Math.hypot(...v));
+  }
+
+  meets(points) {
+    const vectors = points.map((p) => this.vector(p));
+    return !this.sides.some((side) => this.excludes(side, vectors));
+  }
+}
+
+function cross3(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+function unit3(v) {
+  const length = Math.hypot(...v) || 1;
+  return v.map((x) => x / length);
+}
+
+/** A query from one cell: which portals there are between the cells that it may see. */
+class Query {
+  constructor(table, view, root) {
+    this.table = table;
+    this.view = view;
+    this.root = root;
+    this.row = new Set(table.visibleCells([root]));
+    this.inView = new Map();
+  }
+
+  cellInView(cell) {
+    if (cell === this.root) return true;
+    if (!this.inView.has(cell)) this.inView.set(cell, this.view.meets(cornersOf(this.table.cells[cell])));
+    return this.inView.get(cell);
+  }
+
+  /** The ways out of a cell that stay within what the root may see: where to, and the corners of the portal. */
+  *ways(cell) {
+    this.byCell ??= portalsByCell(this.table);
+    for (const portal of this.byCell[cell]) {
+      const { cells, points } = this.table.portals[portal];
+      const to = cells[0] === cell ? cells[1] : cells[0];
+      if (this.row.has(to)) yield { to, points, portal, forward: cells[0] === cell };
+    }
+  }
+
+  /** Whether the eye is certainly behind a portal that is to be crossed. */
+  isBehind({ points, forward }) {
+    const { table, view } = this;
+    const v = view.vector(points[0]);
+    const normal = table.dimension === 2 ? [points[0][1] - points[1][1], points[1][0] - points[0][0], 0] : normalOf(points);
+    // Corners are counter-clockwise, or from left to right, as seen on the way from the first cell to the second.
+    const ahead = dot3(normal, v) * (table.dimension === 2 ? 1 : -1) * (forward ? 1 : -1);
+    return ahead < -view.share * Math.hypot(...normal) * Math.hypot(...v);
+  }
+
+  wayInView(way) {
+    return this.cellInView(way.to) && !this.isBehind(way) && this.view.meets(way.points);
+  }
+
+  /** The cells that are reached from the root through ways that pass. */
+  flood(passes) {
+    const reached = new Set([this.root]);
+    const pending = [this.root];
+    while (pending.length > 0) {
+      for (const way of this.ways(pending.pop())) {
+        if (reached.has(way.to) || !passes(way)) continue;
+        reached.add(way.to);
+        pending.push(way.to);
+      }
+    }
+    return reached;
+  }
+
+  /** The cells that a method keeps; null if the exact one would take too long. */
+  cells(method) {
+    if (method === "cell-to-cell") return this.row;
+    if (method === "disjoint-cell") return new Set([...this.row].filter((cell) => this.cellInView(cell)));
+    if (method === "connected-component") return this.flood((way) => this.cellInView(way.to));
+    if (method === "incident-portals") return this.flood((way) => this.wayInView(way));
+    return this.exact();
+  }
+
+  /** Follows cones of sight: each portal is clipped by the cone that reaches it, and what is left is the next cone. */
+  exact() {
+    const { view } = this;
+    const reached = new Set([this.root]);
+    const onWay = new Set([this.root]);
+    let steps = 0;
+    const follow = (cell, sides) => {
+      for (const way of this.ways(cell)) {
+        if (onWay.has(way.to) || !this.cellInView(way.to) || this.isBehind(way)) continue;
+        steps += 1;
+        if (steps > MOST_STEPS) return false;
+        const left = clip(view, way.points, sides);
+        if (left.length === 0) continue;
+        reached.add(way.to);
+        onWay.add(way.to);
+        const inner = coneOf(view, left, this.table.dimension) ?? sides;
+        const isDone = follow(way.to, inner);
+        onWay.delete(way.to);
+        if (!isDone) return false;
+      }
+      return true;
+    };
+    return follow(this.root, view.sides) ? reached : null;
+  }
+}
+
+function portalsByCell(table) {
+  if (!table.portalsByCell) {
+    table.portalsByCell = table.cells.map(() => []);
+    table.portals.forEach(({ cells }, portal) => cells.forEach((cell) => table.portalsByCell[cell].push(portal)));
+  }
+  return table.portalsByCell;
+}
+
+/** The corners of what half-spaces through the eye keep of a polygon or a segment; what lies on a border is kept. */
+function clip(view, points, sides) {
+  let polygon = points.map((p) => view.vector(p));
+  for (const side of sides) {
+    const size = Math.hypot(...side);
+    const at = polygon.map((v) => dot3(side, v) + view.share * size * Math.hypot(...v));
+    const next = [];
+    polygon.forEach((v, i) => {
+      const j = (i + 1) % polygon.length;
+      if (at[i] >= 0) next.push(v);
+      if (at[i] >= 0 !== at[j] >= 0) {
+        const share = at[i] / (at[i] - at[j]);
+        next.push(v.map((x, k) => x + share * (polygon[j][k] - x)));
+      }
+    });
+    polygon = next;
+    if (polygon.length === 0) break;
+  }
+  return polygon;
+}
+
+/** The cone from the eye through a polygon; null if the eye is so near its plane that there is none to speak of. */
+function coneOf(view, polygon, dimension) {
+  const longest = Math.max(...polygon.map((v) => Math.hypot(...v)));
+  const middle = [0, 1, 2].map((k) => polygon.reduce((sum, v) => sum + v[k], 0) / polygon.length);
+  if (dimension === 2) {
+    // The two ends that are farthest to the sides.
+    const turn = (a, b) => a[0] * b[1] - a[1] * b[0];
+    const right = polygon.reduce((a, b) => (turn(a, b) < 0 ? b : a));
+    const left = polygon.reduce((a, b) => (turn(a, b) > 0 ? b : a));
+    if (Math.abs(turn(right, left)) <= view.share * longest * longest) return null;
+    return [[-right[1], right[0], 0], [left[1], -left[0], 0]];
+  }
+  const sides = [];
+  polygon.forEach((v, i) => {
+    const normal = cross3(v, polygon[(i + 1) % polygon.length]);
+    const size = Math.hypot(...normal);
+    if (size <= view.share * longest * longest) return;
+    const at = dot3(normal, middle);
+    if (Math.abs(at) > view.share * size * Math.hypot(...middle)) sides.push(at > 0 ? normal : normal.map((x) => -x));
+  });
+  return sides.length >= 3 ? sides : null;
+}
+
+/** What a viewer sees by a method, from all cells at the eye: cells, objects, and the method that answered. */
+function lookBy(model, method, view) {
+  const { table } = model;
+  const cells = new Set();
+  const objects = new Set();
+  let answered = method;
+  for (const root of model.cells) {
+    const query = new Query(table, view, root);
+    let kept = query.cells(method);
+    if (kept === null) {
+      answered = "incident-portals";
+      kept = query.cells(answered);
+    }
+    const listed = new Set(table.visibleObjects([root], [...query.row]));
+    for (const cell of kept) {
+      cells.add(cell);
+      for (const object of table.cellObjects[cell]) {
+        const isIn = method === "cell-to-cell" || view.meets(cornersOf(table.objects[object]));
+        if (listed.has(object) && isIn) objects.add(object);
+      }
+    }
+    // What touches no cell is listed for whole rows only.
+    if (method === "cell-to-cell") listed.forEach((object) => objects.add(object));
+  }
+  return { cells, objects, answered };
+}
