@@ -27,7 +27,7 @@ mod theme;
 mod walk;
 
 pub use draw::{
-    DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Up, View,
+    DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Surfaces, Up, View,
     isometric_drawing, isometric_svg, plan_drawing, plan_svg, slice_drawing, slice_svg,
 };
 pub use export::{export_json, write_json};

@@ -24,6 +24,12 @@ pub(crate) const PORTAL: &str = "#12a594";
 pub(crate) const PORTAL_FAINT: &str = "#ffffff";
 /// A line of sight and the doors that it passes.
 pub(crate) const SIGHTLINE: &str = "#d6246e";
+/// A surface of the scene that is not seen.
+pub(crate) const SURFACE_HIDDEN: &str = "#9aa5b1";
+/// A surface of the scene that hides nothing.
+pub(crate) const SEE_THROUGH: &str = "#12a594";
+/// A surface of the scene that lies in the plane of the picture.
+pub(crate) const FLAT: &str = "#c3cad2";
 /// An object that is visible, or whose visibility is not shown.
 pub(crate) const OBJECT: &str = "#51616f";
 /// An object that is not seen.
