@@ -42,6 +42,11 @@ impl Frame {
         [(p.x - self.left) * self.scale + self.margin, (self.top - p.y) * self.scale + self.margin]
     }
 
+    /// The point of the plan that is so many pixels from the upper left corner.
+    pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Point2 {
+        Point2::new((x - self.margin) / self.scale + self.left, self.top - (y - self.margin) / self.scale)
+    }
+
     /// The area in square pixels of an area in square units.
     pub(crate) fn area(&self, units: f64) -> f64 {
         units * self.scale * self.scale

@@ -98,3 +98,24 @@ fn plans_and_outputs_are_refused() {
     assert_eq!(folder.run(&onto).code, 2);
     assert_eq!(text(&folder, "leaning.obj"), LEANING);
 }
+
+/// Without a height an isometric view is cut where the viewer is; with the scene it shows surfaces, in pixels.
+#[test]
+fn isometric_views_are_cut_and_shaded() {
+    let folder = leaning();
+    let draw = |options: &[&str]| {
+        folder
+            .run(&[&["draw", "leaning.pvs", "--isometric", "--size", "600", "-o", "iso.svg"][..], options].concat())
+            .expect(0);
+        text(&folder, "iso.svg")
+    };
+    let title = |svg: &str| svg.split("<title>").nth(1).and_then(|t| t.split("</title>").next()).map(str::to_owned);
+    let eye = ["--eye", "1,1.25,1"];
+    let boxes = draw(&eye);
+    assert_eq!(title(&boxes).as_deref(), Some("What a viewer at (1, 1.25, 1) sees, cut at height 1.25"));
+    assert!(!boxes.contains("<image ") && boxes.contains("<title>the viewer</title>"));
+    let scene = draw(&[&eye[..], &["--scene", "leaning.obj"]].concat());
+    assert_eq!(scene.matches("<image ").count(), 1);
+    assert!(scene.contains("<title>where the height cuts surfaces</title>"));
+    assert_eq!(title(&draw(&[])).as_deref(), Some("Cells"));
+}

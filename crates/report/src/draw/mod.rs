@@ -7,6 +7,7 @@ mod legend;
 mod order;
 mod picture;
 mod plan;
+mod raster;
 mod section;
 mod slice;
 mod space;

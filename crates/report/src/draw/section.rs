@@ -61,7 +61,7 @@ impl Kind {
     }
 }
 
-/// The surfaces of a scene in a horizontal plane, as seen from above.
+/// The surfaces of a scene in a horizontal plane, in the plane of the picture.
 #[derive(Debug, Default)]
 pub(super) struct Section {
     pub(super) lines: Vec<(Kind, Segment2)>,
@@ -70,17 +70,22 @@ pub(super) struct Section {
 }
 
 impl Section {
-    /// Cuts surfaces at a height. Lines that coincide in a picture are its business. O(surfaces).
-    pub(super) fn of(surfaces: impl Iterator<Item = Surface>, up: Up, height: f64, seen: Option<&VisibleSet>) -> Self {
-        let floor = |p: Point3| Point2::from(up.on_floor(p));
+    /// Cuts surfaces at a height; `place` is where a point lies in the plane of the picture. O(surfaces).
+    pub(super) fn of(
+        surfaces: impl Iterator<Item = Surface>,
+        up: Up,
+        place: impl Fn(Point3) -> Point2,
+        height: f64,
+        seen: Option<&VisibleSet>,
+    ) -> Self {
         let mut section = Self::default();
         for surface in surfaces {
             match cut(&surface.corners, up.axis(), height) {
                 Cut::Nothing => {}
                 Cut::Line([a, b]) => {
-                    section.lines.push((Kind::of(&surface, seen), Segment2::new(floor(a), floor(b))));
+                    section.lines.push((Kind::of(&surface, seen), Segment2::new(place(a), place(b))));
                 }
-                Cut::Flat => section.flat.push(surface.corners.map(floor)),
+                Cut::Flat => section.flat.push(surface.corners.map(&place)),
             }
         }
         section

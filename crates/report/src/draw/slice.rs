@@ -75,11 +75,11 @@ pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawin
         let high = table.cells().iter().map(|c| c.max[up.axis()]).fold(f64::NEG_INFINITY, f64::max);
         return Err(DrawError::NoCellAt { height, low, high });
     }
+    let on_floor = |p: [f64; 3]| Point2::from(up.on_floor(p));
     let figure = match surfaces {
-        Some(surfaces) => figure.with_section(Section::of(surfaces.along(table), up, height, seen.as_ref())),
+        Some(surfaces) => figure.with_section(Section::of(surfaces.along(table), up, on_floor, height, seen.as_ref())),
         None => figure,
     };
-    let on_floor = |p: [f64; 3]| Point2::from(up.on_floor(p));
     let annotations = Annotations {
         eye: eye.map(on_floor),
         line: line.map(|ends| ends.map(on_floor)),

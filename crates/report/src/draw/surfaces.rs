@@ -35,12 +35,13 @@ impl Surfaces {
         Self { triangles }
     }
 
-    /// Objects that are convex polygons and seen from the front only, such as the faces of a Quake map. O(corners).
+    /// Objects that are convex polygons and seen from the front only, where their corners turn clockwise, such as the faces of a Quake
+    /// map. O(corners).
     #[must_use]
     pub fn of_polygons<'a>(polygons: impl Iterator<Item = &'a [Point3]>) -> Self {
         let fan = |(object, corners): (u32, &'a [Point3])| {
             corners.windows(2).skip(1).map(move |side| {
-                let corners = [corners[0], side[0], side[1]];
+                let corners = [corners[0], side[1], side[0]];
                 Surface { corners, object, is_opaque: true, is_single_sided: true }
             })
         };

@@ -1,11 +1,12 @@
-//! Floor plans with the scene that the table was made of.
+//! Pictures with the scene that the table was made of.
 
 use crate::common::svg::{lines_of, words_of};
 use crate::common::tower::house;
+use resvg::tiny_skia::Pixmap;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::Point3;
 use sightlines_pvs::CellId;
-use sightlines_report::{SliceOptions, Surfaces, View, slice_svg};
+use sightlines_report::{IsometricOptions, SliceOptions, Surfaces, View, isometric_svg, slice_svg, svg_to_png};
 
 const SEEN: &str = "#1c2733";
 const HIDDEN: &str = "#9aa5b1";
@@ -98,11 +99,85 @@ fn lines_are_merged() {
 
 #[test]
 fn faces_of_maps_are_cut_as_polygons() {
-    let square = [[1.0, 0.0, 1.0], [3.0, 0.0, 1.0], [3.0, 2.0, 1.0], [1.0, 2.0, 1.0]];
+    let square: [Point3; 4] = [[1.0, 0.0, 1.0], [3.0, 0.0, 1.0], [3.0, 2.0, 1.0], [1.0, 2.0, 1.0]];
     let surfaces = Surfaces::of_polygons([&square[..], &[]].into_iter());
     assert_eq!(surfaces.n_triangles(), 2);
     let options = SliceOptions { height: 1.0, surfaces: Some(&surfaces), size: 625, ..SliceOptions::default() };
     let lines = lines_of(&slice_svg(&house(), &options).unwrap(), SEEN);
     let length: f64 = lines.iter().map(|[a, b]| (b[0] - a[0]).abs()).sum();
     assert!(lines.len() == 2 && (length - 2.0 * UNIT).abs() < 0.2, "{lines:?}");
+}
+
+/// The floor of both rooms, and a wall between them that stands in room 1, seen from its front at greater x.
+fn rooms(is_single_sided: bool) -> Surfaces {
+    let floor =
+        [[[0.0, 0.0, 0.0], [0.0, 0.0, 2.0], [6.0, 0.0, 2.0]], [[0.0, 0.0, 0.0], [6.0, 0.0, 2.0], [6.0, 0.0, 0.0]]];
+    let wall =
+        [[[5.9, 0.0, 0.0], [5.9, 3.0, 0.0], [5.9, 3.0, 2.0]], [[5.9, 0.0, 0.0], [5.9, 3.0, 2.0], [5.9, 0.0, 2.0]]];
+    let scene = Scene::new(vec![object("lamp", &floor), object("cat", &wall.map(|[a, b, c]| [a, c, b]))]).unwrap();
+    Surfaces::of_scene(&scene.with_single_sided(if is_single_sided { vec![0, 1] } else { vec![] }).unwrap())
+}
+
+fn isometric(surfaces: &Surfaces, view: View<[f64; 3]>, below: f64) -> String {
+    let options = IsometricOptions {
+        view,
+        below: Some(below),
+        surfaces: Some(surfaces),
+        size: 500,
+        ..IsometricOptions::default()
+    };
+    isometric_svg(&house(), &options).unwrap()
+}
+
+/// How many pixels are more orange than blue, more blue than orange, and grey but not white.
+fn hues(svg: &str) -> [usize; 3] {
+    let pixels = Pixmap::decode_png(&svg_to_png(svg).unwrap()).unwrap();
+    let mut n = [0; 3];
+    for p in pixels.pixels() {
+        let [red, blue] = [p.red(), p.blue()].map(i32::from);
+        n[0] += usize::from(red > blue + 60);
+        n[1] += usize::from(blue > red + 60);
+        n[2] += usize::from((red - blue).abs() < 20 && (100..240).contains(&red));
+    }
+    n
+}
+
+/// What is in front of cells has their colours, pixel by pixel: the floor of one triangle pair lies in both rooms.
+#[test]
+fn surfaces_are_coloured_by_the_cells_in_front_of_them() {
+    let both = hues(&isometric(&rooms(true), View::Cell(CellId(0)), 2.0));
+    assert!(both[0] > 5_000 && both[1] > 3_000, "{both:?}");
+    // Room 0 is four units long, and room 1 two.
+    let floors = both[0] as f64 / both[1] as f64;
+    assert!((1.6..2.4).contains(&floors), "{both:?}");
+    let none = hues(&isometric(&rooms(true), View::Cell(CellId(2)), 2.0));
+    assert!(none[0] < 300 && none[1] < 300 && none[2] > 10_000, "{none:?}");
+}
+
+/// The back of the wall hides the room, unless it has one side only.
+#[test]
+fn single_sided_surfaces_are_left_out_from_behind() {
+    let [open, shut] = [true, false].map(|is_single| hues(&isometric(&rooms(is_single), View::Cell(CellId(0)), 2.0)));
+    assert_ne!(open, shut);
+    assert!(shut[0] <= open[0], "{open:?}, {shut:?}");
+}
+
+#[test]
+fn pictures_of_surfaces_have_a_line_where_they_are_cut_and_do_not_grow() {
+    let svg = isometric(&rooms(true), View::Cell(CellId(0)), 2.0);
+    assert_eq!(svg.matches("<image ").count(), 1);
+    let words = words_of(&svg);
+    assert_eq!(words[0], "What cell 0 sees, cut at height 2");
+    for label in ["the cell", "seen from the cell", "where the height cuts surfaces"] {
+        assert!(words.contains(&label.to_owned()), "{label}: {words:?}");
+    }
+    let lines = lines_of(&svg, SEEN);
+    assert!(!lines.is_empty() && lines.iter().flatten().flatten().all(|x| (0.0..=500.0).contains(x)), "{lines:?}");
+    let many: Vec<[Point3; 3]> = (0..20_000)
+        .map(|k| f64::from(k) / 20_000.0)
+        .map(|t| [[4.0 * t, t, 0.0], [4.0 * t, t, 2.0], [4.0 * t + 0.001, t, 2.0]])
+        .collect();
+    let scene = Scene::new(vec![object("lamp", &many), object("cat", &[])]).unwrap();
+    let large = isometric(&Surfaces::of_scene(&scene), View::Cell(CellId(0)), 2.0);
+    assert!(large.len() < 120_000, "{}", large.len());
 }

@@ -28,8 +28,9 @@ pub(crate) struct DrawArgs {
     /// The table
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
-    /// Scenes in space: what the table was built from, a GLB, glTF or OBJ or a Quake map. All surfaces that the floor plan cuts are drawn,
-    /// slanted ones too [default: the walls that the cells tell of]
+    /// Scenes in space: what the table was built from, a GLB, glTF or OBJ or a Quake map. A floor plan shows all
+    /// surfaces that it cuts, slanted ones too, and an isometric view the surfaces in place of the cells; single-sided ones are left out
+    /// from behind [default: what the cells tell of]
     #[arg(long, help_heading = "Picture", value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Show what is visible from this cell
@@ -42,10 +43,10 @@ pub(crate) struct DrawArgs {
     #[command(flatten)]
     sight: SightArgs,
     /// Scenes in space: height of the floor plan, in scene units [default: that of the eye or of the middle of the
-    /// cell]. With --isometric: leave out everything above
+    /// cell]. With --isometric everything above is left out [default there without them: nothing is]
     #[arg(long, help_heading = "Picture", value_name = "Y", value_parser = height, allow_hyphen_values = true)]
     height: Option<f64>,
-    /// Scenes in space: draw the cells as boxes, viewed from the positive side of all axes
+    /// Scenes in space: draw the cells as boxes, or the scene, viewed from the positive side of all axes
     #[arg(long, help_heading = "Picture")]
     isometric: bool,
     /// Leave out the legend and the scale bar

@@ -37,7 +37,8 @@ pub(super) fn draw(
     };
     let sight = shown.map(|shown| shown.sight(|p| p));
     let drawn = if args.isometric {
-        isometric_drawing(table, &IsometricOptions { view, sight, up, below: args.height, legend, size: args.size })
+        let below = args.height.or_else(|| height_of(table, view, up));
+        isometric_drawing(table, &IsometricOptions { view, sight, up, below, surfaces, legend, size: args.size })
     } else {
         let height = args.height.or_else(|| height_of(table, view, up));
         let height = height.ok_or_else(|| nowhere(args, table, up))?;
