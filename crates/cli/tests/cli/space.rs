@@ -35,13 +35,14 @@ fn build_says_what_it_built() {
     assert!(["cells", "objects", "polygons"].iter().all(|key| share(key) > 0.0 && share(key) < 1.0), "{built}");
     let build = ["build", "tower.glb", "-o", "again.pvs"];
     let reply = folder.run(&build).expect(0).out;
-    let [taken, method, result] = reply.lines().collect::<Vec<_>>()[..] else { panic!("three lines: {reply}") };
+    let [taken, method, result, worth] = reply.lines().collect::<Vec<_>>()[..] else { panic!("four lines: {reply}") };
     let (objects, triangles) = (scene.objects().len(), scene.n_triangles());
     assert!(taken.starts_with(&format!("scene          glTF in 3D, y up, in metres: {objects} objects, ")), "{taken}");
     assert!(taken.contains(&format!(" of {triangles} triangles hide")), "{taken}");
     let cells = format!("{} cells, {} portals along walls", made.n_cells(), made.portals().len());
     assert_eq!(method, format!("method         sightlines; {cells}"));
     assert!(result.starts_with("wrote          again.pvs, ") && result.contains(": a viewer has "), "{result}");
+    assert!(worth.starts_with("worth it       ") && worth.contains(": a viewer "), "{worth}");
     let reply = folder.run(&[&build[..], &["--verbose"]].concat()).expect(0).out;
     for line in [
         "scene          glTF in 3D, y up, in metres\n",
@@ -197,15 +198,25 @@ fn draw_makes_floor_plans_and_isometric_views() {
     assert_eq!(svg(&["--cell", "9"]), svg(&["--cell", "9", "--height", &height, "--up", "y"]));
     let plan = svg(&["--height", "1"]);
     assert!(plan.contains("<title>Cells at height 1</title>") && plan != svg(&["--height", "1", "--up", "z"]));
-    let boxes = svg(&["--isometric"]);
-    assert_eq!(boxes.matches("fill-opacity").count(), 3 * made.n_cells());
+    // The tops of boxes: whose visibility is not shown, looked from, seen, seen from elsewhere in the cell, not seen.
+    let tops = |svg: &str| {
+        let colours = ["#eef2f6", "#ff9a52", "#b4d9fa", "#e1effc", "#f3f4f6"];
+        colours.map(|colour| svg.matches(&format!("Z\" fill=\"{colour}\"/>")).count())
+    };
+    assert_eq!(tops(&svg(&["--isometric"])), [made.n_cells(), 0, 0, 0, 0]);
     let lower = svg(&["--isometric", "--height", "1"]);
-    assert!(lower.matches("fill-opacity").count() < 3 * made.n_cells());
-    let seen = svg(&["--isometric", "--cell", "9"]);
-    assert_eq!(seen.matches("fill-opacity").count(), 3 * made.visible(CellId(9)).count());
+    assert!((1..made.n_cells()).contains(&tops(&lower)[0]));
+    let whole = ["--isometric", "--height", "1000"];
+    let seen = svg(&[&whole[..], &["--cell", "9"]].concat());
+    let n_seen = made.visible(CellId(9)).count();
+    assert_eq!(tops(&seen), [0, 1, n_seen - 1, 0, made.n_cells() - n_seen]);
+    // Without a height it is cut at that of the eye or of the middle of the cell.
+    let cut = svg(&["--isometric", "--cell", "9"]);
+    assert_eq!(cut, svg(&["--isometric", "--cell", "9", "--height", &height]));
+    assert!(tops(&cut).iter().sum::<usize>() < made.n_cells());
     // What the viewer sees is drawn over what their cell sees, so nothing is missing.
-    let by_eye = svg(&["--isometric", "--eye", &at]);
-    assert_eq!(by_eye.matches("fill-opacity").count(), seen.matches("fill-opacity").count());
+    let by_eye = svg(&[&whole[..], &["--eye", &at]].concat());
+    assert_eq!(tops(&by_eye)[1..4].iter().sum::<usize>(), n_seen);
     assert!(by_eye.contains("seen from elsewhere in that cell") && !seen.contains("elsewhere"));
     for args in [&["--eye", &at[..]][..], &["--isometric", "--cell", "9"]] {
         let drawn = draw(&format!("one.{DRAWN}"), args);
