@@ -22,6 +22,7 @@ mod multifocal;
 mod outline;
 mod png;
 mod share;
+mod sheet;
 mod summary;
 mod theme;
 mod walk;
@@ -31,12 +32,13 @@ pub use draw::{
     isometric_drawing, isometric_svg, plan_drawing, plan_svg, slice_drawing, slice_svg,
 };
 pub use export::{export_json, write_json};
-pub use faces::{MARK, NO_FACE, NOWHERE, SheetPicture, face_colour, faces_png, sheet_png, sheet_size};
+pub use faces::{MARK, NO_FACE, NOWHERE, face_colour, faces_png};
 pub use light::{LIT, LightPixel, UMBRA, light_png};
 pub use multifocal::{OPEN, buffer_png, distance_png, voronoi_png};
 pub use png::PngError;
 #[cfg(feature = "png")]
 pub use png::svg_to_png;
 pub use share::ViewerShare;
+pub use sheet::{SheetPicture, sheet_png, sheet_size};
 pub use summary::Summary;
 pub use walk::{WalkBar, walk_svg};

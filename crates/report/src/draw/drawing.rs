@@ -83,7 +83,7 @@ impl Drawing {
         out.push_str("</g>\n");
     }
 
-    /// Several pictures in about a square, row by row, each with a heading, and one legend below them all. Each keeps its own size; the
+    /// Several pictures in about a square, row by row, each with a heading, a title above and one legend below them all. Each keeps its own size; the
     /// scale bar is that of the first.
     #[must_use]
     pub fn side_by_side(title: &str, pictures: &[(String, Drawing)]) -> String {
@@ -104,9 +104,16 @@ impl Drawing {
         let strip = Legend::of_text(&entries, text);
         let whole = whole.max(strip.least_width().ceil() as u32);
         let below = strip.height(f64::from(whole)).ceil() as u32;
-        let mut out = svg::open(title, [whole, rows + below]);
+        let top = head;
+        let mut out = svg::open(title, [whole, top + rows + below]);
+        let left = 0.5 * f64::from(size) / 25.0;
+        let large =
+            (1.2 * text).min(1.2 * text * (f64::from(whole) - 2.0 * left) / letters::width(title, 1.2 * text).max(1.0));
+        let _ = writeln!(out, "<g><title>{title}</title>");
+        svg::stroke(&mut out, &letters::path(title, [left, 1.4 * text], large), theme::INK, letters::stroke(large));
+        out.push_str("</g>\n");
         for (k, (heading, drawing)) in pictures.iter().enumerate() {
-            let [x, y] = [wide * (k % n_across) as u32, high * (k / n_across) as u32];
+            let [x, y] = [wide * (k % n_across) as u32, top + high * (k / n_across) as u32];
             let _ = writeln!(out, "<g transform=\"translate({x} {y})\"><title>{heading}</title>");
             let at = [0.5 * f64::from(size) / 25.0, 1.4 * text];
             svg::stroke(&mut out, &letters::path(heading, at, text), theme::INK, letters::stroke(text));
@@ -115,7 +122,7 @@ impl Drawing {
             out.push_str("</g></g>\n");
         }
         if let Some((_, first)) = pictures.first() {
-            strip.draw(&mut out, [f64::from(whole), f64::from(rows)], first.frame.scale);
+            strip.draw(&mut out, [f64::from(whole), f64::from(top + rows)], first.frame.scale);
         }
         out.push_str(svg::CLOSE);
         out

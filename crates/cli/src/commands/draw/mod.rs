@@ -102,9 +102,9 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
         None => picture(args, &table, None, surfaces, !args.no_legend)?.to_svg(),
         Some(viewer) => {
             let mut drawn = viewer.methods().into_iter().map(|method| {
-                let legend = !args.no_legend && !viewer.has_panels();
-                let drawing = picture(args, &table, Some(&viewer.shown(method)?), surfaces, legend)?;
-                Ok((method.name().to_owned(), drawing))
+                let (legend, shown) = (!args.no_legend && !viewer.has_panels(), viewer.shown(method)?);
+                let drawing = picture(args, &table, Some(&shown), surfaces, legend)?;
+                Ok((format!("{}: {}", method.name(), shown.counts()), drawing))
             });
             if viewer.has_panels() {
                 let drawn = drawn.collect::<Result<Vec<_>, Error>>()?;
