@@ -45,6 +45,8 @@ pub(crate) const CELL_SHADES: [&str; 3] = ["#eef2f6", "#c9d3de", "#dbe2ea"];
 pub(crate) const SEEN_SHADES: [&str; 3] = ["#b4d9fa", "#5b9fdc", "#8fc4f5"];
 /// The faces of the box looked from.
 pub(crate) const FROM_SHADES: [&str; 3] = ["#ff9a52", "#c2540c", "#f0701a"];
+/// The faces of the box looked for.
+pub(crate) const TARGET_SHADES: [&str; 3] = ["#b08ceb", "#6a3fb5", "#8a5cd6"];
 /// The faces of a box that the viewer's cell sees, and the viewer does not.
 pub(crate) const SEEN_BY_CELL_SHADES: [&str; 3] = ["#e1effc", "#a9c9e8", "#cfe4fa"];
 /// The faces of a box that is not seen.

@@ -244,9 +244,28 @@ fn pictures_that_cannot_be_are_refused() {
         assert_eq!(error, format!("office.pvs: {} is for scenes in space, and this is the table of a plan", option[0]));
     }
     folder.run(&["draw", "tower.pvs", "-o", "out.svg", "--height", "nan"]).expect(2);
-    let error = folder.refused(&["explain", "tower.pvs", "0", "1", "--draw", "out.svg"]);
-    assert_eq!(error, "tower.pvs: --draw is for plans, and this is the table of a scene in space");
     assert!(!folder.path("out.svg").exists());
+}
+
+/// The line is drawn from above and from the side, within the picture; what blocks all lines has no line.
+#[test]
+fn explanations_in_space_are_drawn() {
+    let folder = Folder::with_tower();
+    let made = table(&folder, "tower.pvs");
+    let (mut n_lines, mut n_walls) = (0, 0);
+    for (a, b) in some_pairs(made.n_cells() as u32, 13) {
+        let run = folder.run(&["explain", "tower.pvs", &a.to_string(), &b.to_string(), "--draw", "why.svg", "--json"]);
+        let (svg, json) = (String::from_utf8(folder.read("why.svg")).unwrap(), run.json());
+        let titles: Vec<&str> = svg.split("<title>").skip(1).filter_map(|text| text.split("</title>").next()).collect();
+        assert!(
+            titles.iter().any(|title| title.starts_with("from above")) && titles.contains(&"from the side and above")
+        );
+        assert_eq!(titles.contains(&"a line of sight"), json["answer"] == "visible" && !json["ends"].is_null());
+        assert_eq!(titles.contains(&"what blocks every line"), json["answer"] == "hidden" && json["connected"] == true);
+        n_lines += usize::from(titles.contains(&"a line of sight"));
+        n_walls += usize::from(titles.contains(&"what blocks every line"));
+    }
+    assert!(n_lines > 2 && n_walls > 2, "{n_lines}, {n_walls}");
 }
 
 /// Invariant: what `explain` says of two cells is what the table says; lines pass their portals in order,

@@ -96,7 +96,8 @@ impl Drawing {
         let high = head + pictures.iter().map(|(_, drawing)| drawing.frame.height).max().unwrap_or(1);
         let mut entries: Vec<Entry> = Vec::new();
         for entry in pictures.iter().flat_map(|(_, drawing)| &drawing.entries) {
-            if !entries.contains(entry) {
+            // Shades of one meaning have one entry.
+            if entries.iter().all(|known| known.label != entry.label) {
                 entries.push(*entry);
             }
         }

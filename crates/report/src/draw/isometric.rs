@@ -8,7 +8,7 @@ use super::slice::{Looked, look, title};
 use super::space::Up;
 use super::svg::{self, stroke};
 use super::visible_set::VisibleSet;
-use super::{DrawError, Drawing, Sight, Surfaces, View};
+use super::{DrawError, Drawing, Sight, Surfaces, View, check_cells};
 use crate::frame::{Frame, Px};
 use crate::theme;
 use sightlines_geometry::{Aabb, Point2};
@@ -28,6 +28,12 @@ pub struct IsometricOptions<'a> {
     pub below: Option<f64>,
     /// The scene that the table was made of: its surfaces are drawn in place of the cells.
     pub surfaces: Option<&'a Surfaces>,
+    /// A cell to mark as the one looked for.
+    pub target: Option<CellId>,
+    /// A line of sight, along the axes of the table, drawn over all that is before it.
+    pub line: Option<[[f64; 3]; 2]>,
+    /// Polygons to outline, such as the portals that the line passes, or what blocks all lines; along the axes of the table.
+    pub marked: &'a [Vec<[f64; 3]>],
     /// Whether a legend and a scale bar, for lengths along the axes, stand below, if there is room for words.
     pub legend: bool,
     /// The longer side of the picture in pixels, from [`MIN_SIZE`](super::MIN_SIZE) to
@@ -38,7 +44,18 @@ pub struct IsometricOptions<'a> {
 impl Default for IsometricOptions<'_> {
     /// All cells alone, y up, with a legend, 1600 pixels.
     fn default() -> Self {
-        Self { view: View::Plan, sight: None, up: Up::Y, below: None, surfaces: None, legend: true, size: 1600 }
+        Self {
+            view: View::Plan,
+            sight: None,
+            up: Up::Y,
+            below: None,
+            surfaces: None,
+            target: None,
+            line: None,
+            marked: &[],
+            legend: true,
+            size: 1600,
+        }
     }
 }
 
@@ -62,9 +79,11 @@ pub fn isometric_svg(table: &Table, options: &IsometricOptions<'_>) -> Result<St
 /// # Errors
 /// As for [`isometric_svg`].
 pub fn isometric_drawing(table: &Table, options: &IsometricOptions<'_>) -> Result<Drawing, DrawError> {
-    let IsometricOptions { view, sight, up, below, surfaces, legend, size } = *options;
+    let IsometricOptions { view, sight, up, below, surfaces, target, line: sightline, marked, legend, size } = *options;
     let Looked { seen, eye, .. } = look(table, view, sight, size)?;
-    if below.is_some_and(|height| !height.is_finite()) {
+    check_cells(table, target)?;
+    let points = || sightline.iter().flatten().chain(marked.iter().flatten());
+    if below.is_some_and(|height| !height.is_finite()) || !points().flatten().all(|x| x.is_finite()) {
         return Err(DrawError::NotFinite);
     }
     let (ids, boxes) = shown(table, up, below);
@@ -79,7 +98,9 @@ pub fn isometric_drawing(table: &Table, options: &IsometricOptions<'_>) -> Resul
         Aabb::around(points.map(|p| [p.x, p.y]))
     });
     let bounds = of_surfaces.filter(|bounds| !bounds.is_empty()).unwrap_or_else(of_boxes);
-    let looks: Vec<Look> = ids.iter().map(|&id| Look::of(id, seen.as_ref())).collect();
+    let bounds = bounds.united(Aabb::around(points().map(|&p| project(p, up)).map(|p| [p.x, p.y])));
+    let look_of = |id: CellId| if target == Some(id) { Look::Target } else { Look::of(id, seen.as_ref()) };
+    let looks: Vec<Look> = ids.iter().map(|&id| look_of(id)).collect();
     let mut entries = Look::entries(&looks, seen.as_ref().is_some_and(VisibleSet::is_narrowed));
     let cut = surfaces
         .zip(below)
@@ -90,6 +111,13 @@ pub fn isometric_drawing(table: &Table, options: &IsometricOptions<'_>) -> Resul
     }
     if cut.as_ref().is_some_and(|cut| !cut.lines.is_empty()) {
         entries.push(Entry { swatch: Swatch::Line(theme::WALL, line), label: "where the height cuts surfaces" });
+    }
+    if !marked.is_empty() {
+        let label = if sightline.is_some() { "portals on the line" } else { "what blocks every line" };
+        entries.push(Entry { swatch: Swatch::Line(theme::SIGHTLINE, line), label });
+    }
+    if sightline.is_some() {
+        entries.push(Entry { swatch: Swatch::Line(theme::SIGHTLINE, 2.0 * line), label: "a line of sight" });
     }
     if eye.is_some() {
         entries.push(Entry { swatch: Swatch::Dot(theme::SIGHTLINE), label: "the viewer" });
@@ -112,6 +140,19 @@ pub fn isometric_drawing(table: &Table, options: &IsometricOptions<'_>) -> Resul
                 stroke(out, &frame.lines(cut.lines.iter().map(|(_, line)| *line)), theme::WALL, line);
             }
         }
+    }
+    let mut path = String::new();
+    for polygon in marked {
+        let corners: Vec<Point2> = polygon.iter().map(|&p| project(p, up)).collect();
+        frame.polygon(&mut path, &corners);
+    }
+    stroke(out, &path, theme::SIGHTLINE, line);
+    if let Some(ends) = sightline.map(|ends| ends.map(|p| project(p, up))) {
+        let mut path = String::new();
+        frame.polyline(&mut path, &ends);
+        stroke(out, &path, theme::PAPER, 4.0 * line);
+        stroke(out, &path, theme::SIGHTLINE, 2.0 * line);
+        ends.iter().for_each(|&p| svg::dot(out, frame.place(p), f64::from(size) / 250.0, theme::SIGHTLINE));
     }
     if let Some(eye) = eye {
         svg::dot(out, frame.place(project(eye, up)), f64::from(size) / 200.0, theme::SIGHTLINE);
@@ -142,7 +183,7 @@ fn solid(out: &mut String, frame: &Frame, up: Up, (boxes, looks): (&[Aabb<3>], &
         draw(out, frame, &boxes[i], up, looks[i]);
     }
     out.push_str("</g>\n");
-    for (look, opacity) in [(Look::VisibleSet, ".12"), (Look::From, ".5")] {
+    for (look, opacity) in [(Look::VisibleSet, ".12"), (Look::From, ".5"), (Look::Target, ".5")] {
         let mut path = String::new();
         for (b, _) in boxes.iter().zip(looks).filter(|(_, of)| **of == look) {
             frame.polygon(&mut path, &outline(b, up));
@@ -212,6 +253,7 @@ pub(super) fn point_at(at: Point2, depth: f64, up: Up) -> [f64; 3] {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Look {
     From,
+    Target,
     VisibleSet,
     /// Seen by the viewer's cell, and not by the viewer.
     OfCell,
@@ -238,6 +280,7 @@ impl Look {
         let all = [
             (Self::Plain, "cells"),
             (Self::From, from),
+            (Self::Target, "the cell looked for"),
             (Self::VisibleSet, in_sight),
             (Self::OfCell, "seen from elsewhere in that cell"),
             (Self::Hidden, "not seen"),
@@ -255,6 +298,7 @@ impl Look {
         match self {
             Self::Plain => theme::CELL_SHADES,
             Self::From => theme::FROM_SHADES,
+            Self::Target => theme::TARGET_SHADES,
             Self::VisibleSet => theme::SEEN_SHADES,
             Self::OfCell => theme::SEEN_BY_CELL_SHADES,
             Self::Hidden => theme::HIDDEN_SHADES,

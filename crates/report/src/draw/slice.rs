@@ -7,7 +7,7 @@ use super::space::Up;
 use super::visible_set::VisibleSet;
 use super::{DrawError, Drawing, Sight, Surfaces, View, check_cells, check_sight, check_size, svg};
 use sightlines_geometry::Point2;
-use sightlines_pvs::Table;
+use sightlines_pvs::{CellId, Table};
 
 /// How to draw a floor plan of a scene in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +22,10 @@ pub struct SliceOptions<'a> {
     pub height: f64,
     /// A line of sight to draw, as it is seen from above, in scene units; it may be at other heights.
     pub line: Option<[[f64; 3]; 2]>,
+    /// A cell to mark as the one looked for.
+    pub target: Option<CellId>,
+    /// Indices of portals to mark, such as those that the line passes; those at other heights are not drawn.
+    pub marked_portals: &'a [usize],
     /// The scene that the table was made of: what the plane cuts of it is drawn in place of the walls that the cells tell of.
     pub surfaces: Option<&'a Surfaces>,
     /// Whether a legend and a scale bar stand below, if there is room for words.
@@ -40,6 +44,8 @@ impl Default for SliceOptions<'_> {
             up: Up::Y,
             height: 0.0,
             line: None,
+            target: None,
+            marked_portals: &[],
             surfaces: None,
             legend: true,
             size: 1600,
@@ -64,8 +70,9 @@ pub fn slice_svg(table: &Table, options: &SliceOptions<'_>) -> Result<String, Dr
 /// # Errors
 /// As for [`slice_svg`].
 pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawing, DrawError> {
-    let SliceOptions { view, sight, up, height, line, surfaces, legend, size } = *options;
+    let SliceOptions { view, sight, up, height, line, target, marked_portals, surfaces, legend, size } = *options;
     let Looked { seen, eye, looks } = look(table, view, sight, size)?;
+    check_cells(table, target)?;
     if !height.is_finite() || !line.iter().flatten().flatten().all(|x| x.is_finite()) {
         return Err(DrawError::NotFinite);
     }
@@ -81,6 +88,8 @@ pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawin
         None => figure,
     };
     let annotations = Annotations {
+        target,
+        portals: marked_portals,
         eye: eye.map(on_floor),
         line: line.map(|ends| ends.map(on_floor)),
         looks: looks.map(|(direction, angle)| (on_floor(direction), angle)),

@@ -38,7 +38,17 @@ pub(super) fn draw(
     let sight = shown.map(|shown| shown.sight(|p| p));
     let drawn = if args.isometric {
         let below = args.height.or_else(|| height_of(table, view, up));
-        isometric_drawing(table, &IsometricOptions { view, sight, up, below, surfaces, legend, size: args.size })
+        let options = IsometricOptions {
+            view,
+            sight,
+            up,
+            below,
+            surfaces,
+            legend,
+            size: args.size,
+            ..IsometricOptions::default()
+        };
+        isometric_drawing(table, &options)
     } else {
         let height = args.height.or_else(|| height_of(table, view, up));
         let height = height.ok_or_else(|| nowhere(args, table, up))?;
