@@ -12,6 +12,7 @@
 //! - **Invariants**: a table is only read, and pictures show only what it contains; the same table and options
 //!   give the same bytes on every machine; words in pictures are drawn as lines, so they need no fonts.
 
+mod buffer_chart;
 mod draw;
 mod export;
 mod faces;
@@ -27,6 +28,7 @@ mod summary;
 mod theme;
 mod walk;
 
+pub use buffer_chart::{BufferChart, buffer_chart_svg};
 pub use draw::{
     DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Surfaces, Up, View,
     isometric_drawing, isometric_svg, plan_drawing, plan_svg, slice_drawing, slice_svg,
