@@ -31,7 +31,7 @@ use clap::{Parser, Subcommand};
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Print more: `build` all facts in place of three lines, and on standard error what goes on; -vv prints even more
+    /// Print more: `build` all facts in place of a few lines, and on standard error what goes on; -vv prints even more
     #[arg(short, long, help_heading = "General", global = true, action = clap::ArgAction::Count)]
     pub(crate) verbose: u8,
     /// Print no progress and no warnings

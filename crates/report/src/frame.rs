@@ -1,6 +1,6 @@
 //! From scene units to picture units: y grows upwards in a plan and downwards in a picture.
 
-use sightlines_geometry::{Aabb, Point2};
+use sightlines_geometry::{Aabb, Point2, Segment2};
 use std::fmt::Write;
 
 /// Where a plan lies in a picture.
@@ -42,9 +42,34 @@ impl Frame {
         [(p.x - self.left) * self.scale + self.margin, (self.top - p.y) * self.scale + self.margin]
     }
 
+    /// The point of the plan that is so many pixels from the upper left corner.
+    pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Point2 {
+        Point2::new((x - self.margin) / self.scale + self.left, self.top - (y - self.margin) / self.scale)
+    }
+
     /// The area in square pixels of an area in square units.
     pub(crate) fn area(&self, units: f64) -> f64 {
         units * self.scale * self.scale
+    }
+
+    /// Lines as the data of a path, to the tenth of a pixel; those that are the same or a point there are left out.
+    pub(crate) fn lines(&self, lines: impl Iterator<Item = Segment2>) -> String {
+        let tenths = |p| self.place(p).map(|x| (x * 10.0).round() as i64);
+        let ends = |line: Segment2| {
+            let [a, b] = [tenths(line.a), tenths(line.b)];
+            [a.min(b), a.max(b)]
+        };
+        let mut ends: Vec<[[i64; 2]; 2]> = lines.map(ends).filter(|[a, b]| a != b).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let mut path = String::new();
+        for line in ends {
+            for (command, p) in ['M', 'L'].into_iter().zip(line) {
+                let [x, y] = p.map(|x| Px(x as f64 / 10.0));
+                let _ = write!(path, "{command}{x} {y}");
+            }
+        }
+        path
     }
 
     /// Appends a closed polygon to the data of a path.

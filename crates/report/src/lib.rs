@@ -12,6 +12,7 @@
 //! - **Invariants**: a table is only read, and pictures show only what it contains; the same table and options
 //!   give the same bytes on every machine; words in pictures are drawn as lines, so they need no fonts.
 
+mod buffer_chart;
 mod draw;
 mod export;
 mod faces;
@@ -22,21 +23,24 @@ mod multifocal;
 mod outline;
 mod png;
 mod share;
+mod sheet;
 mod summary;
 mod theme;
 mod walk;
 
+pub use buffer_chart::{BufferChart, buffer_chart_svg};
 pub use draw::{
-    DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Up, View,
+    DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Surfaces, Up, View,
     isometric_drawing, isometric_svg, plan_drawing, plan_svg, slice_drawing, slice_svg,
 };
 pub use export::{export_json, write_json};
-pub use faces::{MARK, NO_FACE, NOWHERE, SheetPicture, face_colour, faces_png, sheet_png, sheet_size};
+pub use faces::{MARK, NO_FACE, NOWHERE, face_colour, faces_png};
 pub use light::{LIT, LightPixel, UMBRA, light_png};
 pub use multifocal::{OPEN, buffer_png, distance_png, voronoi_png};
 pub use png::PngError;
 #[cfg(feature = "png")]
 pub use png::svg_to_png;
 pub use share::ViewerShare;
+pub use sheet::{SheetPicture, sheet_png, sheet_size};
 pub use summary::Summary;
 pub use walk::{WalkBar, walk_svg};

@@ -72,7 +72,7 @@ pub fn distance_png(texels: [u32; 2], distances: &[f64], white: f64) -> Result<V
 }
 
 /// From 0 to 255, as `value` is from 0 to `white`.
-fn grey(value: f64, white: f64) -> u8 {
+pub(crate) fn grey(value: f64, white: f64) -> u8 {
     // What is no number becomes 0, and what is more than white is white.
     if white > 0.0 { (value / white * 255.0).round() as u8 } else { 0 }
 }

@@ -32,12 +32,43 @@ pub enum PngError {
 /// [`PngError`].
 #[cfg(feature = "png")]
 pub fn svg_to_png(svg: &str) -> Result<Vec<u8>, PngError> {
-    let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).map_err(|e| PngError::Svg(e.into()))?;
+    let mut options = usvg::Options::default();
+    options.image_href_resolver.resolve_data = Box::new(|_, data, _| embedded(&data));
+    let tree = usvg::Tree::from_str(svg, &options).map_err(|e| PngError::Svg(e.into()))?;
     let size = tree.size().to_int_size();
     let (width, height) = (size.width(), size.height());
     let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(PngError::Size { width, height })?;
     resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels.as_mut());
     pixels.encode_png().map_err(|e| PngError::Encode(e.into()))
+}
+
+/// A picture in PNG of three bytes a pixel within one in SVG, as rectangles, since the renderer decodes no pixels: each as wide as a
+/// colour stays the same.
+#[cfg(feature = "png")]
+fn embedded(png: &[u8]) -> Option<usvg::ImageKind> {
+    use std::fmt::Write;
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().ok()?;
+    let mut bytes = vec![0; reader.output_buffer_size()?];
+    let info = reader.next_frame(&mut bytes).ok()?;
+    if info.color_type != ColorType::Rgb || info.bit_depth != BitDepth::Eight {
+        return None;
+    }
+    let mut paths: std::collections::BTreeMap<[u8; 3], String> = std::collections::BTreeMap::new();
+    for (y, row) in bytes.chunks_exact(3 * info.width as usize).enumerate() {
+        let (pixels, _) = row.as_chunks::<3>();
+        let mut x = 0;
+        for run in pixels.chunk_by(|a, b| a == b) {
+            let _ = write!(paths.entry(run[0]).or_default(), "M{x} {y}h{0}v1h-{0}z", run.len());
+            x += run.len();
+        }
+    }
+    let (width, height) = (info.width, info.height);
+    let mut svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\">");
+    for ([r, g, b], path) in paths {
+        let _ = write!(svg, "<path shape-rendering=\"crispEdges\" fill=\"#{r:02x}{g:02x}{b:02x}\" d=\"{path}\"/>");
+    }
+    svg.push_str("</svg>");
+    usvg::Tree::from_str(&svg, &usvg::Options::default()).ok().map(usvg::ImageKind::SVG)
 }
 
 /// The pixels that are encoded: eight bits for each channel.
@@ -48,7 +79,21 @@ pub(crate) enum Pixels {
 }
 
 /// Encodes pixels, row by row from the upper left corner.
-pub(crate) fn encode_pixels([width, height]: [u32; 2], pixels: &[u8], kind: Pixels) -> Result<Vec<u8>, PngError> {
+pub(crate) fn encode_pixels(size: [u32; 2], pixels: &[u8], kind: Pixels) -> Result<Vec<u8>, PngError> {
+    encode(size, pixels, kind, Compression::Fast)
+}
+
+/// The same in fewer bytes, and more slowly.
+pub(crate) fn encode_small(size: [u32; 2], pixels: &[u8], kind: Pixels) -> Result<Vec<u8>, PngError> {
+    encode(size, pixels, kind, Compression::Balanced)
+}
+
+fn encode(
+    [width, height]: [u32; 2],
+    pixels: &[u8],
+    kind: Pixels,
+    compression: Compression,
+) -> Result<Vec<u8>, PngError> {
     if pixels.is_empty() {
         return Err(PngError::Size { width, height });
     }
@@ -56,7 +101,7 @@ pub(crate) fn encode_pixels([width, height]: [u32; 2], pixels: &[u8], kind: Pixe
     let mut encoder = Encoder::new(&mut png, width, height);
     encoder.set_color(if kind == Pixels::Rgb { ColorType::Rgb } else { ColorType::Grayscale });
     encoder.set_depth(BitDepth::Eight);
-    encoder.set_compression(Compression::Fast);
+    encoder.set_compression(compression);
     encoder.set_filter(Filter::Adaptive);
     let encoded = encoder.write_header().and_then(|mut writer| {
         writer.write_image_data(pixels)?;

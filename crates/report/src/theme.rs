@@ -24,6 +24,12 @@ pub(crate) const PORTAL: &str = "#12a594";
 pub(crate) const PORTAL_FAINT: &str = "#ffffff";
 /// A line of sight and the doors that it passes.
 pub(crate) const SIGHTLINE: &str = "#d6246e";
+/// A surface of the scene that is not seen.
+pub(crate) const SURFACE_HIDDEN: &str = "#9aa5b1";
+/// A surface of the scene that hides nothing.
+pub(crate) const SEE_THROUGH: &str = "#12a594";
+/// A surface of the scene that lies in the plane of the picture.
+pub(crate) const FLAT: &str = "#c3cad2";
 /// An object that is visible, or whose visibility is not shown.
 pub(crate) const OBJECT: &str = "#51616f";
 /// An object that is not seen.
@@ -39,9 +45,15 @@ pub(crate) const CELL_SHADES: [&str; 3] = ["#eef2f6", "#c9d3de", "#dbe2ea"];
 pub(crate) const SEEN_SHADES: [&str; 3] = ["#b4d9fa", "#5b9fdc", "#8fc4f5"];
 /// The faces of the box looked from.
 pub(crate) const FROM_SHADES: [&str; 3] = ["#ff9a52", "#c2540c", "#f0701a"];
+/// The faces of the box looked for.
+pub(crate) const TARGET_SHADES: [&str; 3] = ["#b08ceb", "#6a3fb5", "#8a5cd6"];
+/// The faces of a box that the viewer's cell sees, and the viewer does not.
+pub(crate) const SEEN_BY_CELL_SHADES: [&str; 3] = ["#e1effc", "#a9c9e8", "#cfe4fa"];
+/// The faces of a box that is not seen.
+pub(crate) const HIDDEN_SHADES: [&str; 3] = ["#f3f4f6", "#d2d6db", "#e3e6ea"];
+/// Surfaces in front of which no cell is.
+pub(crate) const SURFACE_OUTSIDE: &str = "#f6f1e4";
 /// The edges of boxes.
-pub(crate) const EDGE: &str = "#1c2733";
-/// The edges of boxes that are not seen.
 pub(crate) const EDGE_HIDDEN: &str = "#9aa5b1";
 
 /// Stroke widths in pixels.

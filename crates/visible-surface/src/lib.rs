@@ -37,7 +37,7 @@ mod window;
 pub mod zbuffer;
 
 pub use any_order::{AnyOrder, is_convex};
-pub use bsp::{Bsp, BspOptions, BspStats, Heuristic};
+pub use bsp::{Bsp, BspNode, BspOptions, BspStats, Heuristic};
 pub use camera::{Camera, CameraError};
 pub use compare::{Comparison, compare};
 pub use counters::Counters;

@@ -223,7 +223,7 @@ fn all_methods_are_drawn_side_by_side() {
     folder.run(&args).expect(0);
     let svg = String::from_utf8(folder.read("all.svg")).expect("text");
     for method in ["cell-to-cell", "disjoint-cell", "connected-component", "incident-portals", "exact"] {
-        assert!(svg.contains(&format!("<title>{method}</title>")), "{method}");
+        assert!(svg.contains(&format!("<title>{method}: ")), "{method}");
     }
     assert_eq!(svg.matches("<title>scale: ").count(), 1);
 }

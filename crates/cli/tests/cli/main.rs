@@ -6,6 +6,7 @@ mod certify;
 mod common;
 mod doors;
 mod draw;
+mod draw_scene;
 mod errors;
 mod explain_boxes;
 mod explain_portals;

@@ -252,3 +252,35 @@ fn bad_arguments_are_refused() {
     }
     assert_eq!(folder.names(), ["one.obj", "square.obj", "two.obj"]);
 }
+
+/// The picture for people has a title, the window and a scale, and leaves the other pictures as they are.
+#[test]
+fn charts_have_a_scale() {
+    let folder = folder();
+    let plain = draw(&folder, "one.obj", &[]);
+    let picture = folder.read("depth.png");
+    let info = draw(&folder, "one.obj", &["--chart", "chart.svg"]);
+    assert!(folder.read("depth.png") == picture && info["n_blocked"] == plain["n_blocked"]);
+    assert_eq!(info["files"], serde_json::json!(["depth.png", "chart.svg"]));
+    let svg = String::from_utf8(folder.read("chart.svg")).expect("text");
+    for text in ["Multifocal buffer on the plane z = 10", "x", "y", "-8", "8", "nothing is known to block"] {
+        assert!(svg.contains(&format!("<title>{text}</title>")), "{text}");
+    }
+    assert_eq!(svg.matches("<image ").count(), 1);
+    assert!(
+        folder
+            .refused(&[
+                "multifocal",
+                "one.obj",
+                "-o",
+                "a.png",
+                "--volume",
+                VOLUME[1],
+                "--plane",
+                PLANE[1],
+                "--chart",
+                "a.gif"
+            ])
+            .contains("ends in .svg or .png")
+    );
+}

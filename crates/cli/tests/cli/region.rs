@@ -42,7 +42,7 @@ fn names_of_given_cells_are_in_the_export_and_every_method_runs() {
     assert!(both <= lines && both <= region && both > 0, "{counts:?}");
     let grid = ["build", "scene.glb", "--method", "multifocal", "--grid", "2,1,2", "-o", "g.pvs"];
     let text = folder.run(&grid).expect(0).out;
-    assert!(text.lines().count() == 3 && text.contains("; 4 given cells\n"), "{text}");
+    assert!(text.lines().count() == 4 && text.contains("; 4 given cells\n"), "{text}");
     let text = folder.run(&[&grid[..], &["-v"]].concat()).expect(0).out;
     assert!(text.contains("cells          4, with names\n"), "{text}");
 }

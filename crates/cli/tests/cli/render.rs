@@ -89,7 +89,10 @@ fn the_painter_is_wrong_and_the_sheet_marks_where() {
         assert_eq!(number(&row["in_doubt"]), 0, "{method}");
         assert_eq!(n > 0, method == "painter", "{method}: {n} wrong");
     }
-    assert_eq!(sheet.count(MARK), wrong);
+    // A sheet without errors has the mark in its legend only; the rims of what is wrong are less than all of it.
+    render(&folder, "cycle.obj", &FRONT, &["--compare", "--method", "newell"]);
+    let n_legend = Picture::decode(&folder.read("out.png")).count(MARK);
+    assert!(n_legend > 0 && (1..=wrong).contains(&(sheet.count(MARK) - n_legend)), "{n_legend}, {wrong}");
     // Of the painter's own picture as many pixels are unlike.
     render(&folder, "cycle.obj", &FRONT, &["--method", "painter"]);
     let painted = Picture::decode(&folder.read("out.png"));

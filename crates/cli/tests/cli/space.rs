@@ -35,13 +35,14 @@ fn build_says_what_it_built() {
     assert!(["cells", "objects", "polygons"].iter().all(|key| share(key) > 0.0 && share(key) < 1.0), "{built}");
     let build = ["build", "tower.glb", "-o", "again.pvs"];
     let reply = folder.run(&build).expect(0).out;
-    let [taken, method, result] = reply.lines().collect::<Vec<_>>()[..] else { panic!("three lines: {reply}") };
+    let [taken, method, result, worth] = reply.lines().collect::<Vec<_>>()[..] else { panic!("four lines: {reply}") };
     let (objects, triangles) = (scene.objects().len(), scene.n_triangles());
     assert!(taken.starts_with(&format!("scene          glTF in 3D, y up, in metres: {objects} objects, ")), "{taken}");
     assert!(taken.contains(&format!(" of {triangles} triangles hide")), "{taken}");
     let cells = format!("{} cells, {} portals along walls", made.n_cells(), made.portals().len());
     assert_eq!(method, format!("method         sightlines; {cells}"));
     assert!(result.starts_with("wrote          again.pvs, ") && result.contains(": a viewer has "), "{result}");
+    assert!(worth.starts_with("worth it       ") && worth.contains(": a viewer "), "{worth}");
     let reply = folder.run(&[&build[..], &["--verbose"]].concat()).expect(0).out;
     for line in [
         "scene          glTF in 3D, y up, in metres\n",
@@ -197,15 +198,25 @@ fn draw_makes_floor_plans_and_isometric_views() {
     assert_eq!(svg(&["--cell", "9"]), svg(&["--cell", "9", "--height", &height, "--up", "y"]));
     let plan = svg(&["--height", "1"]);
     assert!(plan.contains("<title>Cells at height 1</title>") && plan != svg(&["--height", "1", "--up", "z"]));
-    let boxes = svg(&["--isometric"]);
-    assert_eq!(boxes.matches("fill-opacity").count(), 3 * made.n_cells());
+    // The tops of boxes: whose visibility is not shown, looked from, seen, seen from elsewhere in the cell, not seen.
+    let tops = |svg: &str| {
+        let colours = ["#eef2f6", "#ff9a52", "#b4d9fa", "#e1effc", "#f3f4f6"];
+        colours.map(|colour| svg.matches(&format!("Z\" fill=\"{colour}\"/>")).count())
+    };
+    assert_eq!(tops(&svg(&["--isometric"])), [made.n_cells(), 0, 0, 0, 0]);
     let lower = svg(&["--isometric", "--height", "1"]);
-    assert!(lower.matches("fill-opacity").count() < 3 * made.n_cells());
-    let seen = svg(&["--isometric", "--cell", "9"]);
-    assert_eq!(seen.matches("fill-opacity").count(), 3 * made.visible(CellId(9)).count());
+    assert!((1..made.n_cells()).contains(&tops(&lower)[0]));
+    let whole = ["--isometric", "--height", "1000"];
+    let seen = svg(&[&whole[..], &["--cell", "9"]].concat());
+    let n_seen = made.visible(CellId(9)).count();
+    assert_eq!(tops(&seen), [0, 1, n_seen - 1, 0, made.n_cells() - n_seen]);
+    // Without a height it is cut at that of the eye or of the middle of the cell.
+    let cut = svg(&["--isometric", "--cell", "9"]);
+    assert_eq!(cut, svg(&["--isometric", "--cell", "9", "--height", &height]));
+    assert!(tops(&cut).iter().sum::<usize>() < made.n_cells());
     // What the viewer sees is drawn over what their cell sees, so nothing is missing.
-    let by_eye = svg(&["--isometric", "--eye", &at]);
-    assert_eq!(by_eye.matches("fill-opacity").count(), seen.matches("fill-opacity").count());
+    let by_eye = svg(&[&whole[..], &["--eye", &at]].concat());
+    assert_eq!(tops(&by_eye)[1..4].iter().sum::<usize>(), n_seen);
     assert!(by_eye.contains("seen from elsewhere in that cell") && !seen.contains("elsewhere"));
     for args in [&["--eye", &at[..]][..], &["--isometric", "--cell", "9"]] {
         let drawn = draw(&format!("one.{DRAWN}"), args);
@@ -233,9 +244,28 @@ fn pictures_that_cannot_be_are_refused() {
         assert_eq!(error, format!("office.pvs: {} is for scenes in space, and this is the table of a plan", option[0]));
     }
     folder.run(&["draw", "tower.pvs", "-o", "out.svg", "--height", "nan"]).expect(2);
-    let error = folder.refused(&["explain", "tower.pvs", "0", "1", "--draw", "out.svg"]);
-    assert_eq!(error, "tower.pvs: --draw is for plans, and this is the table of a scene in space");
     assert!(!folder.path("out.svg").exists());
+}
+
+/// The line is drawn from above and from the side, within the picture; what blocks all lines has no line.
+#[test]
+fn explanations_in_space_are_drawn() {
+    let folder = Folder::with_tower();
+    let made = table(&folder, "tower.pvs");
+    let (mut n_lines, mut n_walls) = (0, 0);
+    for (a, b) in some_pairs(made.n_cells() as u32, 13) {
+        let run = folder.run(&["explain", "tower.pvs", &a.to_string(), &b.to_string(), "--draw", "why.svg", "--json"]);
+        let (svg, json) = (String::from_utf8(folder.read("why.svg")).unwrap(), run.json());
+        let titles: Vec<&str> = svg.split("<title>").skip(1).filter_map(|text| text.split("</title>").next()).collect();
+        assert!(
+            titles.iter().any(|title| title.starts_with("from above")) && titles.contains(&"from the side and above")
+        );
+        assert_eq!(titles.contains(&"a line of sight"), json["answer"] == "visible" && !json["ends"].is_null());
+        assert_eq!(titles.contains(&"what blocks every line"), json["answer"] == "hidden" && json["connected"] == true);
+        n_lines += usize::from(titles.contains(&"a line of sight"));
+        n_walls += usize::from(titles.contains(&"what blocks every line"));
+    }
+    assert!(n_lines > 2 && n_walls > 2, "{n_lines}, {n_walls}");
 }
 
 /// Invariant: what `explain` says of two cells is what the table says; lines pass their portals in order,

@@ -20,14 +20,20 @@ pub struct Drawing {
     legend: bool,
 }
 
+/// The height of a title above a picture whose longer side has `size` pixels.
+fn head(size: u32) -> u32 {
+    (2.0 * text_size(size)).ceil() as u32
+}
+
 impl Drawing {
-    /// An empty picture of `bounds` whose longer side, with the legend if there is one, has `size` pixels.
+    /// An empty picture of `bounds` whose longer side, with the title and the legend if there is one, has `size` pixels.
     pub(super) fn new(title: String, bounds: Aabb<2>, size: u32, entries: Vec<Entry>, legend: bool) -> Self {
         let mut frame = Frame::around(bounds, size);
         if let Some(strip) = Legend::new(&entries, size).filter(|_| legend) {
+            let head = f64::from(head(size));
             // A narrower picture has more rows below it, which leave it less room: a few steps settle that.
             for _ in 0..8 {
-                let height = strip.height(f64::from(frame.width).max(strip.least_width()));
+                let height = head + strip.height(f64::from(frame.width).max(strip.least_width()));
                 if f64::from(frame.height) + height <= f64::from(size) {
                     break;
                 }
@@ -45,24 +51,39 @@ impl Drawing {
         &mut self.body
     }
 
-    /// The picture as SVG, with its legend below unless that was declined or there is no room for words.
+    /// The picture as SVG, with its title above and its legend below unless that was declined or there is no room for words.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let Frame { width, height, scale, .. } = self.frame;
         let strip = Legend::new(&self.entries, self.size).filter(|_| self.legend);
         // At most a few times the size of a picture, so the casts are exact.
         let wide = strip.as_ref().map_or(width, |strip| width.max(strip.least_width().ceil() as u32));
-        let high = height + strip.as_ref().map_or(0, |strip| strip.height(f64::from(wide)).ceil() as u32);
+        let Some(strip) = strip else {
+            return svg::open(&self.title, [wide, height]) + &self.body + svg::CLOSE;
+        };
+        let head = head(self.size);
+        let high = head + height + strip.height(f64::from(wide)).ceil() as u32;
         let mut out = svg::open(&self.title, [wide, high]);
+        self.heading(&mut out, f64::from(wide));
+        let _ = writeln!(out, "<g transform=\"translate(0 {head})\">");
         out.push_str(&self.body);
-        if let Some(strip) = strip {
-            strip.draw(&mut out, [f64::from(wide), f64::from(height)], scale);
-        }
+        out.push_str("</g>\n");
+        strip.draw(&mut out, [f64::from(wide), f64::from(head + height)], scale);
         out.push_str(svg::CLOSE);
         out
     }
 
-    /// Several pictures in about a square, row by row, each with a heading, and one legend below them all. Each keeps its own size; the
+    /// The title above a picture, in smaller letters if it is too long for it.
+    fn heading(&self, out: &mut String, wide: f64) {
+        let (text, margin) = (text_size(self.size), 0.5 * f64::from(self.size) / 25.0);
+        let text = text.min(text * (wide - 2.0 * margin) / letters::width(&self.title, text).max(1.0));
+        let path = letters::path(&self.title, [margin, 0.7 * f64::from(head(self.size))], text);
+        let _ = writeln!(out, "<g><title>{}</title>", self.title);
+        svg::stroke(out, &path, theme::INK, letters::stroke(text));
+        out.push_str("</g>\n");
+    }
+
+    /// Several pictures in about a square, row by row, each with a heading, a title above and one legend below them all. Each keeps its own size; the
     /// scale bar is that of the first.
     #[must_use]
     pub fn side_by_side(title: &str, pictures: &[(String, Drawing)]) -> String {
@@ -75,7 +96,8 @@ impl Drawing {
         let high = head + pictures.iter().map(|(_, drawing)| drawing.frame.height).max().unwrap_or(1);
         let mut entries: Vec<Entry> = Vec::new();
         for entry in pictures.iter().flat_map(|(_, drawing)| &drawing.entries) {
-            if !entries.contains(entry) {
+            // Shades of one meaning have one entry.
+            if entries.iter().all(|known| known.label != entry.label) {
                 entries.push(*entry);
             }
         }
@@ -83,9 +105,16 @@ impl Drawing {
         let strip = Legend::of_text(&entries, text);
         let whole = whole.max(strip.least_width().ceil() as u32);
         let below = strip.height(f64::from(whole)).ceil() as u32;
-        let mut out = svg::open(title, [whole, rows + below]);
+        let top = head;
+        let mut out = svg::open(title, [whole, top + rows + below]);
+        let left = 0.5 * f64::from(size) / 25.0;
+        let large =
+            (1.2 * text).min(1.2 * text * (f64::from(whole) - 2.0 * left) / letters::width(title, 1.2 * text).max(1.0));
+        let _ = writeln!(out, "<g><title>{title}</title>");
+        svg::stroke(&mut out, &letters::path(title, [left, 1.4 * text], large), theme::INK, letters::stroke(large));
+        out.push_str("</g>\n");
         for (k, (heading, drawing)) in pictures.iter().enumerate() {
-            let [x, y] = [wide * (k % n_across) as u32, high * (k / n_across) as u32];
+            let [x, y] = [wide * (k % n_across) as u32, top + high * (k / n_across) as u32];
             let _ = writeln!(out, "<g transform=\"translate({x} {y})\"><title>{heading}</title>");
             let at = [0.5 * f64::from(size) / 25.0, 1.4 * text];
             svg::stroke(&mut out, &letters::path(heading, at, text), theme::INK, letters::stroke(text));
@@ -94,7 +123,7 @@ impl Drawing {
             out.push_str("</g></g>\n");
         }
         if let Some((_, first)) = pictures.first() {
-            strip.draw(&mut out, [f64::from(whole), f64::from(rows)], first.frame.scale);
+            strip.draw(&mut out, [f64::from(whole), f64::from(top + rows)], first.frame.scale);
         }
         out.push_str(svg::CLOSE);
         out

@@ -1,5 +1,6 @@
 //! What a plan consists of: convex pieces of cells in a plane, the doors between them, the walls around.
 
+use super::section::Section;
 use super::space::{Up, cut_by};
 use crate::outline::{Outline, corners, ends, walls};
 use sightlines_geometry::{Aabb, Point2, Segment2};
@@ -14,6 +15,8 @@ pub(super) struct Figure {
     pub(super) walls: Vec<Segment2>,
     /// Objects, with their id.
     pub(super) objects: Vec<(u32, Aabb<2>)>,
+    /// The surfaces of the scene, if they are known.
+    pub(super) section: Option<Section>,
 }
 
 /// A cell in the plane of the picture.
@@ -33,7 +36,7 @@ impl Figure {
         let doors = table.portals().iter().enumerate().filter_map(|(i, p)| Some((i, ends(&p.points)?))).collect();
         let flat = |p: [f64; 3]| [p[0], p[1]];
         let boxes = table.objects().iter().map(|o| Aabb { min: flat(o.min), max: flat(o.max) });
-        Self { cells, doors, walls: Vec::new(), objects: (0..).zip(boxes).collect() }.walled(table)
+        Self { cells, doors, objects: (0..).zip(boxes).collect(), ..Self::default() }.walled(table)
     }
 
     /// What a horizontal plane cuts of a table in space. On a border between two storeys of cells it cuts
@@ -53,7 +56,7 @@ impl Figure {
             cut.then_some((i, Segment2::new(Point2::new(x0, y0), Point2::new(x1, y1))))
         };
         let doors = table.portals().iter().enumerate().filter_map(door).collect();
-        Self { cells: cells.map(shape).collect(), doors, walls: Vec::new(), objects: Vec::new() }.walled(table)
+        Self { cells: cells.map(shape).collect(), doors, ..Self::default() }.walled(table)
     }
 
     fn walled(self, table: &Table) -> Self {
@@ -70,9 +73,20 @@ impl Figure {
         Self { walls, ..self }
     }
 
-    /// The box around the cells; empty if there are none.
+    /// The same with the surfaces of the scene, in place of the walls that the cells tell of.
+    pub(super) fn with_section(self, section: Section) -> Self {
+        Self { walls: Vec::new(), section: Some(section), ..self }
+    }
+
+    /// Whether the borders of the cells are all that tells them apart: there are neither walls nor doors.
+    pub(super) fn has_bare_cells(&self) -> bool {
+        self.walls.is_empty() && self.doors.is_empty() && self.cells.len() > 1
+    }
+
+    /// The box around the cells and the surfaces; empty if there are none.
     pub(super) fn bounds(&self) -> Aabb<2> {
-        Aabb::around(self.cells.iter().flat_map(|c| c.corners.iter().map(|p| [p.x, p.y])))
+        let cells = self.cells.iter().flat_map(|c| c.corners.iter().map(|p| [p.x, p.y]));
+        Aabb::around(cells.chain(self.section.iter().flat_map(Section::points)))
     }
 }
 

@@ -7,8 +7,11 @@ mod legend;
 mod order;
 mod picture;
 mod plan;
+mod raster;
+mod section;
 mod slice;
 mod space;
+mod surfaces;
 mod svg;
 mod visible_set;
 
@@ -17,6 +20,7 @@ pub use isometric::{IsometricOptions, isometric_drawing, isometric_svg};
 pub use plan::{DrawOptions, plan_drawing, plan_svg};
 pub use slice::{SliceOptions, slice_drawing, slice_svg};
 pub use space::Up;
+pub use surfaces::Surfaces;
 
 use sightlines_geometry::Point2;
 use sightlines_pvs::{CellId, ObjectId, Table};

@@ -3,6 +3,7 @@
 use super::Drawing;
 use super::figure::{Figure, Shape};
 use super::legend::{Entry, Swatch};
+use super::section::{Kind, Section};
 use super::svg::{self, fill, stroke};
 use super::visible_set::VisibleSet;
 use crate::frame::{Frame, Px};
@@ -64,6 +65,15 @@ pub(super) fn draw(
     drawing
 }
 
+/// The colour of a cut surface.
+fn colour_of(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Seen => theme::WALL,
+        Kind::Hidden => theme::SURFACE_HIDDEN,
+        Kind::SeeThrough => theme::SEE_THROUGH,
+    }
+}
+
 /// Which cells are meant.
 type Keep<'a> = &'a dyn Fn(CellId) -> bool;
 
@@ -104,12 +114,21 @@ impl Picture<'_> {
             entries.push(Entry::area(theme::CELL, "cells"));
         }
         let line = |colour, width, label| Entry { swatch: Swatch::Line(colour, width), label };
+        if let Some(section) = &self.figure.section {
+            let drawn = Kind::ALL.into_iter().rev().filter(|kind| section.of_kind(*kind).next().is_some());
+            entries.extend(drawn.map(|kind| line(colour_of(kind), self.surface(), self.label_of(kind))));
+            if !section.flat.is_empty() {
+                entries.push(Entry::area(theme::FLAT, "surfaces in the plane"));
+            }
+        }
         if !self.figure.walls.is_empty() {
             entries.push(line(theme::WALL, self.strokes.wall, "walls"));
         }
         if !self.figure.doors.is_empty() {
             let colour = if self.seen.is_some() { theme::PORTAL_FAINT } else { theme::PORTAL };
             entries.push(line(colour, self.strokes.portal, "portals"));
+        } else if self.figure.has_bare_cells() {
+            entries.push(line(theme::PORTAL_FAINT, self.strokes.portal, "borders of cells"));
         }
         if look.objects && !self.figure.objects.is_empty() {
             let is_seen = |id: u32| self.seen.is_none_or(|seen| seen.sees_object(id));
@@ -173,8 +192,42 @@ impl Picture<'_> {
             self.frame.polyline(&mut closed, &[wall.a, wall.b]);
         }
         let colour = if self.seen.is_some() { theme::PORTAL_FAINT } else { theme::PORTAL };
+        if self.figure.has_bare_cells() {
+            let mut borders = String::new();
+            self.figure.cells.iter().for_each(|cell| self.frame.polygon(&mut borders, &cell.corners));
+            stroke(out, &borders, theme::PORTAL_FAINT, self.strokes.portal);
+        }
         stroke(out, &doors, colour, self.strokes.portal);
+        if let Some(section) = &self.figure.section {
+            self.section(out, section);
+        }
         stroke(out, &closed, theme::WALL, self.strokes.wall);
+    }
+
+    /// The surfaces of the scene.
+    fn section(&self, out: &mut String, section: &Section) {
+        let mut flat = String::new();
+        section.flat.iter().for_each(|corners| self.frame.polygon(&mut flat, corners));
+        if !flat.is_empty() {
+            let _ = writeln!(out, "<path d=\"{flat}\" fill=\"{}\" fill-opacity=\".6\"/>", theme::FLAT);
+        }
+        for kind in Kind::ALL {
+            stroke(out, &self.frame.lines(section.of_kind(kind)), colour_of(kind), self.surface());
+        }
+    }
+
+    /// The width of the lines of surfaces: two sides of a wall are two lines.
+    fn surface(&self) -> f64 {
+        0.6 * self.strokes.wall
+    }
+
+    fn label_of(&self, kind: Kind) -> &'static str {
+        match (kind, self.seen.is_some()) {
+            (Kind::Hidden, _) => "surfaces not seen",
+            (Kind::SeeThrough, _) => "see-through surfaces",
+            (Kind::Seen, true) => "surfaces seen",
+            (Kind::Seen, false) => "surfaces of the scene",
+        }
     }
 
     /// Objects as small boxes, those that are not seen fainter.

@@ -2,11 +2,12 @@
 
 use super::figure::Figure;
 use super::picture::{Annotations, Look, draw};
+use super::section::Section;
 use super::space::Up;
 use super::visible_set::VisibleSet;
-use super::{DrawError, Drawing, Sight, View, check_cells, check_sight, check_size, svg};
+use super::{DrawError, Drawing, Sight, Surfaces, View, check_cells, check_sight, check_size, svg};
 use sightlines_geometry::Point2;
-use sightlines_pvs::Table;
+use sightlines_pvs::{CellId, Table};
 
 /// How to draw a floor plan of a scene in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +22,12 @@ pub struct SliceOptions<'a> {
     pub height: f64,
     /// A line of sight to draw, as it is seen from above, in scene units; it may be at other heights.
     pub line: Option<[[f64; 3]; 2]>,
+    /// A cell to mark as the one looked for.
+    pub target: Option<CellId>,
+    /// Indices of portals to mark, such as those that the line passes; those at other heights are not drawn.
+    pub marked_portals: &'a [usize],
+    /// The scene that the table was made of: what the plane cuts of it is drawn in place of the walls that the cells tell of.
+    pub surfaces: Option<&'a Surfaces>,
     /// Whether a legend and a scale bar stand below, if there is room for words.
     pub legend: bool,
     /// The longer side of the picture in pixels, from [`MIN_SIZE`](super::MIN_SIZE) to
@@ -31,13 +38,25 @@ pub struct SliceOptions<'a> {
 impl Default for SliceOptions<'_> {
     /// The cells alone at height 0, y up, with a legend, 1600 pixels.
     fn default() -> Self {
-        Self { view: View::Plan, sight: None, up: Up::Y, height: 0.0, line: None, legend: true, size: 1600 }
+        Self {
+            view: View::Plan,
+            sight: None,
+            up: Up::Y,
+            height: 0.0,
+            line: None,
+            target: None,
+            marked_portals: &[],
+            surfaces: None,
+            legend: true,
+            size: 1600,
+        }
     }
 }
 
 /// Draws the cells that a horizontal plane cuts as SVG, seen from above: cells light, walls dark where a
 /// cell has no portal, solid matter blank, and what is seen from a cell or a point. A plane on the border of
-/// two storeys shows the upper one. Objects are not drawn. O(table).
+/// two storeys shows the upper one. With [`SliceOptions::surfaces`] the lines are those in which the plane cuts the triangles of the
+/// scene, slanted ones too; triangles in the plane are filled. Else objects are not drawn. O(table + surfaces).
 ///
 /// # Errors
 /// [`DrawError`] for a table of a plan, a cell that does not exist, a height without cells, an unusable size
@@ -51,8 +70,9 @@ pub fn slice_svg(table: &Table, options: &SliceOptions<'_>) -> Result<String, Dr
 /// # Errors
 /// As for [`slice_svg`].
 pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawing, DrawError> {
-    let SliceOptions { view, sight, up, height, line, legend, size } = *options;
+    let SliceOptions { view, sight, up, height, line, target, marked_portals, surfaces, legend, size } = *options;
     let Looked { seen, eye, looks } = look(table, view, sight, size)?;
+    check_cells(table, target)?;
     if !height.is_finite() || !line.iter().flatten().flatten().all(|x| x.is_finite()) {
         return Err(DrawError::NotFinite);
     }
@@ -63,13 +83,19 @@ pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawin
         return Err(DrawError::NoCellAt { height, low, high });
     }
     let on_floor = |p: [f64; 3]| Point2::from(up.on_floor(p));
+    let figure = match surfaces {
+        Some(surfaces) => figure.with_section(Section::of(surfaces.along(table), up, on_floor, height, seen.as_ref())),
+        None => figure,
+    };
     let annotations = Annotations {
+        target,
+        portals: marked_portals,
         eye: eye.map(on_floor),
         line: line.map(|ends| ends.map(on_floor)),
         looks: looks.map(|(direction, angle)| (on_floor(direction), angle)),
         ..Annotations::default()
     };
-    let title = format!("{} at height {height}", title(view, seen.as_ref()));
+    let title = format!("{} at height {}", title(view, seen.as_ref()), svg::short(height));
     let look = Look { objects: false, group_colours: true, legend };
     Ok(draw(title, &figure, seen.as_ref(), &annotations, look, size))
 }

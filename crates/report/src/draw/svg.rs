@@ -25,9 +25,14 @@ pub(super) fn seen_from_cell(cell: CellId) -> String {
 
 /// A title: of the viewer's own set, or of that of the cell that they are in.
 pub(super) fn seen_from_point(point: &[f64], is_narrowed: bool) -> String {
-    let numbers: Vec<String> = point.iter().map(f64::to_string).collect();
+    let numbers: Vec<String> = point.iter().map(|&x| short(x)).collect();
     let who = if is_narrowed { "a viewer at" } else { "the cell of" };
     format!("What {who} ({}) sees", numbers.join(", "))
+}
+
+/// A coordinate as titles have it: six digits, which is what a reader wants of it.
+pub(super) fn short(x: f64) -> String {
+    format!("{x:.5e}").parse().map_or_else(|_| x.to_string(), |rounded: f64| rounded.to_string())
 }
 
 /// Adds a path that is filled, if there is any.

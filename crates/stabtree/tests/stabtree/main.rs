@@ -8,6 +8,7 @@ mod explain_space;
 mod from_boxes;
 mod limited;
 mod live_space;
+mod picture;
 mod search;
 mod space;
 mod stab_trees;

@@ -15,6 +15,7 @@ use crate::faces::Faces;
 use crate::fragment::Fragment;
 use crate::image::Image;
 use crate::method::{Canvas, RenderInput, RenderOutput, VisibleSurface, drawn};
+use crate::plane::Plane;
 pub(crate) use choose::{Parts, Tally, WEIGHTS, cut};
 use std::ops::ControlFlow;
 pub(crate) use tree::{Child, Place, Tree, Walked};
@@ -87,6 +88,17 @@ pub(crate) enum Order {
     FrontToBack,
 }
 
+/// A node of a tree, to be shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BspNode {
+    /// What cuts the space there.
+    pub plane: Plane,
+    /// The nodes behind the plane and in front of it.
+    pub children: [Option<u32>; 2],
+    /// The faces of which a part lies in the plane, ascending.
+    pub faces: Vec<u32>,
+}
+
 /// A binary space partition of faces. See the module.
 #[derive(Debug, Clone)]
 pub struct Bsp {
@@ -127,6 +139,16 @@ impl Bsp {
     pub fn front_to_back(mut self) -> Self {
         self.order = Order::FrontToBack;
         self
+    }
+
+    /// The nodes, the root first, parents before their children. O(nodes + fragments).
+    pub fn nodes(&self) -> impl Iterator<Item = BspNode> + '_ {
+        (0u32..).take(self.tree.n_nodes()).filter_map(|node| {
+            let (plane, children) = self.tree.parts(node);
+            let mut faces: Vec<u32> = self.tree.own(node).iter().map(Fragment::face).collect();
+            faces.dedup();
+            Some(BspNode { plane: plane?, children, faces })
+        })
     }
 
     /// What it is like.

@@ -118,6 +118,12 @@ impl Tree {
         self.depths.iter().max().map_or(0, |&d| d as usize)
     }
 
+    /// The plane of a node, and its children behind and in front of it.
+    pub(crate) fn parts(&self, node: u32) -> (Option<Plane>, [Option<u32>; 2]) {
+        let Node { plane, children: [front, behind], .. } = &self.nodes[node as usize];
+        (*plane, [*behind, *front].map(|child| (child != NONE).then_some(child)))
+    }
+
     /// What lies in a node.
     pub(crate) fn own(&self, node: u32) -> &[Fragment] {
         let own = &self.nodes[node as usize].own;

@@ -6,6 +6,7 @@ mod culling;
 mod hides;
 mod newell;
 mod oracle;
+mod pictures;
 mod priority;
 mod schumacker;
 mod soups;

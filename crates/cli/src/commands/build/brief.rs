@@ -1,6 +1,7 @@
-//! What was built, in three lines: what was taken for what, by which method into which cells, and the result.
+//! What was built, in three lines: what was taken for what, by which method into which cells, and the result. Of a scene a fourth says
+//! whether it was worth it.
 
-use super::{Built, Outcome};
+use super::{Built, Outcome, worth};
 use crate::output::{bytes, count, percent, seconds};
 use sightlines::report::ViewerShare;
 use std::fmt;
@@ -43,6 +44,16 @@ impl Built {
         BriefBuilt(self)
     }
 
+    /// Whether the table of a scene is worth it.
+    pub(super) fn worth(&self) -> Option<String> {
+        let viewer = match &self.outcome {
+            Outcome::Scene(outcome) => &outcome.viewer,
+            Outcome::Regions(outcome) => &outcome.viewer,
+            _ => return None,
+        };
+        worth::sentence(viewer, self.auto.is_some())
+    }
+
     fn three_lines(&self) -> Brief {
         let mut brief = match &self.outcome {
             Outcome::Plan(outcome) => outcome.brief(),
@@ -73,6 +84,9 @@ impl fmt::Display for BriefBuilt<'_> {
         writeln!(f, "method         {method}; {cells}")?;
         let (size, time) = (bytes(n_bytes as u64), Duration::try_from_secs_f64(time).unwrap_or_default());
         writeln!(f, "wrote          {out}, {size}, in {}: {visible}", seconds(time))?;
+        if let Some(sentence) = self.0.worth() {
+            writeln!(f, "worth it       {sentence}")?;
+        }
         self.0.given_doors.iter().try_for_each(|door| write!(f, "{door}"))?;
         self.0.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         self.0.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))

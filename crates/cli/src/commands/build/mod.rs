@@ -18,6 +18,7 @@ pub(crate) mod space;
 mod stab;
 mod view_cells;
 mod viewers;
+mod worth;
 
 pub(crate) use error::Error;
 pub(crate) use source::bake_visibly;
@@ -241,7 +242,7 @@ struct Built {
     stab: Option<stab::Added>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     proofs: Option<certify::Certified>,
-    /// Whether people get all facts, rather than three lines; programs always do.
+    /// Whether people get all facts, rather than a few lines; programs always do.
     #[serde(skip)]
     verbose: bool,
 }
@@ -253,6 +254,7 @@ impl fmt::Display for Built {
         }
         self.auto.iter().try_for_each(|auto| write!(f, "{auto}"))?;
         write!(f, "{}", self.outcome)?;
+        self.worth().iter().try_for_each(|sentence| writeln!(f, "worth it       {sentence}"))?;
         self.viewers.iter().try_for_each(|viewers| write!(f, "{viewers}"))?;
         write!(f, "{}", self.placed)?;
         self.surfaces.iter().try_for_each(|surfaces| write!(f, "{surfaces}"))?;

@@ -132,7 +132,7 @@ pub(super) struct Outcome {
     #[serde(flatten)]
     pub(super) table: Summary,
     /// What a viewer sees on average, each place of the same weight.
-    viewer: ViewerShare,
+    pub(super) viewer: ViewerShare,
     /// Pairs of a cell and an object that it may see.
     n_objects_seen: u64,
     /// Volumes that were queried: cells, and parts of cells.

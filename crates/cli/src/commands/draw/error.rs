@@ -24,6 +24,9 @@ pub(crate) enum Error {
     #[error("{}: a floor plan of a scene in space needs --height (cells reach from {low} to {high}), --eye or --cell; \
              without, there is --isometric", path.display())]
     WhichHeight { path: PathBuf, low: f64, high: f64 },
+    /// A scene that the table was not made of.
+    #[error("{}: the table was made of another scene: {what}", .path.display())]
+    OtherScene { path: PathBuf, what: String },
 }
 
 from_file_error!(Error);

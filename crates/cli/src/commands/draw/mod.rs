@@ -3,6 +3,7 @@
 pub(crate) mod space;
 
 mod error;
+mod scene;
 mod viewer;
 use crate::Answer;
 use crate::input::refuse;
@@ -13,7 +14,7 @@ use crate::{input, output};
 use error::Error;
 use sightlines::geometry::{Point2, check_coordinate};
 use sightlines::pvs::Table;
-use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, View, plan_drawing};
+use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, Surfaces, View, plan_drawing};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use viewer::{Shown, Viewer};
@@ -27,6 +28,11 @@ pub(crate) struct DrawArgs {
     /// The table
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
+    /// Scenes in space: what the table was built from, a GLB, glTF or OBJ or a Quake map. A floor plan shows all
+    /// surfaces that it cuts, slanted ones too, and an isometric view the surfaces in place of the cells; single-sided ones are left out
+    /// from behind [default: what the cells tell of]
+    #[arg(long, help_heading = "Picture", value_name = "SCENE")]
+    scene: Option<PathBuf>,
     /// Show what is visible from this cell
     #[arg(long, help_heading = "Viewer", value_name = "N", conflicts_with = "eye")]
     cell: Option<u32>,
@@ -37,10 +43,10 @@ pub(crate) struct DrawArgs {
     #[command(flatten)]
     sight: SightArgs,
     /// Scenes in space: height of the floor plan, in scene units [default: that of the eye or of the middle of the
-    /// cell]. With --isometric: leave out everything above
+    /// cell]. With --isometric everything above is left out [default there without them: nothing is]
     #[arg(long, help_heading = "Picture", value_name = "Y", value_parser = height, allow_hyphen_values = true)]
     height: Option<f64>,
-    /// Scenes in space: draw the cells as boxes, viewed from the positive side of all axes
+    /// Scenes in space: draw the cells as boxes, or the scene, viewed from the positive side of all axes
     #[arg(long, help_heading = "Picture")]
     isometric: bool,
     /// Leave out the legend and the scale bar
@@ -62,14 +68,20 @@ fn height(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
     PictureKind::of(&args.output)?;
-    output::check(&[&args.table], &[&args.output])?;
+    let inputs: Vec<&Path> = std::iter::once(&args.table).chain(&args.scene).map(PathBuf::as_path).collect();
+    output::check(&inputs, &[&args.output])?;
     viewer::refuse_without_eye(args)?;
     let table = Arc::new(input::table(&args.table)?);
     input::refuse_without_places(&table, &args.table, "there is nothing to draw")?;
     let is_plan = table.dimension() == 2;
     if is_plan {
         let up = args.sight.lens.up().is_some();
-        let given = [("--height", args.height.is_some()), ("--isometric", args.isometric), ("--up", up)];
+        let given = [
+            ("--height", args.height.is_some()),
+            ("--isometric", args.isometric),
+            ("--up", up),
+            ("--scene", args.scene.is_some()),
+        ];
         refuse(&args.table, &given, "scenes in space", "the table of a plan")?;
     }
     let viewer = match &args.eye {
@@ -84,13 +96,15 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
         }
         None => None,
     };
+    let surfaces = args.scene.as_deref().map(|path| scene::surfaces(path, &table)).transpose()?;
+    let surfaces = surfaces.as_ref();
     let svg = match viewer {
-        None => picture(args, &table, None, !args.no_legend)?.to_svg(),
+        None => picture(args, &table, None, surfaces, !args.no_legend)?.to_svg(),
         Some(viewer) => {
             let mut drawn = viewer.methods().into_iter().map(|method| {
-                let drawing =
-                    picture(args, &table, Some(&viewer.shown(method)?), !args.no_legend && !viewer.has_panels())?;
-                Ok((method.name().to_owned(), drawing))
+                let (legend, shown) = (!args.no_legend && !viewer.has_panels(), viewer.shown(method)?);
+                let drawing = picture(args, &table, Some(&shown), surfaces, legend)?;
+                Ok((format!("{}: {}", method.name(), shown.counts()), drawing))
             });
             if viewer.has_panels() {
                 let drawn = drawn.collect::<Result<Vec<_>, Error>>()?;
@@ -105,8 +119,17 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
 }
 
 /// One picture of the table.
-fn picture(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing, Error> {
-    if table.dimension() == 2 { plan(args, table, shown, legend) } else { space::draw(args, table, shown, legend) }
+fn picture(
+    args: &DrawArgs,
+    table: &Table,
+    shown: Option<&Shown<'_>>,
+    surfaces: Option<&Surfaces>,
+    legend: bool,
+) -> Result<Drawing, Error> {
+    match table.dimension() {
+        2 => plan(args, table, shown, legend),
+        _ => space::draw(args, table, shown, surfaces, legend),
+    }
 }
 
 fn plan(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing, Error> {

@@ -6,7 +6,9 @@ use crate::picture::{middle, up_of};
 use crate::place;
 use crate::view;
 use sightlines::pvs::Table;
-use sightlines::report::{Drawing, IsometricOptions, SliceOptions, Up, View, isometric_drawing, slice_drawing};
+use sightlines::report::{
+    Drawing, IsometricOptions, SliceOptions, Surfaces, Up, View, isometric_drawing, slice_drawing,
+};
 
 /// The axis that points up: the one that was given, if it is an axis, else that of the table.
 fn up(args: &DrawArgs, table: &Table) -> Up {
@@ -19,7 +21,13 @@ fn up(args: &DrawArgs, table: &Table) -> Up {
 }
 
 /// The requested picture.
-pub(super) fn draw(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing, Error> {
+pub(super) fn draw(
+    args: &DrawArgs,
+    table: &Table,
+    shown: Option<&Shown<'_>>,
+    surfaces: Option<&Surfaces>,
+    legend: bool,
+) -> Result<Drawing, Error> {
     let path = &args.table;
     let up = up(args, table);
     let view = match (args.cell, &args.eye) {
@@ -29,11 +37,23 @@ pub(super) fn draw(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, le
     };
     let sight = shown.map(|shown| shown.sight(|p| p));
     let drawn = if args.isometric {
-        isometric_drawing(table, &IsometricOptions { view, sight, up, below: args.height, legend, size: args.size })
+        let below = args.height.or_else(|| height_of(table, view, up));
+        let options = IsometricOptions {
+            view,
+            sight,
+            up,
+            below,
+            surfaces,
+            legend,
+            size: args.size,
+            ..IsometricOptions::default()
+        };
+        isometric_drawing(table, &options)
     } else {
         let height = args.height.or_else(|| height_of(table, view, up));
         let height = height.ok_or_else(|| nowhere(args, table, up))?;
-        let options = SliceOptions { view, sight, up, height, legend, size: args.size, ..SliceOptions::default() };
+        let options =
+            SliceOptions { view, sight, up, height, surfaces, legend, size: args.size, ..SliceOptions::default() };
         slice_drawing(table, &options)
     };
     drawn.map_err(failed(path))

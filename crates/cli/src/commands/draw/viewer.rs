@@ -1,6 +1,7 @@
 //! What a viewer sees, for a picture.
 
 use super::{DrawArgs, Error};
+use crate::output::count;
 use crate::place::Point;
 use crate::sight::{self, Sight, SightError, seen};
 use crate::tables::Cells;
@@ -81,6 +82,13 @@ pub(super) struct Shown<'a> {
 }
 
 impl Shown<'_> {
+    /// How much is seen, in words.
+    pub(super) fn counts(&self) -> String {
+        let [cells, objects] = [(self.seen.cells().len(), "cell"), (self.seen.objects().len(), "object")];
+        let objects = if objects.0 > 0 { format!(", {}", count(objects.0 as u64, objects.1)) } else { String::new() };
+        count(cells.0 as u64, cells.1) + &objects
+    }
+
     /// The same for the crate that draws; `point` makes a direction of three coordinates one of the picture's.
     pub(super) fn sight<P>(&self, point: impl Fn([f64; 3]) -> P) -> report::Sight<'_, P> {
         let looks = self.sight.looks.as_ref().map(|(dir, fov)| (point(lifted(dir)), fov.to_radians()));

@@ -6,6 +6,7 @@ mod error;
 mod plan;
 mod report;
 mod space;
+mod space_picture;
 
 use crate::Answer;
 use crate::error::InputError;
@@ -64,7 +65,7 @@ pub(crate) struct ExplainArgs {
     /// With --scene: rays to aim from each cell at the other [default: 4096]
     #[arg(long, help_heading = "Method", value_name = "N", requires = "scene")]
     rays: Option<u32>,
-    /// Plans: draw the line, or what blocks it
+    /// Plans and scenes with portals: draw the line, or what blocks it; in space from above and as an isometric view
     #[arg(long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
     draw: Option<PathBuf>,
     /// If hidden: how many blocked ways, sequences or walls to show
@@ -100,7 +101,7 @@ impl ExplainArgs {
     /// Refuses options that mean nothing for such a file.
     fn refuse_meaningless(&self, of: Of, found: &'static str) -> Result<(), Error> {
         let given = [
-            (self.draw.is_some(), "--draw", Of::Plan, "plans"),
+            (self.draw.is_some() && of != Of::Space, "--draw", Of::Plan, "plans and scenes with portals"),
             (self.max_visits.is_some(), "--max-visits", Of::Plan, "plans"),
             (self.max_programs.is_some(), "--max-programs", Of::Space, "scenes in space"),
             (self.max_questions.is_some(), "--max-questions", Of::Portals, "portal files"),
@@ -189,7 +190,11 @@ fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Resu
     }
     // The table does not record what was left out beside its cells, and no answer depends on it.
     let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
-    Ok(args.report(table, [a, b], SpaceReason::new(explanation)).print(args.json)?)
+    let reason = SpaceReason::new(explanation);
+    if let Some(out) = &args.draw {
+        save_picture(&space_picture::svg(&args.table, table, [a, b], &reason)?, out)?;
+    }
+    Ok(args.report(table, [a, b], reason).print(args.json)?)
 }
 
 /// Rays from each of two cells without portals.

@@ -89,6 +89,24 @@ impl SpaceReason {
     }
 }
 
+impl SpaceReason {
+    /// Two points of the line of sight, if one was found and they are known, and the portals that it passes.
+    pub(super) fn line(&self) -> (Option<[[f64; 3]; 2]>, Vec<usize>) {
+        match self {
+            Self::Visible { ends, portals, .. } => (*ends, portals.iter().map(|&portal| portal as usize).collect()),
+            _ => (None, Vec::new()),
+        }
+    }
+
+    /// The rectangles that block all lines.
+    pub(super) fn walls(&self) -> Vec<[[f64; 3]; 2]> {
+        match self {
+            Self::Hidden { walls: Some(found), .. } => found.walls.iter().map(|wall| [wall.min, wall.max]).collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
 fn crossings(witness: &AxialWitness, doors: &[AxialDoor]) -> Vec<Option<[f64; 3]>> {
     doors.iter().map(|door| witness.crossing(door)).collect()
 }

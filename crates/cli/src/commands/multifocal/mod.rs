@@ -1,6 +1,7 @@
 //! `multifocal`: the multifocal buffer of a scene on one plane as a picture, and the fields beside it.
 
 mod backend;
+mod chart;
 mod error;
 mod outcome;
 mod target;
@@ -10,7 +11,7 @@ use crate::buffers::MethodFailed;
 use crate::input;
 use crate::named::{measure, one_of};
 use crate::output;
-use crate::picture::{self, PictureError};
+use crate::picture::{self, PictureError, PictureKind};
 use crate::region::Region;
 use crate::surfaces::SurfaceArgs;
 use error::Error;
@@ -64,6 +65,9 @@ pub(crate) struct MultifocalArgs {
     /// The picture of the buffer to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.png")]
     output: PathBuf,
+    /// Also write the buffer as a picture for people: upright, as seen from the volume, with its window and a scale of its values
+    #[arg(long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
+    chart: Option<PathBuf>,
     /// Also write a Voronoi map: the feature (vertex, edge or face) nearest to each texel
     #[arg(long, help_heading = "Output", value_name = "OUT.png")]
     voronoi: Option<PathBuf>,
@@ -79,7 +83,8 @@ pub(crate) struct MultifocalArgs {
 pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, Error> {
     check_outputs(args)?;
     input::check_is_scene(&args.scene)?;
-    let scene = input::occluders(&args.scene, &args.surfaces.options())?.scene;
+    let file = input::occluders(&args.scene, &args.surfaces.options())?;
+    let (up, scene) = (file.info.up, file.scene);
     let triangles: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
     let volume = Volume::new(args.volume.0)?;
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
@@ -109,19 +114,30 @@ pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, Error> {
         fields: fields.as_ref().map(|(features, field)| FieldInfo::new(features, field)),
         files: outputs(args).map(|path| path.display().to_string()).collect(),
     };
+    let chart = args.chart.as_deref().map(|path| chart::svg(path, &outcome, &buffer, up).map(|svg| (path, svg)));
+    let chart = chart.transpose()?;
     write(args, &plane, &buffer, fields.as_ref())?;
+    if let Some((path, svg)) = chart {
+        picture::save_picture(&svg, path)?;
+    }
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
 }
 
 /// The pictures to write.
 fn outputs(args: &MultifocalArgs) -> impl Iterator<Item = &PathBuf> {
+    pixels(args).chain(&args.chart)
+}
+
+/// Those with a pixel for each texel.
+fn pixels(args: &MultifocalArgs) -> impl Iterator<Item = &PathBuf> {
     [Some(&args.output), args.voronoi.as_ref(), args.distance.as_ref()].into_iter().flatten()
 }
 
 /// Refuses names of pictures that are no PNG, that name the same file twice, or the scene, and files that cannot be written.
 fn check_outputs(args: &MultifocalArgs) -> Result<(), Error> {
-    outputs(args).try_for_each(|path| picture::check_png_name(path))?;
+    pixels(args).try_for_each(|path| picture::check_png_name(path))?;
+    args.chart.iter().try_for_each(|path| PictureKind::of(path).map(drop))?;
     Ok(output::check(&[&args.scene], &outputs(args).map(PathBuf::as_path).collect::<Vec<_>>())?)
 }
 

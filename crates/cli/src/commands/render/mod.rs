@@ -9,7 +9,7 @@ use crate::Answer;
 use crate::eye::EyeArgs;
 use crate::input;
 use crate::named::one_of;
-use crate::output;
+use crate::output::{self, count};
 use crate::picture::{self, PictureError};
 use crate::progress::Bar;
 use crate::surfaces::{self, SurfaceArgs};
@@ -181,9 +181,12 @@ fn side_by_side(
         rows.push(Row::new(&drawn, Some(&comparison)));
         all.push((shown(args, faces, drawn.image.faces()), comparison));
     }
-    let pictures: Vec<SheetPicture<'_>> =
-        all.iter().map(|(faces, comparison)| SheetPicture { faces, marked: &comparison.wrong }).collect();
-    (rows, sheet_png(camera.size(), &pictures))
+    let notes: Vec<String> = all.iter().map(|(_, c)| count(c.wrong.len() as u64, "wrong pixel")).collect();
+    let pictures: Vec<SheetPicture<'_>> = (0..all.len())
+        .map(|k| SheetPicture { title: rows[k].method(), note: &notes[k], faces: &all[k].0, marked: &all[k].1.wrong })
+        .collect();
+    let png = sheet_png(camera.size(), &pictures);
+    (rows, png)
 }
 
 /// What pixels are coloured by.

@@ -54,6 +54,10 @@ impl Row {
         }
     }
 
+    pub(super) fn method(&self) -> &'static str {
+        self.method
+    }
+
     /// Splits for the picture, and before.
     fn splits(&self) -> u64 {
         self.prepared.splits + self.counters.splits

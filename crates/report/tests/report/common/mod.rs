@@ -8,6 +8,7 @@
 //! +-------------+
 //! ```
 
+pub(crate) mod svg;
 pub(crate) mod tower;
 
 use sightlines_pvs::{
