@@ -3,6 +3,7 @@
 //! Keys: W A S D walk, the arrows turn, Q and E go down and up, shift runs. C: culls or not.
 
 use bevy::app::AppExit;
+use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use bevy_sightlines::{PvsCamera, PvsOverlayPlugin, SightlinesPlugin};
 use bevy_sightlines_trenchbroom::{PvsMap, TrenchBroomPvsPlugin};
@@ -15,11 +16,6 @@ use bevy_trenchbroom::prelude::*;
 #[solid_class(base(BspSolidEntity, Visibility))]
 #[derive(Debug, Clone)]
 struct FuncDoor;
-
-/// Where players begin.
-#[point_class]
-#[derive(Debug, Clone)]
-struct InfoPlayerStart;
 
 /// The name of the map.
 #[derive(Resource)]
@@ -51,11 +47,17 @@ fn main() -> AppExit {
 fn setup(mut commands: Commands<'_, '_>, assets: Res<AssetServer>, name: Res<MapName>) {
     let map = format!("{}.bsp", name.0);
     commands.spawn((WorldAssetRoot(assets.load(format!("{map}#Scene"))), PvsMap::new(assets.load(map))));
-    commands.spawn((Camera3d::default(), PvsCamera::new(assets.load(format!("{}.pvs", name.0)))));
+    // Bevy's default tones need its feature `tonemapping_luts`.
+    commands.spawn((
+        Camera3d::default(),
+        Tonemapping::AcesFitted,
+        PvsCamera::new(assets.load(format!("{}.pvs", name.0))),
+    ));
 }
 
-/// Puts the camera where players begin.
+/// Puts the camera where players begin, and light into maps that have none.
 fn begin(
+    mut commands: Commands<'_, '_>,
     mut is_done: Local<'_, bool>,
     maps: Query<&PvsMap>,
     bsps: Res<Assets<Bsp>>,
@@ -63,6 +65,9 @@ fn begin(
     mut cameras: Query<&mut Transform, With<PvsCamera>>,
 ) {
     let Some(bsp) = maps.iter().find_map(|map| bsps.get(&map.map)).filter(|_| !*is_done) else { return };
+    if bsp.lightmap.is_none() {
+        commands.insert_resource(GlobalAmbientLight { brightness: 2000.0, ..default() });
+    }
     let start = bsp.entities.iter().find(|entity| entity.classname().is_ok_and(|name| name == "info_player_start"));
     let place =
         start.and_then(|start| Some((start.get::<Vec3>("origin").ok()?, start.get::<f32>("angle").unwrap_or(0.0))));
