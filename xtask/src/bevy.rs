@@ -1,4 +1,4 @@
-//! The plugin for Bevy, a workspace of its own below `integrations/bevy`.
+//! The plugin for Bevy, a workspace of its own below `integrations/bevy`, and the one for Quake maps in Bevy beside it.
 
 use crate::debian::in_file;
 use crate::gpu::{self, Wish};
@@ -17,6 +17,10 @@ const FOR_EXAMPLES: [(&str, &[&str]); 1] = [("tower16", &["--floors", "16"])];
 
 fn folder() -> PathBuf {
     root().join("integrations").join("bevy")
+}
+
+fn quake_folder() -> PathBuf {
+    root().join("integrations").join("bevy-trenchbroom")
 }
 
 /// Generates the levels of the tests and examples, with their tables, by the program.
@@ -60,8 +64,12 @@ fn program(words: &[&str]) -> Result<(), Failure> {
 
 /// The cargo that runs this program, in the folder of the plugin, without what the cargo of this workspace has set for it.
 fn plugin() -> Command {
+    plugin_in(folder())
+}
+
+fn plugin_in(folder: PathBuf) -> Command {
     let mut command = cargo();
-    command.current_dir(folder()).env_remove("CARGO_TARGET_DIR");
+    command.current_dir(folder).env_remove("CARGO_TARGET_DIR");
     command
 }
 
@@ -89,4 +97,23 @@ pub(crate) fn check(gpu: Wish) -> Result<(), Failure> {
     step::run(plugin().args(["clippy", "--locked", "--lib"]).args(lints))?;
     let device = device(gpu)?;
     step::run(plugin().args(["test", "--locked", "--all-features"]).envs(device))
+}
+
+/// Formatting, lints and tests of the plugin for Quake maps: no part of the gate, as it compiles Bevy once more.
+///
+/// * `gpu`: which device the test that compares pictures runs on
+pub(crate) fn check_quake(gpu: Wish) -> Result<(), Failure> {
+    match std::env::var_os("SIGHTLINES_DATA") {
+        None => eprintln!("!! SIGHTLINES_DATA has no folder: pictures of a real map WILL NOT be compared"),
+        Some(data) => {
+            let (map, assets) = (Path::new(&data).join("quake/e1m1.bsp"), quake_folder().join("assets"));
+            in_file(&assets, fs::create_dir_all(&assets))?;
+            program(&["build", "-q", text(&map), "-o", text(&assets.join("e1m1.pvs"))])?;
+        }
+    }
+    let cargo = || plugin_in(quake_folder());
+    step::run(cargo().args(["fmt", "--check"]))?;
+    step::run(cargo().args(["clippy", "--locked", "--all-targets", "--", "-D", "warnings"]))?;
+    let device = device(gpu)?;
+    step::run(cargo().args(["test", "--locked"]).envs(device))
 }

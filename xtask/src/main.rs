@@ -96,6 +96,12 @@ enum Task {
     },
     /// Generates the levels that the plugin for Bevy is tested and shown with.
     BevyAssets,
+    /// Formatting, lints and tests of the plugin for Quake maps in Bevy, which `ci` leaves out.
+    BevyTrenchbroom {
+        /// Which GPU the test that compares pictures runs on.
+        #[arg(long, value_enum, default_value_t)]
+        gpu: gpu::Wish,
+    },
 }
 
 /// What the fuzzing program can break, one name in each line; a test of that program compares.
@@ -135,6 +141,7 @@ fn run(task: Task) -> Result<(), Failure> {
         }
         Task::Bevy { gpu } => bevy::check(gpu),
         Task::BevyAssets => bevy::assets(),
+        Task::BevyTrenchbroom { gpu } => bevy::check_quake(gpu),
         Task::Freedoom => freedoom::find_or_fetch().map(|folder| println!("{}", folder.display())),
     }
 }

@@ -8,7 +8,7 @@ mod support;
 
 use bevy::prelude::*;
 use bevy_sightlines::{PvsCamera, PvsDoor, PvsOverlayPlugin, PvsTable, SightlinesPlugin};
-use support::{Walker, light, need, walk};
+use support::{Walker, light, need, walk, walker};
 
 fn main() {
     need(&["tower.glb", "tower.pvs"]);
@@ -21,12 +21,7 @@ fn main() {
 
 fn setup(mut commands: Commands<'_, '_>, assets: Res<AssetServer>) {
     commands.spawn(WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("tower.glb"))));
-    commands.spawn((
-        Camera3d::default(),
-        Transform::from_xyz(9.0, 1.7, 5.0).looking_to(Vec3::X, Vec3::Y),
-        PvsCamera::new(assets.load("tower.pvs")),
-        Walker { speed: 3.0 },
-    ));
+    commands.spawn((walker(), PvsCamera::new(assets.load("tower.pvs"))));
     light(&mut commands);
 }
 

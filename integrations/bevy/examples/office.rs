@@ -9,7 +9,7 @@ mod support;
 use bevy::gizmos::config::GizmoConfigStore;
 use bevy::prelude::*;
 use bevy_sightlines::{PvsCamera, PvsGizmos, PvsLock, PvsMethod, PvsOverlayPlugin, SightlinesPlugin};
-use support::{Walker, light, need, walk};
+use support::{light, need, walk, walker};
 
 fn main() {
     need(&["tower16.glb", "tower16.pvs"]);
@@ -22,12 +22,7 @@ fn main() {
 
 fn setup(mut commands: Commands<'_, '_>, assets: Res<AssetServer>) {
     commands.spawn(WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("tower16.glb"))));
-    commands.spawn((
-        Camera3d::default(),
-        Transform::from_xyz(9.0, 1.7, 5.0).looking_to(Vec3::X, Vec3::Y),
-        PvsCamera::new(assets.load("tower16.pvs")),
-        Walker { speed: 3.0 },
-    ));
+    commands.spawn((walker(), PvsCamera::new(assets.load("tower16.pvs"))));
     light(&mut commands);
 }
 

@@ -8,7 +8,7 @@ mod support;
 use bevy::prelude::*;
 use bevy_sightlines::{PvsCamera, PvsOverlayPlugin, PvsTable, SightlinesPlugin};
 use std::path::Path;
-use support::{Walker, light, need, walk};
+use support::{light, need, walk, walker};
 
 fn main() {
     need(&["tower16.glb", "tower16.pvz"]);
@@ -27,12 +27,7 @@ fn setup(
     let file = std::fs::File::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/tower16.pvz"))?;
     let table = tables.add(PvsTable::packed(file, 256 << 10)?);
     commands.spawn(WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("tower16.glb"))));
-    commands.spawn((
-        Camera3d::default(),
-        Transform::from_xyz(9.0, 1.7, 5.0).looking_to(Vec3::X, Vec3::Y),
-        PvsCamera { prepared_bytes: 1 << 20, ..PvsCamera::new(table) },
-        Walker { speed: 3.0 },
-    ));
+    commands.spawn((walker(), PvsCamera { prepared_bytes: 1 << 20, ..PvsCamera::new(table) }));
     light(&mut commands);
     Ok(())
 }

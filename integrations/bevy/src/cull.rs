@@ -6,6 +6,7 @@ use crate::diagnostics::Counts;
 use crate::doors::Doorways;
 use crate::gltf::{PvsScene, corners_of};
 use crate::level::{Judged, Slots};
+use crate::parts::PvsParts;
 use crate::space::Affine;
 use crate::tie::Tie;
 use bevy::asset::LoadState;
@@ -17,7 +18,7 @@ use bevy::platform::time::Instant;
 use bevy::prelude::*;
 use sightlines_eye_to_cell::{Budget, View};
 use sightlines_pvs::CellId;
-use sightlines_walkthrough::{Answer, WalkOptions};
+use sightlines_walkthrough::{Answer, Frame, WalkOptions};
 
 /// Frames in which scenes are there and none fits, before that is worth a warning: others may still be on their way.
 const PATIENCE: u32 = 60;
@@ -65,7 +66,7 @@ type Boxes<'w, 's> = Query<'w, 's, (&'static Aabb, &'static GlobalTransform, Has
 pub(crate) fn cull(
     mut cameras: Cameras<'_, '_>,
     (scenes, parents): (Scenes<'_, '_>, Query<'_, '_, &ChildOf>),
-    (boxes, slots): (Boxes<'_, '_>, Res<'_, Slots>),
+    (boxes, parts, slots): (Boxes<'_, '_>, Query<'_, '_, &PvsParts>, Res<'_, Slots>),
     (tables, server, versions): (Res<'_, Assets<PvsTable>>, Option<Res<'_, AssetServer>>, Res<'_, Versions>),
     doorways: Doorways<'_, '_>,
     (mut problems, mut changes): (MessageWriter<'_, PvsProblem>, MessageWriter<'_, PvsChanged>),
@@ -155,6 +156,10 @@ pub(crate) fn cull(
                     Judged::Table { scene: of, source } => {
                         of != scene || tie.and_then(|tie| tie.object(source)).is_none_or(|o| frame.seen.has_object(o))
                     }
+                    Judged::Parts { scene: of } => {
+                        of != scene
+                            || tie.zip(parts.get(*entity).ok()).is_none_or(|(tie, parts)| sees_part(tie, parts, frame))
+                    }
                     Judged::Box { scene: Some(of) } if of != scene => true,
                     Judged::Box { .. } => boxes.get(*entity).map_or(true, |(bounds, at, is_exempt)| {
                         let (min, max) = corners_of(bounds);
@@ -200,6 +205,12 @@ impl PvsView {
         counts.drawn += self.drawn;
         counts.culled += self.culled;
     }
+}
+
+/// Whether one of the sources of a mesh is seen, or nothing is known of one.
+fn sees_part(tie: &Tie, parts: &PvsParts, frame: &Frame<'_>) -> bool {
+    let sees = |&source: &u32| tie.object(source).is_none_or(|object| frame.seen.has_object(object));
+    parts.sources.is_empty() || parts.sources.iter().any(sees)
 }
 
 /// Ties the table to the scene that it was made of, unless it is tied to one that is still there.

@@ -29,8 +29,11 @@ pub struct PvsSource {
 /// plugin while the file is loaded.
 ///
 /// The root is the entity that holds the scene's nodes; the entity with `WorldAssetRoot` is above it.
+///
+/// A game may also make one for a level from elsewhere, and tie meshes to it with [`PvsParts`](crate::PvsParts).
 #[derive(Component, Debug, Clone, Default, Reflect)]
 #[reflect(Component, Default, Clone)]
+#[require(Transform)]
 pub struct PvsScene {
     /// The meshes.
     pub sources: Vec<PvsSource>,

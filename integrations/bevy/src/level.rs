@@ -24,6 +24,8 @@ pub(crate) struct Slot {
     is_outgrown: bool,
     /// It is not to be culled.
     is_exempt: bool,
+    /// It has [`PvsParts`](crate::PvsParts): several sources, or one.
+    has_parts: bool,
 }
 
 /// How an entity is judged.
@@ -33,6 +35,8 @@ pub(crate) enum Judged {
     Free,
     /// By the answer for this source of this scene.
     Table { scene: Entity, source: u32 },
+    /// By the answers for the sources that its [`PvsParts`](crate::PvsParts) name.
+    Parts { scene: Entity },
     /// By the cells that its box meets: for all cameras, or for those in this scene.
     Box { scene: Option<Entity> },
 }
@@ -62,6 +66,28 @@ impl Slots {
         self.slots[index] = Some(slot);
     }
 
+    /// Notes a mesh with parts of a level.
+    pub(crate) fn put_parts(&mut self, entity: Entity, scene: Entity, is_elsewhere: bool, is_exempt: bool) {
+        let (is_mover, is_outgrown) = (false, false);
+        self.put(Slot {
+            entity,
+            scene,
+            source: u32::MAX,
+            is_mover,
+            is_elsewhere,
+            is_outgrown,
+            is_exempt,
+            has_parts: true,
+        });
+    }
+
+    /// Leaves an entity to Bevy.
+    pub(crate) fn forget(&mut self, entity: Entity) {
+        if self.slot(entity).is_some() {
+            self.slots[entity.index_u32() as usize] = None;
+        }
+    }
+
     /// How an entity is judged. O(1).
     #[inline]
     pub(crate) fn judge(&self, entity: Entity) -> Judged {
@@ -70,6 +96,7 @@ impl Slots {
             Some(slot) if slot.is_exempt => Judged::Free,
             Some(slot) if slot.is_mover => Judged::Box { scene: None },
             Some(slot) if slot.is_elsewhere || slot.is_outgrown => Judged::Box { scene: Some(slot.scene) },
+            Some(slot) if slot.has_parts => Judged::Parts { scene: slot.scene },
             Some(slot) => Judged::Table { scene: slot.scene, source: slot.source },
         }
     }
@@ -98,9 +125,7 @@ pub(crate) fn note(
     (mut gone, mut loose): (RemovedComponents<PvsObject>, RemovedComponents<ChildOf>),
 ) {
     for entity in gone.read().filter(|entity| !objects.contains(*entity)) {
-        if slots.slot(entity).is_some() {
-            slots.slots[entity.index_u32() as usize] = None;
-        }
+        slots.forget(entity);
     }
     let mut turned = Vec::new();
     for entity in moved.iter().chain(loose.read()) {
@@ -124,6 +149,7 @@ pub(crate) fn note(
             is_elsewhere,
             is_outgrown: false,
             is_exempt,
+            has_parts: false,
         });
     }
     for top in turned {
@@ -204,6 +230,7 @@ pub(crate) fn note_movers(
                     is_elsewhere: false,
                     is_outgrown: false,
                     is_exempt: false,
+                    has_parts: false,
                 }),
             }
             before.push(entity);

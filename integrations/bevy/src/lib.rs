@@ -23,6 +23,7 @@ mod level;
 mod movers;
 #[cfg(feature = "overlay")]
 mod overlay;
+mod parts;
 mod space;
 mod tie;
 
@@ -38,6 +39,7 @@ pub use gltf::{PvsObject, PvsScene, PvsSource};
 pub use movers::PvsMover;
 #[cfg(feature = "overlay")]
 pub use overlay::{PvsOverlay, PvsOverlayPlugin};
+pub use parts::PvsParts;
 pub use sightlines_pvs as pvs;
 pub use tie::PvsMisfit;
 
@@ -71,6 +73,7 @@ impl Plugin for SightlinesPlugin {
             .register_type::<PvsScene>()
             .register_type::<PvsObject>()
             .register_type::<PvsMover>()
+            .register_type::<PvsParts>()
             .register_type::<PvsDoor>()
             .register_type::<gltf::Rest>()
             .add_message::<PvsChanged>()
@@ -85,6 +88,7 @@ impl Plugin for SightlinesPlugin {
                 (
                     level::note,
                     level::note_boxes,
+                    parts::note_parts,
                     level::note_movers,
                     doors::note_doors,
                     cull::note_tables,

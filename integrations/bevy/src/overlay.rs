@@ -4,7 +4,7 @@ use crate::camera::{PvsCamera, PvsLock, PvsView};
 use bevy::prelude::*;
 use bevy::text::{TextColor, TextFont};
 use bevy::ui::widget::Text;
-use bevy::ui::{Node, PositionType, Val};
+use bevy::ui::{BackgroundColor, Node, PositionType, UiRect, Val};
 
 /// Shows for each camera with [`PvsCamera`] what was drawn and culled and how long it took, in the upper left corner.
 #[derive(Debug, Clone, Copy, Default)]
@@ -27,7 +27,15 @@ fn spawn(mut commands: Commands<'_, '_>) {
         Text::default(),
         TextFont { font_size: bevy::text::FontSize::Px(14.0), ..TextFont::default() },
         TextColor(Color::WHITE),
-        Node { position_type: PositionType::Absolute, left: Val::Px(8.0), top: Val::Px(8.0), ..Node::default() },
+        // Levels are bright here and dark there.
+        BackgroundColor(Color::srgba(0.0, 0.0, 0.0, 0.7)),
+        Node {
+            position_type: PositionType::Absolute,
+            left: Val::Px(8.0),
+            top: Val::Px(8.0),
+            padding: UiRect::all(Val::Px(4.0)),
+            ..Node::default()
+        },
     ));
 }
 
@@ -52,5 +60,7 @@ fn write(mut texts: Query<&mut Text, With<PvsOverlay>>, cameras: Query<(&PvsCame
             );
             text.0.push_str(&line);
         }
+        let n_bytes = text.0.trim_end().len();
+        text.0.truncate(n_bytes);
     }
 }

@@ -1,5 +1,6 @@
 //! What the examples share: a walker with keys and mouse, light, and a look whether the levels are there.
 
+use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::input::mouse::AccumulatedMouseMotion;
 use bevy::prelude::*;
 use bevy::window::{CursorGrabMode, CursorOptions};
@@ -24,6 +25,14 @@ pub(crate) fn need(files: &[&str]) {
 pub(crate) struct Walker {
     /// Metres a second.
     pub(crate) speed: f32,
+}
+
+/// A camera in the ground floor of a generated tower.
+///
+/// Bevy's default tones need its feature `tonemapping_luts`, without which everything is pink.
+pub(crate) fn walker() -> impl Bundle {
+    let at = Transform::from_xyz(9.0, 1.7, 5.0).looking_to(Vec3::X, Vec3::Y);
+    (Camera3d::default(), Tonemapping::AcesFitted, at, Walker { speed: 3.0 })
 }
 
 /// Moves the walkers.

@@ -5,4 +5,5 @@
 mod app;
 mod lists;
 mod misfits;
+mod parts;
 mod pictures;
