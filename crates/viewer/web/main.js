@@ -20,6 +20,7 @@ class App {
       chooseObject: (object) => this.chooseObject(object),
       explain: (from, to) => this.explain(from, to),
       compareMethods: () => this.compareMethods(),
+      endWhy: () => this.endWhy(),
       explainObject: (from, object) => this.explainObject(from, object),
     };
     this.panel = new Panel(model, actions);
@@ -27,6 +28,14 @@ class App {
     this.bindPointer(this.flatCanvas);
     this.bindPointer(this.spaceCanvas);
     this.bindKeys();
+    document.getElementById("fit").addEventListener("click", () => {
+      this.frameAll();
+      this.redraw();
+    });
+    document.getElementById("ask").addEventListener("click", ({ currentTarget }) => {
+      this.isAsking = !this.isAsking;
+      currentTarget.setAttribute("aria-pressed", String(this.isAsking));
+    });
     document.getElementById("view-space").addEventListener("click", () => this.setView("space"));
     document.getElementById("view-map").addEventListener("click", () => this.setView("map"));
     new ResizeObserver(() => this.redraw()).observe(document.getElementById("stage"));
@@ -46,6 +55,8 @@ class App {
       }
     }
     this.view = view;
+    this.model.view = view;
+    this.panel.showHeight();
     this.flatCanvas.hidden = view !== "map";
     this.spaceCanvas.hidden = view !== "space";
     document.getElementById("view-space").setAttribute("aria-pressed", String(view === "space"));
@@ -58,6 +69,12 @@ class App {
     const { model } = this;
     this.map.fitted = false;
     if (!this.space) return;
+    if (model.lock && model.ceiling === Infinity) {
+      // From outside, the ceiling would hide the place that is kept.
+      const [eye, tops] = [model.table.toTable(model.lock), model.cells.map((cell) => model.table.cells[cell].max[model.up])];
+      if (tops.length > 0) model.ceiling = 0.25 * eye[model.up] + 0.75 * Math.max(...tops);
+      this.panel.showHeight();
+    }
     const { camera } = this.space;
     const middle = model.table.toScene([0, 1, 2].map((k) => (model.bounds.min[k] + model.bounds.max[k]) / 2));
     camera.near = model.size / 5000;
@@ -150,24 +167,10 @@ class App {
     if (this.space) this.space.camera.eye = [...model.eye];
   }
 
-  /** Names an object, and says whether it is seen. */
+  /** Marks an object; the panel says what it is. */
   chooseObject(object) {
-    const { model } = this;
-    model.chosen = object;
-    const under = document.getElementById("under");
-    if (object === null || object >= model.table.objects.length) {
-      under.textContent = "";
-    } else {
-      const { name, polygons } = model.table.objects[object];
-      const triangles = model.figure ? model.figure.nTriangles(object) : polygons;
-      const isSeen = model.isOutside || model.objects.has(object) ? "may be seen" : "is hidden";
-      under.textContent = `Object ${object} (${name}), ${counted(triangles, "triangle")}, ${isSeen}. `;
-      if (model.cells.length > 0) {
-        const ask = () => this.explainObject(model.cells[0], object);
-        under.append(element("button", { type: "button", onclick: ask }, "Why?"));
-      }
-    }
-    model.changed();
+    this.model.chosen = object;
+    this.model.changed();
   }
 
   explain(from, to) {
@@ -176,6 +179,12 @@ class App {
 
   explainObject(from, object) {
     this.showWhy(explainObject(this.model, from, object));
+  }
+
+  endWhy() {
+    this.model.why = null;
+    this.panel.showWhy(null);
+    this.model.changed();
   }
 
   showWhy(why) {
@@ -245,14 +254,20 @@ class App {
     if (this.view === "map") {
       const at = this.map.pick(x, y);
       const [here, there] = [this.model.cells[0], this.model.table.locate(at)[0]];
-      if (event?.shiftKey && here !== undefined && there !== undefined) {
-        this.explain(here, there);
+      if ((event?.shiftKey || this.isAsking) && here !== undefined) {
+        this.notice(there === undefined ? "No cell is there." : null);
+        if (there !== undefined) this.explain(here, there);
         return;
       }
+      this.endWhy();
       this.model.look(at);
       if (this.space && !this.model.lock) this.space.camera.eye = [...this.model.eye];
     } else {
-      this.chooseObject(this.space.pick(x, y));
+      const object = this.space.pick(x, y);
+      this.chooseObject(object);
+      const [here] = this.model.cells;
+      const isAsked = (event?.shiftKey || this.isAsking) && here !== undefined && object !== null;
+      if (isAsked && object < this.model.table.objects.length) this.explainObject(here, object);
     }
   }
 
@@ -273,6 +288,7 @@ class App {
       else if (key === "?") document.getElementById("keys").showModal();
       else if (key === "m" && this.model.table.dimension === 3) this.setView(this.view === "map" ? "space" : "map");
       else if (key === "f") this.frameAll();
+      else if (key === "Escape") this.endWhy();
       else if (key === "o") this.toggleOrbit();
       else if (key === "/") document.getElementById("find").focus();
       else if (!this.isMove(key, event.target)) return;
@@ -417,6 +433,10 @@ async function start() {
     model.look(frame.eye);
   });
   app.notice(head.figure?.notice ?? (table.hasPlaces ? null : "This table does not store where its cells are."));
+  if (table.dimension === 3 && table.cells.length > 0) {
+    const { min, max } = table.cells[largestCell(table)];
+    model.height = (min[model.up] + max[model.up]) / 2;
+  }
   if (table.dimension === 3) app.setView("space");
   else app.setView("map");
   if (location.hash.length > 1) app.openLink(location.hash);

@@ -30,6 +30,8 @@ class Model {
     this.size = Math.hypot(...[0, 1, 2].map((k) => this.bounds.max[k] - this.bounds.min[k])) || 1;
     this.height = (this.bounds.min[this.up] + this.bounds.max[this.up]) / 2;
     this.ceiling = Infinity;
+    /** Whether the map or the scene is shown. */
+    this.view = "map";
     this.shares = null;
     this.listeners = [];
   }
@@ -94,7 +96,7 @@ class Model {
     if (this.why && this.why.from === cell) return colours.from;
     if (this.cells.includes(cell)) return colours.from;
     if (this.heat) return heatColour(this.share(this.heat, cell));
-    if (this.isOutside) return colours.cell;
+    if (this.isOutside) return colours.paper;
     if (this.narrow && !this.narrow.cells.has(cell) && this.visible.has(cell)) return colours.pale;
     return this.visible.has(cell) ? colours.seen : colours.hidden;
   }
@@ -103,6 +105,7 @@ class Model {
   objectStates() {
     const n = Math.max(this.table.objects.length, this.figure?.nObjects() ?? 0);
     const states = new Uint8Array(n).fill(this.isOutside ? STATE.seen : STATE.hidden);
+    if (this.narrow) for (const object of this.objects) states[object] = STATE.pale;
     for (const object of this.narrow?.objects ?? this.objects) states[object] = STATE.seen;
     // What belongs to no object of the table is always drawn.
     states.fill(STATE.seen, this.table.objects.length);

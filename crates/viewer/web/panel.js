@@ -20,7 +20,7 @@ function counted(n, noun) {
 
 /** A point of the table in words, in the scene's coordinates. */
 function placeText(table, p) {
-  return `(${table.toScene(p).slice(0, table.dimension).map((x) => Number(x.toPrecision(6))).join(", ")})`;
+  return `(${table.toScene(p).slice(0, table.dimension).map((x) => Number(x.toFixed(2))).join(", ")})`;
 }
 
 class Panel {
@@ -44,11 +44,7 @@ class Panel {
     this.bind("why-here", "click", () => {
       if (model.cells.length > 0) document.getElementById("why-from").value = model.cells[0];
     });
-    this.bind("why-end", "click", () => {
-      model.why = null;
-      this.showWhy(null);
-      model.changed();
-    });
+    this.bind("why-end", "click", () => actions.endWhy());
     this.bind("numbers", "toggle", (details) => details.open && this.showNumbers());
     this.bind("methods", "toggle", () => this.showMethods());
     this.bind("heading", "input", (input) => {
@@ -71,19 +67,24 @@ class Panel {
     this.model.changed();
   }
 
-  /** Cuts the scene at a share of its height, and moves the map there. */
+  /** Cuts the scene at a share of its height, or moves the map there. */
   setCeiling(share) {
     const { model } = this;
     const [low, high] = [model.bounds.min[model.up], model.bounds.max[model.up]];
-    model.ceiling = share >= 1 ? Infinity : low + share * (high - low);
-    model.height = low + Math.min(share, 0.999) * (high - low);
+    if (model.view === "map") model.height = low + Math.min(share, 0.999) * (high - low);
+    else model.ceiling = share >= 1 ? Infinity : low + share * (high - low);
     model.changed();
   }
 
   refresh() {
     const { model } = this;
     document.getElementById("lock").checked = model.lock !== null;
-    for (const legend of document.querySelectorAll(".keys")) legend.hidden = (model.heat !== null) !== (legend.id === "scale");
+    this.showObject();
+    this.showHeight();
+    document.getElementById("brief").textContent = model.why ? document.getElementById("why-text").textContent : "";
+    for (const legend of document.querySelectorAll(".keys")) {
+      legend.hidden = legend.id === "marks" ? model.why === null : (model.heat !== null) !== (legend.id === "scale");
+    }
     document.getElementById("scale").textContent = darkPage.matches ? "dark: few, light: many" : "light: few, dark: many";
     document.getElementById("here").textContent = this.hereText();
     this.showMethods();
@@ -92,6 +93,39 @@ class Panel {
     list.replaceChildren(...shown.map((o) => this.objectButton(o)));
     const rest = model.objects.size - shown.length;
     if (rest > 0) list.append(element("li", {}, `and ${counted(rest, "object")} more`));
+  }
+
+  /** Names the chosen object, and says whether it is seen. */
+  showObject() {
+    const { model } = this;
+    const { chosen } = model;
+    const under = document.getElementById("under");
+    if (chosen === null || chosen >= model.table.objects.length) {
+      under.textContent = "";
+      return;
+    }
+    const { name, polygons } = model.table.objects[chosen];
+    const triangles = model.figure ? model.figure.nTriangles(chosen) : polygons;
+    const isSeen = model.isOutside || (model.narrow?.objects ?? model.objects).has(chosen);
+    const isListed = model.isOutside || model.objects.has(chosen);
+    const verdict = isSeen ? "may be seen" : isListed ? "may be seen from this cell, but not in this view" : "is hidden";
+    under.textContent = `Object ${chosen} (${name}), ${counted(triangles, "triangle")}, ${verdict}. `;
+    if (model.cells.length > 0) {
+      const ask = () => this.actions.explainObject(model.cells[0], chosen);
+      under.append(element("button", { type: "button", onclick: ask }, "Why?"));
+    }
+  }
+
+  /** The slider says where the map is, or where the scene is cut. */
+  showHeight() {
+    const { model } = this;
+    const [low, high] = [model.bounds.min[model.up], model.bounds.max[model.up]];
+    const onMap = model.view === "map";
+    const height = onMap ? model.height : Math.min(model.ceiling, high);
+    const unit = model.table.info.find(([key]) => key === "unit")?.[1] === "metre" ? " m" : "";
+    document.getElementById("ceiling").value = (height - low) / (high - low || 1);
+    document.getElementById("ceiling-text").textContent = `${onMap ? "map" : "cut"} at a height of ${height.toFixed(2)}${unit}`;
+    document.getElementById("heading-text").textContent = `${Math.round((model.heading * 180) / Math.PI)}°`;
   }
 
   hereText() {
@@ -105,7 +139,10 @@ class Panel {
     const parts = [`${model.lock ? "Kept: the eye was" : "The eye is"} in ${names}.`];
     parts.push(`From there ${model.visible.size} of ${counted(table.cells.length, "cell")} may be seen`);
     if (table.objects.length > 0) parts.push(`and ${model.objects.size} of ${counted(table.objects.length, "object")}`);
-    return `${parts.join(" ")}.`;
+    const text = `${parts.join(" ")}.`;
+    if (!model.narrow) return text;
+    const { cells, objects, method } = model.narrow;
+    return `${text} The viewer sees ${cells.size} of these cells and ${objects.size} of these objects in this view (${method}).`;
   }
 
   cellText(cell) {
@@ -193,13 +230,16 @@ class Panel {
     if (isSeen) {
       const by = object === null || to === from ? "" : ` It touches ${this.cellText(to)}.`;
       if (from === to) return object === null ? `It is one cell, which sees itself.` : `${target} touches ${here} itself.`;
-      if (line) return `A line leads from ${here} to ${target}, through ${counted(line.portals.length, "portal")}.${by}`;
+      if (line) return `A line leads from somewhere in ${here} to ${target}, through ${counted(line.portals.length, "portal")}.${by}`;
       return `${here} and ${target} may see each other.${by} This page has no line for them; ask ${ask}`;
     }
     const hidden = `${target} is hidden from ${here}.`;
     if (object !== null && table.sees(from, to)) return `${hidden} What is seen of the cells that it touches is not where it is.`;
     if (obstacle?.kind === "not connected") return `${hidden} No way through portals joins them.`;
-    if (obstacle?.kind === "walls") return `${hidden} Every line meets one of ${counted(obstacle.walls.length, "wall")}, which are drawn:`;
+    if (obstacle?.kind === "walls") {
+      const n = obstacle.walls.length;
+      return `${hidden} Every line meets ${n === 1 ? "one wall, which is drawn" : `one of ${n} walls, which are drawn`}:`;
+    }
     if (obstacle) return `${hidden} Every way through portals ends where no line passes; the first at portals ${obstacle.portals.join(", ")}.`;
     return `${hidden} For the proof ask ${ask}`;
   }
@@ -222,7 +262,7 @@ class Panel {
       };
       const radio = element("input", { type: "radio", name: "method", checked: shown === method, onchange: choose });
       const note = answered === method ? METHOD_HELP[method] : `too much to do: as ${answered}`;
-      const label = element("label", { title: note }, radio, ` ${method}`);
+      const label = element("label", {}, radio, ` ${method}`, element("small", {}, note));
       return element(
         "tr", {}, element("th", { scope: "row" }, label), element("td", {}, String(cells.size)), element("td", {}, String(objects.size)),
       );
@@ -252,7 +292,7 @@ class Panel {
     );
     document.getElementById("facts").replaceChildren(...body);
     this.showHistogram(hasPolygons ? polygons : cells, hasPolygons ? "polygons" : "cells");
-    this.listWorst(hasPolygons ? polygons : cells);
+    this.listWorst(hasPolygons ? polygons : cells, hasPolygons ? "polygons" : "cells");
   }
 
   showHistogram(shares, noun) {
@@ -271,11 +311,11 @@ class Panel {
     document.getElementById("histogram-text").textContent = `Number of cells by the share of the ${noun} that each sees.`;
   }
 
-  listWorst(shares) {
+  listWorst(shares, noun) {
     const worst = [...shares.keys()].sort((a, b) => shares[b] - shares[a] || a - b).slice(0, 12);
     document.getElementById("worst").replaceChildren(
       ...worst.map((cell) => {
-        const text = `${this.cellText(cell)}: ${percent(shares[cell])}`;
+        const text = `${this.cellText(cell)}: ${percent(shares[cell])} of the ${noun}`;
         const go = () => this.actions.goToCell(cell);
         return element("li", {}, element("button", { type: "button", onclick: go }, text));
       }),

@@ -62,7 +62,7 @@ void main() {
 }`;
 
 /** What is known of an object, as its state on the graphics device. */
-const STATE = { hidden: 0, seen: 1, chosen: 2, gained: 3, lost: 4 };
+const STATE = { hidden: 0, seen: 1, chosen: 2, gained: 3, lost: 4, pale: 5 };
 
 class Space {
   constructor(canvas, model) {
@@ -156,6 +156,7 @@ class Space {
       gl.depthMask(false);
       gl.uniform1f(gl.getUniformLocation(this.solid, "opacity"), 0.16);
       this.drawState(STATE.hidden);
+      this.drawState(STATE.pale);
       gl.depthMask(true);
       gl.disable(gl.BLEND);
     }
@@ -176,7 +177,7 @@ class Space {
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.states);
     gl.uniform1i(at("states"), 0);
-    const palette = [colours.lost, colours.seen, colours.target, colours.gained, colours.lost, colours.cell];
+    const palette = [colours.lost, colours.seen, colours.target, colours.gained, colours.lost, colours.seen];
     gl.uniform3fv(at("palette"), new Float32Array(palette.flatMap(channelsOf)));
   }
 
