@@ -101,7 +101,7 @@ pub fn buffer_chart_svg(chart: &BufferChart<'_>) -> Result<String, PngError> {
         theme::INK
     );
     // The window: the ends of both axes.
-    let [low, high] = [side, up].map(|k| window.map(|corner| corner[k])).map(|ends| ends.map(number)).into();
+    let [low, high] = [side, up].map(|k| window.map(|corner| corner[k])).map(|ends| ends.map(number));
     let (first, last) = if is_mirrored { (&low[1], &low[0]) } else { (&low[0], &low[1]) };
     let below = top + h + 1.3 * TEXT;
     words(&mut out, first, [left, below], TEXT);

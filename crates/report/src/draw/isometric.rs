@@ -5,7 +5,7 @@ use super::order::back_to_front;
 use super::raster::{Raster, points_below};
 use super::section::Section;
 use super::slice::{Looked, look, title};
-use super::space::Up;
+use super::space::{Up, project};
 use super::svg::{self, stroke};
 use super::visible_set::VisibleSet;
 use super::{DrawError, Drawing, Sight, Surfaces, View, check_cells};
@@ -208,15 +208,6 @@ fn shown(table: &Table, up: Up, below: Option<f64>) -> (Vec<CellId>, Vec<Aabb<3>
     cells.filter_map(cut).unzip()
 }
 
-/// Cosine of 30 degrees, rounded; a picture is not a predicate.
-const COS_30: f64 = 0.866_025_403_784_438_6;
-
-/// A point in the plane of the picture: all three axes are equally short.
-pub(super) fn project(p: [f64; 3], up: Up) -> Point2 {
-    let [right, left] = up.sideways().map(|axis| p[axis]);
-    Point2::new((right - left) * COS_30, p[up.axis()] - 0.5 * (right + left))
-}
-
 /// A corner of a box: on the high side or not, to the right, to the left, and upwards.
 fn corner(b: &Aabb<3>, up: Up, high: [bool; 3]) -> Point2 {
     let [right, left] = up.sideways();
@@ -232,21 +223,6 @@ fn outline(b: &Aabb<3>, up: Up) -> [Point2; 6] {
     let (below, above) = ([true, false, false], [false, true, true]);
     [below, [true, false, true], [false, false, true], above, [false, true, false], [true, true, false]]
         .map(|high| corner(b, up, high))
-}
-
-/// How near a point is to the viewer: the sum of its coordinates.
-pub(super) fn depth_of(p: [f64; 3]) -> f64 {
-    p[0] + p[1] + p[2]
-}
-
-/// The point that [`project`] and [`depth_of`] are of.
-pub(super) fn point_at(at: Point2, depth: f64, up: Up) -> [f64; 3] {
-    let [right, left] = up.sideways();
-    let (both, apart) = ((depth - at.y) / 1.5, at.x / COS_30);
-    let mut p = [0.0; 3];
-    p[up.axis()] = at.y + 0.5 * both;
-    (p[right], p[left]) = (0.5 * (both + apart), 0.5 * (both - apart));
-    p
 }
 
 /// How a cell is drawn; the first is what is told of a border between cells.
@@ -318,24 +294,5 @@ fn draw(out: &mut String, frame: &Frame, b: &Aabb<3>, up: Up, look: Look) {
         let mut path = String::new();
         frame.polygon(&mut path, &face.map(|high| corner(b, up, high)));
         let _ = writeln!(out, "<path d=\"{path}\" fill=\"{shade}\"/>");
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_are_found_again() {
-        let mut n = 0;
-        for up in [Up::X, Up::Y, Up::Z] {
-            for k in 0..27 {
-                let p: [f64; 3] = [k % 3, k / 3 % 3, k / 9].map(|k| f64::from(k) * 1.5 - 2.0);
-                let found = point_at(project(p, up), depth_of(p), up);
-                assert!((0..3).all(|k| (found[k] - p[k]).abs() < 1e-12), "{up:?}: {p:?}, {found:?}");
-                n += 1;
-            }
-        }
-        assert_eq!(n, 81);
     }
 }

@@ -1,7 +1,6 @@
 //! Surfaces of a scene as pixels: the nearest one in each, shaded, for isometric views.
 
-use super::isometric::{depth_of, point_at, project};
-use super::space::Up;
+use super::space::{Up, depth_of, point_at, project};
 use super::surfaces::Surface;
 use crate::frame::Frame;
 use crate::png::{Pixels, encode_small};

@@ -93,7 +93,6 @@ pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawin
         eye: eye.map(on_floor),
         line: line.map(|ends| ends.map(on_floor)),
         looks: looks.map(|(direction, angle)| (on_floor(direction), angle)),
-        ..Annotations::default()
     };
     let title = format!("{} at height {}", title(view, seen.as_ref()), svg::short(height));
     let look = Look { objects: false, group_colours: true, legend };

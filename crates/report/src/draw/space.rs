@@ -1,6 +1,6 @@
 //! Directions of pictures of scenes in space.
 
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, Point2};
 
 /// Which axis of a scene points up, in its positive direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -51,6 +51,30 @@ pub(super) fn cut_by(height: f64, low: f64, high: f64) -> bool {
     low <= height && height < high
 }
 
+/// Cosine of 30 degrees, rounded; a picture is not a predicate.
+const COS_30: f64 = 0.866_025_403_784_438_6;
+
+/// A point in the plane of the picture: all three axes are equally short.
+pub(super) fn project(p: [f64; 3], up: Up) -> Point2 {
+    let [right, left] = up.sideways().map(|axis| p[axis]);
+    Point2::new((right - left) * COS_30, p[up.axis()] - 0.5 * (right + left))
+}
+
+/// How near a point is to the viewer: the sum of its coordinates.
+pub(super) fn depth_of(p: [f64; 3]) -> f64 {
+    p[0] + p[1] + p[2]
+}
+
+/// The point that [`project`] and [`depth_of`] are of.
+pub(super) fn point_at(at: Point2, depth: f64, up: Up) -> [f64; 3] {
+    let [right, left] = up.sideways();
+    let (both, apart) = ((depth - at.y) / 1.5, at.x / COS_30);
+    let mut p = [0.0; 3];
+    p[up.axis()] = at.y + 0.5 * both;
+    (p[right], p[left]) = (0.5 * (both + apart), 0.5 * (both - apart));
+    p
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,5 +100,19 @@ mod tests {
     #[test]
     fn borders_belong_to_what_is_above() {
         assert!(cut_by(1.0, 1.0, 2.0) && !cut_by(1.0, 0.0, 1.0) && !cut_by(1.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn points_are_found_again() {
+        let mut n = 0;
+        for up in [Up::X, Up::Y, Up::Z] {
+            for k in 0..27 {
+                let p: [f64; 3] = [k % 3, k / 3 % 3, k / 9].map(|k| f64::from(k) * 1.5 - 2.0);
+                let found = point_at(project(p, up), depth_of(p), up);
+                assert!((0..3).all(|k| (found[k] - p[k]).abs() < 1e-12), "{up:?}: {p:?}, {found:?}");
+                n += 1;
+            }
+        }
+        assert_eq!(n, 81);
     }
 }
