@@ -131,7 +131,11 @@ fn what_cannot_be_explained_is_refused() {
         assert_eq!(error, format!("{file}: there is no cluster 6: there are 6"));
         assert_eq!(folder.refused(&["explain", file, "1,2,3", "0"]), format!("{file}: {numbers}"));
         let found = if file == "map.prt" { "a portal file" } else { "the table of a portal file" };
-        for (option, meant) in [("--max-visits", "plans"), ("--max-programs", "scenes in space"), ("--draw", "plans")] {
+        for (option, meant) in [
+            ("--max-visits", "plans"),
+            ("--max-programs", "scenes in space"),
+            ("--draw", "plans and scenes with portals"),
+        ] {
             let error = folder.refused(
                 &["explain", file, "0", "1", option, "9.svg"]
                     .map(|arg| if option != "--draw" && arg == "9.svg" { "9" } else { arg }),
