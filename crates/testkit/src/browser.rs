@@ -3,16 +3,39 @@
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
-/// Chromium, if it is in the path. Without it a message says that nothing is opened, and the caller has nothing to test.
+/// Chromium, if it is in the path and shows a page with a scene in space. Otherwise a message says that nothing is opened, and the caller
+/// has nothing to test.
 pub fn chromium() -> Option<PathBuf> {
-    let path = std::env::var_os("PATH")?;
-    let found = std::env::split_paths(&path).map(|folder| folder.join("chromium")).find(|file| file.is_file());
-    if found.is_none() {
-        eprintln!("NOT RUN: there is no chromium in the path, so no page is opened");
-    }
-    found
+    static FOUND: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let found = FOUND.get_or_init(|| {
+        let path = std::env::var_os("PATH")?;
+        let in_path = std::env::split_paths(&path).map(|folder| folder.join("chromium")).find(|file| file.is_file());
+        let Some(browser) = in_path else {
+            eprintln!("NOT RUN: there is no chromium in the path, so no page is opened");
+            return None;
+        };
+        let told =
+            Opened { html: EMPTY, script: HAS_WEBGL, given: &Value::Null, size: [400, 300], link: "" }.open(&browser);
+        match told {
+            Ok(Value::Bool(true)) => Some(browser),
+            Ok(told) => {
+                eprintln!("NOT RUN: Chromium has no WebGL 2 here ({told}), so no page is opened");
+                None
+            }
+            Err(error) => {
+                eprintln!("NOT RUN: Chromium shows no page here: {error}");
+                None
+            }
+        }
+    });
+    found.clone()
 }
+
+const EMPTY: &str = "<!DOCTYPE html><html><head><meta http-equiv=\"Content-Security-Policy\" content=\"script-src 'sha256-';\"></head>\
+                     <body><p>Words</p></body></html>";
+const HAS_WEBGL: &str = "tell(document.createElement('canvas').getContext('webgl2') !== null);";
 
 /// A page to be opened with one more script. The script may read `given`, and calls `tell` once with what becomes the result.
 #[derive(Debug, Clone, Copy)]
@@ -35,18 +58,24 @@ impl Opened<'_> {
     /// # Panics
     /// If the browser does not start, or the script tells nothing.
     pub fn result(&self, browser: &Path) -> Value {
-        let folder = tempfile::tempdir().expect("a folder");
+        self.open(browser).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// The same, or why there is nothing.
+    fn open(&self, browser: &Path) -> Result<Value, String> {
+        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let page = self.write(folder.path());
         let output = self
             .command(browser, folder.path())
             .args(["--dump-dom", "--virtual-time-budget=60000"])
             .arg(format!("file://{}{}", page.display(), self.link))
             .output()
-            .expect("the browser starts");
+            .map_err(|error| error.to_string())?;
         let dom = String::from_utf8_lossy(&output.stdout);
         let result = dom.split("<pre id=\"result\" hidden=\"\">").nth(1).and_then(|rest| rest.split("</pre>").next());
-        let result = result.unwrap_or_else(|| panic!("no result; {}", String::from_utf8_lossy(&output.stderr)));
-        serde_json::from_str(&result.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")).expect("JSON")
+        let result = result.ok_or_else(|| format!("no result; {}", String::from_utf8_lossy(&output.stderr)))?;
+        let text = result.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
+        serde_json::from_str(&text).map_err(|error| error.to_string())
     }
 
     /// A picture of the page as PNG, after its script.

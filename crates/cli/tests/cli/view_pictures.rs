@@ -55,8 +55,10 @@ tell([left, top, means]);";
 /// A page as it is opened, with a script that ends like this.
 fn with_page<R>(folder: &Folder, page: &str, link: &str, script: &str, then: impl Fn(&Opened<'_>) -> R) -> R {
     let html = String::from_utf8(folder.read(page)).expect("a text");
-    // Windows without frames are not as high as they are told to be in every mode.
-    let high = "document.documentElement.style.height = document.body.style.height = '700px';";
+    // Windows without frames are not as high as they are told to be in every mode, and letters not as high everywhere.
+    let high = "document.documentElement.style.height = document.body.style.height = '700px'; \
+                const head = document.querySelector('header').style; \
+                [head.height, head.flexShrink, head.overflow] = ['49px', '0', 'hidden'];";
     let script = format!("ready.then((app) => {{ {high} {script} }});");
     then(&Opened { html: &html, script: &script, given: &Value::Null, size: [1100, 700], link })
 }
