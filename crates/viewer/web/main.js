@@ -420,7 +420,7 @@ async function start() {
   const reasons = await carriedBytes("reasons");
   if (reasons) model.reasons = new Reasons(table, reasons);
   if (older) model.change = new Change(table, new Table(older));
-  if (head.walk) model.walk = new Walk(head.walk);
+  if (head.walk) model.walk = new Walk(table, head.walk);
   document.title = `${head.title} – sightlines`;
   document.getElementById("title").textContent = head.title;
   const app = new App(model);

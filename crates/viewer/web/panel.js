@@ -326,7 +326,7 @@ class Panel {
     const { change } = this.model;
     document.getElementById("change").hidden = !change;
     if (!change) return;
-    const text = `${counted(change.gained.length, "pair")} became visible, ${counted(change.lost.length, "pair")} hidden.`;
+    const text = `${counted(change.gained.length, "pair")} became visible, ${counted(change.lost.length, "pair")} hidden. On the map, for the eye's cell: green and red.`;
     document.getElementById("change-text").textContent = text;
     const line = (sign) => ([a, b]) => {
       const go = () => this.actions.goToCell(a);

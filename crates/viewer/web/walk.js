@@ -1,9 +1,18 @@
-// A walk from `sightlines walk --json`, frame by frame.
+// A walk, frame by frame: where its eyes are and look to, with what may be seen from there.
 
 class Walk {
-  constructor(frames) {
+  constructor(table, frames) {
+    this.table = table;
     this.frames = frames;
     this.at = 0;
+  }
+
+  /** How many cells and objects may be seen from where the eye of a frame is; null outside every cell. */
+  counts(frame) {
+    const at = this.table.locate(frame.eye);
+    if (at.length === 0) return null;
+    const visible = this.table.visibleCells(at);
+    return { cells: visible.length, objects: this.table.visibleObjects(at, visible).length };
   }
 }
 
@@ -13,20 +22,23 @@ function bindWalk(model, goTo) {
   if (!walk) return;
   const [slider, text, play] = ["frame", "frame-text", "play"].map((id) => document.getElementById(id));
   slider.max = walk.frames.length - 1;
-  const most = Math.max(...walk.frames.map((frame) => frame.objects), 1);
   const step = Math.ceil(walk.frames.length / 200);
-  const bars = walk.frames.filter((_, k) => k % step === 0).map((frame) => {
+  const shown = walk.frames.filter((_, k) => k % step === 0).map((frame) => walk.counts(frame)?.objects ?? 0);
+  const most = Math.max(...shown, 1);
+  const bars = shown.map((n) => {
     const bar = element("span");
-    bar.style.height = `${(100 * frame.objects) / most}%`;
+    bar.style.height = `${(100 * n) / most}%`;
     return bar;
   });
   document.getElementById("counts").replaceChildren(...bars);
-  document.getElementById("counts").setAttribute("aria-label", `Objects seen in each frame, at most ${most}`);
+  document.getElementById("counts").setAttribute("aria-label", `Objects that may be seen in each frame, at most ${most}`);
   const show = (k) => {
     walk.at = k;
     slider.value = k;
     const frame = walk.frames[k];
-    text.textContent = `Frame ${k}: ${frame.cells} cells and ${frame.objects} objects are seen in the view.`;
+    const n = walk.counts(frame);
+    const seen = n ? `${counted(n.cells, "cell")} and ${counted(n.objects, "object")} may be seen from there` : "outside every cell";
+    text.textContent = `Frame ${k}: ${seen}.`;
     goTo(frame);
   };
   slider.addEventListener("input", () => show(Number(slider.value)));

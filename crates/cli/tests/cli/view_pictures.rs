@@ -3,24 +3,76 @@
 
 use crate::common::Folder;
 use crate::common::picture::Picture;
-use serde_json::Value;
+use serde_json::{Value, json};
+use sightlines::pvs::Table;
 use sightlines_testkit::browser::{Opened, chromium};
 use std::path::Path;
 
-/// A view of a page: the name of its picture, the page, the end of its address, and what is done on it.
-const VIEWS: [(&str, &str, &str, &str); 3] = [
-    (
-        "view-set.png",
-        "tower.html",
-        "#eye=9,1.7,5&lock=1&view=space",
-        "app.frameAll(); document.getElementById('ghosts').click(); const cut = document.getElementById('ceiling'); \
-         cut.value = 0.4; cut.dispatchEvent(new Event('input'));",
-    ),
-    ("view-why.png", "tower.html", "#cell=48&view=map&why=48-141", "app.frameAll();"),
-    ("view-heat.png", "office.html", "#heat=cells", "app.frameAll(); document.getElementById('numbers').open = true;"),
+/// A view of a page.
+struct Look {
+    /// Of the picture.
+    name: &'static str,
+    page: &'static str,
+    /// The end of the address.
+    link: &'static str,
+    /// What is done on the page.
+    script: &'static str,
+    /// An address whose view is another one.
+    other: &'static str,
+}
+
+const LOOKS: [Look; 6] = [
+    Look {
+        name: "view-set.png",
+        page: "tower.html",
+        link: "#eye=9,1.7,5&lock=1&view=space",
+        script: "app.frameAll(); document.getElementById('ghosts').click();",
+        other: "#eye=20,1.7,15&lock=1&view=space",
+    },
+    Look {
+        name: "view-why.png",
+        page: "tower.html",
+        link: "#cell=48&view=map&why=48-141",
+        script: "app.frameAll();",
+        other: "#cell=60&view=map",
+    },
+    Look {
+        name: "view-heat.png",
+        page: "office.html",
+        link: "#heat=cells",
+        script: "app.frameAll(); document.getElementById('numbers').open = true;",
+        other: "#cell=7",
+    },
+    Look {
+        name: "view-methods.png",
+        page: "tower.html",
+        link: "#eye=12,1.7,15&view=map",
+        script: "const heading = document.getElementById('heading'); heading.value = 52; \
+                 heading.dispatchEvent(new Event('input')); app.model.method = 'exact'; app.model.changed(); app.frameAll(); \
+                 const methods = document.getElementById('methods'); methods.open = true; app.panel.listMethods(); \
+                 document.querySelector('aside').scrollTop = methods.offsetTop - 60;",
+        other: "#eye=12,1.7,3&view=map",
+    },
+    Look {
+        name: "view-change.png",
+        page: "change.html",
+        link: "#cell=72",
+        script: "app.frameAll(); const change = document.getElementById('change'); change.open = true; \
+                 document.querySelector('aside').scrollTop = change.offsetTop - 60;",
+        other: "#cell=100",
+    },
+    Look {
+        name: "view-walk.png",
+        page: "office.html",
+        link: "#view=map",
+        script: "app.frameAll(); document.getElementById('walk').open = true; const frame = document.getElementById('frame'); \
+                 frame.value = 40; frame.dispatchEvent(new Event('input')); \
+                 document.querySelector('aside').scrollTop = document.getElementById('walk').offsetTop - 60;",
+        other: "#heat=cells",
+    },
 ];
 
-/// Pages of a tower and of an office.
+/// Pages of a tower and of an office, one with a walk, and one beside another bake that hides what two corridors see.
 fn pages() -> Folder {
     let folder = Folder::new();
     folder.run(&["generate", "tower", "--floors", "2", "-o", "tower.glb"]).expect(0);
@@ -28,8 +80,21 @@ fn pages() -> Folder {
     let named = ["--title", "A tower of two floors", "-o", "tower.html"];
     folder.run(&[&["view", "tower.pvs", "--scene", "tower.glb"], &named[..]].concat()).expect(0);
     folder.run(&["demo", "--out", "."]).expect(0);
-    let named = ["--title", "An office floor", "-o", "office.html"];
-    folder.run(&[&["view", "plan.pvs", "--scene", "plan.geojson"], &named[..]].concat()).expect(0);
+    let frames: Vec<Value> = (0..60).map(|k| json!({ "eye": [1.0 + f64::from(k), 22.2], "dir": [1.0, 0.0] })).collect();
+    folder.write("walk.json", json!({ "frames": frames }).to_string());
+    let view = ["view", "plan.pvs", "--scene", "plan.geojson"];
+    let named = ["--walk", "walk.json", "--title", "An office floor", "-o", "office.html"];
+    folder.run(&[&view, &named[..]].concat()).expect(0);
+    let mut parts = Table::from_bytes(&folder.read("plan.pvs")).expect("a table").into_parts();
+    let n_cells = parts.cells.len();
+    for (a, b) in (20..60).flat_map(|a| (70..n_cells).map(move |b| (a, b))) {
+        parts.rows.set(a, b, false);
+        parts.rows.set(b, a, false);
+    }
+    parts.stab = None;
+    folder.write("old.pvs", Table::new(parts).expect("a table").to_bytes());
+    let named = ["--against", "old.pvs", "--title", "An office floor, baked twice", "-o", "change.html"];
+    folder.run(&[&view, &named[..]].concat()).expect(0);
     folder
 }
 
@@ -64,8 +129,9 @@ fn with_page<R>(folder: &Folder, page: &str, link: &str, script: &str, then: imp
 }
 
 /// The share of blocks of the map or the scene that look different in a picture of the whole page.
-fn difference(browser: &Path, folder: &Folder, (page, link, script): (&str, &str, &str), picture: &Picture) -> f64 {
-    let told = with_page(folder, page, link, &format!("{script}{MEANS}"), |opened| opened.result(browser));
+fn difference(browser: &Path, folder: &Folder, look: &Look, link: &str, picture: &Picture) -> f64 {
+    let script = format!("{}{MEANS}", look.script);
+    let told = with_page(folder, look.page, link, &script, |opened| opened.result(browser));
     let number = |value: &Value| value.as_f64().expect("a number");
     let (left, top) = (number(&told[0]).round() as usize, number(&told[1]).round() as usize);
     let [width, height] = picture.size.map(|x| x as usize);
@@ -90,19 +156,19 @@ fn pages_look_like_the_pictures_of_the_documents() {
     let Some(browser) = chromium() else { return };
     let folder = pages();
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures");
-    for (k, (name, page, link, script)) in VIEWS.into_iter().enumerate() {
+    for look in &LOOKS {
+        let (name, path) = (look.name, kept.join(look.name));
         if std::env::var_os("BLESS").is_some_and(|value| value == "1") {
-            let script = format!("{script} app.redraw();");
-            let png = with_page(&folder, page, link, &script, |opened| opened.picture(&browser));
-            std::fs::write(kept.join(name), png).expect("the picture can be written");
+            let script = format!("{} app.redraw();", look.script);
+            let png = with_page(&folder, look.page, look.link, &script, |opened| opened.picture(&browser));
+            std::fs::write(&path, png).expect("the picture can be written");
         }
-        let picture = Picture::decode(&std::fs::read(kept.join(name)).expect("a picture"));
-        let share = difference(&browser, &folder, (page, link, script), &picture);
+        let picture = Picture::decode(&std::fs::read(path).expect("a picture"));
+        let share = difference(&browser, &folder, look, look.link, &picture);
         println!("{name}: {:.2} % of the blocks differ", 100.0 * share);
         assert!(share < 0.03, "{name}: {share}; BLESS=1 draws it anew");
         // The comparison can fail: by the same view from another place, or of other cells.
-        let others = ["#eye=20,1.7,15&lock=1&view=space", "#cell=60&view=map", "#cell=7"];
-        let share = difference(&browser, &folder, (page, others[k], script), &picture);
+        let share = difference(&browser, &folder, look, look.other, &picture);
         println!("{name}: {:.2} % from another eye", 100.0 * share);
         assert!(share > 0.06, "{name}: {share}");
     }
